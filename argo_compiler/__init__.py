@@ -1,0 +1,1 @@
+"""The planning language: IL, script front end, diagnostics, state machine and executor."""

@@ -1,0 +1,150 @@
+"""The intermediate language (IL): what a mission is, as data.
+
+The structures and names are those of the thesis (sections 3.2 and 4.4), so that a plan maps one to
+one onto its ROS messages. What they mean is written in `docs/architecture.md` and carried out by
+`argo_compiler.hfsm`. A `Mission` read from JSON has the right shape; whether it makes sense is what
+`argo_compiler.check` says.
+"""
+
+from enum import StrEnum
+from typing import Literal
+
+from pydantic import Field
+
+from argo_compiler.diagnostics import Span
+from argo_compiler.model import Model, Pose
+
+
+class Action(StrEnum):
+    """What a task does. START only says where the mission begins; the machine passes over it."""
+
+    START = "START"
+    WAYPOINT = "WAYPOINT"
+    MEASURE = "MEASURE"
+
+
+class Mode(StrEnum):
+    """Who drives (thesis 1.2)."""
+
+    AUTONOMOUS = "autonomous"
+    SUPERVISORY = "supervisory"
+
+
+class Order(StrEnum):
+    """Whether the checkpoints' order is the script's or may be changed."""
+
+    PRECISE = "precise"
+    ANY = "any"
+
+
+class Stop(StrEnum):
+    """What a group does when its time is up: leave at once, or complete the round."""
+
+    HARD = "hard"
+    SOFT = "soft"
+
+
+class ConditionType(StrEnum):
+    """The comparisons of table 3.1 of the thesis, its misprint for GREATER corrected."""
+
+    LESS = "MEASURED_VALUE_LESS"
+    GREATER = "MEASURED_VALUE_GREATER"
+    WITHIN = "MEASURED_VALUE_WITHIN"
+
+
+class Condition(Model):
+    """A test of the last value measured at a checkpoint.
+
+    LESS: value < param1. GREATER: value > param1. WITHIN: param1 < value < param2. A value that was
+    never measured, or is older than `max_age`, makes the condition false.
+    """
+
+    type: ConditionType
+    id: str = ""
+    """a name for people; the machine does not use it"""
+    object_id: str
+    """the checkpoint whose value is compared"""
+    param1: float
+    param2: float | None = None
+    """upper bound, for WITHIN only"""
+    max_age: float | None = Field(default=None, gt=0)
+    """s; None: a value never becomes stale"""
+
+
+class Transition(Model):
+    """Where to go on when a task has ended and all conditions hold; none: unconditional."""
+
+    target: str
+    conditions: tuple[Condition, ...] = ()
+
+
+class JointState(Model):
+    """Positions of named joints, for semi-autonomous actions (thesis 4.4)."""
+
+    names: tuple[str, ...]
+    positions: tuple[float, ...]
+    """rad or m, one for each name"""
+
+
+class Task(Model):
+    """One thing to do. `name` is unique within the mission and never empty."""
+
+    name: str = Field(min_length=1)
+    action: Action
+    group: str = ""
+    """the group it is shown in; the machine goes by the group's own start and end"""
+    object_id: str | None = None
+    """MEASURE: the checkpoint"""
+    pose: Pose | None = None
+    """WAYPOINT and START: where"""
+    velocity: float | None = Field(default=None, gt=0)
+    """m/s on the way to the next task; None: the robot's planning speed"""
+    joint_states: JointState | None = None
+    transitions: tuple[Transition, ...] = ()
+    source: Span | None = None
+    """where a script asked for it"""
+
+
+class Group(Model):
+    """A round: the tasks from `start` to `end` in the mission's order, repeated.
+
+    With both a count and a duration, whichever comes first ends it; with neither it is endless and
+    some transition must leave it. `/` in the name nests: `Alpha/Beta` lies inside `Alpha`.
+    """
+
+    name: str = Field(min_length=1)
+    start: str
+    end: str
+    max_repeat_count: int = Field(default=0, ge=0)
+    """rounds in all; 0: no limit"""
+    max_repeat_duration: float = Field(default=0.0, ge=0)
+    """s on the mission's clock since the group was entered; 0: no limit"""
+    stop: Stop = Stop.HARD
+    source: Span | None = None
+
+
+class Mission(Model):
+    """A planned mission: the sheet's header, the tasks in order, and the groups over them."""
+
+    version: Literal[1] = 1
+    """of this format"""
+    designation: str = ""
+    site: str = ""
+    """the site that poses and checkpoints belong to"""
+    mode: Mode = Mode.AUTONOMOUS
+    max_duration: float | None = Field(default=None, gt=0)
+    """s; None: no limit"""
+    start_area: int | None = None
+    end_area: int | None = None
+    """where the mission ends docked; None: it ends where its last task ends"""
+    order: Order = Order.PRECISE
+    anomaly_specification: str = ""
+    real_time_reporting: str = ""
+    after_mission_report: str = ""
+    tasks: tuple[Task, ...] = ()
+    groups: tuple[Group, ...] = ()
+    current: str | None = None
+    """the task that the planner shows as current; the machine does not use it"""
+
+    def task(self, name: str) -> Task | None:
+        return next((t for t in self.tasks if t.name == name), None)

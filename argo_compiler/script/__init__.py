@@ -1,0 +1,28 @@
+"""The script front end: a mission sheet or a mission protocol becomes a mission.
+
+`read_script` reads the file, `heal` takes the noise of text recognition out, `parse` makes the
+syntax tree, `resolve` looks up what it names and makes the mission; `import_script` does the last
+three in one.
+"""
+
+from argo_compiler.script.healing import Healed, heal
+from argo_compiler.script.nodes import Protocol, Script, Sheet
+from argo_compiler.script.parsing import parse
+from argo_compiler.script.reading import decode_script, read_script
+from argo_compiler.script.resolve import Resolved, import_script, resolve
+from argo_compiler.script.vocabulary import catalog_words
+
+__all__ = [
+    "Healed",
+    "Protocol",
+    "Resolved",
+    "Script",
+    "Sheet",
+    "catalog_words",
+    "decode_script",
+    "heal",
+    "import_script",
+    "parse",
+    "read_script",
+    "resolve",
+]

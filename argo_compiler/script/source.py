@@ -1,0 +1,149 @@
+"""Text that remembers where it came from, and the findings about it."""
+
+import re
+from bisect import bisect_right
+from collections.abc import Sequence
+from dataclasses import dataclass, field
+from functools import cached_property
+
+from argo_compiler.diagnostics import Diagnostic, Severity, Span
+
+MAX_LINE = 2000
+"""characters in a line; a longer one is refused unread"""
+
+_LINE_END = re.compile(r"\r\n|\r|\n")
+
+
+@dataclass(frozen=True)
+class Source:
+    """A script as it was written. A byte order mark is not counted, as no editor shows it."""
+
+    text: str
+    name: str = "script"
+
+    @cached_property
+    def lines(self) -> tuple[str, ...]:
+        return tuple(self.text[start:end] for start, end in self._bounds)
+
+    @cached_property
+    def _bounds(self) -> list[tuple[int, int]]:
+        start = 1 if self.text.startswith("\ufeff") else 0
+        bounds = []
+        for match in _LINE_END.finditer(self.text):
+            bounds.append((start, match.start()))
+            start = match.end()
+        bounds.append((start, len(self.text)))
+        return bounds
+
+    @cached_property
+    def _starts(self) -> list[int]:
+        return [start for start, _ in self._bounds]
+
+    def line_text(self, number: int) -> "Text":
+        """Line `number`, counted from 1, without its end."""
+        start, end = self._bounds[number - 1]
+        return Text(self.text[start:end], range(start, end), self)
+
+    def span(self, start: int, end: int) -> Span:
+        """The span of the characters `start` to `end`, cut at the end of its first line."""
+        line = max(1, bisect_right(self._starts, start))
+        line_start, line_end = self._bounds[line - 1]
+        length = max(1, min(end, line_end) - start)
+        return Span(line=line, column=start - line_start + 1, length=length)
+
+
+@dataclass(frozen=True)
+class Text:
+    """A piece of a script, perhaps healed: each character knows its offset in the source."""
+
+    content: str
+    offsets: Sequence[int]
+    source: Source
+
+    def __getitem__(self, part: slice) -> "Text":
+        return Text(self.content[part], self.offsets[part], self.source)
+
+    def strip(self) -> "Text":
+        left = len(self.content) - len(self.content.lstrip())
+        return self[left : max(left, len(self.content.rstrip()))]
+
+    def replace(self, start: int, end: int, word: str) -> "Text":
+        """The text with `word`, not empty, in place of the characters `start` to `end`."""
+        old = self.offsets[start:end]
+        new = [old[min(i, len(old) - 1)] for i in range(len(word))]
+        new[-1] = old[-1]
+        content = self.content[:start] + word + self.content[end:]
+        return Text(content, [*self.offsets[:start], *new, *self.offsets[end:]], self.source)
+
+    def span(self, start: int = 0, end: int | None = None) -> Span:
+        """Where the characters `start` to `end` stand; if there are none, the end of the text."""
+        offsets = self.offsets[start:end]
+        if offsets:
+            return self.source.span(offsets[0], offsets[-1] + 1)
+        after = self.offsets[-1] + 1 if self.offsets else 0
+        return self.source.span(after, after + 1)
+
+
+def join(parts: Sequence[Text]) -> Text:
+    """The texts, at least one, with a blank between each two."""
+    content: list[str] = []
+    offsets: list[int] = []
+    for part in parts:
+        if content and part.content:
+            content.append(" ")
+            offsets.append(part.offsets[0])
+        content.append(part.content)
+        offsets.extend(part.offsets)
+    return Text("".join(content), offsets, parts[0].source)
+
+
+@dataclass
+class Findings:
+    """Collects diagnostics; the one mutable thing that the stages hand on."""
+
+    source: Source
+    diagnostics: list[Diagnostic] = field(default_factory=list)
+
+    errors: int = field(init=False, default=0)
+    """how many of the diagnostics are errors"""
+
+    def __post_init__(self) -> None:
+        self.errors = sum(d.severity is Severity.ERROR for d in self.diagnostics)
+
+    def error(self, code: str, message: str, span: Span | None, hint: str | None = None) -> None:
+        self._add(Severity.ERROR, code, message, span, hint)
+
+    def warning(self, code: str, message: str, span: Span | None, hint: str | None = None) -> None:
+        self._add(Severity.WARNING, code, message, span, hint)
+
+    def _add(
+        self, severity: Severity, code: str, message: str, span: Span | None, hint: str | None
+    ) -> None:
+        self.errors += severity is Severity.ERROR
+        excerpt = _printable(self.source.lines[span.line - 1]) if span else None
+        self.diagnostics.append(
+            Diagnostic(
+                code=f"script.{code}",
+                severity=severity,
+                message=message,
+                span=span,
+                excerpt=excerpt,
+                hint=hint,
+            )
+        )
+
+    def by_place(self) -> tuple[Diagnostic, ...]:
+        """All findings in the source's order, those without a place last."""
+        return tuple(sorted(self.diagnostics, key=_place))
+
+
+def _place(diagnostic: Diagnostic) -> tuple[bool, int, int]:
+    span = diagnostic.span
+    return (span is None, span.line if span else 0, span.column if span else 0)
+
+
+def _printable(line: str) -> str:
+    if len(line) > MAX_LINE:
+        line = f"{line[:80]} ..."
+    # Control characters would reach the user's terminal.
+    return "".join(c if c.isprintable() or c == "\t" else " " for c in line)

@@ -1,0 +1,83 @@
+"""A made-up site with the checkpoints of the competition's kind, and where the scripts lie."""
+
+import os
+from pathlib import Path
+
+import pytest
+
+from argo_compiler.catalog import (
+    Area,
+    Catalog,
+    CheckpointInfo,
+    CheckpointKind,
+    Floor,
+    Interval,
+    Place,
+)
+from argo_compiler.model import Pose
+
+NAMES = {
+    1: ["pressure gauge 1", "liquid level gauge 1", "pressure gauge 2", "valve R25"],
+    2: ["valve R12", "pressure gauge 3", "liquid level gauge 2", "pressure gauge 5"],
+    3: ["pressure gauge 4", "valve R31", "valve R7", "liquid level gauge 3"],
+    4: ["pressure gauge 6", "valve R18", "pressure gauge 7"],
+    5: ["liquid level gauge 4", "valve R40", "pressure gauge 8"],
+    6: ["valve R9", "liquid level gauge 5"],
+}
+SCALES = {
+    CheckpointKind.PRESSURE_GAUGE: ("bar", Interval(low=0, high=10), Interval(low=3, high=7)),
+    CheckpointKind.LIQUID_LEVEL_GAUGE: ("%", Interval(low=0, high=100), Interval(low=20, high=80)),
+    CheckpointKind.VALVE: ("deg", Interval(low=0, high=90), Interval(low=0, high=10)),
+}
+STOREY = 2.5
+
+
+def _checkpoint(id: int, name: str, floor: int) -> CheckpointInfo:
+    kind = CheckpointKind(name.rpartition(" ")[0])
+    unit, range_, nominal = SCALES[kind]
+    return CheckpointInfo(
+        id=id, kind=kind, name=name, floor=floor, unit=unit, range=range_, nominal=nominal
+    )
+
+
+def _floor(number: int) -> Floor:
+    z = (number - 1) * STOREY
+    corners = [(1, 1), (11, 1), (11, 7), (1, 7)]
+    return Floor(number=number, z=z, patrol=tuple(Pose(x=x, y=y, z=z) for x, y in corners))
+
+
+def make_catalog() -> Catalog:
+    named = [(name, floor) for floor, names in NAMES.items() for name in names]
+    return Catalog(
+        site="umad",
+        checkpoints=tuple(_checkpoint(i, n, f) for i, (n, f) in enumerate(named, start=1)),
+        areas=(
+            Area(number=1, dock=Pose(x=-4, y=2, z=0)),
+            Area(number=2, dock=Pose(x=-4, y=6, z=0, yaw=1.5)),
+        ),
+        floors=tuple(_floor(number) for number in NAMES),
+        places=(Place(name="front of the site", pose=Pose(x=-1, y=4, z=0)),),
+    )
+
+
+CATALOG = make_catalog()
+
+
+@pytest.fixture(scope="session")
+def catalog() -> Catalog:
+    return CATALOG
+
+
+@pytest.fixture(scope="session")
+def missions() -> Path:
+    """The scripts that the project ships."""
+    return Path(__file__).parents[3] / "scenarios" / "umad" / "missions"
+
+
+@pytest.fixture(scope="session")
+def originals() -> Path:
+    """The competition's sheet and the thesis' protocol, which the project does not ship."""
+    folder = os.environ.get("ARGO_ORIGINALS")
+    if not folder:
+        pytest.skip("ARGO_ORIGINALS names no folder: the two original scripts are not tried")
+    return Path(folder)

@@ -1,0 +1,74 @@
+"""What can't be a script is refused, with a message that says why."""
+
+from pathlib import Path
+
+import pytest
+
+from argo_compiler.catalog import Catalog
+from argo_compiler.diagnostics import DiagnosticError
+from argo_compiler.errors import ArgoError
+from argo_compiler.script import import_script, parse, read_script
+
+
+def test_a_byte_order_mark_is_taken_off(tmp_path: Path) -> None:
+    path = tmp_path / "script.txt"
+    path.write_bytes("\ufeffMission’s".encode())
+    assert read_script(path) == "Mission’s"
+    assert read_script(str(path)) == "Mission’s"
+
+
+@pytest.mark.parametrize(
+    ("data", "message"),
+    [
+        (b"", "is empty"),
+        (b" \n\t", "is empty"),
+        (b"Mission\0", "binary"),
+        ("a\nMission’s".encode("cp1252"), r"not UTF-8 \(byte 10, line 2\)"),
+        (b"a" * 1_000_001, "larger than 1000000 bytes"),
+    ],
+)
+def test_bad_files(data: bytes, message: str, tmp_path: Path) -> None:
+    path = tmp_path / "script.txt"
+    path.write_bytes(data)
+    with pytest.raises(ArgoError, match=message):
+        read_script(path)
+
+
+def test_no_file(tmp_path: Path) -> None:
+    with pytest.raises(ArgoError, match="does not exist"):
+        read_script(tmp_path / "none.txt")
+    with pytest.raises(ArgoError, match="is a directory"):
+        read_script(tmp_path)
+    with pytest.raises(ArgoError, match="can't be read"):
+        read_script("a\0b")
+
+
+@pytest.mark.parametrize(
+    ("text", "code"),
+    [
+        ("", "script.empty"),
+        ("\ufeff \n\t\r\n", "script.empty"),
+        ("hello world", "script.unrecognised"),
+        ("x" * 100_000, "script.unrecognised"),
+        ("\n" * 20_000, "script.empty"),
+        ("Mission Protocol\n" * 20_001, "script.too-long"),
+    ],
+)
+def test_what_is_no_script(text: str, code: str) -> None:
+    with pytest.raises(DiagnosticError) as caught:
+        parse(text)
+    (error,) = caught.value.diagnostics
+    assert error.code == code
+
+
+def test_an_unrecognised_script_shows_how_each_kind_begins() -> None:
+    with pytest.raises(DiagnosticError, match=r"(?s)Mission's designation.*Mission Protocol #2"):
+        parse("\n\nDear robot")
+
+
+def test_too_many_errors_end_the_reading(catalog: Catalog) -> None:
+    text = "Mission Protocol\n" + "1. gibberish\n" * 15_000
+    with pytest.raises(DiagnosticError) as caught:
+        import_script(text, catalog)
+    assert len(caught.value.diagnostics) == 102
+    assert caught.value.diagnostics[-1].code == "script.too-many-errors"

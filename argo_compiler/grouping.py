@@ -1,0 +1,79 @@
+"""Which tasks lie in which group: the groups of a mission as nested ranges of its task list."""
+
+from dataclasses import dataclass
+
+from argo_compiler.il import Group, Mission
+
+
+@dataclass(frozen=True, slots=True)
+class GroupRange:
+    """A group with the positions of its first and last task in the mission's list, inclusive."""
+
+    group: Group
+    first: int
+    last: int
+
+    def contains(self, position: int) -> bool:
+        return self.first <= position <= self.last
+
+
+def parent_name(name: str) -> str | None:
+    """The name of the group that a group of this name lies in: `Alpha` for `Alpha/Beta`."""
+    parent, slash, _ = name.rpartition("/")
+    return parent if slash else None
+
+
+def group_ranges(mission: Mission) -> tuple[GroupRange, ...]:
+    """The groups whose start and end exist in this order, each one before those that lie in it.
+
+    By start, longest first; of two with the same range the one with the shorter path first.
+    """
+    position: dict[str, int] = {}
+    for i, task in enumerate(mission.tasks):
+        position.setdefault(task.name, i)
+    ranges = [
+        GroupRange(group, position[group.start], position[group.end])
+        for group in mission.groups
+        if group.start in position and group.end in position
+    ]
+    ordered = (r for r in ranges if r.first <= r.last)
+    return tuple(sorted(ordered, key=lambda r: (r.first, -r.last, r.group.name.count("/"))))
+
+
+@dataclass(frozen=True)
+class Layout:
+    """The nesting of a mission's groups. Tasks and groups are meant by position."""
+
+    ranges: tuple[GroupRange, ...]
+    """parents before children"""
+    parent: tuple[int | None, ...]
+    """for each range, the one that it lies in"""
+    innermost: tuple[int | None, ...]
+    """for each task, the smallest range that it lies in"""
+    ending: tuple[tuple[int, ...], ...]
+    """for each task, the ranges that end with it, innermost first"""
+
+    @classmethod
+    def of(cls, mission: Mission) -> "Layout":
+        """The layout of a mission whose groups `check` finds no error in. Linear time."""
+        ranges = group_ranges(mission)
+        parent: list[int | None] = []
+        innermost: list[int | None] = []
+        ending: list[tuple[int, ...]] = []
+        open_ranges: list[int] = []
+        for i in range(len(mission.tasks)):
+            while len(parent) < len(ranges) and ranges[len(parent)].first == i:
+                parent.append(open_ranges[-1] if open_ranges else None)
+                open_ranges.append(len(parent) - 1)
+            innermost.append(open_ranges[-1] if open_ranges else None)
+            ended = []
+            while open_ranges and ranges[open_ranges[-1]].last == i:
+                ended.append(open_ranges.pop())
+            ending.append(tuple(ended))
+        return cls(ranges, tuple(parent), tuple(innermost), tuple(ending))
+
+    def common(self, inside: int | None, task: int) -> int | None:
+        """The smallest range that holds both the range `inside` and the task; None: the mission."""
+        while inside is not None and not self.ranges[inside].contains(task):
+            inside = self.parent[inside]
+        return inside

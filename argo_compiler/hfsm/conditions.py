@@ -1,0 +1,47 @@
+"""Conditions: when they hold, and how people read them."""
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+
+from argo_compiler.il import Condition, ConditionType
+
+
+@dataclass(frozen=True, slots=True)
+class Measured:
+    """A value measured at a checkpoint, in the checkpoint's unit, and when (s)."""
+
+    value: float
+    time: float
+
+
+def holds(condition: Condition, values: Mapping[str, Measured], now: float) -> bool:
+    """Whether a condition holds for the values last measured (by object_id) at time `now`.
+
+    A value that was never measured, or is older than `max_age`, makes it false. One that is exactly
+    `max_age` old still counts. WITHIN is open on both sides.
+    """
+    measured = values.get(condition.object_id)
+    if measured is None:
+        return False
+    if condition.max_age is not None and now - measured.time > condition.max_age:
+        return False
+    if condition.type is ConditionType.LESS:
+        return measured.value < condition.param1
+    if condition.type is ConditionType.GREATER:
+        return measured.value > condition.param1
+    upper = condition.param2
+    return upper is not None and condition.param1 < measured.value < upper
+
+
+def words(condition: Condition) -> str:
+    """The condition as text, such as `2 < #4 < 5.5, at most 60 s old`."""
+    name = f"#{condition.object_id}"
+    if condition.type is ConditionType.LESS:
+        text = f"{name} < {condition.param1:g}"
+    elif condition.type is ConditionType.GREATER:
+        text = f"{name} > {condition.param1:g}"
+    else:
+        text = f"{condition.param1:g} < {name} < {condition.param2:g}"
+    if condition.max_age is not None:
+        text += f", at most {condition.max_age:g} s old"
+    return text

@@ -1,0 +1,179 @@
+"""The hierarchical state machine (HFSM) of a mission, as data.
+
+Leaf states are tasks, composite states the mission and its groups. The tables are flat and refer to
+each other by id, so that any depth of nesting can be written and read. Nothing has to be known of
+the IL to run or export a machine:
+
+- When the action of a leaf has ended, the leaf's transitions are tried in order, and the first one
+  that can be taken is. The last one always can.
+- A transition with `target` leaves all states below its `domain` and enters the states from there
+  to the target anew. A composite that is entered begins its first round, and its clock.
+- A transition with `completes` neither leaves nor enters a state: the round of that composite has
+  ended, and the composite's own transitions are tried in order.
+- REPEAT begins the next round of its composite; it can be taken while the composite's `repeat`
+  wants another round.
+- The time-out of a composite is taken when its clock reaches the duration: the action that runs is
+  cancelled, and the composite's round has ended. As its time is up, it wants no other.
+"""
+
+from collections.abc import Iterator
+from enum import StrEnum
+from typing import Literal
+
+from pydantic import Field, model_validator
+
+from argo_compiler.diagnostics import Span
+from argo_compiler.il import Condition, Stop, Task
+from argo_compiler.model import Model
+
+MISSION = "mission"
+"""id of the composite that all other states lie in"""
+
+DONE: Literal["done"] = "done"
+"""id of the final state"""
+
+
+def task_id(name: str) -> str:
+    """The id of the leaf of a task. Tasks and groups may have the same name; ids differ."""
+    return f"task:{name}"
+
+
+def group_id(name: str) -> str:
+    """The id of the composite of a group."""
+    return f"group:{name}"
+
+
+class TransitionKind(StrEnum):
+    """Why a transition is taken."""
+
+    CONDITIONAL = "conditional"
+    """all its conditions hold"""
+    REPEAT = "repeat"
+    """the composite wants another round"""
+    DEFAULT = "default"
+    """nothing before it could be taken"""
+    TIMEOUT = "timeout"
+    """the composite's time is up"""
+
+
+class Transition(Model):
+    """One way on. Exactly one of `target` and `completes` is given."""
+
+    kind: TransitionKind
+    target: str | None = None
+    """the leaf to enter, or the final state"""
+    domain: str | None = None
+    """with `target`: the composite that stays active while everything below it is left"""
+    completes: str | None = None
+    """the composite whose round has ended, and which decides how to go on"""
+    conditions: tuple[Condition, ...] = ()
+    """CONDITIONAL only: all of them have to hold"""
+
+    @model_validator(mode="after")
+    def _leads_to_one_place(self) -> "Transition":
+        if (self.target is None) == (self.completes is None):
+            raise ValueError("a transition has either a target or a composite that it completes")
+        if (self.target is None) != (self.domain is None):
+            raise ValueError("a transition has a domain if and only if it has a target")
+        return self
+
+
+class Repeat(Model):
+    """When a group wants another round: while neither limit is reached."""
+
+    count: int = Field(ge=0)
+    """rounds in all; 0: no limit"""
+    duration: float = Field(ge=0)
+    """s since the group was entered; 0: no limit"""
+    stop: Stop
+    """what happens when the duration is over in the middle of a round"""
+
+
+class Composite(Model):
+    """The mission or a group."""
+
+    id: str
+    name: str
+    """of the group; of the mission, its designation"""
+    parent: str | None
+    """the composite around it; None for the mission"""
+    children: tuple[str, ...]
+    """the states that lie in it directly, in the mission's order"""
+    initial: str
+    """the leaf that a round begins with; it may lie in a composite further down"""
+    repeat: Repeat | None = None
+    """None for the mission, which is gone through once"""
+    transitions: tuple[Transition, ...] = ()
+    """for the end of a round, in the order in which they are tried"""
+    timeout: Transition | None = None
+    """taken when the repeat's duration is over; None: the round is completed first"""
+    source: Span | None = None
+
+
+class Leaf(Model):
+    """The state in which the action of a task runs."""
+
+    id: str
+    parent: str
+    task: Task
+    transitions: tuple[Transition, ...]
+    """for the end of the action, in the order in which they are tried"""
+
+    @property
+    def source(self) -> Span | None:
+        return self.task.source
+
+
+class Hfsm(Model):
+    """A machine. The composite `mission` begins in its `initial` state and ends in `final`."""
+
+    version: Literal[1] = 1
+    """of this format"""
+    composites: tuple[Composite, ...]
+    """the mission first, each one before those that lie in it"""
+    leaves: tuple[Leaf, ...]
+    """in the mission's order"""
+    final: Literal["done"] = DONE
+
+    @property
+    def mission(self) -> Composite:
+        return self.composites[0]
+
+    def transitions(self) -> Iterator[Transition]:
+        """All transitions, by source."""
+        for leaf in self.leaves:
+            yield from leaf.transitions
+        for composite in self.composites:
+            yield from composite.transitions
+            if composite.timeout:
+                yield composite.timeout
+
+    @model_validator(mode="after")
+    def _references_exist(self) -> "Hfsm":
+        leaves = {leaf.id for leaf in self.leaves}
+        composites: set[str] = set()
+        for composite in self.composites:
+            if (composite.parent is None) != (composite.id == MISSION):
+                raise ValueError(f"'{MISSION}' alone has no parent, unlike '{composite.id}'")
+            if composite.parent is not None and composite.parent not in composites:
+                raise ValueError(f"composite '{composite.id}' stands before its parent")
+            composites.add(composite.id)
+        if len(leaves) + len(composites) < len(self.leaves) + len(self.composites):
+            raise ValueError("two states have the same id")
+        if MISSION not in composites:
+            raise ValueError(f"there is no composite '{MISSION}'")
+        targets = leaves | {DONE}
+        states = targets | composites
+        used = [
+            *((leaf.parent, composites) for leaf in self.leaves),
+            *((c.initial, targets) for c in self.composites),
+            *((child, states) for c in self.composites for child in c.children),
+        ]
+        for transition in self.transitions():
+            if transition.target is not None:
+                used += [(transition.target, targets), (transition.domain or "", composites)]
+            used.append((transition.completes or MISSION, composites))
+        for id, possible in used:
+            if id not in possible:
+                raise ValueError(f"there is no state '{id}' that can be meant here")
+        return self

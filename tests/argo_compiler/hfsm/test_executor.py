@@ -1,0 +1,211 @@
+import json
+
+import pytest
+
+from argo_compiler.errors import ArgoError
+from argo_compiler.hfsm import (
+    ActionFailed,
+    ActionSucceeded,
+    CancelAction,
+    Cause,
+    Executor,
+    Measured,
+    Progress,
+    StartAction,
+    Tick,
+    lower,
+)
+from argo_compiler.il import Group, Stop
+
+
+@pytest.fixture
+def mission(build):
+    """A, then B and C in a group for 10 s, then D."""
+    return build("A B C D", Group(name="G", start="B", end="C", max_repeat_duration=10))
+
+
+@pytest.fixture
+def executor(mission):
+    return Executor(lower(mission))
+
+
+class TestCommands:
+    def test_start_and_end_of_actions(self, executor, mission):
+        assert executor.start(5) == (StartAction(mission.tasks[0]),)
+        assert executor.handle(Tick(), 6) == ()
+        assert executor.handle(ActionSucceeded("A", 2.5), 7) == (StartAction(mission.tasks[1]),)
+        assert executor.values == {"A": Measured(2.5, 7)}
+
+    def test_time_out_cancels(self, executor, mission):
+        executor.start(0)
+        executor.handle(ActionSucceeded("A"), 1)
+        assert executor.next_deadline == 11
+        commands = executor.handle(Tick(), 11)
+        assert commands == (CancelAction("B"), StartAction(mission.tasks[3]))
+        assert executor.next_deadline is None
+
+    def test_late_driver_gets_the_same_machine(self, executor, mission):
+        executor.start(0)
+        executor.handle(ActionSucceeded("A"), 1)
+        commands = executor.handle(ActionSucceeded("B", 3.0), 20)
+        assert commands == (CancelAction("B"), StartAction(mission.tasks[3]))
+        assert "B" not in executor.values
+        assert executor.trace[-1].time == 11
+
+    def test_late_driver_starts_and_cancels_nothing_in_between(self, build):
+        group = Group(name="G", start="A", end="A", max_repeat_duration=1)
+        mission = build("A", group, ways={"A": ["A"]})
+        executor = Executor(lower(mission))
+        executor.start(0)
+        assert executor.handle(Tick(), 3.5) == (CancelAction("A"), StartAction(mission.tasks[0]))
+        assert [entry.time for entry in executor.trace] == [0, 1, 2, 3]
+
+    def test_task_that_leads_to_itself_is_started_again(self, build):
+        mission = build("A", ways={"A": ["A"]})
+        executor = Executor(lower(mission))
+        executor.start(0)
+        assert executor.handle(ActionSucceeded("A"), 0) == (StartAction(mission.tasks[0]),)
+
+    def test_end_of_the_mission(self, build):
+        executor = Executor(lower(build("A")))
+        executor.start(0)
+        assert executor.handle(ActionFailed("A", "blocked"), 1) == ()
+        assert executor.finished
+        assert executor.active is None
+
+
+class TestViews:
+    def test_before_the_start(self, executor):
+        assert not executor.finished
+        assert executor.active is None
+        assert executor.configuration == ()
+        assert executor.next_deadline is None
+        assert executor.rounds == {}
+        assert executor.values == {}
+        assert executor.trace == ()
+
+    def test_configuration_and_rounds(self, build):
+        groups = (
+            Group(name="G", start="A", end="B", max_repeat_count=2),
+            Group(name="G/H", start="A", end="A", max_repeat_count=2),
+        )
+        executor = Executor(lower(build("A B", *groups)))
+        executor.start(0)
+        executor.handle(ActionSucceeded("A"), 1)
+        assert executor.configuration == ("mission", "group:G", "group:G/H", "task:A")
+        assert executor.rounds == {"G": 1, "G/H": 2}
+        executor.handle(ActionSucceeded("A"), 2)
+        assert executor.configuration == ("mission", "group:G", "task:B")
+
+    def test_deadline_is_the_earliest_of_all_hard_groups(self, build):
+        groups = (
+            Group(name="G", start="A", end="B", max_repeat_duration=8),
+            Group(name="G/H", start="A", end="A", max_repeat_duration=5),
+            Group(name="G/H/I", start="A", end="A", max_repeat_duration=2, stop=Stop.SOFT),
+        )
+        executor = Executor(lower(build("A B", *groups)))
+        executor.start(0)
+        assert executor.next_deadline == 5
+        executor.handle(Tick(), 5)
+        assert executor.next_deadline == 8
+
+    def test_values_can_not_be_changed_from_outside(self, executor):
+        executor.start(0)
+        with pytest.raises(TypeError):
+            executor.values["A"] = Measured(1, 0)
+
+
+class TestMisuse:
+    def test_before_the_start(self, executor):
+        with pytest.raises(ValueError, match="call start first"):
+            executor.handle(Tick(), 0)
+        with pytest.raises(ValueError, match="call start first"):
+            executor.progress()
+
+    def test_second_start(self, executor):
+        executor.start(0)
+        with pytest.raises(ValueError, match="started already"):
+            executor.start(0)
+
+    def test_after_the_end(self, build):
+        executor = Executor(lower(build("A")))
+        executor.start(0)
+        executor.handle(ActionSucceeded("A"), 1)
+        with pytest.raises(ValueError, match="has ended"):
+            executor.handle(Tick(), 2)
+
+    def test_time_running_backwards(self, executor):
+        executor.start(5)
+        with pytest.raises(ValueError, match=r"4 s comes after 5 s"):
+            executor.handle(Tick(), 4)
+
+    @pytest.mark.parametrize("now", [float("nan"), float("inf"), 1e18])
+    def test_no_time(self, executor, now):
+        with pytest.raises(ValueError, match="no time"):
+            executor.start(now)
+
+    @pytest.mark.parametrize("event", [ActionSucceeded("B"), ActionFailed("Z", "lost")])
+    def test_event_of_another_task(self, executor, event):
+        executor.start(0)
+        with pytest.raises(ValueError, match="'A' is"):
+            executor.handle(event, 1)
+
+    def test_value_that_is_no_number(self, executor):
+        executor.start(0)
+        with pytest.raises(ValueError, match="report that the action failed"):
+            executor.handle(ActionSucceeded("A", float("nan")), 1)
+
+    def test_a_refused_event_changes_nothing(self, executor):
+        executor.start(0)
+        with pytest.raises(ValueError, match="not active"):
+            executor.handle(ActionSucceeded("B"), 9)
+        executor.handle(ActionSucceeded("A"), 1)
+        assert executor.active == "B"
+
+
+class TestProgress:
+    def test_goes_on_with_the_time_that_is_left(self, executor, mission):
+        executor.start(0)
+        executor.handle(ActionSucceeded("A", 7.0), 1)
+        executor.handle(ActionFailed("B", "dark"), 4)
+        written = executor.progress().model_dump_json()
+        assert json.loads(written) == {
+            "active": "C",
+            "groups": [{"group": "G", "round": 1, "elapsed": 3}],
+            "values": [{"object_id": "A", "value": 7, "age": 3}],
+            "ended": [{"task": "A", "failure": None}, {"task": "B", "failure": "dark"}],
+        }
+        later = Executor.restore(lower(mission), Progress.model_validate_json(written), 100)
+        assert later.start(100) == (StartAction(mission.tasks[2]),)
+        assert later.next_deadline == 107
+        assert later.values == {"A": Measured(7, 97)}
+        assert later.trace[0].cause is Cause.RESUME
+        later.handle(ActionSucceeded("C"), 101)
+        assert [ended.task for ended in later.progress().ended] == ["A", "B", "C"]
+
+    def test_time_that_was_up_before(self, executor, mission):
+        executor.start(0)
+        executor.handle(ActionSucceeded("A"), 1)
+        later = Executor.restore(lower(mission), executor.progress(), 50)
+        assert later.start(70) == (StartAction(mission.tasks[3]),)
+        assert later.trace[-1].time == 70
+
+    def test_ended_mission_stays_ended(self, build):
+        hfsm = lower(build("A"))
+        executor = Executor(hfsm)
+        executor.start(0)
+        executor.handle(ActionSucceeded("A"), 1)
+        later = Executor.restore(hfsm, executor.progress(), 5)
+        assert later.start(5) == ()
+        assert later.finished
+
+    @pytest.mark.parametrize(
+        ("progress", "message"),
+        [
+            (Progress(active="Z"), "'Z', which the mission does not have"),
+            (Progress(active="B"), "'B' in other groups"),
+        ],
+    )
+    def test_of_another_mission(self, mission, progress, message):
+        with pytest.raises(ArgoError, match=message):
+            Executor.restore(lower(mission), progress, 0)

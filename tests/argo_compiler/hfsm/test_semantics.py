@@ -1,0 +1,239 @@
+"""Each rule of what a mission means, on the smallest mission that shows it."""
+
+import pytest
+
+from argo_compiler.hfsm import Cause, Executor, lower
+from argo_compiler.il import (
+    Action,
+    Condition,
+    ConditionType,
+    Group,
+    Mission,
+    Stop,
+    Task,
+    Transition,
+)
+
+
+def greater(object_id: str, limit: float, max_age: float | None = None) -> Condition:
+    return Condition(type=ConditionType.GREATER, object_id=object_id, param1=limit, max_age=max_age)
+
+
+def when(target: str, *conditions: Condition) -> Transition:
+    return Transition(target=target, conditions=conditions)
+
+
+class TestTasks:
+    def test_follow_their_transitions_until_one_has_none(self, build, drive, path):
+        executor = drive(build("A B C", ways={"A": ["C"], "C": ["B"], "B": []}))
+        assert path(executor) == "A@0 C@1 B@2 end@3"
+
+    @pytest.mark.parametrize(("value", "expected"), [(5.0, "A@0 C@1 end@2"), (3.0, "A@0 B@1")])
+    def test_unconditional_comes_last_wherever_it_stands(self, build, drive, path, value, expected):
+        mission = build("A B C", ways={"A": ["B", when("C", greater("A", 3))]})
+        assert path(drive(mission, reads={"A": [value]})).startswith(expected)
+
+    def test_first_transition_whose_conditions_all_hold(self, build, drive, path):
+        ways = {
+            "A": [
+                when("B", greater("A", 1), greater("A", 9)),
+                when("C", greater("A", 1)),
+                when("D", greater("A", 0)),
+            ]
+        }
+        executor = drive(build("A B C D", ways=ways), reads={"A": [5]})
+        assert path(executor) == "A@0 C@1 D@2 end@3"
+        assert executor.trace[1].cause is Cause.CONDITION
+        assert executor.trace[1].conditions == ("#A > 1",)
+
+    def test_mission_ends_when_no_condition_holds(self, build, drive, path):
+        executor = drive(build("A B", ways={"A": [when("B", greater("A", 1))]}))
+        assert path(executor) == "A@0 end@1"
+        assert executor.finished
+        assert executor.configuration == ("mission", "done")
+
+    def test_failure_is_recorded_and_the_mission_goes_on(self, build, drive, path):
+        ways = {"A": [when("C", greater("A", -1)), "B"]}
+        executor = drive(build("A B C", ways=ways), reads={"A": [None]})
+        assert path(executor) == "A@0 B@1 C@2 end@3"
+        assert executor.trace[1].failure == "no view"
+        assert str(executor.trace[1]) == "1 s: A -> B (default; failed: no view)"
+
+    def test_failure_leaves_the_value_measured_before(self, build, drive):
+        executor = drive(build("A B", ways={"B": [when("A", greater("B", 0))]}), reads={"B": [1]})
+        assert executor.values["B"].value == 0
+        mission = build("A", ways={"A": [when("A", greater("A", 0))]})
+        executor = drive(mission, reads={"A": [4, None, 0]})
+        assert [entry.failure for entry in executor.trace[1:]] == [None, "no view", None]
+
+    @pytest.mark.parametrize(("takes", "reached"), [(5.0, "A"), (5.5, "end")])
+    def test_value_counts_up_to_its_greatest_age(self, build, drive, takes, reached):
+        mission = build("A B", ways={"B": [when("A", greater("A", 0, max_age=5))]})
+        executor = drive(mission, takes={"B": takes}, reads={"A": [1, 0]}, steps=3)
+        assert (executor.trace[2].target or "end") == reached
+
+    @pytest.mark.parametrize(
+        ("type", "value", "holds"),
+        [
+            (ConditionType.LESS, 1.9, True),
+            (ConditionType.LESS, 2.0, False),
+            (ConditionType.GREATER, 2.0, False),
+            (ConditionType.GREATER, 2.1, True),
+            (ConditionType.WITHIN, 2.0, False),
+            (ConditionType.WITHIN, 2.5, True),
+            (ConditionType.WITHIN, 3.0, False),
+        ],
+    )
+    def test_comparisons_exclude_their_bounds(self, build, drive, type, value, holds):
+        condition = Condition(type=type, object_id="A", param1=2, param2=3)
+        mission = build("A B C", ways={"A": ["B", when("C", condition)]})
+        assert drive(mission, reads={"A": [value]}).trace[1].target == ("C" if holds else "B")
+
+
+class TestStart:
+    def test_is_passed_over(self, build, drive, path):
+        start = Task(name="S", action=Action.START, transitions=(Transition(target="B"),))
+        mission = build("A B")
+        mission = mission.model_copy(update={"tasks": (start, *mission.tasks)})
+        assert path(drive(mission)) == "B@0 end@1"
+
+    def test_without_transition_leads_to_the_first_task(self, build, drive, path):
+        start = Task(name="S", action=Action.START)
+        mission = build("A B")
+        mission = mission.model_copy(update={"tasks": (*mission.tasks, start)})
+        assert path(drive(mission)) == "A@0 B@1 end@2"
+
+    def test_alone_is_a_mission_that_has_ended(self):
+        mission = Mission(tasks=(Task(name="S", action=Action.START),))
+        executor = Executor(lower(mission))
+        assert executor.start(0) == ()
+        assert executor.finished
+
+
+class TestRounds:
+    def test_count_is_the_number_of_rounds_in_all(self, build, drive, path):
+        mission = build("A B C", Group(name="G", start="A", end="B", max_repeat_count=2))
+        executor = drive(mission)
+        assert path(executor) == "A@0 B@1 A@2 B@3 C@4 end@5"
+        assert executor.trace[2].repeated == "G"
+
+    def test_inner_decides_first_and_is_entered_anew(self, build, drive, path):
+        groups = (
+            Group(name="G", start="A", end="B", max_repeat_count=2),
+            Group(name="G/H", start="B", end="B", max_repeat_count=2),
+        )
+        executor = drive(build("A B C", *groups))
+        assert path(executor) == "A@0 B@1 B@2 A@3 B@4 B@5 C@6 end@7"
+
+    def test_groups_of_the_same_range_multiply(self, build, drive, path):
+        groups = (
+            Group(name="G/H", start="A", end="A", max_repeat_count=3),
+            Group(name="G", start="A", end="A", max_repeat_count=2),
+        )
+        executor = drive(build("A B", *groups))
+        assert path(executor) == "A@0 A@1 A@2 A@3 A@4 A@5 B@6 end@7"
+
+    def test_entry_in_the_middle_is_round_one(self, build, drive, path):
+        group = Group(name="G", start="B", end="C", max_repeat_count=2)
+        executor = drive(build("A B C D", group, ways={"A": ["C"]}))
+        assert path(executor) == "A@0 C@1 B@2 C@3 D@4 end@5"
+
+    def test_jump_inside_changes_no_round(self, build, drive, path):
+        group = Group(name="G", start="A", end="B", max_repeat_count=2)
+        mission = build("A B C", group, ways={"B": [when("A", greater("B", 0)), "C"]})
+        executor = drive(mission, reads={"B": [1, 0, 0]})
+        assert path(executor) == "A@0 B@1 A@2 B@3 A@4 B@5 C@6 end@7"
+
+    def test_condition_leaves_in_the_middle_and_entry_starts_anew(self, build, drive, path):
+        group = Group(name="G", start="A", end="B", max_repeat_count=2)
+        ways = {"A": [when("C", greater("A", 0)), "B"], "C": [when("A", greater("A", 0))]}
+        executor = drive(build("A B C", group, ways=ways), reads={"A": [0, 1, 0, 0]})
+        assert path(executor) == "A@0 B@1 A@2 C@3 A@4 B@5 A@6 B@7 C@8 end@9"
+
+    def test_unconditional_to_a_member_after_the_last_round_enters_anew(self, build, drive, path):
+        group = Group(name="G", start="A", end="B", max_repeat_count=2)
+        ways = {"B": ["A"], "A": [when("C", greater("A", 0)), "B"], "C": []}
+        executor = drive(build("A B C", group, ways=ways), reads={"A": [0, 0, 0, 0, 1]})
+        assert path(executor) == "A@0 B@1 A@2 B@3 A@4 B@5 A@6 B@7 A@8 C@9 end@10"
+        assert [e.cause for e in executor.trace if e.source == "B"] == [
+            Cause.REPEAT,
+            Cause.DEFAULT,
+            Cause.REPEAT,
+            Cause.DEFAULT,
+        ]
+
+    def test_endless_group_is_left_by_a_condition(self, build, drive, path):
+        group = Group(name="G", start="A", end="B")
+        ways = {"B": ["C", when("C", greater("B", 0))]}
+        executor = drive(build("A B C", group, ways=ways), reads={"B": [0, 0, 1]})
+        assert path(executor) == "A@0 B@1 A@2 B@3 A@4 B@5 C@6 end@7"
+
+
+class TestDurations:
+    def group(self, stop: Stop, duration: float, count: int = 0, name: str = "G") -> Group:
+        return Group(
+            name=name,
+            start="A",
+            end="B",
+            max_repeat_duration=duration,
+            max_repeat_count=count,
+            stop=stop,
+        )
+
+    def test_soft_completes_the_round(self, build, drive, path):
+        executor = drive(build("A B C", self.group(Stop.SOFT, 3)))
+        assert path(executor) == "A@0 B@1 A@2 B@3 C@4 end@5"
+
+    def test_soft_wants_no_round_exactly_at_its_time(self, build, drive, path):
+        executor = drive(build("A B C", self.group(Stop.SOFT, 2)))
+        assert path(executor) == "A@0 B@1 C@2 end@3"
+
+    def test_hard_leaves_at_once(self, build, drive, path):
+        executor = drive(build("A B C", self.group(Stop.HARD, 2.5)))
+        assert path(executor) == "A@0 B@1 A@2 C@2.5 end@3.5"
+        assert executor.trace[3].timed_out == "G"
+        assert str(executor.trace[3]) == "2.5 s: A -> C (time of 'G' is up)"
+
+    def test_action_that_ends_with_the_time_has_ended(self, build, drive, path):
+        executor = drive(build("A B C", self.group(Stop.HARD, 3)), reads={"A": [1, 2]})
+        assert path(executor) == "A@0 B@1 A@2 B@3 C@3 end@4"
+        assert executor.values["A"].value == 2
+
+    @pytest.mark.parametrize(
+        ("count", "duration", "expected"),
+        [(1, 9, "A@0 B@1 C@2 end@3"), (9, 2.5, "A@0 B@1 A@2 C@2.5 end@3.5")],
+    )
+    def test_whichever_limit_comes_first(self, build, drive, path, count, duration, expected):
+        executor = drive(build("A B C", self.group(Stop.HARD, duration, count)))
+        assert path(executor) == expected
+
+    def test_clock_starts_at_the_entry(self, build, drive, path):
+        group = Group(name="G", start="B", end="B", max_repeat_duration=1.5)
+        executor = drive(build("A B C", group), takes={"A": 10})
+        assert path(executor) == "A@0 B@10 B@11 C@11.5 end@12.5"
+
+    def test_mission_ends_if_the_end_leads_nowhere(self, build, drive, path):
+        assert path(drive(build("A B", self.group(Stop.HARD, 0.5)))) == "A@0 end@0.5"
+
+    def test_time_out_lets_outer_groups_decide(self, build, drive, path):
+        groups = (
+            Group(name="G", start="Z", end="B", max_repeat_count=2),
+            self.group(Stop.HARD, 1.5, name="G/H"),
+        )
+        executor = drive(build("Z A B C", *groups))
+        assert path(executor) == "Z@0 A@1 B@2 Z@2.5 A@3.5 B@4.5 C@5 end@6"
+        assert executor.trace[3].timed_out == "G/H"
+        assert executor.trace[3].repeated == "G"
+
+    def test_outermost_of_several_is_left(self, build, drive, path):
+        groups = (
+            Group(name="G", start="A", end="C", max_repeat_duration=0.5),
+            Group(name="G/H", start="A", end="B", max_repeat_duration=0.5),
+        )
+        executor = drive(build("A B C D", *groups))
+        assert path(executor) == "A@0 D@0.5 end@1.5"
+
+    def test_time_out_back_into_the_group_enters_it_anew(self, build, drive, path):
+        mission = build("A B", self.group(Stop.HARD, 1.5), ways={"B": ["A"]})
+        executor = drive(mission, steps=6)
+        assert path(executor) == "A@0 B@1 A@1.5 B@2.5 A@3 B@4"

@@ -1,0 +1,107 @@
+import pytest
+
+from argo_compiler import files
+from argo_compiler.diagnostics import DiagnosticError
+from argo_compiler.files import read_mission, write_mission
+from argo_compiler.il import Action, Group, Mission, Stop, Task, Transition
+
+
+@pytest.fixture
+def mission():
+    return Mission(
+        designation="Öl #1",
+        tasks=(
+            Task(name="S", action=Action.START, transitions=(Transition(target="A"),)),
+            Task(name="A", action=Action.MEASURE, object_id="4"),
+        ),
+        groups=(Group(name="G", start="A", end="A", max_repeat_count=2, stop=Stop.SOFT),),
+    )
+
+
+def refusal(path):
+    with pytest.raises(DiagnosticError) as caught:
+        read_mission(path)
+    assert str(path) in str(caught.value)
+    return caught.value.diagnostics
+
+
+def write(tmp_path, content):
+    path = tmp_path / "plan.json"
+    path.write_bytes(content if isinstance(content, bytes) else content.encode())
+    return path
+
+
+def test_written_and_read_back(tmp_path, mission):
+    path = tmp_path / "plan.json"
+    write_mission(mission, path)
+    assert read_mission(path) == mission
+    text = path.read_text(encoding="utf-8")
+    assert text.startswith('{\n  "version": 1,\n  "designation": "Öl #1",\n')
+    assert text.endswith("}\n")
+    assert "velocity" not in text
+
+
+def test_byte_order_mark_is_accepted(tmp_path):
+    assert read_mission(write(tmp_path, b'\xef\xbb\xbf{"version": 1}')) == Mission()
+
+
+@pytest.mark.parametrize(
+    ("content", "code"),
+    [
+        ("[]", "file.not-a-mission"),
+        ('{"version": 7}', "file.unsupported-version"),
+        ('{"version": true}', "file.unsupported-version"),
+        ("", "file.not-json"),
+        ("{" + '"a": ' + "1" * 5000 + "}", "file.not-json"),
+        ("[" * 100_000, "file.too-deep"),
+        (b"\x89PNG\r\n", "file.not-text"),
+        (b"{}\x00", "file.not-text"),
+        ('{"max_duration": NaN}', "file.wrong-field"),
+        ('{"max_duration": "20"}', "file.wrong-field"),
+        ('{"x": ' + "[" * 500 + "]" * 500 + "}", "file.wrong-field"),
+    ],
+)
+def test_what_is_no_mission(tmp_path, content, code):
+    (finding,) = refusal(write(tmp_path, content))
+    assert finding.code == code
+
+
+def test_json_error_shows_the_line(tmp_path):
+    (finding,) = refusal(write(tmp_path, '{\r\n  "designation": oops\r\n}'))
+    assert (finding.span.line, finding.span.column) == (2, 18)
+    assert finding.excerpt == '  "designation": oops'
+
+
+def test_long_lines_are_not_shown(tmp_path):
+    (finding,) = refusal(write(tmp_path, '{"designation": "' + "x" * 1000 + '" oops}'))
+    assert finding.excerpt is None
+
+
+def test_wrong_fields_are_named_by_their_path(tmp_path):
+    content = """{"tasks": [
+        {"name": "A", "action": "MEASURE"},
+        {"name": "B", "action": "FLY", "transitions": [{"taget": "A", "target": "A"}]}
+    ]}"""
+    findings = refusal(write(tmp_path, content))
+    messages = [finding.message for finding in findings]
+    assert [message.split(":")[0] for message in messages] == [
+        "tasks[1].action",
+        "tasks[1].transitions[0].taget",
+    ]
+    assert "no such field" in findings[1].hint
+
+
+def test_missing_file_and_directory(tmp_path):
+    assert refusal(tmp_path / "plan.json")[0].code == "file.missing"
+    assert refusal(tmp_path)[0].code == "file.directory"
+
+
+def test_too_large_a_file_is_not_parsed(tmp_path, monkeypatch):
+    monkeypatch.setattr(files, "MAX_BYTES", 1_000_000)
+    (finding,) = refusal(write(tmp_path, b" " * 1_000_001))
+    assert finding.message == "is larger than 1 MB"
+
+
+def test_file_that_can_not_be_written(tmp_path, mission):
+    with pytest.raises(DiagnosticError, match="can't be written"):
+        write_mission(mission, tmp_path / "missing" / "plan.json")

@@ -1,0 +1,119 @@
+"""A path: straight drives and turns in place, one after the other."""
+
+import math
+from collections.abc import Iterable
+from dataclasses import dataclass, replace
+
+import numpy as np
+from numpy.typing import NDArray
+
+from argo_compiler.model import Pose
+from argo_env.navigation.lattice import drive_speed
+from argo_env.robot.spec import RobotSpec
+
+
+@dataclass(frozen=True)
+class Motion:
+    """From one pose to the next: a turn in place, or a straight drive with a constant heading."""
+
+    start: Pose
+    end: Pose
+    turn: float = 0.0
+    """rad, counter-clockwise; 0 for a drive"""
+    gear: int = 1
+    """1 forwards, -1 backwards; turns have 1"""
+    on_stairs: bool = False
+    """the robot is tilted: down forwards, or up backwards"""
+
+    @property
+    def length(self) -> float:
+        """m along the surface; 0 for a turn."""
+        return math.dist(
+            (self.start.x, self.start.y, self.start.z), (self.end.x, self.end.y, self.end.z)
+        )
+
+    def at(self, share: float) -> Pose:
+        """The pose after `share` of the motion, 0 to 1."""
+        a, b = self.start, self.end
+        return Pose(
+            x=a.x + share * (b.x - a.x),
+            y=a.y + share * (b.y - a.y),
+            z=a.z + share * (b.z - a.z),
+            yaw=wrap(a.yaw + share * self.turn),
+        )
+
+    def speed(self, robot: RobotSpec, velocity: float | None = None) -> float:
+        """m/s of a drive; `velocity` (m/s) replaces the planning speed where that is faster than
+        what the motion allows on stairs or backwards."""
+        planned = drive_speed(robot, self.gear, self.on_stairs)
+        if velocity is None:
+            return planned
+        return velocity if planned == robot.speed else min(velocity, planned)
+
+    def duration(self, robot: RobotSpec, velocity: float | None = None) -> float:
+        """s that the motion takes."""
+        if self.turn:
+            return abs(self.turn) / robot.turn_rate_radians
+        return self.length / self.speed(robot, velocity)
+
+
+@dataclass(frozen=True)
+class Path:
+    """A way from `start` along its motions; without motions the robot is there already."""
+
+    start: Pose
+    motions: tuple[Motion, ...]
+
+    @property
+    def end(self) -> Pose:
+        return self.motions[-1].end if self.motions else self.start
+
+    @property
+    def length(self) -> float:
+        """m along the surface."""
+        return sum(m.length for m in self.motions)
+
+    @property
+    def climb(self) -> float:
+        """m upwards, all ascents together."""
+        return sum(max(0.0, m.end.z - m.start.z) for m in self.motions)
+
+    def duration(self, robot: RobotSpec, velocity: float | None = None) -> float:
+        """s, at the robot's planning speeds or at `velocity` (m/s) on the flat."""
+        return sum(m.duration(robot, velocity) for m in self.motions)
+
+    def timed(self, robot: RobotSpec, velocity: float | None = None) -> NDArray[np.float64]:
+        """t (s), x, y, z (m) and yaw (rad) at the start and after each motion, shape (n + 1, 5)."""
+        rows = [(0.0, *_row(self.start))]
+        for motion in self.motions:
+            rows.append((rows[-1][0] + motion.duration(robot, velocity), *_row(motion.end)))
+        return np.array(rows)
+
+
+def merge(motions: Iterable[Motion]) -> list[Motion]:
+    """The same way with neighbouring motions of one kind, gear and steepness joined."""
+    merged: list[Motion] = []
+    for motion in motions:
+        last = merged[-1] if merged else None
+        if last is None or bool(last.turn) != bool(motion.turn):
+            merged.append(motion)
+        elif last.turn:
+            merged[-1] = Motion(last.start, motion.end, turn=last.turn + motion.turn)
+        elif (
+            last.gear == motion.gear
+            and last.on_stairs == motion.on_stairs
+            and abs(wrap(motion.start.yaw - last.start.yaw)) < 1e-9
+        ):
+            merged[-1] = replace(last, end=motion.end)
+        else:
+            merged.append(motion)
+    return merged
+
+
+def wrap(angle: float) -> float:
+    """The same angle between -pi (exclusive) and pi, in rad."""
+    return math.pi - (math.pi - angle) % (2 * math.pi)
+
+
+def _row(pose: Pose) -> tuple[float, float, float, float]:
+    return pose.x, pose.y, pose.z, pose.yaw

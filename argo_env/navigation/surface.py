@@ -1,0 +1,112 @@
+"""The walkable surface, found from the geometry: layered cells, linked where a robot can go on.
+
+Several cells may lie above each other: decks over decks, flights over flights. Stairs are nothing
+special here: treads are cells whose neighbour lies one rise higher.
+"""
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from argo_env.navigation.raster import Columns, Grid, rasterise
+from argo_env.site.shapes import Element
+
+DIRECTIONS: tuple[tuple[int, int], ...] = (
+    (1, 0), (1, 1), (0, 1), (-1, 1), (-1, 0), (-1, -1), (0, -1), (1, -1),
+)  # fmt: skip
+"""Steps to the eight neighbours; direction k points k * 45 degrees from the x axis."""
+_TOUCHING = 0.01  # m: what reaches no higher than this above the surface is not in the way
+
+
+@dataclass(frozen=True)
+class Surface:
+    """Walkable cells. Arrays have one entry a cell; `links[n, k]` is the neighbour in direction k,
+    or -1 if there is none within one step's height."""
+
+    grid: Grid
+    i: NDArray[np.int64]
+    j: NDArray[np.int64]
+    z: NDArray[np.float64]
+    links: NDArray[np.int64]
+
+    @property
+    def size(self) -> int:
+        return len(self.z)
+
+    def positions(self) -> NDArray[np.float64]:
+        """Centres of the cells on the surface, in m, shape (size, 3)."""
+        x, y = self.grid.centers(self.i, self.j)
+        return np.stack([x, y, self.z], axis=1)
+
+
+def find_surface(
+    elements: tuple[Element, ...], grid: Grid, headroom: float, max_step: float
+) -> Surface:
+    """All places where a robot of height `headroom` (m) could stand, climbing steps of `max_step`.
+
+    A cell is walkable where a walking solid has its top at the cell's centre, and no part of the
+    cell is obstructed between that height and `headroom` above it.
+    """
+    columns = rasterise(elements, grid)
+    cell, z = _candidates(columns, max_step)
+    free = ~_obstructed(cell, z, columns, headroom, max_step)
+    cell, z = cell[free], z[free]
+    i, j = cell // grid.ny, cell % grid.ny
+    links = np.stack([_link(cell, i, j, z, d, grid, max_step) for d in DIRECTIONS], axis=1)
+    return Surface(grid, i, j, z, links)
+
+
+def _candidates(columns: Columns, max_step: float) -> tuple[NDArray[np.int64], NDArray[np.float64]]:
+    """Tops of walking solids, sorted by cell and height; of tops within one step the highest."""
+    walking = columns.walking & np.isfinite(columns.top_at_center)
+    cell, z = columns.cell[walking], columns.top_at_center[walking]
+    order = np.lexsort((z, cell))
+    cell, z = cell[order], z[order]
+    covered = np.zeros(len(z), dtype=bool)
+    covered[:-1] = (cell[1:] == cell[:-1]) & (z[1:] - z[:-1] <= max_step)
+    return cell[~covered], z[~covered]
+
+
+def _obstructed(
+    cell: NDArray[np.int64],
+    z: NDArray[np.float64],
+    columns: Columns,
+    headroom: float,
+    max_step: float,
+) -> NDArray[np.bool_]:
+    """Which candidates have something in their way; steps of a walking solid are not."""
+    first = np.searchsorted(columns.cell, cell, side="left")
+    count = np.searchsorted(columns.cell, cell, side="right") - first
+    # All pairs (candidate, column entry of the same cell).
+    candidate = np.repeat(np.arange(len(cell)), count)
+    entry = np.arange(len(candidate)) - np.repeat(np.cumsum(count) - count - first, count)
+    over = z[candidate]
+    tolerated = np.where(columns.walking[entry], max_step, _TOUCHING)
+    in_way = (columns.top[entry] > over + tolerated) & (columns.bottom[entry] < over + headroom)
+    return np.bincount(candidate, weights=in_way, minlength=len(cell)) > 0
+
+
+def _link(
+    cell: NDArray[np.int64],
+    i: NDArray[np.int64],
+    j: NDArray[np.int64],
+    z: NDArray[np.float64],
+    direction: tuple[int, int],
+    grid: Grid,
+    max_step: float,
+) -> NDArray[np.int64]:
+    """For each cell the neighbour in `direction` whose height is nearest, or -1."""
+    ni, nj = i + direction[0], j + direction[1]
+    inside = (ni >= 0) & (ni < grid.nx) & (nj >= 0) & (nj < grid.ny)
+    wanted = np.where(inside, ni * grid.ny + nj, -1)
+    first = np.searchsorted(cell, wanted, side="left")
+    last = np.searchsorted(cell, wanted, side="right")
+    best = np.full(len(cell), -1)
+    best_step = np.full(len(cell), max_step + 1e-9)
+    for layer in range(int((last - first).max(initial=0))):
+        index = np.minimum(first + layer, len(cell) - 1)
+        step = np.where(first + layer < last, np.abs(z[index] - z), np.inf)
+        closer = step < best_step
+        best, best_step = np.where(closer, index, best), np.where(closer, step, best_step)
+    return best

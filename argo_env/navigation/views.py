@@ -1,0 +1,78 @@
+"""From where a checkpoint can be read: states with its face in range and in sight."""
+
+import numpy as np
+from numpy.typing import NDArray
+
+from argo_env.navigation.lattice import LEVEL, Lattice
+from argo_env.robot.spec import RobotSpec
+from argo_env.site import Site, SiteCheckpoint
+from argo_env.site.shapes import crossing, half_extents
+
+FACE_GAP = 0.02  # m in front of a checkpoint's face where a line of sight ends
+_OBLIQUE_COST = 6.0  # s that the most oblique view is worth against a frontal one
+_FAR_COST = 3.0  # s that a view at the limit of the range is worth against one at half the range
+
+
+def face_normal(checkpoint: SiteCheckpoint) -> NDArray[np.float64]:
+    """The unit vector that the face looks along, shape (3,)."""
+    return np.array([np.cos(checkpoint.yaw), np.sin(checkpoint.yaw), 0.0])
+
+
+def sight_target(checkpoint: SiteCheckpoint) -> NDArray[np.float64]:
+    """The point just in front of the face that must be seen, in m, shape (3,)."""
+    return np.array(checkpoint.position) + FACE_GAP * face_normal(checkpoint)
+
+
+def camera_positions(poses: NDArray[np.float64], robot: RobotSpec) -> NDArray[np.float64]:
+    """Where the raised camera is for poses (x, y, z, yaw), shape (n, 3) in m."""
+    along, left, up = robot.sensor.offset
+    cos, sin = np.cos(poses[:, 3]), np.sin(poses[:, 3])
+    shift = np.column_stack([along * cos - left * sin, along * sin + left * cos])
+    return np.column_stack([poses[:, :2] + shift, poses[:, 2] + up])
+
+
+def find_views(
+    site: Site, checkpoint: SiteCheckpoint, lattice: Lattice
+) -> tuple[NDArray[np.int64], NDArray[np.float64]]:
+    """The states to read the checkpoint from, and what each view costs in s (the worse, the more).
+
+    Both arrays are empty if there is no such state.
+    """
+    sensor, poses = lattice.robot.sensor, lattice.poses()
+    target = sight_target(checkpoint)
+    near = np.hypot(poses[:, 0] - target[0], poses[:, 1] - target[1]) <= sensor.max_range + 1.0
+    states = np.flatnonzero(near & (np.abs(lattice.rise) <= LEVEL))
+    cameras = camera_positions(poses[states], lattice.robot)
+    sight = target - cameras
+    distance = np.linalg.norm(sight, axis=1)
+    cosine = -(sight @ face_normal(checkpoint)) / np.maximum(distance, 1e-9)
+    obliqueness = np.degrees(np.arccos(np.clip(cosine, -1.0, 1.0)))
+    good = (
+        (distance >= sensor.min_range)
+        & (distance <= sensor.max_range)
+        & (obliqueness <= sensor.max_obliqueness)
+    )
+    good[good] = in_sight(site, cameras[good], target)
+    far = np.maximum(0.0, distance[good] / sensor.max_range - 0.5) * 2
+    cost = _OBLIQUE_COST * (obliqueness[good] / sensor.max_obliqueness) ** 2 + _FAR_COST * far**2
+    return states[good], cost
+
+
+def in_sight(
+    site: Site, origins: NDArray[np.float64], target: NDArray[np.float64]
+) -> NDArray[np.bool_]:
+    """Whether nothing stands between each of `origins`, shape (n, 3), and `target`, shape (3,)."""
+    clear = np.ones(len(origins), dtype=bool)
+    if not len(origins):
+        return clear
+    low = np.minimum(origins.min(axis=0), target)
+    high = np.maximum(origins.max(axis=0), target)
+    for element in site.elements:
+        for solid in element.solids:
+            half = half_extents(solid)
+            center = np.array(solid.center)
+            if (center + half < low).any() or (center - half > high).any():
+                continue
+            entry, leave = crossing(solid, origins, target - origins)
+            clear &= ~((entry <= 1.0) & (leave >= 0.0))
+    return clear

@@ -1,0 +1,1 @@
+"""The robot: its measures and the drives that move it."""

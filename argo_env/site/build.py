@@ -1,0 +1,118 @@
+"""From a site's description to its solids: the one generator that all else is made from."""
+
+from itertools import chain, pairwise
+
+from argo_env.site.decks import Deck
+from argo_env.site.equipment import (
+    build_column,
+    build_dock,
+    build_mount,
+    build_pipe,
+    build_pump,
+    build_vessel,
+)
+from argo_env.site.railings import outside, railing
+from argo_env.site.shapes import Box, Element, Role, Solid
+from argo_env.site.spec import FloorSpec, Rect, SiteSpec
+from argo_env.site.stairs import build_flight, mouths
+
+DECK_THICKNESS = 0.04  # m
+SLAB_THICKNESS = 0.2  # m
+BEAM = (0.06, 0.16)  # m, width and depth of the beams along the rim of a deck
+GROUND_THICKNESS = 0.5  # m
+
+
+def build_site(spec: SiteSpec) -> tuple[Element, ...]:
+    """All elements of the site, with unique names, in the order of the description."""
+    elements: list[Element] = [_ground(spec)]
+    gaps = _stair_mouths(spec)
+    for floor in spec.floors:
+        elements += _floor(floor, gaps)
+    for tower in spec.towers:
+        for floor in spec.floors[:-1]:
+            prefix = f"{tower.name} {floor.number}-{floor.number + 1}"
+            for flight in tower.flights:
+                elements += build_flight(flight, prefix, floor.z)
+            for landing in tower.landings:
+                z = floor.z + landing.z
+                elements += _plated(
+                    f"{prefix} {landing.name}", (landing.rect,), (), z, _near(gaps, z), True
+                )
+    top = spec.floors[-1].z + spec.storey
+    elements += [build_column(n, c, spec.ground_z, top) for n, c in enumerate(spec.columns, 1)]
+    elements += [build_pipe(p) for p in spec.pipes]
+    elements += [build_vessel(v, 0.0) for v in spec.vessels]
+    elements += [build_dock(a, spec.ground_z) for a in spec.areas]
+    return tuple(elements)
+
+
+def _ground(spec: SiteSpec) -> Element:
+    x0, y0, x1, y1 = spec.ground
+    box = Box(
+        ((x0 + x1) / 2, (y0 + y1) / 2, spec.ground_z - GROUND_THICKNESS / 2),
+        (x1 - x0, y1 - y0, GROUND_THICKNESS),
+    )
+    return Element("gravel", Role.GROUND, (box,), "gravel")
+
+
+def _floor(floor: FloorSpec, gaps: list[tuple[float, Rect]]) -> list[Element]:
+    name = f"floor {floor.number}"
+    walkways, openings = tuple(floor.walkways.values()), tuple(floor.openings.values())
+    free = _near(gaps, floor.z) + tuple(floor.gates.values())
+    elements = _plated(name, walkways, openings, floor.z, free, floor.railed)
+    for label, line in floor.barriers.items():
+        solids = chain.from_iterable(railing(a, b, floor.z, (0.0, 0.0)) for a, b in pairwise(line))
+        elements.append(Element(f"{name} {label}", Role.RAILING, tuple(solids), "railing"))
+    elements += [build_vessel(v, floor.z) for v in floor.vessels]
+    elements += [build_pump(p, floor.z) for p in floor.pumps]
+    elements += [build_mount(c, floor.z) for c in floor.checkpoints]
+    return elements
+
+
+def _plated(
+    name: str,
+    walkways: tuple[Rect, ...],
+    openings: tuple[Rect, ...],
+    z: float,
+    gaps: tuple[Rect, ...],
+    railed: bool,
+) -> list[Element]:
+    """A deck at height `z` with its railings; without them it is a slab on the ground."""
+    deck = Deck.from_rectangles(walkways, openings, gaps if railed else ())
+    thickness = DECK_THICKNESS if railed else SLAB_THICKNESS
+    plates: list[Solid] = [
+        Box(((x0 + x1) / 2, (y0 + y1) / 2, z - thickness / 2), (x1 - x0, y1 - y0, thickness))
+        for x0, y0, x1, y1 in deck.plates()
+    ]
+    if not railed:
+        return [Element(f"{name} slab", Role.DECK, tuple(plates), "concrete")]
+    width, depth = BEAM
+    for edge in deck.free_edges(()):
+        (x0, y0), (x1, y1), (nx, ny) = edge.start, edge.end, edge.outward
+        # The beam lies under the rim, inside the deck's outline.
+        center = (
+            (x0 + x1) / 2 - nx * width / 2,
+            (y0 + y1) / 2 - ny * width / 2,
+            z - thickness - depth / 2,
+        )
+        plates.append(Box(center, (abs(x1 - x0) or width, abs(y1 - y0) or width, depth)))
+    elements = [Element(f"{name} deck", Role.DECK, tuple(plates), "grating")]
+    for number, edge in enumerate(deck.free_edges(gaps), start=1):
+        solids = railing(edge.start, edge.end, z, outside(edge.outward))
+        elements.append(Element(f"{name} railing {number}", Role.RAILING, solids, "railing"))
+    return elements
+
+
+def _stair_mouths(spec: SiteSpec) -> list[tuple[float, Rect]]:
+    """Height and area of every place where a flight joins a deck."""
+    return [
+        mouth
+        for tower in spec.towers
+        for floor in spec.floors[:-1]
+        for flight in tower.flights
+        for mouth in mouths(flight, floor.z)
+    ]
+
+
+def _near(gaps: list[tuple[float, Rect]], z: float) -> tuple[Rect, ...]:
+    return tuple(rect for height, rect in gaps if abs(height - z) < 0.05)

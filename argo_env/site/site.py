@@ -1,0 +1,129 @@
+"""A site that is ready to use: its description, its elements and its checkpoints in place."""
+
+import math
+from dataclasses import dataclass
+from pathlib import Path
+
+import yaml
+from pydantic import ValidationError
+
+from argo_compiler.catalog import CheckpointKind, Interval
+from argo_compiler.errors import ArgoError
+from argo_compiler.model import Pose
+from argo_env import resources
+from argo_env.site.build import build_site
+from argo_env.site.shapes import Element, Vector
+from argo_env.site.spec import SiteSpec
+
+SCALES: dict[CheckpointKind, tuple[str, Interval]] = {
+    CheckpointKind.PRESSURE_GAUGE: ("bar", Interval(low=0.0, high=10.0)),
+    CheckpointKind.LIQUID_LEVEL_GAUGE: ("%", Interval(low=0.0, high=100.0)),
+    CheckpointKind.VALVE: ("deg", Interval(low=0.0, high=90.0)),
+}
+"""Unit and scale of each kind of checkpoint; a valve is closed at 0 and open at 90 degrees."""
+
+
+@dataclass(frozen=True)
+class SiteCheckpoint:
+    """A checkpoint in place: the middle of its face (m), and where the face looks (`yaw`, rad)."""
+
+    id: int
+    kind: CheckpointKind
+    name: str
+    floor: int
+    position: Vector
+    yaw: float
+    nominal: Interval
+
+    @property
+    def unit(self) -> str:
+        return SCALES[self.kind][0]
+
+    @property
+    def range(self) -> Interval:
+        return SCALES[self.kind][1]
+
+
+@dataclass(frozen=True)
+class Site:
+    """A site: what was written, the solids made from it, and the poses and checkpoints in it."""
+
+    spec: SiteSpec
+    elements: tuple[Element, ...]
+    checkpoints: tuple[SiteCheckpoint, ...]
+    docks: dict[int, Pose]
+    """pose of the docked robot for each starting area"""
+    places: dict[str, Pose]
+
+    @property
+    def name(self) -> str:
+        return self.spec.name
+
+    def checkpoint(self, id: int) -> SiteCheckpoint:
+        """The checkpoint with this id; KeyError if there is none."""
+        for checkpoint in self.checkpoints:
+            if checkpoint.id == id:
+                return checkpoint
+        raise KeyError(id)
+
+    def floor_at(self, z: float) -> int:
+        """The number of the floor whose storey holds the height z (m)."""
+        return max([f.number for f in self.spec.floors if f.z <= z + 0.1], default=1)
+
+
+def site_names() -> tuple[str, ...]:
+    """The sites that Argo ships, by name."""
+    return tuple(sorted(p.parent.name for p in resources.scenarios().glob("*/site.yaml")))
+
+
+def load_site(name: str) -> Site:
+    """The site of that name, or the one that the file `name` describes.
+
+    Raises ArgoError, with the place in the file, if there is no such site or it makes no sense.
+    """
+    path = Path(name)
+    if path.suffix not in {".yaml", ".yml"}:
+        if name not in site_names():
+            known = ", ".join(site_names())
+            raise ArgoError(f"no site `{name}`; there are: {known}, or a path to a site's .yaml")
+        path = resources.scenarios() / name / "site.yaml"
+    try:
+        data = yaml.safe_load(path.read_text(encoding="utf-8"))
+        return make_site(SiteSpec.model_validate(data))
+    except OSError as error:
+        raise ArgoError(f"{path}: can't be read: {error.strerror}") from error
+    except (UnicodeDecodeError, yaml.YAMLError) as error:
+        raise ArgoError(f"{path}: not a YAML file: {error}") from error
+    except ValidationError as error:
+        findings = "; ".join(
+            f"{'.'.join(str(part) for part in e['loc'])}: {e['msg']}" for e in error.errors()[:5]
+        )
+        raise ArgoError(f"{path}: {findings}") from error
+
+
+def make_site(spec: SiteSpec) -> Site:
+    """The site that `spec` describes."""
+    checkpoints = tuple(
+        SiteCheckpoint(
+            c.id,
+            c.kind,
+            c.name,
+            floor.number,
+            (c.position[0], c.position[1], floor.z + c.position[2]),
+            math.radians(c.yaw),
+            c.nominal,
+        )
+        for floor in spec.floors
+        for c in floor.checkpoints
+    )
+    return Site(
+        spec,
+        build_site(spec),
+        tuple(sorted(checkpoints, key=lambda c: c.id)),
+        {a.number: _ground_pose(a.dock, spec) for a in spec.areas},
+        {p.name: _ground_pose(p.pose, spec) for p in spec.places},
+    )
+
+
+def _ground_pose(pose: tuple[float, float, float], spec: SiteSpec) -> Pose:
+    return Pose(x=pose[0], y=pose[1], z=spec.ground_z, yaw=math.radians(pose[2]))

@@ -1,0 +1,143 @@
+"""A site as data: what `scenarios/<site>/site.yaml` may say. Lengths in m, angles in degrees.
+
+Rectangles are `[x0, y0, x1, y1]` in the site's frame. Heights of things on a floor are above that
+floor's deck.
+"""
+
+from typing import Literal
+
+from pydantic import Field, model_validator
+
+from argo_compiler.catalog import CheckpointKind, Interval
+from argo_compiler.model import Model
+
+Rect = tuple[float, float, float, float]
+Point = tuple[float, float]
+
+
+class VesselSpec(Model):
+    """A vessel: upright from `bottom` to `top`, or lying on saddles along x or y."""
+
+    name: str
+    axis: Literal["x", "y", "z"] = "z"
+    center: tuple[float, float, float]
+    radius: float = Field(gt=0)
+    length: float = Field(gt=0)
+
+
+class PipeSpec(Model):
+    """A pipe through the given points, in the site's frame."""
+
+    name: str
+    points: tuple[tuple[float, float, float], ...] = Field(min_length=2)
+    radius: float = Field(default=0.06, gt=0)
+
+
+class PumpSpec(Model):
+    """A pump with its motor on a skid; `yaw` turns the motor's axis."""
+
+    name: str
+    center: Point
+    yaw: float = 0.0
+
+
+class CheckpointSpec(Model):
+    """A checkpoint: where its face is, where the face looks (`yaw`), and what it can show."""
+
+    id: int = Field(ge=1)
+    kind: CheckpointKind
+    name: str
+    position: tuple[float, float, float]
+    """x, y and the height above the floor's deck"""
+    yaw: float
+    nominal: Interval
+
+
+class FloorSpec(Model):
+    """A floor: the deck's rectangles less the openings, and what stands on it."""
+
+    number: int = Field(ge=1)
+    z: float
+    walkways: dict[str, Rect]
+    openings: dict[str, Rect] = Field(default_factory=dict)
+    railed: bool = True
+    """whether free edges of the deck carry a railing"""
+    gates: dict[str, Rect] = Field(default_factory=dict)
+    """where a railing is left out"""
+    barriers: dict[str, tuple[Point, ...]] = Field(default_factory=dict)
+    """railings that stand on the deck, along polylines"""
+    vessels: tuple[VesselSpec, ...] = ()
+    pumps: tuple[PumpSpec, ...] = ()
+    checkpoints: tuple[CheckpointSpec, ...] = ()
+
+
+class FlightSpec(Model):
+    """A flight of open steps that rises along `yaw` from `foot`, the middle of its first nosing."""
+
+    name: str
+    foot: tuple[float, float, float]
+    yaw: float
+    risers: int = Field(ge=2)
+    rise: float = Field(gt=0)
+    going: float = Field(gt=0)
+    width: float = Field(gt=0)
+
+
+class LandingSpec(Model):
+    """A landing between flights; railed where no flight joins it."""
+
+    name: str
+    rect: Rect
+    z: float
+
+
+class TowerSpec(Model):
+    """A stair tower, repeated from floor to floor: flights and landings relative to each floor."""
+
+    name: str
+    flights: tuple[FlightSpec, ...]
+    landings: tuple[LandingSpec, ...] = ()
+
+
+class AreaSpec(Model):
+    """A starting area: the pose of the robot that is docked in its station, in front of it."""
+
+    number: int = Field(ge=1)
+    dock: tuple[float, float, float]
+    """x, y, yaw"""
+
+
+class PlaceSpec(Model):
+    """A named place on the ground, as x, y, yaw."""
+
+    name: str
+    pose: tuple[float, float, float]
+
+
+class SiteSpec(Model):
+    """A whole site."""
+
+    name: str
+    title: str
+    storey: float = Field(gt=0)
+    """m from floor to floor"""
+    ground: Rect
+    ground_z: float
+    towers: tuple[TowerSpec, ...]
+    floors: tuple[FloorSpec, ...]
+    columns: tuple[Point, ...] = ()
+    pipes: tuple[PipeSpec, ...] = ()
+    vessels: tuple[VesselSpec, ...] = ()
+    areas: tuple[AreaSpec, ...]
+    places: tuple[PlaceSpec, ...] = ()
+
+    @model_validator(mode="after")
+    def _consistent(self) -> "SiteSpec":
+        for index, floor in enumerate(self.floors, start=1):
+            if floor.number != index:
+                raise ValueError(f"floors must be numbered 1, 2, …; the {index}. is {floor.number}")
+        ids = [c.id for f in self.floors for c in f.checkpoints]
+        double = sorted({i for i in ids if ids.count(i) > 1})
+        if double:
+            raise ValueError(f"checkpoint ids must be unique; twice: {double}")
+        return self

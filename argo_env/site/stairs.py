@@ -1,0 +1,86 @@
+"""Flights of open steel steps with stringers and handrails."""
+
+import math
+from collections.abc import Callable
+
+from argo_env.site.railings import HANDRAIL_HEIGHT, THICKNESS
+from argo_env.site.shapes import Box, Element, Role, Solid, Vector
+from argo_env.site.spec import FlightSpec, Rect
+
+TREAD_THICKNESS = 0.04  # m
+TREAD_OVERLAP = 0.02  # m that a tread reaches under the next one
+STRINGER_DEPTH = 0.2  # m
+MOUTH_DEPTH = 0.3  # m across the first and the last nosing that stay free of railings
+
+
+def run(flight: FlightSpec) -> float:
+    """m from the lowest to the highest nosing in plan; the last riser is the rim of the deck."""
+    return (flight.risers - 1) * flight.going
+
+
+def build_flight(flight: FlightSpec, prefix: str, base_z: float) -> tuple[Element, ...]:
+    """The steps as one element, and the handrails with the stringers as another."""
+    yaw = math.radians(flight.yaw)
+    slope = math.atan2(flight.rise, flight.going)
+    place = _placer(flight, base_z)
+    steps = tuple(
+        Box(
+            place(
+                (i + 0.5) * flight.going + TREAD_OVERLAP / 2,
+                0.0,
+                (i + 1) * flight.rise - TREAD_THICKNESS / 2,
+            ),
+            (flight.going + TREAD_OVERLAP, flight.width, TREAD_THICKNESS),
+            (0.0, 0.0, yaw),
+        )
+        for i in range(flight.risers - 1)
+    )
+    length = math.hypot(run(flight), (flight.risers - 1) * flight.rise)
+    middle, rise_to_middle = run(flight) / 2, (flight.risers - 1) * flight.rise / 2
+    tilt = (0.0, -slope, yaw)
+    sides: list[Solid] = []
+    for side in (-1.0, 1.0):
+        across = side * (flight.width + THICKNESS) / 2
+        # Nosings lie one rise above the line through the backs of the treads.
+        nosing = rise_to_middle + flight.rise
+        stringer = place(middle, across, nosing - STRINGER_DEPTH / 2 / math.cos(slope) - 0.05)
+        sides.append(Box(stringer, (length, THICKNESS, STRINGER_DEPTH), tilt))
+        for height in (HANDRAIL_HEIGHT, HANDRAIL_HEIGHT / 2):
+            rail = place(middle, across, nosing + height)
+            sides.append(Box(rail, (length, THICKNESS, THICKNESS), tilt))
+        for step in range(0, flight.risers, 4):
+            along = min(step, flight.risers - 1.5) * flight.going + flight.going / 4
+            foot = along / flight.going * flight.rise
+            post = place(along, across, foot + flight.rise + HANDRAIL_HEIGHT / 2)
+            sides.append(Box(post, (THICKNESS, THICKNESS, HANDRAIL_HEIGHT), (0.0, 0.0, yaw)))
+    return (
+        Element(f"{prefix} {flight.name}", Role.STAIR, steps, "grating"),
+        Element(f"{prefix} {flight.name} handrails", Role.RAILING, tuple(sides), "railing"),
+    )
+
+
+def mouths(flight: FlightSpec, base_z: float) -> tuple[tuple[float, Rect], tuple[float, Rect]]:
+    """Where the flight joins the decks at its foot and head: height and area without railing."""
+    place = _placer(flight, base_z)
+    result = []
+    for along, height in ((0.0, 0.0), (run(flight), flight.risers * flight.rise)):
+        corners = [
+            place(along + a, b, height)
+            for a in (-MOUTH_DEPTH / 2, MOUTH_DEPTH / 2)
+            for b in (-flight.width / 2, flight.width / 2)
+        ]
+        xs, ys = [c[0] for c in corners], [c[1] for c in corners]
+        result.append((corners[0][2], (min(xs), min(ys), max(xs), max(ys))))
+    return result[0], result[1]
+
+
+def _placer(flight: FlightSpec, base_z: float) -> Callable[[float, float, float], Vector]:
+    """From (along the flight, to its left, up), all in m, to the site's frame."""
+    yaw = math.radians(flight.yaw)
+    cos, sin = math.cos(yaw), math.sin(yaw)
+    x, y, z = flight.foot
+
+    def place(along: float, left: float, up: float) -> Vector:
+        return x + along * cos - left * sin, y + along * sin + left * cos, base_z + z + up
+
+    return place

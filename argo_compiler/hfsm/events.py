@@ -78,7 +78,9 @@ class TraceEntry:
     failure: str | None = None
     """why the action of `source` failed, if it did"""
 
-    def __str__(self) -> str:
+    @property
+    def why(self) -> str:
+        """The cause in words, with the conditions, the group or the failure that it was."""
         why = str(self.cause)
         if self.conditions:
             why = " and ".join(self.conditions)
@@ -89,4 +91,7 @@ class TraceEntry:
             why = f"{why}, {again}" if self.timed_out is not None else again
         if self.failure is not None:
             why += f"; failed: {self.failure}"
-        return f"{self.time:g} s: {self.source or 'start'} -> {self.target or 'end'} ({why})"
+        return why
+
+    def __str__(self) -> str:
+        return f"{self.time:g} s: {self.source or 'start'} -> {self.target or 'end'} ({self.why})"

@@ -113,14 +113,11 @@ class Navigator:
     def turning_places(self, floor: int) -> NDArray[np.float64]:
         """Poses (x, y, z, yaw) on a floor's deck in each of which the robot can turn all round."""
         floor_z = next(f.z for f in self.site.spec.floors if f.number == floor)
-        headings = (self.lattice.state_of >= 0).all(axis=1)
-        turns = np.bincount(
-            self.lattice.cell,
-            weights=np.asarray((self.lattice.costs > 0).sum(axis=1)).ravel(),
-            minlength=self.surface.size,
-        )
-        # Of the moves from a cell's states two each are turns if none is missing.
-        free = headings & (turns >= 2 * HEADINGS) & (np.abs(self.surface.z - floor_z) <= 0.01)
+        source, target = self.lattice.costs.tocoo().coords
+        here = self.lattice.cell[source]
+        turns = np.bincount(here[here == self.lattice.cell[target]], minlength=self.surface.size)
+        # Both ways from each heading, if none is missing.
+        free = (turns == 2 * HEADINGS) & (np.abs(self.surface.z - floor_z) <= 0.01)
         cells = np.flatnonzero(free)
         return np.column_stack([self.surface.positions()[cells], np.zeros(len(cells))])
 

@@ -63,6 +63,10 @@ class RobotSpec(Model):
     """m/s along the slope"""
     turn_rate: float = Field(gt=0)
     """deg/s, turning in place"""
+    arm_stowed: dict[str, float]
+    """deg, joints of the arm while driving"""
+    arm_raised: dict[str, float]
+    """deg, joints of the arm while measuring"""
     sensor: SensorSpec
 
     @property

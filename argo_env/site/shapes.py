@@ -2,6 +2,7 @@
 
 from dataclasses import dataclass
 from enum import StrEnum
+from functools import lru_cache
 
 import numpy as np
 from numpy.typing import NDArray
@@ -37,7 +38,7 @@ class Box:
 
     def rotation(self) -> NDArray[np.float64]:
         """Columns are the box's axes in the site's frame, shape (3, 3)."""
-        return Rotation.from_euler("xyz", self.rpy).as_matrix()
+        return _rotation(self.rpy)
 
 
 @dataclass(frozen=True)
@@ -51,10 +52,18 @@ class Cylinder:
 
     def rotation(self) -> NDArray[np.float64]:
         """Columns are the cylinder's axes in the site's frame, shape (3, 3)."""
-        return Rotation.from_euler("xyz", self.rpy).as_matrix()
+        return _rotation(self.rpy)
 
 
 Solid = Box | Cylinder
+
+
+@lru_cache(maxsize=1024)
+def _rotation(rpy: Vector) -> NDArray[np.float64]:
+    # A site has thousands of solids, but few ways to turn them.
+    matrix = Rotation.from_euler("xyz", rpy).as_matrix()
+    matrix.setflags(write=False)
+    return np.asarray(matrix)
 
 
 @dataclass(frozen=True)

@@ -89,11 +89,13 @@ def load_site(name: str) -> Site:
         path = resources.scenarios() / name / "site.yaml"
     try:
         data = yaml.safe_load(path.read_text(encoding="utf-8"))
-        return make_site(SiteSpec.model_validate(data))
     except OSError as error:
         raise ArgoError(f"{path}: can't be read: {error.strerror}") from error
-    except (UnicodeDecodeError, yaml.YAMLError) as error:
+    except (ValueError, RecursionError, yaml.YAMLError) as error:
+        # ValueError: bytes that are no text, impossible dates, numbers too long, NUL in the path.
         raise ArgoError(f"{path}: not a YAML file: {error}") from error
+    try:
+        return make_site(SiteSpec.model_validate(data))
     except ValidationError as error:
         findings = "; ".join(
             f"{'.'.join(str(part) for part in e['loc'])}: {e['msg']}" for e in error.errors()[:5]

@@ -4,15 +4,25 @@ Rectangles are `[x0, y0, x1, y1]` in the site's frame. Heights of things on a fl
 floor's deck.
 """
 
-from typing import Literal
+from itertools import pairwise
+from typing import Annotated, Literal
 
-from pydantic import Field, model_validator
+from pydantic import AfterValidator, Field, model_validator
 
 from argo_compiler.catalog import CheckpointKind, Interval
 from argo_compiler.model import Model
 
-Rect = tuple[float, float, float, float]
 Point = tuple[float, float]
+
+
+def _ordered(rect: tuple[float, float, float, float]) -> tuple[float, float, float, float]:
+    x0, y0, x1, y1 = rect
+    if x0 >= x1 or y0 >= y1:
+        raise ValueError(f"a rectangle is [x0, y0, x1, y1] with x0 < x1 and y0 < y1, not {rect}")
+    return rect
+
+
+Rect = Annotated[tuple[float, float, float, float], AfterValidator(_ordered)]
 
 
 class VesselSpec(Model):
@@ -31,6 +41,12 @@ class PipeSpec(Model):
     name: str
     points: tuple[tuple[float, float, float], ...] = Field(min_length=2)
     radius: float = Field(default=0.06, gt=0)
+
+    @model_validator(mode="after")
+    def _distinct(self) -> "PipeSpec":
+        if any(a == b for a, b in pairwise(self.points)):
+            raise ValueError("two points in a row must differ")
+        return self
 
 
 class PumpSpec(Model):
@@ -58,7 +74,7 @@ class FloorSpec(Model):
 
     number: int = Field(ge=1)
     z: float
-    walkways: dict[str, Rect]
+    walkways: dict[str, Rect] = Field(min_length=1)
     openings: dict[str, Rect] = Field(default_factory=dict)
     railed: bool = True
     """whether free edges of the deck carry a railing"""
@@ -124,11 +140,11 @@ class SiteSpec(Model):
     ground: Rect
     ground_z: float
     towers: tuple[TowerSpec, ...]
-    floors: tuple[FloorSpec, ...]
+    floors: tuple[FloorSpec, ...] = Field(min_length=1)
     columns: tuple[Point, ...] = ()
     pipes: tuple[PipeSpec, ...] = ()
     vessels: tuple[VesselSpec, ...] = ()
-    areas: tuple[AreaSpec, ...]
+    areas: tuple[AreaSpec, ...] = Field(min_length=1)
     places: tuple[PlaceSpec, ...] = ()
 
     @model_validator(mode="after")

@@ -28,12 +28,13 @@ def to_urdf(name: str, elements: tuple[Element, ...]) -> str:
     Every tag stands on a line of its own: PyBullet cuts lines longer than 1,024 characters.
     """
     robot = ET.Element("robot", name=name)
-    ET.SubElement(robot, "link", name="site")
+    _add_inertial(ET.SubElement(robot, "link", name="site"))
     for material in sorted({e.material for e in elements}):
         red, green, blue = COLOURS[material]
         definition = ET.SubElement(robot, "material", name=material)
         ET.SubElement(definition, "color", rgba=f"{red} {green} {blue} 1")
         link = ET.SubElement(robot, "link", name=material)
+        _add_inertial(link)
         for element in elements:
             if element.material == material:
                 for number, solid in enumerate(element.solids):
@@ -43,6 +44,13 @@ def to_urdf(name: str, elements: tuple[Element, ...]) -> str:
         ET.SubElement(joint, "child", link=material)
     ET.indent(robot)
     return ET.tostring(robot, encoding="unicode", xml_declaration=True) + "\n"
+
+
+def _add_inertial(link: ET.Element) -> None:
+    # The site never moves, but PyBullet asks for a mass.
+    inertial = ET.SubElement(link, "inertial")
+    ET.SubElement(inertial, "mass", value="1")
+    ET.SubElement(inertial, "inertia", ixx="1", iyy="1", izz="1", ixy="0", ixz="0", iyz="0")
 
 
 def _add_solid(link: ET.Element, name: str, solid: Solid, material: str) -> None:

@@ -1,0 +1,80 @@
+"""The compiler's view of a site: what scripts may name there."""
+
+import math
+
+import numpy as np
+
+from argo_compiler.catalog import Area, Catalog, CheckpointInfo, Floor, Place
+from argo_compiler.errors import ArgoError
+from argo_compiler.model import Pose
+from argo_env.navigation import Navigator
+from argo_env.site import Site
+
+_APART = 2.0  # m at least between the waypoints of a patrol
+
+
+def make_catalog(navigator: Navigator) -> Catalog:
+    """The catalogue of the navigator's site, its patrols along places that the robot can reach."""
+    site = navigator.site
+    return Catalog(
+        site=site.name,
+        checkpoints=tuple(
+            CheckpointInfo(
+                id=c.id,
+                kind=c.kind,
+                name=c.name,
+                floor=c.floor,
+                unit=c.unit,
+                range=c.range,
+                nominal=c.nominal,
+            )
+            for c in site.checkpoints
+        ),
+        areas=tuple(Area(number=n, dock=pose) for n, pose in sorted(site.docks.items())),
+        floors=tuple(
+            Floor(number=f.number, z=f.z, patrol=patrol(navigator, f.number))
+            for f in site.spec.floors
+        ),
+        places=tuple(Place(name=name, pose=pose) for name, pose in site.places.items()),
+    )
+
+
+def patrol(navigator: Navigator, floor: int) -> tuple[Pose, ...]:
+    """A round on a floor: the reachable place nearest to each corner, counter-clockwise from the
+    south-west, each pose turned towards the next.
+
+    Raises ArgoError if fewer than three of them are apart from each other.
+    """
+    places = navigator.turning_places(floor)
+    x0, y0, x1, y1 = _bounds(navigator.site, floor)
+    inside = (
+        (places[:, 0] >= x0) & (places[:, 0] <= x1) & (places[:, 1] >= y0) & (places[:, 1] <= y1)
+    )
+    places = places[inside]
+    corners: list[tuple[float, float, float]] = []
+    for x, y in ((x0, y0), (x1, y0), (x1, y1), (x0, y1)):
+        if len(places):
+            nearest = places[np.argmin(np.hypot(places[:, 0] - x, places[:, 1] - y))]
+            point = (float(nearest[0]), float(nearest[1]), float(nearest[2]))
+            if all(math.dist(point, other) >= _APART for other in corners):
+                corners.append(point)
+    if len(corners) < 3:
+        raise ArgoError(
+            f"site {navigator.site.name}: floor {floor} has no three places to patrol between"
+        )
+    following = corners[1:] + corners[:1]
+    return tuple(
+        Pose(
+            x=round(x, 6),
+            y=round(y, 6),
+            z=round(z, 6),
+            yaw=math.atan2(next_y - y, next_x - x),
+        )
+        for (x, y, z), (next_x, next_y, _) in zip(corners, following, strict=True)
+    )
+
+
+def _bounds(site: Site, floor: int) -> tuple[float, float, float, float]:
+    rects = np.array(list(site.spec.floors[floor - 1].walkways.values()))
+    low, high = rects[:, :2].min(axis=0), rects[:, 2:].max(axis=0)
+    return float(low[0]), float(low[1]), float(high[0]), float(high[1])

@@ -1,0 +1,46 @@
+"""The files of a report."""
+
+import json
+from pathlib import Path
+
+from argo_compiler.errors import ArgoError
+from argo_env.record import RunRecord
+from argo_env.report.html import page
+from argo_env.site import Site
+
+
+def write_report(record: RunRecord, site: Site, folder: Path) -> Path:
+    """Writes `report.json` and `report.html` into the folder and returns the path of the page.
+
+    Equal records give the same bytes. `RunRecord.model_validate_json` reads the JSON back.
+    Raises ArgoError if the record is of another site, or the files can't be written.
+    """
+    if record.site != site.name:
+        raise ArgoError(
+            f"the record is of a run on site `{record.site}`, not on `{site.name}`: load that site"
+        )
+    target = folder / "report.html"
+    contents = {folder / "report.json": to_json(record), target: page(record, site)}
+    try:
+        folder.mkdir(parents=True, exist_ok=True)
+        for path, text in contents.items():
+            path.write_text(text, encoding="utf-8", newline="\n")
+    except OSError as error:
+        raise ArgoError(
+            f"{folder}: the report can't be written: {error.strerror}; choose another folder"
+        ) from error
+    return target
+
+
+def to_json(record: RunRecord) -> str:
+    """The record as JSON: an entry of a list, such as a sample of the path, takes one line."""
+    fields = record.model_dump(mode="json")
+    parts = [f'  "{name}": {_value(value)}' for name, value in fields.items()]
+    return "{\n" + ",\n".join(parts) + "\n}\n"
+
+
+def _value(value: object) -> str:
+    if not isinstance(value, list) or not value:
+        return json.dumps(value, indent=2, ensure_ascii=False).replace("\n", "\n  ")
+    lines = (json.dumps(item, ensure_ascii=False) for item in value)
+    return "[\n    " + ",\n    ".join(lines) + "\n  ]"

@@ -1,0 +1,89 @@
+"""The page that shows a run."""
+
+from functools import cache
+from pathlib import Path
+
+from jinja2 import Environment, StrictUndefined, Template
+
+from argo_compiler.hfsm import to_mermaid
+from argo_env.record import Reading, RunRecord
+from argo_env.report.elevation import elevation
+from argo_env.report.machine import drawable, machine
+from argo_env.report.plan import floor_plan, visited_floors
+from argo_env.report.rounds import blocks
+from argo_env.report.svg import Node, clean, drawing, markup, node
+from argo_env.report.timeline import clock, timeline
+from argo_env.report.track import colour
+from argo_env.site import Site
+from argo_env.site.site import SCALES
+
+BAR = 130.0  # px, width of the bar of a reading
+
+
+def page(record: RunRecord, site: Site) -> str:
+    """The whole report as one HTML page that needs no other file."""
+    floors = visited_floors(record)
+    others = [str(f.number) for f in site.spec.floors if f.number not in floors]
+    return _template().render(
+        record=record,
+        site=site,
+        problems=[t for t in record.tasks if t.outcome != "done"],
+        readings=[(reading, markup(_bar(reading))) for reading in record.readings],
+        timeline=markup(timeline(record)) if record.tasks else None,
+        plans=[(n, markup(floor_plan(site, record, n))) for n in floors],
+        unvisited=others,
+        elevation=markup(elevation(site, record)) if record.path else None,
+        ramp=", ".join(colour(i / 6) for i in range(7)),
+        blocks=blocks(record.hfsm, record.tasks),
+        machine=markup(machine(record.hfsm)) if drawable(record.hfsm) else None,
+        mermaid=to_mermaid(record.hfsm),
+    )
+
+
+@cache
+def _template() -> Template:
+    environment = Environment(
+        autoescape=True,
+        undefined=StrictUndefined,
+        trim_blocks=True,
+        lstrip_blocks=True,
+        finalize=lambda value: clean(value) if type(value) is str else value,
+    )
+    environment.filters["clock"] = clock
+    text = Path(__file__).with_name("report.html.j2").read_text(encoding="utf-8")
+    return environment.from_string(text)
+
+
+def _bar(reading: Reading) -> Node:
+    """The value within the scale of its kind, with the nominal band."""
+    _, scale = SCALES[reading.kind]
+    low, high = min(scale.low, reading.nominal.low), max(scale.high, reading.nominal.high)
+
+    def at(value: float) -> float:
+        share = (value - low) / (high - low) if high > low else 0.5
+        return 4 + min(max(share, 0.0), 1.0) * (BAR - 8)
+
+    band = at(reading.nominal.high) - at(reading.nominal.low)
+    return drawing(
+        BAR,
+        18.0,
+        f"{reading.value:.4g} {reading.unit} on a scale from {low:g} to {high:g}",
+        node("rect", x=4.0, y=7.0, width=BAR - 8, height=4.0, rx=2.0, class_="scale"),
+        node(
+            "rect",
+            x=at(reading.nominal.low),
+            y=5.0,
+            width=max(band, 2.0),
+            height=8.0,
+            rx=2.0,
+            class_="band",
+        ),
+        node(
+            "circle",
+            cx=at(reading.value),
+            cy=9.0,
+            r=4.5,
+            class_="value" if reading.normal else "value abnormal",
+        ),
+        class_="bar",
+    )

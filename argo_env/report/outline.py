@@ -1,0 +1,83 @@
+"""The outlines of solids as they are seen along an axis of the site."""
+
+import math
+
+import numpy as np
+from numpy.typing import NDArray
+
+from argo_env.site.shapes import Box, Element, Role, Solid, half_extents
+
+Point = tuple[float, float]
+
+DRAWING_ORDER = (
+    Role.GROUND,
+    Role.DECK,
+    Role.STAIR,
+    Role.PUMP,
+    Role.VESSEL,
+    Role.PIPE,
+    Role.STRUCTURE,
+    Role.DOCK,
+    Role.RAILING,
+)
+"""What lies below comes first."""
+
+_ROUND = 16
+"""corners that a disc is drawn with"""
+
+
+def outline(solid: Solid, axes: tuple[int, int]) -> list[Point]:
+    """The outline in m of the solid on the plane of two axes of the site, counter-clockwise."""
+    if isinstance(solid, Box):
+        signs = np.array([[a, b, c] for a in (-1, 1) for b in (-1, 1) for c in (-1, 1)])
+        local = signs * np.array(solid.size) / 2
+    else:
+        turn = np.arange(_ROUND) * 2 * math.pi / _ROUND
+        disc = solid.radius * np.column_stack([np.cos(turn), np.sin(turn), np.zeros(_ROUND)])
+        half = np.array([0.0, 0.0, solid.length / 2])
+        local = np.vstack([disc - half, disc + half])
+    corners = local @ solid.rotation().T + np.array(solid.center)
+    return _hull(corners[:, list(axes)])
+
+
+def heights(solid: Solid) -> tuple[float, float]:
+    """The lowest and the highest z (m) of the solid."""
+    half = float(half_extents(solid)[2])
+    return solid.center[2] - half, solid.center[2] + half
+
+
+def on_floor(element: Element, z: float, storey: float) -> tuple[Solid, ...]:
+    """The solids of the element that a plan of the floor at height `z` shows.
+
+    Decks go by their top. A flight of stairs and its handrails are shown where they begin.
+    Equipment and columns are shown on every floor that they reach into.
+    """
+    low, high = z - 0.2, z + storey - 0.3
+    if element.role in {Role.STAIR, Role.RAILING}:
+        ends = [end for solid in element.solids for end in heights(solid)]
+        return element.solids if low <= (min(ends) + max(ends)) / 2 < high else ()
+    if element.role in {Role.GROUND, Role.DECK}:
+        return tuple(s for s in element.solids if low <= heights(s)[1] < high)
+    return tuple(s for s in element.solids if heights(s)[0] < high and heights(s)[1] > low + 0.2)
+
+
+def _hull(points: NDArray[np.float64]) -> list[Point]:
+    """The convex hull of points of the shape (n, 2), by Andrew's monotone chain."""
+    ordered = sorted({(round(x, 4), round(y, 4)) for x, y in points.tolist()})
+    if len(ordered) < 3:
+        return ordered
+    return _half_hull(ordered)[:-1] + _half_hull(ordered[::-1])[:-1]
+
+
+def _half_hull(points: list[Point]) -> list[Point]:
+    chain: list[Point] = []
+    for p in points:
+        while len(chain) > 1 and _turn(chain[-2], chain[-1], p) <= 0:
+            chain.pop()
+        chain.append(p)
+    return chain
+
+
+def _turn(a: Point, b: Point, c: Point) -> float:
+    """Positive if the way from a over b to c turns left."""
+    return (b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0])

@@ -1,0 +1,83 @@
+"""The runs of tasks in blocks: each visit to a group with its rounds, and what lies between."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from itertools import groupby
+
+from argo_compiler.hfsm import Composite, Hfsm
+from argo_compiler.hfsm.model import task_id
+from argo_env.record import TaskRun
+
+
+@dataclass(frozen=True)
+class Block:
+    """Consecutive runs of tasks. `group` is the outermost group that they belong to, if any."""
+
+    group: str | None
+    rounds: tuple[tuple[TaskRun, ...], ...]
+    """the runs of each round; outside of groups there is one"""
+
+    @property
+    def runs(self) -> tuple[TaskRun, ...]:
+        return tuple(run for part in self.rounds for run in part)
+
+    @property
+    def start(self) -> float:
+        """s."""
+        return self.rounds[0][0].start
+
+    @property
+    def end(self) -> float:
+        """s."""
+        return self.rounds[-1][-1].end
+
+
+def blocks(hfsm: Hfsm, runs: Sequence[TaskRun]) -> tuple[Block, ...]:
+    """The runs in their order.
+
+    A round of a group begins with a run of its initial task after its last one, or after one that
+    was cancelled. Where a group and another one in it have both tasks in common, the rounds of the
+    inner one are counted.
+    """
+    outermost = _outermost(hfsm)
+    result = []
+    for id, part in groupby(runs, key=lambda run: _id_of(outermost.get(task_id(run.task)))):
+        visit = tuple(part)
+        group = outermost.get(task_id(visit[0].task))
+        if id is None or group is None:
+            result.append(Block(None, (visit,)))
+            continue
+        last = _last_leaf(hfsm, group)
+        begins = [
+            i
+            for i, run in enumerate(visit)
+            if i == 0
+            or (
+                task_id(run.task) == group.initial
+                and (task_id(visit[i - 1].task) == last or visit[i - 1].outcome == "cancelled")
+            )
+        ]
+        ends = [*begins[1:], len(visit)]
+        rounds = tuple(visit[i:j] for i, j in zip(begins, ends, strict=True))
+        result.append(Block(group.name, rounds))
+    return tuple(result)
+
+
+def _last_leaf(hfsm: Hfsm, group: Composite) -> str:
+    composites = {c.id: c for c in hfsm.composites}
+    last = group.children[-1]
+    while last in composites:
+        last = composites[last].children[-1]
+    return last
+
+
+def _id_of(group: Composite | None) -> str | None:
+    return None if group is None else group.id
+
+
+def _outermost(hfsm: Hfsm) -> dict[str, Composite]:
+    """The outermost group that each leaf lies in."""
+    top: dict[str, Composite] = {}
+    for group in hfsm.composites[1:]:
+        top[group.id] = top.get(group.parent or "", group)
+    return {leaf.id: top[leaf.parent] for leaf in hfsm.leaves if leaf.parent in top}

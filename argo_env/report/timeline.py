@@ -1,0 +1,100 @@
+"""The tasks along the simulated time: a row for each task, a bar for each run."""
+
+import math
+
+from argo_compiler.il import Action
+from argo_env.record import RunRecord, TaskRun
+from argo_env.report.rounds import blocks
+from argo_env.report.svg import Node, drawing, node, shorten
+
+WIDTH = 1160.0  # px
+LABELS = 210.0  # px for the names of the tasks
+ROW = 24.0  # px
+HEAD = 46.0  # px above the first row, for the rounds
+
+_STEPS = (1, 2, 5, 10, 15, 30, 60, 120, 300, 600, 900, 1800, 3600)
+
+
+def clock(seconds: float) -> str:
+    """The time as minutes and seconds, `mm:ss`."""
+    whole = round(seconds)
+    return f"{whole // 60:02d}:{whole % 60:02d}"
+
+
+def timeline(record: RunRecord) -> Node:
+    """All runs of tasks, with the rounds of groups above and the measurements as dots."""
+    rows = {name: i for i, name in enumerate(dict.fromkeys(run.task for run in record.tasks))}
+    end = max([record.result.duration, *(run.end for run in record.tasks), 1.0])
+    px = (WIDTH - LABELS - 20) / end
+    bottom = HEAD + ROW * len(rows)
+    parts = _axis(end, px, bottom) + _rounds(record, px, bottom)
+    for name, row in rows.items():
+        y = HEAD + ROW * row
+        parts.append(node("path", d=f"M0,{y + ROW:g}h{WIDTH:g}", class_="row"))
+        label = node("text", x=0.0, y=y + 16, text=shorten(name, 30), class_="label")
+        label.append(node("title", text=name))
+        parts.append(label)
+    parts += [_bar(run, HEAD + ROW * rows[run.task], px) for run in record.tasks]
+    for reading in record.readings:
+        if reading.task in rows:
+            mark = node(
+                "circle",
+                cx=LABELS + reading.t * px,
+                cy=HEAD + ROW * rows[reading.task] + ROW / 2,
+                r=3.2,
+                class_="moment" if reading.normal else "moment abnormal",
+            )
+            text = f"{reading.name}: {reading.value:.4g} {reading.unit} at {clock(reading.t)}"
+            mark.append(node("title", text=text))
+            parts.append(mark)
+    return drawing(WIDTH, bottom + 24, "Tasks along the time", *parts, class_="drawing timeline")
+
+
+def _bar(run: TaskRun, y: float, px: float) -> Node:
+    action = "measure" if run.action is Action.MEASURE else "drive"
+    bar = node(
+        "rect",
+        x=LABELS + run.start * px,
+        y=y + 4,
+        width=max((run.end - run.start) * px, 1.5),
+        height=ROW - 8,
+        rx=2.0,
+        class_=f"run {action} {run.outcome}",
+    )
+    text = f"{run.task}: {clock(run.start)} to {clock(run.end)}, {run.outcome}"
+    bar.append(node("title", text=text + (f" ({run.reason})" if run.reason else "")))
+    return bar
+
+
+def _axis(end: float, px: float, bottom: float) -> list[Node]:
+    step = next((s for s in _STEPS if s * px >= 60), 3600 * math.ceil(60 / (3600 * px)))
+    marks = []
+    for t in range(0, math.floor(end) + 1, step):
+        x = LABELS + t * px
+        marks.append(node("path", d=f"M{x:.1f},{HEAD:g}V{bottom:g}", class_="grid"))
+        marks.append(node("text", x=x, y=bottom + 16, text=clock(t), class_="axis middle"))
+    return marks
+
+
+def _rounds(record: RunRecord, px: float, bottom: float) -> list[Node]:
+    """A band over each visit to a group, shaded by turns, with the numbers of the rounds."""
+    marks = []
+    for block in blocks(record.hfsm, record.tasks):
+        if block.group is None:
+            continue
+        left, width = LABELS + block.start * px, (block.end - block.start) * px
+        name = shorten(block.group, max(int(width / 7), 3))
+        marks.append(node("text", x=left, y=14.0, text=name, class_="label group"))
+        free_from = -math.inf
+        for index, runs in enumerate(block.rounds, start=1):
+            x, wide = LABELS + runs[0].start * px, (runs[-1].end - runs[0].start) * px
+            shade = "odd" if index % 2 else "even"
+            marks.append(
+                node("rect", x=x, y=20.0, width=wide, height=bottom - 20, class_=f"round {shade}")
+            )
+            middle = x + wide / 2
+            if middle - free_from > 18:
+                text = node("text", x=middle, y=34.0, text=f"{index}", class_="axis middle")
+                marks.append(text)
+                free_from = middle
+    return marks

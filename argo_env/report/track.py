@@ -1,0 +1,87 @@
+"""The driven path as lines that are coloured by time."""
+
+import math
+from collections.abc import Callable, Sequence
+from itertools import groupby, pairwise
+
+import numpy as np
+
+from argo_env.record import PathSample
+from argo_env.report.outline import Point
+from argo_env.report.svg import Node, node, number, polyline, simplify
+
+TOLERANCE = 0.02  # m that the drawn path may be away from the samples
+SHADES = 24
+"""colours from the beginning to the end of the mission"""
+
+_RAMP = ((0x0F, 0xA3, 0xA3), (0x25, 0x63, 0xEB), (0x7C, 0x3A, 0xED), (0xDB, 0x27, 0x77))
+
+
+def colour(share: float) -> str:
+    """The colour of a time, as a share of the mission's duration from 0 to 1."""
+    place = min(max(share, 0.0), 1.0) * (len(_RAMP) - 1)
+    index = min(int(place), len(_RAMP) - 2)
+    part = place - index
+    mixed = (round(a + part * (b - a)) for a, b in zip(_RAMP[index], _RAMP[index + 1], strict=True))
+    return "#" + "".join(f"{channel:02x}" for channel in mixed)
+
+
+def stretches(path: Sequence[PathSample], floor: int | None) -> list[list[PathSample]]:
+    """The unbroken parts of the path on one floor; None: the whole path."""
+    if floor is None:
+        return [list(path)] if path else []
+    runs = groupby(path, key=lambda sample: sample.floor == floor)
+    return [list(samples) for wanted, samples in runs if wanted]
+
+
+def track(
+    parts: Sequence[Sequence[PathSample]],
+    plane: Callable[[PathSample], Point],
+    at: Callable[[float, float], Point],
+    end: float,
+) -> list[Node]:
+    """The parts as lines: `plane` gives the two coordinates (m) of a sample, `at` the px of them.
+
+    `end` (s) is the time that has the last colour.
+    """
+    lines = []
+    for samples in parts:
+        shades = [min(int(SHADES * s.t / end), SHADES - 1) if end else 0 for s in samples]
+        cuts = [i for i in range(1, len(samples)) if shades[i] != shades[i - 1]]
+        for first, last in pairwise([0, *cuts, len(samples)]):
+            # Each line reaches the first sample of the next one, so that there is no gap.
+            points = np.array([plane(s) for s in samples[first : last + 1]])
+            kept = points[simplify(points, TOLERANCE)]
+            if len(kept) > 1:
+                stroke = colour(shades[first] / (SHADES - 1))
+                d = polyline(at(x, y) for x, y in kept.tolist())
+                lines.append(node("path", d=d, class_="track", stroke=stroke))
+    return lines
+
+
+def arrows(
+    samples: Sequence[PathSample], at: Callable[[float, float], Point], spacing: float
+) -> list[Node]:
+    """Small heads that point along the way in plan, one every `spacing` m."""
+    heads, since = [], spacing / 2
+    for a, b in pairwise(samples):
+        step = math.hypot(b.x - a.x, b.y - a.y)
+        since += step
+        if since < spacing or step < 0.02:
+            continue
+        since = 0.0
+        (ax, ay), (bx, by) = at(a.x, a.y), at(b.x, b.y)
+        turn = math.degrees(math.atan2(by - ay, bx - ax))
+        place = f"translate({number(bx)},{number(by)}) rotate({turn:.0f})"
+        heads.append(node("path", d="M-5,-4L3,0L-5,4z", transform=place, class_="heading"))
+    return heads
+
+
+def flag(place: Point, text: str, class_: str) -> Node:
+    """A round mark with a letter, for the start and the end."""
+    return node(
+        "g",
+        node("circle", cx=place[0], cy=place[1], r=9.0),
+        node("text", x=place[0], y=place[1] + 4, text=text, class_="middle"),
+        class_=f"flag {class_}",
+    )

@@ -1,0 +1,50 @@
+"""What every drive can do, whatever it costs: move the robot along a path."""
+
+from enum import StrEnum
+from typing import Protocol
+
+from argo_env.navigation.path import Path
+from argo_env.robot.pose import BodyPose
+
+
+class DriveStatus(StrEnum):
+    """How a drive stands after a step."""
+
+    MOVING = "moving"
+    ARRIVED = "arrived"
+    FAILED = "failed"
+
+
+class Drive(Protocol):
+    """Moves the robot. A drive may compute poses, or forces that make the world move it."""
+
+    name: str
+    time_step: float
+    """s of simulated time that one step takes"""
+
+    @property
+    def pose(self) -> BodyPose:
+        """Where the robot is now."""
+        ...
+
+    @property
+    def failure(self) -> str | None:
+        """After FAILED: what happened, in words."""
+        ...
+
+    def place(self, pose: BodyPose) -> None:
+        """Puts the robot there, at rest."""
+        ...
+
+    def begin(self, path: Path, velocity: float | None) -> None:
+        """Sets off along `path`, which begins where the robot is; `velocity` (m/s) is that of the
+        plan on the flat, None the robot's own."""
+        ...
+
+    def step(self) -> DriveStatus:
+        """Goes on for one time step."""
+        ...
+
+    def halt(self) -> None:
+        """Stops where it is and forgets the path."""
+        ...

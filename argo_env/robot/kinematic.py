@@ -1,0 +1,110 @@
+"""The kinematic drive: the robot follows its path on the surface at the planned speeds."""
+
+import math
+from collections import deque
+
+from argo_env.navigation.path import Motion, Path, wrap
+from argo_env.robot.drive import DriveStatus
+from argo_env.robot.pose import BodyPose
+from argo_env.robot.spec import RobotSpec
+from argo_env.robot.support import resting_poses
+from argo_env.world import World
+
+FLIPPERS_RAISED = math.radians(30.0)
+FLIPPERS_FLAT = 0.0
+FLIPPER_RATE = math.radians(110.0)  # rad/s (public model files of the taurob tracker)
+
+
+class KinematicDrive:
+    """Follows paths without forces. Holds the robot's pose and what is left of its path.
+
+    Height and pitch come from how the tracks rest on the geometry; nothing stops the robot from
+    overlapping with the site, so whoever runs it looks at `World.touches`.
+    """
+
+    name = "kinematic"
+
+    def __init__(self, world: World, robot: RobotSpec, time_step: float = 0.1) -> None:
+        self.time_step = time_step
+        self._world = world
+        self._robot = robot
+        self._pose = BodyPose(0.0, 0.0, 0.0, 0.0)
+        self._flippers = FLIPPERS_RAISED
+        self._left: deque[Motion] = deque()
+        self._velocity: float | None = None
+        self._poses: list[BodyPose] = []
+        self._elapsed = 0.0  # s since the present motion began
+
+    @property
+    def pose(self) -> BodyPose:
+        return self._pose
+
+    @property
+    def failure(self) -> str | None:
+        return None
+
+    def place(self, pose: BodyPose) -> None:
+        """Puts the robot there, at rest."""
+        self.halt()
+        self._pose = pose
+        self._show()
+
+    def begin(self, path: Path, velocity: float | None) -> None:
+        """Sets off along `path` at `velocity` (m/s) on the flat, or at the robot's own speeds."""
+        self._left = deque(path.motions)
+        self._velocity = velocity
+        self._enter_motion()
+
+    def halt(self) -> None:
+        """Stops where it is and forgets the path."""
+        self._left.clear()
+        self._poses = []
+
+    def step(self) -> DriveStatus:
+        """Moves along the path for one time step, over as many motions as that takes."""
+        time = self.time_step
+        while self._left:
+            motion = self._left[0]
+            duration = motion.duration(self._robot, self._velocity)
+            if self._elapsed + time < duration:
+                self._elapsed += time
+                self._pose = _interpolated(self._poses, self._elapsed / duration)
+                break
+            time -= duration - self._elapsed
+            self._pose = self._poses[-1]
+            self._left.popleft()
+            self._enter_motion()
+        self._move_flippers()
+        self._show()
+        return DriveStatus.MOVING if self._left else DriveStatus.ARRIVED
+
+    def _enter_motion(self) -> None:
+        self._elapsed = 0.0
+        if self._left:
+            self._poses = resting_poses(self._world, self._left[0], self._robot)
+
+    def _move_flippers(self) -> None:
+        on_stairs = bool(self._left) and self._left[0].on_stairs
+        wanted = FLIPPERS_FLAT if on_stairs else FLIPPERS_RAISED
+        most = FLIPPER_RATE * self.time_step
+        self._flippers += min(most, max(-most, wanted - self._flippers))
+
+    def _show(self) -> None:
+        self._world.place_robot(self._pose)
+        self._world.set_joints(
+            {"left_flipper_joint": self._flippers, "right_flipper_joint": self._flippers}
+        )
+
+
+def _interpolated(poses: list[BodyPose], share: float) -> BodyPose:
+    """The pose at `share` (0 to 1) of evenly spaced poses."""
+    place = share * (len(poses) - 1)
+    k = min(int(place), len(poses) - 2)
+    a, b, w = poses[k], poses[k + 1], place - k
+    return BodyPose(
+        a.x + w * (b.x - a.x),
+        a.y + w * (b.y - a.y),
+        a.z + w * (b.z - a.z),
+        wrap(a.yaw + w * (b.yaw - a.yaw)),
+        a.pitch + w * (b.pitch - a.pitch),
+    )

@@ -1,0 +1,1 @@
+"""Sensing: how values are read from checkpoints."""

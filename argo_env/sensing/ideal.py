@@ -1,0 +1,55 @@
+"""The ideal sensor: it knows the true value, but only tells what a camera there could see."""
+
+from collections.abc import Mapping
+
+import numpy as np
+
+from argo_env.navigation.views import camera_positions, face_normal, sight_target
+from argo_env.robot.pose import BodyPose
+from argo_env.robot.spec import RobotSpec
+from argo_env.sensing.sensor import Measurement, MeasurementError
+from argo_env.site import Site
+from argo_env.world import World
+
+
+class IdealSensor:
+    """Reads true values where the face is in range, turned to the camera and in sight."""
+
+    name = "ideal"
+
+    def __init__(self, world: World, robot: RobotSpec, truth: Mapping[int, float]) -> None:
+        self._world = world
+        self._robot = robot
+        self._truth = truth
+
+    def measure(self, checkpoint_id: int, pose: BodyPose) -> Measurement:
+        """The true value; MeasurementError if the camera can't see the face from there."""
+        checkpoint = self._world.site.checkpoint(checkpoint_id)
+        sensor = self._robot.sensor
+        camera = camera_positions(np.array([[pose.x, pose.y, pose.z, pose.yaw]]), self._robot)[0]
+        target = sight_target(checkpoint)
+        sight = target - camera
+        distance = float(np.linalg.norm(sight))
+        if not sensor.min_range <= distance <= sensor.max_range:
+            raise MeasurementError(
+                f"{checkpoint.name} is {distance:.2f} m away; the camera reads from "
+                f"{sensor.min_range} m to {sensor.max_range} m"
+            )
+        cosine = float(-sight @ face_normal(checkpoint)) / distance
+        obliqueness = float(np.degrees(np.arccos(np.clip(cosine, -1.0, 1.0))))
+        if obliqueness > sensor.max_obliqueness:
+            raise MeasurementError(
+                f"{checkpoint.name} is seen at {obliqueness:.0f} degrees to its face; the camera "
+                f"reads up to {sensor.max_obliqueness:.0f}"
+            )
+        obstacle = self._world.obstacle_between(tuple(camera.tolist()), tuple(target.tolist()))
+        if obstacle is not None:
+            raise MeasurementError(f"{checkpoint.name} is hidden behind {obstacle}")
+        return Measurement(self._truth[checkpoint_id], distance)
+
+
+def draw_values(site: Site, rng: np.random.Generator) -> dict[int, float]:
+    """A true value for every checkpoint, somewhere in its nominal range, with two decimals."""
+    return {
+        c.id: round(float(rng.uniform(c.nominal.low, c.nominal.high)), 2) for c in site.checkpoints
+    }

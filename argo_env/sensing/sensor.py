@@ -1,0 +1,31 @@
+"""What every sensor can do: read a checkpoint from where the robot stands."""
+
+from dataclasses import dataclass
+from typing import Protocol
+
+from argo_env.robot.pose import BodyPose
+
+
+@dataclass(frozen=True)
+class Measurement:
+    """A value in the checkpoint's unit, and the distance (m) that it was read from."""
+
+    value: float
+    distance: float
+
+
+class MeasurementError(Exception):
+    """The checkpoint could not be read; the message says why."""
+
+
+class Sensor(Protocol):
+    """Reads checkpoints."""
+
+    name: str
+
+    def measure(self, checkpoint_id: int, pose: BodyPose) -> Measurement:
+        """Reads the checkpoint with the robot at `pose`, its arm raised.
+
+        Raises MeasurementError if that is not possible from there, KeyError for an unknown id.
+        """
+        ...

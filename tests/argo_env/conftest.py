@@ -1,0 +1,103 @@
+"""The UMAD site, its navigator, and the same site in PyBullet as an independent witness."""
+
+import numpy as np
+import pybullet
+import pytest
+
+from argo_env.navigation import Navigator
+from argo_env.robot.spec import load_robot
+from argo_env.site import load_site
+from argo_env.site.urdf import to_urdf
+
+
+class World:
+    """A site in a PyBullet server of its own. Links are addressed by the material they carry."""
+
+    def __init__(self, urdf_file):
+        self._client = pybullet.connect(pybullet.DIRECT)
+        self.body = pybullet.loadURDF(
+            str(urdf_file), useFixedBase=True, physicsClientId=self._client
+        )
+        self.links = {
+            self.ask("getJointInfo", self.body, n)[12].decode(): n
+            for n in range(self.ask("getNumJoints", self.body))
+        }
+        self._names = {number: name for name, number in self.links.items()}
+        self._probes = {}
+
+    def ask(self, function, *arguments, **options):
+        return getattr(pybullet, function)(*arguments, **options, physicsClientId=self._client)
+
+    def rays(self, starts, ends):
+        """For each ray the material it hits first and the point, or (None, None)."""
+        hits = []
+        for first in range(0, len(starts), 8000):
+            batch = slice(first, first + 8000)
+            hits += self.ask(
+                "rayTestBatch", np.asarray(starts)[batch].tolist(), np.asarray(ends)[batch].tolist()
+            )
+        return [
+            (self._names[link], np.array(point)) if body == self.body else (None, None)
+            for body, link, _, point, _ in hits
+        ]
+
+    def touched(self, low, high, center, yaw=0.0, materials=None):
+        """Materials that overlap the box from `low` to `high` (m) in the frame at `center`, `yaw`.
+
+        Only `materials` are looked at, if given. An overlap of a micrometre is none.
+        """
+        size = tuple(np.round((np.array(high) - np.array(low)) / 2, 6).tolist())
+        if size not in self._probes:
+            shape = self.ask("createCollisionShape", pybullet.GEOM_BOX, halfExtents=size)
+            self._probes[size] = self.ask("createMultiBody", 0, shape)
+        probe = self._probes[size]
+        middle = (np.array(low) + np.array(high)) / 2
+        cos, sin = np.cos(yaw), np.sin(yaw)
+        offset = [middle[0] * cos - middle[1] * sin, middle[0] * sin + middle[1] * cos, middle[2]]
+        pose = (np.array(center) + offset).tolist(), pybullet.getQuaternionFromEuler([0, 0, yaw])
+        self.ask("resetBasePositionAndOrientation", probe, *pose)
+        found = {
+            material
+            for material in materials or self.links
+            for contact in self.ask(
+                "getClosestPoints", probe, self.body, 0.0, -1, self.links[material]
+            )
+            if contact[8] < -1e-6
+        }
+        # Out of the way of later rays.
+        self.ask("resetBasePositionAndOrientation", probe, [0, 0, -100], [0, 0, 0, 1])
+        return found
+
+    def close(self):
+        pybullet.disconnect(self._client)
+
+
+@pytest.fixture(scope="session")
+def robot():
+    return load_robot()
+
+
+@pytest.fixture(scope="session")
+def umad():
+    return load_site("umad")
+
+
+@pytest.fixture(scope="session")
+def navigator(umad, robot):
+    navigator = Navigator(umad, robot)
+    assert navigator.lattice.size > 0
+    return navigator
+
+
+@pytest.fixture(scope="session")
+def umad_urdf(umad, tmp_path_factory):
+    path = tmp_path_factory.mktemp("site") / "umad.urdf"
+    path.write_text(to_urdf(umad.name, umad.elements), encoding="utf-8")
+    return path
+
+
+@pytest.fixture(scope="session")
+def umad_world(umad_urdf):
+    world = World(umad_urdf)
+    yield world
+    world.close()

@@ -1,0 +1,120 @@
+import numpy as np
+import pytest
+
+from argo_env.navigation.lattice import LEVEL
+
+FLOOR_MATERIALS = {"grating", "concrete", "gravel"}
+
+
+@pytest.fixture(scope="module")
+def lattice(navigator):
+    return navigator.lattice
+
+
+def footprint_box(robot, low, high):
+    foot = robot.footprint
+    return (-foot.rear, -foot.half_width, low), (foot.front, foot.half_width, high)
+
+
+def test_the_whole_footprint_is_free_in_every_state(lattice, umad_world, robot):
+    obstacles = sorted(set(umad_world.links) - FLOOR_MATERIALS)
+    flat = np.flatnonzero(np.abs(lattice.rise) < 1e-6)
+    chosen = np.random.default_rng(2).choice(flat, 1500, replace=False)
+    low, high = footprint_box(robot, 0.06, robot.driving_height - 0.01)
+    for x, y, z, yaw in lattice.poses()[chosen]:
+        touched = umad_world.touched(low, high, (x, y, z), yaw, obstacles)
+        assert not touched, (x, y, z, yaw, touched)
+
+
+@pytest.mark.parametrize(("degrees", "touched"), [(0, set()), (45, {"railing"}), (90, {"railing"})])
+def test_the_narrowest_aisle_admits_the_robot_along_it_only(
+    lattice, umad_world, robot, degrees, touched
+):
+    """Also shows that the boxes of PyBullet do find the railings."""
+    low, high = footprint_box(robot, 0.06, robot.driving_height - 0.01)
+    place = (3.95, 5.55, 5.0)
+    assert umad_world.touched(low, high, place, np.radians(degrees)) - FLOOR_MATERIALS == touched
+    (cell,) = np.flatnonzero(np.abs(lattice.surface.positions() - place).max(axis=1) < 0.01)
+    assert (lattice.state_of[cell, degrees // 45] >= 0) == (not touched)
+
+
+def test_the_whole_footprint_is_carried_in_every_state(lattice, umad_world, robot):
+    """Rays down from the corners and the rim of the footprint find the floor a step away."""
+    foot = robot.footprint
+    along, left = np.meshgrid(
+        np.linspace(-foot.rear, foot.front, 5), np.linspace(-foot.half_width, foot.half_width, 3)
+    )
+    flat = np.flatnonzero(np.abs(lattice.rise) < 1e-6)
+    chosen = np.random.default_rng(3).choice(flat, 1000, replace=False)
+    poses = lattice.poses()[chosen]
+    cos, sin = np.cos(poses[:, 3])[:, None], np.sin(poses[:, 3])[:, None]
+    x = poses[:, 0, None] + along.ravel() * cos - left.ravel() * sin
+    y = poses[:, 1, None] + along.ravel() * sin + left.ravel() * cos
+    z = np.broadcast_to(poses[:, 2, None], x.shape)
+    starts = np.stack([x, y, z + 0.25], axis=-1).reshape(-1, 3)
+    hits = umad_world.rays(starts, starts - [0, 0, 0.5])
+    heights = np.array([np.nan if point is None else point[2] for _, point in hits])
+    assert {material for material, _ in hits} <= FLOOR_MATERIALS
+    assert np.abs(heights - z.ravel()).max() <= robot.max_step + 0.01
+
+
+def test_the_front_is_never_the_higher_end(lattice):
+    assert lattice.rise.max() <= LEVEL
+    assert lattice.rise.min() < -0.5
+
+
+def test_every_state_is_found_by_its_cell_and_heading(lattice):
+    found = lattice.state_of[lattice.cell, lattice.heading]
+    assert (found == np.arange(lattice.size)).all()
+    assert (lattice.state_of >= 0).sum() == lattice.size
+
+
+def test_moves_are_drives_to_a_neighbour_or_turns_in_place(lattice, robot):
+    moves = lattice.costs.tocoo()
+    source, target = moves.coords
+    poses = lattice.poses()
+    turned = (lattice.heading[target] - lattice.heading[source]) % 8
+    still = lattice.cell[source] == lattice.cell[target]
+    assert np.isin(turned[still], [1, 7]).all()
+    assert (turned[~still] == 0).all()
+    way = poses[target] - poses[source]
+    yaw = poses[source, 3]
+    aside = way[:, 1] * np.cos(yaw) - way[:, 0] * np.sin(yaw)
+    assert np.abs(aside).max() < 1e-9
+    assert np.abs(lattice.rise[source][still]).max() <= LEVEL
+    # No move takes less time than its length at the highest speed, or its angle at the turn rate.
+    length = np.hypot(way[:, 0], way[:, 1])
+    assert (moves.data[~still] >= length[~still] / robot.speed - 1e-9).all()
+    assert (moves.data[still] >= np.pi / 4 / robot.turn_rate_radians - 1e-9).all()
+
+
+def test_backwards_up_and_forwards_down(lattice):
+    moves = lattice.costs.tocoo()
+    source, target = moves.coords
+    poses = lattice.poses()
+    way = poses[target] - poses[source]
+    steep = (lattice.rise[source] + lattice.rise[target]) / 2 < -LEVEL
+    ahead = way[:, 0] * np.cos(poses[source, 3]) + way[:, 1] * np.sin(poses[source, 3])
+    up, down = steep & (way[:, 2] > 0.01), steep & (way[:, 2] < -0.01)
+    assert up.any()
+    assert down.any()
+    assert (ahead[up] < 0).all()
+    assert (ahead[down] > 0).all()
+
+
+def test_turns_need_their_whole_circle(lattice, umad_world, robot):
+    """Half-way through a turn, between two headings of the lattice, the robot touches nothing."""
+    obstacles = sorted(set(umad_world.links) - FLOOR_MATERIALS)
+    moves = lattice.costs.tocoo()
+    source, target = moves.coords
+    turns = np.flatnonzero(
+        (lattice.cell[source] == lattice.cell[target])
+        & ((lattice.heading[target] - lattice.heading[source]) % 8 == 1)
+    )
+    low, high = footprint_box(robot, 0.06, robot.driving_height - 0.01)
+    poses = lattice.poses()
+    for turn in np.random.default_rng(4).choice(turns, 300, replace=False):
+        x, y, z, yaw = poses[source[turn]]
+        for share in (0.25, 0.5, 0.75):
+            touched = umad_world.touched(low, high, (x, y, z), yaw + share * np.pi / 4, obstacles)
+            assert not touched, (x, y, z, yaw, share)

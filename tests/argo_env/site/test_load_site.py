@@ -1,0 +1,133 @@
+import pytest
+import yaml
+
+from argo_compiler.errors import ArgoError
+from argo_env import resources
+from argo_env.site import load_site
+
+
+class _Plain(yaml.SafeDumper):
+    """Writes no anchors: what is changed in one place must not change in another."""
+
+    def ignore_aliases(self, data):  # noqa: ARG002
+        return True
+
+
+@pytest.fixture
+def description():
+    return yaml.safe_load((resources.scenarios() / "umad" / "site.yaml").read_text("utf-8"))
+
+
+def refusal(path):
+    with pytest.raises(ArgoError) as caught:
+        load_site(str(path))
+    return str(caught.value)
+
+
+def written(tmp_path, content):
+    path = tmp_path / "site.yaml"
+    if isinstance(content, dict):
+        content = yaml.dump(content, Dumper=_Plain, sort_keys=False)
+    path.write_bytes(content if isinstance(content, bytes) else content.encode())
+    return path
+
+
+def test_a_file_gives_the_same_site(tmp_path, description, umad):
+    assert load_site(str(written(tmp_path, description))) == umad
+
+
+@pytest.mark.parametrize("name", ["nowhere", "", "..", "umad/site", "UMAD\n", "a\0b"])
+def test_unknown_name(name):
+    message = refusal(name)
+    assert name in message
+    assert "umad" in message
+
+
+@pytest.mark.parametrize("name", ["missing.yaml", "missing/site.yml", "a\0b.yaml"])
+def test_missing_file(tmp_path, name):
+    assert name in refusal(tmp_path / name)
+
+
+def test_a_folder_is_no_site(tmp_path):
+    folder = tmp_path / "folder.yaml"
+    folder.mkdir()
+    assert str(folder) in refusal(folder)
+
+
+@pytest.mark.parametrize(
+    "content",
+    [
+        "",
+        "name: [",
+        "a: b: c",
+        "- 1\n- 2",
+        "just text",
+        "!!python/object:os.system {}",
+        "{[1]: 2}",
+        "when: 2020-13-45",
+        "number: " + "1" * 5000,
+        "[" * 600,
+        b"\xff\xfe\x00",
+        b"name: \x00",
+        b"\x89PNG\r\n",
+    ],
+)
+def test_what_is_no_site(tmp_path, content):
+    path = written(tmp_path, content)
+    assert str(path) in refusal(path)
+
+
+def change(description, where, value):
+    *parents, last = where
+    part = description
+    for key in parents:
+        part = part[key]
+    part[last] = value
+
+
+@pytest.mark.parametrize(
+    ("where", "value", "place"),
+    [
+        (("roof",), 1, "roof"),
+        (("floors", 2, "colour"), "red", "floors.2.colour"),
+        (("floors", 1, "number"), 7, "numbered"),
+        (("floors", 1, "checkpoints", 0, "id"), 1, "twice: [1]"),
+        (("floors", 1, "checkpoints", 0, "kind"), "lever", "floors.1.checkpoints.0.kind"),
+        (("floors", 1, "checkpoints", 0, "nominal", "low"), 99.0, "floors.1.checkpoints.0.nominal"),
+        (
+            ("floors", 1, "checkpoints", 0, "position"),
+            [1.0, 2.0],
+            "floors.1.checkpoints.0.position",
+        ),
+        (("floors", 1, "z"), float("nan"), "floors.1.z"),
+        (("floors", 1, "walkways"), {}, "floors.1.walkways"),
+        (("floors", 1, "walkways", "south aisle"), [5.0, 1.0, 2.0, 2.0], "walkways.south aisle"),
+        (("floors",), [], "floors"),
+        (("areas",), [], "areas"),
+        (("towers", 0, "flights", 0, "risers"), 1, "towers.0.flights.0.risers"),
+        (("pipes", 0, "points"), [[0.0, 0.0, 0.0]], "pipes.0.points"),
+        (("pipes", 0, "points"), [[1.0, 1.0, 1.0], [1.0, 1.0, 1.0]], "pipes.0"),
+        (("vessels", 0, "radius"), -1.0, "vessels.0.radius"),
+        (("ground",), [5.0, 0.0, 1.0, 1.0], "ground"),
+    ],
+)
+def test_mistakes_are_named_by_their_place(tmp_path, description, where, value, place):
+    change(description, where, value)
+    path = written(tmp_path, description)
+    message = refusal(path)
+    assert str(path) in message
+    assert place in message
+
+
+def test_site_of_one_slab(tmp_path):
+    path = written(
+        tmp_path,
+        """
+        {name: yard, title: Yard, storey: 3, ground: [0, 0, 8, 8], ground_z: 0, towers: [],
+         floors: [{number: 1, z: 0.02, railed: false, walkways: {slab: [1, 1, 7, 7]}}],
+         areas: [{number: 1, dock: [3, 3, 90]}]}
+        """,
+    )
+    site = load_site(str(path))
+    assert site.checkpoints == ()
+    assert [e.name for e in site.elements] == ["gravel", "floor 1 slab", "docking station 1"]

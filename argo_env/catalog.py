@@ -47,10 +47,11 @@ def patrol(navigator: Navigator, floor: int) -> tuple[Pose, ...]:
     """
     places = navigator.turning_places(floor)
     x0, y0, x1, y1 = _bounds(navigator.site, floor)
-    inside = (
-        (places[:, 0] >= x0) & (places[:, 0] <= x1) & (places[:, 1] >= y0) & (places[:, 1] <= y1)
-    )
-    places = places[inside]
+    # The whole robot stays on the floor, wherever it turns.
+    inset = navigator.robot.footprint.radius
+    inside_x = (places[:, 0] >= x0 + inset) & (places[:, 0] <= x1 - inset)
+    inside_y = (places[:, 1] >= y0 + inset) & (places[:, 1] <= y1 - inset)
+    places = places[inside_x & inside_y]
     corners: list[tuple[float, float, float]] = []
     for x, y in ((x0, y0), (x1, y0), (x1, y1), (x0, y1)):
         if len(places):

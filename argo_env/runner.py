@@ -5,6 +5,7 @@ from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
 
 from argo_compiler.diagnostics import Diagnostic
+from argo_compiler.errors import ArgoError
 from argo_compiler.hfsm import (
     ActionFailed,
     ActionSucceeded,
@@ -107,6 +108,14 @@ class MissionRunner:
 
         Raises ArgoError if the mission makes no sense or the robot can't stand where it starts.
         """
+        docks = self._navigator.site.docks
+        for area in (self._mission.start_area, self._mission.end_area):
+            if area is not None and area not in docks:
+                known = ", ".join(map(str, sorted(docks)))
+                raise ArgoError(
+                    f"site {self._navigator.site.name} has no starting area {area}; there are: "
+                    f"{known}"
+                )
         start = self._navigator.snap(self._start_pose())
         self._drive.place(BodyPose(start.x, start.y, start.z, start.yaw))
         self._sample()

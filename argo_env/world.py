@@ -74,6 +74,8 @@ class World:
                 )
 
         self.move_arm(robot.arm_stowed)
+        if gui:
+            self._look_at_site()
 
     def __enter__(self) -> "World":
         return self
@@ -169,6 +171,19 @@ class World:
             if not stands and distance <= -_TOUCH_DEPTH:
                 found.append(Touch(link, self._name(body, link_b, point), point, -distance))
         return tuple(found)
+
+    def _look_at_site(self) -> None:
+        """Sets the window's camera so that the whole site is in view, from the south-west."""
+        x0, y0, x1, y1 = self.site.spec.ground
+        top = self.site.spec.floors[-1].z
+        pybullet.configureDebugVisualizer(pybullet.COV_ENABLE_GUI, 0, physicsClientId=self._client)
+        pybullet.resetDebugVisualizerCamera(
+            1.2 * max(x1 - x0, y1 - y0, top),
+            -35.0,
+            -25.0,
+            ((x0 + x1) / 2, (y0 + y1) / 2, top / 3),
+            physicsClientId=self._client,
+        )
 
     def _name(self, body: int, link: int, point: Vector) -> str:
         for id, checkpoint_body in self._checkpoints.items():

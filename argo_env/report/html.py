@@ -27,7 +27,7 @@ def page(record: RunRecord, site: Site) -> str:
     return _template().render(
         record=record,
         site=site,
-        problems=[t for t in record.tasks if t.outcome != "done"],
+        failed=[t for t in record.tasks if t.outcome == "failed"],
         readings=[(reading, markup(_bar(reading))) for reading in record.readings],
         timeline=markup(timeline(record)) if record.tasks else None,
         plans=[(n, markup(floor_plan(site, record, n))) for n in floors],

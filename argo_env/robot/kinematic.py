@@ -71,7 +71,7 @@ class KinematicDrive:
                 self._pose = _interpolated(self._poses, self._elapsed / duration)
                 break
             time -= duration - self._elapsed
-            self._pose = self._poses[-1]
+            self._pose = _interpolated(self._poses, 1.0)
             self._left.popleft()
             self._enter_motion()
         self._move_flippers()

@@ -5,7 +5,7 @@ from dataclasses import dataclass
 
 @dataclass(frozen=True)
 class BodyPose:
-    """Where the robot's origin is, on the ground between its tracks (m), and how it is turned (rad).
+    """Where the robot's origin is, on the ground between its tracks (m), and its attitude (rad).
 
     Pitch is positive with the front down, as a turn about the robot's y axis.
     """

@@ -16,7 +16,7 @@ from argo_env.world import World
 
 STEP = 0.05  # m between the places along a path where the support is found
 _EASING = 0.3  # m over which height and pitch are averaged
-_PROBE_SPACING = 0.05  # m along a track
+_PROBE_SPACING = 0.03  # m along a track
 _PROBE_HEIGHT = 0.5  # m above the path from where the ground is looked for
 
 
@@ -25,11 +25,11 @@ def resting(
 ) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
     """Height at the middle (m) and slope (dz/ds) of the hull edges over the middle.
 
-    `offsets`, shape (k,), are places along the track with some on each side of 0; `heights`, shape
+    `offsets`, shape (k,), are places along the track on both sides of 0, not 0; `heights`, shape
     (n, k), the ground there. Of all lines through a point behind and a point ahead of the middle
     the one that is highest at the middle lies above all other points.
     """
-    behind, ahead = offsets <= 0, offsets > 0
+    behind, ahead = offsets < 0, offsets > 0
     s_b, s_a = offsets[behind][:, None], offsets[ahead][None, :]
     h_b, h_a = heights[:, behind][:, :, None], heights[:, ahead][:, None, :]
     slope = (h_a - h_b) / (s_a - s_b)
@@ -48,7 +48,8 @@ def resting_poses(world: World, motion: Motion, robot: RobotSpec) -> list[BodyPo
     yaw = a.yaw + share * motion.turn
     guess = a.z + share * (b.z - a.z)
     half = robot.track_length / 2
-    offsets = np.linspace(-half, half, 2 * round(half / _PROBE_SPACING) + 1)
+    # An even number, so that there is none below the middle, where any slope would do.
+    offsets = np.linspace(-half, half, 2 * round(half / _PROBE_SPACING))
     sides = np.array([-robot.track_gauge / 2, robot.track_gauge / 2])
     along, left = (g.ravel() for g in np.meshgrid(offsets, sides, indexing="ij"))
     cos, sin = np.cos(yaw)[:, None], np.sin(yaw)[:, None]
@@ -61,7 +62,8 @@ def resting_poses(world: World, motion: Motion, robot: RobotSpec) -> list[BodyPo
     pitch = -np.arctan(slope)
     if motion.length:
         window = max(1, round(_EASING / STEP)) | 1
-        z, pitch = _averaged(z, window), _averaged(pitch, window)
+        # Over the last nosing the mean lies below the ground; there nothing is eased.
+        z, pitch = np.maximum(z, _averaged(z, window)), _averaged(pitch, window)
     return [
         BodyPose(*values)
         for values in zip(
@@ -71,7 +73,9 @@ def resting_poses(world: World, motion: Motion, robot: RobotSpec) -> list[BodyPo
 
 
 def _averaged(values: NDArray[np.float64], window: int) -> NDArray[np.float64]:
-    """Moving average over an odd window; the ends keep their values."""
-    half = window // 2
-    padded = np.pad(values, half, mode="edge")
-    return np.convolve(padded, np.ones(window) / window, mode="valid")
+    """Moving average over an odd window, narrower towards the ends, which keep their values: so
+    one motion goes on where the one before it ended."""
+    k = np.arange(len(values))
+    half = np.minimum(window // 2, np.minimum(k, k[::-1]))
+    sums = np.concatenate([[0.0], np.cumsum(values)])
+    return np.asarray((sums[k + half + 1] - sums[k - half]) / (2 * half + 1))

@@ -4,8 +4,13 @@ import numpy as np
 import pybullet
 import pytest
 
+import argo_env.world
+from argo_compiler.script import import_script, read_script
+from argo_env import resources
+from argo_env.catalog import make_catalog
 from argo_env.navigation import Navigator
 from argo_env.robot.spec import load_robot
+from argo_env.session import simulate
 from argo_env.site import load_site
 from argo_env.site.urdf import to_urdf
 
@@ -101,3 +106,41 @@ def umad_world(umad_urdf):
     world = World(umad_urdf)
     yield world
     world.close()
+
+
+@pytest.fixture(scope="session")
+def simulation(umad, robot):
+    """The world that Argo runs missions in, to place the robot in and look."""
+    with argo_env.world.World(umad, robot) as world:
+        yield world
+
+
+@pytest.fixture(scope="session")
+def catalog(navigator):
+    return make_catalog(navigator)
+
+
+@pytest.fixture(scope="session")
+def shipped(catalog):
+    """A shipped script by name, imported."""
+
+    def imported(name, **areas):
+        path = resources.scenarios() / "umad" / "missions" / name
+        return import_script(read_script(path), catalog, **areas)
+
+    return imported
+
+
+@pytest.fixture(scope="session")
+def sheet_run(shipped, navigator):
+    """Mission #1, run from area 1 to area 2: the mission's record and what the observer saw."""
+    seen = []
+    mission = shipped("mission_1.txt", start_area=1, end_area=2).mission
+    record = simulate(mission, navigator, seed=3, observe=lambda *now: seen.append(now))
+    return record, seen
+
+
+@pytest.fixture(scope="session")
+def protocol_record(shipped, navigator):
+    """The record of protocol #2."""
+    return simulate(shipped("protocol_2.txt").mission, navigator, seed=3)

@@ -1,0 +1,42 @@
+# `make demo` and `make test` set up all they need in .venv. CPython 3.11 and make are enough.
+
+PYTHON ?= python3.11
+BIN := .venv/bin
+INSTALL := $(BIN)/python -m pip install --quiet --disable-pip-version-check --constraint constraints.txt
+PACKAGES := argo_compiler argo_env argo_planner
+
+.PHONY: demo test lint format clean
+
+demo: .venv/demo.stamp ## run mission #1 and write its report
+	$(BIN)/argo run scenarios/umad/missions/mission_1.txt --site umad --seed 0 \
+		--start-area 1 --end-area 2 --report out/demo
+	@echo "Open out/demo/report.html in a browser; out/demo/site.png shows the path on the site."
+
+test: .venv/test.stamp ## run the whole suite
+	$(BIN)/python -m pytest --numprocesses 2 --dist loadgroup
+
+lint: .venv/test.stamp ## style and types
+	$(BIN)/ruff check .
+	$(BIN)/ruff format --check .
+	$(BIN)/mypy
+
+format: .venv/test.stamp ## put the style right where that can be done by itself
+	$(BIN)/ruff check --fix .
+	$(BIN)/ruff format .
+
+clean:
+	rm -rf .venv out dist
+
+.venv/python.stamp:
+	@$(PYTHON) -c 'import sys; sys.exit(sys.version_info[:2] != (3, 11))' \
+		|| { echo "Argo needs CPython 3.11: name it with 'make PYTHON=/path/to/python3.11'"; exit 1; }
+	$(PYTHON) -m venv .venv
+	touch $@
+
+.venv/demo.stamp: .venv/python.stamp pyproject.toml constraints.txt
+	$(INSTALL) --editable .
+	touch $@
+
+.venv/test.stamp: .venv/python.stamp pyproject.toml constraints.txt
+	$(INSTALL) --editable '.[dev,film]'
+	touch .venv/demo.stamp $@

@@ -1,0 +1,72 @@
+"""Cameras: where they are, and where a point of the site lies in their pictures."""
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from argo_env.pybullet_client import pybullet
+from argo_env.site.shapes import Vector
+
+
+@dataclass(frozen=True)
+class Camera:
+    """A pinhole camera at `eye` that looks at `target` (m), upright."""
+
+    eye: Vector
+    target: Vector
+    size: tuple[int, int]
+    """px, width and height of its pictures"""
+    field_of_view: float
+    """deg, vertical"""
+    near: float = 0.1
+    """m, nothing nearer is seen"""
+    far: float = 100.0
+    """m, nothing farther is seen"""
+
+    @property
+    def view_matrix(self) -> tuple[float, ...]:
+        """From the site's frame to the camera's, column by column."""
+        matrix: tuple[float, ...] = pybullet.computeViewMatrix(self.eye, self.target, (0, 0, 1))
+        return matrix
+
+    @property
+    def projection_matrix(self) -> tuple[float, ...]:
+        """From the camera's frame to clip space, column by column."""
+        width, height = self.size
+        matrix: tuple[float, ...] = pybullet.computeProjectionMatrixFOV(
+            self.field_of_view, width / height, self.near, self.far
+        )
+        return matrix
+
+    def project(self, points: NDArray[np.float64]) -> NDArray[np.float64]:
+        """Column and row (px) and depth along the line of sight (m) of points, shape (n, 3)."""
+        view = np.array(self.view_matrix).reshape(4, 4).T
+        projection = np.array(self.projection_matrix).reshape(4, 4).T
+        clip = np.column_stack([points, np.ones(len(points))]) @ (projection @ view).T
+        width, height = self.size
+        return np.column_stack(
+            [
+                (clip[:, 0] / clip[:, 3] + 1) / 2 * width,
+                (1 - clip[:, 1] / clip[:, 3]) / 2 * height,
+                clip[:, 3],
+            ]
+        )
+
+    def unproject(self, depth: NDArray[np.float64]) -> NDArray[np.float64]:
+        """The points of the site (m) that a depth image shows, shape (height, width, 3)."""
+        view = np.array(self.view_matrix).reshape(4, 4).T
+        projection = np.array(self.projection_matrix).reshape(4, 4).T
+        height, width = depth.shape
+        x = ((np.arange(width) + 0.5) / width * 2 - 1) / projection[0, 0]
+        y = (1 - (np.arange(height) + 0.5) / height * 2) / projection[1, 1]
+        seen = np.stack([x * depth, y[:, None] * depth, -depth], axis=-1)
+        return np.asarray((seen - view[:3, 3]) @ view[:3, :3])
+
+
+def depth_in_metres(buffer: NDArray[np.float64], camera: Camera) -> NDArray[np.float64]:
+    """A depth buffer from 0 to 1 as m along the line of sight; infinite where nothing is seen."""
+    near, far = camera.near, camera.far
+    depth = far * near / (far - (far - near) * buffer)
+    # An empty pixel holds the far end only about.
+    return np.where(depth < 0.98 * far, depth, np.inf)

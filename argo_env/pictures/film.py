@@ -1,0 +1,115 @@
+"""A film of a run, made from its record: a camera follows the robot through the site."""
+
+import math
+import os
+from collections.abc import Callable, Iterator
+from pathlib import Path
+
+import numpy as np
+from PIL import Image
+
+from argo_compiler.errors import ArgoError
+from argo_env.pictures.caption import add_caption
+from argo_env.pictures.chase import ChaseCamera
+from argo_env.pictures.codec import find_ffmpeg, make_palette, write_gif, write_mp4
+from argo_env.pictures.light import compose, depth_shading
+from argo_env.pictures.motion import Motion, check_site
+from argo_env.pictures.scene import Scene
+from argo_env.record import RunRecord
+from argo_env.robot.spec import RobotSpec
+from argo_env.site import Site
+
+MP4_SIZE, MP4_FPS = (640, 400), 12
+GIF_SIZE, GIF_FPS = (480, 300), 6  # a GIF is many times larger than an .mp4 of the same frames
+_DECKS = 2  # the robot's floor and the one below it are seen from above
+_PALETTE_SAMPLES = 6
+
+Progress = Callable[[float], None]
+"""Told the share that is done, from 0 to 1."""
+
+
+def check_film(file: Path) -> None:
+    """Raises ArgoError if no film can be written there: for its suffix, its folder, or an extra
+    that isn't installed. To be called before a long run is made."""
+    if file.suffix.lower() not in {".mp4", ".gif"}:
+        raise ArgoError(f"{file}: a film is an .mp4 or a .gif; name the file so")
+    if not file.absolute().parent.is_dir():
+        raise ArgoError(f"{file}: there is no folder {file.parent}; make it, or choose another")
+    if file.is_dir():
+        raise ArgoError(f"{file}: is a folder; choose another name for the film")
+    if not os.access(file if file.exists() else file.absolute().parent, os.W_OK):
+        raise ArgoError(f"{file}: can't be written; choose another place for the film")
+    if file.suffix.lower() == ".mp4":
+        find_ffmpeg()
+
+
+def write_film(
+    record: RunRecord,
+    site: Site,
+    robot: RobotSpec,
+    file: Path,
+    speed: float = 10.0,
+    fps: int | None = None,
+    size: tuple[int, int] | None = None,
+    progress: Progress | None = None,
+) -> None:
+    """Writes a film of the run, `speed` times as fast as it was, as .mp4 or .gif.
+
+    Without `fps` (frames a second) and `size` (px, even), an .mp4 has 12 and 640 by 400, a .gif 6
+    and 480 by 300. A GIF shows each frame for a whole number of hundredths of a second. Equal
+    records give equal films. Raises ArgoError where `check_film` does, if the record is of another
+    site or has no path, if a number makes no sense, or if the film can't be written.
+    """
+    check_film(file)
+    check_site(record, site)
+    is_gif = file.suffix.lower() == ".gif"
+    fps = fps or (GIF_FPS if is_gif else MP4_FPS)
+    width, height = size or (GIF_SIZE if is_gif else MP4_SIZE)
+    if not (speed > 0 and math.isfinite(speed) and 0 < fps <= 60):
+        raise ArgoError(f"a film needs a speed above 0 and 1 to 60 frames a second: {speed}, {fps}")
+    if min(width, height) < 64 or width % 2 or height % 2:
+        raise ArgoError(f"a film needs an even width and height from 64 px: {width}x{height}")
+    frame_time = round(100 / fps) / 100 if is_gif else 1 / fps
+    motion = Motion(record, robot)
+    count = math.ceil(motion.end / (speed * frame_time) - 1e-9) + 1
+    times = [min(k * speed * frame_time, motion.end) for k in range(count)]
+    part = file.with_name(f".{file.stem}.part{file.suffix.lower()}")
+    try:
+        with Scene(site, robot) as scene:
+            frames = _frames(record, motion, scene, times, (width, height), frame_time, progress)
+            if is_gif:
+                picks = np.linspace(0, count - 1, _PALETTE_SAMPLES).round().astype(int)
+                spread = [times[k] for k in dict.fromkeys(picks.tolist())]
+                samples = _frames(record, motion, scene, spread, (width, height), math.inf, None)
+                write_gif(frames, part, make_palette(list(samples)), frame_time)
+            else:
+                write_mp4(frames, part, (width, height), fps)
+        part.replace(file)
+    except OSError as error:
+        raise ArgoError(
+            f"{file}: the film can't be written: {error.strerror}; choose another place"
+        ) from error
+    finally:
+        part.unlink(missing_ok=True)
+
+
+def _frames(
+    record: RunRecord,
+    motion: Motion,
+    scene: Scene,
+    times: list[float],
+    size: tuple[int, int],
+    frame_time: float,
+    progress: Progress | None,
+) -> Iterator[Image.Image]:
+    """The frames at the times (s), one after the other."""
+    camera = ChaseCamera(scene, size, frame_time)
+    for number, t in enumerate(times, start=1):
+        pose, floor = motion.pose(t), motion.floor(t)
+        scene.show_floors(floor, _DECKS)
+        scene.place_robot(pose, motion.joints(t))
+        view = scene.look(camera.follow(pose))
+        brightness = depth_shading(view, size[1] / 50, 0.45)
+        yield add_caption(Image.fromarray(compose(view, brightness)), record, t, floor)
+        if progress:
+            progress(number / len(times))

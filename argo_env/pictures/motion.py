@@ -1,0 +1,72 @@
+"""The robot's motion as a record tells it: where it is at any time, and what its limbs do."""
+
+import math
+
+import numpy as np
+
+from argo_compiler.errors import ArgoError
+from argo_env.record import RunRecord
+from argo_env.robot.pose import BodyPose
+from argo_env.robot.spec import RobotSpec
+from argo_env.site import Site
+
+FLIPPERS_RAISED = 30.0  # deg, while driving on the flat
+_STAIR_PITCH = math.radians(5.0)  # from which the flippers lie flat
+_PITCH_RAMP = math.radians(2.0)  # to each side of it, so that they don't jump
+_ARM_TIME = 2.0  # s to raise or to stow the arm
+
+
+class Motion:
+    """The motion of a record, interpolated between the samples of its path."""
+
+    def __init__(self, record: RunRecord, robot: RobotSpec) -> None:
+        """Raises ArgoError if the record has no path."""
+        if not record.path:
+            raise ArgoError("the record has no path: there is nothing to draw")
+        path = record.path
+        self._robot = robot
+        self._times = np.array([s.t for s in path])
+        self._floors = [s.floor for s in path]
+        yaws = np.unwrap([s.yaw for s in path])
+        self._values = np.array([(s.x, s.y, s.z, s.pitch) for s in path])
+        self._values = np.column_stack([self._values, yaws])
+        self._readings = [r.t for r in record.readings]
+
+    @property
+    def end(self) -> float:
+        """s, the time of the last sample."""
+        return float(self._times[-1])
+
+    def pose(self, t: float) -> BodyPose:
+        """Where the robot is at the time t (s)."""
+        x, y, z, pitch, yaw = (float(np.interp(t, self._times, v)) for v in self._values.T)
+        return BodyPose(x, y, z, yaw, pitch)
+
+    def floor(self, t: float) -> int:
+        """The floor that the robot is on at the time t (s)."""
+        return self._floors[max(0, int(np.searchsorted(self._times, t, side="right")) - 1)]
+
+    def joints(self, t: float) -> dict[str, float]:
+        """Positions of the robot's joints at the time t (s), in degrees, by name."""
+        stairs = (abs(self.pose(t).pitch) - _STAIR_PITCH) / _PITCH_RAMP
+        flippers = FLIPPERS_RAISED * min(1.0, max(0.0, (1.0 - stairs) / 2))
+        raised = self._raised(t)
+        stowed, up = self._robot.arm_stowed, self._robot.arm_raised
+        arm = {name: stowed[name] + raised * (up[name] - stowed[name]) for name in stowed}
+        return arm | {"left_flipper_joint": flippers, "right_flipper_joint": flippers}
+
+    def _raised(self, t: float) -> float:
+        """How far the arm is raised, from 0 to 1."""
+        share = 0.0
+        for end in self._readings:
+            since, left = t - (end - self._robot.sensor.measuring_time), end - t
+            share = max(share, min(1.0, since / _ARM_TIME, left / _ARM_TIME))
+        return share
+
+
+def check_site(record: RunRecord, site: Site) -> None:
+    """Raises ArgoError if the record is of a run on another site."""
+    if record.site != site.name:
+        raise ArgoError(
+            f"the record is of a run on site `{record.site}`, not on `{site.name}`: load that site"
+        )

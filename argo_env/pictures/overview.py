@@ -1,0 +1,190 @@
+"""The whole site in one picture, with the way that the robot took."""
+
+import io
+import math
+from collections.abc import Iterator
+from itertools import pairwise
+from pathlib import Path
+
+import numpy as np
+from numpy.typing import NDArray
+from PIL import Image, ImageDraw, ImageFont
+
+from argo_compiler.errors import ArgoError
+from argo_env.pictures.camera import Camera
+from argo_env.pictures.light import compose, depth_shading, shadows
+from argo_env.pictures.motion import Motion, check_site
+from argo_env.pictures.scene import Scene, View
+from argo_env.record import RunRecord
+from argo_env.report.track import colour
+from argo_env.robot.spec import RobotSpec
+from argo_env.site import Site
+
+SIZE = (1600, 1200)
+"""px"""
+_FINER = 2  # the picture is made so many times larger and then reduced, for smooth edges
+_SHADOW_MAP = 2400  # px
+_PATH_HEIGHT = 0.25  # m above the robot's tracks at which its path is drawn
+_PATH_STEP = 0.05  # m between the points of the drawn path
+_PATH_WIDTH = 7  # px
+_HIDDEN_WIDTH = 5  # px
+_HIDDEN_OPACITY = 0.8
+_DASH = 11  # px
+_TOLERANCE = 0.3  # m that a point may lie behind what is seen and still be seen
+_INK = (23, 32, 42)
+_NORMAL, _ABNORMAL = (16, 128, 84), (196, 43, 43)
+
+
+def write_overview(record: RunRecord, site: Site, robot: RobotSpec, file: Path) -> None:
+    """Writes a PNG, 1600 by 1200 px, of the site seen from the south-west with the driven path.
+
+    The path's colour goes with time as in the report; where something hides it, it is dashed.
+    Checkpoints that were measured carry their ids, red where the value is not nominal. Raises
+    ArgoError if the record is of another site or has no path, or the file can't be written.
+    """
+    check_site(record, site)
+    motion = Motion(record, robot)
+    camera = site_camera(site, (SIZE[0] * _FINER, SIZE[1] * _FINER))
+    with Scene(site, robot) as scene:
+        scene.place_robot(motion.pose(motion.end), motion.joints(motion.end))
+        view = scene.look(camera)
+        brightness = shadows(scene, camera, view, _SHADOW_MAP, float(_FINER))
+    brightness *= depth_shading(view, 10.0 * _FINER, 0.3)
+    image = Image.fromarray(compose(view, brightness))
+    _draw_path(image, record, motion, camera, view)
+    _draw_markers(image, record, site, motion, camera)
+    content = io.BytesIO()
+    image.resize(SIZE, Image.Resampling.LANCZOS).save(content, "png")
+    try:
+        file.write_bytes(content.getvalue())
+    except OSError as error:
+        raise ArgoError(
+            f"{file}: the picture can't be written: {error.strerror}; choose another place"
+        ) from error
+
+
+def site_camera(site: Site, size: tuple[int, int]) -> Camera:
+    """A camera in the south-west and above that sees the whole site."""
+    x0, y0, x1, y1 = site.spec.ground
+    low, high = site.spec.ground_z, site.spec.floors[-1].z + site.spec.storey
+    middle = np.array([(x0 + x1) / 2, (y0 + y1) / 2, low + 0.37 * (high - low)])
+    reach = float(np.linalg.norm([x1 - x0, y1 - y0, high - low])) / 2
+    eye = middle + 2.66 * reach * np.array([-0.60, -0.71, 0.37])
+    return Camera(
+        (float(eye[0]), float(eye[1]), float(eye[2])),
+        (float(middle[0]), float(middle[1]), float(middle[2])),
+        size,
+        38.0,
+        near=reach / 2,
+        far=8 * reach,
+    )
+
+
+def _draw_path(
+    image: Image.Image, record: RunRecord, motion: Motion, camera: Camera, view: View
+) -> None:
+    """Draws the path over the picture: hidden parts dashed and faint, the others on top."""
+    times = np.array(list(_times(record)))
+    poses = [motion.pose(float(t)) for t in times]
+    points = np.array([(p.x, p.y, p.z + _PATH_HEIGHT) for p in poses])
+    pixels = camera.project(points)
+    seen = _seen(pixels, view)
+    end = motion.end or 1.0
+    faint = Image.new("RGBA", image.size, (0, 0, 0, 0))
+    clear = Image.new("RGBA", image.size, (0, 0, 0, 0))
+    on_faint, on_clear = ImageDraw.Draw(faint), ImageDraw.Draw(clear)
+    length = np.concatenate([[0.0], np.cumsum(np.hypot(*np.diff(pixels[:, :2], axis=0).T))])
+    rounds = [(on_clear, 3 * _FINER, (255, 255, 255)), (on_clear, 0, None)]
+    for k, (a, b) in enumerate(pairwise(pixels)):
+        if not (seen[k] and seen[k + 1]) and length[k] // (_DASH * _FINER) % 2 == 0:
+            _stroke(on_faint, a, b, _HIDDEN_WIDTH * _FINER, colour(times[k] / end))
+    for draw, wider, white in rounds:
+        for k, (a, b) in enumerate(pairwise(pixels)):
+            if seen[k] and seen[k + 1]:
+                ink = white or colour(times[k] / end)
+                _stroke(draw, a, b, _PATH_WIDTH * _FINER + wider, ink)
+    faint.putalpha(faint.getchannel("A").point(lambda a: round(a * _HIDDEN_OPACITY)))
+    image.paste(faint, mask=faint)
+    image.paste(clear, mask=clear)
+
+
+def _times(record: RunRecord) -> Iterator[float]:
+    """Times (s) at which the robot is no more than 5 cm farther than at the one before."""
+    for a, b in pairwise(record.path):
+        away = math.dist((a.x, a.y, a.z), (b.x, b.y, b.z))
+        count = math.ceil(away / _PATH_STEP)
+        yield from (a.t + (b.t - a.t) * k / count for k in range(count))
+    yield record.path[-1].t
+
+
+def _seen(pixels: NDArray[np.float64], view: View) -> NDArray[np.bool_]:
+    """Whether nothing hides the points, for more than half of those about each of them."""
+    height, width = view.depth.shape
+    column = np.clip(pixels[:, 0].astype(int), 0, width - 1)
+    row = np.clip(pixels[:, 1].astype(int), 0, height - 1)
+    free = (pixels[:, 2] < view.depth[row, column] + _TOLERANCE).astype(float)
+    # A railing in front of the path does not hide it.
+    around = np.convolve(np.pad(free, 3, mode="edge"), np.ones(7) / 7, mode="valid")
+    return np.asarray(around > 0.5)
+
+
+def _stroke(
+    draw: ImageDraw.ImageDraw,
+    a: NDArray[np.float64],
+    b: NDArray[np.float64],
+    width: int,
+    ink: str | tuple[int, int, int],
+) -> None:
+    """A line with a round end."""
+    draw.line([(a[0], a[1]), (b[0], b[1])], fill=ink, width=width)
+    half = width / 2 - 0.5
+    draw.ellipse([b[0] - half, b[1] - half, b[0] + half, b[1] + half], fill=ink)
+
+
+def _draw_markers(
+    image: Image.Image, record: RunRecord, site: Site, motion: Motion, camera: Camera
+) -> None:
+    draw = ImageDraw.Draw(image)
+    font = ImageFont.load_default(21.0 * _FINER)
+    labels: dict[tuple[float, float, float], tuple[str, str | tuple[int, int, int]]] = {}
+    first, last = motion.pose(0.0), motion.pose(motion.end)
+    together = math.dist((first.x, first.y, first.z), (last.x, last.y, last.z)) < 1.0
+    if not together:
+        labels[(last.x, last.y, last.z + _PATH_HEIGHT)] = ("end", colour(1.0))
+    start = "start and end" if together else "start"
+    labels[(first.x, first.y, first.z + _PATH_HEIGHT)] = (start, colour(0.0))
+    for reading in record.readings:
+        place = site.checkpoint(reading.checkpoint).position
+        labels[place] = (str(reading.checkpoint), _NORMAL if reading.normal else _ABNORMAL)
+    pixels = camera.project(np.array(list(labels)))
+    # The nearest are drawn last, so that they lie on top.
+    for index in np.argsort(-pixels[:, 2], kind="stable"):
+        text, ink = list(labels.values())[index]
+        _pin(draw, float(pixels[index, 0]), float(pixels[index, 1]), text, ink, font)
+
+
+def _pin(
+    draw: ImageDraw.ImageDraw,
+    x: float,
+    y: float,
+    text: str,
+    ink: str | tuple[int, int, int],
+    font: ImageFont.ImageFont | ImageFont.FreeTypeFont,
+) -> None:
+    """A label above a dot at (x, y), joined by a line."""
+    n = _FINER
+    half = max(17 * n, draw.textlength(text, font=font) / 2 + 11 * n)
+    middle, radius = y - 44 * n, 17 * n
+    draw.line([(x, y), (x, middle)], fill=(255, 255, 255), width=5 * n)
+    draw.line([(x, y), (x, middle)], fill=_INK, width=2 * n)
+    draw.ellipse(
+        [x - 6 * n, y - 6 * n, x + 6 * n, y + 6 * n], fill=ink, outline=(255, 255, 255), width=2 * n
+    )
+    draw.rounded_rectangle(
+        [x - half, middle - radius, x + half, middle + radius],
+        radius=radius,
+        fill=ink,
+        outline=(255, 255, 255),
+        width=2 * n + 1,
+    )
+    draw.text((x, middle), text, fill=(255, 255, 255), font=font, anchor="mm")

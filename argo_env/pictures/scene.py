@@ -1,0 +1,228 @@
+"""The site and the robot as they are drawn: a PyBullet world of its own, storey by storey."""
+
+import math
+import tempfile
+from collections.abc import Mapping
+from dataclasses import dataclass, replace
+from itertools import chain, pairwise
+from pathlib import Path
+from types import TracebackType
+
+import numpy as np
+from numpy.typing import NDArray
+
+from argo_env import resources
+from argo_env.pictures.camera import Camera, depth_in_metres
+from argo_env.pybullet_client import pybullet, quiet
+from argo_env.robot.pose import BodyPose
+from argo_env.robot.spec import RobotSpec, robot_folder
+from argo_env.site import Site
+from argo_env.site.shapes import Box, Cylinder, Element, Role, Solid, Vector, half_extents
+from argo_env.site.urdf import to_urdf
+
+SUN: Vector = (0.55, -0.75, 1.25)
+"""direction towards the light"""
+_UNDER_DECK = 0.25  # m below a floor that belongs to it: its plates and beams
+_HIDDEN: Vector = (0.0, 0.0, -1000.0)
+_SOLID_BIT = 1  # what a ray along a line of sight stops at
+_DECK_ROLES = frozenset({Role.DECK, Role.STAIR, Role.RAILING})
+_CUT_ROLES = frozenset({Role.VESSEL, Role.PIPE, Role.STRUCTURE})
+
+
+@dataclass(frozen=True)
+class View:
+    """What a camera sees: colours (0 to 255), shape (height, width, 3), and the depth of each
+    pixel along the line of sight (m), infinite where there is nothing."""
+
+    colours: NDArray[np.uint8]
+    depth: NDArray[np.float64]
+
+
+class Scene:
+    """What is drawn. Holds a PyBullet connection; close it, or use it as a context."""
+
+    def __init__(self, site: Site, robot: RobotSpec) -> None:
+        self.site = site
+        self.robot = robot
+        with quiet():
+            self._client = pybullet.connect(pybullet.DIRECT)
+            self._floors: dict[int, list[int]] = {}
+            self._decks: dict[int, list[int]] = {}
+            for number, elements in storeys(site).items():
+                decks = tuple(e for e in elements if number > 1 and e.role in _DECK_ROLES)
+                others = tuple(e for e in elements if e not in decks)
+                self._floors[number] = [self._load_storey(number, others)]
+                self._decks[number] = [self._load_storey(number, decks)] if decks else []
+            self._origins: dict[int, tuple[Vector, Vector]] = {}
+            for checkpoint in site.checkpoints:
+                name = checkpoint.kind.value.replace(" ", "_")
+                body = self._load(resources.urdf() / "checkpoints" / f"{name}.urdf", fixed=True)
+                self._floors[checkpoint.floor].append(body)
+                self._origins[body] = (checkpoint.position, (0.0, 0.0, checkpoint.yaw))
+            self._robot_body = self._load(robot_folder() / robot.urdf, fixed=False)
+        for body in chain.from_iterable((*self._floors.values(), *self._decks.values())):
+            self._origins.setdefault(body, ((0.0, 0.0, 0.0), (0.0, 0.0, 0.0)))
+        self._joints = {name: k for k, (name, _) in self._parts(self._robot_body).items()}
+        self._let_sight_pass()
+        self._shown: tuple[int, int] | None = None
+        self.show_floors(max(self._floors))
+        self.hide_robot()
+
+    def __enter__(self) -> "Scene":
+        return self
+
+    def __exit__(
+        self,
+        kind: type[BaseException] | None,
+        error: BaseException | None,
+        trace: TracebackType | None,
+    ) -> None:
+        self.close()
+
+    def close(self) -> None:
+        """Ends the connection; the scene is of no use afterwards."""
+        pybullet.disconnect(physicsClientId=self._client)
+
+    def show_floors(self, top: int, decks: int | None = None) -> None:
+        """Shows the floors up to the one numbered `top` and hides those above it.
+
+        Decks, stairs and railings of the `decks` uppermost of them only, if given: those farther
+        down are hardly seen, and cost most of the time.
+        """
+        lowest = min(self._floors) if decks is None else top - decks + 1
+        if (lowest, top) == self._shown:
+            return
+        self._shown = lowest, top
+        for groups, first in ((self._floors, min(self._floors)), (self._decks, lowest)):
+            for number, bodies in groups.items():
+                for body in bodies:
+                    origin, rpy = self._origins[body]
+                    self._place(body, origin if first <= number <= top else _HIDDEN, rpy)
+        # Rays are tested against where bodies were at the last collision detection.
+        pybullet.performCollisionDetection(physicsClientId=self._client)
+
+    def place_robot(self, pose: BodyPose, joints: Mapping[str, float]) -> None:
+        """Puts the robot there, with joints at positions in degrees, by name."""
+        for name, angle in joints.items():
+            pybullet.resetJointState(
+                self._robot_body,
+                self._joints[name],
+                math.radians(angle),
+                physicsClientId=self._client,
+            )
+        self._place(self._robot_body, (pose.x, pose.y, pose.z), (0.0, pose.pitch, pose.yaw))
+
+    def hide_robot(self) -> None:
+        """Takes the robot out of sight until it is placed again."""
+        self._place(self._robot_body, _HIDDEN, (0.0, 0.0, 0.0))
+
+    def look(self, camera: Camera) -> View:
+        """What the camera sees, without shadows."""
+        width, height = camera.size
+        image = pybullet.getCameraImage(
+            width,
+            height,
+            camera.view_matrix,
+            camera.projection_matrix,
+            lightDirection=SUN,
+            lightAmbientCoeff=0.62,
+            lightDiffuseCoeff=0.42,
+            lightSpecularCoeff=0.0,
+            shadow=0,
+            renderer=pybullet.ER_TINY_RENDERER,
+            flags=pybullet.ER_NO_SEGMENTATION_MASK,
+            physicsClientId=self._client,
+        )
+        colours = np.asarray(image[2], dtype=np.uint8).reshape(height, width, 4)[:, :, :3]
+        buffer = np.asarray(image[3], dtype=np.float64).reshape(height, width)
+        return View(colours, depth_in_metres(buffer, camera))
+
+    def blocked(self, start: Vector, ends: list[Vector]) -> NDArray[np.bool_]:
+        """Whether something of the site, railings left out, lies between `start` and each end."""
+        hits = pybullet.rayTestBatch(
+            [start] * len(ends),
+            ends,
+            collisionFilterMask=_SOLID_BIT,
+            physicsClientId=self._client,
+        )
+        return np.array([hit[0] >= 0 for hit in hits])
+
+    def _let_sight_pass(self) -> None:
+        """Rays stop at the site's solid parts only: one sees past railings."""
+        for bodies in (*self._floors.values(), *self._decks.values(), [self._robot_body]):
+            for body in bodies:
+                solid = body != self._robot_body
+                for link, (_, name) in ({-1: ("", "")} | self._parts(body)).items():
+                    bit = _SOLID_BIT if solid and name != "railing" else 0
+                    pybullet.setCollisionFilterGroupMask(
+                        body, link, bit, bit, physicsClientId=self._client
+                    )
+
+    def _load_storey(self, number: int, elements: tuple[Element, ...]) -> int:
+        with tempfile.TemporaryDirectory() as folder:
+            path = Path(folder) / "storey.urdf"
+            path.write_text(to_urdf(f"floor_{number}", elements), encoding="utf-8")
+            return self._load(path, fixed=True)
+
+    def _load(self, path: Path, fixed: bool) -> int:
+        body: int = pybullet.loadURDF(str(path), useFixedBase=fixed, physicsClientId=self._client)
+        return body
+
+    def _place(self, body: int, origin: Vector, rpy: Vector) -> None:
+        # PyBullet places the centre of mass of the base; we speak of the frame of its link.
+        info = pybullet.getDynamicsInfo(body, -1, physicsClientId=self._client)
+        position, orientation = pybullet.multiplyTransforms(
+            origin, pybullet.getQuaternionFromEuler(rpy), info[3], info[4]
+        )
+        pybullet.resetBasePositionAndOrientation(
+            body, position, orientation, physicsClientId=self._client
+        )
+
+    def _parts(self, body: int) -> dict[int, tuple[str, str]]:
+        """Number of each joint, its name and the name of the link that it carries."""
+        count = pybullet.getNumJoints(body, physicsClientId=self._client)
+        infos = [pybullet.getJointInfo(body, k, physicsClientId=self._client) for k in range(count)]
+        return {k: (info[1].decode(), info[12].decode()) for k, info in enumerate(infos)}
+
+
+def storeys(site: Site) -> dict[int, tuple[Element, ...]]:
+    """The elements of each floor, by its number; upright parts that pass through are cut."""
+    bases = {floor.number: floor.z - _UNDER_DECK for floor in site.spec.floors}
+    found: dict[int, list[Element]] = {number: [] for number in bases}
+    for element in site.elements:
+        if element.role not in _CUT_ROLES:
+            low = min(s.center[2] - float(half_extents(s)[2]) for s in element.solids)
+            found[_floor(low, bases)].append(element)
+            continue
+        parts: dict[int, list[Solid]] = {}
+        for solid in element.solids:
+            for piece in _cut(solid, sorted(bases.values())[1:]):
+                low = piece.center[2] - float(half_extents(piece)[2])
+                parts.setdefault(_floor(low, bases), []).append(piece)
+        for number, solids in parts.items():
+            found[number].append(replace(element, solids=tuple(solids)))
+    return {number: tuple(elements) for number, elements in found.items()}
+
+
+def _floor(low: float, bases: Mapping[int, float]) -> int:
+    # A micrometre, since parts that lie on each other share a height.
+    return max([n for n, base in bases.items() if base <= low + 1e-6], default=min(bases))
+
+
+def _cut(solid: Solid, heights: list[float]) -> list[Solid]:
+    """An upright solid in pieces between the heights (m); others stay whole."""
+    if abs(solid.rotation()[2, 2]) < 1.0 - 1e-9:
+        return [solid]
+    x, y, z = solid.center
+    half = float(half_extents(solid)[2])
+    inside = [h for h in heights if z - half + 1e-3 < h < z + half - 1e-3]
+    edges = [z - half, *inside, z + half]
+    pieces: list[Solid] = []
+    for low, high in pairwise(edges):
+        center = (x, y, (low + high) / 2)
+        if isinstance(solid, Cylinder):
+            pieces.append(replace(solid, center=center, length=high - low))
+        else:
+            size = (solid.size[0], solid.size[1], high - low)
+            pieces.append(Box(center, size, solid.rpy))
+    return pieces

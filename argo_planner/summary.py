@@ -1,0 +1,78 @@
+"""The record of a run on the terminal."""
+
+from rich.console import Console
+from rich.markup import escape
+from rich.table import Table
+
+from argo_env.record import RunRecord
+
+
+def show_record(record: RunRecord, console: Console) -> None:
+    """Prints what was measured, what each task took, the contacts and the verdict."""
+    console.print(_readings(record))
+    console.print(_tasks(record))
+    result = record.result
+    limit = f" of at most {clock(result.max_duration)}" if result.max_duration else ""
+    touches = f"{len(record.contacts)} contact{'s' if len(record.contacts) != 1 else ''}"
+    docked = {True: "docked", False: "not docked", None: "no docking asked for"}[result.docked]
+    console.print(
+        f"{clock(result.duration)}{limit}, {result.distance:.1f} m, "
+        f"{result.climbed:.1f} m climbed, {touches}, {docked}"
+    )
+    for contact in record.contacts[:10]:
+        console.print(
+            f"  contact at {clock(contact.start)}: {escape(contact.link)} with "
+            f"{escape(contact.element)}, {contact.depth * 1000:.0f} mm deep",
+            style="red",
+        )
+    style, word = ("bold green", "Success") if result.success else ("bold red", "No success")
+    console.print(f"[{style}]{word}[/]: {escape(result.verdict)}.")
+
+
+def clock(seconds: float) -> str:
+    """Minutes and seconds, such as 4:59."""
+    whole = round(seconds)
+    return f"{whole // 60}:{whole % 60:02d}"
+
+
+def _readings(record: RunRecord) -> Table:
+    table = Table(title="Readings", title_justify="left")
+    for name, side in (
+        ("#", "right"), ("checkpoint", "left"), ("floor", "right"), ("at", "right"),
+        ("value", "right"), ("nominal", "right"), ("", "left"),
+    ):  # fmt: skip
+        table.add_column(name, justify="right" if side == "right" else "left")
+    for reading in record.readings:
+        table.add_row(
+            str(reading.checkpoint),
+            escape(reading.name),
+            str(reading.floor),
+            clock(reading.t),
+            f"{reading.value:.2f} {reading.unit}",
+            f"{reading.nominal.low:g} to {reading.nominal.high:g}",
+            "[green]normal[/]" if reading.normal else "[bold red]abnormal[/]",
+        )
+    return table
+
+
+def _tasks(record: RunRecord) -> Table:
+    """One row for each task, repeated executions taken together."""
+    table = Table(title="Tasks", title_justify="left")
+    table.add_column("task")
+    for name in ("times", "first at", "time", "distance", "climbed"):
+        table.add_column(name, justify="right")
+    table.add_column("outcome")
+    for name in dict.fromkeys(t.task for t in record.tasks):
+        runs = [t for t in record.tasks if t.task == name]
+        outcomes = dict.fromkeys(t.outcome for t in runs)
+        reasons = dict.fromkeys(t.reason for t in runs if t.reason)
+        table.add_row(
+            escape(name),
+            str(len(runs)),
+            clock(runs[0].start),
+            clock(sum(t.end - t.start for t in runs)),
+            f"{sum(t.distance for t in runs):.1f} m",
+            f"{sum(t.climbed for t in runs):.1f} m",
+            escape(", ".join(outcomes) + (f" ({'; '.join(reasons)})" if reasons else "")),
+        )
+    return table

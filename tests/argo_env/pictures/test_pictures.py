@@ -1,0 +1,185 @@
+import math
+import sys
+
+import numpy as np
+import pytest
+from PIL import Image
+
+from argo_compiler.errors import ArgoError
+from argo_compiler.hfsm import lower
+from argo_compiler.il import Action, Mission, Task
+from argo_env.pictures import check_film, film, overview, write_film, write_overview
+from argo_env.pictures.camera import Camera
+from argo_env.pictures.motion import Motion
+from argo_env.pictures.scene import Scene, storeys
+from argo_env.record import PathSample, Reading, Result, RunRecord
+from argo_env.robot.pose import BodyPose
+
+DURATION = 20.0
+
+
+@pytest.fixture(scope="module")
+def record(umad):
+    """20 s along the south side of the slab, with a reading after 12 s."""
+    mission = Mission(site="umad", tasks=(Task(name="START", action=Action.START),))
+    path = tuple(
+        PathSample(t=t, x=3.0 + 0.4 * t, y=-2.0, z=-0.03, yaw=0.0, pitch=0.0, floor=1)
+        for t in np.arange(0.0, DURATION + 0.1, 0.5).tolist()
+    )
+    gauge = umad.checkpoint(1)
+    reading = Reading(
+        checkpoint=1, name=gauge.name, kind=gauge.kind, floor=1, task="MEASURE 1", t=12.0,
+        value=9.0, unit=gauge.unit, nominal=gauge.nominal, normal=False, distance=1.0,
+    )  # fmt: skip
+    result = Result(
+        success=True, verdict="done", duration=DURATION, max_duration=None,
+        within_max_duration=True, docked=None, distance=8.0, climbed=0.0,
+    )  # fmt: skip
+    return RunRecord(
+        mission=mission, hfsm=lower(mission), site="umad", robot="tracker", drive="kinematic",
+        sensor="ideal", seed=0, diagnostics=(), result=result, tasks=(), readings=(reading,),
+        contacts=(), trace=(), path=path,
+    )  # fmt: skip
+
+
+@pytest.fixture(scope="module")
+def scene(umad, robot):
+    with Scene(umad, robot) as scene:
+        yield scene
+
+
+@pytest.mark.parametrize("name", ["film.avi", "film"])
+def test_a_film_is_an_mp4_or_a_gif(tmp_path, name):
+    with pytest.raises(ArgoError, match=r"\.mp4 or a \.gif"):
+        check_film(tmp_path / name)
+
+
+def test_a_film_needs_a_folder_and_a_name_of_its_own(tmp_path):
+    with pytest.raises(ArgoError, match="no folder"):
+        check_film(tmp_path / "none" / "film.gif")
+    (tmp_path / "folder.gif").mkdir()
+    with pytest.raises(ArgoError, match="is a folder"):
+        check_film(tmp_path / "folder.gif")
+
+
+def test_without_the_extra_an_mp4_is_refused_and_a_gif_is_not(tmp_path, monkeypatch):
+    monkeypatch.setitem(sys.modules, "imageio_ffmpeg", None)
+    with pytest.raises(ArgoError, match=r"pip install 'argo-mission\[film\]', or name a \.gif"):
+        check_film(tmp_path / "film.mp4")
+    check_film(tmp_path / "film.gif")
+
+
+def test_every_element_is_in_a_storey(umad):
+    drawn = {e.name for elements in storeys(umad).values() for e in elements}
+    assert drawn == {e.name for e in umad.elements}
+
+
+def test_floors_above_are_hidden(scene):
+    # Straight down on the south aisle of floor 2, which lies over the slab.
+    camera = Camera((6.0, 1.5, 30.0), (6.0, 1.6, 0.0), (60, 60), 3.0)
+    heights = {}
+    for top in (6, 2, 1):
+        scene.show_floors(top)
+        heights[top] = 30.0 - np.median(scene.look(camera).depth)
+    assert heights == pytest.approx({6: 12.5, 2: 2.5, 1: 0.0}, abs=0.1)
+
+
+def test_a_camera_finds_again_what_it_sees(scene):
+    scene.show_floors(6)
+    camera = Camera((-16.0, -22.0, 17.0), (8.0, 5.0, 6.0), (200, 150), 40.0, near=5.0)
+    view = scene.look(camera)
+    points = camera.unproject(np.where(np.isfinite(view.depth), view.depth, 50.0))
+    pixels = camera.project(points.reshape(-1, 3)).reshape(150, 200, 3)
+    assert pixels[40, 70, :2] == pytest.approx([70.5, 40.5])
+    assert pixels[120, 30, :2] == pytest.approx([30.5, 120.5])
+
+
+def test_the_robot_is_in_the_middle_of_the_frame(scene, robot):
+    pose = BodyPose(8.0, -2.0, -0.03, 0.0)
+    chase = film.ChaseCamera(scene, (120, 80), 0.1)
+    scene.show_floors(1, 2)
+    scene.hide_robot()
+    camera = chase.follow(pose)
+    without = scene.look(camera).colours
+    scene.place_robot(pose, robot.arm_stowed)
+    changed = np.abs(scene.look(camera).colours.astype(int) - without).sum(axis=2) > 30
+    rows, columns = np.nonzero(changed)
+    assert changed[40, 60]
+    assert columns.mean() == pytest.approx(60, abs=8)
+    assert rows.mean() == pytest.approx(40, abs=8)
+
+
+def test_the_arm_is_raised_while_measuring(record, robot):
+    motion = Motion(record, robot)
+    raised, stowed = robot.arm_raised["arm_elbow"], robot.arm_stowed["arm_elbow"]
+    angles = [motion.joints(t)["arm_elbow"] for t in (3.9, 8.0, 12.1)]
+    assert angles == pytest.approx([stowed, raised, stowed])
+    assert motion.pose(0.25).x == pytest.approx(3.1)
+
+
+def test_flippers_lie_flat_on_stairs(record, robot):
+    tilted = record.model_copy(
+        update={"path": tuple(s.model_copy(update={"pitch": -0.5}) for s in record.path)}
+    )
+    flat, stairs = (Motion(r, robot).joints(1.0)["left_flipper_joint"] for r in (record, tilted))
+    assert (flat, stairs) == (30.0, 0.0)
+
+
+def test_the_overview_shows_the_path_in_its_colours(record, umad, robot, tmp_path, monkeypatch):
+    monkeypatch.setattr(overview, "SIZE", (800, 600))
+    monkeypatch.setattr(overview, "_SHADOW_MAP", 400)
+    monkeypatch.setattr(overview, "_FINER", 1)
+    write_overview(record, umad, robot, tmp_path / "site.png")
+    with Image.open(tmp_path / "site.png") as image:
+        assert (image.format, image.size) == ("PNG", (800, 600))
+        pixels = np.asarray(image.convert("RGB")).astype(int)
+    camera = overview.site_camera(umad, (800, 600))
+    for t in (5.0, 10.0, 16.0):
+        column, row, _ = camera.project(np.array([[3.0 + 0.4 * t, -2.0, -0.03 + 0.25]]))[0]
+        red, green, blue = pixels[int(row), int(column)]
+        wanted = overview.colour(t / DURATION)
+        given = [int(wanted[k : k + 2], 16) for k in (1, 3, 5)]
+        assert [red, green, blue] == pytest.approx(given, abs=24)
+
+
+def test_a_gif_has_a_frame_for_each_time(record, umad, robot, tmp_path):
+    done = []
+    for name in ("a.gif", "b.gif"):
+        write_film(
+            record, umad, robot, tmp_path / name, speed=10, fps=4, size=(120, 80),
+            progress=done.append,
+        )  # fmt: skip
+    with Image.open(tmp_path / "a.gif") as image:
+        assert (image.format, image.size) == ("GIF", (120, 80))
+        assert image.n_frames == 9  # 20 s at 10 times and 4 frames a second, and the last
+        assert image.info["duration"] == 250
+        image.seek(8)
+        image.load()
+    assert done[8] == done[-1] == 1.0
+    assert (tmp_path / "a.gif").read_bytes() == (tmp_path / "b.gif").read_bytes()
+    assert sorted(p.name for p in tmp_path.iterdir()) == ["a.gif", "b.gif"]
+
+
+def test_an_mp4_has_a_frame_for_each_time(record, umad, robot, tmp_path):
+    imageio_ffmpeg = pytest.importorskip("imageio_ffmpeg")
+    file = tmp_path / "film.mp4"
+    write_film(record, umad, robot, file, speed=10, fps=4, size=(120, 80))
+    content = file.read_bytes()
+    assert content[4:8] == b"ftyp"
+    assert b"avc1" in content
+    assert content.index(b"moov") < content.index(b"mdat")  # plays while it loads
+    assert imageio_ffmpeg.count_frames_and_secs(str(file))[0] == 9
+
+
+@pytest.mark.parametrize("wrong", [{"speed": 0.0}, {"speed": math.nan}, {"size": (121, 80)}])
+def test_numbers_that_make_no_film_are_refused(record, umad, robot, tmp_path, wrong):
+    with pytest.raises(ArgoError, match="a film needs"):
+        write_film(record, umad, robot, tmp_path / "film.gif", **wrong)
+
+
+def test_a_record_of_another_site_is_refused(record, umad, robot, tmp_path):
+    other = record.model_copy(update={"site": "elsewhere"})
+    with pytest.raises(ArgoError, match="elsewhere"):
+        write_film(other, umad, robot, tmp_path / "film.gif")
+    with pytest.raises(ArgoError, match="elsewhere"):
+        write_overview(other, umad, robot, tmp_path / "site.png")

@@ -1,0 +1,195 @@
+"""The models of the robot and of the checkpoints, by their URDF as two readers see it."""
+
+import itertools
+import math
+
+import numpy as np
+import pybullet
+import pytest
+import yourdfpy
+
+from argo_compiler.catalog import CheckpointKind
+from argo_compiler.errors import ArgoError
+from argo_env import resources
+from argo_env.robot.spec import load_robot, robot_folder
+
+CHECKPOINTS = sorted(p.stem for p in (resources.urdf() / "checkpoints").glob("*.urdf"))
+FLIPPERS = ("left_flipper_joint", "right_flipper_joint")
+
+
+@pytest.fixture(scope="module")
+def client():
+    client = pybullet.connect(pybullet.DIRECT)
+    yield client
+    pybullet.disconnect(client)
+
+
+@pytest.fixture
+def urdf(robot):
+    return yourdfpy.URDF.load(str(robot_folder() / robot.urdf), load_meshes=False)
+
+
+def surface_points(part):
+    """Points of a box or cylinder in its link's frame whose hull is the part, shape (n, 3)."""
+    geometry = part.geometry
+    if geometry.box is not None:
+        points = np.array(list(itertools.product((-0.5, 0.5), repeat=3))) * geometry.box.size
+    else:
+        angle = np.linspace(0.0, 2 * math.pi, 721)
+        circle = geometry.cylinder.radius * np.array([np.cos(angle), np.sin(angle)]).T
+        half = geometry.cylinder.length / 2
+        points = np.vstack([np.column_stack([circle, np.full(721, z)]) for z in (-half, half)])
+    origin = np.eye(4) if part.origin is None else part.origin
+    return points @ origin[:3, :3].T + origin[:3, 3]
+
+
+def box_around(urdf, links=None, joints=None, parts="collisions"):
+    """Low and high corner of the box around `links`, joints in degrees, in the base's frame."""
+    positions = dict.fromkeys(urdf.actuated_joint_names, 0.0) | (joints or {})
+    urdf.update_cfg({name: math.radians(angle) for name, angle in positions.items()})
+    points = []
+    for link in links or urdf.link_map:
+        pose = urdf.get_transform(link, urdf.base_link)
+        for part in getattr(urdf.link_map[link], parts):
+            points.append(surface_points(part) @ pose[:3, :3].T + pose[:3, 3])
+    points = np.vstack(points)
+    return points.min(axis=0), points.max(axis=0)
+
+
+def load(client, path):
+    body = pybullet.loadURDF(str(path), useFixedBase=True, physicsClientId=client)
+    joints = [
+        pybullet.getJointInfo(body, k, physicsClientId=client)
+        for k in range(pybullet.getNumJoints(body, physicsClientId=client))
+    ]
+    return body, {info[1].decode(): info for info in joints}
+
+
+def test_both_readers_find_the_same_joints(client, robot, urdf):
+    _, joints = load(client, robot_folder() / robot.urdf)
+    assert set(joints) == set(urdf.joint_map)
+    for name in urdf.actuated_joint_names:
+        limit = urdf.joint_map[name].limit
+        assert joints[name][8:10] == pytest.approx((limit.lower, limit.upper))
+    assert set(robot.arm_stowed) == set(robot.arm_raised)
+    assert set(urdf.actuated_joint_names) == set(robot.arm_stowed) | set(FLIPPERS)
+
+
+@pytest.mark.parametrize(("link", "y"), [("left_track", 0.23), ("right_track", -0.23)])
+def test_tracks(urdf, link, y):
+    low, high = box_around(urdf, [link])
+    assert high - low == pytest.approx([1.0, 0.13, 0.35], abs=1e-3)
+    assert (high + low)[:2] / 2 == pytest.approx([0.0, y], abs=1e-3)
+    assert low[2] == pytest.approx(0.0, abs=1e-6)
+
+
+def test_tracks_measure_059_m_over_all(urdf, robot):
+    low, high = box_around(urdf, ["left_track", "right_track"])
+    assert (high - low)[1] == pytest.approx(0.59, abs=1e-3)
+    assert robot.track_gauge == pytest.approx(0.46)
+    assert robot.track_length <= (high - low)[0]
+
+
+def test_flippers(urdf):
+    low, high = box_around(urdf, ["left_flipper"])
+    assert (high - low)[0] == pytest.approx(1.05, abs=1e-3)
+    tracks, _ = box_around(urdf, ["left_track"])
+    assert tracks[0] - low[0] == pytest.approx(0.05, abs=1e-3)
+    for name in FLIPPERS:
+        limit = urdf.joint_map[name].limit
+        assert np.degrees([limit.lower, limit.upper]) == pytest.approx([-30, 50], abs=0.01)
+        assert math.degrees(limit.velocity) == pytest.approx(110, abs=1)
+
+
+@pytest.mark.parametrize(("link", "next_joint", "length"), [
+    ("upper_arm", "arm_elbow", 0.55),
+    ("forearm", "arm_wrist", 0.43),
+])  # fmt: skip
+def test_arm_links(urdf, link, next_joint, length):
+    low, high = box_around(urdf, [link])
+    assert (high - low)[2] == pytest.approx(length, abs=1e-3)
+    assert np.linalg.norm(urdf.joint_map[next_joint].origin[:3, 3]) == pytest.approx(length)
+
+
+@pytest.mark.parametrize("pose", ["arm_stowed", "arm_raised"])
+def test_arm_poses_are_within_the_limits(urdf, robot, pose):
+    for name, angle in getattr(robot, pose).items():
+        limit = urdf.joint_map[name].limit
+        assert limit.lower <= math.radians(angle) <= limit.upper
+
+
+@pytest.mark.parametrize("flippers", [0, 30])
+@pytest.mark.parametrize("parts", ["collisions", "visuals"])
+def test_footprint_and_height_cover_the_driving_robot(urdf, robot, flippers, parts):
+    joints = robot.arm_stowed | dict.fromkeys(FLIPPERS, flippers)
+    low, high = box_around(urdf, joints=joints, parts=parts)
+    footprint = robot.footprint
+    assert high[0] <= footprint.front + 0.01
+    assert -low[0] <= footprint.rear + 0.01
+    assert max(high[1], -low[1]) <= footprint.half_width + 0.01
+    assert high[2] <= robot.driving_height
+    # Flippers that are raised do not reach into the ground.
+    assert low[2] >= -1e-6
+
+
+def test_footprint_is_no_larger_than_the_robot(urdf, robot):
+    low, high = box_around(urdf, joints=robot.arm_stowed)
+    assert high[0] == pytest.approx(robot.footprint.front, abs=0.01)
+    assert -low[0] == pytest.approx(robot.footprint.rear, abs=0.01)
+    assert high[1] == pytest.approx(robot.footprint.half_width, abs=0.01)
+
+
+def test_raised_arm_puts_the_camera_where_it_is_planned(urdf, robot):
+    urdf.update_cfg({name: math.radians(angle) for name, angle in robot.arm_raised.items()})
+    pose = urdf.get_transform("sensor_head", urdf.base_link)
+    assert math.dist(pose[:3, 3], robot.sensor.offset) <= 0.03
+    # The camera looks ahead.
+    assert pose[:3, 0] == pytest.approx([1, 0, 0], abs=0.02)
+
+
+def test_camera_of_the_robot_in_pybullet(client, robot):
+    body, joints = load(client, robot_folder() / robot.urdf)
+    for name, angle in robot.arm_raised.items():
+        pybullet.resetJointState(body, joints[name][0], math.radians(angle), physicsClientId=client)
+    head = pybullet.getLinkState(
+        body, joints["arm_wrist"][0], computeForwardKinematics=True, physicsClientId=client
+    )[4]
+    assert math.dist(head, robot.sensor.offset) <= 0.03
+
+
+def test_unknown_robot_is_told_with_the_known_ones():
+    with pytest.raises(ArgoError, match="no robot `rover`; there are: tracker"):
+        load_robot("rover")
+
+
+def test_there_is_a_model_of_every_kind_of_checkpoint():
+    assert {k.value.replace(" ", "_") for k in CheckpointKind} == set(CHECKPOINTS)
+
+
+@pytest.mark.parametrize("name", CHECKPOINTS)
+def test_checkpoint(client, name):
+    path = resources.urdf() / "checkpoints" / f"{name}.urdf"
+    _, joints = load(client, path)
+    assert set(joints) == {"indicator"}
+    urdf = yourdfpy.URDF.load(str(path), load_meshes=False)
+    assert urdf.actuated_joint_names == ["indicator"]
+    # The face is at the front: nothing but the indicator stands out of the plane x = 0.
+    _, high = box_around(urdf, [urdf.base_link], parts="visuals")
+    assert high[0] == pytest.approx(0.0, abs=0.005)
+    _, high = box_around(urdf, parts="visuals")
+    assert 0.0 <= high[0] <= 0.01
+    _, high = box_around(urdf)
+    assert high[0] <= 0.0
+
+
+@pytest.mark.parametrize(
+    ("name", "low", "high"),
+    [
+        ("pressure_gauge", math.radians(-135), math.radians(135)),
+        ("liquid_level_gauge", -0.12, 0.12),
+        ("valve", 0.0, math.radians(90)),
+    ],
+)
+def test_indicator_covers_the_scale(client, name, low, high):
+    _, joints = load(client, resources.urdf() / "checkpoints" / f"{name}.urdf")
+    assert joints["indicator"][8:10] == pytest.approx((low, high), abs=1e-5)

@@ -1,0 +1,104 @@
+"""Wrong input ends in one clear message and exit status 2, never in a traceback."""
+
+import re
+import subprocess
+from pathlib import Path
+
+import pytest
+
+SHEET = (
+    "Mission's designation:\tMission #9\n"
+    "Main mode:\tAutonomous\n"
+    "Maximum mission total duration:\t20'\n"
+    'Initial position:\tdocked in "Starting area" 1\n'
+    'End of the mission:\tdocked in "Starting area" 1\n'
+    "The robot will have to control checkpoints in this precise order:\n"
+    "1. Checkpoint #1: read the value on pressure gauge 1\n"
+)
+
+
+def refused(result: subprocess.CompletedProcess[str]) -> str:
+    """The message of a run that was refused as it should be."""
+    assert result.returncode == 2, result.stdout + result.stderr
+    assert "Traceback" not in result.stderr + result.stdout
+    assert result.stderr.strip()
+    return re.sub(r"\s+", " ", result.stderr)
+
+
+@pytest.mark.parametrize("command", ["run", "import", "compile"])
+@pytest.mark.parametrize(
+    ("name", "content", "says"),
+    [
+        ("empty.txt", b"", "empty"),
+        ("blank.txt", b" \n\t\n", "empty"),
+        ("binary.txt", bytes(range(256)) * 40, ""),
+        ("image.txt", b"\x89PNG\r\n\x1a\n\0\0\0\rIHDR", ""),
+        ("large.txt", b"Mission Protocol #1\n1. Check checkpoint #1\n" * 240_000, "large"),
+        ("prose.txt", b"It was a dark and stormy night.\n", ""),
+        (
+            "wrong_checkpoint.txt",
+            SHEET.encode() + b"2. Checkpoint #77: read the value on pressure gauge 77\n",
+            ":8:",
+        ),
+        (
+            "unknown_word.txt",
+            SHEET.encode() + b"2. Checkpoint #4: befriend the position of valve R25\n",
+            "befriend",
+        ),
+    ],
+)
+def test_a_bad_script_is_refused(argo, tmp_path: Path, command, name, content, says) -> None:
+    script = tmp_path / name
+    script.write_bytes(content)
+    output = [] if command == "run" else ["-o", tmp_path / "out.json"]
+    message = refused(argo(command, script, *output))
+    assert name in message
+    assert says in message
+    assert not (tmp_path / "out.json").exists()
+
+
+def test_an_unknown_word_is_shown_in_its_line_with_what_was_expected(argo, tmp_path) -> None:
+    script = tmp_path / "script.txt"
+    line = "2. Checkpoint #4: befriend the position of valve R25"
+    script.write_text(SHEET + line + "\n")
+    result = argo("run", script)
+    message = refused(result)
+    assert f"{script}:8:19" in message
+    assert line in result.stderr
+    assert "^" in result.stderr
+    assert "hint" in message
+
+
+@pytest.mark.parametrize(
+    ("arguments", "says"),
+    [
+        (["run", "nowhere.txt"], "nowhere.txt"),
+        (["run", "."], "directory"),
+        (["run", "sheet.txt", "--site", "atlantis"], "umad"),
+        (["run", "sheet.txt", "--value", "8"], "ID=VALUE"),
+        (["run", "sheet.txt", "--value", "99=1"], "checkpoint 99"),
+        (["run", "sheet.txt", "--value", "1=11"], "0 to 10 bar"),
+        (["run", "sheet.txt", "--render", "film.avi"], ".mp4"),
+        (["run", "sheet.txt", "--start-area", "2"], "area"),
+        (["run", "mission.json"], "mission.json:1:"),
+        (["import", "sheet.txt", "-o", "no/such/folder/m.json"], "m.json"),
+        (["run", "sheet.txt", "--seed", "x"], "seed"),
+        (["launch", "sheet.txt"], "launch"),
+    ],
+)
+def test_a_bad_request_is_refused(argo, tmp_path: Path, arguments, says) -> None:
+    (tmp_path / "sheet.txt").write_text(SHEET)
+    (tmp_path / "mission.json").write_text("{not json")
+    assert says in refused(argo(*arguments, cwd=tmp_path))
+
+
+def test_the_choice_of_area_is_asked_for(argo, missions: Path, tmp_path: Path) -> None:
+    message = refused(argo("import", missions / "mission_1.txt", "-o", tmp_path / "m.json"))
+    assert "--start-area" in message
+    assert "--end-area" in message
+
+
+def test_a_window_without_a_display_is_refused(argo, tmp_path: Path, monkeypatch) -> None:
+    monkeypatch.delenv("DISPLAY", raising=False)
+    (tmp_path / "sheet.txt").write_text(SHEET)
+    assert "DISPLAY" in refused(argo("run", tmp_path / "sheet.txt", "--gui"))

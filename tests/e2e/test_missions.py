@@ -1,0 +1,167 @@
+"""Whole missions, from the script's text to the report, by the command alone."""
+
+import json
+import re
+from pathlib import Path
+
+import pytest
+
+from argo_compiler.files import read_mission
+from argo_compiler.hfsm import Hfsm
+from argo_env.record import RunRecord
+
+
+@pytest.fixture(scope="module")
+def first(argo, missions: Path, tmp_path_factory: pytest.TempPathFactory):
+    """Mission #1, run and reported once."""
+    folder = tmp_path_factory.mktemp("first")
+    result = argo(
+        "run", missions / "mission_1.txt", "--start-area", 1, "--end-area", 2, "--report", folder
+    )
+    return result, folder
+
+
+def record_in(folder: Path) -> RunRecord:
+    return RunRecord.model_validate_json((folder / "report.json").read_text(encoding="utf-8"))
+
+
+def require_mission_1(record: RunRecord) -> None:
+    assert [t.name for t in record.mission.tasks] == [
+        "START", "MEASURE 1", "MEASURE 4", "MEASURE 8", "DOCK",
+    ]  # fmt: skip
+    assert [r.checkpoint for r in record.readings] == [1, 4, 8]
+    assert record.result.success
+    assert record.result.docked
+    assert record.result.duration <= 20 * 60
+    assert record.contacts == ()
+
+
+def require_protocol_2(record: RunRecord) -> None:
+    names = [t.name for t in record.mission.tasks]
+    (group,) = record.mission.groups
+    first, last = names.index(group.start), names.index(group.end)
+    assert names[0] == "START"
+    assert first == 1
+    assert last - first + 1 >= 3
+    assert names[last + 1 :] == ["MEASURE 2", "MEASURE 14"]
+    assert (group.max_repeat_count, group.max_repeat_duration) == (0, 600.0)
+    assert all(t.pose and abs(t.pose.z) < 0.01 for t in record.mission.tasks[first : last + 1])
+    assert [r.checkpoint for r in record.readings] == [2, 14]
+    assert record.tasks[-2].start == 600.0
+    assert record.result.success
+    assert record.contacts == ()
+
+
+def test_mission_1_runs_to_success(first) -> None:
+    result, folder = first
+    assert result.returncode == 0, result.stderr
+    require_mission_1(record_in(folder))
+    assert "Success" in result.stdout
+    assert "pressure gauge 5" in result.stdout
+    assert str(folder / "report.html") in result.stdout.replace("\n", "")
+    assert (folder / "site.png").read_bytes().startswith(b"\x89PNG")
+
+
+def test_every_healed_word_is_shown(first) -> None:
+    result, _ = first
+    assert "durat tion" in result.stderr or "durat\ttion" in result.stderr
+    assert "duration" in result.stderr
+
+
+def test_protocol_2_runs_to_success(argo, missions: Path, tmp_path: Path) -> None:
+    result = argo("run", missions / "protocol_2.txt", "--report", tmp_path)
+    assert result.returncode == 0, result.stderr
+    require_protocol_2(record_in(tmp_path))
+
+
+@pytest.mark.parametrize("area", [1, 2])
+def test_the_original_of_mission_1_runs_to_success(argo, originals: Path, tmp_path, area) -> None:
+    script = originals / "mission_1.txt"
+    result = argo("run", script, "--start-area", area, "--end-area", area, "--report", tmp_path)
+    assert result.returncode == 0, result.stderr
+    require_mission_1(record_in(tmp_path))
+
+
+def test_the_original_of_protocol_2_runs_to_success(argo, originals: Path, tmp_path: Path) -> None:
+    result = argo("run", originals / "protocol_2.txt", "--report", tmp_path)
+    assert result.returncode == 0, result.stderr
+    require_protocol_2(record_in(tmp_path))
+
+
+def test_the_same_seed_gives_the_same_report(argo, first, missions: Path, tmp_path: Path) -> None:
+    _, folder = first
+    script = missions / "mission_1.txt"
+    argo("run", script, "--start-area", 1, "--end-area", 2, "--seed", 0, "--report", tmp_path)
+    for name in ("report.json", "report.html", "site.png"):
+        assert (tmp_path / name).read_bytes() == (folder / name).read_bytes()
+
+
+def test_another_seed_gives_other_readings(argo, first, missions: Path, tmp_path: Path) -> None:
+    _, folder = first
+    script = missions / "mission_1.txt"
+    argo("run", script, "--start-area", 1, "--end-area", 2, "--seed", 1, "--report", tmp_path)
+    assert [r.value for r in record_in(tmp_path).readings] != [
+        r.value for r in record_in(folder).readings
+    ]
+
+
+def test_import_compile_and_run_step_by_step(argo, first, missions: Path, tmp_path: Path) -> None:
+    _, folder = first
+    mission, machine, diagram = (tmp_path / n for n in ("m.json", "h.json", "h.mmd"))
+    script = missions / "mission_1.txt"
+    steps = (
+        ("import", script, "-o", mission, "--start-area", 1, "--end-area", 2),
+        ("compile", mission, "-o", machine, "--mermaid", diagram),
+        ("run", mission, "--report", tmp_path),
+    )
+    for step in steps:
+        result = argo(*step)
+        assert result.returncode == 0, result.stderr
+    assert read_mission(mission).start_area == 1
+    hfsm = Hfsm.model_validate_json(machine.read_text(encoding="utf-8"))
+    assert [leaf.task.name for leaf in hfsm.leaves] == [
+        "MEASURE 1", "MEASURE 4", "MEASURE 8", "DOCK",
+    ]  # fmt: skip
+    assert diagram.read_text(encoding="utf-8").startswith("stateDiagram-v2")
+    assert record_in(tmp_path).readings == record_in(folder).readings
+
+
+def test_an_abnormal_value_is_flagged_and_no_failure(argo, missions: Path, tmp_path: Path) -> None:
+    script = missions / "mission_1.txt"
+    result = argo(
+        "run", script, "--start-area", 2, "--end-area", 2, "--value", "8=9.5", "--report", tmp_path
+    )
+    assert result.returncode == 0
+    assert re.search(r"9\.50 bar.*abnormal", result.stdout)
+    assert [r.normal for r in record_in(tmp_path).readings] == [True, True, False]
+
+
+def test_a_mission_over_its_time_is_no_success(argo, missions: Path, tmp_path: Path) -> None:
+    text = (missions / "mission_1.txt").read_text(encoding="utf-8").replace("20'", "2'")
+    script = tmp_path / "hasty.txt"
+    script.write_text(text, encoding="utf-8")
+    result = argo("run", script, "--start-area", 1, "--end-area", 1, "--report", tmp_path)
+    assert result.returncode == 1
+    assert "of at most 120 s" in result.stdout
+    assert not record_in(tmp_path).result.within_max_duration
+
+
+@pytest.mark.parametrize("name", ["run.gif", "run.mp4"])
+def test_a_run_is_filmed_without_a_display(argo, tmp_path: Path, name: str) -> None:
+    script = tmp_path / "short.txt"
+    script.write_text(
+        "Mission Protocol #3\n1. Set a starting point in front of the site\n"
+        "2. Check checkpoint #3\n"
+    )
+    result = argo("run", script, "--render", tmp_path / name)
+    assert result.returncode == 0, result.stderr
+    head = (tmp_path / name).read_bytes()[:12]
+    assert head.startswith(b"GIF89a") or head[4:8] == b"ftyp"
+
+
+def test_the_report_needs_nothing_from_elsewhere(first) -> None:
+    _, folder = first
+    page = (folder / "report.html").read_text(encoding="utf-8")
+    assert not re.search(r"""(?:src|href)\s*=\s*["'](?!#|data:)""", page)
+    data = json.loads((folder / "report.json").read_text(encoding="utf-8"))
+    assert data["seed"] == 0

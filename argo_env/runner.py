@@ -37,6 +37,7 @@ from argo_env.world import Touch, World
 
 SAMPLE_PERIOD = 0.5  # s between recorded places of the robot
 TIME_LIMIT = 4 * 3600.0  # s of simulated time after which a run is stopped
+CONTACT_GAP = 0.5  # s without a touch that end a contact; shorter, it is the same scrape
 DOCKED_DISTANCE = 0.1  # m
 DOCKED_ANGLE = math.radians(5.0)
 _DIGITS = 4  # of recorded lengths and angles: below what the geometry means
@@ -269,7 +270,8 @@ class MissionRunner:
             key = (touch.link, touch.element)
             if key not in deepest or touch.depth > deepest[key].depth:
                 deepest[key] = touch
-        for key in [k for k in self._open if k not in deepest]:
+        over = [k for k, c in self._open.items() if self._now - c.end > CONTACT_GAP]
+        for key in over:
             self._log.contacts.append(self._open.pop(key))
         for key, touch in deepest.items():
             known = self._open.get(key)

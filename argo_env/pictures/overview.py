@@ -20,23 +20,23 @@ from argo_env.report.track import colour
 from argo_env.robot.spec import RobotSpec
 from argo_env.site import Site
 
-SIZE = (1600, 1200)
+SIZE = (1200, 900)
 """px"""
 _FINER = 2  # the picture is made so many times larger and then reduced, for smooth edges
-_SHADOW_MAP = 2400  # px
+_SHADOW_MAP = 1600  # px
 _PATH_HEIGHT = 0.25  # m above the robot's tracks at which its path is drawn
 _PATH_STEP = 0.05  # m between the points of the drawn path
-_PATH_WIDTH = 7  # px
-_HIDDEN_WIDTH = 5  # px
+_PATH_WIDTH = 5  # px
+_HIDDEN_WIDTH = 4  # px
 _HIDDEN_OPACITY = 0.8
-_DASH = 11  # px
+_DASH = 9  # px
 _TOLERANCE = 0.3  # m that a point may lie behind what is seen and still be seen
 _INK = (23, 32, 42)
 _NORMAL, _ABNORMAL = (16, 128, 84), (196, 43, 43)
 
 
 def write_overview(record: RunRecord, site: Site, robot: RobotSpec, file: Path) -> None:
-    """Writes a PNG, 1600 by 1200 px, of the site seen from the south-west with the driven path.
+    """Writes a PNG of SIZE of the site seen from the south-west with the driven path.
 
     The path's colour goes with time as in the report; where something hides it, it is dashed.
     Checkpoints that were measured carry their ids, red where the value is not nominal. Raises

@@ -1,5 +1,6 @@
 """PyBullet without its chatter: the only place that imports it."""
 
+import ctypes
 import os
 import sys
 from collections.abc import Iterator
@@ -18,6 +19,8 @@ def quiet() -> Iterator[None]:
         os.dup2(nowhere, 2)
         yield
     finally:
+        # What C has buffered would else come out at the end of the process.
+        ctypes.CDLL(None).fflush(None)
         for target, copy in enumerate(saved, start=1):
             os.dup2(copy, target)
             os.close(copy)

@@ -192,6 +192,7 @@ class MissionRunner:
             return ActionFailed(activity.task.name, activity.failure)
         if activity.reading_left is not None:
             activity.reading_left -= self._drive.time_step
+            self._note_contacts(self._world.touches())
             if activity.reading_left > 1e-9:
                 return None
             return self._measure(activity.task)
@@ -209,7 +210,6 @@ class MissionRunner:
             case DriveStatus.ARRIVED if activity.task.action is Action.MEASURE:
                 activity.reading_left = self._navigator.robot.sensor.measuring_time
                 self._world.move_arm(self._navigator.robot.arm_raised)
-                self._note_contacts(self._world.touches())
                 return None
             case DriveStatus.ARRIVED:
                 return ActionSucceeded(activity.task.name)

@@ -1,10 +1,15 @@
-"""PyBullet without its chatter: the only place that imports it."""
+"""PyBullet without its chatter: the only place that imports it, and what its users share."""
 
 import ctypes
 import os
 import sys
 from collections.abc import Iterator
 from contextlib import contextmanager
+from pathlib import Path
+from types import TracebackType
+from typing import Self
+
+from argo_env.site.shapes import Vector
 
 
 @contextmanager
@@ -30,4 +35,41 @@ def quiet() -> Iterator[None]:
 with quiet():
     import pybullet
 
-__all__ = ["pybullet", "quiet"]
+__all__ = ["Connection", "pybullet", "quiet"]
+
+
+class Connection:
+    """A world of bodies in PyBullet. Holds a connection; close it, or use it as a context."""
+
+    def __init__(self, gui: bool = False) -> None:
+        with quiet():
+            self._client: int = pybullet.connect(pybullet.GUI if gui else pybullet.DIRECT)
+
+    def __enter__(self) -> Self:
+        return self
+
+    def __exit__(
+        self,
+        kind: type[BaseException] | None,
+        error: BaseException | None,
+        trace: TracebackType | None,
+    ) -> None:
+        self.close()
+
+    def close(self) -> None:
+        """Ends the connection; the object is of no use afterwards."""
+        pybullet.disconnect(physicsClientId=self._client)
+
+    def _load(self, path: Path, fixed: bool) -> int:
+        body: int = pybullet.loadURDF(str(path), useFixedBase=fixed, physicsClientId=self._client)
+        return body
+
+    def _place(self, body: int, origin: Vector, rpy: Vector) -> None:
+        # PyBullet places the centre of mass of the base; we speak of the frame of its link.
+        info = pybullet.getDynamicsInfo(body, -1, physicsClientId=self._client)
+        position, orientation = pybullet.multiplyTransforms(
+            origin, pybullet.getQuaternionFromEuler(rpy), info[3], info[4]
+        )
+        pybullet.resetBasePositionAndOrientation(
+            body, position, orientation, physicsClientId=self._client
+        )

@@ -6,7 +6,6 @@ import tempfile
 from collections.abc import Mapping
 from dataclasses import dataclass
 from pathlib import Path
-from types import TracebackType
 
 import numpy as np
 from numpy.typing import NDArray
@@ -14,7 +13,7 @@ from numpy.typing import NDArray
 from argo_compiler.catalog import CheckpointKind
 from argo_compiler.errors import ArgoError
 from argo_env import resources
-from argo_env.pybullet_client import pybullet, quiet
+from argo_env.pybullet_client import Connection, pybullet, quiet
 from argo_env.robot.pose import BodyPose
 from argo_env.robot.spec import RobotSpec, robot_folder
 from argo_env.site import Site, SiteCheckpoint
@@ -39,7 +38,7 @@ class Touch:
     """m"""
 
 
-class World:
+class World(Connection):
     """The simulated world. Holds a PyBullet connection; close it, or use it as a context.
 
     Nothing moves by itself here: a drive places the robot, and collisions are looked up.
@@ -49,10 +48,10 @@ class World:
         """Raises ArgoError if a window is asked for where there is no display."""
         if gui and not os.environ.get("DISPLAY"):
             raise ArgoError("--gui needs a display, and DISPLAY is not set; use --render instead")
+        super().__init__(gui)
         self.site = site
         self.robot = robot
         with quiet():
-            self._client = pybullet.connect(pybullet.GUI if gui else pybullet.DIRECT)
             self._site_body = self._load_site()
             self._checkpoints = {c.id: self._load_checkpoint(c) for c in site.checkpoints}
             self._robot_body = self._load(robot_folder() / robot.urdf, fixed=False)
@@ -76,21 +75,6 @@ class World:
         self.move_arm(robot.arm_stowed)
         if gui:
             self._look_at_site()
-
-    def __enter__(self) -> "World":
-        return self
-
-    def __exit__(
-        self,
-        kind: type[BaseException] | None,
-        error: BaseException | None,
-        trace: TracebackType | None,
-    ) -> None:
-        self.close()
-
-    def close(self) -> None:
-        """Ends the connection; the world is of no use afterwards."""
-        pybullet.disconnect(physicsClientId=self._client)
 
     def place_robot(self, pose: BodyPose) -> None:
         """Puts the robot there, whatever is in the way."""
@@ -202,20 +186,6 @@ class World:
         path = resources.urdf() / "checkpoints" / f"{name}.urdf"
         body = self._load(path, fixed=True)
         self._place(body, checkpoint.position, (0.0, 0.0, checkpoint.yaw))
-        return body
-
-    def _place(self, body: int, origin: Vector, rpy: Vector) -> None:
-        # PyBullet places the centre of mass of the base; we speak of the frame of its link.
-        info = pybullet.getDynamicsInfo(body, -1, physicsClientId=self._client)
-        position, orientation = pybullet.multiplyTransforms(
-            origin, pybullet.getQuaternionFromEuler(rpy), info[3], info[4]
-        )
-        pybullet.resetBasePositionAndOrientation(
-            body, position, orientation, physicsClientId=self._client
-        )
-
-    def _load(self, path: Path, fixed: bool) -> int:
-        body: int = pybullet.loadURDF(str(path), useFixedBase=fixed, physicsClientId=self._client)
         return body
 
     def _links(self, body: int) -> dict[int, str]:

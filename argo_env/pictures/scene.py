@@ -6,14 +6,13 @@ from collections.abc import Mapping
 from dataclasses import dataclass, replace
 from itertools import chain, pairwise
 from pathlib import Path
-from types import TracebackType
 
 import numpy as np
 from numpy.typing import NDArray
 
 from argo_env import resources
 from argo_env.pictures.camera import Camera, depth_in_metres
-from argo_env.pybullet_client import pybullet, quiet
+from argo_env.pybullet_client import Connection, pybullet, quiet
 from argo_env.robot.pose import BodyPose
 from argo_env.robot.spec import RobotSpec, robot_folder
 from argo_env.site import Site
@@ -38,14 +37,14 @@ class View:
     depth: NDArray[np.float64]
 
 
-class Scene:
+class Scene(Connection):
     """What is drawn. Holds a PyBullet connection; close it, or use it as a context."""
 
     def __init__(self, site: Site, robot: RobotSpec) -> None:
+        super().__init__()
         self.site = site
         self.robot = robot
         with quiet():
-            self._client = pybullet.connect(pybullet.DIRECT)
             self._floors: dict[int, list[int]] = {}
             self._decks: dict[int, list[int]] = {}
             for number, elements in storeys(site).items():
@@ -67,21 +66,6 @@ class Scene:
         self._shown: tuple[int, int] | None = None
         self.show_floors(max(self._floors))
         self.hide_robot()
-
-    def __enter__(self) -> "Scene":
-        return self
-
-    def __exit__(
-        self,
-        kind: type[BaseException] | None,
-        error: BaseException | None,
-        trace: TracebackType | None,
-    ) -> None:
-        self.close()
-
-    def close(self) -> None:
-        """Ends the connection; the scene is of no use afterwards."""
-        pybullet.disconnect(physicsClientId=self._client)
 
     def show_floors(self, top: int, decks: int | None = None) -> None:
         """Shows the floors up to the one numbered `top` and hides those above it.
@@ -163,20 +147,6 @@ class Scene:
             path = Path(folder) / "storey.urdf"
             path.write_text(to_urdf(f"floor_{number}", elements), encoding="utf-8")
             return self._load(path, fixed=True)
-
-    def _load(self, path: Path, fixed: bool) -> int:
-        body: int = pybullet.loadURDF(str(path), useFixedBase=fixed, physicsClientId=self._client)
-        return body
-
-    def _place(self, body: int, origin: Vector, rpy: Vector) -> None:
-        # PyBullet places the centre of mass of the base; we speak of the frame of its link.
-        info = pybullet.getDynamicsInfo(body, -1, physicsClientId=self._client)
-        position, orientation = pybullet.multiplyTransforms(
-            origin, pybullet.getQuaternionFromEuler(rpy), info[3], info[4]
-        )
-        pybullet.resetBasePositionAndOrientation(
-            body, position, orientation, physicsClientId=self._client
-        )
 
     def _parts(self, body: int) -> dict[int, tuple[str, str]]:
         """Number of each joint, its name and the name of the link that it carries."""

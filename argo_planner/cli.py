@@ -55,6 +55,9 @@ def import_command(
     end_area: EndArea = None,
 ) -> None:
     """Read a mission script and write the mission as JSON."""
+    if script.suffix.lower() == ".json":
+        raise ArgoError(f"{script} is no script: `argo run` and `argo compile` take missions")
+    _keep_input(script, output)
     resolved = _import(script, _navigator(site), start_area, end_area)
     write_mission(resolved.mission, output)
     names = ", ".join(task.name for task in resolved.mission.tasks)
@@ -73,6 +76,7 @@ def compile_command(
     end_area: EndArea = None,
 ) -> None:
     """Lower a mission to its state machine and write it as JSON."""
+    _keep_input(source, output)
     mission = _mission(source, site, start_area, end_area)
     machine = lower(mission, str(source))
     _write(output, machine.model_dump_json(indent=2) + "\n")
@@ -88,7 +92,7 @@ def compile_command(
 def run(
     source: Source,
     site: SiteOption = "umad",
-    seed: Annotated[int, typer.Option(help="draws what the checkpoints show")] = 0,
+    seed: Annotated[int, typer.Option(help="draws what the checkpoints show", min=0)] = 0,
     report: Annotated[
         Path | None, typer.Option("--report", metavar="DIR", help="folder for the report")
     ] = None,
@@ -109,11 +113,12 @@ def run(
     """Run a mission on a site, show what was measured, and write a report."""
     if render:
         check_film(render)
+    if report:
+        _make_folder(report)
     values = _values(value or [])
     started = time.monotonic()
     navigator = _navigator(site)
     mission, diagnostics = _load(source, navigator, start_area, end_area)
-    _require_site(mission, navigator)
     lower(mission, str(source))
     navigator.lattice  # noqa: B018 - built here, so that the time of loading is not the run's
     loaded = time.monotonic()
@@ -201,6 +206,7 @@ def _load(
             "a mission has its areas already"
         )
     mission = read_mission(source)
+    _require_site(mission, navigator)
     findings = check(mission, make_catalog(navigator))
     if any(f.severity is Severity.ERROR for f in findings):
         raise DiagnosticError(str(source), findings)
@@ -235,6 +241,20 @@ def _values(options: list[str]) -> dict[int, float]:
 def _show_warnings(source_name: str, diagnostics: tuple[Diagnostic, ...]) -> None:
     for diagnostic in diagnostics:
         print(diagnostic.render(source_name), file=sys.stderr)
+
+
+def _keep_input(source: Path, output: Path) -> None:
+    """Refuses to write over what is read."""
+    if source.resolve() == output.resolve():
+        raise ArgoError(f"{output} is the input as well; choose another place to write to")
+
+
+def _make_folder(path: Path) -> None:
+    """Makes the folder now, so that no run is lost for want of a place for its report."""
+    try:
+        path.mkdir(parents=True, exist_ok=True)
+    except OSError as error:
+        raise ArgoError(f"{path}: can't be made a folder: {error.strerror}") from error
 
 
 def _write(path: Path, text: str) -> None:

@@ -48,7 +48,8 @@ class Motion:
         planned = drive_speed(robot, self.gear, self.on_stairs)
         if velocity is None:
             return planned
-        return velocity if planned == robot.speed else min(velocity, planned)
+        flat_ahead = self.gear > 0 and not self.on_stairs
+        return velocity if flat_ahead else min(velocity, planned)
 
     def duration(self, robot: RobotSpec, velocity: float | None = None) -> float:
         """s that the motion takes."""

@@ -25,6 +25,9 @@ def _ordered(rect: tuple[float, float, float, float]) -> tuple[float, float, flo
 Rect = Annotated[tuple[float, float, float, float], AfterValidator(_ordered)]
 
 
+MAX_GROUND = 200.0  # m along an edge; navigation keeps a grid of 0.1 m over it
+
+
 class VesselSpec(Model):
     """A vessel: upright from `bottom` to `top`, or lying on saddles along x or y."""
 
@@ -152,6 +155,9 @@ class SiteSpec(Model):
         for index, floor in enumerate(self.floors, start=1):
             if floor.number != index:
                 raise ValueError(f"floors must be numbered 1, 2, …; the {index}. is {floor.number}")
+        x0, y0, x1, y1 = self.ground
+        if max(x1 - x0, y1 - y0) > MAX_GROUND:
+            raise ValueError(f"the ground is larger than {MAX_GROUND:.0f} m by {MAX_GROUND:.0f} m")
         ids = [c.id for f in self.floors for c in f.checkpoints]
         double = sorted({i for i in ids if ids.count(i) > 1})
         if double:

@@ -81,8 +81,12 @@ def test_an_unknown_word_is_shown_in_its_line_with_what_was_expected(argo, tmp_p
         (["run", "sheet.txt", "--render", "film.avi"], ".mp4"),
         (["run", "sheet.txt", "--start-area", "2"], "area"),
         (["run", "mission.json"], "mission.json:1:"),
+        (["import", "mission.json", "-o", "m.json"], "is no script"),
+        (["import", "sheet.txt", "-o", "sheet.txt"], "input"),
         (["import", "sheet.txt", "-o", "no/such/folder/m.json"], "m.json"),
         (["run", "sheet.txt", "--seed", "x"], "seed"),
+        (["run", "sheet.txt", "--report", "sheet.txt"], "folder"),
+        (["run", "sheet.txt", "--seed", "-1"], "seed"),
         (["launch", "sheet.txt"], "launch"),
     ],
 )

@@ -1,3 +1,5 @@
+from pathlib import Path
+
 import pytest
 import yaml
 
@@ -131,3 +133,11 @@ def test_site_of_one_slab(tmp_path):
     site = load_site(str(path))
     assert site.checkpoints == ()
     assert [e.name for e in site.elements] == ["gravel", "floor 1 slab", "docking station 1"]
+
+
+def test_a_ground_too_large_for_navigation_is_refused(tmp_path: Path) -> None:
+    text = (resources.scenarios() / "umad" / "site.yaml").read_text(encoding="utf-8")
+    path = tmp_path / "huge.yaml"
+    path.write_text(text.replace("ground: [-2.0", "ground: [-90000.0"), encoding="utf-8")
+    with pytest.raises(ArgoError, match="larger than 200 m"):
+        load_site(str(path))

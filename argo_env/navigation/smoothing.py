@@ -11,6 +11,7 @@ from argo_compiler.model import Pose
 from argo_env.navigation.lattice import MARGIN, TURNING_LEVEL
 from argo_env.navigation.path import Motion, Path, merge, wrap
 from argo_env.navigation.raster import CELL, Grid
+from argo_env.navigation.stencil import cells_around, overlaps
 from argo_env.navigation.surface import Surface
 from argo_env.robot.spec import Footprint, RobotSpec
 
@@ -36,32 +37,14 @@ class FlatMap:
         return FlatMap(surface.grid, free)
 
     def clear(self, poses: NDArray[np.float64], footprint: Footprint) -> bool:
-        """Whether a robot at each of `poses`, shape (n, 3) as x, y, yaw, touches free cells only.
-
-        As in `stencil.covered`, two convex shapes are apart if a normal of an edge parts them.
-        """
-        reach = math.ceil((footprint.radius + MARGIN) / CELL) + 1
-        around = np.arange(-reach, reach + 1)
+        """Whether a robot at all `poses`, shape (n, 3) as x, y, yaw, touches free cells only."""
+        around = cells_around(footprint, MARGIN)
         i = np.floor((poses[:, 0] - self.grid.x0) / CELL).astype(np.int64)[:, None, None]
         j = np.floor((poses[:, 1] - self.grid.y0) / CELL).astype(np.int64)[:, None, None]
         i, j = np.broadcast_arrays(i + around[None, :, None], j + around[None, None, :])
-        center_x, center_y = self.grid.centers(i, j)
-        x, y = center_x - poses[:, 0, None, None], center_y - poses[:, 1, None, None]
-        cos, sin = np.cos(poses[:, 2])[:, None, None], np.sin(poses[:, 2])[:, None, None]
-        front, rear = footprint.front + MARGIN, footprint.rear + MARGIN
-        half_width, half_length = footprint.half_width + MARGIN, (front + rear) / 2
-        half_cell = CELL / 2 - 1e-6
-        middle = (front - rear) / 2
-        spread = half_cell * (np.abs(cos) + np.abs(sin))
-        along, left = x * cos + y * sin - middle, y * cos - x * sin
-        touched = (
-            (np.abs(along) < half_length + spread)
-            & (np.abs(left) < half_width + spread)
-            & (np.abs(x - middle * cos)
-               < np.abs(cos) * half_length + np.abs(sin) * half_width + half_cell)
-            & (np.abs(y - middle * sin)
-               < np.abs(sin) * half_length + np.abs(cos) * half_width + half_cell)
-        )  # fmt: skip
+        x, y = self.grid.centers(i, j)
+        at_x, at_y, yaw = (poses[:, k, None, None] for k in range(3))
+        touched = overlaps(footprint, MARGIN, yaw, x - at_x, y - at_y)
         i, j = i[touched], j[touched]
         inside = (i >= 0) & (i < self.grid.nx) & (j >= 0) & (j < self.grid.ny)
         return bool(inside.all()) and bool(self.free[i, j].all())

@@ -68,32 +68,48 @@ def _towards_middle(i: int, j: int, known: dict[tuple[int, int], int]) -> tuple[
     return min(candidates, key=lambda c: (abs(i * c[1] - j * c[0]), c[0] ** 2 + c[1] ** 2, c))
 
 
+def overlaps(
+    footprint: Footprint,
+    margin: float,
+    yaw: float | NDArray[np.float64],
+    x: NDArray[np.float64],
+    y: NDArray[np.float64],
+) -> NDArray[np.bool_]:
+    """Whether a robot with heading `yaw` (rad), `margin` (m) added on all sides, touches the cells
+    whose centres lie at (x, y) from its point of rotation, in m. The arrays are broadcast.
+
+    Two convex shapes are apart if a normal of one of their edges parts them; a cell that is only
+    touched at its edge is apart.
+    """
+    cos, sin = np.cos(yaw), np.sin(yaw)
+    front, rear = footprint.front + margin, footprint.rear + margin
+    middle, half_length = (front - rear) / 2, (front + rear) / 2
+    half_width, half_cell = footprint.half_width + margin, CELL / 2 - 1e-6
+    spread = half_cell * (np.abs(cos) + np.abs(sin))
+    extent_x = np.abs(cos) * half_length + np.abs(sin) * half_width
+    extent_y = np.abs(sin) * half_length + np.abs(cos) * half_width
+    return np.asarray(
+        (np.abs(x * cos + y * sin - middle) < half_length + spread)
+        & (np.abs(y * cos - x * sin) < half_width + spread)
+        & (np.abs(x - middle * cos) < extent_x + half_cell)
+        & (np.abs(y - middle * sin) < extent_y + half_cell)
+    )
+
+
+def cells_around(footprint: Footprint, margin: float) -> NDArray[np.int64]:
+    """Numbers of all columns or rows of cells that the robot can reach from the one it is in."""
+    reach = math.ceil((footprint.radius + margin) / CELL) + 1
+    return np.arange(-reach, reach + 1)
+
+
 def covered(footprint: Footprint, yaw: float, margin: float) -> set[tuple[int, int]]:
     """Cells that a robot at the middle of a cell with heading `yaw` (rad) touches, `margin` (m)
-    added on all sides. Two convex shapes are apart if one of their edges' normals parts them."""
-    reach = math.ceil((footprint.radius + margin) / CELL) + 1
-    cos, sin = math.cos(yaw), math.sin(yaw)
-    front, rear = footprint.front + margin, footprint.rear + margin
-    half_width = footprint.half_width + margin
-    cell_half = CELL / 2 - 1e-6
-    spread = cell_half * (abs(cos) + abs(sin))
-    x_middle, x_half = (front - rear) / 2 * cos, (front + rear) / 2
-    y_middle = (front - rear) / 2 * sin
-    extent_x = abs(cos) * x_half + abs(sin) * half_width
-    extent_y = abs(sin) * x_half + abs(cos) * half_width
-    cells = set()
-    for i in range(-reach, reach + 1):
-        for j in range(-reach, reach + 1):
-            x, y = i * CELL, j * CELL
-            along, left = x * cos + y * sin, y * cos - x * sin
-            if (
-                -rear - spread < along < front + spread
-                and abs(left) < half_width + spread
-                and abs(x - x_middle) < extent_x + cell_half
-                and abs(y - y_middle) < extent_y + cell_half
-            ):
-                cells.add((i, j))
-    return cells
+    added on all sides."""
+    around = cells_around(footprint, margin)
+    i, j = np.meshgrid(around, around, indexing="ij")
+    x, y = i.astype(np.float64) * CELL, j.astype(np.float64) * CELL
+    touched = overlaps(footprint, margin, yaw, x, y)
+    return set(zip(i[touched].tolist(), j[touched].tolist(), strict=True))
 
 
 def standing(footprint: Footprint, heading: int, margin: float) -> Stencil:

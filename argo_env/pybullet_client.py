@@ -73,3 +73,9 @@ class Connection:
         pybullet.resetBasePositionAndOrientation(
             body, position, orientation, physicsClientId=self._client
         )
+
+    def _parts(self, body: int) -> dict[int, tuple[str, str]]:
+        """Number of each joint, its name and the name of the link that it carries."""
+        count = pybullet.getNumJoints(body, physicsClientId=self._client)
+        infos = [pybullet.getJointInfo(body, k, physicsClientId=self._client) for k in range(count)]
+        return {k: (info[1].decode(), info[12].decode()) for k, info in enumerate(infos)}

@@ -190,11 +190,7 @@ class World(Connection):
 
     def _links(self, body: int) -> dict[int, str]:
         base = pybullet.getBodyInfo(body, physicsClientId=self._client)[0].decode()
-        count = pybullet.getNumJoints(body, physicsClientId=self._client)
-        infos = [pybullet.getJointInfo(body, k, physicsClientId=self._client) for k in range(count)]
-        return {-1: base} | {k: info[12].decode() for k, info in enumerate(infos)}
+        return {-1: base} | {k: link for k, (_, link) in self._parts(body).items()}
 
     def _joint_indices(self, body: int) -> dict[str, int]:
-        count = pybullet.getNumJoints(body, physicsClientId=self._client)
-        infos = [pybullet.getJointInfo(body, k, physicsClientId=self._client) for k in range(count)]
-        return {info[1].decode(): k for k, info in enumerate(infos)}
+        return {joint: k for k, (joint, _) in self._parts(body).items()}

@@ -148,12 +148,6 @@ class Scene(Connection):
             path.write_text(to_urdf(f"floor_{number}", elements), encoding="utf-8")
             return self._load(path, fixed=True)
 
-    def _parts(self, body: int) -> dict[int, tuple[str, str]]:
-        """Number of each joint, its name and the name of the link that it carries."""
-        count = pybullet.getNumJoints(body, physicsClientId=self._client)
-        infos = [pybullet.getJointInfo(body, k, physicsClientId=self._client) for k in range(count)]
-        return {k: (info[1].decode(), info[12].decode()) for k, info in enumerate(infos)}
-
 
 def storeys(site: Site) -> dict[int, tuple[Element, ...]]:
     """The elements of each floor, by its number; upright parts that pass through are cut."""

@@ -8,15 +8,13 @@ from pydantic import ValidationError
 
 from argo_compiler.diagnostics import Diagnostic, DiagnosticError, Severity, Span
 from argo_compiler.il import Mission
+from argo_compiler.migration import VERSION, migrate
 
 MAX_BYTES = 50_000_000
 """Far above any mission (10,000 tasks take 4 MB), far below what would exhaust the memory."""
 
 MAX_EXCERPT = 200
 """characters of the longest source line that an error shows"""
-
-VERSION = 1
-"""of the mission format that is written; the only one so far"""
 
 
 def read_mission(path: Path) -> Mission:
@@ -29,9 +27,14 @@ def read_mission(path: Path) -> Mission:
             it is not JSON, by the path of the field (`tasks[3].action`) if it does not fit.
     """
     text = _read_text(path)
-    _require_version(path, _parse(path, text))
+    data = _parse(path, text)
+    _require_object(path, data)
+    migrated = migrate(data)
+    _require_version(path, migrated)
     try:
-        return Mission.model_validate_json(text, strict=True)
+        return Mission.model_validate_json(
+            text if migrated is data else json.dumps(migrated), strict=True
+        )
     except ValidationError as error:
         findings = [
             _finding("file.wrong-field", f"{_field_path(e['loc'])}: {e['msg']}", _field_hint(e))
@@ -115,21 +118,24 @@ def _parse(path: Path, text: str) -> Any:
         _refuse(path, "file.not-json", f"is not usable JSON: {error}", "correct the number")
 
 
-def _require_version(path: Path, data: Any) -> None:
+def _require_object(path: Path, data: Any) -> None:
     if not isinstance(data, dict):
         _refuse(
             path,
             "file.not-a-mission",
             "is not a mission: the JSON is no object",
-            'a mission begins with {"version": 1, "tasks": [',
+            f'a mission begins with {{"version": {VERSION}, "tasks": [',
         )
+
+
+def _require_version(path: Path, data: dict[str, Any]) -> None:
     version = data.get("version", VERSION)
     if version != VERSION or isinstance(version, bool):
         _refuse(
             path,
             "file.unsupported-version",
             f"has version {json.dumps(version)} of the mission format",
-            f"this Argo reads version {VERSION}: use a newer Argo or save the mission again",
+            f"this Argo reads versions up to {VERSION}: use a newer Argo or save the mission again",
         )
 
 

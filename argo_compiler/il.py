@@ -1,7 +1,7 @@
 """The intermediate language (IL): what a mission is, as data.
 
 The structures and names are those of the thesis (sections 3.2 and 4.4), so that a plan maps one to
-one onto its ROS messages. What they mean is written in `docs/architecture.md` and carried out by
+one onto its ROS messages. What they mean is written in `docs/language.md` and carried out by
 `argo_compiler.hfsm`. A `Mission` read from JSON has the right shape; whether it makes sense is what
 `argo_compiler.check` says.
 """
@@ -52,11 +52,78 @@ class ConditionType(StrEnum):
     WITHIN = "MEASURED_VALUE_WITHIN"
 
 
+class OnFailure(StrEnum):
+    """How the mission goes on when a task has failed for good, all its retries included."""
+
+    CONTINUE = "continue"
+    """as after a task that has ended without a value"""
+    RETURN = "return"
+    """drive to the mission's `dock` and end there"""
+    ABORT = "abort"
+    """end where the robot stands"""
+
+
+class EventKind(StrEnum):
+    """What may happen besides the end of an action: the competition's events (thesis 1.2), and
+    what tells that one of them is over."""
+
+    GAS_LEAK = "gas_leak"
+    HOT_SPOT = "hot_spot"
+    ABNORMAL_SOUND = "abnormal_sound"
+    """of a pump"""
+    PLATFORM_ALARM = "platform_alarm"
+    """the general platform alarm, GPA"""
+    POSITIVE_OBSTACLE = "positive_obstacle"
+    """something stands in the way"""
+    NEGATIVE_OBSTACLE = "negative_obstacle"
+    """a part of the way is missing"""
+    LOW_BATTERY = "low_battery"
+    CONNECTION_LOST = "connection_lost"
+    EMERGENCY_STOP = "emergency_stop"
+    DYSFUNCTION = "dysfunction"
+    """of the robot itself"""
+    ABNORMAL_READING = "abnormal_reading"
+    """a measured value outside the checkpoint's nominal range"""
+    TIME_UP = "time_up"
+    """the mission's maximum duration is over; the executor raises it by itself"""
+    ALL_CLEAR = "all_clear"
+    """a danger is over"""
+    BATTERY_CHARGED = "battery_charged"
+    CONNECTION_RESTORED = "connection_restored"
+
+
+class Response(StrEnum):
+    """What a reaction does. Each of them reports the event first."""
+
+    REPORT = "report"
+    """nothing else; the mission does not even notice"""
+    PAUSE = "pause"
+    """stop and stand still"""
+    RETURN = "return"
+    """drive to the mission's `dock`"""
+    SAFE_AREA = "safe_area"
+    """drive to the reaction's `pose`"""
+    ABORT = "abort"
+    """end the mission where the robot stands"""
+
+
+class Afterwards(StrEnum):
+    """What happens to the mission when the drive of a reaction has ended."""
+
+    RESUME = "resume"
+    """go on where it was interrupted; the interrupted action is started anew"""
+    WAIT = "wait"
+    """stand still until a person resumes the mission or ends it"""
+    END = "end"
+    """the mission is over"""
+
+
 class Condition(Model):
     """A test of the last value measured at a checkpoint.
 
-    LESS: value < param1. GREATER: value > param1. WITHIN: param1 < value < param2. A value that was
-    never measured, or is older than `max_age`, makes the condition false.
+    LESS: value < param1. GREATER: value > param1. WITHIN: param1 < value < param2. With `inclusive`
+    the bounds themselves count as well. A value that was never measured, or is older than
+    `max_age`, makes the condition false.
     """
 
     type: ConditionType
@@ -67,6 +134,8 @@ class Condition(Model):
     param1: float
     param2: float | None = None
     """upper bound, for WITHIN only"""
+    inclusive: bool = False
+    """whether the bounds are among the values that satisfy it (at least, at most)"""
     max_age: float | None = Field(default=None, gt=0)
     """s; None: a value never becomes stale"""
 
@@ -100,6 +169,9 @@ class Task(Model):
     velocity: float | None = Field(default=None, gt=0)
     """m/s on the way to the next task; None: the robot's planning speed"""
     joint_states: JointState | None = None
+    retries: int = Field(default=0, ge=0)
+    """how often a failed action is tried again before it counts as failed"""
+    on_failure: OnFailure = OnFailure.CONTINUE
     transitions: tuple[Transition, ...] = ()
     source: Span | None = None
     """where a script asked for it"""
@@ -119,30 +191,57 @@ class Group(Model):
     """rounds in all; 0: no limit"""
     max_repeat_duration: float = Field(default=0.0, ge=0)
     """s on the mission's clock since the group was entered; 0: no limit"""
+    count_interruptions: bool = False
+    """whether the time of pauses, reactions and supervision counts as part of the duration"""
     stop: Stop = Stop.HARD
     source: Span | None = None
 
 
-class Mission(Model):
-    """A planned mission: the sheet's header, the tasks in order, and the groups over them."""
+class Reaction(Model):
+    """What to do when an event occurs. A mission has at most one for each kind of event.
 
-    version: Literal[1] = 1
+    The response is carried out, then `until` is waited for, if given, then `afterwards` is done.
+    A reaction of higher priority interrupts one of lower priority; see `docs/language.md`.
+    """
+
+    event: EventKind
+    response: Response
+    pose: Pose | None = None
+    """SAFE_AREA: where to"""
+    until: EventKind | None = None
+    """PAUSE, RETURN, SAFE_AREA: stand still until this event occurs, or a person resumes"""
+    afterwards: Afterwards = Afterwards.END
+    """RETURN and SAFE_AREA only: a PAUSE is followed by the mission, a REPORT interrupts nothing,
+    an ABORT is the end"""
+    priority: int = 0
+    """the greater one goes first"""
+    source: Span | None = None
+
+
+class Mission(Model):
+    """A planned mission: the sheet's header, the tasks in order, the groups over them, and the
+    reactions to what may happen."""
+
+    version: Literal[2] = 2
     """of this format"""
     designation: str = ""
     site: str = ""
     """the site that poses and checkpoints belong to"""
     mode: Mode = Mode.AUTONOMOUS
     max_duration: float | None = Field(default=None, gt=0)
-    """s; None: no limit"""
+    """s since the mission's start, interruptions included; None: no limit"""
     start_area: int | None = None
     end_area: int | None = None
     """where the mission ends docked; None: it ends where its last task ends"""
+    dock: Pose | None = None
+    """the docking station that RETURN drives to"""
     order: Order = Order.PRECISE
     anomaly_specification: str = ""
     real_time_reporting: str = ""
     after_mission_report: str = ""
     tasks: tuple[Task, ...] = ()
     groups: tuple[Group, ...] = ()
+    reactions: tuple[Reaction, ...] = ()
     current: str | None = None
     """the task that the planner shows as current; the machine does not use it"""
 

@@ -128,6 +128,7 @@ class _Lowering:
                 count=r.group.max_repeat_count,
                 duration=r.group.max_repeat_duration,
                 stop=r.group.stop,
+                count_interruptions=r.group.count_interruptions,
             ),
             transitions=(repeat, onward),
             timeout=_timeout(r.group),

@@ -1,6 +1,7 @@
 """The hierarchical state machine (HFSM) of a mission, as data.
 
-Leaf states are tasks, composite states the mission and its groups. The tables are flat and refer to
+Leaf states are tasks, composite states the mission and its groups; beside the mission stand its
+reactions, which interrupt it. The tables are flat and refer to
 each other by id, so that any depth of nesting can be written and read. Nothing has to be known of
 the IL to run or export a machine:
 
@@ -14,6 +15,9 @@ the IL to run or export a machine:
   wants another round.
 - The time-out of a composite is taken when its clock reaches the duration: the action that runs is
   cancelled, and the composite's round has ended. As its time is up, it wants no other.
+- An action that failed is tried again `task.retries` times. Then the leaf's `failure` is taken, or
+  without one the leaf's transitions as after any other end.
+- A reaction is entered when its event occurs. It suspends the mission, which keeps its states.
 """
 
 from collections.abc import Iterator
@@ -23,7 +27,7 @@ from typing import Literal
 from pydantic import Field, model_validator
 
 from argo_compiler.diagnostics import Span
-from argo_compiler.il import Condition, Stop, Task
+from argo_compiler.il import Condition, Reaction, Stop, Task
 from argo_compiler.model import Model
 
 MISSION = "mission"
@@ -31,6 +35,22 @@ MISSION = "mission"
 
 DONE: Literal["done"] = "done"
 """id of the final state"""
+
+RETURN = "return"
+"""id of the leaf in which the robot drives back to the dock after a failure"""
+
+RETURN_TASK = "return to dock"
+"""name of that leaf's task; no task of a mission may have it"""
+
+
+def reaction_task_name(event: str) -> str:
+    """Name of the task in which a reaction drives; no task of a mission may have it."""
+    return f"react to {event}"
+
+
+def reaction_id(event: str) -> str:
+    """The id of the state of a reaction."""
+    return f"reaction:{event}"
 
 
 def task_id(name: str) -> str:
@@ -54,6 +74,8 @@ class TransitionKind(StrEnum):
     """nothing before it could be taken"""
     TIMEOUT = "timeout"
     """the composite's time is up"""
+    FAILURE = "failure"
+    """the action has failed for good, and the task says not to go on then"""
 
 
 class Transition(Model):
@@ -87,6 +109,8 @@ class Repeat(Model):
     """s since the group was entered; 0: no limit"""
     stop: Stop
     """what happens when the duration is over in the middle of a round"""
+    count_interruptions: bool = False
+    """whether the duration goes on while the mission is interrupted"""
 
 
 class Composite(Model):
@@ -118,21 +142,36 @@ class Leaf(Model):
     task: Task
     transitions: tuple[Transition, ...]
     """for the end of the action, in the order in which they are tried"""
+    failure: Transition | None = None
+    """for an action that failed for good; None: `transitions`"""
 
     @property
     def source(self) -> Span | None:
         return self.task.source
 
 
+class ReactionState(Model):
+    """The state that an event leads to. It lies beside the mission, not in it."""
+
+    id: str
+    reaction: Reaction
+    task: Task | None = None
+    """the drive, for RETURN and SAFE_AREA"""
+
+
 class Hfsm(Model):
     """A machine. The composite `mission` begins in its `initial` state and ends in `final`."""
 
-    version: Literal[1] = 1
+    version: Literal[2] = 2
     """of this format"""
     composites: tuple[Composite, ...]
     """the mission first, each one before those that lie in it"""
     leaves: tuple[Leaf, ...]
     """in the mission's order"""
+    reactions: tuple[ReactionState, ...] = ()
+    """by priority, the greatest first; one for each event"""
+    max_duration: float | None = None
+    """s since the mission's start, interruptions included, after which TIME_UP occurs"""
     final: Literal["done"] = DONE
 
     @property
@@ -143,6 +182,8 @@ class Hfsm(Model):
         """All transitions, by source."""
         for leaf in self.leaves:
             yield from leaf.transitions
+            if leaf.failure:
+                yield leaf.failure
         for composite in self.composites:
             yield from composite.transitions
             if composite.timeout:

@@ -36,7 +36,7 @@ def test_written_and_read_back(tmp_path, mission):
     write_mission(mission, path)
     assert read_mission(path) == mission
     text = path.read_text(encoding="utf-8")
-    assert text.startswith('{\n  "version": 1,\n  "designation": "Öl #1",\n')
+    assert text.startswith('{\n  "version": 2,\n  "designation": "Öl #1",\n')
     assert text.endswith("}\n")
     assert "velocity" not in text
 
@@ -105,3 +105,10 @@ def test_too_large_a_file_is_not_parsed(tmp_path, monkeypatch):
 def test_file_that_can_not_be_written(tmp_path, mission):
     with pytest.raises(DiagnosticError, match="can't be written"):
         write_mission(mission, tmp_path / "missing" / "plan.json")
+
+
+def test_a_file_of_version_1_is_read_as_what_it_meant(tmp_path):
+    old = b'{"version": 1, "tasks": [{"name": "A", "action": "MEASURE", "object_id": "1"}]}'
+    mission = read_mission(write(tmp_path, old))
+    task = Task(name="A", action=Action.MEASURE, object_id="1")
+    assert mission == Mission(tasks=(task,))

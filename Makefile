@@ -5,7 +5,7 @@ BIN := .venv/bin
 INSTALL := $(BIN)/python -m pip install --quiet --disable-pip-version-check --constraint constraints.txt
 PACKAGES := argo_compiler argo_env argo_planner
 
-.PHONY: demo test lint format clean
+.PHONY: demo test lint format generated clean
 
 demo: .venv/demo.stamp ## run mission #1 and write its report
 	$(BIN)/argo run scenarios/umad/missions/mission_1.txt --site umad --seed 0 \
@@ -23,6 +23,11 @@ lint: .venv/test.stamp ## style and types
 format: .venv/test.stamp ## put the style right where that can be done by itself
 	$(BIN)/ruff check --fix .
 	$(BIN)/ruff format .
+
+generated: .venv/test.stamp ## write anew what is made from the code: JSON Schemas, table of codes, parser tables
+	$(BIN)/python -m argo_compiler.schemas
+	$(BIN)/python -m argo_compiler.script
+	$(BIN)/python -m argo_compiler.diagnostics docs/diagnostics.md
 
 clean:
 	rm -rf .venv out dist

@@ -1,20 +1,52 @@
 """Missions as files: JSON that a person can read, with errors that say where it is wrong."""
 
 import json
+from collections.abc import Iterable, Iterator
+from dataclasses import dataclass
 from pathlib import Path
 from typing import Any, NoReturn
 
-from pydantic import ValidationError
-
-from argo_compiler.diagnostics import Diagnostic, DiagnosticError, Severity, Span
+from argo_compiler.diagnostics import (
+    MAX_EXCERPT,
+    Diagnostic,
+    DiagnosticError,
+    Span,
+    by_place,
+)
 from argo_compiler.il import Mission
+from argo_compiler.json_places import (
+    Text,
+    find_duplicates,
+    find_places,
+    format_path,
+    parse_path,
+)
 from argo_compiler.migration import VERSION, migrate
+from argo_compiler.mission_data import MAX_FAULTS, Fault, fault, to_mission, too_deep
+from argo_compiler.writing import write_whole
 
 MAX_BYTES = 50_000_000
 """Far above any mission (10,000 tasks take 4 MB), far below what would exhaust the memory."""
 
-MAX_EXCERPT = 200
-"""characters of the longest source line that an error shows"""
+
+@dataclass(frozen=True)
+class MissionFile:
+    """A mission with the text that it was read from."""
+
+    mission: Mission
+    text: str
+
+    def placed(self, findings: Iterable[Diagnostic]) -> tuple[Diagnostic, ...]:
+        """The findings with their places in the file, by their subjects.
+
+        The places that they had are the script's from which the mission was imported.
+        """
+        return by_place(
+            _placed(
+                self.text,
+                (Fault(f, None if f.subject is None else parse_path(f.subject)) for f in findings),
+            )
+        )
 
 
 def read_mission(path: Path) -> Mission:
@@ -23,63 +55,83 @@ def read_mission(path: Path) -> Mission:
     Only its shape is looked at; what it means is for `check`.
 
     Raises:
-        DiagnosticError: the file can't be read or is no mission. Says where: by line and column if
-            it is not JSON, by the path of the field (`tasks[3].action`) if it does not fit.
+        DiagnosticError: the file can't be read or is no mission; says where, by line and column.
     """
+    return read_mission_file(path).mission
+
+
+def read_mission_file(path: Path) -> MissionFile:
+    """The same, with the file's text, in which the places of later findings can be looked up."""
     text = _read_text(path)
-    data = _parse(path, text)
-    _require_object(path, data)
-    migrated = migrate(data)
-    _require_version(path, migrated)
-    try:
-        return Mission.model_validate_json(
-            text if migrated is data else json.dumps(migrated), strict=True
-        )
-    except ValidationError as error:
-        findings = [
-            _finding("file.wrong-field", f"{_field_path(e['loc'])}: {e['msg']}", _field_hint(e))
-            for e in error.errors(include_url=False)
-        ]
-        raise DiagnosticError(str(path), findings) from None
+    data, repeats = _parse(path, text)
+    faults = [*_duplicate_keys(text)] if repeats else []
+    if not isinstance(data, dict):
+        _refuse(path, text, [*faults, _not_a_mission()])
+    present = migrate(data)
+    version = present.get("version", VERSION)
+    if version != VERSION or isinstance(version, bool):
+        _refuse(path, text, [*faults, _unsupported(version)])
+    result = to_mission(present)
+    if isinstance(result, list) or faults:
+        _refuse(path, text, faults + (result if isinstance(result, list) else []))
+    return MissionFile(result, text)
 
 
 def write_mission(mission: Mission, path: Path) -> None:
     """Writes a mission as JSON, without the fields that have their default value.
 
-    `read_mission` gives back an equal mission.
+    `read_mission` gives back an equal mission. A file that was there is replaced as a whole.
 
     Raises:
         DiagnosticError: the file can't be written.
     """
-    data = {"version": mission.version} | mission.model_dump(mode="json", exclude_defaults=True)
-    text = json.dumps(data, indent=2, ensure_ascii=False) + "\n"
     try:
-        path.write_text(text, encoding="utf-8", newline="\n")
+        write_whole(path, mission_text(mission))
     except OSError as error:
-        _refuse(path, "file.unwritable", f"can't be written: {error.strerror}", "choose another")
+        message = f"can't be written: {error.strerror}"
+        _refuse(path, "", [fault("file.unwritable", message, "choose another place")])
 
 
-def _finding(code: str, message: str, hint: str | None) -> Diagnostic:
-    return Diagnostic(code=code, severity=Severity.ERROR, message=message, hint=hint)
+def mission_text(mission: Mission) -> str:
+    """What `write_mission` writes."""
+    data = {"version": mission.version} | mission.model_dump(mode="json", exclude_defaults=True)
+    return json.dumps(data, indent=2, ensure_ascii=False) + "\n"
 
 
-def _refuse(path: Path, code: str, message: str, hint: str) -> NoReturn:
-    raise DiagnosticError(str(path), [_finding(code, message, hint)]) from None
+def _refuse(path: Path, text: str, faults: Iterable[Fault]) -> NoReturn:
+    raise DiagnosticError(str(path), _placed(text, faults)) from None
+
+
+def _placed(text: str, faults: Iterable[Fault]) -> list[Diagnostic]:
+    faults = list(faults)
+    paths = [path for _, path in faults if path is not None]
+    lines = Text(text)
+    spans = find_places(lines, paths) if paths else {}
+    return [_at(lines, finding, spans[path] if path else None) for finding, path in faults]
+
+
+def _at(lines: Text, finding: Diagnostic, span: Span | None) -> Diagnostic:
+    excerpt = lines.line(span.line) if span else None
+    if excerpt is not None and len(excerpt) > MAX_EXCERPT:
+        excerpt = None
+    return finding.model_copy(update={"span": span, "excerpt": excerpt})
 
 
 def _read_text(path: Path) -> str:
+    def refuse(code: str, message: str, hint: str) -> NoReturn:
+        _refuse(path, "", [fault(code, message, hint)])
+
     if path.is_dir():
-        _refuse(path, "file.directory", "is a directory", "name the mission file in it")
+        refuse("file.directory", "is a directory", "name the mission file in it")
     try:
         with path.open("rb") as file:
             content = file.read(MAX_BYTES + 1)
     except FileNotFoundError:
-        _refuse(path, "file.missing", "there is no such file", "check the path")
-    except OSError as error:
-        _refuse(path, "file.unreadable", f"can't be read: {error.strerror}", "check the file")
+        refuse("file.missing", "there is no such file", "check the path")
+    except (OSError, ValueError) as error:  # ValueError: a NUL in the path
+        refuse("file.unreadable", f"can't be read: {error}", "check the file")
     if len(content) > MAX_BYTES:
-        _refuse(
-            path,
+        refuse(
             "file.too-large",
             f"is larger than {MAX_BYTES // 1_000_000} MB",
             "a mission file is far smaller: is this the right file?",
@@ -87,64 +139,64 @@ def _read_text(path: Path) -> str:
     try:
         text = content.decode("utf-8-sig")
     except UnicodeDecodeError as error:
-        _refuse(
-            path,
+        refuse(
             "file.not-text",
             f"is not UTF-8 text: byte {error.start} is 0x{content[error.start]:02x}",
             "save it as UTF-8, or name the mission's JSON file",
         )
     if "\0" in text:
-        _refuse(path, "file.not-text", "is a binary file", "name the mission's JSON file")
+        refuse("file.not-text", "is a binary file", "name the mission's JSON file")
     return text
 
 
-def _parse(path: Path, text: str) -> Any:
+def _parse(path: Path, text: str) -> tuple[Any, bool]:
+    """The data in a JSON text, and whether any of its objects has a key twice."""
+    repeats = False
+
+    def to_dict(pairs: list[tuple[str, Any]]) -> dict[str, Any]:
+        nonlocal repeats
+        data = dict(pairs)
+        repeats = repeats or len(data) < len(pairs)
+        return data
+
     try:
-        return json.loads(text)
+        return json.loads(text, object_pairs_hook=to_dict), repeats
     except json.JSONDecodeError as error:
-        line = text.split("\n")[error.lineno - 1].rstrip("\r")
-        finding = Diagnostic(
-            code="file.not-json",
-            severity=Severity.ERROR,
-            message=f"is not JSON: {error.msg}",
-            span=Span(line=error.lineno, column=error.colno),
-            excerpt=line if len(line) <= MAX_EXCERPT else None,
-            hint="correct the file at the mark",
-        )
-        raise DiagnosticError(str(path), [finding]) from None
+        lines = Text(text)
+        finding, _ = fault("file.not-json", f"is not JSON: {error.msg}", "correct it at the mark")
+        span = lines.span(error.pos, error.pos + 1)
+        raise DiagnosticError(str(path), [_at(lines, finding, span)]) from None
     except RecursionError:
-        _refuse(path, "file.too-deep", "is nested too deeply", "no mission is: check the file")
+        _refuse(path, text, [too_deep()])
     except ValueError as error:  # an integer of thousands of digits
-        _refuse(path, "file.not-json", f"is not usable JSON: {error}", "correct the number")
+        message = f"is not usable JSON: {error}"
+        _refuse(path, text, [fault("file.not-json", message, "correct the number")])
 
 
-def _require_object(path: Path, data: Any) -> None:
-    if not isinstance(data, dict):
-        _refuse(
+def _not_a_mission() -> Fault:
+    return fault(
+        "file.not-a-mission",
+        "is not a mission: the JSON is no object",
+        f'a mission begins with {{"version": {VERSION}, "tasks": [',
+    )
+
+
+def _unsupported(version: object) -> Fault:
+    shown = json.dumps(version)
+    return fault(
+        "file.unsupported-version",
+        f"has version {shown if len(shown) < 40 else '...'} of the mission format",
+        f"this Argo reads versions up to {VERSION}: use a newer Argo or save the mission again",
+        ("version",),
+    )
+
+
+def _duplicate_keys(text: str) -> Iterator[Fault]:
+    for path, first in find_duplicates(Text(text), MAX_FAULTS).items():
+        yield fault(
+            "file.duplicate-key",
+            f"{format_path(path)} stands here again; it was given at line {first.line}, "
+            f"column {first.column}",
+            "remove one of the two",
             path,
-            "file.not-a-mission",
-            "is not a mission: the JSON is no object",
-            f'a mission begins with {{"version": {VERSION}, "tasks": [',
         )
-
-
-def _require_version(path: Path, data: dict[str, Any]) -> None:
-    version = data.get("version", VERSION)
-    if version != VERSION or isinstance(version, bool):
-        _refuse(
-            path,
-            "file.unsupported-version",
-            f"has version {json.dumps(version)} of the mission format",
-            f"this Argo reads versions up to {VERSION}: use a newer Argo or save the mission again",
-        )
-
-
-def _field_path(location: tuple[int | str, ...]) -> str:
-    steps = (f"[{step}]" if isinstance(step, int) else f".{step}" for step in location)
-    return "".join(steps).removeprefix(".") or "the file"
-
-
-def _field_hint(error: Any) -> str | None:
-    if error["type"] == "extra_forbidden":
-        return "the mission format has no such field: check its spelling or remove it"
-    return None

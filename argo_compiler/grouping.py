@@ -12,6 +12,8 @@ class GroupRange:
     group: Group
     first: int
     last: int
+    index: int
+    """of the group in the mission's list"""
 
     def contains(self, position: int) -> bool:
         return self.first <= position <= self.last
@@ -32,8 +34,8 @@ def group_ranges(mission: Mission) -> tuple[GroupRange, ...]:
     for i, task in enumerate(mission.tasks):
         position.setdefault(task.name, i)
     ranges = [
-        GroupRange(group, position[group.start], position[group.end])
-        for group in mission.groups
+        GroupRange(group, position[group.start], position[group.end], index)
+        for index, group in enumerate(mission.groups)
         if group.start in position and group.end in position
     ]
     ordered = (r for r in ranges if r.first <= r.last)

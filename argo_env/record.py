@@ -6,9 +6,12 @@ same mission, site and seed give the same record.
 
 from argo_compiler.catalog import CheckpointKind, Interval
 from argo_compiler.diagnostics import Diagnostic
-from argo_compiler.hfsm import Hfsm
-from argo_compiler.il import Action, Mission
+from argo_compiler.hfsm import Hfsm, Outcome
+from argo_compiler.il import Action, EventKind, Mission
 from argo_compiler.model import Model
+
+DIGITS = 4
+"""of recorded lengths and angles: below what the geometry means"""
 
 
 class PathSample(Model):
@@ -40,9 +43,9 @@ class TaskRun(Model):
     end: float
     """s"""
     outcome: str
-    """`done`, `failed` or `cancelled`"""
+    """`done`, `failed`, `cancelled`, or `interrupted` by a pause or a reaction"""
     reason: str | None = None
-    """why it failed or was cancelled"""
+    """why it failed, was cancelled or interrupted"""
     distance: float
     """m driven"""
     climbed: float
@@ -89,6 +92,24 @@ class Contact(Model):
     """m, the deepest overlap"""
 
 
+class Interruption(Model):
+    """A pause or a reaction, during which the mission stood still."""
+
+    start: float
+    """s"""
+    end: float
+    """s"""
+    event: EventKind | None = None
+    """the event of the reaction; None: paused until a person goes on"""
+
+    @property
+    def cause(self) -> str:
+        """In words."""
+        if self.event is None:
+            return "paused"
+        return f"reaction to {self.event.replace('_', ' ')}"
+
+
 class TraceStep(Model):
     """One step of the state machine."""
 
@@ -106,6 +127,8 @@ class Result(Model):
     success: bool
     verdict: str
     """one sentence: success, or what is missing"""
+    outcome: Outcome | None = None
+    """how the state machine ended; None: the run was stopped before"""
     duration: float
     """s"""
     max_duration: float | None
@@ -122,7 +145,7 @@ class Result(Model):
 class RunRecord(Model):
     """A whole run."""
 
-    version: int = 1
+    version: int = 2
     """of this format"""
     mission: Mission
     hfsm: Hfsm
@@ -139,3 +162,6 @@ class RunRecord(Model):
     contacts: tuple[Contact, ...]
     trace: tuple[TraceStep, ...]
     path: tuple[PathSample, ...]
+    interruptions: tuple[Interruption, ...] = ()
+    resumed: tuple[float, ...] = ()
+    """s, when the run went on from its journal after its process had died"""

@@ -3,24 +3,39 @@
 from argo_compiler.hfsm.conditions import Measured
 from argo_compiler.hfsm.events import (
     ActionFailed,
+    ActionStopped,
     ActionSucceeded,
+    Cancel,
     CancelAction,
-    Cause,
     Command,
     Event,
+    Occurred,
+    Outcome,
+    Pause,
+    Resume,
     StartAction,
     Tick,
-    TraceEntry,
 )
 from argo_compiler.hfsm.executor import Executor
 from argo_compiler.hfsm.lower import lower
-from argo_compiler.hfsm.mermaid import to_mermaid
-from argo_compiler.hfsm.model import Composite, Hfsm, Leaf, Repeat, Transition, TransitionKind
-from argo_compiler.hfsm.progress import Progress
+from argo_compiler.hfsm.model import (
+    Composite,
+    Hfsm,
+    Leaf,
+    ReactionState,
+    Repeat,
+    Transition,
+    TransitionKind,
+)
+from argo_compiler.hfsm.progress import ByHand, Progress
+from argo_compiler.hfsm.trace import Cause, TraceEntry
 
 __all__ = [
     "ActionFailed",
+    "ActionStopped",
     "ActionSucceeded",
+    "ByHand",
+    "Cancel",
     "CancelAction",
     "Cause",
     "Command",
@@ -30,13 +45,17 @@ __all__ = [
     "Hfsm",
     "Leaf",
     "Measured",
+    "Occurred",
+    "Outcome",
+    "Pause",
     "Progress",
+    "ReactionState",
     "Repeat",
+    "Resume",
     "StartAction",
     "Tick",
     "TraceEntry",
     "Transition",
     "TransitionKind",
     "lower",
-    "to_mermaid",
 ]

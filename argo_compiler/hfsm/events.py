@@ -1,14 +1,14 @@
-"""What goes into an executor and what comes out: events, commands and the trace."""
+"""What goes into an executor and what comes out: events and commands."""
 
 from dataclasses import dataclass
 from enum import StrEnum
 
-from argo_compiler.il import Task
+from argo_compiler.il import EventKind, Task
 
 
 @dataclass(frozen=True, slots=True)
 class ActionSucceeded:
-    """The active task's action has ended well. `value`: what a MEASURE read, if it is a number."""
+    """The running action has ended well. `value`: what a MEASURE read, if it is a number."""
 
     task: str
     value: float | None = None
@@ -16,10 +16,17 @@ class ActionSucceeded:
 
 @dataclass(frozen=True, slots=True)
 class ActionFailed:
-    """The active task's action has ended without its result: not reached, not measured."""
+    """The running action has ended without its result: not reached, not measured."""
 
     task: str
     reason: str
+
+
+@dataclass(frozen=True, slots=True)
+class ActionStopped:
+    """An action that was to be cancelled has ended, its clean-up done."""
+
+    task: str
 
 
 @dataclass(frozen=True, slots=True)
@@ -27,7 +34,32 @@ class Tick:
     """Nothing but the passing of time."""
 
 
-Event = ActionSucceeded | ActionFailed | Tick
+@dataclass(frozen=True, slots=True)
+class Occurred:
+    """Something has happened that the mission may react to."""
+
+    event: EventKind
+    detail: str = ""
+    """for people: where, how much"""
+
+
+@dataclass(frozen=True, slots=True)
+class Pause:
+    """A person pauses the mission."""
+
+
+@dataclass(frozen=True, slots=True)
+class Resume:
+    """A person lets the mission go on, or ends a hold."""
+
+
+@dataclass(frozen=True, slots=True)
+class Cancel:
+    """A person ends the mission."""
+
+
+ActionEnded = ActionSucceeded | ActionFailed | ActionStopped
+Event = ActionEnded | Tick | Occurred | Pause | Resume | Cancel
 
 
 @dataclass(frozen=True, slots=True)
@@ -39,59 +71,27 @@ class StartAction:
 
 @dataclass(frozen=True, slots=True)
 class CancelAction:
-    """Stop the action of the task; no event of it is to follow."""
+    """Stop the action of the task, clean up, and report its end: it is awaited."""
 
-    task_name: str
+    task: str
+    reason: str
 
 
 Command = StartAction | CancelAction
 
 
-class Cause(StrEnum):
-    """Why the machine went from one task to the next."""
+class Outcome(StrEnum):
+    """How a mission has ended."""
 
-    START = "start"
-    RESUME = "resume"
-    CONDITION = "condition"
-    REPEAT = "repeat"
-    DEFAULT = "default"
-    TIMEOUT = "time out"
-
-
-@dataclass(frozen=True, slots=True)
-class TraceEntry:
-    """One step of the machine at a time (s): from the task `source` to the task `target`.
-
-    `source` is None at the start, `target` when the mission ends.
-    """
-
-    time: float
-    source: str | None
-    target: str | None
-    cause: Cause
-    conditions: tuple[str, ...] = ()
-    """those that held, for CONDITION"""
-    timed_out: str | None = None
-    """the group whose time was up, for TIMEOUT"""
-    repeated: str | None = None
-    """the group that began another round, for REPEAT and perhaps TIMEOUT"""
-    failure: str | None = None
-    """why the action of `source` failed, if it did"""
-
-    @property
-    def why(self) -> str:
-        """The cause in words, with the conditions, the group or the failure that it was."""
-        why = str(self.cause)
-        if self.conditions:
-            why = " and ".join(self.conditions)
-        if self.timed_out is not None:
-            why = f"time of '{self.timed_out}' is up"
-        if self.repeated is not None:
-            again = f"another round of '{self.repeated}'"
-            why = f"{why}, {again}" if self.timed_out is not None else again
-        if self.failure is not None:
-            why += f"; failed: {self.failure}"
-        return why
-
-    def __str__(self) -> str:
-        return f"{self.time:g} s: {self.source or 'start'} -> {self.target or 'end'} ({self.why})"
+    COMPLETED = "completed"
+    """all was done that the plan asked for"""
+    RETURNED = "returned"
+    """at the dock, after a failure or an event"""
+    SHELTERED = "sheltered"
+    """in a safe area, after an event"""
+    FAILED = "failed"
+    """the way to the dock or to a safe area failed as well"""
+    ABORTED = "aborted"
+    """where the robot stood, after a failure or an event"""
+    CANCELLED = "cancelled"
+    """by a person"""

@@ -2,25 +2,40 @@
 
 import math
 from collections.abc import Mapping
-from dataclasses import replace
-from types import MappingProxyType
 
 from argo_compiler.hfsm.conditions import Measured
+from argo_compiler.hfsm.control import Control
 from argo_compiler.hfsm.events import (
+    ActionEnded,
     ActionFailed,
+    ActionStopped,
     ActionSucceeded,
+    Cancel,
     CancelAction,
-    Cause,
     Command,
     Event,
+    Occurred,
+    Outcome,
+    Pause,
+    Resume,
     StartAction,
-    Tick,
-    TraceEntry,
 )
 from argo_compiler.hfsm.model import DONE, MISSION, Hfsm
-from argo_compiler.hfsm.progress import EndedTask, Progress, resume, snapshot
-from argo_compiler.hfsm.step import Machine, State, next_timeout
-from argo_compiler.il import Action
+from argo_compiler.hfsm.progress import EndedTask, Phase, Progress
+from argo_compiler.hfsm.restoring import (
+    group_progress,
+    place_of,
+    queues,
+    reaction_progress,
+    reactions_of,
+    remaining,
+    value_progress,
+)
+from argo_compiler.hfsm.tables import LeafNode, tables
+from argo_compiler.hfsm.trace import Cause, TraceEntry, entry
+from argo_compiler.il import EventKind, Task
+
+_ENDS = (ActionSucceeded, ActionFailed, ActionStopped)
 
 MAX_TIME_S = 1e12
 """The range of the mission's clock: some 30,000 years."""
@@ -29,173 +44,291 @@ MAX_TIME_S = 1e12
 class Executor:
     """A machine under way: the one object of this package that has state.
 
-    It owns no thread and no clock. Whoever drives it calls `start` once, carries out the commands
-    that come back, and calls `handle` when an action has ended and when `next_deadline` is reached.
-    Times are seconds on the mission's clock and never run backwards.
+    It owns no thread and no clock. Whoever drives it calls `start` once, carries out the command
+    that comes back, if any, and calls `handle` when an action has ended, when something else has
+    happened, and when `next_deadline` is reached. Times are seconds and never run backwards.
+
+    At most one action runs. After a `CancelAction` the driver reports exactly one end of that
+    action, whenever its clean-up is done, and gets the next `StartAction` then. Where the machine
+    goes is decided at once; only the start waits.
 
     At equal times: time-outs that lie strictly before `now` come first, then the event, then the
-    time-outs at `now`. So an action that ends exactly when the time of its group is up has ended,
-    and one that is reported later was cancelled before: its event is dropped, whatever it measured.
-    A time-out is dated when the time was up, not when the executor heard of it, so a driver that
-    comes late gets the same machine. If the time of several groups is up at once, the outermost one
-    is left.
+    time-outs at `now`. A time-out is dated when the time was up, not when the executor heard of it,
+    so a driver that comes late gets the same machine.
 
-    An action that failed has ended without a value, and the machine goes on as after any other;
-    the trace says why it failed. A value measured earlier at the same checkpoint stays.
-
-    Calls that can't be right raise ValueError: before `start`, after the end of the mission, at an
-    earlier time than the call before, and events of a task that is not active.
+    Calls that can't be right raise ValueError and change nothing: before `start`, at an earlier
+    time than the call before, and the end of an action that does not run.
     """
 
     def __init__(self, hfsm: Hfsm) -> None:
-        self._machine = Machine(hfsm)
-        self._resumed: State | None = None
+        self._control = Control(tables(hfsm))
+        self._started = False
+        self._fresh = True
+        """whether the mission begins with `start`, rather than goes on"""
+        self._began = 0.0
+        """s, when the mission began"""
         self._ended_before: tuple[EndedTask, ...] = ()
-        self._state: State | None = None
-        # What has been decides nothing, so it is kept beside the state, and only ever added to.
-        self._trace: list[TraceEntry] = []
+        self._running: Task | None = None
+        self._running_leaf: LeafNode | None = None
+        """None: the drive of a reaction"""
+        self._running_visit = 0
+        self._cancelling = False
 
     @classmethod
-    def restore(cls, hfsm: Hfsm, progress: Progress, now: float) -> "Executor":
+    def restore(cls, hfsm: Hfsm, progress: Progress, now: float, away: float = 0.0) -> "Executor":
         """An executor that goes on from `progress` at time `now`; call `start` next.
 
-        Groups have the time left that they had, values the age. `start` starts the action of the
-        active task anew.
+        `away` is the time (s) since the progress was taken. It makes values older, and counts for
+        the mission's duration and for groups that count interruptions. The durations of what was
+        done by hand are part of it: their clocks run when the machine comes to the task.
 
         Raises:
             ArgoError: the progress is not one of this machine.
         """
         executor = cls(hfsm)
-        executor._resumed = resume(executor._machine, progress, _seconds(now))
+        control = executor._control
+        control.now = _seconds(now)
+        control.place = place_of(control.tables, progress, now, _seconds(away))
+        control.reactions = reactions_of(control.tables, progress)
+        control.reactions.visit = control.place.new_visit()
+        control.by_hand = queues(progress.by_hand)
+        control.time_up = progress.time_up
+        control.paused = progress.paused
+        control.outcome = progress.outcome
+        executor._fresh = False
+        executor._began = now - (progress.elapsed + away)
         executor._ended_before = progress.ended
         return executor
 
     def start(self, now: float) -> tuple[Command, ...]:
-        """Starts the mission; returns what to do first."""
-        if self._state is not None:
+        """Starts the mission, or lets a restored one go on; returns what to do first."""
+        if self._started:
             raise ValueError("the executor has been started already")
-        if self._resumed is None:
-            self._state, entry = self._machine.initial(_seconds(now))
-            self._trace.append(entry)
-        else:
-            _require_order(self._resumed.time, now)
-            self._state = replace(self._resumed, time=now)
-            self._trace.append(TraceEntry(now, None, self.active, Cause.RESUME))
-            self._time_out(until=now)
-        return self._start_active()
+        self._require_order(now)
+        self._started = True
+        control = self._control
+        control.now = now
+        if self._fresh:
+            self._began = now
+            control.place.enter(control.tables.initial, now)
+        control.note(Cause.START if self._fresh else Cause.RESTORE, source=None)
+        if control.outcome is None:
+            limit = control.tables.max_duration
+            if limit is not None and not control.time_up:
+                control.time_up_at = max(self._began + limit, now)
+            if not control.interrupted:
+                control.go_on()
+            control.settle()
+        return self._command()
 
     def handle(self, event: Event, now: float) -> tuple[Command, ...]:
-        """Takes note of an event at time `now`; returns at most one cancellation and one start.
-
-        Where several steps fall into one call, the actions in between are neither started nor
-        cancelled, but the trace has them.
-        """
-        before = self._started()
-        if before.leaf is None:
-            raise ValueError(f"the mission has ended; {event} comes too late")
-        _require_order(before.time, now)
-        ending = None if isinstance(event, Tick) else event
-        if ending is not None:
-            self._require_active(ending)
-        # The next float below `now` stands for all times before it.
-        self._time_out(until=math.nextafter(now, -math.inf))
-        state = self._state = replace(self._started(), time=now)
-        ended = ending is not None and state.visit == before.visit
-        if ending is not None and ended:
-            self._end_action(state, ending)
-        self._time_out(until=now)
-        if self._started().visit == before.visit:
-            return ()
-        cancel = () if ended else (CancelAction(before.leaf.task.name),)
-        return (*cancel, *self._start_active())
+        """Takes note of an event at time `now` (s); returns the one thing to do next, if any."""
+        self._require_order(now)
+        ended = isinstance(event, _ENDS)
+        if not self._started or ended:
+            self._require_running(event)
+        control = self._control
+        place = control.place
+        if now > place.due or now > control.time_up_at:
+            # The next float below `now` stands for all times before it.
+            control.let_pass(math.nextafter(now, -math.inf))
+        control.now = now
+        if isinstance(event, _ENDS):
+            self._end_action(event)
+        elif control.outcome is None:
+            match event:
+                case Occurred(kind, detail):
+                    control.occur(kind, detail)
+                case Pause() if not control.paused:
+                    control.pause()
+                case Resume():
+                    control.resume()
+                case Cancel():
+                    control.end(Outcome.CANCELLED, Cause.CANCEL)
+        control.settle()
+        return self._command()
 
     def progress(self) -> Progress:
-        """How far the mission has come at the time of the last call; see `restore`."""
-        ended = (
-            EndedTask(task=entry.source, failure=entry.failure)
-            for entry in self._trace
-            if entry.source is not None and entry.cause is not Cause.TIMEOUT
+        """How far the mission has come at the time of the last call; see `restore`.
+
+        An action that still runs is not part of it: pause first and await its end.
+        """
+        if not self._started:
+            raise ValueError("the executor has not been started: call start first")
+        control = self._control
+        now, place = control.now, control.place
+        reaction, waiting = reaction_progress(control.reactions)
+        ended = (EndedTask(task=t, failure=f, by_hand=h) for t, f, h in control.ended)
+        return Progress(
+            active=control.active,
+            attempt=place.attempt,
+            groups=group_progress(place, now),
+            values=value_progress(place, now),
+            ended=(*self._ended_before, *ended),
+            elapsed=now - self._began,
+            time_up=control.time_up,
+            paused=control.paused,
+            reaction=reaction,
+            waiting=waiting,
+            outcome=control.outcome,
+            by_hand=remaining(control.by_hand),
         )
-        return snapshot(self._started(), (*self._ended_before, *ended))
 
     @property
     def finished(self) -> bool:
-        """Whether the mission has ended."""
-        return self._state is not None and self._state.leaf is None
+        """Whether the mission has ended and no action runs any more."""
+        return self._started and self._control.outcome is not None and self._running is None
+
+    @property
+    def outcome(self) -> Outcome | None:
+        """How the mission has ended; None: it has not."""
+        return self._control.outcome
 
     @property
     def active(self) -> str | None:
-        """The name of the task under way; None before the start and after the end."""
-        return self._state.leaf.task.name if self._state and self._state.leaf else None
+        """The name of the task that the mission stands at; None before its start and at its end."""
+        return self._control.active
+
+    @property
+    def running(self) -> Task | None:
+        """The task whose action has been started and has not ended."""
+        return self._running
+
+    @property
+    def paused(self) -> bool:
+        """Whether the mission waits for a person to resume it."""
+        return self._control.paused
+
+    @property
+    def reaction(self) -> EventKind | None:
+        """The event whose reaction is active."""
+        active = self._control.reactions.active
+        return None if active is None else active.reaction.event
+
+    @property
+    def holding(self) -> bool:
+        """Whether the active reaction stands still and waits."""
+        return self._control.holding
 
     @property
     def configuration(self) -> tuple[str, ...]:
-        """The ids of the active states, from the mission to the leaf; none before the start."""
-        if self._state is None:
+        """The ids of the active states, from the mission to the leaf, then the reaction's.
+
+        Empty before the start.
+        """
+        if not self._started:
             return ()
-        groups = (frame.group.id for frame in self._state.frames)
-        return (MISSION, *groups, self._state.leaf.id if self._state.leaf else DONE)
+        place, active = self._control.place, self._control.reactions.active
+        groups = (frame.group.id for frame in place.frames)
+        reaction = () if active is None else (active.node.state.id,)
+        return (MISSION, *groups, DONE if place.leaf is None else place.leaf.id, *reaction)
 
     @property
     def next_deadline(self) -> float | None:
-        """When the time of an active group with a hard stop is up next (s), if there is one."""
-        due = next_timeout(self._state) if self._state else None
-        return None if due is None else due[0]
+        """When the time of a group with a hard stop, or the mission's, is up next (s)."""
+        due = self._control.due
+        return due if self._started and due < math.inf else None
 
     @property
     def values(self) -> Mapping[str, Measured]:
         """What was measured last, by object_id."""
-        return MappingProxyType(self._state.values if self._state else {})
+        place = self._control.place
+        return {id: Measured(v, at - place.shift) for id, (v, at) in place.values.items()}
 
     @property
     def rounds(self) -> Mapping[str, int]:
         """The round, from 1, that each active group is in, by the group's name."""
-        frames = self._state.frames if self._state else ()
-        return {frame.group.name: frame.round for frame in frames}
+        return {frame.group.name: frame.round for frame in self._control.place.frames}
 
     @property
     def trace(self) -> tuple[TraceEntry, ...]:
-        """All steps since `start`, in order."""
-        return tuple(self._trace)
+        """All that has happened since `start`, in order."""
+        return tuple(map(entry, self._control.trace))
 
-    def _started(self) -> State:
-        if self._state is None:
+    def _command(self) -> tuple[Command, ...]:
+        """Starts what is to run, once what is not has ended."""
+        leaf, visit, start = self._wanted()
+        if self._running is not None:
+            if self._cancelling or visit == self._running_visit:
+                return ()
+            self._cancelling = True
+            return (CancelAction(self._running.name, self._reason()),)
+        if start:
+            self._running = start[0].task
+            self._running_leaf = leaf
+            self._running_visit = visit
+        return start
+
+    def _wanted(self) -> tuple[LeafNode | None, int, tuple[StartAction, ...]]:
+        """The leaf, the visit and the command of the action that is to run; visit 0: none."""
+        control = self._control
+        active, leaf = control.reactions.active, control.place.leaf
+        if control.outcome is not None or control.paused:
+            return None, 0, ()
+        if active is None:
+            return (None, 0, ()) if leaf is None else (leaf, control.place.visit, leaf.start)
+        if control.reactions.phase is Phase.DRIVING:
+            return None, control.reactions.visit, active.node.start
+        return None, 0, ()
+
+    def _reason(self) -> str:
+        if self._control.outcome is not None:
+            return f"the mission was {self._control.outcome}"
+        if self.reaction is not None:
+            return f"reaction to {self.reaction.replace('_', ' ')}"
+        if self.paused:
+            return "the mission is paused"
+        timed_out = next((e[5] for e in reversed(self._control.trace) if e[5] is not None), "")
+        return f"the time of '{timed_out}' is up"
+
+    def _end_action(self, event: ActionEnded) -> None:
+        control, leaf = self._control, self._running_leaf
+        reason = None
+        if isinstance(event, ActionFailed) and not self._cancelling:
+            # A failure may be the work of the cancellation, so then it counts as a stop.
+            reason = event.reason if self._wanted()[1] == self._running_visit else None
+        self._running = None
+        self._cancelling = False
+        if leaf is None:
+            if control.reactions.active is None or control.reactions.visit != self._running_visit:
+                return
+            if isinstance(event, ActionSucceeded):
+                control.hold()
+            elif reason is not None:
+                control.fail_drive(reason)
+        elif isinstance(event, ActionSucceeded):
+            if event.value is not None and leaf.measures is not None:
+                clock = control.now + control.place.shift
+                control.place.values[leaf.measures] = event.value, clock
+            if self._running_visit == control.place.visit:
+                control.leave(leaf, None)
+            else:
+                control.leave_late(leaf)
+        elif reason is not None:
+            control.fail(leaf, reason)
+
+    def _require_order(self, now: float) -> None:
+        if not self._control.now <= _seconds(now):
+            before = self._control.now
+            raise ValueError(f"time runs backwards: {now:g} s comes after {before:g} s")
+
+    def _require_running(self, event: Event) -> None:
+        running = self._running
+        if not self._started:
             raise ValueError("the executor has not been started: call start first")
-        return self._state
-
-    def _require_active(self, event: ActionSucceeded | ActionFailed) -> None:
-        leaf = self._started().leaf
-        if leaf is None or event.task != leaf.task.name:
-            raise ValueError(f"{event} is about a task that is not active; '{self.active}' is")
+        if not isinstance(event, _ENDS):
+            return
+        if running is None:
+            raise ValueError(f"{event} comes while no action runs")
+        if event.task != running.name:
+            raise ValueError(f"{event} is about a task that does not run; '{running.name}' does")
         if isinstance(event, ActionSucceeded) and event.value is not None:
-            if leaf.task.action is not Action.MEASURE:
+            if self._running_leaf is None or self._running_leaf.measures is None:
                 raise ValueError(f"{event} has a value, but the task measures nothing")
             if not math.isfinite(event.value):
                 raise ValueError(f"{event} has no usable value: report that the action failed")
-
-    def _end_action(self, state: State, event: ActionSucceeded | ActionFailed) -> None:
-        failure = None
-        if isinstance(event, ActionFailed):
-            failure = event.reason
-        elif event.value is not None and state.leaf and state.leaf.task.object_id is not None:
-            measured = Measured(event.value, state.time)
-            state = replace(state, values={**state.values, state.leaf.task.object_id: measured})
-        self._state, entry = self._machine.action_ended(state, failure)
-        self._trace.append(entry)
-
-    def _time_out(self, until: float) -> None:
-        """Leaves the groups whose time is up by then, in the order of time."""
-        state = self._started()
-        while (due := next_timeout(state)) is not None and due[0] <= until:
-            # A resumed group's time may have been up before the mission went on.
-            at = replace(state, time=max(due[0], state.time))
-            state, entry = self._machine.timed_out(at, due[1])
-            self._trace.append(entry)
-        self._state = state
-
-    def _start_active(self) -> tuple[Command, ...]:
-        leaf = self._started().leaf
-        return () if leaf is None else (StartAction(leaf.task),)
+        if isinstance(event, ActionStopped) and not self._cancelling:
+            raise ValueError(f"{event} comes for an action that was not cancelled")
 
 
 def _seconds(now: float) -> float:
@@ -203,8 +336,3 @@ def _seconds(now: float) -> float:
     if not abs(now) <= MAX_TIME_S:
         raise ValueError(f"{now} is no time in seconds")
     return now
-
-
-def _require_order(before: float, now: float) -> None:
-    if _seconds(now) < before:
-        raise ValueError(f"time runs backwards: {now:g} s comes after {before:g} s")

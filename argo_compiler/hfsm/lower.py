@@ -1,61 +1,69 @@
-"""Lowering: from the tasks and groups of a mission to the states of a machine.
+"""Lowering: from the tasks, groups and reactions of a mission to the states of a machine.
 
-What a mission means is decided here and, for what depends on time and values, in `step`:
-
-Tasks
-    When a task has ended, its conditional transitions are considered in list order, and the first
-    one whose conditions all hold is taken; if there is none, the unconditional one is, wherever it
-    stands in the list. Without that the mission ends. START is passed over: the machine begins with
-    the target of START's unconditional transition or, without one, with the first other task. A
-    mission of START alone has ended as soon as it is started.
-Members
-    The members of a group are the tasks from its `start` to its `end` in the mission's list, both
-    included. A transition from outside to any member enters the group: round 1 begins, and so does
-    its clock. A transition to a task that is not a member leaves it; the next entry starts anew. A
-    transition between members is a jump inside and changes neither round nor clock.
-Rounds
-    A round ends when the group's `end` task has ended and none of its conditional transitions is
-    taken. If the group wants another round, it goes on with `start`. Otherwise the unconditional
-    transition of the `end` task is taken, which leaves the group even if it leads to a member: the
-    group is then entered anew. If several groups end with the same task, the innermost one decides
-    first, and only when it wants no other round does the next one outward. A new round of the outer
-    group enters the inner ones anew.
-Limits
-    A group wants another round if fewer than `max_repeat_count` rounds have been completed and less
-    than `max_repeat_duration` has passed since it was entered; a limit of 0 does not count.
-    `stop=soft` looks at the time at the end of a round only. With `stop=hard` the round ends as
-    soon as the time is up: the running action is cancelled, and the machine goes on as after the
-    last round, with the decisions of the groups further out that end with the same task.
+What a mission means is written in `docs/language.md`. What does not depend on time and values is
+decided here: START is passed over (M1, M2), the unconditional transition comes last (T3), rounds
+end from the innermost group outward (G5 to G7), and each transition knows which groups it leaves
+(G2 to G4).
 """
 
 from argo_compiler.check import check
+from argo_compiler.collecting import collector_held
 from argo_compiler.diagnostics import DiagnosticError, Severity
 from argo_compiler.grouping import Layout
 from argo_compiler.hfsm.model import (
     DONE,
     MISSION,
+    RETURN,
+    RETURN_TASK,
     Composite,
     Hfsm,
     Leaf,
+    ReactionState,
     Repeat,
     Transition,
     TransitionKind,
     group_id,
+    reaction_id,
+    reaction_task_name,
     task_id,
 )
-from argo_compiler.il import Action, Group, Mission, Stop, Task
+from argo_compiler.hfsm.progress import Progress
+from argo_compiler.hfsm.remaining import remaining
+from argo_compiler.il import (
+    Action,
+    Group,
+    Mission,
+    OnFailure,
+    Reaction,
+    Response,
+    Stop,
+    Task,
+)
 
 
-def lower(mission: Mission, source_name: str = "mission") -> Hfsm:
+def lower(mission: Mission, progress: Progress | None = None, source_name: str = "mission") -> Hfsm:
     """The machine of a mission, in time linear in the number of tasks.
+
+    With `progress`, that of the remaining mission: only what can still be reached from there.
 
     Raises:
         DiagnosticError: `check` finds errors in the mission.
+        ArgoError: the mission does not have the task that the progress is at.
     """
     findings = check(mission)
     if any(finding.severity is Severity.ERROR for finding in findings):
         raise DiagnosticError(source_name, findings)
-    return _Lowering(mission).machine()
+    with collector_held():
+        machine = _Lowering(mission).machine()
+        return machine if progress is None else remaining(machine, progress)
+
+
+_END = Transition(kind=TransitionKind.DEFAULT, target=DONE, domain=MISSION)
+
+_FAILURES = {
+    OnFailure.RETURN: Transition(kind=TransitionKind.FAILURE, target=RETURN, domain=MISSION),
+    OnFailure.ABORT: Transition(kind=TransitionKind.FAILURE, target=DONE, domain=MISSION),
+}
 
 
 class _Lowering:
@@ -74,7 +82,7 @@ class _Lowering:
             id=MISSION,
             name=self.mission.designation,
             parent=None,
-            children=(*children[None], DONE),
+            children=(*children[None], *(leaf.id for leaf in self._return_leaf()), DONE),
             initial=initial,
         )
         groups = (self._composite(i, tuple(children[i])) for i in range(len(self.group_ids)))
@@ -83,7 +91,15 @@ class _Lowering:
             for i, task in enumerate(self.mission.tasks)
             if task.action is not Action.START
         )
-        return Hfsm(composites=(root, *groups), leaves=tuple(leaves))
+        return Hfsm(
+            composites=(root, *groups),
+            leaves=(*leaves, *self._return_leaf()),
+            reactions=tuple(
+                _reaction_state(reaction, self.mission)
+                for reaction in sorted(self.mission.reactions, key=lambda r: -r.priority)
+            ),
+            max_duration=self.mission.max_duration,
+        )
 
     def _initial(self) -> str:
         tasks = self.mission.tasks
@@ -157,13 +173,27 @@ class _Lowering:
             parent=self._composite_id(parent),
             task=task,
             transitions=(*conditional, last),
+            failure=_FAILURES.get(task.on_failure),
+        )
+
+    def _return_leaf(self) -> tuple[Leaf, ...]:
+        """The drive back to the dock, if some task asks for it when it has failed."""
+        if all(task.on_failure is not OnFailure.RETURN for task in self.mission.tasks):
+            return ()
+        return (
+            Leaf(
+                id=RETURN,
+                parent=MISSION,
+                task=Task(name=RETURN_TASK, action=Action.WAYPOINT, pose=self.mission.dock),
+                transitions=(_END,),
+            ),
         )
 
     def _default(self, inside: int | None, task: Task) -> Transition:
         """The unconditional transition of a task, taken by a state that lies in `inside`."""
         target = _unconditional_target(task)
         if target is None:
-            return Transition(kind=TransitionKind.DEFAULT, target=DONE, domain=MISSION)
+            return _END
         return Transition(
             kind=TransitionKind.DEFAULT,
             target=task_id(target),
@@ -179,6 +209,18 @@ class _Lowering:
 
 def _unconditional_target(task: Task) -> str | None:
     return next((t.target for t in task.transitions if not t.conditions), None)
+
+
+def _reaction_state(reaction: Reaction, mission: Mission) -> ReactionState:
+    task = None
+    if reaction.response in (Response.RETURN, Response.SAFE_AREA):
+        returns = reaction.response is Response.RETURN
+        task = Task(
+            name=reaction_task_name(reaction.event),
+            action=Action.WAYPOINT,
+            pose=mission.dock if returns else reaction.pose,
+        )
+    return ReactionState(id=reaction_id(reaction.event), reaction=reaction, task=task)
 
 
 def _timeout(group: Group) -> Transition | None:

@@ -27,8 +27,11 @@ from typing import Literal
 from pydantic import Field, model_validator
 
 from argo_compiler.diagnostics import Span
+from argo_compiler.hfsm.validation import validate
 from argo_compiler.il import Condition, Reaction, Stop, Task
 from argo_compiler.model import Model
+from argo_compiler.reserved import RETURN_TASK as RETURN_TASK
+from argo_compiler.reserved import reaction_task_name as reaction_task_name
 
 MISSION = "mission"
 """id of the composite that all other states lie in"""
@@ -38,14 +41,6 @@ DONE: Literal["done"] = "done"
 
 RETURN = "return"
 """id of the leaf in which the robot drives back to the dock after a failure"""
-
-RETURN_TASK = "return to dock"
-"""name of that leaf's task; no task of a mission may have it"""
-
-
-def reaction_task_name(event: str) -> str:
-    """Name of the task in which a reaction drives; no task of a mission may have it."""
-    return f"react to {event}"
 
 
 def reaction_id(event: str) -> str:
@@ -90,14 +85,6 @@ class Transition(Model):
     """the composite whose round has ended, and which decides how to go on"""
     conditions: tuple[Condition, ...] = ()
     """CONDITIONAL only: all of them have to hold"""
-
-    @model_validator(mode="after")
-    def _leads_to_one_place(self) -> "Transition":
-        if (self.target is None) == (self.completes is None):
-            raise ValueError("a transition has either a target or a composite that it completes")
-        if (self.target is None) != (self.domain is None):
-            raise ValueError("a transition has a domain if and only if it has a target")
-        return self
 
 
 class Repeat(Model):
@@ -190,31 +177,6 @@ class Hfsm(Model):
                 yield composite.timeout
 
     @model_validator(mode="after")
-    def _references_exist(self) -> "Hfsm":
-        leaves = {leaf.id for leaf in self.leaves}
-        composites: set[str] = set()
-        for composite in self.composites:
-            if (composite.parent is None) != (composite.id == MISSION):
-                raise ValueError(f"'{MISSION}' alone has no parent, unlike '{composite.id}'")
-            if composite.parent is not None and composite.parent not in composites:
-                raise ValueError(f"composite '{composite.id}' stands before its parent")
-            composites.add(composite.id)
-        if len(leaves) + len(composites) < len(self.leaves) + len(self.composites):
-            raise ValueError("two states have the same id")
-        if MISSION not in composites:
-            raise ValueError(f"there is no composite '{MISSION}'")
-        targets = leaves | {DONE}
-        states = targets | composites
-        used = [
-            *((leaf.parent, composites) for leaf in self.leaves),
-            *((c.initial, targets) for c in self.composites),
-            *((child, states) for c in self.composites for child in c.children),
-        ]
-        for transition in self.transitions():
-            if transition.target is not None:
-                used += [(transition.target, targets), (transition.domain or "", composites)]
-            used.append((transition.completes or MISSION, composites))
-        for id, possible in used:
-            if id not in possible:
-                raise ValueError(f"there is no state '{id}' that can be meant here")
+    def _makes_sense(self) -> "Hfsm":
+        validate(self)
         return self

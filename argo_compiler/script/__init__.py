@@ -2,9 +2,10 @@
 
 `read_script` reads the file, `heal` takes the noise of text recognition out, `parse` makes the
 syntax tree, `resolve` looks up what it names and makes the mission; `import_script` does the last
-three in one.
+three in one. `format_script` writes a mission back as a protocol.
 """
 
+from argo_compiler.script.format import format_script
 from argo_compiler.script.healing import Healed, heal
 from argo_compiler.script.nodes import Protocol, Script, Sheet
 from argo_compiler.script.parsing import parse
@@ -20,6 +21,7 @@ __all__ = [
     "Sheet",
     "catalog_words",
     "decode_script",
+    "format_script",
     "heal",
     "import_script",
     "parse",

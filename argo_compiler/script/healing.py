@@ -33,12 +33,14 @@ _PLAIN = {
     "\ufb01": "fi",
     "\ufb02": "fl",
 }
+_NOISE = re.compile(r"[^ -)+-_a-~]|^\s*[-#+]|\s$")
+"""only where this is found there may be anything to heal; most lines need no closer look"""
 _LIST_MARK = re.compile(r"\s*(?:#+|[-+])\s+(?=[^\W\d]|\d+\s*[.)])")
 _TABS = re.compile(r"\t+")
 _WORD = re.compile(r"[\w'-]*")
 _MOST_CUTS = 8
 """runs of tabs in a row of the sheet; a line with more is no such row, and they separate"""
-_MOST_ERRORS = 100
+MOST_ERRORS = 100
 _LONGEST_OVERLAP = 3
 """letters that may stand twice beside a cut"""
 
@@ -59,8 +61,8 @@ class Healed:
     def statements(self, findings: Findings) -> Iterator[Text]:
         """The lines to parse, until `findings` has too many errors for more to be of use."""
         for number, line in enumerate(self.lines, start=1):
-            if findings.errors > _MOST_ERRORS:
-                message = f"more than {_MOST_ERRORS} errors; the rest is not read"
+            if findings.errors > MOST_ERRORS:
+                message = f"more than {MOST_ERRORS} errors; the rest is not read"
                 findings.error("too-many-errors", message, line.span(0, 1))
                 return
             if line.content.strip() and number not in self.unreadable:
@@ -79,6 +81,9 @@ def heal(text: str | Source, vocabulary: Collection[str]) -> Healed:
     unreadable = set()
     for number in range(1, len(source.lines) + 1):
         line = source.line_text(number)
+        if not _NOISE.search(line.content) and len(line.content) <= MAX_LINE:
+            lines.append(line)
+            continue
         if len(line.content) > MAX_LINE:
             message = f"the line has {len(line.content)} characters; at most {MAX_LINE} are read"
             findings.error("long-line", message, line.span(0, 1), "break it into lines")

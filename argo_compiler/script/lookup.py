@@ -7,9 +7,9 @@ from rapidfuzz.distance import OSA
 from argo_compiler.catalog import Area, Catalog, CheckpointInfo, CheckpointKind, Floor
 from argo_compiler.diagnostics import Span
 from argo_compiler.model import Pose
-from argo_compiler.script.nodes import Name, Number, PlaceLocation, Quantity, Reference
 from argo_compiler.script.source import Findings
 from argo_compiler.script.spelling import alternatives, nearest
+from argo_compiler.script.terms import Edge, FloorName, Name, PlaceLocation, Quantity, Reference
 
 _QUANTITIES = {
     CheckpointKind.PRESSURE_GAUGE: Quantity.VALUE,
@@ -96,13 +96,19 @@ class Lookup:
             self.findings.error("unknown-area", message, span, f"the starting areas are {known}")
         return found
 
-    def floor(self, number: Number) -> Floor | None:
-        found = self.catalog.floor(number.value)
+    def floor(self, floor: FloorName) -> Floor | None:
+        """The floor of this number, or the highest or lowest one."""
+        floors = self.catalog.floors
+        if floor.number is Edge.TOP and floors:
+            return max(floors, key=lambda f: f.z)
+        if floor.number is Edge.BOTTOM and floors:
+            return min(floors, key=lambda f: f.z)
+        found = next((f for f in floors if f.number == floor.number), None)
         if found is None:
-            known = alternatives((str(f.number) for f in self.catalog.floors), "and")
-            message = f"there is no floor {number.value} on {self.catalog.site}"
+            known = alternatives((str(f.number) for f in floors), "and")
+            message = f"there is no floor {floor.number} on {self.catalog.site}"
             hint = f"the floors are {known}, counted from the bottom"
-            self.findings.error("unknown-floor", message, number.span, hint)
+            self.findings.error("unknown-floor", message, floor.span, hint)
         return found
 
     def place(self, location: PlaceLocation) -> Pose | None:

@@ -4,69 +4,35 @@ A `Script` is a `Sheet` or a `Protocol`. Nothing here is looked up yet: a checkp
 or the name that the script says, whether or not the site has it.
 """
 
-from enum import StrEnum
+from dataclasses import dataclass
 from typing import Literal
 
-from argo_compiler.catalog import CheckpointKind
-from argo_compiler.diagnostics import Diagnostic, Span
+from argo_compiler.diagnostics import Diagnostic
 from argo_compiler.il import Mode, Order
 from argo_compiler.model import Model
+from argo_compiler.script.commands import Command
+from argo_compiler.script.terms import (
+    Coordinates,
+    Duration,
+    Name,
+    Node,
+    Number,
+    Quantity,
+    Reference,
+    StepRef,
+)
+
+__all__ = ["Duration", "Name", "Node", "Number", "Quantity", "Reference"]
 
 
-class Node(Model):
-    """A piece of the syntax tree; `span` is where its text begins and how far it goes."""
-
-    span: Span
-
-
-class Number(Node):
-    """A whole number, written in figures or as a word."""
-
-    value: int
-
-
-class Duration(Node):
-    """A length of time."""
-
-    seconds: float
-
-
-class Quantity(StrEnum):
-    """What a script asks to be read."""
-
-    VALUE = "value"
-    POSITION = "position"
-    LEVEL = "level"
-
-
-class Name(Node):
-    """A checkpoint's name: `valve R25`."""
-
-    kind: CheckpointKind
-    identifier: str
-
-    @property
-    def text(self) -> str:
-        return f"{self.kind} {self.identifier}"
-
-
-class Reference(Node):
-    """A checkpoint as a script names it: by number, by name, or by both."""
-
-    number: int | None = None
-    name: Name | None = None
-    quantity: Quantity | None = None
-
-
-# ---- the sheet (thesis, figure 1.4)
-
-
+@dataclass(frozen=True, slots=True, kw_only=True)
 class TextField(Node):
-    """A cell of the sheet that is kept as text."""
+    """A field that is kept as text."""
 
     text: str
 
 
+@dataclass(frozen=True, slots=True, kw_only=True)
 class AreaField(Node):
     """A cell that names starting areas: more than one leaves the choice to the preparation."""
 
@@ -74,18 +40,21 @@ class AreaField(Node):
     areas: tuple[Number, ...]
 
 
+@dataclass(frozen=True, slots=True, kw_only=True)
 class ModeField(Node):
     """The main mode."""
 
     mode: Mode
 
 
+@dataclass(frozen=True, slots=True, kw_only=True)
 class OrderField(Node):
-    """The sentence that introduces the checkpoints and says whether their order is free."""
+    """Whether the checkpoints' order is free."""
 
     order: Order
 
 
+@dataclass(frozen=True, slots=True, kw_only=True)
 class SheetStep(Node):
     """`3. Checkpoint #8: read the value on pressure gauge 5`."""
 
@@ -113,92 +82,45 @@ class Sheet(Model):
     diagnostics: tuple[Diagnostic, ...] = ()
 
 
-# ---- the protocol (thesis, figure 5.1)
+@dataclass(frozen=True, slots=True, kw_only=True)
+class AreaHeader(Node):
+    """`Start area: 1`, perhaps `none`, perhaps `as planned`: then the steps stay as they are."""
+
+    area: int | None
+    as_planned: bool
 
 
-class AreaLocation(Node):
-    """`starting area 1`."""
+@dataclass(frozen=True, slots=True, kw_only=True)
+class DockHeader(Node):
+    """`Dock: (3.05, -2.55, 0)` or `Dock: none`."""
 
-    area: Number
-
-
-class DockLocation(Node):
-    """The docking station, of the starting area that is named with it, if one is."""
-
-    area: Number | None = None
+    dock: Coordinates | None
 
 
-class PlaceLocation(Node):
-    """A place of the site by its name: `front of the site`."""
+@dataclass(frozen=True, slots=True, kw_only=True)
+class CurrentHeader(Node):
+    """`Current: "MEASURE 4"`."""
 
-    name: str
-
-
-Location = AreaLocation | DockLocation | PlaceLocation
+    task: StepRef
 
 
-class SetStart(Node):
-    """`Set a starting point in front of the site`."""
+@dataclass(frozen=True, slots=True, kw_only=True)
+class DurationHeader(Node):
+    """`Maximum duration: 20'` or `none`."""
 
-    location: Location
-
-
-class Patrol(Node):
-    """`Patrol the first floor in circles for 10 minutes`; the first limit reached ends it."""
-
-    floor: Number
-    duration: Duration | None = None
-    rounds: Number | None = None
+    seconds: float | None
 
 
-class Measure(Node):
-    """`Check the checkpoint #14`: one more measurement, after what was asked for so far."""
-
-    checkpoint: Reference
-
-
-class Side(StrEnum):
-    """Where something is added."""
-
-    BEFORE = "before"
-    AFTER = "after"
-
-
-class Add(Node):
-    """`Add checkpoint #2 after checkpoint #14`; without `anchor` the same as `Measure`."""
-
-    checkpoint: Reference
-    anchor: Reference | None = None
-    side: Side = Side.AFTER
-
-
-class Delete(Node):
-    """`Delete the measuring of checkpoint #2`."""
-
-    checkpoint: Reference
-
-
-class Go(Node):
-    """`Go to the front of the site`, `Return to the docking station`."""
-
-    location: Location
-
-
-class Done(Node):
-    """`Done!`: the protocol ends here."""
-
-
-Command = SetStart | Patrol | Measure | Add | Delete | Go | Done
-
-
+@dataclass(frozen=True, slots=True, kw_only=True)
 class ProtocolStep(Node):
-    """One line of a protocol: a command, or several joined by `and`, carried out in order."""
+    """One line of a protocol: a command, or several, carried out in order."""
 
     number: int | None
     """of the step, as printed"""
     commands: tuple[Command, ...]
 
 
+@dataclass(frozen=True, slots=True, kw_only=True)
 class Hint(Node):
     """A remark to the person who plans. It is kept and has no effect on the mission."""
 
@@ -212,6 +134,20 @@ class Protocol(Model):
     source_name: str
     source_text: str
     title: TextField | None = None
+    designation: TextField | None = None
+    site: TextField | None = None
+    mode: ModeField | None = None
+    max_duration: DurationHeader | None = None
+    order: OrderField | None = None
+    anomaly_specification: TextField | None = None
+    real_time_reporting: TextField | None = None
+    after_mission_report: TextField | None = None
+    initial_position: AreaField | None = None
+    end_of_mission: AreaField | None = None
+    start_area: AreaHeader | None = None
+    end_area: AreaHeader | None = None
+    dock: DockHeader | None = None
+    current: CurrentHeader | None = None
     steps: tuple[ProtocolStep, ...] = ()
     hints: tuple[Hint, ...] = ()
     diagnostics: tuple[Diagnostic, ...] = ()

@@ -4,6 +4,7 @@ import re
 from collections.abc import Collection
 from typing import Literal
 
+from argo_compiler.collecting import collector_held
 from argo_compiler.diagnostics import DiagnosticError
 from argo_compiler.script.healing import heal
 from argo_compiler.script.nodes import Script
@@ -11,11 +12,13 @@ from argo_compiler.script.protocol import parse_protocol, protocol_grammar
 from argo_compiler.script.sheet import parse_sheet, sheet_grammar
 from argo_compiler.script.source import Findings, Source
 from argo_compiler.script.spelling import respell
-from argo_compiler.script.vocabulary import SHEET_WORDS
+from argo_compiler.script.vocabulary import PROTOCOL_MARKS, SHEET_MARKS, SHEET_WORDS
 
-MAX_LINES = 20_000
+MAX_LINES = 120_000
 """of a script; one with more is refused unread"""
 
+_NUMBERED = re.compile(r"\s*(?:step\s+)?[0-9]+\s*[.):]", re.IGNORECASE)
+_MARKS = SHEET_MARKS | PROTOCOL_MARKS | {"mission", "protocol"}
 _WORD = re.compile(r"[a-z][\w'-]*")
 _UNRECOGNISED = (
     "a sheet begins like `Mission's designation: Mission #1` and `Main mode: Autonomous`; "
@@ -23,6 +26,7 @@ _UNRECOGNISED = (
 )
 
 
+@collector_held()
 def parse(text: str, vocabulary: Collection[str] = (), source_name: str = "script") -> Script:
     """The syntax tree of the script, with all that was found on the way in its `diagnostics`.
 
@@ -49,35 +53,36 @@ def _kind_of(source: Source) -> Literal["sheet", "protocol"]:
     if not source.text.strip("\ufeff \t\r\n"):
         findings.error("empty", "the script is empty", None, _UNRECOGNISED)
         raise DiagnosticError(source.name, findings.diagnostics)
-    if len(source.lines) > MAX_LINES:
-        message = f"the script has {len(source.lines)} lines; at most {MAX_LINES} are read"
+    lines = max(source.text.count("\n"), source.text.count("\r")) + 1
+    if lines > MAX_LINES:
+        message = f"the script has {lines} lines; at most {MAX_LINES} are read"
         findings.error("too-long", message, None, "divide the mission")
         raise DiagnosticError(source.name, findings.diagnostics)
 
-    sheet, protocol = _marks()
-    openings = [_WORD.findall(line[:80].lower())[:2] for line in source.lines]
     for understand in (_as_spelled, respell):
-        of_sheet = of_protocol = 0
-        for words in openings:
-            read = (understand(word, sheet | protocol) for word in words)
-            mark = next((word for word in read if word), None)
-            of_sheet += mark in sheet
-            of_protocol += mark in protocol
-        if of_sheet or of_protocol:
-            return "sheet" if of_sheet >= of_protocol else "protocol"
+        votes = {"sheet": 0, "protocol": 0, "steps": 0}
+        for line in source.lines:
+            words = _WORD.findall(line[:80].lower())[:2]
+            is_step = _NUMBERED.match(line[:80]) is not None
+            read = [word for w in words if (word := understand(w, _MARKS))]
+            if read == ["mission", "protocol"]:
+                return "protocol"
+            mark = next((word for word in read if word != "mission"), None)
+            votes["sheet"] += mark in SHEET_MARKS
+            votes["protocol"] += mark in PROTOCOL_MARKS
+            # A protocol may have the fields of a sheet; its steps tell them apart.
+            first = understand(words[0], _MARKS) if words else None
+            votes["steps"] += is_step * ((first in PROTOCOL_MARKS) - (first in SHEET_MARKS))
+        if votes["steps"] > 0:
+            return "protocol"
+        if votes["sheet"] or votes["protocol"]:
+            return "sheet" if votes["sheet"] >= votes["protocol"] else "protocol"
     message = "this is neither a mission sheet nor a mission protocol"
-    line = next(i for i, text in enumerate(source.lines, start=1) if text.strip("\ufeff \t"))
+    opening = next(i for i, line in enumerate(source.lines, start=1) if line.strip("\ufeff \t"))
     findings.error(
-        "unrecognised", message, source.line_text(line).strip().span(0, 1), _UNRECOGNISED
+        "unrecognised", message, source.line_text(opening).strip().span(0, 1), _UNRECOGNISED
     )
     raise DiagnosticError(source.name, findings.diagnostics)
-
-
-def _marks() -> tuple[frozenset[str], frozenset[str]]:
-    """The words that mark a line's beginning as a sheet's, and as a protocol's."""
-    sheet = sheet_grammar().openings("row")
-    protocol = protocol_grammar().openings("line")
-    return sheet - protocol, (protocol - sheet) | {"protocol"}
 
 
 def _as_spelled(word: str, known: frozenset[str]) -> str | None:

@@ -1,96 +1,141 @@
-"""Puts a mission's tasks together: names them, links them and lays the groups over them."""
+"""The plan while a script's commands are carried out: what is to be done, in order.
 
-from collections import Counter
-from collections.abc import Sequence
-from dataclasses import dataclass
+A plan is mutable. Its items are linked, so that any of thousands of changes takes the same time.
+"""
+
+from collections.abc import Iterator
+from dataclasses import dataclass, field
 
 from argo_compiler.diagnostics import Span
-from argo_compiler.il import Action, Group, Stop, Task, Transition
+from argo_compiler.il import Action, Condition, JointState, OnFailure
 from argo_compiler.model import Pose
+from argo_compiler.script.commands import Limits, Plain
+from argo_compiler.script.terms import StepRef
 
 
-@dataclass(frozen=True)
+@dataclass(eq=False, slots=True)
 class Item:
-    """One thing to do: a task, or with `repeat` a round of waypoints that is driven repeatedly."""
+    """One task to be."""
 
-    name: str
-    """what the task or the round is called where it is the only one of its kind"""
+    base: str
+    """what the task is called where it is the only one of its kind"""
     action: Action
-    source: Span | None
-    poses: tuple[Pose, ...] = ()
+    source: Span | None = None
+    pose: Pose | None = None
     object_id: str | None = None
-    repeat: "Repeat | None" = None
+    name: str | None = None
+    """set if the script names the task itself"""
+    docks: bool = False
+    apart: bool = False
+    """the task before it does not go on with it: only routes lead there"""
+    arriving: float | None = None
+    """m/s on the way to it"""
+    leaving: float | None = None
+    """m/s on the way to the next"""
+    passing: float | None = None
+    """m/s on the way to the next where neither of the two says it"""
+    retries: int = 0
+    on_failure: OnFailure = OnFailure.CONTINUE
+    joints: JointState | None = None
+    shown_in: str | None = None
+    routes: list["Leg"] | None = None
+    detour: "Item | None" = None
+    """the last item of those that are carried out only if a route of this one leads there"""
+    returns: "Item | None" = None
+    """the item of whose detours this one is the last; after it the mission goes on behind them"""
+    before: "Item | None" = None
+    after: "Item | None" = None
+    planned: bool = False
 
 
-@dataclass(frozen=True)
-class Repeat:
-    """How often and how long a round is driven; 0 is no limit, as in the IL."""
+@dataclass(eq=False, slots=True)
+class Leg:
+    """A route of an item, its checkpoints looked up; no alternatives: unconditional."""
 
-    count: int
-    duration: float
-    """s"""
-
-
-def assemble(items: Sequence[Item]) -> tuple[tuple[Task, ...], tuple[Group, ...]]:
-    """The tasks, each with an unconditional transition to the next, and the groups.
-
-    Waypoints are numbered through; of other names the second is `MEASURE 4 (2)`.
-    """
-    used: Counter[str] = Counter()
-    tasks: list[Task] = []
-    groups: list[Group] = []
-
-    def unique(name: str) -> str:
-        used[name] += 1
-        if name == Action.WAYPOINT:
-            return f"{name} {used[name]}"
-        return name if used[name] == 1 else f"{name} ({used[name]})"
-
-    for item in items:
-        group = unique(item.name) if item.repeat else ""
-        first = len(tasks)
-        for pose in item.poses or (None,):
-            tasks.append(
-                Task(
-                    name=unique(Action.WAYPOINT if item.repeat else item.name),
-                    action=item.action,
-                    group=group,
-                    object_id=item.object_id,
-                    pose=pose,
-                    source=item.source,
-                )
-            )
-        if item.repeat:
-            groups.append(
-                Group(
-                    name=group,
-                    start=tasks[first].name,
-                    end=tasks[-1].name,
-                    max_repeat_count=item.repeat.count,
-                    max_repeat_duration=item.repeat.duration,
-                    stop=Stop.HARD,
-                    source=item.source,
-                )
-            )
-    return _linked(tasks), tuple(groups)
+    alternatives: tuple[tuple[Condition, ...], ...]
+    target: "Plain | StepRef | Item | Home"
+    span: Span
 
 
-def _linked(tasks: Sequence[Task]) -> tuple[Task, ...]:
-    following = [(Transition(target=task.name),) for task in tasks[1:]]
-    return tuple(
-        task.model_copy(update={"transitions": to})
-        for task, to in zip(tasks, [*following, ()], strict=True)
-    )
+@dataclass(frozen=True, slots=True)
+class Home:
+    """The drive to the docking station at the end of the mission."""
+
+    area: int | None
+    span: Span
 
 
-def start_item(pose: Pose, source: Span | None) -> Item:
+@dataclass(eq=False, slots=True)
+class Round:
+    """A group to be: from an item to an item, or over steps that are looked up at the end."""
+
+    base: str
+    limits: Limits
+    span: Span
+    name: str | None = None
+    first: Item | None = None
+    last: Item | None = None
+    steps: StepRef | None = None
+    whole: bool = False
+    """over all tasks but START"""
+
+
+@dataclass
+class Plan:
+    """Items in order, and rounds in the order in which they were asked for."""
+
+    rounds: list[Round] = field(default_factory=list)
+    first: Item | None = None
+    last: Item | None = None
+
+    def __iter__(self) -> Iterator[Item]:
+        item = self.first
+        while item is not None:
+            yield item
+            item = item.after
+
+    def append(self, item: Item) -> None:
+        self.insert_after(self.last, item)
+
+    def insert_after(self, anchor: Item | None, item: Item) -> None:
+        """Puts the item behind the anchor; None: before all."""
+        after = anchor.after if anchor is not None else self.first
+        item.before, item.after, item.planned = anchor, after, True
+        if anchor is not None:
+            anchor.after = item
+        else:
+            self.first = item
+        if after is not None:
+            after.before = item
+        else:
+            self.last = item
+
+    def remove(self, item: Item) -> None:
+        if item.before is not None:
+            item.before.after = item.after
+        else:
+            self.first = item.after
+        if item.after is not None:
+            item.after.before = item.before
+        else:
+            self.last = item.before
+        item.before = item.after = None
+        item.planned = False
+
+
+def start_item(pose: Pose | None, source: Span | None) -> Item:
     """Where the mission begins."""
-    return Item("START", Action.START, source, poses=(pose,))
+    return Item("START", Action.START, source, pose)
 
 
 def dock_item(pose: Pose, source: Span | None) -> Item:
     """The way into the docking station."""
-    return Item("DOCK", Action.WAYPOINT, source, poses=(pose,))
+    return Item("DOCK", Action.WAYPOINT, source, pose, docks=True)
+
+
+def waypoint_item(pose: Pose, source: Span | None) -> Item:
+    """The way to a place."""
+    return Item("WAYPOINT", Action.WAYPOINT, source, pose)
 
 
 def measure_item(checkpoint: int, source: Span | None) -> Item:

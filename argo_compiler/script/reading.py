@@ -4,8 +4,8 @@ from pathlib import Path
 
 from argo_compiler.errors import ArgoError
 
-MAX_BYTES = 1_000_000
-"""of a script's file; a mission of many thousand steps fits"""
+MAX_BYTES = 32_000_000
+"""of a script's file; a mission of a hundred thousand steps fits"""
 
 
 def read_script(path: str | Path) -> str:

@@ -3,6 +3,7 @@
 from collections.abc import Sequence
 
 from argo_compiler.catalog import Catalog
+from argo_compiler.collecting import collector_held
 from argo_compiler.diagnostics import Diagnostic, DiagnosticError
 from argo_compiler.il import Mission
 from argo_compiler.model import Model
@@ -22,6 +23,7 @@ class Resolved(Model):
     diagnostics: tuple[Diagnostic, ...] = ()
 
 
+@collector_held()
 def resolve(
     script: Script, catalog: Catalog, start_area: int | None = None, end_area: int | None = None
 ) -> Resolved:
@@ -44,6 +46,7 @@ def resolve(
     return Resolved(mission=mission, diagnostics=findings.by_place())
 
 
+@collector_held()
 def import_script(
     text: str,
     catalog: Catalog,

@@ -5,9 +5,10 @@ from typing import Literal
 from argo_compiler.catalog import Area
 from argo_compiler.diagnostics import Span
 from argo_compiler.il import Mission, Mode, Order
+from argo_compiler.script.assembly import assemble
 from argo_compiler.script.lookup import Lookup
 from argo_compiler.script.nodes import AreaField, Sheet, TextField
-from argo_compiler.script.plan import Item, assemble, dock_item, measure_item, start_item
+from argo_compiler.script.plan import Plan, dock_item, measure_item, start_item
 from argo_compiler.script.source import Findings
 from argo_compiler.script.spelling import alternatives
 
@@ -29,11 +30,14 @@ def sheet_mission(
     if findings.errors or start is None:
         return None
 
-    items: list[Item] = [start_item(start.dock, _span(sheet.initial_position))]
-    items += [measure_item(c.id, step.span) for step, c in checkpoints if c is not None]
+    plan = Plan()
+    plan.append(start_item(start.dock, _span(sheet.initial_position)))
+    for step, checkpoint in checkpoints:
+        if checkpoint is not None:
+            plan.append(measure_item(checkpoint.id, step.span))
     if end is not None:
-        items.append(dock_item(end.dock, _span(sheet.end_of_mission)))
-    tasks, groups = assemble(items)
+        plan.append(dock_item(end.dock, _span(sheet.end_of_mission)))
+    tasks, groups = assemble(plan, findings)
     return Mission(
         designation=_text(sheet.designation),
         site=lookup.catalog.site,
@@ -41,6 +45,7 @@ def sheet_mission(
         max_duration=sheet.max_duration.seconds if sheet.max_duration else None,
         start_area=start.number,
         end_area=end.number if end else None,
+        dock=(end or start).dock,
         order=sheet.order.order if sheet.order else Order.PRECISE,
         anomaly_specification=_text(sheet.anomaly_specification),
         real_time_reporting=_text(sheet.real_time_reporting),

@@ -41,11 +41,13 @@ FORMS = (
     "1. Checkpoint #1: read the value on pressure gauge 1",
     "1. Checkpoint #2: read the level on liquid level gauge 1",
 )
+SHEET_STARTS = ("row", "order", "areas")
+"""rules of the grammar to parse by"""
 
 
 def sheet_grammar() -> Grammar:
     """The grammar of the sheet's rows."""
-    return load_grammar("sheet", ("row", "order", "areas"), FORMS)
+    return load_grammar("sheet", SHEET_STARTS, FORMS)
 
 
 @dataclass

@@ -5,18 +5,10 @@ from enum import StrEnum
 from typing import Any, ClassVar
 
 from argo_compiler.il import Mode, Order
-from argo_compiler.script.building import Builder, Phrase, Time
-from argo_compiler.script.nodes import (
-    Duration,
-    ModeField,
-    Name,
-    Number,
-    OrderField,
-    Quantity,
-    Reference,
-    SheetStep,
-)
+from argo_compiler.script.building import Builder, Figure, Numbered, Phrase, Time
+from argo_compiler.script.nodes import ModeField, OrderField, SheetStep
 from argo_compiler.script.source import Text
+from argo_compiler.script.terms import Duration, Name, Number, Quantity, Reference
 
 
 class Label(StrEnum):
@@ -47,10 +39,6 @@ class RowBuilder(Builder):
 
     constants: ClassVar[dict[str, Any]] = {
         **Builder.constants,
-        "autonomous": Mode.AUTONOMOUS,
-        "supervisory": Mode.SUPERVISORY,
-        "precise": Order.PRECISE,
-        "any_order": Order.ANY,
         "heading": None,
     }
 
@@ -97,15 +85,20 @@ class RowBuilder(Builder):
         return OrderField(span=phrase.span, order=phrase.the(Order))
 
     def step(self, phrase: Phrase) -> SheetStep:
-        named = {"name": phrase.first(Name), "quantity": phrase.first(Quantity)}
+        reference = phrase.first(Numbered)
         return SheetStep(
             span=phrase.span,
             number=phrase.first(int),
-            checkpoint=phrase.the(Reference).model_copy(update=named),
+            checkpoint=Reference(
+                span=reference.phrase.span if reference else phrase.span,
+                number=reference.number if reference else None,
+                name=phrase.first(Name),
+                quantity=phrase.first(Quantity),
+            ),
         )
 
-    def area(self, phrase: Phrase) -> Number:
-        return phrase.the(Number)
+    def area(self, phrase: Phrase) -> Figure:
+        return phrase.the(Figure)
 
     def areas(self, phrase: Phrase) -> tuple[Number, ...]:
-        return phrase.every(Number)
+        return tuple(figure.node for figure in phrase.every(Figure))

@@ -11,6 +11,8 @@ from argo_compiler.diagnostics import Diagnostic, Severity, Span
 MAX_LINE = 2000
 """characters in a line; a longer one is refused unread"""
 
+_MOST_KEPT = 500
+"""errors; further ones are counted, but not kept"""
 _LINE_END = re.compile(r"\r\n|\r|\n")
 
 
@@ -46,10 +48,10 @@ class Source:
 
     def span(self, start: int, end: int) -> Span:
         """The span of the characters `start` to `end`, cut at the end of its first line."""
-        line = max(1, bisect_right(self._starts, start))
+        line = bisect_right(self._starts, start) or 1
         line_start, line_end = self._bounds[line - 1]
-        length = max(1, min(end, line_end) - start)
-        return Span(line=line, column=start - line_start + 1, length=length)
+        length = (end if end < line_end else line_end) - start
+        return Span(line=line, column=start - line_start + 1, length=length if length > 1 else 1)
 
 
 @dataclass(frozen=True)
@@ -64,7 +66,10 @@ class Text:
         return Text(self.content[part], self.offsets[part], self.source)
 
     def strip(self) -> "Text":
-        left = len(self.content) - len(self.content.lstrip())
+        content = self.content
+        if content and not content[0].isspace() and not content[-1].isspace():
+            return self
+        left = len(content) - len(content.lstrip())
         return self[left : max(left, len(self.content.rstrip()))]
 
     def replace(self, start: int, end: int, word: str) -> "Text":
@@ -77,9 +82,12 @@ class Text:
 
     def span(self, start: int = 0, end: int | None = None) -> Span:
         """Where the characters `start` to `end` stand; if there are none, the end of the text."""
-        offsets = self.offsets[start:end]
-        if offsets:
-            return self.source.span(offsets[0], offsets[-1] + 1)
+        offsets = self.offsets
+        last = len(offsets)
+        if end is not None and end < last:
+            last = end
+        if start < last:
+            return self.source.span(offsets[start], offsets[last - 1] + 1)
         after = self.offsets[-1] + 1 if self.offsets else 0
         return self.source.span(after, after + 1)
 
@@ -119,7 +127,10 @@ class Findings:
     def _add(
         self, severity: Severity, code: str, message: str, span: Span | None, hint: str | None
     ) -> None:
-        self.errors += severity is Severity.ERROR
+        if severity is Severity.ERROR:
+            self.errors += 1
+            if self.errors > _MOST_KEPT:
+                return
         excerpt = _printable(self.source.lines[span.line - 1]) if span else None
         self.diagnostics.append(
             Diagnostic(
@@ -145,5 +156,7 @@ def _place(diagnostic: Diagnostic) -> tuple[bool, int, int]:
 def _printable(line: str) -> str:
     if len(line) > MAX_LINE:
         line = f"{line[:80]} ..."
+    if line.replace("\t", " ").isprintable():
+        return line
     # Control characters would reach the user's terminal.
     return "".join(c if c.isprintable() or c == "\t" else " " for c in line)

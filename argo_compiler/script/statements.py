@@ -4,30 +4,21 @@ The parser itself finds misspelt words: where it stumbles it knows which words i
 accepted, and a word is respelled to one of those alone.
 """
 
-from collections.abc import Iterator
 from dataclasses import dataclass, field
-from functools import cache
+from functools import cache, cached_property
 
 from lark import Lark, Token, Tree
 from lark.exceptions import UnexpectedToken
-from lark.lark import PostLex
-from lark.lexer import PatternStr
+from lark.lexer import PatternRE, PatternStr
 from lark.parsers.lalr_interactive_parser import InteractiveParser
 
+from argo_compiler.script.shapes import Shapes, StumbleError, Syntax
 from argo_compiler.script.source import Findings, Text
 from argo_compiler.script.spelling import alternatives, most_alike, nearest, respell
+from argo_compiler.script.tables import load_parser
 
 _MOST_EXPECTED = 8
 """continuations that a hint lists; of more it shows the nearest"""
-
-
-class _WholeWords(PostLex):
-    """Lets WORD match everywhere, so that no keyword is found at the start of a longer word."""
-
-    always_accept = ("WORD",)
-
-    def process(self, stream: Iterator[Token]) -> Iterator[Token]:
-        return stream
 
 
 @dataclass(frozen=True)
@@ -42,8 +33,26 @@ class Grammar:
     number_words: frozenset[str]
     forms: tuple[str, ...]
     """one example of each statement"""
+    patterns: dict[str, str]
+    """the regular expressions of the other terminals"""
     _accepted: dict[tuple[int, ...], frozenset[str]] = field(default_factory=dict)
     """what `accepted` found out, for it is slow: the parser tries every terminal"""
+    _fitting: dict[frozenset[str], frozenset[str]] = field(default_factory=dict)
+
+    @cached_property
+    def shapes(self) -> Shapes:
+        """Parses as `parse` does, but once for all texts that are alike."""
+        return Shapes(self.parse, self.keywords.values(), self.patterns)
+
+    def parse(self, start: str, text: str) -> Tree[Token]:
+        """The tree of `text`, in lower case, by the rule `start`; raises StumbleError."""
+        parser = self.parser.parse_interactive(text, start)
+        try:
+            parser.exhaust_lexer()
+            tree: Tree[Token] = parser.feed_token(Token("$END", ""))
+        except UnexpectedToken as error:
+            raise StumbleError(error.token, self.accepted(parser)) from error
+        return tree
 
     def accepted(self, parser: InteractiveParser) -> frozenset[str]:
         """The terminals that the parser would go on with; its stack of states decides."""
@@ -53,24 +62,23 @@ class Grammar:
             self._accepted[states] = frozenset(names)
         return self._accepted[states]
 
+    def fitting(self, accepted: frozenset[str]) -> frozenset[str]:
+        """The words of the language among the terminals."""
+        words = self._fitting.get(accepted)
+        if words is None:
+            words = frozenset(self.keywords[name] for name in accepted if name in self.keywords)
+            self._fitting[accepted] = words
+        return words
+
     def openings(self, start: str) -> frozenset[str]:
         """The words that a statement of the rule `start` may begin with."""
-        accepted = self.accepted(self.parser.parse_interactive("", start))
-        return frozenset(self.keywords[name] for name in accepted if name in self.keywords)
+        return self.fitting(self.accepted(self.parser.parse_interactive("", start)))
 
 
 @cache
 def load_grammar(name: str, starts: tuple[str, ...], forms: tuple[str, ...]) -> Grammar:
     """The grammar in `<name>.lark` beside this module; `starts` are the rules to parse by."""
-    parser = Lark.open_from_package(
-        __package__,
-        f"{name}.lark",
-        parser="lalr",
-        start=list(starts),
-        propagate_positions=True,
-        maybe_placeholders=False,
-        postlex=_WholeWords(),
-    )
+    parser = load_parser(name, starts)
     fixed = {t.name: t.pattern.value for t in parser.terminals if isinstance(t.pattern, PatternStr)}
     keywords = {name: value for name, value in fixed.items() if value[0].isalpha()}
     signs = {name: value for name, value in fixed.items() if name not in keywords}
@@ -80,23 +88,18 @@ def load_grammar(name: str, starts: tuple[str, ...], forms: tuple[str, ...]) -> 
         if rule.origin.name in ("number_word", "ordinal_word")
         for symbol in rule.expansion
     )
-    return Grammar(parser, keywords, signs, number_words, forms)
-
-
-class _StumbleError(Exception):
-    """The parser can't go on from `token`; it would with one of the terminals `accepted`."""
-
-    def __init__(self, token: Token, accepted: frozenset[str]) -> None:
-        super().__init__(token)
-        self.token = token
-        self.accepted = accepted
+    by_priority = sorted(parser.terminals, key=lambda terminal: -terminal.priority)
+    patterns = {
+        t.name: t.pattern.to_regexp() for t in by_priority if isinstance(t.pattern, PatternRE)
+    }
+    return Grammar(parser, keywords, signs, number_words, forms, patterns)
 
 
 @dataclass(frozen=True)
 class Parsed:
     """A statement's tree; its positions are those of `text`, in which words may be respelled."""
 
-    tree: Tree[Token]
+    tree: Syntax
     text: Text
 
 
@@ -110,8 +113,8 @@ def parse_statement(grammar: Grammar, start: str, text: Text, findings: Findings
     # Each turn makes one word a word of the language, and such words are not touched again.
     while True:
         try:
-            tree = _parse(grammar, start, text)
-        except _StumbleError as stumble:
+            tree = grammar.shapes.tree(start, lower(text.content))
+        except StumbleError as stumble:
             word = _respelling(grammar, stumble)
             if word is None:
                 _report(grammar, stumble, original, text, findings)
@@ -129,32 +132,24 @@ def parse_statement(grammar: Grammar, start: str, text: Text, findings: Findings
 def matches(grammar: Grammar, start: str, text: Text) -> bool:
     """Whether the rule `start` accepts `text` as it is spelled."""
     try:
-        _parse(grammar, start, text)
-    except _StumbleError:
+        grammar.shapes.tree(start, lower(text.content))
+    except StumbleError:
         return False
     return True
 
 
-def _parse(grammar: Grammar, start: str, text: Text) -> Tree[Token]:
-    parser = grammar.parser.parse_interactive(lower(text.content), start)
-    try:
-        parser.exhaust_lexer()
-        tree: Tree[Token] = parser.feed_token(Token("$END", ""))
-    except UnexpectedToken as error:
-        raise _StumbleError(error.token, grammar.accepted(parser)) from error
-    return tree
-
-
 def lower(text: str) -> str:
     """`text` in lower case, character by character: no position moves."""
+    if text.isascii():
+        return text.lower()
     return "".join(c.lower() if len(c.lower()) == 1 else c for c in text)
 
 
-def _respelling(grammar: Grammar, stumble: _StumbleError) -> str | None:
+def _respelling(grammar: Grammar, stumble: StumbleError) -> str | None:
     word = str(stumble.token)
     if stumble.token.type == "$END" or word in grammar.keywords.values():
         return None
-    return respell(word, (grammar.keywords[n] for n in stumble.accepted if n in grammar.keywords))
+    return respell(word, grammar.fitting(stumble.accepted))
 
 
 def _extent(token: Token, text: Text) -> tuple[int, int]:
@@ -174,11 +169,11 @@ _READABLE = {
 
 
 def _report(
-    grammar: Grammar, stumble: _StumbleError, original: Text, text: Text, findings: Findings
+    grammar: Grammar, stumble: StumbleError, original: Text, text: Text, findings: Findings
 ) -> None:
     at, end = _extent(stumble.token, text)
     accepted = stumble.accepted
-    words = sorted(grammar.keywords[n] for n in accepted if n in grammar.keywords)
+    words = sorted(grammar.fitting(accepted))
     if "NUMBER" in accepted:
         # The numbers as words would bury all else.
         words = [word for word in words if word not in grammar.number_words]

@@ -23,6 +23,59 @@ _SHEET_WORDS = """
 """
 SHEET_WORDS = frozenset(_SHEET_WORDS.split())
 
+# The words that only lines of a sheet open with, and those that only commands do.
+SHEET_MARKS = frozenset(
+    [
+        "mission's",
+        "main",
+        "maximum",
+        "max",
+        "anomaly",
+        "specification",
+        "real-time",
+        "real",
+        "after-mission",
+        "after",
+        "initial",
+        "end",
+        "checkpoint",
+    ]
+)
+PROTOCOL_MARKS = frozenset(
+    [
+        "protocol",
+        "set",
+        "start",
+        "let",
+        "patrol",
+        "check",
+        "measure",
+        "read",
+        "inspect",
+        "control",
+        "verify",
+        "examine",
+        "add",
+        "insert",
+        "delete",
+        "remove",
+        "move",
+        "replace",
+        "exchange",
+        "go",
+        "drive",
+        "return",
+        "head",
+        "repeat",
+        "if",
+        "when",
+        "whenever",
+        "hint",
+        "note",
+        "done",
+    ]
+)
+
 
 def catalog_words(catalog: Catalog) -> frozenset[str]:
     """The words of the catalogue's names, in lower case; numbers are not words."""

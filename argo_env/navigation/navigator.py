@@ -40,6 +40,10 @@ class Navigator:
         self._views = lru_cache(maxsize=None)(self._find_views)
         self._flat_map = lru_cache(maxsize=None)(self._make_flat_map)
 
+    def prepare(self) -> None:
+        """Builds surface and lattice now, so that no later call takes the time for it."""
+        _ = self.lattice
+
     @cached_property
     def surface(self) -> Surface:
         """All walkable cells of the site."""

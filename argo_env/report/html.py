@@ -5,7 +5,7 @@ from pathlib import Path
 
 from jinja2 import Environment, StrictUndefined, Template
 
-from argo_compiler.hfsm import to_mermaid
+from argo_compiler.export import to_mermaid
 from argo_env.record import Reading, RunRecord
 from argo_env.report.elevation import elevation
 from argo_env.report.machine import drawable, machine

@@ -6,6 +6,7 @@ from itertools import groupby
 
 from argo_compiler.hfsm import Composite, Hfsm
 from argo_compiler.hfsm.model import task_id
+from argo_compiler.reserved import RESERVED_NAMES
 from argo_env.record import TaskRun
 
 
@@ -37,12 +38,16 @@ def blocks(hfsm: Hfsm, runs: Sequence[TaskRun]) -> tuple[Block, ...]:
 
     A round of a group begins with a run of its initial task after its last one, or after one that
     was cancelled. Where a group and another one in it have both tasks in common, the rounds of the
-    inner one are counted.
+    inner one are counted. The drive of a reaction belongs to the visit that it interrupts.
     """
     outermost = _outermost(hfsm)
+    groups: list[Composite | None] = []
+    for run in runs:
+        around = groups[-1] if groups and run.task in RESERVED_NAMES else None
+        groups.append(outermost.get(task_id(run.task), around))
     result = []
-    for id, part in groupby(runs, key=lambda run: _id_of(outermost.get(task_id(run.task)))):
-        visit = tuple(part)
+    for id, part in groupby(zip(groups, runs, strict=True), key=lambda pair: _id_of(pair[0])):
+        visit = tuple(run for _, run in part)
         group = outermost.get(task_id(visit[0].task))
         if id is None or group is None:
             result.append(Block(None, (visit,)))

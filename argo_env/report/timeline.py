@@ -28,6 +28,7 @@ def timeline(record: RunRecord) -> Node:
     px = (WIDTH - LABELS - 20) / end
     bottom = HEAD + ROW * len(rows)
     parts = _axis(end, px, bottom) + _rounds(record, px, bottom)
+    parts += _interruptions(record, px, bottom)
     for name, row in rows.items():
         y = HEAD + ROW * row
         parts.append(node("path", d=f"M0,{y + ROW:g}h{WIDTH:g}", class_="row"))
@@ -73,6 +74,29 @@ def _axis(end: float, px: float, bottom: float) -> list[Node]:
         x = LABELS + t * px
         marks.append(node("path", d=f"M{x:.1f},{HEAD:g}V{bottom:g}", class_="grid"))
         marks.append(node("text", x=x, y=bottom + 16, text=clock(t), class_="axis middle"))
+    return marks
+
+
+def _interruptions(record: RunRecord, px: float, bottom: float) -> list[Node]:
+    """A band over each pause and each reaction, and a line where a dead process was replaced."""
+    marks = []
+    for interruption in record.interruptions:
+        width = max((interruption.end - interruption.start) * px, 1.5)
+        band = node(
+            "rect",
+            x=LABELS + interruption.start * px,
+            y=HEAD - 8,
+            width=width,
+            height=bottom - HEAD + 8,
+            class_=f"interruption {'reaction' if interruption.event else 'pause'}",
+        )
+        span = f"{clock(interruption.start)} to {clock(interruption.end)}"
+        band.append(node("title", text=f"{interruption.cause}, {span}"))
+        marks.append(band)
+    for t in record.resumed:
+        line = node("path", d=f"M{LABELS + t * px:.1f},{HEAD - 8:g}V{bottom:g}", class_="resumed")
+        line.append(node("title", text=f"resumed from the journal at {clock(t)}"))
+        marks.append(line)
     return marks
 
 

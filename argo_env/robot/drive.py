@@ -46,5 +46,6 @@ class Drive(Protocol):
         ...
 
     def halt(self) -> None:
-        """Stops where it is and forgets the path."""
+        """Stops and forgets the path. The steps that follow say MOVING while the robot comes to
+        rest, then ARRIVED."""
         ...

@@ -38,6 +38,21 @@ class SensorSpec(Model):
     """s, to raise the arm, look, and stow the arm"""
 
 
+class PowerSpec(Model):
+    """What the robot draws from its battery, computers and sensors included, in W."""
+
+    driving: float = Field(gt=0)
+    """on the flat, forwards or backwards"""
+    turning: float = Field(gt=0)
+    """in place"""
+    climbing: float = Field(gt=0)
+    """up stairs"""
+    descending: float = Field(gt=0)
+    """down stairs"""
+    measuring: float = Field(gt=0)
+    """standing, the arm in motion or raised"""
+
+
 class RobotSpec(Model):
     """A robot: its model, its measures and the speeds that a plan counts with."""
 
@@ -63,6 +78,9 @@ class RobotSpec(Model):
     """m/s along the slope"""
     turn_rate: float = Field(gt=0)
     """deg/s, turning in place"""
+    battery: float = Field(gt=0)
+    """Wh that may be used on one charge"""
+    power: PowerSpec
     arm_stowed: dict[str, float]
     """deg, joints of the arm while driving"""
     arm_raised: dict[str, float]

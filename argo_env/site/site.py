@@ -4,14 +4,12 @@ import math
 from dataclasses import dataclass
 from pathlib import Path
 
-import yaml
-from pydantic import ValidationError
-
 from argo_compiler.catalog import CheckpointKind, Interval
 from argo_compiler.errors import ArgoError
 from argo_compiler.model import Pose
 from argo_env import resources
 from argo_env.site.build import build_site
+from argo_env.site.reading import read_spec
 from argo_env.site.shapes import Element, Vector
 from argo_env.site.spec import SiteSpec
 
@@ -87,20 +85,7 @@ def load_site(name: str) -> Site:
             known = ", ".join(site_names())
             raise ArgoError(f"no site `{name}`; there are: {known}, or a path to a site's .yaml")
         path = resources.scenarios() / name / "site.yaml"
-    try:
-        data = yaml.safe_load(path.read_text(encoding="utf-8"))
-    except OSError as error:
-        raise ArgoError(f"{path}: can't be read: {error.strerror}") from error
-    except (ValueError, RecursionError, yaml.YAMLError) as error:
-        # ValueError: bytes that are no text, impossible dates, numbers too long, NUL in the path.
-        raise ArgoError(f"{path}: not a YAML file: {error}") from error
-    try:
-        return make_site(SiteSpec.model_validate(data))
-    except ValidationError as error:
-        findings = "; ".join(
-            f"{'.'.join(str(part) for part in e['loc'])}: {e['msg']}" for e in error.errors()[:5]
-        )
-        raise ArgoError(f"{path}: {findings}") from error
+    return make_site(read_spec(path))
 
 
 def make_site(spec: SiteSpec) -> Site:

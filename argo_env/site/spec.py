@@ -8,6 +8,7 @@ from itertools import pairwise
 from typing import Annotated, Literal
 
 from pydantic import AfterValidator, Field, model_validator
+from pydantic_core import PydanticCustomError
 
 from argo_compiler.catalog import CheckpointKind, Interval
 from argo_compiler.model import Model
@@ -158,8 +159,42 @@ class SiteSpec(Model):
         x0, y0, x1, y1 = self.ground
         if max(x1 - x0, y1 - y0) > MAX_GROUND:
             raise ValueError(f"the ground is larger than {MAX_GROUND:.0f} m by {MAX_GROUND:.0f} m")
-        ids = [c.id for f in self.floors for c in f.checkpoints]
-        double = sorted({i for i in ids if ids.count(i) > 1})
-        if double:
-            raise ValueError(f"checkpoint ids must be unique; twice: {double}")
+        for (kind, name), paths in self._named().items():
+            if len(paths) > 1:
+                raise PydanticCustomError(
+                    "duplicate",
+                    "{thing} stands twice, and must not",
+                    {"thing": f"{kind} {name}", "path": paths[1]},
+                )
         return self
+
+    def _named(self) -> dict[tuple[str, str], list[tuple[str | int, ...]]]:
+        """What is found by its name or number, with the paths of the fields that give it."""
+        found: dict[tuple[str, str], list[tuple[str | int, ...]]] = {}
+
+        def note(kind: str, name: object, *path: str | int) -> None:
+            found.setdefault((kind, str(name)), []).append(path)
+
+        for i, area in enumerate(self.areas):
+            note("starting area", area.number, "areas", i, "number")
+        for i, place in enumerate(self.places):
+            note("place", place.name.casefold(), "places", i, "name")
+        for i, tower in enumerate(self.towers):
+            note("tower", tower.name, "towers", i, "name")
+            for k, flight in enumerate(tower.flights):
+                note(f"in {tower.name}:", flight.name, "towers", i, "flights", k, "name")
+            for k, landing in enumerate(tower.landings):
+                note(f"in {tower.name}:", landing.name, "towers", i, "landings", k, "name")
+        # Whatever stands on the site shows up in contacts and pictures by its name alone.
+        for i, vessel in enumerate(self.vessels):
+            note("equipment", vessel.name, "vessels", i, "name")
+        for i, pipe in enumerate(self.pipes):
+            note("equipment", pipe.name, "pipes", i, "name")
+        for i, floor in enumerate(self.floors):
+            for k, vessel in enumerate(floor.vessels):
+                note("equipment", vessel.name, "floors", i, "vessels", k, "name")
+            for k, pump in enumerate(floor.pumps):
+                note("equipment", pump.name, "floors", i, "pumps", k, "name")
+            for k, checkpoint in enumerate(floor.checkpoints):
+                note("checkpoint", checkpoint.id, "floors", i, "checkpoints", k, "id")
+        return found

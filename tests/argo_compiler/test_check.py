@@ -2,15 +2,20 @@
 
 import pytest
 
-from argo_compiler.catalog import Catalog, CheckpointInfo, CheckpointKind, Interval
+from argo_compiler.catalog import Area, Catalog, CheckpointInfo, CheckpointKind, Interval
 from argo_compiler.check import check
 from argo_compiler.diagnostics import Severity, Span
 from argo_compiler.il import (
     Action,
+    Afterwards,
     Condition,
     ConditionType,
+    EventKind,
     Group,
+    JointState,
     Mission,
+    Reaction,
+    Response,
     Stop,
     Task,
     Transition,
@@ -214,3 +219,175 @@ def test_all_findings_come_at_once():
 def test_sound_mission_has_no_findings():
     way = Task(name="W", action=Action.WAYPOINT, pose=Pose(x=0, y=0, z=0))
     assert codes(chain(tasks=(START, *CHAIN, way))) == []
+
+
+def react(event, response, **fields):
+    return Reaction(event=event, response=response, **fields)
+
+
+DOCK = Pose(x=0, y=0, z=0)
+GAS, LOW, CLEAR, TIME_UP = (
+    EventKind.GAS_LEAK,
+    EventKind.LOW_BATTERY,
+    EventKind.ALL_CLEAR,
+    EventKind.TIME_UP,
+)
+
+
+class TestReactions:
+    @pytest.mark.parametrize(
+        ("code", "field", "reactions"),
+        [
+            (
+                "il.duplicate-reaction",
+                "[1].event",
+                [react(GAS, Response.PAUSE), react(GAS, Response.ABORT)],
+            ),
+            ("il.safe-area-without-pose", "[0].response", [react(GAS, Response.SAFE_AREA)]),
+            ("il.no-dock", "[0].response", [react(LOW, Response.RETURN)]),
+            ("il.until-itself", "[0].until", [react(GAS, Response.PAUSE, until=GAS)]),
+        ],
+    )
+    def test_errors(self, code, field, reactions):
+        (finding,) = check(Mission(tasks=CHAIN, reactions=reactions))
+        assert (finding.code, finding.severity) == (code, Severity.ERROR)
+        assert finding.subject == f"reactions{field}"
+        assert finding.hint
+
+    @pytest.mark.parametrize(
+        ("code", "field", "reactions"),
+        [
+            ("il.unused-field", "pose", [react(GAS, Response.PAUSE, pose=DOCK)]),
+            ("il.unused-field", "pose", [react(GAS, Response.ABORT, pose=DOCK)]),
+            ("il.unused-field", "until", [react(GAS, Response.REPORT, until=CLEAR)]),
+            ("il.unused-field", "until", [react(GAS, Response.ABORT, until=GAS)]),
+            (
+                "il.unused-field",
+                "afterwards",
+                [react(GAS, Response.PAUSE, afterwards=Afterwards.RESUME)],
+            ),
+            (
+                "il.unused-field",
+                "afterwards",
+                [react(GAS, Response.REPORT, afterwards=Afterwards.WAIT)],
+            ),
+            ("il.time-up-without-limit", "event", [react(TIME_UP, Response.REPORT)]),
+            ("il.time-up-without-limit", "until", [react(GAS, Response.PAUSE, until=TIME_UP)]),
+            (
+                "il.until-answered",
+                "until",
+                [react(GAS, Response.PAUSE, until=LOW), react(LOW, Response.ABORT, priority=1)],
+            ),
+        ],
+    )
+    def test_warnings(self, code, field, reactions):
+        (finding,) = check(Mission(tasks=CHAIN, reactions=reactions))
+        assert (finding.code, finding.severity) == (code, Severity.WARNING)
+        assert finding.subject == f"reactions[0].{field}"
+
+    @pytest.mark.parametrize(
+        "reactions",
+        [
+            [react(GAS, Response.SAFE_AREA, pose=DOCK, until=CLEAR, afterwards=Afterwards.RESUME)],
+            [react(LOW, Response.RETURN, until=EventKind.BATTERY_CHARGED)],
+            [react(GAS, Response.PAUSE, until=CLEAR), react(CLEAR, Response.REPORT, priority=9)],
+            [react(GAS, Response.PAUSE, until=CLEAR), react(CLEAR, Response.PAUSE)],
+            [react(GAS, Response.ABORT), react(LOW, Response.PAUSE)],
+            [react(TIME_UP, Response.RETURN)],
+        ],
+    )
+    def test_sound_reactions(self, reactions):
+        mission = Mission(tasks=CHAIN, reactions=reactions, dock=DOCK, max_duration=60)
+        assert codes(mission) == []
+
+
+@pytest.mark.parametrize("name", ["return to dock", "react to gas_leak"])
+def test_names_that_the_machine_needs_are_reserved(name):
+    (finding,) = check(chain(tasks=(measure(name),)))
+    assert (finding.code, finding.subject) == ("il.reserved-name", "tasks[0].name")
+
+
+def test_returning_without_a_dock_is_one_finding():
+    tasks = (measure("A", "B", on_failure="return"), measure("B", on_failure="return"))
+    (finding,) = check(chain(tasks=tasks))
+    assert (finding.code, finding.subject) == ("il.no-dock", "tasks[0].on_failure")
+    assert "1 more" in finding.message
+    assert codes(Mission(tasks=tasks, dock=DOCK)) == []
+
+
+@pytest.mark.parametrize(
+    ("low", "high", "inclusive", "sound"),
+    [(1, 2, False, True), (2, 2, False, False), (2, 2, True, True), (3, 2, True, False)],
+)
+def test_bounds_of_within(low, high, inclusive, sound):
+    condition = Condition(
+        type=ConditionType.WITHIN, object_id="1", param1=low, param2=high, inclusive=inclusive
+    )
+    way = Transition(target="A", conditions=(condition,))
+    found = check(chain(tasks=(measure("A", "A", way),)))
+    assert [f.code for f in found] == ([] if sound else ["il.within-bounds"])
+    assert all(f.subject == "tasks[0].transitions[1].conditions[0]" for f in found)
+
+
+@pytest.mark.parametrize(
+    ("code", "task"),
+    [
+        ("il.many-retries", measure("A", retries=101)),
+        ("il.unused-field", measure("A", "A", when("A", high=3.0))),
+        ("il.unused-field", Task(name="S", action=Action.START, retries=1)),
+        ("il.unused-field", Task(name="S", action=Action.START, on_failure="abort")),
+    ],
+)
+def test_more_warnings_of_tasks(code, task):
+    (finding,) = check(chain(tasks=(task,)))
+    assert (finding.code, finding.severity) == (code, Severity.WARNING)
+
+
+@pytest.mark.parametrize(
+    ("names", "positions"), [(("a",), ()), ((), (1.0,)), (("a", "a"), (1.0, 2.0))]
+)
+def test_joint_states_that_do_not_match(names, positions):
+    joints = JointState(names=names, positions=positions)
+    assert codes(chain(tasks=(measure("A", joint_states=joints),))) == ["il.joint-states"]
+    good = JointState(names=("a", "b"), positions=(1.0, 1.0))
+    assert codes(chain(tasks=(measure("A", joint_states=good),))) == []
+
+
+def test_interruptions_count_only_with_a_duration():
+    (finding,) = check(chain(group("G", "A", "B", count_interruptions=True)))
+    assert (finding.code, finding.severity) == ("il.unused-field", Severity.WARNING)
+    timed = group("G", "A", "B", count_interruptions=True, max_repeat_duration=9)
+    assert codes(chain(timed)) == []
+
+
+def test_a_name_that_is_nearly_right_is_named():
+    tasks = (measure("MEASURE 1", "MESURE 2"), measure("MEASURE 2"))
+    target, start = check(chain(group("G", "MEASURE 1", "MEASUR 2"), tasks=tasks))
+    assert "'MEASURE 2'" in target.hint
+    assert target.subject == "tasks[0].transitions[0].target"
+    assert "'MEASURE 2'" in start.hint
+    assert start.subject == "groups[0].end"
+
+
+def test_the_current_task_has_to_exist():
+    mission = Mission(tasks=CHAIN, current="Z")
+    assert codes(mission) == ["il.unknown-current"]
+    assert codes(mission.model_copy(update={"current": "A"})) == []
+
+
+class TestSite:
+    CATALOG = TestCatalog.CATALOG.model_copy(update={"areas": (Area(number=2, dock=DOCK),)})
+
+    def test_areas_that_the_site_lacks(self):
+        mission = Mission(tasks=CHAIN, start_area=2, end_area=3)
+        (finding,) = check(mission, self.CATALOG)
+        assert (finding.code, finding.subject) == ("il.unknown-area", "end_area")
+        assert finding.hint.endswith(" 2")
+        assert check(mission) == ()
+
+    def test_a_mission_of_another_site_is_not_looked_up(self):
+        task = measure("A", object_id="77")
+        mission = Mission(tasks=(task,), site="elsewhere", end_area=9)
+        assert codes(mission, self.CATALOG) == ["il.other-site"]
+        here = mission.model_copy(update={"site": "test"})
+        assert codes(here, self.CATALOG) == ["il.unknown-object", "il.unknown-area"]

@@ -76,6 +76,9 @@ def test_an_unknown_word_is_shown_in_its_line_with_what_was_expected(argo, tmp_p
         (["run", "."], "directory"),
         (["run", "sheet.txt", "--site", "atlantis"], "umad"),
         (["run", "sheet.txt", "--value", "8"], "ID=VALUE"),
+        (["run", "sheet.txt", "--value", "1=2", "--value", "1=3"], "already"),
+        (["run", "sheet.txt", "--pace", "2"], "--gui"),
+        (["run", "sheet.txt", "--site", "bad.yaml"], "bad.yaml:2:1"),
         (["run", "sheet.txt", "--value", "99=1"], "checkpoint 99"),
         (["run", "sheet.txt", "--value", "1=11"], "0 to 10 bar"),
         (["run", "sheet.txt", "--render", "film.avi"], ".mp4"),
@@ -93,6 +96,7 @@ def test_an_unknown_word_is_shown_in_its_line_with_what_was_expected(argo, tmp_p
 def test_a_bad_request_is_refused(argo, tmp_path: Path, arguments, says) -> None:
     (tmp_path / "sheet.txt").write_text(SHEET)
     (tmp_path / "mission.json").write_text("{not json")
+    (tmp_path / "bad.yaml").write_text("name: bad\ntitel: Bad\n")
     assert says in refused(argo(*arguments, cwd=tmp_path))
 
 

@@ -7,7 +7,9 @@ import pytest
 
 from argo_compiler.hfsm import (
     ActionFailed,
+    ActionStopped,
     ActionSucceeded,
+    CancelAction,
     Command,
     Executor,
     StartAction,
@@ -68,7 +70,9 @@ def drive() -> Callable[..., Executor]:
         def note(commands: tuple[Command, ...], now: float) -> None:
             nonlocal ends_at
             for command in commands:
-                if isinstance(command, StartAction):
+                if isinstance(command, CancelAction):
+                    note(executor.handle(ActionStopped(command.task), now), now)
+                elif isinstance(command, StartAction):
                     ends_at = now + (takes or {}).get(command.task.name, 1.0)
 
         note(executor.start(0.0), 0.0)
@@ -77,8 +81,8 @@ def drive() -> Callable[..., Executor]:
             if deadline is not None and deadline < ends_at:
                 note(executor.handle(Tick(), deadline), deadline)
                 continue
-            name = executor.active
-            assert name is not None
+            assert executor.running is not None
+            name = executor.running.name
             value = next(readings[name], 0.0) if name in readings else 0.0
             event = ActionFailed(name, "no view") if value is None else ActionSucceeded(name, value)
             note(executor.handle(event, ends_at), ends_at)

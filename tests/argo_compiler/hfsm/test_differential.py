@@ -1,11 +1,9 @@
-"""Random missions through the machine and through a reference interpreter of the IL.
+"""Random missions through the machine and through a reference interpreter of the IL."""
 
-The reference knows no states and no transitions of a machine. It steps through whole seconds and
-keeps, by name, which groups it is in, since when and in which round.
-"""
+from dataclasses import replace
+from itertools import cycle, tee
 
-from itertools import cycle, islice
-
+import pytest
 from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 
@@ -13,284 +11,102 @@ from argo_compiler.check import check
 from argo_compiler.diagnostics import Severity
 from argo_compiler.hfsm import (
     ActionFailed,
+    ActionStopped,
     ActionSucceeded,
+    CancelAction,
+    Cause,
     Executor,
     Hfsm,
+    Pause,
     Progress,
+    Resume,
     StartAction,
     Tick,
     lower,
 )
-from argo_compiler.il import (
-    Action,
-    Condition,
-    ConditionType,
-    Group,
-    Mission,
-    Stop,
-    Task,
-    Transition,
+from argo_compiler.hfsm.model import RETURN
+from argo_compiler.il import Action
+from tests.argo_compiler.hfsm.random_missions import (
+    busy_missions,
+    busy_scripts,
+    missions,
+    outcome_lists,
+    scripts,
 )
-from argo_compiler.model import Pose
+from tests.argo_compiler.hfsm.reference import Reference
+from tests.conftest import examples
 
 STEPS = 60
-OBJECTS = ("1", "2", "3")
+MOVES = {Cause.START, Cause.CONDITION, Cause.REPEAT, Cause.DEFAULT, Cause.TIMEOUT}
 
 
-class Reference:
-    """What a mission does, straight from the rules."""
+class World:
+    """Carries out what an executor asks for; `seen` is what it was asked, and when."""
 
-    def __init__(self, mission, outcomes):
-        self.tasks = {task.name: task for task in mission.tasks}
-        self.groups = {group.name: group for group in mission.groups}
-        order = [task.name for task in mission.tasks]
-        self.members = {
-            g.name: set(order[order.index(g.start) : order.index(g.end) + 1])
-            for g in mission.groups
-        }
-        self.outcomes = outcomes
-        self.since = {}
-        self.round = {}
-        self.values = {}
-        self.trace = []
-        self.current = None
-        self.first = self.first_task(mission)
-
-    @staticmethod
-    def first_task(mission):
-        for task in mission.tasks:
-            if task.action is Action.START:
-                for transition in task.transitions:
-                    if not transition.conditions:
-                        return transition.target
-        return next(task.name for task in mission.tasks if task.action is not Action.START)
-
-    def run(self):
-        self.go(self.first, 0, left=())
-        while self.current is not None and len(self.trace) < STEPS:
-            duration, value, failed = next(self.outcomes)
-            started = self.trace[-1][0]
-            ends = started + duration
-            if not self.cancelled(started, ends):
-                self.ended(ends, None if failed else value)
-                self.time_outs(ends)
-        return self.trace[:STEPS]
-
-    def cancelled(self, started, ends):
-        """Lets whole seconds pass while an action runs; whether a time-out cancels it."""
-        before = len(self.trace)
-        for now in range(started + 1, ends):
-            self.time_outs(now)
-            if len(self.trace) > before:
-                return True
-        return False
-
-    def go(self, target, now, left):
-        stays = {g for g in self.since if g not in left and target in self.members[g]}
-        self.since = {g: self.since[g] for g in stays}
-        self.round = {g: self.round[g] for g in stays}
-        for g in self.groups:
-            if target in self.members[g] and g not in stays:
-                self.since[g], self.round[g] = now, 1
-        self.current = target
-        self.trace.append((now, target))
-
-    def inside(self, name):
-        return {g for g in self.groups if g == name or g.startswith(name + "/")}
-
-    def wants(self, g, now):
-        group = self.groups[g]
-        more = group.max_repeat_count == 0 or self.round[g] < group.max_repeat_count
-        limit = group.max_repeat_duration
-        return more and (limit == 0 or now - self.since[g] < limit)
-
-    def round_over(self, g, now):
-        """Group `g` has come to the end of a round; it and those around it decide."""
-        group = self.groups[g]
-        if self.wants(g, now):
-            self.round[g] += 1
-            self.go(group.start, now, left=self.inside(g) - {g})
-            return
-        around = g.rpartition("/")[0]
-        if around and self.groups[around].end == group.end:
-            self.round_over(around, now)
-        else:
-            self.unconditionally(self.tasks[group.end], now, left=self.inside(g))
-
-    def unconditionally(self, task, now, left):
-        targets = [t.target for t in task.transitions if not t.conditions]
-        self.go(targets[0] if targets else None, now, left)
-
-    def ended(self, now, value):
-        task = self.tasks[self.current]
-        if value is not None and task.action is Action.MEASURE:
-            self.values[task.object_id] = value, now
-        for transition in task.transitions:
-            if transition.conditions and all(self.holds(c, now) for c in transition.conditions):
-                self.go(transition.target, now, left=())
-                return
-        ending = [g for g in self.groups if self.groups[g].end == task.name]
-        if ending:
-            self.round_over(max(ending, key=len), now)
-        else:
-            self.unconditionally(task, now, left=())
-
-    def holds(self, c, now):
-        if c.object_id not in self.values:
-            return False
-        value, at = self.values[c.object_id]
-        fresh = c.max_age is None or at + c.max_age >= now
-        return (
-            fresh
-            and {
-                ConditionType.LESS: value < c.param1,
-                ConditionType.GREATER: c.param1 < value,
-                ConditionType.WITHIN: c.param1 < value and value < (c.param2 or 0),
-            }[c.type]
-        )
-
-    def time_outs(self, now):
-        up = [
-            g
-            for g, since in self.since.items()
-            if self.groups[g].stop is Stop.HARD
-            and 0 < self.groups[g].max_repeat_duration <= now - since
-        ]
-        if up:
-            self.round_over(min(up, key=len), now)
-
-
-class Drive:
-    """The machine, driven by the same outcomes; `poll` adds ticks at every second."""
-
-    def __init__(self, executor, outcomes, poll=False, offset=0):
+    def __init__(self, executor, outcomes, script, poll=False, now=0):
         self.executor = executor
-        self.outcomes = outcomes
+        self.outcomes = cycle(outcomes)
+        self.script = []
+        for wait, happening in script:
+            self.script.append(((self.script[-1][0] if self.script else 0) + wait, happening))
         self.poll = poll
-        self.now = offset
+        self.now = now
         self.running = None
-
-    def note(self, commands):
-        if any(isinstance(command, StartAction) for command in commands):
-            duration, value, failed = next(self.outcomes)
-            self.running = self.now + duration, value, failed
+        self.ends_at = None
+        self.ending = None
+        self.seen = []
 
     def start(self):
         self.note(self.executor.start(self.now))
 
+    def note(self, commands):
+        for command in commands:
+            kind, name = read(command)
+            self.seen.append((self.now, kind, name))
+            if kind is StartAction:
+                assert self.running is None
+                self.running, self.outcome = name, next(self.outcomes)
+                duration, value, failed, _, _ = self.outcome
+                self.ends_at = self.now + duration
+                self.ending = result(name, value, failed)
+            else:
+                assert self.running == name
+                _, value, failed, clean_up, late = self.outcome
+                self.ends_at = self.now + clean_up
+                self.ending = result(name, value, failed) if late else ActionStopped(name)
+
     def step(self):
-        ends_at, value, failed = self.running
-        deadline = self.executor.next_deadline
-        if self.poll and self.now + 1 < ends_at:
+        """The next thing that happens; False: nothing will."""
+        due = self.executor.next_deadline
+        happening = self.script[0][0] if self.script else None
+        times = [t for t in (self.ends_at, happening, due) if t is not None]
+        if not times:
+            return False
+        if self.poll and self.now + 1 < min(times):
             self.now += 1
-            event = Tick()
-        elif deadline is not None and deadline < ends_at:
-            self.now = deadline
-            event = Tick()
+            self.note(self.executor.handle(Tick(), self.now))
+            return True
+        self.now = min(times)
+        if self.now == self.ends_at:
+            ending, self.running, self.ends_at = self.ending, None, None
+            self.note(self.executor.handle(ending, self.now))
+        elif self.now == happening:
+            self.note(self.executor.handle(self.script.pop(0)[1], self.now))
         else:
-            self.now = ends_at
-            event = self.end_of_action(value, failed)
-        self.note(self.executor.handle(event, self.now))
-
-    def end_of_action(self, value, failed):
-        name = self.executor.active
-        if failed:
-            return ActionFailed(name, "failed")
-        reads = self.executor.configuration[-1].startswith("task:M")
-        return ActionSucceeded(name, value if reads else None)
-
-    def finish(self):
-        while not self.executor.finished and len(self.executor.trace) < STEPS:
-            self.step()
-        return [(entry.time, entry.target) for entry in self.executor.trace[:STEPS]]
+            self.note(self.executor.handle(Tick(), self.now))
+        return True
 
 
-@st.composite
-def conditions(draw):
-    low = draw(st.integers(0, 4))
-    return Condition(
-        type=draw(st.sampled_from(ConditionType)),
-        object_id=draw(st.sampled_from(OBJECTS)),
-        param1=low,
-        param2=draw(st.integers(low + 1, 6)),
-        max_age=draw(st.one_of(st.none(), st.integers(1, 6))),
-    )
+def read(command):
+    if isinstance(command, StartAction):
+        return StartAction, command.task.name
+    return CancelAction, command.task
 
 
-@st.composite
-def missions(draw):
-    size = draw(st.integers(1, 9))
-    kinds = draw(st.lists(st.booleans(), min_size=size, max_size=size))
-    names = [f"{'M' if measures else 'W'}{i}" for i, measures in enumerate(kinds)]
-    tasks = [draw(tasks_named(name, names, i)) for i, name in enumerate(names)]
-    if draw(st.booleans()):
-        ways = draw(st.lists(st.sampled_from(names), max_size=1))
-        start = Task(
-            name="S",
-            action=Action.START,
-            transitions=tuple(Transition(target=way) for way in ways),
-        )
-        tasks.insert(0, start)
-    return Mission(tasks=tuple(tasks), groups=tuple(draw(groups_over(names))))
-
-
-@st.composite
-def tasks_named(draw, name, names, index):
-    ways = [
-        Transition(target=draw(st.sampled_from(names)), conditions=tuple(held))
-        for held in draw(st.lists(st.lists(conditions(), min_size=1, max_size=2), max_size=2))
-    ]
-    onward = draw(st.sampled_from(["next", "next", "next", "any", "end"]))
-    if onward != "end":
-        following = names[index + 1] if index + 1 < len(names) else None
-        target = draw(st.sampled_from(names)) if onward == "any" else following
-        if target is not None:
-            ways.insert(draw(st.integers(0, len(ways))), Transition(target=target))
-    return Task(
-        name=name,
-        action=Action.MEASURE if name.startswith("M") else Action.WAYPOINT,
-        object_id=draw(st.sampled_from(OBJECTS)) if name.startswith("M") else None,
-        pose=None if name.startswith("M") else Pose(x=0, y=0, z=0),
-        transitions=tuple(ways),
-    )
-
-
-@st.composite
-def groups_over(draw, names):
-    """Ranges that lie in each other or apart, named by their nesting."""
-    ends = st.integers(0, len(names) - 1)
-    kept = []
-    for a, b in draw(st.lists(st.tuples(ends, ends), max_size=5)):
-        first, last = min(a, b), max(a, b)
-        crosses = any(f < first <= e < last or first < f <= last < e for f, e in kept)
-        if not crosses:
-            kept.append((first, last))
-    paths = []
-    groups = []
-    for i, (first, last) in enumerate(sorted(kept, key=lambda r: (r[0], -r[1]))):
-        while paths and paths[-1][1] < first:
-            paths.pop()
-        name = f"{paths[-1][0]}/{i}" if paths else str(i)
-        paths.append((name, last))
-        groups.append(
-            Group(
-                name=name,
-                start=names[first],
-                end=names[last],
-                max_repeat_count=draw(st.integers(0, 3)),
-                max_repeat_duration=draw(st.sampled_from([0, 0, 1, 2, 3, 5, 8, 13])),
-                stop=draw(st.sampled_from(Stop)),
-            )
-        )
-    return draw(st.permutations(groups))
-
-
-# How long an action takes (s), what it reads, and whether it fails.
-outcome_lists = st.lists(
-    st.tuples(st.integers(0, 4), st.one_of(st.none(), st.integers(0, 6)), st.booleans()),
-    min_size=1,
-    max_size=8,
-)
+def result(name, value, failed):
+    if failed:
+        return ActionFailed(name, "failed")
+    return ActionSucceeded(name, value if name.startswith("M") else None)
 
 
 def machine(mission):
@@ -298,60 +114,158 @@ def machine(mission):
     return lower(mission)
 
 
-@settings(max_examples=400, deadline=None)
-@given(missions(), outcome_lists)
-def test_machine_does_what_the_rules_say(mission, outcomes):
-    drive = Drive(Executor(machine(mission)), cycle(outcomes))
-    drive.start()
-    assert drive.finish() == Reference(mission, cycle(outcomes)).run()
+def steps(executor):
+    """The ways of the mission from task to task."""
+    return [
+        (e.time, e.target)
+        for e in executor.trace
+        if e.cause in MOVES or (e.cause is Cause.FAILURE and e.target is not None)
+    ]
 
 
-@settings(max_examples=80, deadline=None)
-@given(missions(), outcome_lists)
-def test_more_ticks_change_nothing(mission, outcomes):
+def reports(executor):
+    return [(e.time, e.event) for e in executor.trace if e.cause is Cause.REPORT]
+
+
+def where(executor):
+    progress = executor.progress()
+    return {
+        "outcome": str(executor.outcome) if executor.outcome else None,
+        "paused": executor.paused,
+        "reaction": executor.reaction,
+        "task": executor.active,
+        "rounds": dict(executor.rounds),
+        "values": {v.object_id: (v.value, v.age) for v in progress.values},
+        "ended": [(e.task, e.failure) for e in progress.ended],
+        "elapsed": progress.elapsed,
+        "clocks": {g.group: g.elapsed for g in progress.groups},
+    }
+
+
+def where_reference(reference):
+    active = reference.active
+    return {
+        "outcome": reference.outcome,
+        "paused": reference.paused,
+        "reaction": active.reaction.event if active else None,
+        "task": reference.current,
+        "rounds": reference.round,
+        "values": {id: (value, reference.age[id]) for id, value in reference.values.items()},
+        "ended": reference.done,
+        "elapsed": reference.elapsed,
+        "clocks": reference.clock,
+    }
+
+
+class Pair:
+    """A machine and the reference, which are to do the same at all times."""
+
+    def __init__(self, mission):
+        self.executor = Executor(machine(mission))
+        self.reference = Reference(mission)
+
+    @property
+    def next_deadline(self):
+        return self.executor.next_deadline
+
+    def start(self, now):
+        return self.agree(self.executor.start(now), self.reference.start(now))
+
+    def handle(self, event, now):
+        return self.agree(self.executor.handle(event, now), self.reference.handle(event, now))
+
+    def agree(self, commands, expected):
+        assert [read(command) for command in commands] == expected
+        assert where(self.executor) == where_reference(self.reference)
+        return commands
+
+
+@settings(max_examples=examples(200), deadline=None)
+@given(missions(), outcome_lists, scripts, st.booleans())
+def test_machine_does_what_the_rules_say(mission, outcomes, script, poll):
+    run(mission, outcomes, script, poll)
+
+
+@settings(max_examples=examples(200), deadline=None)
+@given(busy_missions(), outcome_lists, busy_scripts)
+def test_interruptions_are_what_the_rules_say(mission, outcomes, script):
+    run(mission, outcomes, script, poll=False)
+
+
+def run(mission, outcomes, script, poll):
+    pair = Pair(mission)
+    world = World(pair, outcomes, script, poll)
+    world.start()
+    for _ in range(STEPS):
+        if not world.step():
+            break
+    assert steps(pair.executor) == pair.reference.steps
+    assert reports(pair.executor) == pair.reference.events
+
+
+@settings(max_examples=examples(40), deadline=None)
+@given(missions(), outcome_lists, scripts)
+def test_more_ticks_change_nothing(mission, outcomes, script):
     hfsm = machine(mission)
-    drives = [Drive(Executor(hfsm), cycle(outcomes), poll) for poll in (False, True)]
-    for drive in drives:
-        drive.start()
-    assert drives[0].finish() == drives[1].finish()
+    worlds = [World(Executor(hfsm), outcomes, script, poll) for poll in (False, True)]
+    for world in worlds:
+        world.start()
+        for _ in range(STEPS):
+            if not world.step():
+                break
+    until = min(world.now for world in worlds)
+    seen = [[one for one in world.seen if one[0] < until] for world in worlds]
+    assert seen[0] == seen[1]
 
 
-@settings(max_examples=80, deadline=None)
-@given(missions(), outcome_lists, st.integers(0, 20))
-def test_restored_machine_goes_on_alike(mission, outcomes, steps):
-    hfsm = Hfsm.model_validate_json(machine(mission).model_dump_json())
-    whole = Drive(Executor(hfsm), cycle(outcomes))
-    whole.start()
-    drawn = 1
-    for _ in range(steps):
-        if whole.executor.finished:
+@pytest.mark.rule("H1", "H2")
+@settings(max_examples=examples(100), deadline=None)
+@given(missions(), outcome_lists, scripts, st.integers(0, 30), st.sampled_from([0, 0, 7]))
+def test_restored_machine_goes_on_alike(mission, outcomes, script, count, away):
+    """Against a machine that a person pauses for as long as the other one is away."""
+    hfsm = machine(mission)
+    world = World(Executor(hfsm), outcomes, script)
+    world.start()
+    for _ in range(count):
+        if not world.step():
             break
-        running = whole.running
-        whole.step()
-        drawn += whole.running is not running
-    progress = Progress.model_validate_json(whole.executor.progress().model_dump_json())
-    before = len(whole.executor.trace)
-    if whole.executor.finished:
-        return
-    offset = 1000
-    rest = Drive(
-        Executor.restore(hfsm, progress, offset),
-        islice(cycle(outcomes), drawn - 1, None),
-        offset=offset,
+    executor = world.executor
+    if not executor.paused:
+        world.note(executor.handle(Pause(), world.now))
+    while world.running:
+        world.ends_at = world.now
+        world.ending = ActionStopped(world.running)
+        world.step()
+    text = executor.progress().model_dump_json()
+    world.now += away
+    executor.handle(Tick(), world.now)
+    later = 1000
+    other = Executor.restore(
+        Hfsm.model_validate_json(hfsm.model_dump_json()),
+        Progress.model_validate_json(text),
+        later,
+        away,
     )
-    rest.start()
-    shift = offset - whole.now
-    for _ in range(20):
-        if whole.executor.finished:
+    other.start(later)
+    assert Progress.model_validate_json(other.progress().model_dump_json()) == executor.progress()
+    rest = World(other, outcomes, script, now=later)
+    rest.outcomes, world.outcomes = tee(world.outcomes)
+    shift = later - world.now
+    world.script = [(at + away, happening) for at, happening in world.script]
+    rest.script = [(at + shift, happening) for at, happening in world.script]
+    world.script.insert(0, (world.now, Resume()))
+    rest.script.insert(0, (later, Resume()))
+    before = len(executor.trace), len(other.trace)
+    world.seen = []
+    for _ in range(STEPS):
+        going = world.step()
+        assert rest.step() == going
+        if not going:
             break
-        whole.step()
-        rest.step()
-    expected = [(e.time + shift, *_what(e)) for e in whole.executor.trace[before:]]
-    assert [(e.time, *_what(e)) for e in rest.executor.trace[1:]] == expected
-
-
-def _what(entry):
-    return entry.source, entry.target, entry.cause, entry.conditions, entry.failure
+        assert rest.seen == [(at + shift, *what) for at, *what in world.seen]
+        assert other.progress() == executor.progress()
+    expected = [replace(entry, time=entry.time + shift) for entry in executor.trace[before[0] :]]
+    assert list(other.trace[before[1] :]) == expected
 
 
 @settings(max_examples=60, deadline=None)
@@ -359,7 +273,7 @@ def _what(entry):
 def test_every_state_carries_what_it_came_from(mission):
     hfsm = machine(mission)
     tasks = [task for task in mission.tasks if task.action is not Action.START]
-    assert [leaf.task for leaf in hfsm.leaves] == tasks
+    assert [leaf.task for leaf in hfsm.leaves if leaf.id != RETURN] == tasks
     assert {c.name for c in hfsm.composites[1:]} == {group.name for group in mission.groups}
     for composite in hfsm.composites[1:]:
         assert composite.id in next(

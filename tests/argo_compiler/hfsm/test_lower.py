@@ -2,6 +2,7 @@ import pytest
 from pydantic import ValidationError
 
 from argo_compiler.diagnostics import DiagnosticError, Span
+from argo_compiler.export import to_mermaid
 from argo_compiler.hfsm import (
     ActionSucceeded,
     Executor,
@@ -9,7 +10,6 @@ from argo_compiler.hfsm import (
     Transition,
     TransitionKind,
     lower,
-    to_mermaid,
 )
 from argo_compiler.il import Group, Mission, Stop
 

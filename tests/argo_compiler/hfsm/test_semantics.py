@@ -2,6 +2,7 @@
 
 import pytest
 
+from argo_compiler.diagnostics import DiagnosticError
 from argo_compiler.hfsm import Cause, Executor, lower
 from argo_compiler.il import (
     Action,
@@ -24,15 +25,21 @@ def when(target: str, *conditions: Condition) -> Transition:
 
 
 class TestTasks:
+    @pytest.mark.rule("M3", "T5")
     def test_follow_their_transitions_until_one_has_none(self, build, drive, path):
         executor = drive(build("A B C", ways={"A": ["C"], "C": ["B"], "B": []}))
         assert path(executor) == "A@0 C@1 B@2 end@3"
 
+    @pytest.mark.rule("T3")
+    @pytest.mark.rule("C1", "C2")
+    @pytest.mark.rule("G10")
+    @pytest.mark.rule("G8")
     @pytest.mark.parametrize(("value", "expected"), [(5.0, "A@0 C@1 end@2"), (3.0, "A@0 B@1")])
     def test_unconditional_comes_last_wherever_it_stands(self, build, drive, path, value, expected):
         mission = build("A B C", ways={"A": ["B", when("C", greater("A", 3))]})
         assert path(drive(mission, reads={"A": [value]})).startswith(expected)
 
+    @pytest.mark.rule("T2")
     def test_first_transition_whose_conditions_all_hold(self, build, drive, path):
         ways = {
             "A": [
@@ -46,12 +53,14 @@ class TestTasks:
         assert executor.trace[1].cause is Cause.CONDITION
         assert executor.trace[1].conditions == ("#A > 1",)
 
+    @pytest.mark.rule("M3", "T4")
     def test_mission_ends_when_no_condition_holds(self, build, drive, path):
         executor = drive(build("A B", ways={"A": [when("B", greater("A", 1))]}))
         assert path(executor) == "A@0 end@1"
         assert executor.finished
         assert executor.configuration == ("mission", "done")
 
+    @pytest.mark.rule("T8", "C4")
     def test_failure_is_recorded_and_the_mission_goes_on(self, build, drive, path):
         ways = {"A": [when("C", greater("A", -1)), "B"]}
         executor = drive(build("A B C", ways=ways), reads={"A": [None]})
@@ -59,6 +68,7 @@ class TestTasks:
         assert executor.trace[1].failure == "no view"
         assert str(executor.trace[1]) == "1 s: A -> B (default; failed: no view)"
 
+    @pytest.mark.rule("T8", "C3", "C6")
     def test_failure_leaves_the_value_measured_before(self, build, drive):
         executor = drive(build("A B", ways={"B": [when("A", greater("B", 0))]}), reads={"B": [1]})
         assert executor.values["B"].value == 0
@@ -66,43 +76,91 @@ class TestTasks:
         executor = drive(mission, reads={"A": [4, None, 0]})
         assert [entry.failure for entry in executor.trace[1:]] == [None, "no view", None]
 
+    @pytest.mark.rule("C5")
     @pytest.mark.parametrize(("takes", "reached"), [(5.0, "A"), (5.5, "end")])
     def test_value_counts_up_to_its_greatest_age(self, build, drive, takes, reached):
         mission = build("A B", ways={"B": [when("A", greater("A", 0, max_age=5))]})
         executor = drive(mission, takes={"B": takes}, reads={"A": [1, 0]}, steps=3)
         assert (executor.trace[2].target or "end") == reached
 
+    @pytest.mark.parametrize("inclusive", [False, True])
     @pytest.mark.parametrize(
         ("type", "value", "holds"),
         [
             (ConditionType.LESS, 1.9, True),
-            (ConditionType.LESS, 2.0, False),
-            (ConditionType.GREATER, 2.0, False),
+            (ConditionType.LESS, 2.0, None),
+            (ConditionType.LESS, 2.1, False),
+            (ConditionType.GREATER, 1.9, False),
+            (ConditionType.GREATER, 2.0, None),
             (ConditionType.GREATER, 2.1, True),
-            (ConditionType.WITHIN, 2.0, False),
+            (ConditionType.WITHIN, 1.9, False),
+            (ConditionType.WITHIN, 2.0, None),
             (ConditionType.WITHIN, 2.5, True),
-            (ConditionType.WITHIN, 3.0, False),
+            (ConditionType.WITHIN, 3.0, None),
+            (ConditionType.WITHIN, 3.1, False),
         ],
     )
-    def test_comparisons_exclude_their_bounds(self, build, drive, type, value, holds):
-        condition = Condition(type=type, object_id="A", param1=2, param2=3)
+    def test_comparisons_exclude_their_bounds(self, build, drive, type, value, holds, inclusive):
+        """None: on the bound, which is what `inclusive` decides."""
+        condition = Condition(type=type, object_id="A", param1=2, param2=3, inclusive=inclusive)
         mission = build("A B C", ways={"A": ["B", when("C", condition)]})
-        assert drive(mission, reads={"A": [value]}).trace[1].target == ("C" if holds else "B")
+        expected = inclusive if holds is None else holds
+        assert drive(mission, reads={"A": [value]}).trace[1].target == ("C" if expected else "B")
+
+    @pytest.mark.rule("C3")
+    def test_value_is_the_last_one_whoever_measured_it(self, build, drive, path):
+        ways = {"B": [when("D", greater("A", 5)), "C"]}
+        mission = build("A B C D", ways=ways)
+        again = mission.tasks[1].model_copy(update={"object_id": "A"})
+        mission = mission.model_copy(
+            update={"tasks": (mission.tasks[0], again, *mission.tasks[2:])}
+        )
+        assert path(drive(mission, reads={"A": [1], "B": [9]})) == "A@0 B@1 D@2 end@3"
+        assert path(drive(mission, reads={"A": [9], "B": [1]})).startswith("A@0 B@1 C@2")
+
+    @pytest.mark.rule("C4")
+    @pytest.mark.parametrize("type", ConditionType)
+    def test_what_was_never_measured_holds_never(self, build, drive, path, type):
+        never = Condition(type=type, object_id="B", param1=0, param2=1)
+        mission = build("A B C", ways={"A": [when("C", never), "B"]})
+        assert path(drive(mission)).startswith("A@0 B@1")
+
+    @pytest.mark.rule("M5")
+    def test_what_is_for_display_changes_nothing(self, build, drive, path):
+        mission = build("A B")
+        shown = tuple(task.model_copy(update={"group": "G"}) for task in mission.tasks)
+        shown_mission = mission.model_copy(update={"tasks": shown, "current": "B"})
+        assert path(drive(shown_mission)) == path(drive(mission)) == "A@0 B@1 end@2"
+
+    @pytest.mark.rule("T1", "G9")
+    def test_what_has_no_meaning_is_refused(self, build):
+        mission = build("A B", Group(name="G", start="A", end="B"), ways={"B": ["A"]})
+        with pytest.raises(DiagnosticError, match=r"il\.endless-group"):
+            lower(mission)
+        twice = build("A").model_copy(update={"tasks": build("A").tasks * 2})
+        with pytest.raises(DiagnosticError, match=r"il\.duplicate-task"):
+            lower(twice)
+        task = build("A").tasks[0].model_copy(update={"object_id": None})
+        with pytest.raises(DiagnosticError, match=r"il\.measure-without-object"):
+            lower(Mission(tasks=(task,)))
 
 
 class TestStart:
+    @pytest.mark.rule("M1", "M2")
     def test_is_passed_over(self, build, drive, path):
         start = Task(name="S", action=Action.START, transitions=(Transition(target="B"),))
         mission = build("A B")
         mission = mission.model_copy(update={"tasks": (start, *mission.tasks)})
         assert path(drive(mission)) == "B@0 end@1"
 
+    @pytest.mark.rule("M1")
     def test_without_transition_leads_to_the_first_task(self, build, drive, path):
         start = Task(name="S", action=Action.START)
         mission = build("A B")
         mission = mission.model_copy(update={"tasks": (*mission.tasks, start)})
         assert path(drive(mission)) == "A@0 B@1 end@2"
 
+    @pytest.mark.rule("M2")
     def test_alone_is_a_mission_that_has_ended(self):
         mission = Mission(tasks=(Task(name="S", action=Action.START),))
         executor = Executor(lower(mission))
@@ -111,12 +169,14 @@ class TestStart:
 
 
 class TestRounds:
+    @pytest.mark.rule("G1", "G5", "G8")
     def test_count_is_the_number_of_rounds_in_all(self, build, drive, path):
         mission = build("A B C", Group(name="G", start="A", end="B", max_repeat_count=2))
         executor = drive(mission)
         assert path(executor) == "A@0 B@1 A@2 B@3 C@4 end@5"
         assert executor.trace[2].repeated == "G"
 
+    @pytest.mark.rule("G5", "G7")
     def test_inner_decides_first_and_is_entered_anew(self, build, drive, path):
         groups = (
             Group(name="G", start="A", end="B", max_repeat_count=2),
@@ -125,6 +185,7 @@ class TestRounds:
         executor = drive(build("A B C", *groups))
         assert path(executor) == "A@0 B@1 B@2 A@3 B@4 B@5 C@6 end@7"
 
+    @pytest.mark.rule("G1", "G7")
     def test_groups_of_the_same_range_multiply(self, build, drive, path):
         groups = (
             Group(name="G/H", start="A", end="A", max_repeat_count=3),
@@ -133,23 +194,27 @@ class TestRounds:
         executor = drive(build("A B", *groups))
         assert path(executor) == "A@0 A@1 A@2 A@3 A@4 A@5 B@6 end@7"
 
+    @pytest.mark.rule("G2")
     def test_entry_in_the_middle_is_round_one(self, build, drive, path):
         group = Group(name="G", start="B", end="C", max_repeat_count=2)
         executor = drive(build("A B C D", group, ways={"A": ["C"]}))
         assert path(executor) == "A@0 C@1 B@2 C@3 D@4 end@5"
 
+    @pytest.mark.rule("G4")
     def test_jump_inside_changes_no_round(self, build, drive, path):
         group = Group(name="G", start="A", end="B", max_repeat_count=2)
         mission = build("A B C", group, ways={"B": [when("A", greater("B", 0)), "C"]})
         executor = drive(mission, reads={"B": [1, 0, 0]})
         assert path(executor) == "A@0 B@1 A@2 B@3 A@4 B@5 C@6 end@7"
 
+    @pytest.mark.rule("G3")
     def test_condition_leaves_in_the_middle_and_entry_starts_anew(self, build, drive, path):
         group = Group(name="G", start="A", end="B", max_repeat_count=2)
         ways = {"A": [when("C", greater("A", 0)), "B"], "C": [when("A", greater("A", 0))]}
         executor = drive(build("A B C", group, ways=ways), reads={"A": [0, 1, 0, 0]})
         assert path(executor) == "A@0 B@1 A@2 C@3 A@4 B@5 A@6 B@7 C@8 end@9"
 
+    @pytest.mark.rule("G6")
     def test_unconditional_to_a_member_after_the_last_round_enters_anew(self, build, drive, path):
         group = Group(name="G", start="A", end="B", max_repeat_count=2)
         ways = {"B": ["A"], "A": [when("C", greater("A", 0)), "B"], "C": []}
@@ -162,6 +227,7 @@ class TestRounds:
             Cause.DEFAULT,
         ]
 
+    @pytest.mark.rule("G9")
     def test_endless_group_is_left_by_a_condition(self, build, drive, path):
         group = Group(name="G", start="A", end="B")
         ways = {"B": ["C", when("C", greater("B", 0))]}
@@ -184,16 +250,19 @@ class TestDurations:
         executor = drive(build("A B C", self.group(Stop.SOFT, 3)))
         assert path(executor) == "A@0 B@1 A@2 B@3 C@4 end@5"
 
+    @pytest.mark.rule("G8", "G10")
     def test_soft_wants_no_round_exactly_at_its_time(self, build, drive, path):
         executor = drive(build("A B C", self.group(Stop.SOFT, 2)))
         assert path(executor) == "A@0 B@1 C@2 end@3"
 
+    @pytest.mark.rule("G10")
     def test_hard_leaves_at_once(self, build, drive, path):
         executor = drive(build("A B C", self.group(Stop.HARD, 2.5)))
         assert path(executor) == "A@0 B@1 A@2 C@2.5 end@3.5"
         assert executor.trace[3].timed_out == "G"
         assert str(executor.trace[3]) == "2.5 s: A -> C (time of 'G' is up)"
 
+    @pytest.mark.rule("G11")
     def test_action_that_ends_with_the_time_has_ended(self, build, drive, path):
         executor = drive(build("A B C", self.group(Stop.HARD, 3)), reads={"A": [1, 2]})
         assert path(executor) == "A@0 B@1 A@2 B@3 C@3 end@4"
@@ -207,6 +276,7 @@ class TestDurations:
         executor = drive(build("A B C", self.group(Stop.HARD, duration, count)))
         assert path(executor) == expected
 
+    @pytest.mark.rule("G2")
     def test_clock_starts_at_the_entry(self, build, drive, path):
         group = Group(name="G", start="B", end="B", max_repeat_duration=1.5)
         executor = drive(build("A B C", group), takes={"A": 10})
@@ -215,6 +285,7 @@ class TestDurations:
     def test_mission_ends_if_the_end_leads_nowhere(self, build, drive, path):
         assert path(drive(build("A B", self.group(Stop.HARD, 0.5)))) == "A@0 end@0.5"
 
+    @pytest.mark.rule("G7", "G10")
     def test_time_out_lets_outer_groups_decide(self, build, drive, path):
         groups = (
             Group(name="G", start="Z", end="B", max_repeat_count=2),
@@ -225,6 +296,7 @@ class TestDurations:
         assert executor.trace[3].timed_out == "G/H"
         assert executor.trace[3].repeated == "G"
 
+    @pytest.mark.rule("G11")
     def test_outermost_of_several_is_left(self, build, drive, path):
         groups = (
             Group(name="G", start="A", end="C", max_repeat_duration=0.5),
@@ -233,6 +305,7 @@ class TestDurations:
         executor = drive(build("A B C D", *groups))
         assert path(executor) == "A@0 D@0.5 end@1.5"
 
+    @pytest.mark.rule("G6")
     def test_time_out_back_into_the_group_enters_it_anew(self, build, drive, path):
         mission = build("A B", self.group(Stop.HARD, 1.5), ways={"B": ["A"]})
         executor = drive(mission, steps=6)

@@ -178,7 +178,7 @@ def test_the_start_option(catalog: Catalog) -> None:
         ("Drive to starting area 3", "unknown-area", 13, 15),
         ("Set a starting point in starting area 2", "second-start", 4, 39),
         ("Fly away", "not-understood", 4, 3),
-        ("Check checkpoint #3 quickly", "not-understood", 24, 7),
+        ("Check checkpoint #3 quickly", "speed", 24, 7),
         ("Check", "not-understood", 9, 1),
         ("Check checkpoint #3 § #4", "not-understood", 24, 1),
     ],

@@ -8,6 +8,8 @@ from argo_compiler.catalog import Catalog
 from argo_compiler.diagnostics import DiagnosticError
 from argo_compiler.errors import ArgoError
 from argo_compiler.script import import_script, parse, read_script
+from argo_compiler.script.parsing import MAX_LINES
+from argo_compiler.script.reading import MAX_BYTES
 
 
 def test_a_byte_order_mark_is_taken_off(tmp_path: Path) -> None:
@@ -24,7 +26,7 @@ def test_a_byte_order_mark_is_taken_off(tmp_path: Path) -> None:
         (b" \n\t", "is empty"),
         (b"Mission\0", "binary"),
         ("a\nMission’s".encode("cp1252"), r"not UTF-8 \(byte 10, line 2\)"),
-        (b"a" * 1_000_001, "larger than 1000000 bytes"),
+        (b"a" * (MAX_BYTES + 1), f"larger than {MAX_BYTES} bytes"),
     ],
 )
 def test_bad_files(data: bytes, message: str, tmp_path: Path) -> None:
@@ -51,7 +53,7 @@ def test_no_file(tmp_path: Path) -> None:
         ("hello world", "script.unrecognised"),
         ("x" * 100_000, "script.unrecognised"),
         ("\n" * 20_000, "script.empty"),
-        ("Mission Protocol\n" * 20_001, "script.too-long"),
+        ("Mission Protocol\n" * (MAX_LINES + 1), "script.too-long"),
     ],
 )
 def test_what_is_no_script(text: str, code: str) -> None:

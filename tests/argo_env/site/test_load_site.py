@@ -91,25 +91,29 @@ def change(description, where, value):
     ("where", "value", "place"),
     [
         (("roof",), 1, "roof"),
-        (("floors", 2, "colour"), "red", "floors.2.colour"),
+        (("floors", 2, "colour"), "red", "floors[2].colour"),
         (("floors", 1, "number"), 7, "numbered"),
-        (("floors", 1, "checkpoints", 0, "id"), 1, "twice: [1]"),
-        (("floors", 1, "checkpoints", 0, "kind"), "lever", "floors.1.checkpoints.0.kind"),
-        (("floors", 1, "checkpoints", 0, "nominal", "low"), 99.0, "floors.1.checkpoints.0.nominal"),
+        (("floors", 1, "checkpoints", 0, "id"), 1, "checkpoint 1 stands twice"),
+        (("floors", 1, "checkpoints", 0, "kind"), "lever", "floors[1].checkpoints[0].kind"),
+        (
+            ("floors", 1, "checkpoints", 0, "nominal", "low"),
+            99.0,
+            "floors[1].checkpoints[0].nominal",
+        ),
         (
             ("floors", 1, "checkpoints", 0, "position"),
             [1.0, 2.0],
-            "floors.1.checkpoints.0.position",
+            "floors[1].checkpoints[0].position",
         ),
-        (("floors", 1, "z"), float("nan"), "floors.1.z"),
-        (("floors", 1, "walkways"), {}, "floors.1.walkways"),
+        (("floors", 1, "z"), float("nan"), "floors[1].z"),
+        (("floors", 1, "walkways"), {}, "floors[1].walkways"),
         (("floors", 1, "walkways", "south aisle"), [5.0, 1.0, 2.0, 2.0], "walkways.south aisle"),
         (("floors",), [], "floors"),
         (("areas",), [], "areas"),
-        (("towers", 0, "flights", 0, "risers"), 1, "towers.0.flights.0.risers"),
-        (("pipes", 0, "points"), [[0.0, 0.0, 0.0]], "pipes.0.points"),
-        (("pipes", 0, "points"), [[1.0, 1.0, 1.0], [1.0, 1.0, 1.0]], "pipes.0"),
-        (("vessels", 0, "radius"), -1.0, "vessels.0.radius"),
+        (("towers", 0, "flights", 0, "risers"), 1, "towers[0].flights[0].risers"),
+        (("pipes", 0, "points"), [[0.0, 0.0, 0.0]], "pipes[0].points"),
+        (("pipes", 0, "points"), [[1.0, 1.0, 1.0], [1.0, 1.0, 1.0]], "pipes[0]"),
+        (("vessels", 0, "radius"), -1.0, "vessels[0].radius"),
         (("ground",), [5.0, 0.0, 1.0, 1.0], "ground"),
     ],
 )
@@ -141,3 +145,50 @@ def test_a_ground_too_large_for_navigation_is_refused(tmp_path: Path) -> None:
     path.write_text(text.replace("ground: [-2.0", "ground: [-90000.0"), encoding="utf-8")
     with pytest.raises(ArgoError, match="larger than 200 m"):
         load_site(str(path))
+
+
+@pytest.mark.parametrize(
+    ("where", "thing"),
+    [
+        (("areas",), "starting area 1"),
+        (("places",), "place"),
+        (("vessels",), "equipment"),
+        (("pipes",), "equipment"),
+        (("towers",), "tower"),
+        (("towers", 0, "flights"), "in west tower"),
+        (("floors", 0, "pumps"), "equipment"),
+    ],
+)
+def test_names_and_numbers_stand_once(tmp_path, description, where, thing):
+    part = description
+    for step in where:
+        part = part[step]
+    part.append(part[0])
+    path = written(tmp_path, description)
+    message = refusal(path)
+    assert "stands twice" in message
+    assert thing in message
+    index = len(part) - 1
+    assert f"{where[-1]}[{index}]." in message
+
+
+def test_mistakes_are_shown_in_their_line(tmp_path):
+    text = (resources.scenarios() / "umad" / "site.yaml").read_text(encoding="utf-8")
+    text = text.replace("storey: 2.5", "storey: -2.5\nstory: 2.5")
+    path = written(tmp_path, text)
+    number = text.split("\n").index("storey: -2.5") + 1
+    message = refusal(path)
+    assert f"{path}:{number}:9: error: storey: " in message
+    assert f"{path}:{number + 1}:1: error: story: " in message
+    assert "is `storey` meant?" in message
+
+
+def test_keys_stand_once(tmp_path, umad):
+    text = (resources.scenarios() / "umad" / "site.yaml").read_text(encoding="utf-8")
+    path = written(tmp_path, text + "\nname: other\n")
+    message = refusal(path)
+    lines = text.split("\n")
+    assert (
+        f"`name` stands here again; it was given at line {lines.index('name: umad') + 1}" in message
+    )
+    assert load_site(str(written(tmp_path, text))) == umad

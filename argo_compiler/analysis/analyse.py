@@ -1,0 +1,151 @@
+"""The analysis of a mission over all paths that it may take."""
+
+from argo_compiler.analysis.endings import endings
+from argo_compiler.analysis.facts import (
+    Analysis,
+    GroupFacts,
+    TaskFacts,
+    TransitionFacts,
+    Verdict,
+)
+from argo_compiler.analysis.flow import Flow
+from argo_compiler.analysis.limits import limits, stale
+from argo_compiler.analysis.reach import unreachable_tasks
+from argo_compiler.analysis.study import Study
+from argo_compiler.analysis.transitions import transitions
+from argo_compiler.analysis.travel import Travel
+from argo_compiler.analysis.values import find_paths, make_fields
+from argo_compiler.catalog import Catalog
+from argo_compiler.hfsm.lower import lower
+from argo_compiler.il import Mission
+
+
+def analyse(
+    mission: Mission, catalog: Catalog | None = None, travel: Travel | None = None
+) -> Analysis:
+    """What can and can't happen on a mission, whatever is measured.
+
+    The catalogue bounds what checkpoints can show and says where docks are; travel gives times and
+    energy. What is assumed is written in `docs/analysis.md`.
+
+    Raises:
+        DiagnosticError: `check` finds errors in the mission.
+        ArgoError: the robot can't stand where the mission starts.
+    """
+    flow = Flow.of(lower(mission), mission)
+    fields = make_fields(flow, catalog)
+    study = Study(
+        mission,
+        catalog,
+        travel,
+        flow,
+        nominal=find_paths(flow, fields, failures=False),
+        all=find_paths(flow, fields, failures=True),
+    )
+    unjudged = []
+    if len(fields.shift) < len(fields.scales):
+        names = ", ".join(sorted(fields.scales.keys() - fields.shift.keys())[:10])
+        unjudged.append(f"the values of some checkpoints along the paths ({names})")
+    found = [*unreachable_tasks(study), *transitions(study), *endings(study)]
+    if study.extent is None:
+        unjudged.append("loops and durations")
+    elif travel is not None:
+        found += limits(study, travel)
+        old = stale(study)
+        if old is None:
+            unjudged.append("ages of values")
+        else:
+            found += old
+    extent = study.extent
+    return Analysis(
+        diagnostics=tuple(found),
+        tasks=tuple(_task_facts(study, i) for i in range(len(flow.leaves)) if study.is_own(i)),
+        groups=tuple(_group_facts(study, g) for g in range(len(flow.groups))),
+        ends=_reach(study, flow.done),
+        duration=None if extent is None else extent.duration,
+        energy=None if extent is None else extent.energy,
+        unjudged=tuple(unjudged),
+    )
+
+
+def _reach(study: Study, node: int) -> Verdict:
+    if study.nominal.reached(node):
+        return Verdict.POSSIBLE
+    return Verdict.AFTER_FAILURE if study.all.reached(node) else Verdict.NEVER
+
+
+def _task_facts(study: Study, leaf: int) -> TaskFacts:
+    task = study.task(leaf)
+    conditional = 0
+    facts = []
+    for index, transition in enumerate(task.transitions):
+        if transition.conditions:
+            verdict = _conditional(study, leaf, conditional)
+            conditional += 1
+        else:
+            verdict = _unconditional(study, leaf)
+        facts.append(TransitionFacts(index=index, target=transition.target, verdict=verdict))
+    return TaskFacts(task=task.name, verdict=_reach(study, leaf), transitions=tuple(facts))
+
+
+def _conditional(study: Study, leaf: int, k: int) -> Verdict:
+    nominal = study.nominal.conditional(study.flow, leaf)
+    if k < len(nominal) and nominal[k].certain:
+        return Verdict.ALWAYS
+    if k < len(nominal) and nominal[k].possible:
+        return Verdict.POSSIBLE
+    looks = study.all.conditional(study.flow, leaf)
+    return Verdict.AFTER_FAILURE if k < len(looks) and looks[k].possible else Verdict.NEVER
+
+
+def _unconditional(study: Study, leaf: int) -> Verdict:
+    """Of a task that ends groups it is the one after their last rounds."""
+    flow = study.flow
+    for paths, verdict in (
+        (study.nominal, Verdict.POSSIBLE),
+        (study.all, Verdict.AFTER_FAILURE),
+    ):
+        if paths.reached(leaf) and paths.tail_possible(flow, leaf):
+            node = flow.leaves[leaf].tail
+        elif any(paths.reached(flow.time_up(g)) for g in _ending_hard(study, leaf)):
+            return verdict
+        else:
+            continue
+        group = flow.group_of_round_end(node)
+        if group is None:
+            conditional = paths.conditional(flow, leaf)
+            alone = verdict is Verdict.POSSIBLE and not any(look.possible for look in conditional)
+            return Verdict.ALWAYS if alone else verdict
+        if any(paths.reached(flow.time_up(g)) for g in _ending_hard(study, leaf)):
+            return verdict
+        while group is not None and flow.groups[group].may_end:
+            group = flow.group_of_round_end(flow.groups[group].onward)
+        if group is None:
+            return verdict
+    return Verdict.NEVER
+
+
+def _ending_hard(study: Study, leaf: int) -> list[int]:
+    """The groups with a hard stop that end with a leaf, and that no endless group keeps."""
+    flow = study.flow
+    found = []
+    group = flow.leaves[leaf].parent
+    while group >= 0 and flow.groups[group].last == leaf:
+        if flow.groups[group].hard:
+            found.append(group)
+        elif not flow.groups[group].may_end:
+            found.clear()
+        group = flow.groups[group].parent
+    return found
+
+
+def _group_facts(study: Study, number: int) -> GroupFacts:
+    flow = study.flow
+    group = flow.groups[number]
+    ended = _reach(study, flow.round_end(number))
+    repeats = ended if group.may_repeat else Verdict.NEVER
+    if group.hard:
+        ends = _reach(study, flow.time_up(number))
+    else:
+        ends = ended if group.may_end else Verdict.NEVER
+    return GroupFacts(group=group.name, repeats=repeats, ends=ends)

@@ -1,0 +1,104 @@
+"""The least and the most that a mission takes from start to end, with the paths that do so."""
+
+import math
+from dataclasses import dataclass
+
+from argo_compiler.analysis.facts import Bound, Bounds, Stretch
+from argo_compiler.analysis.flow import Flow
+from argo_compiler.analysis.legs import Legs
+from argo_compiler.analysis.levels import Level, Levels, Loop
+from argo_compiler.analysis.rounds import Out
+from argo_compiler.analysis.values import Paths
+
+_CUTS = 200_000  # pairs of a task and a time-out that may cut it, as far as they are looked at
+_STRETCHES = 200  # of a path that are kept, at its beginning and at its end
+
+
+@dataclass(frozen=True)
+class Extent:
+    """What the levels of a mission say."""
+
+    duration: Bounds | None
+    energy: Bounds | None
+    loops: tuple[Loop, ...]
+
+
+def too_many_cuts(flow: Flow) -> bool:
+    """Whether groups nest too deeply to look at what each time-out may cut."""
+    pairs = 0
+    hard: list[int] = []
+    for group in flow.groups:
+        hard.append(group.hard + (hard[group.parent] if group.parent >= 0 else 0))
+    for leaf in flow.leaves:
+        pairs += hard[leaf.parent] if leaf.parent >= 0 else 0
+    return pairs > _CUTS
+
+
+def measure(flow: Flow, paths: Paths, legs: Legs, endless: bool) -> Extent:
+    """The bounds of a mission and its loops; none above if some path is `endless`. Raises
+    TooLargeError."""
+    levels = Levels(flow, paths, legs)
+    level = levels.mission()
+    duration = energy = None
+    ends = [way for way in level.outs if way[1][1] == flow.done]
+    if ends and legs.travel is not None:
+        duration = _bounds(flow, legs, level, "time", endless)
+        energy = _bounds(flow, legs, level, "energy", endless)
+    return Extent(duration, energy, tuple(levels.loops.values()))
+
+
+def _bounds(flow: Flow, legs: Legs, level: Level, quantity: str, endless: bool) -> Bounds | None:
+    """None if no path comes to its end: rounds in which no time passes never fill a duration."""
+    least = min(
+        (level.least[quantity][node] + getattr(cost, quantity).least, k)
+        for k, (node, _, cost, _) in enumerate(level.outs)
+    )
+    most = max(
+        (
+            level.most[quantity][node]
+            + getattr(cost, quantity).most
+            + (legs.last_clean_up(source) if quantity == "time" else 0.0),
+            k,
+        )
+        for k, (node, (source, _), cost, _) in enumerate(level.outs)
+    )
+    if math.isinf(least[0]):
+        return None
+    return Bounds(
+        least=Bound(value=least[0], path=_path(flow, level, quantity, least[1], shortest=True)),
+        most=Bound(value=None)
+        if endless or math.isinf(most[0])
+        else Bound(value=most[0], path=_path(flow, level, quantity, most[1], shortest=False)),
+    )
+
+
+def _path(flow: Flow, level: Level, quantity: str, end: int, shortest: bool) -> tuple[Stretch, ...]:
+    """The path to one of the ends of a level, the middle of a very long one left out."""
+    before = (level.least_before if shortest else level.most_before)[quantity]
+    distance = (level.least if shortest else level.most)[quantity]
+    node, _, _, out = level.outs[end]
+    reversed_path: list[Stretch] = []
+    at: tuple[int, Out | None] | None = (node, out)
+    while at is not None:
+        node, out = at
+        key = level.keys[node]
+        if isinstance(key, int):
+            if flow.is_leaf(key):
+                reversed_path.append(Stretch(task=flow.leaves[key].name, until=distance[node]))
+        else:
+            assert out is not None
+            span = getattr(out.cost, quantity)
+            taken = span.least if shortest else span.most
+            rounds = out.fewest if shortest else out.most
+            reversed_path.append(
+                Stretch(
+                    group=flow.groups[key[0]].name,
+                    rounds=int(rounds) if math.isfinite(rounds) else 0,
+                    until=distance[node] + taken,
+                )
+            )
+        at = before[node]
+    path = reversed_path[::-1]
+    if len(path) > 2 * _STRETCHES:
+        path = path[:_STRETCHES] + path[-_STRETCHES:]
+    return tuple(path)

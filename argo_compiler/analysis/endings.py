@@ -1,0 +1,146 @@
+"""Findings about how a mission ends: whether it can, what goes on without limit, and where."""
+
+import math
+from collections.abc import Iterator
+
+from argo_compiler.analysis.study import Study, listed
+from argo_compiler.diagnostics import Diagnostic, Severity
+from argo_compiler.il import Action
+from argo_compiler.model import Pose
+
+DOCKED_DISTANCE_M = 0.1
+DOCKED_ANGLE = math.radians(5.0)
+_PATHS = 200  # findings that come with a path
+_WAY_OUT = (
+    "lead a transition out of it, or make it a group with max_repeat_count or max_repeat_duration"
+)
+
+
+def endings(study: Study) -> Iterator[Diagnostic]:
+    """Whether the mission comes to its end, and where."""
+    if not study.mission.tasks:
+        return
+    traps = study.traps
+    yield from _endless(study, traps)
+    yield from _unbounded(study, {leaf for trap in traps for leaf in trap})
+    yield from _elsewhere(study)
+
+
+def _endless(study: Study, traps: tuple[tuple[int, ...], ...]) -> Iterator[Diagnostic]:
+    severity = Severity.WARNING if study.ended_by_reaction else Severity.ERROR
+    but = "nothing but a reaction" if study.ended_by_reaction else "nothing but a failure"
+    can_end = study.nominal.reached(study.flow.done)
+    for trap in traps:
+        if not trap:
+            continue
+        path = study.path_words(trap[0])
+        yield study.finding(
+            "endless-loop",
+            severity,
+            f"{_tasks(study, trap)} {'follows itself' if len(trap) == 1 else 'follow each other'} "
+            f"for ever: {but} or a person ends that (path: {path})",
+            _WAY_OUT,
+            trap[0],
+        )
+    if not can_end:
+        why = (
+            "each path runs into a loop that no transition leaves"
+            if traps
+            else "no path leads to its end"
+        )
+        if study.all.reached(study.flow.done):
+            why += ", unless an action fails"
+        yield study.finding(
+            "no-end",
+            severity,
+            f"the mission never ends: {why}",
+            "let a task on each path have no unconditional transition, or leave the loop",
+            subject="tasks",
+        )
+
+
+def _tasks(study: Study, leaves: tuple[int, ...]) -> str:
+    return f"task{'s' if len(leaves) > 1 else ''} {listed([study.name(i) for i in leaves])}"
+
+
+def _unbounded(study: Study, trapped: set[int]) -> Iterator[Diagnostic]:
+    """Loops that are left at some time, but nobody knows when."""
+    extent = study.extent
+    if extent is None:
+        return
+    for loop in extent.loops:
+        first = min([*loop.leaves, *(study.flow.groups[g].first for g in loop.groups)])
+        if first in trapped:
+            continue
+        groups = [study.flow.groups[g].name for g in loop.groups]
+        parts = [
+            *([_tasks(study, loop.leaves)] if loop.leaves else []),
+            *([f"group{'s' if len(groups) > 1 else ''} {listed(groups)}"] if groups else []),
+        ]
+        single = len(loop.leaves) + len(loop.groups) == 1
+        yield study.finding(
+            "unbounded-loop",
+            Severity.WARNING,
+            f"{' and '.join(parts)} may be repeated without limit: "
+            f"{'it' if single else 'they'} can be left, but no count and no duration says when, "
+            "so no duration of the mission can be promised",
+            "make it a group with max_repeat_count or max_repeat_duration that goes on in any case",
+            first,
+        )
+
+
+def _elsewhere(study: Study) -> Iterator[Diagnostic]:
+    """Paths that end elsewhere than where the mission is to end."""
+    area = study.mission.end_area
+    if area is None:
+        return
+    known = None if study.catalog is None else study.catalog.area(area)
+    dock = study.mission.dock if known is None else known.dock
+    if dock is None:
+        return
+    flow = study.flow
+    last_elsewhere: dict[int, str] = {}
+    for leaf in range(len(flow.leaves)):
+        if not study.nominal.reached(leaf) or _stands_at(study, leaf, dock):
+            continue
+        if any(_ends(study, target) for target in study.nominal.targets(flow, leaf)):
+            last_elsewhere[leaf] = f"after task '{study.name(leaf)}'"
+    for number, group in enumerate(flow.groups):
+        if (
+            group.hard
+            and study.nominal.reached(flow.time_up(number))
+            and _ends(study, group.onward)
+        ):
+            last_elsewhere.setdefault(
+                group.last, f"wherever the robot is when the time of group '{group.name}' is up"
+            )
+    for k, (leaf, where) in enumerate(sorted(last_elsewhere.items())):
+        path = f" (path: {study.path_words(leaf)})" if k < _PATHS else ""
+        yield study.finding(
+            "end-elsewhere",
+            Severity.WARNING,
+            f"the mission is to end docked in starting area {area}, but it can end {where}{path}",
+            f"let each path end with a WAYPOINT task at the dock of starting area {area}",
+            leaf,
+        )
+
+
+def _ends(study: Study, node: int) -> bool:
+    """Whether a node is the end of the mission, or may lead there without another task."""
+    flow = study.flow
+    group = flow.group_of_round_end(node)
+    while group is not None:
+        if not flow.groups[group].may_end:
+            return False
+        node = flow.groups[group].onward
+        group = flow.group_of_round_end(node)
+    return node == flow.done
+
+
+def _stands_at(study: Study, leaf: int, dock: Pose) -> bool:
+    task = study.task(leaf)
+    if task.action is not Action.WAYPOINT or task.pose is None:
+        return False
+    away = math.dist((task.pose.x, task.pose.y, task.pose.z), (dock.x, dock.y, dock.z))
+    turned = abs((task.pose.yaw - dock.yaw + math.pi) % (2 * math.pi) - math.pi)
+    return away <= DOCKED_DISTANCE_M and turned <= DOCKED_ANGLE

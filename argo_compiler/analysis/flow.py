@@ -1,0 +1,191 @@
+"""The ways through a machine as a flat graph: what may come after what.
+
+Nodes are numbers. A leaf is its place among the machine's leaves; each group has two nodes, one
+for the end of a round (where it decides about another one) and one for the moment when its time is
+up, whatever was under way; and one node is the end of the mission.
+"""
+
+from dataclasses import dataclass, field
+
+from argo_compiler.hfsm.model import MISSION, Hfsm, Leaf, Transition
+from argo_compiler.il import Action, Condition, Mission, Stop
+
+NOWHERE = -1
+"""the parent of what lies directly in the mission"""
+
+
+@dataclass(frozen=True, slots=True)
+class GroupFlow:
+    """A group, and how it goes on at the end of a round."""
+
+    name: str
+    parent: int
+    """number of the group around it, or NOWHERE"""
+    first: int
+    last: int
+    """its leaves are `first` to `last`"""
+    start: int
+    """the leaf that a round begins with"""
+    onward: int
+    """the node after the last round"""
+    onward_domain: int
+    """the group that stays active then, or NOWHERE"""
+    count: int
+    duration: float
+    hard: bool
+    """whether a time-out ends the round"""
+
+    @property
+    def may_repeat(self) -> bool:
+        return self.count != 1
+
+    @property
+    def may_end(self) -> bool:
+        return self.count > 0 or self.duration > 0
+
+    def holds(self, leaf: int) -> bool:
+        return self.first <= leaf <= self.last
+
+
+@dataclass(frozen=True, slots=True)
+class LeafFlow:
+    """A leaf and its ways on, in the order in which they are tried."""
+
+    leaf: Leaf
+    parent: int
+    conditional: tuple[tuple[tuple[Condition, ...], int], ...]
+    tail: int
+    """the node if no condition holds"""
+    tail_domain: int
+    failure: int | None
+    """the node after a failure for good, where that is not the same as any other end"""
+    measures: str | None
+    """the object whose value its action measures"""
+
+    @property
+    def name(self) -> str:
+        return self.leaf.task.name
+
+
+@dataclass(frozen=True)
+class Flow:
+    """All leaves and groups of a machine, by number; groups before those that lie in them."""
+
+    leaves: tuple[LeafFlow, ...]
+    groups: tuple[GroupFlow, ...]
+    initial: int
+    start_velocity: float | None
+    depth: tuple[int, ...] = field(default=())
+    """of each group: how many groups are around it"""
+    timed: tuple[bool, ...] = field(default=())
+    """of each group: whether its time, or that of a group around it, may be up at any moment"""
+
+    @property
+    def done(self) -> int:
+        return len(self.leaves) + 2 * len(self.groups)
+
+    @property
+    def size(self) -> int:
+        return self.done + 1
+
+    def round_end(self, group: int) -> int:
+        """The node at which a round of the group has ended."""
+        return len(self.leaves) + group
+
+    def time_up(self, group: int) -> int:
+        """The node at which the time of the group, or of one around it, may be up."""
+        return len(self.leaves) + len(self.groups) + group
+
+    def is_leaf(self, node: int) -> bool:
+        return node < len(self.leaves)
+
+    def group_of_round_end(self, node: int) -> int | None:
+        at = node - len(self.leaves)
+        return at if 0 <= at < len(self.groups) else None
+
+    @classmethod
+    def of(cls, hfsm: Hfsm, mission: Mission) -> "Flow":
+        """The graph of a machine, in linear time."""
+        return _Builder(hfsm, mission).flow()
+
+
+class _Builder:
+    def __init__(self, hfsm: Hfsm, mission: Mission) -> None:
+        self.hfsm = hfsm
+        self.mission = mission
+        self.number = {leaf.id: i for i, leaf in enumerate(hfsm.leaves)}
+        self.groups = {c.id: i for i, c in enumerate(hfsm.composites[1:])}
+        self.groups[MISSION] = NOWHERE
+        self.done = len(hfsm.leaves) + 2 * len(hfsm.composites[1:])
+
+    def flow(self) -> Flow:
+        groups = self._group_flows()
+        depth: list[int] = []
+        timed: list[bool] = []
+        for group in groups:
+            around = group.parent
+            depth.append(depth[around] + 1 if around >= 0 else 0)
+            timed.append(group.hard or (around >= 0 and timed[around]))
+        start = next((t for t in self.mission.tasks if t.action is Action.START), None)
+        return Flow(
+            leaves=tuple(self._leaf_flow(leaf) for leaf in self.hfsm.leaves),
+            groups=groups,
+            initial=self.number.get(self.hfsm.mission.initial, self.done),
+            start_velocity=None if start is None else start.velocity,
+            depth=tuple(depth),
+            timed=tuple(timed),
+        )
+
+    def _node(self, transition: Transition) -> int:
+        if transition.completes is not None:
+            return len(self.hfsm.leaves) + self.groups[transition.completes]
+        return self.number.get(transition.target or "", self.done)
+
+    def _domain(self, transition: Transition) -> int:
+        return self.groups[transition.domain or MISSION]
+
+    def _leaf_flow(self, leaf: Leaf) -> LeafFlow:
+        *conditional, last = leaf.transitions
+        return LeafFlow(
+            leaf=leaf,
+            parent=self.groups[leaf.parent],
+            conditional=tuple((t.conditions, self._node(t)) for t in conditional),
+            tail=self._node(last),
+            tail_domain=self._domain(last),
+            failure=None if leaf.failure is None else self._node(leaf.failure),
+            measures=leaf.task.object_id if leaf.task.action is Action.MEASURE else None,
+        )
+
+    def _group_flows(self) -> tuple[GroupFlow, ...]:
+        composites = self.hfsm.composites[1:]
+        first = [len(self.hfsm.leaves)] * len(composites)
+        last = [-1] * len(composites)
+        for i, leaf in enumerate(self.hfsm.leaves):
+            at = self.groups[leaf.parent]
+            if at >= 0:
+                first[at], last[at] = min(first[at], i), max(last[at], i)
+        for at in reversed(range(len(composites))):
+            around = self.groups[composites[at].parent or MISSION]
+            if around >= 0:
+                first[around] = min(first[around], first[at])
+                last[around] = max(last[around], last[at])
+        flows = []
+        for at, composite in enumerate(composites):
+            repeat = composite.repeat
+            assert repeat is not None
+            onward = composite.transitions[-1]
+            flows.append(
+                GroupFlow(
+                    name=composite.name,
+                    parent=self.groups[composite.parent or MISSION],
+                    first=first[at],
+                    last=last[at],
+                    start=self.number[composite.initial],
+                    onward=self._node(onward),
+                    onward_domain=self._domain(onward),
+                    count=repeat.count,
+                    duration=repeat.duration,
+                    hard=repeat.duration > 0 and repeat.stop is Stop.HARD,
+                )
+            )
+        return tuple(flows)

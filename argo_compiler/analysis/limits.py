@@ -1,0 +1,223 @@
+"""Findings about duration, battery, ages of values, and places that can't be reached."""
+
+import heapq
+import math
+from collections.abc import Callable, Iterator
+
+from argo_compiler.analysis.facts import Bound, Bounds, Stretch
+from argo_compiler.analysis.study import Study
+from argo_compiler.analysis.travel import NoWay, Travel
+from argo_compiler.diagnostics import Diagnostic, Severity
+from argo_compiler.hfsm.conditions import words
+from argo_compiler.il import Action, OnFailure, Response, Task
+from argo_compiler.model import Pose
+
+AGE_WORK = 3_000_000
+"""steps that ages of values may take to look at"""
+_SHOWN = 8  # stretches of a path that a message spells out
+
+
+def limits(study: Study, travel: Travel) -> Iterator[Diagnostic]:
+    """What travel times and energy say about the mission."""
+    yield from _blocked(study)
+    yield from _blocked_retreats(study, travel)
+    extent = study.extent
+    if extent is None or extent.duration is None or extent.energy is None:
+        return
+    if study.mission.max_duration is not None:
+        yield from _too_long(study, extent.duration, study.mission.max_duration)
+    if travel.battery is not None:
+        yield from _too_far(study, extent.energy, travel.battery)
+
+
+def _blocked(study: Study) -> Iterator[Diagnostic]:
+    for leaf, reason in sorted(study.legs.blocked.items()):
+        yield study.finding(
+            "unreachable-place",
+            Severity.ERROR,
+            f"the robot can't carry out task '{study.name(leaf)}': {reason}",
+            "choose another place or checkpoint, or remove the task",
+            leaf,
+        )
+
+
+def _blocked_retreats(study: Study, travel: Travel) -> Iterator[Diagnostic]:
+    """Where reactions and failures send the robot."""
+    mission = study.mission
+    retreats: list[tuple[Pose, str, str]] = []
+    back = any(r.response is Response.RETURN for r in mission.reactions) or any(
+        t.on_failure is OnFailure.RETURN for t in mission.tasks
+    )
+    if back and mission.dock is not None:
+        retreats.append((mission.dock, "dock", "return to the dock"))
+    for i, reaction in enumerate(mission.reactions):
+        if reaction.response is Response.SAFE_AREA and reaction.pose is not None:
+            place = f"go to the safe area of the reaction to {reaction.event}"
+            retreats.append((reaction.pose, f"reactions[{i}].pose", place))
+    start = travel.start(mission)
+    for pose, subject, what in retreats:
+        drive = Task(name="retreat", action=Action.WAYPOINT, pose=pose)
+        leg = travel.leg(start, drive, None)
+        if isinstance(leg, NoWay):
+            yield study.finding(
+                "unreachable-place",
+                Severity.ERROR,
+                f"the robot can't {what}: {leg.reason}",
+                "choose a place that it can reach",
+                subject=subject,
+            )
+
+
+def _too_long(study: Study, duration: Bounds, limit: float) -> Iterator[Diagnostic]:
+    least, most = duration.least.value, duration.most.value
+    if least is not None and least > limit:
+        yield study.finding(
+            "too-long",
+            Severity.ERROR,
+            f"the mission takes at least {time_words(least)}, longer than its maximum duration of "
+            f"{time_words(limit)} (shortest: {path_words(duration.least, time_words)})",
+            "leave out tasks, shorten groups, or allow more time",
+            subject="max_duration",
+        )
+    elif most is not None and most > limit:
+        yield study.finding(
+            "maybe-too-long",
+            Severity.WARNING,
+            f"the mission may take up to {time_words(most)}, longer than its maximum duration of "
+            f"{time_words(limit)} (longest: {path_words(duration.most, time_words)})",
+            "leave out tasks, shorten groups, or say by a reaction to time_up what happens then",
+            subject="max_duration",
+        )
+    elif most is None:
+        yield study.finding(
+            "maybe-too-long",
+            Severity.WARNING,
+            f"the mission may take longer than its maximum duration of {time_words(limit)}, as "
+            "something in it has no limit (shortest: "
+            f"{path_words(duration.least, time_words)})",
+            "limit what is repeated, or say by a reaction to time_up what happens then",
+            subject="max_duration",
+        )
+
+
+def _too_far(study: Study, energy: Bounds, battery: float) -> Iterator[Diagnostic]:
+    least, most = energy.least.value, energy.most.value
+    if least is not None and least > battery:
+        yield study.finding(
+            "battery-exceeded",
+            Severity.ERROR,
+            f"the mission needs at least {energy_words(least)}, and the battery gives "
+            f"{energy_words(battery)} (least: {path_words(energy.least, energy_words)})",
+            "leave out tasks or rounds, or charge in between",
+            subject="tasks",
+        )
+    elif most is None or most > battery:
+        need = "without limit" if most is None else f"up to {energy_words(most)}"
+        path = energy.least if most is None else energy.most
+        yield study.finding(
+            "battery-maybe-exceeded",
+            Severity.WARNING,
+            f"the mission may need energy {need}, and the battery gives {energy_words(battery)} "
+            f"({'least' if most is None else 'most'}: {path_words(path, energy_words)})",
+            "limit what is repeated, or react to low_battery",
+            subject="tasks",
+        )
+
+
+def stale(study: Study) -> Iterator[Diagnostic] | None:
+    """Conditions whose value is always older than their `max_age`, or None if that is too much to
+    look at."""
+    flow = study.flow
+    asked: dict[str, list[tuple[int, int, int]]] = {}
+    for i, leaf in enumerate(flow.leaves):
+        for k, (conditions, _) in enumerate(leaf.conditional):
+            for c, condition in enumerate(conditions):
+                o = condition.object_id
+                aged = condition.max_age is not None and o != leaf.measures
+                if aged and study.nominal.reached(i):
+                    asked.setdefault(o, []).append((i, k, c))
+    steps = study.legs.steps()
+    if len(asked) * sum(len(s) for s in steps.values()) > AGE_WORK:
+        return None
+    return _stale(study, asked, steps)
+
+
+def _stale(
+    study: Study,
+    asked: dict[str, list[tuple[int, int, int]]],
+    steps: dict[object, list[tuple[object, float]]],
+) -> Iterator[Diagnostic]:
+    for o, places in asked.items():
+        sources = [i for i, leaf in enumerate(study.flow.leaves) if leaf.measures == o]
+        age = _ages(sources, steps)
+        for leaf, k, c in places:
+            condition = study.flow.leaves[leaf].conditional[k][0][c]
+            youngest = age.get(leaf, math.inf)
+            assert condition.max_age is not None
+            if math.isfinite(youngest) and youngest > condition.max_age:
+                yield study.finding(
+                    "always-stale",
+                    Severity.WARNING,
+                    f"a condition of task '{study.name(leaf)}' never holds: {words(condition)}, "
+                    f"but from the measurement to here it takes at least {time_words(youngest)}",
+                    f"measure checkpoint {o} again before, or allow a greater age",
+                    leaf,
+                    study.indices(leaf)[k],
+                )
+
+
+def _ages(
+    sources: list[int], steps: dict[object, list[tuple[object, float]]]
+) -> dict[object, float]:
+    """The least time from the end of one of the sources to the end of each leaf after it."""
+    age: dict[object, float] = {}
+    heap: list[tuple[float, int, object]] = [(0.0, k, s) for k, s in enumerate(sources)]
+    count = len(heap)
+    heapq.heapify(heap)
+    done: set[object] = set()
+    while heap:
+        here, _, node = heapq.heappop(heap)
+        if node in done:
+            continue
+        done.add(node)
+        for target, taken in steps.get(node, ()):
+            there = here + taken
+            if there < age.get(target, math.inf):
+                age[target] = there
+                count += 1
+                heapq.heappush(heap, (there, count, target))
+    return age
+
+
+def time_words(seconds: float) -> str:
+    """`47 s`, `12 min 30 s`, `2 h 5 min`."""
+    if seconds < 60:
+        return f"{seconds:.3g} s"
+    minutes, rest = divmod(round(seconds), 60)
+    if minutes < 60:
+        return f"{minutes} min {rest} s" if rest else f"{minutes} min"
+    hours, minutes = divmod(minutes, 60)
+    return f"{hours} h {minutes} min" if minutes else f"{hours} h"
+
+
+def energy_words(energy: float) -> str:
+    """`120 Wh`."""
+    return f"{energy:.3g} Wh" if energy < 1000 else f"{energy:.0f} Wh"
+
+
+def path_words(bound: Bound, quantity_words: Callable[[float], str]) -> str:
+    """The path to a bound, with when each of its stretches ends, the middle left out if long."""
+
+    def stretch_words(stretch: Stretch) -> str:
+        return f"{stretch.words} ({quantity_words(stretch.until)})"
+
+    path = bound.path
+    if len(path) <= _SHOWN:
+        return " > ".join(map(stretch_words, path)) or "no task"
+    half = _SHOWN // 2
+    shown = [
+        *map(stretch_words, path[:half]),
+        f"({len(path) - 2 * half} more)",
+        *map(stretch_words, path[-half:]),
+    ]
+    return " > ".join(shown)

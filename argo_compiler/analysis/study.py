@@ -1,0 +1,171 @@
+"""All that the findings are made from, put together once for a mission."""
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+from functools import cached_property
+
+from argo_compiler.analysis.bounds import Extent, measure, too_many_cuts
+from argo_compiler.analysis.flow import Flow
+from argo_compiler.analysis.graph import components, first_ways, leading_to, way_to
+from argo_compiler.analysis.legs import Legs
+from argo_compiler.analysis.levels import TooLargeError
+from argo_compiler.analysis.travel import Travel
+from argo_compiler.analysis.values import Paths
+from argo_compiler.catalog import Catalog
+from argo_compiler.diagnostics import Diagnostic, Severity
+from argo_compiler.il import Afterwards, Mission, Response, Task
+
+_NAMES = 6  # of a list or path that a message spells out
+
+
+@dataclass(frozen=True)
+class Study:
+    """A mission, its flow, and what may happen on it. Nothing of it changes."""
+
+    mission: Mission
+    catalog: Catalog | None
+    travel: Travel | None
+    flow: Flow
+    nominal: Paths
+    """if every action succeeds and every measurement gives a value"""
+    all: Paths
+    """whatever fails"""
+
+    @cached_property
+    def position(self) -> dict[str, int]:
+        """The place of each task in the mission's list."""
+        return {task.name: i for i, task in enumerate(self.mission.tasks)}
+
+    @cached_property
+    def successors(self) -> tuple[tuple[int, ...], ...]:
+        """What may come next after each node, if nothing fails."""
+        return tuple(tuple(dict.fromkeys(self._after(n))) for n in range(self.flow.size))
+
+    @cached_property
+    def traps(self) -> tuple[tuple[int, ...], ...]:
+        """The leaves of each loop that may be entered and that nothing but a failure leaves."""
+        flow = self.flow
+        ends = leading_to(self.successors, [flow.done])
+        traps = []
+        for part in components(self.successors):
+            if ends[part[0]] or not self.nominal.reached(part[0]):
+                continue
+            inside = set(part)
+            if all(other in inside for node in part for other in self.successors[node]):
+                traps.append(tuple(sorted(node for node in part if flow.is_leaf(node))))
+        return tuple(sorted(traps))
+
+    @cached_property
+    def legs(self) -> Legs:
+        return Legs(self.flow, self.nominal, self.travel, self.mission)
+
+    @cached_property
+    def extent(self) -> Extent | None:
+        """None where the mission is too large or too deeply nested to measure."""
+        if too_many_cuts(self.flow):
+            return None
+        try:
+            return measure(self.flow, self.nominal, self.legs, endless=bool(self.traps))
+        except TooLargeError:
+            return None
+
+    def name(self, leaf: int) -> str:
+        return self.flow.leaves[leaf].name
+
+    def task(self, leaf: int) -> Task:
+        return self.flow.leaves[leaf].leaf.task
+
+    def is_own(self, leaf: int) -> bool:
+        """Whether a leaf is a task of the mission, and not one that the machine adds."""
+        return self.name(leaf) in self.position
+
+    def indices(self, leaf: int) -> list[int]:
+        """Where a leaf's ways stand in its task's list: those with conditions, in order."""
+        return [k for k, t in enumerate(self.task(leaf).transitions) if t.conditions]
+
+    @cached_property
+    def ended_by_reaction(self) -> bool:
+        """Whether an event may end the mission."""
+        return any(
+            r.response is Response.ABORT
+            or (
+                r.response in (Response.RETURN, Response.SAFE_AREA)
+                and r.afterwards is Afterwards.END
+            )
+            for r in self.mission.reactions
+        )
+
+    def path_words(self, leaf: int) -> str:
+        """A shortest path to a leaf if nothing fails, for people; empty if there is none."""
+        way = way_to(self._first_ways, self.flow.initial, leaf)
+        return "" if way is None else self.words(way)
+
+    def words(self, way: tuple[int, ...]) -> str:
+        """The tasks of a path, the middle left out if it is long."""
+        leaves = [n for n in way if n < len(self.flow.leaves)]
+        if len(leaves) <= _NAMES + 1:
+            return " > ".join(map(self.name, leaves))
+        half = _NAMES // 2
+        shown = [*map(self.name, leaves[:half]), f"({len(leaves) - 2 * half} more)"]
+        return " > ".join([*shown, *map(self.name, leaves[-half:])])
+
+    @cached_property
+    def _first_ways(self) -> list[int | None]:
+        return first_ways(self.successors, self.flow.initial, lambda _a, _b: True)
+
+    def _after(self, node: int) -> Iterator[int]:
+        flow = self.flow
+        if not self.nominal.reached(node) or node == flow.done:
+            return
+        if flow.is_leaf(node):
+            yield from self.nominal.targets(flow, node)
+            parent = flow.leaves[node].parent
+            if parent >= 0 and flow.timed[parent]:
+                yield flow.time_up(parent)
+            return
+        ended = flow.group_of_round_end(node)
+        if ended is not None:
+            if flow.groups[ended].may_repeat:
+                yield flow.groups[ended].start
+            if flow.groups[ended].may_end:
+                yield flow.groups[ended].onward
+            return
+        group = flow.groups[node - len(flow.leaves) - len(flow.groups)]
+        if group.hard:
+            yield group.onward
+        if group.parent >= 0 and flow.timed[group.parent]:
+            yield flow.time_up(group.parent)
+
+    def finding(
+        self,
+        code: str,
+        severity: Severity,
+        message: str,
+        hint: str,
+        leaf: int | None = None,
+        transition: int | None = None,
+        subject: str | None = None,
+    ) -> Diagnostic:
+        """A finding about a leaf's task, one of its transitions, or what `subject` names."""
+        span = None
+        if leaf is not None and self.is_own(leaf):
+            span = self.task(leaf).source
+            subject = f"tasks[{self.position[self.name(leaf)]}]"
+            if transition is not None:
+                subject += f".transitions[{transition}]"
+        return Diagnostic(
+            code=f"analysis.{code}",
+            severity=severity,
+            message=message,
+            hint=hint,
+            span=span,
+            subject=subject,
+        )
+
+
+def listed(names: list[str]) -> str:
+    """Names in quotes: `'A', 'B' and 'C'`, the rest of a long list only counted."""
+    shown = [f"'{name}'" for name in names[:_NAMES]]
+    if len(names) > _NAMES:
+        shown.append(f"{len(names) - _NAMES} more")
+    return shown[0] if len(shown) == 1 else f"{', '.join(shown[:-1])} and {shown[-1]}"

@@ -1,0 +1,43 @@
+"""Whether a mission makes sense: the structure of its tasks, transitions, groups and reactions.
+
+What is found here needs no knowledge of the paths that a run may take. An error means that the
+mission has no agreed meaning and can't be lowered; a warning, that it has one that may surprise.
+"""
+
+from argo_compiler.catalog import Catalog
+from argo_compiler.check.groups import check_groups
+from argo_compiler.check.header import check_header
+from argo_compiler.check.reactions import check_reactions
+from argo_compiler.check.tasks import TaskChecks
+from argo_compiler.diagnostics import Diagnostic, Severity
+from argo_compiler.il import Mission
+
+__all__ = ["check"]
+
+
+def check(mission: Mission, catalog: Catalog | None = None) -> tuple[Diagnostic, ...]:
+    """All that is wrong or odd about a mission: its tasks, groups, reactions and header.
+
+    With a catalogue, what the mission names on the site is looked up in it. Linear time. Each
+    finding has the path of what it is about as its `subject`.
+    """
+    if not mission.tasks:
+        return (
+            Diagnostic(
+                code="il.empty-mission",
+                severity=Severity.ERROR,
+                message="the mission has no tasks",
+                hint="add a task; a mission that does nothing has a START task only",
+                subject="tasks",
+            ),
+        )
+    if catalog and mission.site and mission.site != catalog.site:
+        known = None  # its numbers mean checkpoints of another site
+    else:
+        known = None if catalog is None else frozenset(str(c.id) for c in catalog.checkpoints)
+    return (
+        *TaskChecks(mission, known).findings(),
+        *check_groups(mission),
+        *check_reactions(mission),
+        *check_header(mission, catalog),
+    )

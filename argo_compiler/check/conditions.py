@@ -1,0 +1,79 @@
+"""Whether the conditions of transitions can hold."""
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+
+from argo_compiler.check.finding import task_finding
+from argo_compiler.diagnostics import Diagnostic, Severity
+from argo_compiler.il import Condition, ConditionType, Task
+
+
+@dataclass(frozen=True)
+class ConditionChecks:
+    """What is known of the checkpoints that a condition may compare."""
+
+    measured: set[str | None]
+    """by the mission's tasks"""
+    known: frozenset[str] | None
+    """on the site; None: not known"""
+
+    def findings(
+        self, i: int, task: Task, condition: Condition, field: str
+    ) -> Iterator[Diagnostic]:
+        """What is wrong with a condition of the mission's task `i`, in that field."""
+        yield from _check_bounds(i, task, condition, field)
+        if self.known is not None and condition.object_id not in self.known:
+            yield task_finding(
+                i,
+                task,
+                "il.unknown-object",
+                f"task '{task.name}' names checkpoint '{condition.object_id}', which the site does "
+                "not have",
+                "use the number of a checkpoint in the site's catalogue",
+                field=field + ".object_id",
+            )
+        elif condition.object_id not in self.measured:
+            yield task_finding(
+                i,
+                task,
+                "il.never-measured",
+                f"a condition of task '{task.name}' compares checkpoint '{condition.object_id}', "
+                "which no task measures, so it never holds",
+                f"measure checkpoint '{condition.object_id}' before this task",
+                Severity.WARNING,
+                field + ".object_id",
+            )
+
+
+def _check_bounds(i: int, task: Task, condition: Condition, field: str) -> Iterator[Diagnostic]:
+    low, high = condition.param1, condition.param2
+    which = f"a {condition.type} condition of task '{task.name}'"
+    if condition.type is not ConditionType.WITHIN:
+        if high is not None:
+            yield task_finding(
+                i,
+                task,
+                "il.unused-field",
+                f"{which} has a param2, which has no effect",
+                "only WITHIN has an upper bound as well: remove it",
+                Severity.WARNING,
+                field + ".param2",
+            )
+    elif high is None:
+        yield task_finding(
+            i,
+            task,
+            "il.within-bounds",
+            f"{which} has no param2",
+            "give it as the upper bound",
+            field=field,
+        )
+    elif low > high or (low == high and not condition.inclusive):
+        yield task_finding(
+            i,
+            task,
+            "il.within-bounds",
+            f"{which} never holds: no value lies between {low:g} and {high:g}",
+            "param1 is the lower bound, param2 the upper one",
+            field=field,
+        )

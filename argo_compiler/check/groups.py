@@ -1,0 +1,265 @@
+"""Whether the groups of a mission are well formed: names, ranges, nesting, and a way out of each.
+
+The names of the groups and the ranges of their tasks have to tell the same story: a group lies in
+another one if and only if its name says so.
+"""
+
+from bisect import bisect_left
+from collections.abc import Iterator
+
+from argo_compiler.diagnostics import Diagnostic, Severity
+from argo_compiler.grouping import GroupRange, Layout, group_ranges, parent_name
+from argo_compiler.il import Action, Group, Mission, Stop
+from argo_compiler.names import nearest_name
+
+MIN_HARD_DURATION_S = 1e-3
+"""A group that a time-out enters again has to last: each visit is a step of the machine."""
+
+_MOST_HINTS = 20
+"""missing names for which a similar one is looked up"""
+
+
+def check_groups(mission: Mission) -> tuple[Diagnostic, ...]:
+    """All that is wrong with a mission's groups.
+
+    Whether an endless group is ever left is looked at only where nothing else is wrong.
+    """
+    if not mission.groups:
+        return ()
+    ranges = group_ranges(mission)
+    findings = [
+        *_check_names(mission.groups),
+        *_check_ends(mission),
+        *_check_nesting(ranges),
+        *_check_starts(mission, ranges),
+    ]
+    if not findings and ranges:
+        findings += _check_endless(mission)
+    return (*findings, *_check_unused(mission.groups))
+
+
+def _error(
+    index: int, group: Group, code: str, message: str, hint: str, field: str = ""
+) -> Diagnostic:
+    """A finding about the mission's group of that index, or one of its fields."""
+    return Diagnostic(
+        code=code,
+        severity=Severity.ERROR,
+        message=message,
+        span=group.source,
+        hint=hint,
+        subject=f"groups[{index}]{field}",
+    )
+
+
+def _check_names(groups: tuple[Group, ...]) -> Iterator[Diagnostic]:
+    names = {group.name for group in groups}
+    seen: set[str] = set()
+    for i, group in enumerate(groups):
+        if group.name in seen:
+            yield _error(
+                i,
+                group,
+                "il.duplicate-group",
+                f"more than one group is named '{group.name}'",
+                "give each group a name of its own",
+                field=".name",
+            )
+        seen.add(group.name)
+        parent = parent_name(group.name)
+        if not all(group.name.split("/")):
+            yield _error(
+                i,
+                group,
+                "il.group-name",
+                f"the group name '{group.name}' has an empty part",
+                "separate the names of nested groups by one '/', as in 'Alpha/Beta'",
+                field=".name",
+            )
+        elif parent is not None and parent not in names:
+            yield _error(
+                i,
+                group,
+                "il.group-parent",
+                f"group '{group.name}' is to lie in group '{parent}', which does not exist",
+                f"add a group '{parent}' around it or take the '/' out of its name",
+                field=".name",
+            )
+
+
+def _check_ends(mission: Mission) -> Iterator[Diagnostic]:
+    position: dict[str, int] = {}
+    for i, task in enumerate(mission.tasks):
+        position.setdefault(task.name, i)
+    hints = 0
+    for i, group in enumerate(mission.groups):
+        unknown = {group.end: ".end", group.start: ".start"}
+        unknown = {name: field for name, field in unknown.items() if name not in position}
+        for name, field in reversed(unknown.items()):
+            hints += 1
+            near = nearest_name(name, position) if hints <= _MOST_HINTS else None
+            yield _error(
+                i,
+                group,
+                "il.unknown-group-task",
+                f"group '{group.name}' begins or ends with '{name}', which is no task of the "
+                "mission",
+                f"is '{near}' meant?" if near else "a group's start and end are names of tasks",
+                field,
+            )
+        if not unknown and position[group.start] > position[group.end]:
+            yield _error(
+                i,
+                group,
+                "il.group-order",
+                f"group '{group.name}' starts with task '{group.start}', which comes after its "
+                f"end '{group.end}' in the list of tasks",
+                "swap its start and end or reorder the tasks",
+                field=".start",
+            )
+        if group.stop is Stop.HARD and 0 < group.max_repeat_duration < MIN_HARD_DURATION_S:
+            yield _error(
+                i,
+                group,
+                "il.group-duration",
+                f"the time of group '{group.name}' is up after {group.max_repeat_duration:g} s, "
+                "before any action could be carried out",
+                f"allow it at least {MIN_HARD_DURATION_S:g} s, or 0 for no limit",
+                field=".max_repeat_duration",
+            )
+
+
+def _check_nesting(ranges: tuple[GroupRange, ...]) -> Iterator[Diagnostic]:
+    by_name = {r.group.name: r for r in ranges}
+    around: list[GroupRange] = []
+    for r in ranges:
+        name = r.group.name
+        parent = by_name.get(parent_name(name) or "")
+        if parent and not (parent.contains(r.first) and parent.contains(r.last)):
+            yield _error(
+                r.index,
+                r.group,
+                "il.group-outside-parent",
+                f"group '{name}' reaches beyond group '{parent.group.name}', in which it is to lie",
+                f"keep its tasks between '{parent.group.start}' and '{parent.group.end}'",
+            )
+        while around and around[-1].last < r.first:
+            around.pop()
+        if around and not name.startswith(around[-1].group.name + "/"):
+            other = around[-1]
+            same = (other.first, other.last) == (r.first, r.last)
+            yield _error(
+                r.index,
+                r.group,
+                "il.group-same-range" if same else "il.group-overlap",
+                f"groups '{other.group.name}' and '{name}' "
+                + ("have the same tasks" if same else f"both contain task '{r.group.start}'")
+                + ", and neither name says that one lies in the other",
+                f"name the inner one '{other.group.name}/{name.rpartition('/')[2]}' if it is to "
+                "lie in the other, else separate their tasks",
+            )
+        around.append(r)
+
+
+def _check_starts(mission: Mission, ranges: tuple[GroupRange, ...]) -> Iterator[Diagnostic]:
+    starts = [i for i, task in enumerate(mission.tasks) if task.action is Action.START]
+    for r in ranges:
+        i = bisect_left(starts, r.first)
+        if i < len(starts) and r.contains(starts[i]):
+            yield _error(
+                r.index,
+                r.group,
+                "il.start-in-group",
+                f"the START task '{mission.tasks[starts[i]].name}' lies in group '{r.group.name}'",
+                "move START before the group: it is not repeated",
+            )
+
+
+def _check_unused(groups: tuple[Group, ...]) -> Iterator[Diagnostic]:
+    for i, group in enumerate(groups):
+        if group.count_interruptions and not group.max_repeat_duration:
+            finding = _error(
+                i,
+                group,
+                "il.unused-field",
+                f"group '{group.name}' has no duration that interruptions could count as part of",
+                "give it max_repeat_duration, or remove count_interruptions",
+                ".count_interruptions",
+            )
+            yield finding.model_copy(update={"severity": Severity.WARNING})
+
+
+def _endless(group: Group) -> bool:
+    return not group.max_repeat_count and not group.max_repeat_duration
+
+
+def _timed_out(group: Group) -> bool:
+    return group.stop is Stop.HARD and group.max_repeat_duration > 0
+
+
+def _check_endless(mission: Mission) -> Iterator[Diagnostic]:
+    """Endless groups that no transition leaves, and no time-out of a group around them.
+
+    A transition leaves a group if its target lies outside the group's range. So the lowest and the
+    highest target of all members decide; they are gathered from the innermost groups outward.
+    """
+    layout = Layout.of(mission)
+    lowest, highest = _target_bounds(mission, layout)
+    bounded = [False] * len(layout.ranges)
+    for i, r in enumerate(layout.ranges):
+        parent = layout.parent[i]
+        bounded[i] = _timed_out(r.group) or (parent is not None and bounded[parent])
+    for i in reversed(range(len(layout.ranges))):
+        parent = layout.parent[i]
+        if parent is not None:
+            lowest[parent] = min(lowest[parent], lowest[i])
+            highest[parent] = max(highest[parent], highest[i])
+    for i, r in enumerate(layout.ranges):
+        left = lowest[i] < r.first or highest[i] > r.last
+        if _endless(r.group) and not left and not bounded[i]:
+            yield _error(
+                r.index,
+                r.group,
+                "il.endless-group",
+                f"group '{r.group.name}' is repeated for ever: it has neither a count nor a "
+                "duration, and no transition that can be taken leaves it",
+                "give it max_repeat_count or max_repeat_duration, or a conditional transition to "
+                "a task outside",
+            )
+
+
+def _target_bounds(mission: Mission, layout: Layout) -> tuple[list[int], list[int]]:
+    """For each group, the lowest and highest target of the tasks of which it is the innermost.
+
+    The end of the mission counts as a target behind the last task.
+    """
+    position = {task.name: i for i, task in enumerate(mission.tasks)}
+    end = len(mission.tasks)
+    lowest = [end] * len(layout.ranges)
+    highest = [-1] * len(layout.ranges)
+    for i, task in enumerate(mission.tasks):
+        innermost = layout.innermost[i]
+        if innermost is None:
+            continue
+        targets = [position.get(t.target, i) for t in task.transitions if t.conditions]
+        if _goes_on(layout, i):
+            default = next((t.target for t in task.transitions if not t.conditions), None)
+            targets.append(end if default is None else position.get(default, i))
+        for target in targets:
+            lowest[innermost] = min(lowest[innermost], target)
+            highest[innermost] = max(highest[innermost], target)
+    return lowest, highest
+
+
+def _goes_on(layout: Layout, task: int) -> bool:
+    """Whether the unconditional transition of a task can be taken at all.
+
+    It can't where an endless group ends with the task, unless the time of a group further out that
+    ends there too can be up.
+    """
+    for i in reversed(layout.ending[task]):
+        if _timed_out(layout.ranges[i].group):
+            return True
+        if _endless(layout.ranges[i].group):
+            return False
+    return True

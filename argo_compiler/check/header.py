@@ -1,0 +1,40 @@
+"""Whether a mission's header agrees with its tasks and with the site."""
+
+from collections.abc import Iterator
+
+from argo_compiler.catalog import Catalog
+from argo_compiler.diagnostics import Diagnostic, Severity
+from argo_compiler.il import Mission
+
+
+def check_header(mission: Mission, catalog: Catalog | None) -> Iterator[Diagnostic]:
+    """What is wrong with the site, the areas and the current task of a mission."""
+    if mission.current is not None and mission.task(mission.current) is None:
+        yield Diagnostic(
+            code="il.unknown-current",
+            severity=Severity.WARNING,
+            message=f"the current task '{mission.current}' is no task of the mission",
+            hint="name a task or leave it out: only the planner uses it",
+            subject="current",
+        )
+    if catalog is None:
+        return
+    if mission.site and mission.site != catalog.site:
+        yield Diagnostic(
+            code="il.other-site",
+            severity=Severity.ERROR,
+            message=f"the mission was planned for site `{mission.site}`, not for `{catalog.site}`",
+            hint=f"choose it with --site {mission.site}",
+            subject="site",
+        )
+        return
+    for field, area in (("start_area", mission.start_area), ("end_area", mission.end_area)):
+        if area is not None and catalog.area(area) is None:
+            known = ", ".join(str(a.number) for a in catalog.areas) or "none"
+            yield Diagnostic(
+                code="il.unknown-area",
+                severity=Severity.ERROR,
+                message=f"site {catalog.site} has no starting area {area}",
+                hint=f"there are: {known}",
+                subject=field,
+            )

@@ -1,0 +1,130 @@
+"""Whether a mission's reactions say what to do, and whether all that they say has an effect."""
+
+from collections.abc import Iterator
+
+from argo_compiler.diagnostics import Diagnostic, Severity
+from argo_compiler.il import Afterwards, EventKind, Mission, Reaction, Response
+
+_DRIVES = frozenset([Response.RETURN, Response.SAFE_AREA])
+_HOLDS = _DRIVES | {Response.PAUSE}
+
+
+def check_reactions(mission: Mission) -> Iterator[Diagnostic]:
+    """All that is wrong or odd about a mission's reactions."""
+    first: dict[EventKind, Reaction] = {}
+    for reaction in mission.reactions:
+        first.setdefault(reaction.event, reaction)
+    for i, reaction in enumerate(mission.reactions):
+        if first[reaction.event] is not reaction:
+            yield _finding(
+                i,
+                reaction,
+                "il.duplicate-reaction",
+                f"there is more than one reaction to {reaction.event}",
+                "keep one reaction for each event",
+                field=".event",
+            )
+        yield from _check_places(i, reaction, mission)
+        yield from _check_unused(i, reaction)
+        if reaction.response in _HOLDS and reaction.until is not None:
+            yield from _check_until(i, reaction, first)
+        for field, event in (("event", reaction.event), ("until", reaction.until)):
+            if event is EventKind.TIME_UP and mission.max_duration is None:
+                yield _finding(
+                    i,
+                    reaction,
+                    "il.time-up-without-limit",
+                    f"the reaction to {reaction.event} waits for {event}, which never occurs: the "
+                    "mission has no max_duration",
+                    "give the mission a max_duration, or use another event",
+                    Severity.WARNING,
+                    f".{field}",
+                )
+
+
+def _finding(
+    i: int,
+    reaction: Reaction,
+    code: str,
+    message: str,
+    hint: str,
+    severity: Severity = Severity.ERROR,
+    field: str = "",
+) -> Diagnostic:
+    return Diagnostic(
+        code=code,
+        severity=severity,
+        message=message,
+        span=reaction.source,
+        hint=hint,
+        subject=f"reactions[{i}]{field}",
+    )
+
+
+def _check_places(i: int, reaction: Reaction, mission: Mission) -> Iterator[Diagnostic]:
+    if reaction.response is Response.SAFE_AREA and reaction.pose is None:
+        yield _finding(
+            i,
+            reaction,
+            "il.safe-area-without-pose",
+            f"the reaction to {reaction.event} does not say where the safe area is",
+            "give the reaction a `pose`",
+            field=".response",
+        )
+    if reaction.response is Response.RETURN and mission.dock is None:
+        yield _finding(
+            i,
+            reaction,
+            "il.no-dock",
+            f"the robot is to return to the dock on {reaction.event}, but the mission has no dock",
+            "give the mission the pose of its docking station as `dock`",
+            field=".response",
+        )
+
+
+def _check_unused(i: int, reaction: Reaction) -> Iterator[Diagnostic]:
+    response = reaction.response
+    unused = {
+        "pose": reaction.pose is not None and response is not Response.SAFE_AREA,
+        "until": reaction.until is not None and response not in _HOLDS,
+        "afterwards": reaction.afterwards is not Afterwards.END and response not in _DRIVES,
+    }
+    for field in (field for field, given in unused.items() if given):
+        yield _finding(
+            i,
+            reaction,
+            "il.unused-field",
+            f"the reaction to {reaction.event} has `{field}`, which has no effect on the response "
+            f"{response}",
+            "remove it or choose another response",
+            Severity.WARNING,
+            f".{field}",
+        )
+
+
+def _check_until(
+    i: int, reaction: Reaction, first: dict[EventKind, Reaction]
+) -> Iterator[Diagnostic]:
+    if reaction.until is reaction.event:
+        yield _finding(
+            i,
+            reaction,
+            "il.until-itself",
+            f"the reaction to {reaction.event} waits for {reaction.event} itself, which changes "
+            "nothing while it is active",
+            "wait for an event that tells that it is over, such as all_clear",
+            field=".until",
+        )
+        return
+    other = first.get(reaction.until) if reaction.until else None
+    if other and other.response is not Response.REPORT and other.priority > reaction.priority:
+        yield _finding(
+            i,
+            reaction,
+            "il.until-answered",
+            f"the reaction to {reaction.event} waits for {reaction.until}, which has a reaction of "
+            "higher priority that is carried out instead",
+            "wait for another event, or give this reaction the higher priority",
+            Severity.WARNING,
+            ".until",
+        )

@@ -1,0 +1,272 @@
+"""Whether the tasks of a mission and their transitions make sense."""
+
+from collections.abc import Iterable, Iterator
+
+from argo_compiler.check.conditions import ConditionChecks
+from argo_compiler.check.finding import task_finding
+from argo_compiler.diagnostics import Diagnostic, Severity
+from argo_compiler.il import Action, Mission, OnFailure, Task
+from argo_compiler.names import nearest_name
+from argo_compiler.reserved import RESERVED_NAMES
+
+MANY_RETRIES = 100
+"""that few actions are worth; more look like a mission that hangs"""
+
+# Looked up in the enumeration, each would take as long as the rest of a comparison.
+_START, _WAYPOINT, _MEASURE, _RETURN = (
+    Action.START,
+    Action.WAYPOINT,
+    Action.MEASURE,
+    OnFailure.RETURN,
+)
+
+_MOST_HINTS = 20
+"""missing names for which a similar one is looked up"""
+
+
+class TaskChecks:
+    """The sets over one mission that its tasks are checked with.
+
+    A mission may have a hundred thousand tasks: what is sound is recognised in the loop, and a call
+    is made only for what is not, or not at a glance.
+    """
+
+    def __init__(self, mission: Mission, known: frozenset[str] | None) -> None:
+        self.mission = mission
+        tasks = mission.tasks
+        self.names = {task.name for task in tasks}
+        self.starts = [task.name for task in tasks if task.action is _START]
+        self.targets = self.names.difference(self.starts)
+        self.known = known
+        measured = {task.object_id for task in tasks if task.action is _MEASURE}
+        self.conditions = ConditionChecks(measured, known)
+        self.hints = 0
+
+    def findings(self) -> Iterator[Diagnostic]:
+        if len(self.names) < len(self.mission.tasks) or not RESERVED_NAMES.isdisjoint(self.names):
+            yield from _check_names(self.mission.tasks)
+        starts = 0
+        targets, known = self.targets, self.known
+        for i, task in enumerate(self.mission.tasks):
+            action = task.action
+            if action is _MEASURE:
+                object_id = task.object_id
+                if object_id is None or (known is not None and object_id not in known):
+                    yield _wrong_object(i, task)
+            elif action is _WAYPOINT:
+                if task.pose is None:
+                    yield _no_pose(i, task)
+            else:
+                starts += 1
+                if starts > 1:
+                    yield self._second_start(i, task)
+                yield from _unused_by_start(i, task)
+            transitions = task.transitions
+            if len(transitions) != 1 or transitions[0].conditions:
+                yield from self._branching(i, task)
+            elif transitions[0].target not in targets:
+                yield self._wrong_target(i, task, 0)
+            if task.retries > MANY_RETRIES:
+                yield _many_retries(i, task)
+            if task.joint_states is not None:
+                yield from _check_joints(i, task)
+        yield from _check_returns(self.mission)
+
+    def _second_start(self, i: int, task: Task) -> Diagnostic:
+        return task_finding(
+            i,
+            task,
+            "il.many-starts",
+            f"'{task.name}' is a second START task; '{self.starts[0]}' is the first",
+            "a mission begins at one place: remove all START tasks but one",
+        )
+
+    def _branching(self, i: int, task: Task) -> Iterator[Diagnostic]:
+        """The transitions of a task that has none, several, or a conditional one."""
+        unconditional = 0
+        for k, transition in enumerate(task.transitions):
+            if transition.target not in self.targets:
+                yield self._wrong_target(i, task, k)
+            unconditional += not transition.conditions
+            for n, condition in enumerate(transition.conditions):
+                field = f".transitions[{k}].conditions[{n}]"
+                yield from self.conditions.findings(i, task, condition, field)
+        if unconditional > 1:
+            yield task_finding(
+                i,
+                task,
+                "il.many-unconditional",
+                f"task '{task.name}' has {unconditional} unconditional transitions",
+                "keep one and give the others conditions",
+                field=".transitions",
+            )
+        if task.action is Action.START and unconditional < len(task.transitions):
+            yield task_finding(
+                i,
+                task,
+                "il.start-condition",
+                f"the START task '{task.name}' has a conditional transition, which is never taken: "
+                "nothing has been measured yet",
+                "remove it",
+                Severity.WARNING,
+                ".transitions",
+            )
+        elif task.transitions and not unconditional:
+            yield task_finding(
+                i,
+                task,
+                "il.no-unconditional",
+                f"the mission ends after task '{task.name}' if none of its conditions hold",
+                "add an unconditional transition if it is to go on",
+                Severity.WARNING,
+                ".transitions",
+            )
+
+    def _wrong_target(self, i: int, task: Task, k: int) -> Diagnostic:
+        target = task.transitions[k].target
+        field = f".transitions[{k}].target"
+        if target in self.names:
+            return task_finding(
+                i,
+                task,
+                "il.start-as-target",
+                f"a transition of task '{task.name}' leads to the START task '{target}', which is "
+                "only where the mission begins",
+                "lead it to the task that follows START",
+                field=field,
+            )
+        near = self._nearest(target)
+        return task_finding(
+            i,
+            task,
+            "il.unknown-target",
+            f"a transition of task '{task.name}' leads to '{target}', which is no task of the "
+            "mission",
+            f"is '{near}' meant?"
+            if near
+            else f"add a task '{target}' or lead the transition to another one",
+            field=field,
+        )
+
+    def _nearest(self, name: str) -> str | None:
+        self.hints += 1
+        return nearest_name(name, self.names) if self.hints <= _MOST_HINTS else None
+
+
+def _check_names(tasks: Iterable[Task]) -> Iterator[Diagnostic]:
+    seen: set[str] = set()
+    for i, task in enumerate(tasks):
+        if task.name in seen:
+            yield task_finding(
+                i,
+                task,
+                "il.duplicate-task",
+                f"more than one task is named '{task.name}'",
+                "give each task a name of its own: transitions and groups go by it",
+                field=".name",
+            )
+        if task.name in RESERVED_NAMES:
+            yield task_finding(
+                i,
+                task,
+                "il.reserved-name",
+                f"the machine needs the name '{task.name}' for a drive of its own",
+                "give the task another name",
+                field=".name",
+            )
+        seen.add(task.name)
+
+
+def _wrong_object(i: int, task: Task) -> Diagnostic:
+    if task.object_id is None:
+        return task_finding(
+            i,
+            task,
+            "il.measure-without-object",
+            f"the MEASURE task '{task.name}' has no object_id",
+            "say which checkpoint it measures",
+        )
+    return task_finding(
+        i,
+        task,
+        "il.unknown-object",
+        f"task '{task.name}' names checkpoint '{task.object_id}', which the site does not have",
+        "use the number of a checkpoint in the site's catalogue",
+        field=".object_id",
+    )
+
+
+def _no_pose(i: int, task: Task) -> Diagnostic:
+    return task_finding(
+        i,
+        task,
+        "il.waypoint-without-pose",
+        f"the WAYPOINT task '{task.name}' has no pose",
+        "say where it leads",
+    )
+
+
+def _unused_by_start(i: int, task: Task) -> Iterator[Diagnostic]:
+    unused = {"retries": task.retries != 0, "on_failure": task.on_failure != OnFailure.CONTINUE}
+    for field in (field for field, given in unused.items() if given):
+        yield task_finding(
+            i,
+            task,
+            "il.unused-field",
+            f"the START task '{task.name}' has no action that could fail, so its {field} has no "
+            "effect",
+            "remove it",
+            Severity.WARNING,
+            f".{field}",
+        )
+
+
+def _many_retries(i: int, task: Task) -> Diagnostic:
+    return task_finding(
+        i,
+        task,
+        "il.many-retries",
+        f"task '{task.name}' would be tried again {task.retries} times",
+        f"up to {MANY_RETRIES} are thought of: let on_failure say what comes then",
+        Severity.WARNING,
+        ".retries",
+    )
+
+
+def _check_joints(i: int, task: Task) -> Iterator[Diagnostic]:
+    joints = task.joint_states
+    if joints is None:
+        return
+    if len(joints.names) != len(joints.positions):
+        fault = f"names {len(joints.names)} joints and gives {len(joints.positions)} positions"
+    elif len(set(joints.names)) != len(joints.names):
+        fault = "names a joint twice"
+    else:
+        return
+    yield task_finding(
+        i,
+        task,
+        "il.joint-states",
+        f"task '{task.name}' {fault}",
+        "give one position for each joint, and each joint once",
+        field=".joint_states",
+    )
+
+
+def _check_returns(mission: Mission) -> Iterator[Diagnostic]:
+    """One finding for all tasks that are to return to a dock that is not there."""
+    if mission.dock:
+        return
+    returning = [i for i, t in enumerate(mission.tasks) if t.on_failure is _RETURN]
+    if returning:
+        task = mission.tasks[returning[0]]
+        others = f" (and {len(returning) - 1} more)" if len(returning) > 1 else ""
+        yield task_finding(
+            returning[0],
+            task,
+            "il.no-dock",
+            f"task '{task.name}'{others} is to return to the dock if it fails, but the mission has "
+            "no dock",
+            "give the mission the pose of its docking station as `dock`",
+            field=".on_failure",
+        )

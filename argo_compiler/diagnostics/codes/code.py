@@ -1,0 +1,25 @@
+"""What a code stands for."""
+
+from dataclasses import dataclass
+
+from argo_compiler.diagnostics.finding import Severity
+
+
+@dataclass(frozen=True, slots=True)
+class Code:
+    """What a code stands for. Both texts are whole sentences."""
+
+    severity: Severity
+    meaning: str
+    remedy: str
+    """the way out"""
+
+
+def error(meaning: str, remedy: str) -> Code:
+    """What an error's code stands for."""
+    return Code(Severity.ERROR, meaning, remedy)
+
+
+def warning(meaning: str, remedy: str) -> Code:
+    """What a warning's code stands for."""
+    return Code(Severity.WARNING, meaning, remedy)

@@ -1,0 +1,56 @@
+"""The codes of findings about what an exporter's target can't say."""
+
+from argo_compiler.diagnostics.codes.code import error
+
+EXPORT = {
+    "export.backward": error(
+        "A transition leads back outside of a group's rounds; behaviour trees have no such edges.",
+        "Put the tasks in between into a group.",
+    ),
+    "export.isar-empty": error(
+        "The mission has no tasks, which isar does not allow.", "Measure something."
+    ),
+    "export.isar-endless": error(
+        "The mission has too many tasks when its rounds are written out, as isar needs them.",
+        "Limit its groups, and lead no transition back.",
+    ),
+    "export.isar-group": error(
+        "A group is repeated for a time; for isar, rounds can only be counted.",
+        "Limit it by `max_repeat_count`.",
+    ),
+    "export.isar-mode": error(
+        "The mission is supervisory; isar has autonomous missions only.", "Plan it as autonomous."
+    ),
+    "export.isar-no-target": error(
+        "The place of a checkpoint is not known, and isar needs a point to look at.",
+        "Export with the site that has the checkpoint.",
+    ),
+    "export.isar-reaction": error(
+        "A reaction has no place in isar's missions.", "Remove it; isar's own state machine reacts."
+    ),
+    "export.isar-task": error(
+        "A task has something that isar's tasks do not have.",
+        "Remove it, or export to a format that has it.",
+    ),
+    "export.isar-waypoint": error(
+        "A task only drives; isar's tasks are inspections.",
+        "Remove it, or measure a checkpoint there.",
+    ),
+    "export.name": error(
+        "BehaviorTree.CPP would take a name for something else than text.",
+        "Choose a name without braces, semicolons and `json:`.",
+    ),
+    "export.not-text": error(
+        "A text of the mission can't be written as UTF-8.", "Remove what is no character."
+    ),
+    "export.number-too-large": error(
+        "A number does not fit into the field of the message.", "Use a smaller number."
+    ),
+    "export.reaction": error(
+        "A reaction can't be said in this format.",
+        "Let the robot's own tree or behaviour react, with the mission's inside it.",
+    ),
+    "export.too-long": error(
+        "The duration of a group is longer than a Timeout node takes.", "Shorten it."
+    ),
+}

@@ -1,0 +1,41 @@
+"""The codes of findings about mission files."""
+
+from argo_compiler.diagnostics.codes.code import error
+
+FILE = {
+    "file.directory": error("A folder stands where a file is read.", "Name the file in it."),
+    "file.duplicate-key": error(
+        "An object of the JSON file has the same field twice; readers would disagree on which "
+        "one counts.",
+        "Remove one of the two.",
+    ),
+    "file.missing": error("There is no such file.", "Check the path."),
+    "file.not-a-mission": error(
+        "The file is JSON, but not an object with a mission's fields.",
+        "Name a file that `argo import` or the planner has written.",
+    ),
+    "file.not-json": error(
+        "The file is no JSON: a comma, quote or bracket is missing, or a number or text is not "
+        "allowed.",
+        "Correct the file at the mark.",
+    ),
+    "file.not-text": error(
+        "The file is not UTF-8 text.", "Save it as UTF-8, or name the right file."
+    ),
+    "file.too-deep": error(
+        "The JSON is nested far deeper than any mission.", "Check that it is the right file."
+    ),
+    "file.too-large": error(
+        "The file is larger than 50 MB, far above any mission.", "Check that it is the right file."
+    ),
+    "file.unreadable": error("The file can't be read.", "Check the path and its permissions."),
+    "file.unsupported-version": error(
+        "The file has a version of the mission format that this Argo does not know.",
+        "Use a newer Argo, or save the mission anew.",
+    ),
+    "file.unwritable": error("The file can't be written.", "Choose another place to write to."),
+    "file.wrong-field": error(
+        "A field of the mission is unknown, missing, or has a value of the wrong kind.",
+        "Correct the field; the JSON Schema (`argo schema mission`) says what it may hold.",
+    ),
+}

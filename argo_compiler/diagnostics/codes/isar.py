@@ -1,0 +1,28 @@
+"""The codes of findings about missions of isar."""
+
+from argo_compiler.diagnostics.codes.code import error, warning
+
+ISAR = {
+    "isar.dropped": warning(
+        "A part of the isar mission has no counterpart and is left out.",
+        "Check whether the mission is complete without it.",
+    ),
+    "isar.home": error(
+        "The isar mission does not say where home is.", "Give the pose of home in the site's frame."
+    ),
+    "isar.inspection": error(
+        "A task of the isar mission has no inspection.", "Say what is to be inspected."
+    ),
+    "isar.inspection-type": error(
+        "The isar mission asks for an inspection other than an image.",
+        "Argo reads checkpoints in images: use one of those types.",
+    ),
+    "isar.tag": error(
+        "An inspection has no tag, so it is not said which checkpoint it is of.",
+        "Give it the checkpoint's tag.",
+    ),
+    "isar.wrong-field": error(
+        "A field of the isar mission is missing or has a value of the wrong kind.",
+        "Correct the isar mission.",
+    ),
+}

@@ -1,0 +1,242 @@
+"""The codes of findings about mission scripts."""
+
+from argo_compiler.diagnostics.codes.code import error, warning
+
+SCRIPT = {
+    "script.after-docking": error(
+        "A step comes after the robot has returned to its docking station.",
+        "Move the return to the end.",
+    ),
+    "script.after-done": error(
+        "A line comes after the protocol has said that it is done.",
+        "Move it up, or remove the earlier `Done!`.",
+    ),
+    "script.ambiguous-checkpoint": error(
+        "Several checkpoints have the name that the script uses.", "Name it by its number."
+    ),
+    "script.ambiguous-cut": error(
+        "A word cut by text recognition can be read in more than one way.",
+        "Write it without the tab as it is meant.",
+    ),
+    "script.ambiguous-duration": error(
+        "A duration such as `10:30` can be minutes and seconds, or hours and minutes.",
+        "Write the units: `10 min 30 s`.",
+    ),
+    "script.ambiguous-edit": error(
+        "An edit fits more than one step of the plan.", "Say which of them is meant."
+    ),
+    "script.ambiguous-event": error(
+        "An obstacle may stand in the way, or be a part of the way that is missing.",
+        "Write `a positive obstacle` or `a negative obstacle`.",
+    ),
+    "script.ambiguous-step": error(
+        "More than one step has the number that is named.",
+        "Number the steps anew, or name the task.",
+    ),
+    "script.area-choice": error(
+        "The script leaves the starting area to be chosen during preparation.",
+        "Choose with `--start-area` and `--end-area`.",
+    ),
+    "script.area-conflict": error(
+        "Two statements, or a statement and an option, choose different starting areas.",
+        "Leave one of them out.",
+    ),
+    "script.area-not-offered": error(
+        "The option chooses a starting area that the script does not offer.",
+        "Choose one that the script names.",
+    ),
+    "script.bound-task": error(
+        "A task that belongs to a condition is to be moved, replaced or taken out.",
+        "Change the line that asks for it.",
+    ),
+    "script.checkpoint-mismatch": error(
+        "The checkpoint with this number has another name on the site.",
+        "Correct the number or the name.",
+    ),
+    "script.condition": error(
+        "A condition is asked for that missions do not have.",
+        "Compare one checkpoint: less than, greater than, or between two values.",
+    ),
+    "script.duration": error(
+        "A duration is zero, or its units are mixed up.",
+        "Write hours before minutes before seconds, each once: `1 h 30 min`.",
+    ),
+    "script.empty-name": error(
+        "The quotation marks in front of a command have nothing between them.",
+        "Write a name there, or leave them out.",
+    ),
+    "script.empty": error(
+        "The script is empty.", "Name a file with a mission sheet or a mission protocol."
+    ),
+    "script.empty-range": error(
+        "A range of checkpoints has its numbers the wrong way round.",
+        "Write the lower number first.",
+    ),
+    "script.empty-step": error(
+        "The mission is to go on at a step that plans nothing.",
+        "Name a step that measures or drives.",
+    ),
+    "script.end-at-dock": warning(
+        "A condition can't end the mission on the spot; the robot returns to its dock first.",
+        "Write `return to the docking station` if that is meant.",
+    ),
+    "script.endless-patrol": error(
+        "A patrol would never end.", "Say for how long or how often it is driven."
+    ),
+    "script.endless-repeat": error(
+        "A repetition would never end.",
+        "Say for how long or how often, or `endlessly` where a condition leaves it.",
+    ),
+    "script.failure": error(
+        "What is to happen after a failure is not what a mission can do then.",
+        "Use one of the forms in the hint.",
+    ),
+    "script.healed": warning(
+        "A word that text recognition had cut was put together again.",
+        "Check that it is read as it is meant.",
+    ),
+    "script.height": error(
+        "The height of a place is missing, or contradicts its floor.",
+        "Say the floor or the height that is meant.",
+    ),
+    "script.long-line": error("A line or cell is too long to be a script's.", "Shorten it."),
+    "script.missing-field": warning(
+        "The sheet lacks a field, and something was assumed for it.",
+        "Add the field if it is meant otherwise.",
+    ),
+    "script.no-area": error(
+        "The sheet names no starting area.",
+        "Name one in the sheet, or give `--start-area` and `--end-area`.",
+    ),
+    "script.no-start": error(
+        "The protocol does not say where the robot starts.", "Set a starting point."
+    ),
+    "script.no-target": error(
+        "A condition leads to a task, and none follows.",
+        "Name a step, or return to the docking station.",
+    ),
+    "script.no-task": error(
+        "Something is said of the task before, and there is none.",
+        "Write it behind the task that it belongs to.",
+    ),
+    "script.not-planned": error(
+        "An edit names what is not in the plan at this point.",
+        "Ask for it before the edit, or correct the name.",
+    ),
+    "script.not-understood": error(
+        "A line has no form that Argo knows.", "Write a line such as the one in the hint."
+    ),
+    "script.nothing-to-do": error(
+        "The script asks for nothing to be done.", "Add a step, such as a checkpoint to read."
+    ),
+    "script.number": error("A number is too large.", "Correct the number."),
+    "script.one-name": error(
+        "One name stands before several tasks.", "Give each task a line and a name."
+    ),
+    "script.other-site": warning(
+        "The script says that it is for another site than the one that it is read with.",
+        "Check `--site`, or the script's site.",
+    ),
+    "script.overlap": error(
+        "Two repetitions have some of their steps in common.",
+        "Let one lie in the other as a whole, or separate them.",
+    ),
+    "script.quantity": warning(
+        "The script asks for a quantity that this kind of checkpoint does not show.",
+        "Write the quantity in the hint.",
+    ),
+    "script.quoted-text": error(
+        "A quoted text has an escape that does not exist.",
+        'Write a backslash as `\\\\` and a quotation mark as `\\"`.',
+    ),
+    "script.reaction": error(
+        "A reaction has a response that does not exist, or two of them.",
+        "Write one of those in the hint.",
+    ),
+    "script.repeated-field": error("A field or title stands twice.", "Leave one of the two out."),
+    "script.repeated-limit": error(
+        "A repetition is limited twice in the same way.", "Leave one out."
+    ),
+    "script.repeated-name": error(
+        "More than one task has the same name.", "Give each task a name of its own."
+    ),
+    "script.respelled": warning(
+        "A misspelt word was taken for one that is known.", "Check that it is read as it is meant."
+    ),
+    "script.rounds": error("A patrol has no rounds.", "Let it have at least one."),
+    "script.route": error(
+        "What follows a condition is not what a mission can do in one case only.",
+        "Go to a step, drive or measure.",
+    ),
+    "script.second-reaction": error(
+        "Two lines say what to do in the same event.", "Leave one of the two out."
+    ),
+    "script.second-route": error(
+        "Where no condition holds, the mission is to go on in two ways.",
+        "Leave one out, or give it a condition.",
+    ),
+    "script.second-start": error(
+        "The protocol sets a second starting point.", "Keep one of them, or edit the first."
+    ),
+    "script.self-move": error("A step is to stand before or after itself.", "Name another place."),
+    "script.speed": error("A speed is zero or no number.", "Write, say, `at 0.3 m/s`."),
+    "script.step-number": warning(
+        "The numbers of the steps are not one after the other.",
+        "Check whether a line is missing or in the wrong place.",
+    ),
+    "script.step-range": error(
+        "Steps are named the wrong way round, or several where one is meant.",
+        "Write the earlier one first, or name one.",
+    ),
+    "script.stray-clause": error(
+        "A part of the line belongs to nothing before it.", "Write it behind what it belongs to."
+    ),
+    "script.stray-text": error(
+        "Text stands where no field of the sheet is.", "Move it to the field that it belongs to."
+    ),
+    "script.too-long": error("The script has too many lines.", "Divide the mission."),
+    "script.too-many-errors": error(
+        "The rest of the script is not looked at, as too much of it is wrong.",
+        "Correct what was found so far, and check that it is the right file.",
+    ),
+    "script.two-speeds": error("Two speeds are asked for on one way.", "Leave one of them out."),
+    "script.unclear-cut": warning(
+        "Argo can't tell whether a tab cuts a word; it was read as two words.",
+        "Write the words without the tab.",
+    ),
+    "script.unfinished": error(
+        "The line ends before it has said all.", "Complete it as in the hint."
+    ),
+    "script.unit": error(
+        "A value has another unit than the checkpoint.", "Write it in the checkpoint's unit."
+    ),
+    "script.unknown-area": error(
+        "The site has no such starting area.", "Use one of the site's starting areas."
+    ),
+    "script.unknown-checkpoint": error(
+        "The site has no such checkpoint.", "Use the number or name of one that it has."
+    ),
+    "script.unknown-floor": error("The site has no such floor.", "Use one of the site's floors."),
+    "script.unknown-label": error(
+        "The sheet has a field with a label that Argo does not know.",
+        "Correct the label as in the hint.",
+    ),
+    "script.unknown-place": error(
+        "The site has no such place.", "Use one of the site's places or starting areas."
+    ),
+    "script.unknown-step": error(
+        "There is no step or task of that number or name.", "Name one of those in the hint."
+    ),
+    "script.unreadable": error(
+        "The script's file can't be read, or is no text.", "Check the path, and save it as UTF-8."
+    ),
+    "script.unrecognised": error(
+        "The text is neither a mission sheet nor a mission protocol.",
+        "Begin it as the hint shows.",
+    ),
+    "script.unwritable": error(
+        "A part of the mission can't be said in a script.",
+        "Keep the mission as JSON, or change what is named.",
+    ),
+    "script.which-checkpoint": error("It is not said which checkpoint is compared.", "Name it."),
+}

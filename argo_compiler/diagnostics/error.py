@@ -1,0 +1,16 @@
+"""The exception that carries findings."""
+
+from collections.abc import Iterable
+
+from argo_compiler.diagnostics.finding import Diagnostic, by_place
+from argo_compiler.diagnostics.text import to_text
+from argo_compiler.errors import ArgoError
+
+
+class DiagnosticError(ArgoError):
+    """The input can't be used; `diagnostics` says why, errors and warnings alike, by place."""
+
+    def __init__(self, source_name: str, diagnostics: Iterable[Diagnostic]) -> None:
+        self.source_name = source_name
+        self.diagnostics = by_place(diagnostics)
+        super().__init__(to_text(self.diagnostics, source_name))

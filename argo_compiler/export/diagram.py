@@ -1,0 +1,92 @@
+"""What drawings of a machine have in common: ids, nesting, and what stands on the arrows."""
+
+from collections.abc import Iterator
+
+from argo_compiler.hfsm import Composite, Hfsm, Leaf, Transition, TransitionKind
+from argo_compiler.hfsm.conditions import words
+from argo_compiler.hfsm.model import DONE
+from argo_compiler.il import Afterwards, Reaction, Response, Stop
+
+_RESPONSES = {
+    Response.REPORT: "report",
+    Response.PAUSE: "pause",
+    Response.RETURN: "return to the dock",
+    Response.SAFE_AREA: "go to a safe area",
+    Response.ABORT: "abort",
+}
+
+_AFTERWARDS = {
+    Afterwards.RESUME: "go on",
+    Afterwards.WAIT: "wait for a person",
+    Afterwards.END: "end",
+}
+
+
+class Drawing:
+    """A machine with ids by position: `t0` is the first leaf, `g1` the first group."""
+
+    def __init__(self, hfsm: Hfsm) -> None:
+        self.hfsm = hfsm
+        self.composites = {c.id: c for c in hfsm.composites}
+        self.leaves = {leaf.id: leaf for leaf in hfsm.leaves}
+        self.ids = {leaf.id: f"t{i}" for i, leaf in enumerate(hfsm.leaves)}
+        self.ids |= {c.id: f"g{i}" for i, c in enumerate(hfsm.composites)}
+
+    def choice(self, id: str) -> str:
+        """The id of what is decided when a round of the group ends: `r1` for `g1`."""
+        return self.ids[id].replace("g", "r")
+
+    def nested(self) -> Iterator[Leaf | Composite | None]:
+        """All leaves and groups in order; None closes a group.
+
+        Not recursive, as groups may be nested to any depth.
+        """
+        pending: list[str | None] = list(reversed(self.hfsm.mission.children))
+        while pending:
+            id = pending.pop()
+            if id is None:
+                yield None
+            elif leaf := self.leaves.get(id):
+                yield leaf
+            elif id != DONE:
+                group = self.composites[id]
+                yield group
+                pending += [None, *reversed(group.children)]
+
+    def first_leaf(self, group: Composite) -> str:
+        """The id of a leaf that lies in the group."""
+        id = group.children[0]
+        while id not in self.leaves:
+            id = self.composites[id].children[0]
+        return id
+
+
+def transition_words(transition: Transition, group: Composite | None = None) -> str:
+    """Why it is taken, as text; empty where nothing has to be said."""
+    if transition.kind is TransitionKind.CONDITIONAL:
+        return " and ".join(words(condition) for condition in transition.conditions)
+    if transition.kind is TransitionKind.FAILURE:
+        return "failed, abort" if transition.target == DONE else "failed"
+    if group is None or group.repeat is None or transition.kind is TransitionKind.DEFAULT:
+        return ""
+    if transition.kind is TransitionKind.TIMEOUT:
+        return f"time out after {group.repeat.duration:g} s"
+    limits = []
+    if group.repeat.count:
+        limits.append(f"up to {group.repeat.count} rounds")
+    if group.repeat.duration:
+        limits.append(f"for {group.repeat.duration:g} s")
+        limits += ["rounds completed"] if group.repeat.stop is Stop.SOFT else []
+    return ", ".join(["repeat", *limits])
+
+
+def reaction_words(reaction: Reaction) -> str:
+    """The reaction in a few words, such as `gas leak: pause, until all clear`."""
+    parts = [_RESPONSES[reaction.response]]
+    if reaction.until is not None:
+        parts.append(f"until {reaction.until.replace('_', ' ')}")
+    if reaction.response in (Response.RETURN, Response.SAFE_AREA):
+        parts.append(f"then {_AFTERWARDS[reaction.afterwards]}")
+    if reaction.priority:
+        parts.append(f"priority {reaction.priority}")
+    return f"{reaction.event.replace('_', ' ')}: {', '.join(parts)}"

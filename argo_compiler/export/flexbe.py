@@ -1,0 +1,279 @@
+"""FlexBE: a behaviour with nested state machines, its manifest, and the states that it is made of.
+
+Outcomes lead to states of the same machine only. So the target of a transition is written to the
+memory that all states share, and where the way crosses groups, each machine on it has a state that
+routes: `enter` at the beginning of a group, `route` where something inside has been left.
+"""
+
+import re
+from bisect import bisect
+from collections.abc import Iterator, Mapping
+from importlib.resources import files
+
+from argo_compiler.diagnostics import Diagnostic
+from argo_compiler.export.registry import refusal, refuse
+from argo_compiler.export.xml import XmlWriter
+from argo_compiler.hfsm import Composite, Hfsm, Leaf, Transition, TransitionKind
+from argo_compiler.hfsm.model import DONE, MISSION, RETURN
+from argo_compiler.il import Action, Condition, ConditionType, Mission, Response, Task
+
+STATES = "argo_flexbe_states"
+BEHAVIORS = "argo_flexbe_behaviors"
+
+OUTCOMES = ("completed", "returned", "failed", "aborted")
+
+
+def to_flexbe(mission: Mission, hfsm: Hfsm) -> Mapping[str, bytes]:
+    """The files of two Python packages, and the behaviour's manifest, by path.
+
+    Raises:
+        DiagnosticError: the mission has what a behaviour can't say.
+    """
+    refuse(_refusals(hfsm))
+    name = _identifier(hfsm.mission.name) or "mission"
+    sources = files("argo_compiler.export").joinpath("flexbe_states")
+    made = {
+        f"{STATES}/{source.name}": source.read_bytes()
+        for source in sorted(sources.iterdir(), key=lambda source: source.name)
+        if source.name.endswith(".py")
+    }
+    made[f"{BEHAVIORS}/__init__.py"] = b'"""Missions exported by Argo."""\n'
+    made[f"{BEHAVIORS}/{name}_sm.py"] = _Behavior(mission, hfsm, name).source().encode()
+    made[f"manifest/{name}.xml"] = _manifest(hfsm, name).encode()
+    return made
+
+
+def _refusals(hfsm: Hfsm) -> Iterator[Diagnostic]:
+    for state in hfsm.reactions:
+        if state.reaction.response is not Response.REPORT:
+            yield refusal(
+                "reaction",
+                f"the reaction to '{state.reaction.event}' can't be said in a FlexBE behaviour: "
+                "no container of FlexBE goes on with what it interrupted",
+                "let the operator pause the behaviour, or export SCXML",
+                state.reaction.source,
+            )
+
+
+def _manifest(hfsm: Hfsm, name: str) -> str:
+    xml = XmlWriter()
+    with xml.element("behavior", {"name": name}):
+        xml.add("executable", {"package_path": f"{BEHAVIORS}.{name}_sm", "class": f"{name}SM"})
+        xml.add_text("tagstring", "inspection")
+        xml.add_text("author", "Argo")
+        xml.add_text("date", "")
+        xml.add_text("description", hfsm.mission.name or "an inspection mission")
+    return xml.text()
+
+
+class _Behavior:
+    def __init__(self, mission: Mission, hfsm: Hfsm, name: str) -> None:
+        starts = (t.velocity for t in mission.tasks if t.action is Action.START)
+        self.first_velocity = next(starts, None) or 0.0
+        self.hfsm = hfsm
+        self.name = name
+        self.composites = {c.id: c for c in hfsm.composites}
+        self.leaves = {leaf.id: leaf for leaf in hfsm.leaves}
+        self.numbers = {leaf.id: i for i, leaf in enumerate(hfsm.leaves, 1)}
+        self.labels = {
+            leaf.id: self._label(f"t{i}", leaf.task.name) for i, leaf in enumerate(hfsm.leaves, 1)
+        }
+        self.variables = {c.id: f"_sm_g{i}" for i, c in enumerate(hfsm.composites)}
+        self.depths = {MISSION: 0}
+        for i, group in enumerate(hfsm.composites[1:], 1):
+            self.labels[group.id] = self._label(f"g{i}", group.name)
+            self.depths[group.id] = self.depths[group.parent or MISSION] + 1
+        self.ranges = self._ranges()
+        self.parts = {c.id: self._parts(c) for c in hfsm.composites}
+        self.lines: list[str] = []
+
+    def _label(self, id: str, name: str) -> str:
+        """Unique, and plain enough for FlexBE's editor, which has no use for all characters."""
+        return f"{id} {_identifier(name)}".strip()
+
+    def _ranges(self) -> dict[str, tuple[int, int]]:
+        """The first and the last task of each state, by number."""
+        ranges = {id: (number, number) for id, number in self.numbers.items()}
+        for composite in reversed(self.hfsm.composites):
+            inside = [ranges[child] for child in composite.children if child != DONE]
+            ranges[composite.id] = (inside[0][0], inside[-1][1]) if inside else (1, 0)
+        return ranges
+
+    def _parts(self, composite: Composite) -> list[tuple[int, str]]:
+        """The first task and the label of each state of a machine, in order."""
+        children = (child for child in composite.children if child != DONE)
+        return [(self.ranges[child][0], self.labels[child]) for child in children]
+
+    def _outcome(self, machine: str, target: int | str) -> str:
+        """The outcome with which a state of the machine leads to the target."""
+        if isinstance(target, str):
+            return "left"
+        if target < 0:
+            return "round" if -target == self.depths[machine] else "left"
+        first, last = self.ranges[machine]
+        if not first <= target <= last:
+            return "left"
+        parts = self.parts[machine]
+        return parts[bisect(parts, target, key=lambda part: part[0]) - 1][1]
+
+    def source(self) -> str:
+        hfsm = self.hfsm
+        states = ("count", "decide", "measure", "route", "waypoint")
+        initial = hfsm.mission.initial
+        self.lines += [
+            f'"""The mission as a FlexBE behaviour: {self.name}."""',
+            "",
+            "from flexbe_core import Autonomy, Behavior, OperatableStateMachine",
+            f"from {STATES}.memory import new_memory",
+            *(f"from {STATES}.{s}_state import {s.capitalize()}State" for s in states),
+            "",
+            "",
+            f"class {self.name}SM(Behavior):",
+            '    """Made by Argo; change the mission and export it again."""',
+            "",
+            "    def __init__(self):",
+            "        super().__init__()",
+            f"        self.name = {self.name!a}",
+            "",
+            "    def create(self):",
+            "        keys = {'input_keys': ['memory'], 'output_keys': ['memory']}",
+            "        remapping = {'memory': 'memory'}",
+        ]
+        # A machine is made before the one that it is added to.
+        for composite in reversed(hfsm.composites[1:]):
+            self._machine(composite, self.variables[composite.id], ["left"])
+        self._machine(hfsm.mission, "_state_machine", list(OUTCOMES))
+        to = "end" if initial == DONE else self.numbers[initial]
+        self.lines += [
+            f"        memory = new_memory({to!r}, {self.first_velocity!r})",
+            "        _state_machine.userdata.memory = memory",
+            "        return _state_machine",
+        ]
+        return "\n".join(self.lines) + "\n"
+
+    def _machine(self, composite: Composite, variable: str, outcomes: list[str]) -> None:
+        self.lines += [
+            f"        {variable} = OperatableStateMachine(outcomes={outcomes!r}, **keys)",
+            f"        with {variable}:",
+        ]
+        # The state that is added first is the one that a machine begins with.
+        outcomes = [label for _, label in self.parts[composite.id]]
+        if composite.repeat is None:
+            ends = {"left": "completed", "end": "completed", "aborted": "aborted"}
+            self._route("route", composite, [*outcomes, *ends], ends)
+        else:
+            limit = composite.repeat.duration if composite.timeout else 0.0
+            leave = [*outcomes, "round", "left"]
+            self._route("enter", composite, leave, {}, limit)
+            self._route("route", composite, leave, {})
+        for child in composite.children:
+            if leaf := self.leaves.get(child):
+                self._leaf(leaf)
+            elif child != DONE:
+                self._add(self.labels[child], self.variables[child], {"left": "route"})
+        if composite.repeat is not None:
+            self._round(composite)
+
+    def _route(
+        self,
+        label: str,
+        composite: Composite,
+        outcomes: list[str],
+        ends: Mapping[str, str],
+        limit: float | None = None,
+    ) -> None:
+        arguments = (
+            f"outcomes={outcomes!r}, depth={self.depths[composite.id]}, "
+            f"inside={self.parts[composite.id]!r}, last={self.ranges[composite.id][1]}"
+        )
+        if limit is not None:
+            arguments += f", limit={limit!r}"
+        ways = {outcome: ends.get(outcome, outcome) for outcome in outcomes}
+        self._add(label, f"RouteState({arguments})", ways)
+
+    def _leaf(self, leaf: Leaf) -> None:
+        label, task = self.labels[leaf.id], leaf.task
+        decide = f"{label} decide"
+        if leaf.id == RETURN:
+            self._add(
+                label,
+                self._action(leaf),
+                {"done": "returned", "failed": "failed", "time_up": "route"},
+            )
+            return
+        failed = decide
+        if leaf.failure is not None:
+            failed = f"{label} failed"
+            to = self._target(leaf.failure, "aborted")
+            arguments = f"outcomes=['to'], ways=[('to', {to!r}, [])], velocity=0.0"
+            self._add(failed, f"DecideState({arguments})", {"to": "route"})
+        self._add(label, self._action(leaf), {"done": decide, "failed": failed, "time_up": "route"})
+        ways = []
+        for transition in leaf.transitions:
+            to = self._target(transition, "end")
+            conditions = [_condition(c) for c in transition.conditions]
+            ways.append((self._outcome(leaf.parent, to), to, conditions))
+        outcomes = sorted({outcome for outcome, _, _ in ways})
+        leave = "route" if leaf.parent == MISSION else "left"
+        self._add(
+            decide,
+            f"DecideState(outcomes={outcomes!r}, ways={ways!a}, velocity={task.velocity or 0.0!r})",
+            {outcome: leave if outcome == "left" else outcome for outcome in outcomes},
+        )
+
+    def _action(self, leaf: Leaf) -> str:
+        task = leaf.task
+        joints = task.joint_states
+        arguments = (
+            f"retries={task.retries}, depth={self.depths[leaf.parent]}, "
+            f"joint_names={list(joints.names) if joints else []!a}, "
+            f"joint_positions={list(joints.positions) if joints else []!r}"
+        )
+        if task.action is Action.MEASURE:
+            what = f"object_id={task.object_id!a}"
+            return f"MeasureState(task={task.name!a}, {what}, {arguments})"
+        return f"WaypointState(task={task.name!a}, pose={_pose(task)!r}, {arguments})"
+
+    def _round(self, composite: Composite) -> None:
+        repeat = composite.repeat
+        assert repeat is not None
+        onward = next(t for t in composite.transitions if t.kind is not TransitionKind.REPEAT)
+        self._add(
+            "round",
+            f"CountState(depth={self.depths[composite.id]}, count={repeat.count}, "
+            f"duration={repeat.duration!r}, start={self.numbers[composite.initial]}, "
+            f"onward={self._target(onward, 'end')!r})",
+            {"again": "route", "over": "left"},
+        )
+
+    def _target(self, transition: Transition, end: str) -> int | str:
+        if transition.completes is not None:
+            return -self.depths[transition.completes]
+        id = transition.target or DONE
+        return end if id == DONE else self.numbers[id]
+
+    def _add(self, label: str, state: str, transitions: Mapping[str, str]) -> None:
+        autonomy = ", ".join(f"{outcome!r}: Autonomy.Off" for outcome in transitions)
+        self.lines += [
+            f"            OperatableStateMachine.add({label!r}, {state},",
+            f"                transitions={dict(transitions)!r},",
+            f"                autonomy={{{autonomy}}},",
+            "                remapping=remapping)",
+        ]
+
+
+def _condition(c: Condition) -> tuple[str, float | None, float | None, bool, float | None]:
+    low = None if c.type is ConditionType.LESS else c.param1
+    high = {ConditionType.LESS: c.param1, ConditionType.GREATER: None}.get(c.type, c.param2)
+    return c.object_id, low, high, c.inclusive, c.max_age
+
+
+def _pose(task: Task) -> list[float]:
+    pose = task.pose
+    return [] if pose is None else [pose.x, pose.y, pose.z, pose.yaw]
+
+
+def _identifier(name: str) -> str:
+    """The name in ASCII letters, digits and underscores, not too long, and not a digit first."""
+    plain = re.sub(r"[^A-Za-z0-9]+", "_", name).strip("_")[:40]
+    return f"m_{plain}" if plain[:1].isdigit() else plain

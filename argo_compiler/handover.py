@@ -1,0 +1,150 @@
+"""Handing a mission over to a person and back: what they did, and a plan that they edited."""
+
+from collections.abc import Iterator, Sequence
+
+from argo_compiler.diagnostics import Diagnostic, Severity
+from argo_compiler.grouping import group_ranges
+from argo_compiler.hfsm.model import RETURN_TASK
+from argo_compiler.hfsm.progress import ByHand, GroupProgress, Progress
+from argo_compiler.il import Action, Mission, OnFailure, Response
+
+
+def hand_over(progress: Progress, by_hand: Sequence[ByHand]) -> Progress:
+    """The progress with what a person did or skipped since, in the order in which they did it."""
+    return progress.model_copy(update={"by_hand": (*progress.by_hand, *by_hand)})
+
+
+def match(progress: Progress, mission: Mission) -> tuple[Progress | None, tuple[Diagnostic, ...]]:
+    """The progress as that of a mission that was edited since, by the names of tasks and groups.
+
+    The mission is one that `check` finds no error in. None where it can't go on without a decision:
+    then a finding is an error.
+    """
+    if progress.outcome is not None:
+        return progress, ()
+    errors = tuple(_active(progress, mission))
+    if errors:
+        return None, errors
+    groups, of_groups = _groups(progress, mission)
+    done, of_done = _by_hand(progress, mission)
+    matched = progress.model_copy(update={"groups": groups, "by_hand": done})
+    matched, of_reactions = _reactions(matched, mission)
+    return matched, (*of_groups, *of_done, *of_reactions)
+
+
+def _finding(
+    code: str, message: str, hint: str, severity: Severity = Severity.WARNING
+) -> Diagnostic:
+    return Diagnostic(code=f"handover.{code}", severity=severity, message=message, hint=hint)
+
+
+def _active(progress: Progress, mission: Mission) -> Iterator[Diagnostic]:
+    name = progress.active
+    if name is None:
+        return
+    if name == RETURN_TASK:
+        if all(task.on_failure is not OnFailure.RETURN for task in mission.tasks):
+            yield _finding(
+                "no-return",
+                "the robot is on its way back to the dock after a failure, but no task of the plan "
+                "returns when it has failed",
+                "give a task `on_failure` return, or cancel the mission",
+                Severity.ERROR,
+            )
+        return
+    task = mission.task(name)
+    if task is None or task.action is Action.START:
+        yield _finding(
+            "task-gone",
+            f"the mission stands at task '{name}', which the plan does not have any more",
+            "put a task of that name back, or set `active` in the progress to the task that the "
+            "mission is to go on with",
+            Severity.ERROR,
+        )
+
+
+def _groups(
+    progress: Progress, mission: Mission
+) -> tuple[tuple[GroupProgress, ...], list[Diagnostic]]:
+    """The groups around the active task, those that were active with their rounds and clocks."""
+    position = next((i for i, t in enumerate(mission.tasks) if t.name == progress.active), None)
+    around = [
+        r.group.name for r in group_ranges(mission) if position is not None and r.contains(position)
+    ]
+    known = {p.group: p for p in progress.groups}
+    findings = [
+        _finding(
+            "new-group",
+            f"group '{name}' is new around task '{progress.active}': it begins in round 1, with "
+            "its clock at 0",
+            "set its round in the progress if it is to be another one",
+        )
+        for name in around
+        if name not in known
+    ]
+    findings += [
+        _finding(
+            "group-gone",
+            f"group '{name}' is not around task '{progress.active}' any more: its round "
+            f"{p.round} and its clock are dropped",
+            "keep the group if its rounds are to be completed",
+        )
+        for name, p in known.items()
+        if name not in around
+    ]
+    groups = (known.get(name) or GroupProgress(group=name, round=1, elapsed=0) for name in around)
+    return tuple(groups), findings
+
+
+def _by_hand(progress: Progress, mission: Mission) -> tuple[tuple[ByHand, ...], list[Diagnostic]]:
+    actions = {t.name: t.action for t in mission.tasks if t.action is not Action.START}
+    kept, findings = [], []
+    for done in progress.by_hand:
+        if done.task not in actions:
+            findings.append(
+                _finding(
+                    "by-hand-gone",
+                    f"task '{done.task}' was done by hand, but the plan does not have it",
+                    "put it back into the plan if it is to count",
+                )
+            )
+            continue
+        kept.append(done)
+        if done.value is not None and actions[done.task] is not Action.MEASURE:
+            findings.append(
+                _finding(
+                    "by-hand-value",
+                    f"a value was given for task '{done.task}', which measures nothing",
+                    "leave the value out, or give it for the task that measures it",
+                )
+            )
+    return tuple(kept), findings
+
+
+def _reactions(progress: Progress, mission: Mission) -> tuple[Progress, tuple[Diagnostic, ...]]:
+    answered = {r.event for r in mission.reactions if r.response is not Response.REPORT}
+    begun = answered - {r.event for r in mission.reactions if r.response is Response.ABORT}
+    findings = [
+        _finding(
+            "reaction-gone",
+            f"the plan does not react to {w.event} any more, which waited for its turn",
+            "put the reaction back into the plan if it is to be carried out",
+        )
+        for w in progress.waiting
+        if w.event not in answered
+    ]
+    update: dict[str, object] = {
+        "waiting": tuple(w for w in progress.waiting if w.event in answered)
+    }
+    active = progress.reaction
+    if active is not None and active.event not in begun:
+        findings.append(
+            _finding(
+                "reaction-gone",
+                f"the mission was interrupted by {active.event}, for which the plan has no such "
+                "reaction any more: it is paused",
+                "resume it when it is safe to go on",
+            )
+        )
+        update |= {"reaction": None, "paused": True}
+    return progress.model_copy(update=update), tuple(findings)

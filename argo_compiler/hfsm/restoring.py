@@ -1,0 +1,150 @@
+"""From where a machine stands to progress, and back."""
+
+from collections import deque
+from collections.abc import Mapping
+
+from argo_compiler.errors import ArgoError
+from argo_compiler.hfsm.model import RETURN, RETURN_TASK, task_id
+from argo_compiler.hfsm.place import Frame, Place
+from argo_compiler.hfsm.progress import (
+    ByHand,
+    GroupProgress,
+    Phase,
+    Progress,
+    Reacting,
+    ValueProgress,
+    Waiting,
+)
+from argo_compiler.hfsm.reactions import Reactions
+from argo_compiler.hfsm.tables import GroupNode, LeafNode, ReactionNode, Tables
+from argo_compiler.il import EventKind, Response
+
+_OTHER = "use the mission that it was saved from, or match it to this one first"
+
+
+def place_of(tables: Tables, progress: Progress, now: float, away: float) -> Place:
+    """Where a machine stands that goes on from `progress` at `now`, after `away` seconds.
+
+    Raises:
+        ArgoError: the progress is not one of this machine.
+    """
+    place = Place(tables)
+    place.visit = place.new_visit()
+    place.attempt = progress.attempt
+    if progress.paused or progress.reaction:
+        place.interrupted_at = now
+    # What was done by hand took its part of the time away; its clocks run when it is come to.
+    away = max(0.0, away - sum(done.duration for done in progress.by_hand))
+    place.values = {v.object_id: (v.value, now - v.age - away) for v in progress.values}
+    if progress.active is None:
+        return place
+    place.leaf = _leaf(tables, progress.active)
+    for group, known in zip(_groups(place.leaf, progress), progress.groups, strict=True):
+        elapsed = known.elapsed + (away if group.counts_interruptions else 0.0)
+        place.frames.append(Frame(group, known.round, now - elapsed))
+    return place
+
+
+def reactions_of(tables: Tables, progress: Progress) -> Reactions:
+    """The reactions that are active and wait.
+
+    Raises:
+        ArgoError: the machine does not have them.
+    """
+    reactions = Reactions()
+    if progress.reaction is not None:
+        now = progress.reaction
+        active = reactions.wait(_reaction(tables, now.event), now.over)
+        if active.reaction.response is Response.ABORT:
+            raise _no_reaction(now.event)
+        reactions.waiting.remove(active)
+        reactions.begin(active)
+        reactions.phase = now.phase if active.node.start else Phase.HOLDING
+    for waiting in progress.waiting:
+        reactions.wait(_reaction(tables, waiting.event), waiting.over)
+    return reactions
+
+
+def group_progress(place: Place, now: float) -> tuple[GroupProgress, ...]:
+    """The active groups, outermost first."""
+    return tuple(
+        GroupProgress(
+            group=frame.group.name,
+            round=frame.round,
+            elapsed=max(0.0, place.clock(now, frame.group) - frame.entered),
+        )
+        for frame in place.frames
+    )
+
+
+def value_progress(place: Place, now: float) -> tuple[ValueProgress, ...]:
+    """The values with their ages."""
+    clock = now + place.shift
+    return tuple(
+        ValueProgress(object_id=id, value=value, age=max(0.0, clock - measured))
+        for id, (value, measured) in place.values.items()
+    )
+
+
+def reaction_progress(reactions: Reactions) -> tuple[Reacting | None, tuple[Waiting, ...]]:
+    """The active reaction and those that wait."""
+    active = reactions.active
+    return (
+        None
+        if active is None
+        else Reacting(event=active.reaction.event, over=active.over, phase=reactions.phase),
+        tuple(
+            Waiting(event=pending.reaction.event, over=pending.over)
+            for pending in reactions.pending()
+            if pending is not active
+        ),
+    )
+
+
+def queues(done: tuple[ByHand, ...]) -> dict[str, deque[ByHand]]:
+    """What was done by hand, by task."""
+    found: dict[str, deque[ByHand]] = {}
+    for one in done:
+        found.setdefault(one.task, deque()).append(one)
+    return found
+
+
+def remaining(queues: Mapping[str, deque[ByHand]]) -> tuple[ByHand, ...]:
+    """What was done by hand and has not been come to."""
+    return tuple(one for queue in queues.values() for one in queue)
+
+
+def _leaf(tables: Tables, name: str) -> LeafNode:
+    leaf = tables.leaves.get(RETURN if name == RETURN_TASK else task_id(name))
+    if leaf is None:
+        raise ArgoError(
+            f"the progress is at task '{name}', which the mission does not have; {_OTHER}"
+        )
+    return leaf
+
+
+def _groups(leaf: LeafNode, progress: Progress) -> list[GroupNode]:
+    groups = []
+    group = leaf.parent
+    while group is not None:
+        groups.append(group)
+        group = group.parent
+    groups.reverse()
+    if [group.name for group in groups] != [known.group for known in progress.groups]:
+        raise ArgoError(
+            f"the progress has task '{leaf.name}' in other groups than the mission; {_OTHER}"
+        )
+    return groups
+
+
+def _reaction(tables: Tables, event: EventKind) -> ReactionNode:
+    reaction = tables.reactions.get(event)
+    if reaction is None or reaction.state.reaction.response is Response.REPORT:
+        raise _no_reaction(event)
+    return reaction
+
+
+def _no_reaction(event: EventKind) -> ArgoError:
+    return ArgoError(
+        f"the progress has a reaction to {event}, which the mission does not have; {_OTHER}"
+    )

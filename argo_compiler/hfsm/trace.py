@@ -1,0 +1,122 @@
+"""The trace: what a machine did, when and why."""
+
+from dataclasses import dataclass
+from enum import StrEnum
+
+from argo_compiler.hfsm.conditions import words
+from argo_compiler.il import Condition, EventKind
+
+
+class Cause(StrEnum):
+    """Why there is an entry in the trace."""
+
+    START = "start"
+    RESTORE = "restored"
+    CONDITION = "condition"
+    REPEAT = "repeat"
+    DEFAULT = "default"
+    TIMEOUT = "time out"
+    RETRY = "retry"
+    """an action that failed is started anew"""
+    FAILURE = "failure"
+    """an action failed for good, and it does not go on as after another end"""
+    LATE = "late"
+    """an action that was being cancelled succeeded after all, when its task had been left"""
+    REPORT = "report"
+    """an event has occurred"""
+    REACTION = "reaction"
+    """the reaction to an event begins"""
+    HOLD = "hold"
+    """a reaction stands still and waits"""
+    MISSION = "mission goes on"
+    PAUSE = "pause"
+    RESUME = "resume"
+    CANCEL = "cancel"
+    END = "end"
+    """a reaction ends the mission"""
+
+
+@dataclass(frozen=True, slots=True)
+class TraceEntry:
+    """What happened at a time (s): the mission went from the task `source` to the task `target`.
+
+    `source` is None at the start, `target` when the mission ends. What does not move the mission
+    has the task at which it stands as both.
+    """
+
+    time: float
+    source: str | None
+    target: str | None
+    cause: Cause
+    conditions: tuple[str, ...] = ()
+    """those that held, for CONDITION"""
+    timed_out: str | None = None
+    """the group whose time was up, for TIMEOUT"""
+    repeated: str | None = None
+    """the group that began another round, for REPEAT and perhaps TIMEOUT"""
+    failure: str | None = None
+    """why the action of `source`, or of the reaction, failed, if it did"""
+    event: EventKind | None = None
+    """what occurred, for REPORT, REACTION, HOLD and what ends them"""
+    by_hand: bool = False
+    """whether `source` was done or skipped by a person"""
+    detail: str = ""
+    """more in words"""
+
+    @property
+    def why(self) -> str:
+        """The cause in words, with the conditions, the group, the event or the failure."""
+        why = str(self.cause)
+        if self.conditions:
+            why = " and ".join(self.conditions)
+        if self.timed_out is not None:
+            why = f"time of '{self.timed_out}' is up"
+        if self.repeated is not None:
+            again = f"another round of '{self.repeated}'"
+            why = f"{why}, {again}" if self.timed_out is not None else again
+        if self.event is not None:
+            why += f": {self.event.replace('_', ' ')}"
+        if self.detail:
+            why += f" ({self.detail})"
+        if self.by_hand:
+            why += "; done by hand"
+        if self.failure is not None:
+            why += f"; failed: {self.failure}"
+        return why
+
+    def __str__(self) -> str:
+        return f"{self.time:g} s: {self.source or 'start'} -> {self.target or 'end'} ({self.why})"
+
+
+RawEntry = tuple[
+    float,
+    str | None,
+    str | None,
+    Cause,
+    tuple[Condition, ...],
+    str | None,
+    str | None,
+    str | None,
+    EventKind | None,
+    bool,
+    str,
+]
+"""The fields of a `TraceEntry` as an executor keeps them: conditions are put in words later."""
+
+
+def entry(raw: RawEntry) -> TraceEntry:
+    """The entry that a person reads."""
+    time, source, target, cause, conditions, timed_out, repeated, failure, event, hand, detail = raw
+    return TraceEntry(
+        time,
+        source,
+        target,
+        cause,
+        tuple(map(words, conditions)),
+        timed_out,
+        repeated,
+        failure,
+        event,
+        hand,
+        detail,
+    )

@@ -1,0 +1,14 @@
+"""Names that the machine gives to tasks of its own; no task of a mission may have them."""
+
+from argo_compiler.il import EventKind
+
+RETURN_TASK = "return to dock"
+"""the drive back to the dock after a failure"""
+
+
+def reaction_task_name(event: str) -> str:
+    """The drive of the reaction to an event."""
+    return f"react to {event}"
+
+
+RESERVED_NAMES = frozenset([RETURN_TASK, *(reaction_task_name(event) for event in EventKind)])

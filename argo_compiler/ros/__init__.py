@@ -1,0 +1,25 @@
+"""Missions as ROS messages and bags, for ROS 1 and ROS 2, without a ROS installation.
+
+`argo_mission_msgs/` is the package of the messages as ROS builds it; its files say what each field
+means.
+"""
+
+from argo_compiler.ros.bags import Storage, is_bag, read_bag, to_ros1_bag, to_ros2_bag
+from argo_compiler.ros.package import message_package
+from argo_compiler.ros.reading import from_message
+from argo_compiler.ros.types import RosTypes, ros1_types, ros2_types
+from argo_compiler.ros.writing import to_message
+
+__all__ = [
+    "RosTypes",
+    "Storage",
+    "from_message",
+    "is_bag",
+    "message_package",
+    "read_bag",
+    "ros1_types",
+    "ros2_types",
+    "to_message",
+    "to_ros1_bag",
+    "to_ros2_bag",
+]

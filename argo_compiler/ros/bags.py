@@ -1,0 +1,228 @@
+"""Missions in bags: ROS 1 bags, rosbag2 folders, and the files of their storages."""
+
+import tempfile
+from collections.abc import Iterator
+from contextlib import contextmanager
+from enum import StrEnum
+from pathlib import Path
+from typing import Any, NoReturn
+
+from argo_compiler.diagnostics import Diagnostic, DiagnosticError, Severity
+from argo_compiler.il import Mission
+from argo_compiler.ros.compression import (
+    TooLargeError,
+    check_mcap_chunks,
+    check_metadata,
+    check_ros1_chunks,
+)
+from argo_compiler.ros.package import SPECIFICATION
+from argo_compiler.ros.reading import from_message
+from argo_compiler.ros.types import RosTypes, ros1_types, ros2_types
+from argo_compiler.ros.writing import to_message
+
+TOPIC = "/mission"
+STAMP = 1_000_000_000
+"""ns; when the only message was published. Fixed, so that equal missions make equal bags; not 0,
+which ROS 1 takes for unset."""
+
+MAX_BYTES = 50_000_000
+"""of a message, as of a mission's file"""
+
+_ROS1 = b"#ROSBAG V"
+_MCAP = b"\x89MCAP0\r\n"
+_SQLITE = b"SQLite format 3\0"
+_UNPACK = "unpack it first: rosbag decompress, or ros2 bag convert"
+_MAX_MESSAGES = 1000
+"""that may repeat the same mission"""
+_SHOWN = 8
+"""topics that a message lists"""
+
+
+class Storage(StrEnum):
+    """What holds the messages of a rosbag2."""
+
+    SQLITE3 = "sqlite3"
+    MCAP = "mcap"
+
+
+def is_bag(path: Path) -> bool:
+    """Whether the path is meant as a bag: a folder, a bag's first bytes, or a bag's suffix."""
+    return (
+        path.is_dir()
+        or path.suffix.lower() in {".bag", ".mcap", ".db3"}
+        or _first_bytes(path).startswith((_ROS1, _MCAP, _SQLITE))
+    )
+
+
+def to_ros1_bag(mission: Mission) -> bytes:
+    """A ROS 1 bag (format 2.0) with the mission on /mission, latched.
+
+    Raises ArgoError where `rosbags` is not installed, DiagnosticError as `to_message` does.
+    """
+    types = ros1_types()
+    content = types.encode(to_message(mission, types))
+    from rosbags.rosbag1 import Writer
+
+    with tempfile.TemporaryDirectory() as folder:
+        path = Path(folder) / "mission.bag"
+        with Writer(path) as writer:
+            connection = writer.add_connection(
+                TOPIC, SPECIFICATION, typestore=types.store, callerid="/argo", latching=1
+            )
+            writer.write(connection, STAMP, content)
+        return path.read_bytes()
+
+
+def to_ros2_bag(mission: Mission, storage: Storage = Storage.SQLITE3) -> dict[str, bytes]:
+    """The files of a rosbag2 folder (metadata version 8) with the mission on /mission, transient
+    local and reliable. Raises as `to_ros1_bag`."""
+    types = ros2_types()
+    content = types.encode(to_message(mission, types))
+    from rosbags.rosbag2 import StoragePlugin, Writer
+
+    with tempfile.TemporaryDirectory() as folder:
+        path = Path(folder) / "mission"
+        with Writer(path, version=8, storage_plugin=StoragePlugin[storage.name]) as writer:
+            connection = writer.add_connection(
+                TOPIC, SPECIFICATION, typestore=types.store, offered_qos_profiles=[_latched()]
+            )
+            writer.write(connection, STAMP, content)
+        return {file.name: file.read_bytes() for file in sorted(path.iterdir())}
+
+
+def _latched() -> Any:
+    from rosbags.interfaces import (
+        Qos,
+        QosDurability,
+        QosHistory,
+        QosLiveliness,
+        QosReliability,
+        QosTime,
+    )
+
+    forever = QosTime(9_223_372_036, 854_775_807)
+    return Qos(
+        history=QosHistory.KEEP_LAST,
+        depth=1,
+        reliability=QosReliability.RELIABLE,
+        durability=QosDurability.TRANSIENT_LOCAL,
+        deadline=forever,
+        lifespan=forever,
+        liveliness=QosLiveliness.AUTOMATIC,
+        liveliness_lease_duration=forever,
+        avoid_ros_namespace_conventions=False,
+    )
+
+
+def read_bag(path: Path) -> Mission:
+    """The mission on the topic /mission of a ROS 1 bag, a rosbag2 folder, or one of its files.
+
+    The same mission may be there several times, as it is when a latched topic is recorded.
+
+    Raises:
+        DiagnosticError: the file is no such bag, or holds no mission or different ones.
+        ArgoError: `rosbags` is not installed.
+    """
+    if not path.exists():
+        _refuse(path, "file.missing", "there is no such file", "check the path")
+    first = _first_bytes(path)
+    if path.is_dir() and not (path / "metadata.yaml").is_file():
+        _refuse(path, "file.directory", "is a directory", "name the mission file in it")
+    if not path.is_dir() and not first.startswith((_ROS1, _MCAP, _SQLITE)):
+        _refuse(path, "ros.not-a-bag", "is no bag", "name a ROS 1 bag or a rosbag2 folder")
+    types = ros1_types() if first.startswith(_ROS1) else ros2_types()
+    # rosbags raises whatever the broken bytes lead to: errors of its own, of SQLite, of struct, of
+    # YAML, of the decompressors, KeyError, AssertionError.
+    try:
+        with _open(path, first) as reader:
+            content = _read(path, reader, types)
+        message = types.decode(content)
+    except DiagnosticError:
+        raise
+    except TooLargeError as error:
+        _refuse(path, "ros.compressed", f"is not unpacked: {error}", _UNPACK)
+    except Exception as error:
+        reason = " ".join(str(error).split())[:200] or type(error).__name__
+        _refuse(
+            path, "ros.broken-bag", f"can't be read as a bag: {reason}", "record or copy it anew"
+        )
+    return from_message(message, types, str(path))
+
+
+@contextmanager
+def _open(path: Path, first: bytes) -> Iterator[Any]:
+    if first.startswith(_ROS1):
+        from rosbags.rosbag1 import Reader as Ros1Reader
+
+        with Ros1Reader(path) as reader:
+            wanted = {c.id for c in reader.connections if c.topic == TOPIC}
+            check_ros1_chunks(reader, wanted)
+            yield reader
+    else:
+        from rosbags.rosbag2 import Reader as Ros2Reader
+
+        if path.is_dir():
+            check_metadata(path)
+        for file in path.glob("*") if path.is_dir() else [path]:
+            if _first_bytes(file).startswith(_MCAP):
+                check_mcap_chunks(file)
+        with Ros2Reader(path) as reader:
+            yield reader
+
+
+def _read(path: Path, reader: Any, types: RosTypes) -> bytes:
+    connections = [c for c in reader.connections if c.topic == TOPIC]
+    if not connections:
+        topics = sorted({c.topic for c in reader.connections})
+        more = ", ..." if len(topics) > _SHOWN else ""
+        listed = f"only {', '.join(topics[:_SHOWN])}{more}" if topics else "no topic at all"
+        _refuse(path, "ros.no-mission", f"has no topic {TOPIC}, {listed}", f"record {TOPIC}")
+    for connection in connections:
+        if connection.msgtype != SPECIFICATION:
+            _refuse(
+                path,
+                "ros.wrong-type",
+                f"has messages of the type {connection.msgtype} on {TOPIC}",
+                f"a mission is a {SPECIFICATION}",
+            )
+        # Bags from before ROS 2 Iron, and MCAP files by themselves, hold no type hash.
+        if connection.digest and connection.digest != types.digest():
+            _refuse(
+                path,
+                "ros.other-definitions",
+                f"was written with other definitions of {SPECIFICATION}: {connection.digest}",
+                f"this Argo's are {types.digest()}: build its ros-package and record anew",
+            )
+    found: set[bytes] = set()
+    for count, (_, _, raw) in enumerate(reader.messages(connections=connections), 1):
+        if len(raw) > MAX_BYTES:
+            _refuse(
+                path,
+                "file.too-large",
+                f"has a message larger than {MAX_BYTES // 1_000_000} MB",
+                "a mission is far smaller: is this the right bag?",
+            )
+        found.add(bytes(raw))
+        if len(found) > 1 or count > _MAX_MESSAGES:
+            _refuse(
+                path,
+                "ros.several-missions",
+                f"holds more than one mission on {TOPIC}",
+                "keep one of them: rosbag filter, or ros2 bag convert",
+            )
+    if not found:
+        _refuse(path, "ros.no-mission", f"has no message on {TOPIC}", f"record {TOPIC} again")
+    return found.pop()
+
+
+def _first_bytes(path: Path) -> bytes:
+    try:
+        with path.open("rb") as file:
+            return file.read(16)
+    except OSError:
+        return b""  # reading it in earnest says what is wrong
+
+
+def _refuse(path: Path, code: str, message: str, hint: str) -> NoReturn:
+    finding = Diagnostic(code=code, severity=Severity.ERROR, message=message, hint=hint)
+    raise DiagnosticError(str(path), [finding]) from None

@@ -1,0 +1,29 @@
+"""The constants of the messages for the enumerations of the language."""
+
+from argo_compiler.il import (
+    Action,
+    Afterwards,
+    ConditionType,
+    EventKind,
+    Mode,
+    OnFailure,
+    Order,
+    Response,
+    Stop,
+)
+from argo_compiler.ros.types import RosTypes
+
+
+class Numbers:
+    """A table for each enumeration, read from the definitions themselves."""
+
+    def __init__(self, types: RosTypes) -> None:
+        self.mode = types.numbers("MissionSpecification", Mode, "MODE_")
+        self.order = types.numbers("MissionSpecification", Order, "ORDER_")
+        self.action = types.numbers("MissionTask", Action)
+        self.on_failure = types.numbers("MissionTask", OnFailure, "ON_FAILURE_")
+        self.condition = types.numbers("MissionCondition", ConditionType, "MEASURED_VALUE_")
+        self.stop = types.numbers("MissionGroup", Stop)
+        self.event = types.numbers("MissionReaction", EventKind)
+        self.response = types.numbers("MissionReaction", Response, "RESPONSE_")
+        self.afterwards = types.numbers("MissionReaction", Afterwards, "AFTERWARDS_")

@@ -1,0 +1,167 @@
+"""Missions become ROS messages; `from_message(to_message(m))` is `m`, unchanged."""
+
+from typing import Any, NoReturn
+
+from argo_compiler.diagnostics import Diagnostic, DiagnosticError, Severity, Span
+from argo_compiler.headings import to_quaternion
+from argo_compiler.il import Condition, Group, Mission, Reaction, Task
+from argo_compiler.model import Pose
+from argo_compiler.ros.numbers import Numbers
+from argo_compiler.ros.types import RosTypes
+
+_MAX = {"int64": 2**63 - 1, "uint64": 2**64 - 1}
+
+
+def to_message(mission: Mission, types: RosTypes) -> Any:
+    """The mission as a MissionSpecification.
+
+    Raises DiagnosticError for an integer beyond 64 bits and a text that can't be UTF-8.
+    """
+    return _Writer(types).mission(mission)
+
+
+class _Writer:
+    def __init__(self, types: RosTypes) -> None:
+        self.types = types
+        self.numbers = Numbers(types)
+
+    def mission(self, mission: Mission) -> Any:
+        dock = self._pose(mission.dock)
+        return self.types.new(
+            "MissionSpecification",
+            version=mission.version,
+            tasks=[self._task(i, task) for i, task in enumerate(mission.tasks)],
+            groups=[self._group(i, group) for i, group in enumerate(mission.groups)],
+            has_current=mission.current is not None,
+            current=_text("current", mission.current or ""),
+            reactions=[self._reaction(i, r) for i, r in enumerate(mission.reactions)],
+            designation=_text("designation", mission.designation),
+            site=_text("site", mission.site),
+            mode=self.numbers.mode[mission.mode],
+            order=self.numbers.order[mission.order],
+            max_duration=mission.max_duration or 0.0,
+            has_start_area=mission.start_area is not None,
+            start_area=_integer("start_area", mission.start_area or 0, "int64"),
+            has_end_area=mission.end_area is not None,
+            end_area=_integer("end_area", mission.end_area or 0, "int64"),
+            has_dock=dock["has_pose"],
+            dock=dock["pose"],
+            dock_yaw=dock["yaw"],
+            anomaly_specification=_text("anomaly_specification", mission.anomaly_specification),
+            real_time_reporting=_text("real_time_reporting", mission.real_time_reporting),
+            after_mission_report=_text("after_mission_report", mission.after_mission_report),
+        )
+
+    def _task(self, index: int, task: Task) -> Any:
+        place = f"tasks[{index}]"
+        joints = task.joint_states
+        names = () if joints is None else joints.names
+        return self.types.new(
+            "MissionTask",
+            action=self.numbers.action[task.action],
+            name=_text(f"{place}.name", task.name),
+            group=_text(f"{place}.group", task.group),
+            has_object_id=task.object_id is not None,
+            object_id=_text(f"{place}.object_id", task.object_id or ""),
+            velocity=task.velocity or 0.0,
+            has_joint_states=joints is not None,
+            joint_states=self.types.joint_state(
+                tuple(_text(f"{place}.joint_states", name) for name in names),
+                () if joints is None else joints.positions,
+            ),
+            retries=_integer(f"{place}.retries", task.retries, "uint64"),
+            on_failure=self.numbers.on_failure[task.on_failure],
+            transitions=[
+                self.types.new(
+                    "MissionTransition",
+                    target=_text(f"{place}.transitions", transition.target),
+                    conditions=[self._condition(place, c) for c in transition.conditions],
+                )
+                for transition in task.transitions
+            ],
+            **self._pose(task.pose),
+            **_source(place, task.source),
+        )
+
+    def _condition(self, place: str, condition: Condition) -> Any:
+        return self.types.new(
+            "MissionCondition",
+            type=self.numbers.condition[condition.type],
+            id=_text(f"{place}.transitions", condition.id),
+            object_id=_text(f"{place}.transitions", condition.object_id),
+            param1=condition.param1,
+            has_param2=condition.param2 is not None,
+            param2=0.0 if condition.param2 is None else condition.param2,
+            inclusive=condition.inclusive,
+            max_age=condition.max_age or 0.0,
+        )
+
+    def _group(self, index: int, group: Group) -> Any:
+        place = f"groups[{index}]"
+        return self.types.new(
+            "MissionGroup",
+            name=_text(f"{place}.name", group.name),
+            start=_text(f"{place}.start", group.start),
+            end=_text(f"{place}.end", group.end),
+            max_repeat_count=_integer(
+                f"{place}.max_repeat_count", group.max_repeat_count, "uint64"
+            ),
+            max_repeat_duration=group.max_repeat_duration,
+            count_interruptions=group.count_interruptions,
+            stop=self.numbers.stop[group.stop],
+            **_source(place, group.source),
+        )
+
+    def _reaction(self, index: int, reaction: Reaction) -> Any:
+        place = f"reactions[{index}]"
+        return self.types.new(
+            "MissionReaction",
+            event=self.numbers.event[reaction.event],
+            response=self.numbers.response[reaction.response],
+            until=0 if reaction.until is None else self.numbers.event[reaction.until],
+            afterwards=self.numbers.afterwards[reaction.afterwards],
+            priority=_integer(f"{place}.priority", reaction.priority, "int64"),
+            **self._pose(reaction.pose),
+            **_source(place, reaction.source),
+        )
+
+    def _pose(self, pose: Pose | None) -> dict[str, Any]:
+        if pose is None:
+            return {"has_pose": False, "pose": self.types.pose(0, 0, 0, 0, 1), "yaw": 0.0}
+        message = self.types.pose(pose.x, pose.y, pose.z, *to_quaternion(pose.yaw))
+        return {"has_pose": True, "pose": message, "yaw": pose.yaw}
+
+
+def _source(place: str, span: Span | None) -> dict[str, Any]:
+    if span is None:
+        return {}
+    return {"has_source": True} | {
+        f"source_{name}": _integer(f"{place}.source.{name}", getattr(span, name), "int64")
+        for name in ("line", "column", "length")
+    }
+
+
+def _text(place: str, text: str) -> str:
+    try:
+        text.encode("utf-8")
+    except UnicodeEncodeError:
+        _refuse(
+            "not-text", f"{place}: is no text that UTF-8 can hold", "remove what is no character"
+        )
+    return text
+
+
+def _integer(place: str, value: int, kind: str) -> int:
+    low = -_MAX[kind] - 1 if kind == "int64" else 0
+    if not low <= value <= _MAX[kind]:
+        _refuse(
+            "number-too-large",
+            f"{place}: {value} does not fit into the {kind} of the message",
+            "use a smaller number",
+        )
+    return value
+
+
+def _refuse(code: str, message: str, hint: str) -> NoReturn:
+    finding = Diagnostic(code=f"export.{code}", severity=Severity.ERROR, message=message, hint=hint)
+    raise DiagnosticError("mission", [finding]) from None

@@ -1,0 +1,97 @@
+"""Travel times and energy of a robot on a site, for the analysis of missions."""
+
+import math
+
+from argo_compiler.analysis import Leg, NoWay, Standing
+from argo_compiler.errors import ArgoError
+from argo_compiler.il import Action, Mission, Task
+from argo_compiler.model import Pose
+from argo_env.navigation import Navigator, Path
+from argo_env.navigation.path import Motion
+
+_ROUNDING = 1e-6  # of a step, left by sums of floats
+
+
+class SiteTravel:
+    """The ways that the navigator plans, with the times of a drive that follows them.
+
+    A standing is a pose. Keeps every way that it was asked for. With the `time_step` (s) of the
+    drive that is meant, times are rounded up to whole steps, as the drive's are.
+    """
+
+    def __init__(self, navigator: Navigator, time_step: float = 0.1) -> None:
+        self._navigator = navigator
+        self._robot = navigator.robot
+        self._time_step = time_step
+        self._checkpoints = {str(c.id): c.id for c in navigator.site.checkpoints}
+        self._ways: dict[tuple[Pose, str | Pose | None], Path | NoWay] = {}
+        self._legs: dict[tuple[Pose, str | Pose | None, float | None], Leg | NoWay] = {}
+
+    @property
+    def battery(self) -> float:
+        """Wh."""
+        return self._robot.battery
+
+    @property
+    def clean_up(self) -> float:
+        """s, to stow the arm; a third of a measurement."""
+        return self._stepped(self._robot.sensor.measuring_time / 3) + self._time_step
+
+    def start(self, mission: Mission) -> Pose:
+        """Where the robot is put: the pose of START, or the dock of the starting area.
+
+        Raises UnreachableError if the robot can't stand there.
+        """
+        docks = self._navigator.site.docks
+        wanted = docks.get(mission.start_area or min(docks), docks[min(docks)])
+        for task in mission.tasks:
+            if task.action is Action.START and task.pose is not None:
+                wanted = task.pose
+                break
+        return self._navigator.snap(wanted)
+
+    def leg(self, origin: Standing, task: Task, velocity: float | None) -> Leg | NoWay:
+        """The way to the task's place at `velocity` (m/s), and its action."""
+        assert isinstance(origin, Pose)
+        place = task.object_id if task.action is Action.MEASURE else task.pose
+        key = origin, place, velocity
+        if key not in self._legs:
+            way = self._way(origin, place)
+            measures = task.action is Action.MEASURE
+            self._legs[key] = way if isinstance(way, NoWay) else self._leg(way, velocity, measures)
+        return self._legs[key]
+
+    def _way(self, origin: Pose, place: str | Pose | None) -> Path | NoWay:
+        key = origin, place
+        if key not in self._ways:
+            try:
+                self._ways[key] = self._plan(origin, place)
+            except ArgoError as error:
+                self._ways[key] = NoWay(str(error))
+        return self._ways[key]
+
+    def _plan(self, origin: Pose, place: str | Pose | None) -> Path:
+        if isinstance(place, Pose):
+            return self._navigator.plan(origin, place)
+        if place not in self._checkpoints:
+            raise ArgoError(f"site {self._navigator.site.name} has no checkpoint {place}")
+        return self._navigator.plan_to_view(origin, self._checkpoints[place])
+
+    def _leg(self, way: Path, velocity: float | None, measures: bool) -> Leg:
+        robot, power = self._robot, self._robot.power
+        drive = max(self._time_step, self._stepped(way.duration(robot, velocity)))
+        energy = sum(m.duration(robot, velocity) * self._watts(m) for m in way.motions) / 3600
+        work = self._stepped(robot.sensor.measuring_time) if measures else 0.0
+        work_energy = work * power.measuring / 3600
+        return Leg(drive + work, energy + work_energy, way.end, work, work_energy)
+
+    def _watts(self, motion: Motion) -> float:
+        power = self._robot.power
+        if motion.turn:
+            return power.turning
+        if motion.on_stairs:
+            return power.climbing if motion.gear < 0 else power.descending
+        return power.driving
+
+    def _stepped(self, seconds: float) -> float:
+        return math.ceil(seconds / self._time_step - _ROUNDING) * self._time_step

@@ -1,0 +1,1 @@
+"""The commands of `argo`, a file each. `argo_planner.cli` gives them their names."""

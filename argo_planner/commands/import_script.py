@@ -1,0 +1,32 @@
+"""`argo import`: a mission script becomes a mission."""
+
+from pathlib import Path
+from typing import Annotated
+
+import typer
+from rich.console import Console
+from rich.markup import escape
+
+from argo_compiler.errors import ArgoError
+from argo_compiler.files import write_mission
+from argo_planner.loading import is_own_mission, keep_input, load_mission, load_navigator
+from argo_planner.options import EndArea, SiteOption, StartArea
+
+
+def import_script(
+    script: Annotated[
+        Path, typer.Argument(metavar="SCRIPT", help="a sheet, a protocol, a bag or isar's .json")
+    ],
+    output: Annotated[Path, typer.Option("-o", "--output", help="the mission's .json to write")],
+    site: SiteOption = "umad",
+    start_area: StartArea = None,
+    end_area: EndArea = None,
+) -> None:
+    """Read a mission script, a bag or an isar mission, and write the mission as JSON."""
+    if is_own_mission(script):
+        raise ArgoError(f"{script} is no script: `argo run` and `argo compile` take missions")
+    keep_input(script, output)
+    mission, _ = load_mission(script, load_navigator(site), start_area, end_area)
+    write_mission(mission, output)
+    names = ", ".join(task.name for task in mission.tasks)
+    Console(highlight=False).print(f"{escape(str(output))}: {escape(names)}", soft_wrap=True)

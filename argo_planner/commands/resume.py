@@ -1,0 +1,45 @@
+"""`argo resume`: a run goes on from its journal."""
+
+import time
+from pathlib import Path
+from typing import Annotated
+
+import typer
+from rich.console import Console
+
+from argo_env.journal import open_journal
+from argo_env.session import resume
+from argo_planner.loading import load_navigator, make_folder
+from argo_planner.running import RunDisplay, conclude
+
+
+def resume_run(
+    journal: Annotated[
+        Path, typer.Argument(metavar="JOURNAL", help="the file that `argo run --journal` kept")
+    ],
+    report: Annotated[
+        Path | None, typer.Option("--report", metavar="DIR", help="folder for the report")
+    ] = None,
+) -> None:
+    """Go on with a run whose process has died, from its journal."""
+    if report:
+        make_folder(report)
+    console = Console(stderr=True, highlight=False)
+    with open_journal(journal) as book:
+        navigator = load_navigator(book.header.site)
+        book.require_unchanged(navigator)
+        at = book.entries[-1].t if book.entries else 0.0
+        if book.ended:
+            console.print(f"The run had ended already, at {at:g} s; these are its results.")
+        else:
+            navigator.prepare()
+            console.print(f"The run goes on at {at:g} s.")
+        begun = time.monotonic()
+        with RunDisplay(book.header.mission.max_duration) as display:
+            record = resume(book, navigator, observe=display.observe, announce=display.announce)
+    seconds = time.monotonic() - begun
+    speed = (record.result.duration - at) / max(1e-9, seconds)
+    took = f"The rest took {seconds:.1f} s: {speed:.0f} times real time."
+    if book.ended:
+        took = f"Reading the journal took {seconds:.1f} s."
+    conclude(record, navigator, took, report)

@@ -1,0 +1,142 @@
+"""`argo run`: a mission is driven through its site."""
+
+import math
+import time
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+from argo_compiler.errors import ArgoError
+from argo_compiler.hfsm import Cancel, Event, Occurred, Pause, Resume, lower
+from argo_compiler.il import EventKind
+from argo_env.journal import JournalPlace, require_free
+from argo_env.pictures import check_film
+from argo_env.session import simulate, true_values
+from argo_planner.loading import load_mission, load_navigator, make_folder
+from argo_planner.options import EndArea, SiteOption, Source, StartArea
+from argo_planner.running import RunDisplay, conclude
+
+DEFAULT_PACE = 5.0
+
+_BY_A_PERSON: dict[str, Event] = {"pause": Pause(), "resume": Resume(), "cancel": Cancel()}
+
+
+def run(
+    source: Source,
+    site: SiteOption = "umad",
+    seed: Annotated[int, typer.Option(help="draws what the checkpoints show", min=0)] = 0,
+    report: Annotated[
+        Path | None, typer.Option("--report", metavar="DIR", help="folder for the report")
+    ] = None,
+    start_area: StartArea = None,
+    end_area: EndArea = None,
+    value: Annotated[
+        list[str] | None,
+        typer.Option("--value", metavar="ID=VALUE", help="what a checkpoint shows, such as 8=4.2"),
+    ] = None,
+    event: Annotated[
+        list[str] | None,
+        typer.Option(
+            "--event",
+            metavar="TIME=KIND",
+            help="what occurs at a time (s), such as 60=gas_leak; also pause, resume, cancel",
+        ),
+    ] = None,
+    journal: Annotated[
+        Path | None,
+        typer.Option(
+            "--journal", metavar="FILE", help="keep the run on disk, for `argo resume FILE`"
+        ),
+    ] = None,
+    gui: Annotated[bool, typer.Option("--gui", help="open PyBullet's window")] = False,
+    pace: Annotated[
+        float | None,
+        typer.Option(
+            help=f"with --gui: simulated seconds a second, at most; {DEFAULT_PACE:g} if not given",
+            min=0.1,
+        ),
+    ] = None,
+    render: Annotated[
+        Path | None, typer.Option("--render", metavar="FILE.mp4|FILE.gif", help="film the run")
+    ] = None,
+) -> None:
+    """Run a mission on a site, show what was measured, and write a report."""
+    if pace is not None and not gui:
+        raise ArgoError("--pace is how fast the window shows the run: give --gui as well")
+    if render:
+        check_film(render)
+    if report:
+        make_folder(report)
+    values = parse_values(value or [])
+    events = parse_events(event or [])
+    if journal:
+        require_free(journal)
+    started = time.monotonic()
+    navigator = load_navigator(site)
+    true_values(navigator.site, seed, values)  # refuses what the site can't show, before it is long
+    mission, diagnostics = load_mission(source, navigator, start_area, end_area)
+    lower(mission, source_name=str(source))
+    navigator.prepare()
+    loaded = time.monotonic()
+    with RunDisplay(mission.max_duration) as display:
+        record = simulate(
+            mission,
+            navigator,
+            seed=seed,
+            values=values,
+            events=events,
+            diagnostics=diagnostics,
+            observe=display.observe,
+            announce=display.announce,
+            gui=gui,
+            pace=(pace or DEFAULT_PACE) if gui else None,
+            journal=JournalPlace(journal, site_reference(site), source) if journal else None,
+        )
+    ended = time.monotonic()
+    took = (
+        f"Loading took {loaded - started:.1f} s, the run {ended - loaded:.1f} s: "
+        f"{record.result.duration / max(1e-9, ended - loaded):.0f} times real time."
+    )
+    conclude(record, navigator, took, report, render)
+
+
+def site_reference(site: str) -> str:
+    """What finds the site again from any folder: its name, or the whole path of its file."""
+    return str(Path(site).resolve()) if Path(site).suffix in {".yaml", ".yml"} else site
+
+
+def parse_events(options: list[str]) -> list[tuple[float, Event]]:
+    """What `--event TIME=KIND` says, by time; ArgoError if it is said otherwise."""
+    kinds = {str(kind): Occurred(kind) for kind in EventKind if kind is not EventKind.TIME_UP}
+    known: dict[str, Event] = {**kinds, **_BY_A_PERSON}
+    events = []
+    for option in options:
+        at, _, name = option.partition("=")
+        try:
+            time_s = float(at)
+        except ValueError:
+            time_s = math.nan
+        if not 0.0 <= time_s < math.inf:
+            raise ArgoError(f"--event {option}: write TIME=KIND in s, such as 60=gas_leak")
+        if name == EventKind.TIME_UP:
+            raise ArgoError(f"--event {option}: it occurs by itself, at the mission's max_duration")
+        if name not in known:
+            raise ArgoError(f"--event {option}: no event `{name}`; there are: {', '.join(known)}")
+        events.append((time_s, known[name]))
+    return sorted(events, key=lambda event: event[0])
+
+
+def parse_values(options: list[str]) -> dict[int, float]:
+    """What `--value ID=VALUE` says; ArgoError if it is said otherwise, or twice of one id."""
+    values: dict[int, float] = {}
+    for option in options:
+        id, _, value = option.partition("=")
+        try:
+            number, shown = int(id), float(value)
+        except ValueError:
+            raise ArgoError(f"--value {option}: write ID=VALUE, such as 8=4.2") from None
+        if number in values:
+            raise ArgoError(f"--value {option}: checkpoint {number} has been given a value already")
+        values[number] = shown
+    return values

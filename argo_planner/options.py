@@ -1,0 +1,21 @@
+"""Arguments and options that several commands have."""
+
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+Source = Annotated[
+    Path,
+    typer.Argument(
+        metavar="SCRIPT|MISSION",
+        help="a mission script, a mission's .json, or a bag",
+    ),
+]
+SiteOption = Annotated[str, typer.Option("--site", help="a site's name, or a path to its .yaml")]
+StartArea = Annotated[
+    int | None, typer.Option("--start-area", help="the starting area, where the script leaves it")
+]
+EndArea = Annotated[
+    int | None, typer.Option("--end-area", help="the area to end in, where the script leaves it")
+]

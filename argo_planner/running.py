@@ -1,0 +1,91 @@
+"""What a person sees of a run: its progress and readings while it goes on, then its results."""
+
+from pathlib import Path
+from types import TracebackType
+from typing import Self
+
+import typer
+from rich.console import Console
+from rich.markup import escape
+from rich.progress import BarColumn, Progress, TextColumn, TimeElapsedColumn
+
+from argo_compiler.il import Task
+from argo_env.navigation import Navigator
+from argo_env.pictures import write_film, write_overview
+from argo_env.record import Reading, RunRecord
+from argo_env.report import write_report
+from argo_planner.summary import show_record
+
+
+class RunDisplay:
+    """The progress on standard error. Holds the bar; use it as a context."""
+
+    def __init__(self, total: float | None) -> None:
+        """`total`: the mission's longest duration (s), if it has one."""
+        self._progress = _progress()
+        self._bar = self._progress.add_task("setting off", total=total)
+
+    def observe(self, now: float, task: Task | None) -> None:
+        """Shows the time (s) and the task under way."""
+        self._progress.update(self._bar, completed=now, description=task.name if task else "waits")
+
+    def announce(self, reading: Reading) -> None:
+        """Shows a reading in a line of its own, which stays."""
+        text = (
+            f"{reading.t!r} s: {reading.task}: {reading.name} (#{reading.checkpoint}) shows "
+            f"{reading.value!r} {reading.unit}"
+        )
+        self._progress.console.print(escape(text), soft_wrap=True, highlight=False)
+
+    def __enter__(self) -> Self:
+        self._progress.start()
+        return self
+
+    def __exit__(
+        self,
+        kind: type[BaseException] | None,
+        error: BaseException | None,
+        trace: TracebackType | None,
+    ) -> None:
+        self._progress.stop()
+
+
+def conclude(
+    record: RunRecord,
+    navigator: Navigator,
+    took: str,
+    report: Path | None,
+    render: Path | None = None,
+) -> None:
+    """Shows the results and writes what was asked for; exits with status 1 if it is no success."""
+    console = Console()
+    show_record(record, console)
+    console.print(took)
+    if report:
+        page = write_report(record, navigator.site, report)
+        write_overview(record, navigator.site, navigator.robot, report / "site.png")
+        console.print(f"Report: {escape(str(page))}", soft_wrap=True)
+    if render:
+        with _progress() as progress:
+            bar = progress.add_task("filming", total=1.0)
+            write_film(
+                record,
+                navigator.site,
+                navigator.robot,
+                render,
+                progress=lambda share: progress.update(bar, completed=share),
+            )
+        console.print(f"Film: {escape(str(render))}", soft_wrap=True)
+    if not record.result.success:
+        raise typer.Exit(1)
+
+
+def _progress() -> Progress:
+    return Progress(
+        TextColumn("{task.description:<24}"),
+        BarColumn(),
+        TextColumn("{task.completed:.0f} s"),
+        TimeElapsedColumn(),
+        console=Console(stderr=True),
+        transient=True,
+    )

@@ -1,0 +1,92 @@
+"""Short ways to write a mission for the analysis, and travel with simple times."""
+
+import itertools
+
+from argo_compiler.analysis import Leg, NoWay
+from argo_compiler.catalog import Area, Catalog
+from argo_compiler.il import Action, Condition, ConditionType, Mission, Task, Transition
+from argo_compiler.model import Pose
+from tests.argo_compiler.analysis.worlds import checkpoint
+
+DOCK = Pose(x=5, y=0, z=0)
+CATALOG = Catalog(
+    site="made up",
+    checkpoints=tuple(checkpoint(n, 0, 10) for n in (1, 2, 3)),
+    areas=(Area(number=1, dock=DOCK),),
+    floors=(),
+)
+"""Three checkpoints that show 0 to 10."""
+
+
+def compare(text, max_age=None):
+    """A condition from text such as `1 < 5`, `1 >= 5` or `2 < 1 < 5` (values of checkpoint 1)."""
+    words = text.split()
+    if len(words) == 5:
+        low, op, object_id, _, high = words
+        kind, param1, param2 = ConditionType.WITHIN, low, high
+    else:
+        object_id, op, param1 = words
+        kind = ConditionType.LESS if op.startswith("<") else ConditionType.GREATER
+        param2 = None
+    return Condition(
+        type=kind,
+        object_id=object_id,
+        param1=float(param1),
+        param2=None if param2 is None else float(param2),
+        inclusive=op.endswith("="),
+        max_age=max_age,
+    )
+
+
+def way(target, *texts, max_age=None):
+    return Transition(target=target, conditions=tuple(compare(t, max_age) for t in texts))
+
+
+def task(name, *ways, **more):
+    """A task that measures the checkpoint whose number its name ends with after an `m`, as in
+    `Am1`; any other drives."""
+    head, m, number = name.rpartition("m")
+    measures = m == "m" and number.isdigit() and head != ""
+    return Task(
+        name=name,
+        action=Action.MEASURE if measures else Action.WAYPOINT,
+        object_id=number if measures else None,
+        pose=None if measures else Pose(x=0, y=0, z=0),
+        transitions=tuple(Transition(target=w) if isinstance(w, str) else w for w in ways),
+        **more,
+    )
+
+
+def mission(*tasks, groups=(), **more):
+    """Tasks without any way on lead to the next one, if they are given by name."""
+    names = [t if isinstance(t, str) else t.name for t in tasks]
+    following = dict(itertools.pairwise(names))
+    return Mission(
+        tasks=tuple(
+            task(t, *([following[t]] if t in following else [])) if isinstance(t, str) else t
+            for t in tasks
+        ),
+        groups=tuple(groups),
+        **more,
+    )
+
+
+class Steady:
+    """Every way takes 10 s and 1 Wh, but none to where the robot is; a measurement takes 2 s."""
+
+    battery = 100.0
+    clean_up = 1.0
+
+    def __init__(self, blocked=()):
+        self.blocked = blocked
+
+    def start(self, mission):  # noqa: ARG002
+        return "start"
+
+    def leg(self, origin, task, velocity):
+        place = task.object_id or task.name
+        if place in self.blocked or (task.pose and task.pose.x < 0):
+            return NoWay("a wall stands in the way")
+        work = 2.0 if task.object_id else 0.0
+        drive = 0.0 if origin == place else 10.0 / (velocity or 1.0)
+        return Leg(drive + work, 1.0, place, work, 0.0)

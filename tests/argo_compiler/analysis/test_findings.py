@@ -1,0 +1,130 @@
+"""What the analysis says about ends, loops, limits and places."""
+
+import pytest
+
+from argo_compiler.analysis import analyse
+from argo_compiler.diagnostics import CODES, Severity
+from argo_compiler.il import Action, EventKind, Group, Reaction, Response, Stop, Task
+from argo_compiler.model import Pose
+from tests.argo_compiler.analysis.building import CATALOG, DOCK, Steady, mission, task, way
+
+FAR = Pose(x=-1, y=0, z=0)
+
+
+def findings(made, travel=None):
+    found = analyse(made, CATALOG, travel).diagnostics
+    for d in found:
+        assert CODES[d.code].severity is d.severity or d.code in SOFTENED
+        assert d.hint
+        assert d.span is not None or d.subject is not None
+    return {d.code.removeprefix("analysis."): d for d in found}
+
+
+SOFTENED = {"analysis.endless-loop", "analysis.no-end"}
+"""a warning where a reaction may end the mission"""
+
+
+def test_a_mission_that_ends_has_no_findings():
+    assert findings(mission("A", "Bm1", "C"), Steady()) == {}
+
+
+def test_a_loop_that_nothing_leaves():
+    found = findings(mission("A", task("B", "C"), task("C", "B")))
+    assert set(found) == {"endless-loop", "no-end"}
+    assert "tasks 'B' and 'C' follow each other for ever" in found["endless-loop"].message
+    assert "path: A > B" in found["endless-loop"].message
+    assert found["no-end"].severity is Severity.ERROR
+
+
+def test_a_trap_beside_the_way_to_the_end():
+    found = findings(mission(task("Am1", way("B", "1 < 5"), "End"), task("B", "B"), "End"))
+    assert set(found) == {"endless-loop"}
+    assert found["endless-loop"].subject == "tasks[1]"
+
+
+def test_a_reaction_that_ends_the_mission_makes_it_a_warning():
+    reaction = Reaction(event=EventKind.LOW_BATTERY, response=Response.ABORT)
+    found = findings(mission("A", task("B", "B"), reactions=(reaction,)))
+    assert {d.severity for d in found.values()} == {Severity.WARNING}
+
+
+def test_a_loop_that_may_go_on():
+    loop = [task("Am1", way("Am1", "1 < 5"), "B"), "B"]
+    assert set(findings(mission(*loop))) == {"unbounded-loop"}
+    limited = Group(name="G", start="Am1", end="B", max_repeat_duration=60)
+    assert findings(mission(*loop, groups=(limited,))) == {}
+    leave = task("Am1", way("End", "1 < 5"), "B")
+    endless = mission(leave, "B", "End", groups=(Group(name="G", start="Am1", end="B"),))
+    assert "group 'G' may be repeated without limit" in findings(endless)["unbounded-loop"].message
+
+
+def test_where_the_mission_ends():
+    home = Task(name="Home", action=Action.WAYPOINT, pose=DOCK)
+    early = task("Am1", way("B", "1 < 5"), "Home")
+    found = findings(mission(early, home, "B", end_area=1))
+    assert set(found) == {"end-elsewhere"}
+    assert "path: Am1 > B" in found["end-elsewhere"].message
+    assert findings(mission("A", home, end_area=1)) == {}
+    hard = Group(name="G", start="A", end="Home", max_repeat_duration=5, stop=Stop.HARD)
+    found = findings(mission("A", home, groups=(hard,), end_area=1))
+    assert "the time of group 'G' is up" in found["end-elsewhere"].message
+
+
+@pytest.mark.parametrize(
+    ("limit", "expected"),
+    [(32, None), (31, "maybe-too-long"), (22, "maybe-too-long"), (21, "too-long")],
+)
+def test_the_maximum_duration(limit, expected):
+    made = mission(task("Am1", way("C", "1 < 5"), "B"), task("B", "C"), "C", max_duration=limit)
+    found = findings(made, Steady())
+    assert set(found) == ({expected} if expected else set())
+    if expected == "too-long":
+        assert "at least 22 s" in found[expected].message
+        assert "Am1 (12 s) > C (22 s)" in found[expected].message
+
+
+@pytest.mark.parametrize(
+    ("battery", "expected"),
+    [(3.0, None), (2.5, "battery-maybe-exceeded"), (1.5, "battery-exceeded")],
+)
+def test_the_battery(battery, expected):
+    travel = Steady()
+    travel.battery = battery
+    made = mission(task("Am1", way("C", "1 < 5"), "B"), task("B", "C"), "C")
+    assert set(findings(made, travel)) == ({expected} if expected else set())
+
+
+def test_a_value_that_is_always_too_old():
+    made = ["Am1", "B", task("C", way("Last", "1 < 5", max_age=19), "End"), "End", "Last"]
+    found = findings(mission(*made), Steady())
+    assert set(found) == {"always-stale"}
+    assert "at least 20 s" in found["always-stale"].message
+    made[2] = task("C", way("Last", "1 < 5", max_age=20), "End")
+    assert findings(mission(*made), Steady()) == {}
+
+
+def test_places_that_cannot_be_reached():
+    found = findings(mission("A", "Bm1", "C"), Steady(blocked={"1"}))
+    assert set(found) == {"unreachable-place"}
+    assert "a wall stands in the way" in found["unreachable-place"].message
+    shelter = Reaction(event=EventKind.GAS_LEAK, response=Response.SAFE_AREA, pose=FAR)
+    found = findings(mission("A", reactions=(shelter,)), Steady())
+    assert found["unreachable-place"].subject == "reactions[0].pose"
+    back = Reaction(event=EventKind.LOW_BATTERY, response=Response.RETURN)
+    found = findings(mission("A", dock=FAR, reactions=(back,)), Steady())
+    assert found["unreachable-place"].subject == "dock"
+
+
+def test_groups_nested_a_thousand_deep():
+    names = ["/".join(map(str, range(k + 1))) for k in range(1000)]
+    groups = [Group(name=n, start="A", end="C", max_repeat_count=2) for n in names]
+    found = analyse(mission("A", "B", "C", groups=groups), CATALOG, Steady())
+    assert found.reachable == {"A", "B", "C"}
+
+
+def test_a_mission_of_a_start_alone():
+    start = Task(name="S", action=Action.START)
+    found = analyse(mission(start), CATALOG, Steady())
+    assert found.diagnostics == ()
+    assert found.duration is not None
+    assert found.duration.most.value == 0

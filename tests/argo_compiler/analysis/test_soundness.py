@@ -1,0 +1,103 @@
+"""What the analysis calls impossible never happens: random missions, run at random."""
+
+from hypothesis import HealthCheck, assume, event, given, settings
+from hypothesis import strategies as st
+
+from argo_compiler.analysis import Verdict, analyse
+from argo_compiler.check import check
+from argo_compiler.diagnostics import has_errors
+from argo_compiler.hfsm import Cause, lower
+from argo_compiler.hfsm.conditions import words
+from tests.argo_compiler.analysis.worlds import MadeUpTravel, catalogs, missions, run
+from tests.conftest import examples
+
+SOON = 1e-6
+STEPS = (Cause.START, Cause.CONDITION, Cause.REPEAT, Cause.DEFAULT, Cause.TIMEOUT, Cause.FAILURE)
+
+
+def steps_of(done):
+    return [entry for entry in done.executor.trace if entry.cause in STEPS]
+
+
+def require_allowed(mission, analysis, done, failures):
+    """No task, transition or round of the run is one that the analysis excludes."""
+    facts = {t.task: t for t in analysis.tasks}
+    groups = {g.group: g for g in analysis.groups}
+    excluded = {Verdict.NEVER} if failures else {Verdict.NEVER, Verdict.AFTER_FAILURE}
+    for entry in steps_of(done):
+        if entry.target in facts:
+            assert facts[entry.target].verdict not in excluded, entry
+        if entry.repeated is not None:
+            assert groups[entry.repeated].repeats not in excluded, entry
+        if entry.timed_out is not None:
+            assert groups[entry.timed_out].ends not in excluded, entry
+        if entry.source in facts:
+            require_transition(mission.task(entry.source), facts[entry.source], entry, excluded)
+            if not failures:
+                require_not_passed_over(mission, facts[entry.source], entry)
+    if done.executor.outcome == "completed":
+        assert analysis.ends not in excluded
+
+
+def taken(task, entry):
+    """The indices of the transitions that a step may have taken."""
+    if entry.cause is Cause.CONDITION:
+        return [
+            k
+            for k, t in enumerate(task.transitions)
+            if t.target == entry.target and tuple(map(words, t.conditions)) == entry.conditions
+        ]
+    if entry.cause is Cause.DEFAULT and entry.target is not None:
+        return [k for k, t in enumerate(task.transitions) if not t.conditions]
+    return []
+
+
+def require_transition(task, facts, entry, excluded):
+    candidates = taken(task, entry)
+    assert not candidates or any(
+        facts.transitions[k].verdict not in excluded for k in candidates
+    ), entry
+
+
+def require_not_passed_over(mission, facts, entry):
+    """Before the one taken there is none that is always taken."""
+    task = mission.task(entry.source)
+    if entry.cause not in (Cause.CONDITION, Cause.DEFAULT, Cause.REPEAT):
+        return
+    last = len(task.transitions)
+    if entry.cause is Cause.CONDITION:
+        last = min(taken(task, entry))
+    for transition in facts.transitions[:last]:
+        if task.transitions[transition.index].conditions:
+            assert transition.verdict is not Verdict.ALWAYS, entry
+
+
+def within(bounds, value, finished):
+    if finished:
+        assert value >= bounds.least.value - SOON, (value, bounds)
+    if bounds.most.value is not None:
+        assert value <= bounds.most.value + SOON, (value, bounds)
+
+
+@settings(
+    max_examples=examples(40),
+    deadline=None,
+    suppress_health_check=[HealthCheck.filter_too_much, HealthCheck.too_slow],
+)
+@given(missions(), catalogs(), st.integers(0, 10**6), st.sampled_from([0.0, 0.5, 2.0]))
+def test_nothing_impossible_happens(mission, catalog, seed, clean_up):
+    assume(not has_errors(check(mission)))
+    travel = MadeUpTravel(seed, clean_up)
+    analysis = analyse(mission, catalog, travel)
+    hfsm = lower(mission)
+    for k in range(4):
+        done = run(mission, hfsm, catalog, travel, seed + k)
+        require_allowed(mission, analysis, done, failures=False)
+        if analysis.duration is None or analysis.energy is None:
+            assert not done.finished or done.executor.outcome != "completed"
+        else:
+            event(f"finished {done.finished}, bounded {analysis.duration.most.value is not None}")
+            within(analysis.duration, done.now, done.finished)
+            within(analysis.energy, done.energy, done.finished)
+        done = run(mission, hfsm, catalog, travel, seed + k, failures=True)
+        require_allowed(mission, analysis, done, failures=True)

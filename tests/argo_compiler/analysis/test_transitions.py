@@ -1,0 +1,196 @@
+"""Which transitions can be taken: cases with known answers."""
+
+import pytest
+
+from argo_compiler.analysis import Verdict, analyse
+from argo_compiler.il import Group, OnFailure
+from tests.argo_compiler.analysis.building import CATALOG, mission, task, way
+
+NEVER, AFTER, POSSIBLE, ALWAYS = (
+    Verdict.NEVER,
+    Verdict.AFTER_FAILURE,
+    Verdict.POSSIBLE,
+    Verdict.ALWAYS,
+)
+
+
+def codes(analysis):
+    return sorted(d.code.removeprefix("analysis.") for d in analysis.diagnostics)
+
+
+def verdicts(analysis, name):
+    return [t.verdict for t in analysis.task(name).transitions]
+
+
+@pytest.mark.parametrize(
+    ("tests", "expected"),
+    [
+        ([["1 > 12"]], [NEVER, ALWAYS]),
+        ([["1 > 10"]], [NEVER, ALWAYS]),
+        ([["1 >= 10"]], [POSSIBLE, POSSIBLE]),
+        ([["1 < 0"]], [NEVER, ALWAYS]),
+        ([["1 <= 0"]], [POSSIBLE, POSSIBLE]),
+        ([["1 < 11"]], [ALWAYS, AFTER]),
+        ([["1 >= 0"]], [ALWAYS, AFTER]),
+        ([["1 > 0"]], [POSSIBLE, POSSIBLE]),
+        ([["0 < 1 < 10"]], [POSSIBLE, POSSIBLE]),
+        ([["0 <= 1 <= 10"]], [ALWAYS, AFTER]),
+        ([["-5 < 1 < 0"]], [NEVER, ALWAYS]),
+        ([["1 < 5"], ["1 >= 5"]], [POSSIBLE, ALWAYS, AFTER]),
+        ([["1 < 5"], ["1 > 5"]], [POSSIBLE, POSSIBLE, POSSIBLE]),
+        ([["1 < 5"], ["1 < 3"]], [POSSIBLE, NEVER, POSSIBLE]),
+        ([["1 < 5"], ["2 < 1 < 7"]], [POSSIBLE, POSSIBLE, POSSIBLE]),
+        ([["1 < 5"], ["1 < 8"], ["5 <= 1 <= 7"]], [POSSIBLE, POSSIBLE, NEVER, POSSIBLE]),
+        ([["1 < 3", "1 > 5"]], [NEVER, ALWAYS]),
+        ([["1 < 6", "1 > 5"]], [POSSIBLE, POSSIBLE]),
+        ([["2 < 6"]], [NEVER, ALWAYS]),
+        ([["1 < 6", "2 < 6"]], [NEVER, ALWAYS]),
+    ],
+)
+def test_transitions_of_the_task_that_measures(tests, expected):
+    ways = [way("B", *texts) for texts in tests]
+    analysis = analyse(mission(task("Am1", *ways, "C"), "B", "C"), CATALOG)
+    assert verdicts(analysis, "Am1") == expected
+    if NEVER in expected and "2 < 6" not in str(tests):
+        assert "transition-never" in codes(analysis)
+
+
+def test_without_a_catalogue_a_checkpoint_may_show_anything():
+    analysis = analyse(mission(task("Am1", way("B", "1 > 12"), "C"), "B", "C"))
+    assert verdicts(analysis, "Am1") == [POSSIBLE, POSSIBLE]
+
+
+def test_a_value_is_remembered_along_the_way():
+    analysis = analyse(
+        mission(
+            task("Am1", way("Low", "1 < 5"), "High"),
+            task("Low", way("Never", "1 > 6"), way("Join", "1 < 5"), "Never"),
+            task("High", way("Never", "1 < 5"), "Join"),
+            task("Never", "Join"),
+            task("Join", way("Am1", "1 > 9"), "End"),
+            "End",
+        ),
+        CATALOG,
+    )
+    assert verdicts(analysis, "Low") == [NEVER, ALWAYS, NEVER]
+    # The value is not there if its measurement failed; no condition holds then.
+    assert verdicts(analysis, "High") == [NEVER, ALWAYS]
+    assert analysis.task("Never").verdict is NEVER
+    assert verdicts(analysis, "Join") == [POSSIBLE, POSSIBLE]
+
+
+def test_measuring_again_forgets_the_old_value():
+    again = [
+        task("Am1", way("B", "1 < 5"), "End"),
+        "B",
+        task("Cm1", way("Am1", "1 > 6"), "End"),
+        "End",
+    ]
+    assert verdicts(analyse(mission(*again), CATALOG), "Cm1") == [POSSIBLE, POSSIBLE]
+
+
+def test_an_old_value_may_be_too_old_for_any_verdict_but_never():
+    old = mission(
+        task("Am1", way("Low", "1 < 5"), "Low2"),
+        task("Low", way("End", "1 < 5", max_age=20), way("End", "1 > 5", max_age=20), "End"),
+        task("Low2", "End"),
+        "End",
+    )
+    assert verdicts(analyse(old, CATALOG), "Low") == [POSSIBLE, NEVER, POSSIBLE]
+
+
+def test_what_only_a_failure_leads_to():
+    analysis = analyse(
+        mission(
+            task("Am1", way("Low", "1 < 5"), way("High", "1 >= 5"), "Broken"),
+            task("Low"),
+            task("High"),
+            task("Broken", way("Low", "1 < 20")),
+        ),
+        CATALOG,
+    )
+    assert analysis.task("Broken").verdict is AFTER
+    assert verdicts(analysis, "Broken") == [NEVER]
+    assert analysis.task("Low").verdict is POSSIBLE
+
+
+def test_after_an_abort_nothing_follows():
+    aborts = task("Am1", way("Low", "1 < 5"), way("Low", "1 >= 5"), on_failure=OnFailure.ABORT)
+    assert analyse(mission(aborts, "Low"), CATALOG).ends is POSSIBLE
+
+
+def test_why_a_task_is_unreachable():
+    found = analyse(
+        mission(
+            task("Am1", way("X", "1 > 12"), way("Y", "2 > 1"), "End"),
+            task("X", "Behind"),
+            task("Y", "End"),
+            task("Behind", "End"),
+            task("Alone", "End"),
+            "End",
+        ),
+        CATALOG,
+    )
+    lost = {d.subject: d for d in found.diagnostics if d.code == "analysis.unreachable-task"}
+    assert found.reachable == {"Am1", "End"}
+    assert sorted(lost) == ["tasks[1]", "tasks[2]", "tasks[3]", "tasks[4]"]
+    assert "checkpoint 1 (valve R1) shows 0 to 10" in lost["tasks[1]"].message
+    assert "no path measures it before" in lost["tasks[2]"].message
+    assert "only 'X' leads to it" in lost["tasks[3]"].message
+    assert "no transition leads to it" in lost["tasks[4]"].message
+    assert all(d.hint for d in found.diagnostics)
+
+
+def test_transitions_that_are_never_and_always_taken_are_told():
+    found = analyse(mission(task("Am1", way("B", "1 < 4"), way("B", "1 < 3"), "B"), "B"), CATALOG)
+    assert codes(found) == ["transition-never"]
+    assert found.diagnostics[0].subject == "tasks[0].transitions[1]"
+    assert "can only be 4 to 10 here" in found.diagnostics[0].message
+    found = analyse(mission(task("Am1", way("B", "1 < 11"), "B"), "B"), CATALOG)
+    assert codes(found) == ["transition-always"]
+    complete = task("Am1", way("B", "1 < 5"), way("B", "1 >= 5"), "B")
+    assert codes(analyse(mission(complete, "B"), CATALOG)) == []
+
+
+def test_values_that_are_compared_before_they_are_measured():
+    found = analyse(
+        mission(
+            task("Am1", way("Bm2", "1 < 5"), "C"),
+            "Bm2",
+            task("C", way("End", "2 < 5"), way("End", "3 < 5"), "Dm3"),
+            "Dm3",
+            "End",
+        ),
+        CATALOG,
+    )
+    assert codes(found) == ["maybe-unmeasured", "never-measured"]
+    maybe, never = sorted(found.diagnostics, key=lambda d: d.code)
+    assert "such as Am1 > C" in maybe.message
+    assert maybe.subject == "tasks[2].transitions[0]"
+    assert never.subject == "tasks[2].transitions[1]"
+
+
+@pytest.mark.parametrize(
+    ("group", "repeats", "ends"),
+    [
+        ({"max_repeat_count": 1}, NEVER, POSSIBLE),
+        ({"max_repeat_count": 2}, POSSIBLE, POSSIBLE),
+        ({"max_repeat_duration": 5}, POSSIBLE, POSSIBLE),
+        ({}, POSSIBLE, NEVER),
+    ],
+)
+def test_rounds_of_a_group(group, repeats, ends):
+    found = analyse(
+        mission(
+            "A",
+            task("Bm1", way("Out", "1 > 5"), "C"),
+            task("C", "End"),
+            "Out",
+            "End",
+            groups=[Group(name="G", start="A", end="C", **group)],
+        ),
+        CATALOG,
+    )
+    facts = found.groups[0]
+    assert (facts.repeats, facts.ends) == (repeats, ends)
+    assert verdicts(found, "C") == [NEVER if ends is NEVER else POSSIBLE]

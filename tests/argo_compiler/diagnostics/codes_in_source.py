@@ -1,0 +1,110 @@
+"""Which codes the source can give to a finding, found by reading it.
+
+A function that makes a `Diagnostic` with a code from one of its parameters passes codes on, and so
+does one that calls such a function with a parameter of its own. What they are called with, in the
+same folder, are the codes.
+"""
+
+import ast
+from collections import defaultdict
+from collections.abc import Iterator
+from pathlib import Path
+from typing import NamedTuple
+
+ROOT = Path(__file__).parents[3]
+PACKAGES = ("argo_compiler", "argo_env", "argo_planner")
+
+
+class Source(NamedTuple):
+    """A way to a code: a function, and the place of the code among its arguments."""
+
+    folder: str
+    function: str
+    parameter: str
+    position: int
+    prefix: str
+
+
+Function = ast.FunctionDef | ast.AsyncFunctionDef
+
+
+class Call(NamedTuple):
+    """A call of a function or method, with the folder and the function that it stands in."""
+
+    folder: str
+    inside: Function | None
+    node: ast.Call
+
+
+def codes_in_source() -> set[str]:
+    calls = all_calls()
+    codes: set[str] = set()
+    ahead = [Source("", "Diagnostic", "code", -1, "")]
+    known = set(ahead)
+    while ahead:
+        source = ahead.pop()
+        for call in calls[source.function]:
+            if source.folder and call.folder != source.folder:
+                continue
+            for code, variable, prefix in arguments(call.node, source):
+                if variable is None:
+                    codes.add(source.prefix + code)
+                elif call.inside and variable in (names := parameters(call.inside)):
+                    passing = Source(
+                        call.folder,
+                        call.inside.name,
+                        variable,
+                        names.index(variable),
+                        source.prefix + prefix,
+                    )
+                    if passing not in known:
+                        known.add(passing)
+                        ahead.append(passing)
+    return codes
+
+
+def all_calls() -> dict[str, list[Call]]:
+    """All calls in the packages, by the name of what is called."""
+    found: dict[str, list[Call]] = defaultdict(list)
+    for package in PACKAGES:
+        for path in sorted((ROOT / package).rglob("*.py")):
+            folder = str(path.parent.relative_to(ROOT))
+            inside: dict[ast.AST, Function | None] = {}
+            for node in ast.walk(ast.parse(path.read_text(encoding="utf-8"))):
+                function = node if isinstance(node, Function) else inside.get(node)
+                inside |= dict.fromkeys(ast.iter_child_nodes(node), function)
+                if isinstance(node, ast.Call):
+                    called = node.func
+                    name = called.attr if isinstance(called, ast.Attribute) else None
+                    name = called.id if isinstance(called, ast.Name) else name
+                    if name:
+                        found[name].append(Call(folder, inside.get(node), node))
+    return found
+
+
+def parameters(function: Function) -> list[str]:
+    names = [a.arg for a in (*function.args.args, *function.args.kwonlyargs)]
+    return names[1:] if names[:1] in (["self"], ["cls"]) else names
+
+
+def arguments(call: ast.Call, source: Source) -> Iterator[tuple[str, str | None, str]]:
+    """What stands for the code: a text, or the name of a variable with a text before it."""
+    given = [k.value for k in call.keywords if k.arg == source.parameter]
+    if not given and 0 <= source.position < len(call.args):
+        given = [call.args[source.position]]
+    ahead: list[ast.expr] = given
+    while ahead:
+        match ahead.pop():
+            case ast.Constant(value=str(code)):
+                yield code, None, ""
+            case ast.IfExp(body=body, orelse=other):
+                ahead += [body, other]
+            case ast.Name(id=name):
+                yield "", name, ""
+            case ast.JoinedStr(
+                values=[
+                    ast.Constant(value=str(prefix)),
+                    ast.FormattedValue(value=ast.Name(id=name)),
+                ]
+            ):
+                yield "", name, prefix

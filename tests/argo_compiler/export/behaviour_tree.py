@@ -1,0 +1,183 @@
+"""An interpreter of the node types of BehaviorTree.CPP 4 that exported trees consist of.
+
+Written from the library's documentation, on a virtual clock. Composite nodes with memory are
+generators: they yield while something runs, and return True or False, or None where skipped.
+"""
+
+import xml.etree.ElementTree as ET
+
+ATTRIBUTES = {
+    "Sequence": {"name", "_skipIf"},
+    "Fallback": {"name", "_skipIf"},
+    "ForceSuccess": set(),
+    "Repeat": {"num_cycles"},
+    "RetryUntilSuccessful": {"num_attempts"},
+    "Timeout": {"msec"},
+    "Script": {"code"},
+    "ScriptCondition": {"code"},
+}
+DECORATORS = {"ForceSuccess", "Repeat", "RetryUntilSuccessful", "Timeout"}
+LEAVES = {"Script", "ScriptCondition"}
+
+
+def validate(text):
+    """The tree's root node; asserts that the document has the form that the library reads."""
+    root = ET.fromstring(text)
+    assert root.tag == "root"
+    assert root.attrib["BTCPP_format"] == "4"
+    tree, models = root
+    assert (tree.tag, models.tag) == ("BehaviorTree", "TreeNodesModel")
+    assert tree.attrib["ID"] == root.attrib["main_tree_to_execute"]
+    ports = {}
+    for model in models:
+        assert model.tag == "Action"
+        ports[model.attrib["ID"]] = {port.attrib["name"] for port in model}
+        assert all(port.tag in ("input_port", "output_port") for port in model)
+    assert len(tree) == 1
+    for node in tree[0].iter():
+        if node.tag in ports:
+            assert set(node.attrib) <= ports[node.tag] | {"name"}
+            assert len(node) == 0
+        else:
+            assert set(node.attrib) <= ATTRIBUTES[node.tag], node.tag
+            if node.tag in LEAVES:
+                assert len(node) == 0
+            elif node.tag in DECORATORS:
+                assert len(node) == 1
+            else:
+                assert len(node) > 0
+    return tree[0]
+
+
+class Interpreter:
+    """Runs a tree; `outcomes` gives duration, value and failure of each action in turn."""
+
+    def __init__(self, text, outcomes):
+        self.root = validate(text)
+        self.outcomes = outcomes
+        self.board = {}
+        self.now = 0.0
+        self.log = []
+        self.result = None
+        self.deadlines = []
+
+    def run(self, steps):
+        """The actions with the times of their starts, and how the mission ended."""
+        tree = self.node(self.root)
+        try:
+            next(tree)
+            while len(self.log) < steps:
+                # What was started in the moment of a time-out never ran, so it has no outcome yet.
+                duration, *self.result = next(self.outcomes)
+                ends = self.now + duration
+                self.now = min([ends, *(deadline for deadline, _ in self.deadlines)])
+                if ends == self.now:  # an action that ends exactly at a time-out has ended
+                    next(tree)
+                while due := [fired for deadline, fired in self.deadlines if deadline <= self.now]:
+                    due[0].append(True)
+                    if self.log[-1][0] == self.now:
+                        self.log.pop()
+                    next(tree)
+        except StopIteration:
+            return self.log[:steps], int(self.board["outcome"])
+        return self.log[:steps], None
+
+    def node(self, node):
+        skip = node.get("_skipIf")
+        if skip is not None and self.value(skip):
+            return None
+        return (yield from getattr(self, node.tag)(node))
+
+    def Sequence(self, node):  # noqa: N802
+        skipped = 0
+        for child in node:
+            result = yield from self.node(child)
+            skipped += result is None
+            if result is False:
+                return False
+        return None if skipped == len(node) else True
+
+    def Fallback(self, node):  # noqa: N802
+        skipped = 0
+        for child in node:
+            result = yield from self.node(child)
+            skipped += result is None
+            if result:
+                return True
+        return None if skipped == len(node) else False
+
+    def ForceSuccess(self, node):  # noqa: N802
+        result = yield from self.node(node[0])
+        return None if result is None else True
+
+    def Repeat(self, node):  # noqa: N802
+        assert node.attrib["num_cycles"] == "-1"
+        while True:
+            result = yield from self.node(node[0])
+            if not result:
+                return result
+
+    def RetryUntilSuccessful(self, node):  # noqa: N802
+        for _ in range(int(node.attrib["num_attempts"])):
+            result = yield from self.node(node[0])
+            if result is not False:
+                return result
+        return False
+
+    def Timeout(self, node):  # noqa: N802
+        fired = []
+        deadline = (self.now + int(node.attrib["msec"]) / 1000, fired)
+        # The outer ones come first.
+        self.deadlines.append(deadline)
+        child = self.node(node[0])
+        try:
+            while True:
+                try:
+                    next(child)
+                except StopIteration as end:
+                    return end.value
+                yield
+                if fired:
+                    return False
+        finally:
+            self.deadlines = [d for d in self.deadlines if d[1] is not fired]
+
+    def Script(self, node):  # noqa: N802
+        for statement in node.attrib["code"].split("; "):
+            name, expression = statement.split(" := ")
+            self.board[name] = self.value(expression)
+        return True
+        yield
+
+    def ScriptCondition(self, node):  # noqa: N802
+        return bool(self.value(node.attrib["code"]))
+        yield
+
+    def Clock(self, node):  # noqa: N802
+        self.board[node.attrib["now"][1:-1]] = self.now
+        return True
+        yield
+
+    def Measure(self, node):  # noqa: N802
+        value = yield from self.act(node)
+        if isinstance(value, (int, float)) and not isinstance(value, bool):
+            for port, read in (("value", value), ("known", 1), ("time", self.now)):
+                self.board[node.attrib[port][1:-1]] = read
+        return value is not False
+
+    def DriveTo(self, node):  # noqa: N802
+        return (yield from self.act(node)) is not False
+
+    def act(self, node):
+        """What was read; False if the action failed."""
+        self.log.append((self.now, node.attrib["name"]))
+        yield
+        value, failed = self.result
+        return False if failed else value
+
+    def value(self, expression):
+        if " ? " in expression:
+            condition, rest = expression.split(" ? ")
+            yes, no = rest.split(" : ")
+            return self.value(yes if self.value(condition) else no)
+        return eval(expression.replace("&&", "and"), {"__builtins__": {}}, dict(self.board))

@@ -1,0 +1,85 @@
+"""Exported behaviour trees in BehaviorTree.CPP itself.
+
+    ARGO_BTCPP_RUNNER=./runner python -m pytest tests/argo_compiler/export/btcpp_library.py
+
+The suite does not collect this file, for the library has no wheel; `docs/export.md` says how the
+runner is built.
+"""
+
+import math
+import os
+import subprocess
+
+import pytest
+from hypothesis import assume, given, settings
+from hypothesis import strategies as st
+
+from argo_compiler.check import check
+from argo_compiler.diagnostics import Severity
+from argo_compiler.export.btcpp import to_btcpp
+from argo_compiler.il import Condition, ConditionType, Mission, Task, Transition
+from tests.argo_compiler.export import missions as m
+from tests.argo_compiler.export.test_btcpp import STEPS, codes, executed, sound, task
+from tests.conftest import examples
+
+RUNNER = os.environ["ARGO_BTCPP_RUNNER"]
+
+
+@settings(max_examples=examples(40), deadline=None)
+@given(m.structured_missions(timeouts=False), m.outcome_lists)
+def test_the_library_itself_does_the_same(tmp_path_factory, mission, outcomes):
+    sound(mission)
+    path = tmp_path_factory.mktemp("tree") / "tree.xml"
+    path.write_text(to_btcpp(mission), encoding="utf-8")
+    script = "".join(
+        f"{duration} {int(value is not None)} {value or 0} {int(failed)}\n"
+        for duration, value, failed in outcomes
+    )
+    command = [RUNNER, str(path), str(STEPS)]
+    done = subprocess.run(command, input=script, capture_output=True, text=True, check=True)
+    *lines, last = done.stdout.splitlines()
+    log = [(float(t), name) for t, _, name in (line.partition(" ") for line in lines)]
+    expected = executed(mission, outcomes)
+    assert log == expected[0]
+    if len(log) < STEPS:
+        assert int(float(last)) == expected[1]
+
+
+@settings(max_examples=examples(40), deadline=None)
+@given(st.text(min_size=1), st.text(min_size=1))
+def test_the_library_reads_any_name(tmp_path_factory, name, object_id):
+    measure = Task(name=name, action="MEASURE", object_id=object_id)
+    mission = Mission(tasks=(measure,), designation=object_id)
+    assume(not any(f.severity is Severity.ERROR for f in check(mission)))
+    if any(character in object_id for character in "{};") or object_id.startswith("json:"):
+        assert codes(mission) == ["export.name"]
+        return
+    text = to_btcpp(mission)
+    path = tmp_path_factory.mktemp("tree") / "tree.xml"
+    path.write_text(text, encoding="utf-8")
+    done = subprocess.run(
+        [RUNNER, str(path), "9"], input="1 1 2 0\n", capture_output=True, text=True, check=True
+    )
+    assert done.stdout.splitlines()[-1] == "1"
+
+
+@pytest.mark.parametrize("bound", [-5.0, -1e-7, 1e-12, 0.1, 123456789.125, 1e22, -1e300])
+@pytest.mark.parametrize("inclusive", [False, True])
+def test_the_library_compares_numbers_as_they_are(tmp_path, bound, inclusive):
+    less = Condition(
+        type=ConditionType.LESS, object_id="1", param1=bound, inclusive=inclusive, max_age=0.25
+    )
+    ways = (Transition(target="C", conditions=(less,)), Transition(target="B"))
+    measure = Task(name="A", action="MEASURE", object_id="1", velocity=0.3, transitions=ways)
+    mission = Mission(tasks=(measure, task("B", "C"), task("C")))
+    (tmp_path / "tree.xml").write_text(to_btcpp(mission), encoding="utf-8")
+    for value in (math.nextafter(bound, -math.inf), bound, math.nextafter(bound, math.inf)):
+        done = subprocess.run(
+            [RUNNER, str(tmp_path / "tree.xml"), "9"],
+            input=f"0.5 1 {value!r} 0\n",
+            capture_output=True,
+            text=True,
+            check=True,
+        )
+        taken = value <= bound if inclusive else value < bound
+        assert ("B" not in done.stdout) == taken

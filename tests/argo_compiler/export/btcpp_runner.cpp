@@ -1,0 +1,126 @@
+// Runs a behaviour tree with stub nodes: `runner TREE.xml STEPS < outcomes`.
+//
+// A line of input is the outcome of an action: its duration (s), whether it reads a value, the
+// value, and whether it fails. They are used in turn. A line of output is the start of an action:
+// the time and the node's name. The last line is the blackboard entry `outcome`, or 0.
+//
+//   c++ -std=c++17 -O1 btcpp_runner.cpp -lbehaviortree_cpp -o runner
+
+#include <cstdlib>
+#include <iostream>
+#include <vector>
+
+#include "behaviortree_cpp/bt_factory.h"
+
+namespace
+{
+struct Outcome
+{
+  double duration;
+  bool reads;
+  double value;
+  bool fails;
+};
+
+std::vector<Outcome> outcomes;
+std::size_t drawn = 0;
+int steps = 0;
+double now = 0.0;
+
+const Outcome& act(const std::string& name)
+{
+  if(static_cast<int>(drawn) == steps)
+  {
+    std::cout << 0 << std::endl;
+    std::exit(0);
+  }
+  std::cout << now << " " << name << "\n";
+  const Outcome& outcome = outcomes[drawn++ % outcomes.size()];
+  now += outcome.duration;
+  return outcome;
+}
+
+class Clock : public BT::SyncActionNode
+{
+public:
+  using SyncActionNode::SyncActionNode;
+  static BT::PortsList providedPorts()
+  {
+    return { BT::OutputPort<double>("now") };
+  }
+  BT::NodeStatus tick() override
+  {
+    setOutput("now", now);
+    return BT::NodeStatus::SUCCESS;
+  }
+};
+
+class Measure : public BT::SyncActionNode
+{
+public:
+  using SyncActionNode::SyncActionNode;
+  static BT::PortsList providedPorts()
+  {
+    return { BT::InputPort<std::string>("object_id"),       BT::InputPort<double>("velocity"),
+             BT::InputPort<std::string>("joint_names"),     BT::InputPort<std::string>("joint_"
+                                                                                       "positions"),
+             BT::OutputPort<double>("value"),               BT::OutputPort<double>("known"),
+             BT::OutputPort<double>("time") };
+  }
+  BT::NodeStatus tick() override
+  {
+    const Outcome& outcome = act(name());
+    if(outcome.fails)
+    {
+      return BT::NodeStatus::FAILURE;
+    }
+    if(outcome.reads)
+    {
+      setOutput("value", outcome.value);
+      setOutput("known", 1.0);
+      setOutput("time", now);
+    }
+    return BT::NodeStatus::SUCCESS;
+  }
+};
+
+class DriveTo : public BT::SyncActionNode
+{
+public:
+  using SyncActionNode::SyncActionNode;
+  static BT::PortsList providedPorts()
+  {
+    return { BT::InputPort<double>("x"),        BT::InputPort<double>("y"),
+             BT::InputPort<double>("z"),        BT::InputPort<double>("yaw"),
+             BT::InputPort<double>("velocity"), BT::InputPort<std::string>("joint_names"),
+             BT::InputPort<std::string>("joint_positions") };
+  }
+  BT::NodeStatus tick() override
+  {
+    return act(name()).fails ? BT::NodeStatus::FAILURE : BT::NodeStatus::SUCCESS;
+  }
+};
+}  // namespace
+
+int main(int argc, char** argv)
+{
+  if(argc != 3)
+  {
+    std::cerr << "usage: runner TREE.xml STEPS < outcomes\n";
+    return 2;
+  }
+  steps = std::atoi(argv[2]);
+  Outcome outcome{};
+  while(std::cin >> outcome.duration >> outcome.reads >> outcome.value >> outcome.fails)
+  {
+    outcomes.push_back(outcome);
+  }
+  BT::BehaviorTreeFactory factory;
+  factory.registerNodeType<Clock>("Clock");
+  factory.registerNodeType<Measure>("Measure");
+  factory.registerNodeType<DriveTo>("DriveTo");
+  auto tree = factory.createTreeFromFile(argv[1]);
+  tree.tickWhileRunning();
+  std::cout << tree.rootBlackboard()->get<double>("outcome") << std::endl;
+  return 0;
+}

@@ -1,0 +1,154 @@
+"""Exported behaviour trees, run by an interpreter; `btcpp_library.py` has the library itself."""
+
+from itertools import cycle
+
+import pytest
+from hypothesis import assume, given, settings
+from hypothesis import strategies as st
+
+from argo_compiler.check import check
+from argo_compiler.diagnostics import DiagnosticError, Severity
+from argo_compiler.export.btcpp import to_btcpp
+from argo_compiler.hfsm import lower
+from argo_compiler.il import (
+    EventKind,
+    Group,
+    JointState,
+    Mission,
+    OnFailure,
+    Reaction,
+    Response,
+    Task,
+    Transition,
+)
+from tests.argo_compiler.export import missions as m
+from tests.argo_compiler.export.behaviour_tree import Interpreter, validate
+from tests.argo_compiler.export.executing import Executing
+from tests.conftest import examples
+
+OUTCOMES = ["completed", "returned", "sheltered", "failed", "aborted", "cancelled"]
+STEPS = 40
+
+
+def executed(mission, outcomes, steps=STEPS):
+    """The actions with the times of their starts, and how the mission ended."""
+    machine = Executing(lower(mission))
+    log, drawn = [], []
+
+    def noted():
+        for outcome in cycle(outcomes):
+            drawn.append(outcome)
+            yield outcome
+
+    drive = m.Drive(machine, [], steps=10**6)
+    drive.outcomes = noted()
+    note = machine.note
+
+    def log_starts(commands):
+        started = machine.started
+        note(commands)
+        if machine.started > started:
+            log.append((machine.executor.trace[-1].time, machine.running[1]))
+            if len(log) >= steps:
+                drive.steps = 0
+
+    machine.note = log_starts
+    drive.run()
+    outcome = machine.executor.outcome
+    return log[:steps], None if outcome is None else OUTCOMES.index(outcome) + 1
+
+
+def sound(mission):
+    assume(not any(f.severity is Severity.ERROR for f in check(mission)))
+    return mission
+
+
+@settings(max_examples=examples(80), deadline=None)
+@given(m.structured_missions(), m.outcome_lists)
+def test_tree_does_what_the_executor_does(mission, outcomes):
+    sound(mission)
+    expected = executed(mission, outcomes)
+    log, outcome = Interpreter(to_btcpp(mission), cycle(outcomes)).run(STEPS)
+    assert log == expected[0]
+    if len(log) < STEPS:
+        assert outcome == expected[1]
+
+
+@settings(max_examples=examples(40), deadline=None)
+@given(m.missions(), m.outcome_lists)
+def test_any_mission_is_refused_or_said_right(mission, outcomes):
+    sound(mission)
+    try:
+        text = to_btcpp(mission)
+    except DiagnosticError as error:
+        back = {"'" + t.name + "'" for t in mission.tasks}
+        for diagnostic in error.diagnostics:
+            assert diagnostic.code == "export.backward"
+            assert any(name in diagnostic.message for name in back)
+        return
+    assert Interpreter(text, cycle(outcomes)).run(STEPS)[0] == executed(mission, outcomes)[0]
+
+
+def task(name, *targets, **fields):
+    ways = tuple(Transition(target=target) for target in targets)
+    return Task(name=name, action="WAYPOINT", pose=m.HERE, transitions=ways, **fields)
+
+
+def codes(mission):
+    with pytest.raises(DiagnosticError) as caught:
+        to_btcpp(mission)
+    return [d.code for d in caught.value.diagnostics]
+
+
+def test_refusals_come_all_at_once_with_the_task_and_the_reason():
+    reactions = (
+        Reaction(event=EventKind.GAS_LEAK, response=Response.ABORT),
+        Reaction(event=EventKind.HOT_SPOT, response=Response.REPORT),
+    )
+    measure = Task(name="C", action="MEASURE", object_id="{x}")
+    tasks = (task("A", "B"), task("B", "A"), measure)
+    mission = Mission(tasks=tasks, reactions=reactions)
+    assert codes(mission) == ["export.reaction", "export.backward", "export.name"]
+    with pytest.raises(DiagnosticError, match="task 'B' back to 'A'"):
+        to_btcpp(mission)
+
+
+@pytest.mark.parametrize("name", ["{a}", "a;b", "json:1", " {x} "])
+def test_joint_names_that_are_no_text_there(name):
+    joints = JointState(names=(name,), positions=(0.5,))
+    assert codes(Mission(tasks=(task("A", joint_states=joints),))) == ["export.name"]
+
+
+def test_durations_that_a_timeout_node_does_not_take():
+    group = Group(name="G", start="A", end="A", max_repeat_duration=5e6)
+    assert codes(Mission(tasks=(task("A"),), groups=(group,))) == ["export.too-long"]
+
+
+@given(st.text(min_size=1))
+def test_any_name_is_text(name):
+    group = Group(name="G" + name.replace("/", ""), start=name, end=name, max_repeat_count=2)
+    mission = Mission(tasks=(task(name),), groups=(group,), designation=name)
+    assume(not any(f.severity is Severity.ERROR for f in check(mission)))
+    root = validate(to_btcpp(mission))
+    shown = root.find(".//DriveTo").attrib["name"]
+    printable = all(c in "\t\n\r" or " " <= c < "\x7f" for c in name)
+    assert shown == name or not printable
+
+
+def test_deep_nesting():
+    groups = tuple(
+        Group(name="/".join(["g"] * depth), start="A", end="A", max_repeat_count=2)
+        for depth in range(1, 400)
+    )
+    text = to_btcpp(Mission(tasks=(task("A"),), groups=groups))
+    assert text.count("<Repeat") == 399
+
+
+def test_way_back_to_the_dock_is_a_task_of_the_tree():
+    failing = task("A", on_failure=OnFailure.RETURN, retries=1)
+    mission = Mission(tasks=(failing,), dock=m.HERE)
+    log, outcome = Interpreter(
+        to_btcpp(mission), cycle([(1, None, True), (1, None, True), (2, None, False)])
+    ).run(STEPS)
+    assert log == [(0, "A"), (1, "A"), (2, "return to dock")]
+    assert OUTCOMES[outcome - 1] == "returned"

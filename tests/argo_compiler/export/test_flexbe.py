@@ -1,0 +1,239 @@
+"""Exported FlexBE behaviours, run on a stand-in for FlexBE's core."""
+
+import ast
+import importlib
+import sys
+import types
+import xml.etree.ElementTree as ET
+from itertools import cycle
+
+import pytest
+from hypothesis import assume, given, settings
+from hypothesis import strategies as st
+
+from argo_compiler.check import check
+from argo_compiler.diagnostics import DiagnosticError, Severity
+from argo_compiler.export.flexbe import to_flexbe
+from argo_compiler.hfsm import lower
+from argo_compiler.il import EventKind, Group, Mission, Reaction, Response, Task
+from tests.argo_compiler.export import missions as m
+from tests.argo_compiler.export.test_btcpp import OUTCOMES, executed, sound
+from tests.conftest import examples
+
+STEPS = 40
+
+
+class EventState:
+    def __init__(self, outcomes, input_keys=(), output_keys=()):
+        self.outcomes = set(outcomes)
+        self.keys = set(input_keys), set(output_keys)
+
+    def on_enter(self, userdata):
+        pass
+
+    def on_exit(self, userdata):
+        pass
+
+    def run(self, userdata, wait):
+        """The outcome, after as many executions as it takes."""
+        self.on_enter(userdata)
+        while (outcome := self.execute(userdata)) is None:
+            wait()
+        self.on_exit(userdata)
+        assert outcome in self.outcomes
+        return outcome
+
+
+class OperatableStateMachine:
+    opened = None
+
+    def __init__(self, outcomes, **keys):
+        assert all(value == ["memory"] for value in keys.values())
+        self.outcomes = set(outcomes)
+        self.userdata = types.SimpleNamespace()
+        self.states = {}
+
+    def __enter__(self):
+        assert OperatableStateMachine.opened is None
+        OperatableStateMachine.opened = self
+
+    def __exit__(self, *_):
+        OperatableStateMachine.opened = None
+
+    @staticmethod
+    def add(label, state, transitions, autonomy, remapping):
+        opened = OperatableStateMachine.opened
+        assert label not in opened.states
+        assert set(transitions) == set(autonomy) == state.outcomes
+        assert remapping == {"memory": "memory"}
+        opened.states[label] = state, transitions
+
+    def validate(self):
+        for state, transitions in self.states.values():
+            assert set(transitions.values()) <= set(self.states) | self.outcomes
+            if isinstance(state, OperatableStateMachine):
+                state.validate()
+
+    def run(self, userdata, wait):
+        label = next(iter(self.states))
+        while label in self.states:
+            state, transitions = self.states[label]
+            label = transitions[state.run(userdata, wait)]
+        return label
+
+
+class Behavior:
+    def __init__(self):
+        self.name = "unnamed"
+
+
+class Stop(Exception):  # noqa: N818
+    pass
+
+
+class Robot:
+    """A robot of known outcomes on a virtual clock, which writes down what it begins."""
+
+    def __init__(self, outcomes, deadline):
+        self.outcomes = cycle(outcomes)
+        self.deadline = deadline
+        self.time = 0
+        self.log = []
+        self.action = None
+
+    def now(self):
+        return self.time
+
+    def measure(self, task, *_):
+        self.begin(task, measures=True)
+
+    def drive(self, task, *_):
+        self.begin(task, measures=False)
+
+    def begin(self, task, measures):
+        assert self.action is None
+        if len(self.log) == STEPS:
+            raise Stop
+        self.log.append((self.time, task))
+        duration, value, failed = next(self.outcomes)
+        self.action = self.time + duration, value if measures else None, failed
+
+    def result(self):
+        end, value, failed = self.action
+        if self.time < end:
+            return None
+        self.action = None
+        return ("failed", None) if failed else ("done", value)
+
+    def cancel(self):
+        self.action = None
+
+    def wait(self):
+        """Lets time pass: to the end of the action, or to the first time-out."""
+        if self.action is not None:
+            self.time = min([self.action[0], *(t for t in self.deadline() if t > self.time)])
+
+
+@pytest.fixture(scope="module")
+def package(tmp_path_factory):
+    """The exported states, imported with a stand-in for `flexbe_core`."""
+    folder = tmp_path_factory.mktemp("flexbe")
+    mission = Mission(tasks=(Task(name="A", action="WAYPOINT", pose=m.HERE),))
+    for path, content in to_flexbe(mission, lower(mission)).items():
+        (folder / path).parent.mkdir(exist_ok=True)
+        (folder / path).write_bytes(content)
+    core = types.ModuleType("flexbe_core")
+    core.EventState = EventState
+    core.OperatableStateMachine = OperatableStateMachine
+    core.Behavior = Behavior
+    core.Autonomy = types.SimpleNamespace(Off=-1)
+    before = dict(sys.modules)
+    sys.modules["flexbe_core"] = core
+    sys.path.insert(0, str(folder))
+    yield importlib.import_module("argo_flexbe_states.robot")
+    sys.path.remove(str(folder))
+    for name in sys.modules.keys() - before.keys():
+        if name.startswith(("flexbe_core", "argo_flexbe")):
+            del sys.modules[name]
+
+
+def exported(mission):
+    """The behaviour's class, as its manifest names it."""
+    made = to_flexbe(mission, lower(mission))
+    manifest = ET.fromstring(next(v for k, v in made.items() if k.startswith("manifest/")))
+    executable = manifest.find("executable").attrib
+    path = executable["package_path"].replace(".", "/") + ".py"
+    namespace = {}
+    exec(compile(made[path], path, "exec"), namespace)
+    behavior = namespace[executable["class"]]()
+    assert behavior.name == manifest.attrib["name"]
+    return behavior
+
+
+def run(package, mission, outcomes):
+    machine = exported(mission).create()
+    machine.validate()
+    memory = machine.userdata.memory
+
+    def deadlines():
+        return [g["entered"] + g["limit"] for g in memory["groups"] if g["limit"]]
+
+    robot = Robot(outcomes, deadlines)
+    package.connect(robot)
+    try:
+        outcome = machine.run(machine.userdata, robot.wait)
+    except Stop:
+        outcome = None
+    return robot.log, outcome
+
+
+@settings(max_examples=examples(60), deadline=None)
+@given(mission=m.missions(), outcomes=m.outcome_lists)
+def test_behaviour_does_what_the_executor_does(package, mission, outcomes):
+    sound(mission)
+    log, outcome = run(package, mission, outcomes)
+    expected = executed(mission, outcomes, STEPS)
+    assert log == expected[0]
+    assert outcome is None or OUTCOMES.index(outcome) + 1 == expected[1]
+
+
+@given(st.text(min_size=1))
+def test_names_are_data(package, name):
+    group = Group(name="G" + name.replace("/", ""), start=name, end=name, max_repeat_count=2)
+    task = Task(name=name, action="MEASURE", object_id=name)
+    mission = Mission(tasks=(task,), groups=(group,), designation=name)
+    assume(not any(f.severity is Severity.ERROR for f in check(mission)))
+    assert run(package, mission, [(1, 2, False)]) == ([(0, name), (1, name)], "completed")
+
+
+def test_files_are_two_packages_and_a_manifest():
+    mission = Mission(
+        tasks=(Task(name="A", action="MEASURE", object_id="1"),), designation="9 o'clock round"
+    )
+    made = to_flexbe(mission, lower(mission))
+    assert {path.partition("/")[0] for path in made} == {
+        "argo_flexbe_states",
+        "argo_flexbe_behaviors",
+        "manifest",
+    }
+    assert "argo_flexbe_behaviors/m_9_o_clock_round_sm.py" in made
+    for path, content in made.items():
+        if path.endswith(".py"):
+            ast.parse(content)
+
+
+def test_reactions_are_refused():
+    reactions = (
+        Reaction(event=EventKind.GAS_LEAK, response=Response.PAUSE),
+        Reaction(event=EventKind.HOT_SPOT, response=Response.REPORT),
+    )
+    task = Task(name="A", action="MEASURE", object_id="1")
+    mission = Mission(tasks=(task,), reactions=reactions)
+    with pytest.raises(DiagnosticError, match="reaction to 'gas_leak' can't be said") as caught:
+        to_flexbe(mission, lower(mission))
+    assert [d.code for d in caught.value.diagnostics] == ["export.reaction"]
+
+
+def test_mission_without_tasks_has_ended(package):
+    mission = Mission(tasks=(Task(name="S", action="START"),))
+    assert run(package, mission, [(1, None, False)]) == ([], "completed")

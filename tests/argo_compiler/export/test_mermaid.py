@@ -1,0 +1,150 @@
+import re
+
+import pytest
+
+from argo_compiler.export import to_mermaid
+from argo_compiler.hfsm import lower
+from argo_compiler.il import (
+    Action,
+    Condition,
+    ConditionType,
+    EventKind,
+    Group,
+    Mission,
+    OnFailure,
+    Reaction,
+    Response,
+    Stop,
+    Task,
+    Transition,
+)
+
+STATE = re.compile(r'state "((?:[\w ,().-]|#\d+;)*)" as (\w+)( \{)?')
+CHOICE = re.compile(r"state (\w+) <<choice>>")
+ARROW = re.compile(r"(\[\*\]|\w+) --> (\[\*\]|\w+)(?: : ((?:[\w ,().-]|#\d+;)+))?")
+
+
+def read(text):
+    """The states with the state that each lies in, the labels and the arrows; strict."""
+    first, *lines = text.splitlines()
+    assert first == "stateDiagram-v2"
+    parents, labels, arrows, around = {}, {}, [], []
+    for line in map(str.strip, lines):
+        if line == "}":
+            around.pop()
+        elif match := STATE.fullmatch(line) or CHOICE.fullmatch(line):
+            id = match[match.re.groups - 1] if match.re is STATE else match[1]
+            assert id not in parents
+            parents[id] = around[-1] if around else None
+            if match.re is STATE:
+                labels[id] = match[1]
+                if match[3]:
+                    around.append(id)
+        else:
+            match = ARROW.fullmatch(line)
+            assert match, line
+            arrows.append((match[1], match[2], match[3] or ""))
+    assert not around
+    assert {id for arrow in arrows for id in arrow[:2]} <= parents.keys() | {"[*]"}
+    return parents, labels, arrows
+
+
+def measuring(name, *ways, **fields):
+    return Task(name=name, action=Action.MEASURE, object_id=name, transitions=ways, **fields)
+
+
+@pytest.fixture
+def mission():
+    hot = Condition(type=ConditionType.GREATER, object_id="B", param1=7.5, max_age=60)
+    return Mission(
+        tasks=(
+            measuring("A", Transition(target="B")),
+            measuring("B", Transition(target="C"), Transition(target="D", conditions=(hot,))),
+            measuring("C", Transition(target="D")),
+            measuring("D"),
+        ),
+        groups=(
+            Group(name="G", start="A", end="C", max_repeat_duration=60),
+            Group(name="G/H", start="B", end="C", max_repeat_count=2, stop=Stop.SOFT),
+        ),
+    )
+
+
+def test_states_are_nested_like_the_machine(mission):
+    parents, labels, _ = read(to_mermaid(lower(mission)))
+    assert parents == {
+        "r1": None,
+        "g1": None,
+        "t0": "g1",
+        "r2": "g1",
+        "g2": "g1",
+        "t1": "g2",
+        "t2": "g2",
+        "t3": None,
+    }
+    assert labels == {"t0": "A", "t1": "B", "t2": "C", "t3": "D", "g1": "G", "g2": "G#47;H"}
+
+
+def test_transitions_say_why(mission):
+    _, _, arrows = read(to_mermaid(lower(mission)))
+    assert arrows == [
+        ("[*]", "t0", ""),
+        ("t0", "t1", ""),
+        ("t1", "t3", "#35;B #62; 7.5, at most 60 s old"),
+        ("t1", "t2", ""),
+        ("t2", "r2", ""),
+        ("t3", "[*]", ""),
+        ("r1", "t0", "repeat, for 60 s"),
+        ("r1", "t3", ""),
+        ("g1", "r1", "time out after 60 s"),
+        ("r2", "t1", "repeat, up to 2 rounds"),
+        ("r2", "r1", ""),
+    ]
+
+
+@pytest.mark.parametrize(
+    "name",
+    [
+        'the "big" valve',
+        "a: b; c # d",
+        "two\nlines",
+        "}{",
+        "50 %% off",
+        "[*] --> A",
+        "<b>bold</b>",
+        "x <<choice>>",
+        "direction LR",
+        "Ölstand Überlauf №4",
+    ],
+)
+def test_names_that_mean_something_to_mermaid(name):
+    task = Task(name=name, action="MEASURE", object_id="1")
+    text = to_mermaid(lower(Mission(tasks=(task,))))
+    _, labels, _ = read(text)
+    assert re.sub(r"#(\d+);", lambda m: chr(int(m[1])), labels["t0"]) == name
+    assert not re.search(r"direction\s|%%|<<|\[\*\] --> A", text.replace("[*] --> t0", ""))
+
+
+def test_mission_of_start_only():
+    mission = Mission(tasks=(Task(name="S", action="START"),))
+    assert to_mermaid(lower(mission)) == "stateDiagram-v2\n    [*] --> [*]\n"
+
+
+def test_failures_and_reactions():
+    tasks = (
+        measuring("A", Transition(target="B"), on_failure=OnFailure.RETURN),
+        measuring("B", on_failure=OnFailure.ABORT),
+    )
+    reaction = Reaction(
+        event=EventKind.GAS_LEAK,
+        response=Response.PAUSE,
+        until=EventKind.ALL_CLEAR,
+        priority=2,
+    )
+    mission = Mission(tasks=tasks, reactions=(reaction,), dock={"x": 0, "y": 0, "z": 0})
+    parents, labels, arrows = read(to_mermaid(lower(mission)))
+    assert labels["t2"] == "return to dock"
+    assert ("t0", "t2", "failed") in arrows
+    assert ("t1", "[*]", "failed, abort") in arrows
+    assert labels["e1"] == "gas leak#58; pause, until all clear, priority 2"
+    assert parents["e1"] == "reactions"

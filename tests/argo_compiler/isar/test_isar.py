@@ -1,0 +1,368 @@
+"""Missions for isar and from it."""
+
+import json
+import math
+
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from argo_compiler.catalog import Catalog, CheckpointInfo, CheckpointKind, Interval
+from argo_compiler.check import check
+from argo_compiler.diagnostics import DiagnosticError, Severity
+from argo_compiler.hfsm import lower
+from argo_compiler.il import (
+    Action,
+    Condition,
+    ConditionType,
+    EventKind,
+    Group,
+    JointState,
+    Mission,
+    Mode,
+    OnFailure,
+    Reaction,
+    Response,
+    Task,
+    Transition,
+)
+from argo_compiler.isar import View, from_isar, read_isar, to_isar
+from argo_compiler.model import Pose
+from tests.argo_compiler.isar.conftest import assert_isar_takes
+
+VIEWS = {
+    "1": View(pose=Pose(x=1, y=2, z=0, yaw=math.pi), target=(0.5, 2, 1.2), name="valve R25"),
+    "2": View(pose=Pose(x=3, y=2, z=2.5), target=(4, 2, 3.5)),
+}
+CATALOG = Catalog(
+    site="plant",
+    checkpoints=tuple(
+        CheckpointInfo(
+            id=id,
+            kind=CheckpointKind.VALVE,
+            name=f"valve R{id}",
+            floor=1,
+            unit="deg",
+            range=Interval(low=0, high=90),
+            nominal=Interval(low=85, high=90),
+        )
+        for id in (1, 2)
+    ),
+    areas=(),
+    floors=(),
+)
+
+
+def measure(name, object_id, *targets, **fields):
+    transitions = tuple(Transition(target=target) for target in targets)
+    return Task(
+        name=name, action=Action.MEASURE, object_id=object_id, transitions=transitions, **fields
+    )
+
+
+def export(mission, views=VIEWS):
+    data = json.loads(to_isar(mission, lower(mission), views))
+    assert_isar_takes(data)
+    return data
+
+
+def test_what_is_written():
+    mission = Mission(
+        designation="Round",
+        tasks=(
+            Task(
+                name="S",
+                action=Action.START,
+                pose=Pose(x=0, y=0, z=0),
+                transitions=(Transition(target="A"),),
+            ),
+            measure("A", "1", "B"),
+            measure("B", "2", pose=Pose(x=9, y=0, z=0)),
+        ),
+    )
+    data = export(mission)
+    assert data == export(mission)
+    del data["id"]
+
+    def at(x, y, z, **more):
+        return {"x": x, "y": y, "z": z, **more, "frame_name": "asset"}
+
+    def standing(x, y, z, qz, qw):
+        return {
+            "position": at(x, y, z),
+            "orientation": at(0, 0, qz, w=qw),
+            "frame_name": "asset",
+        }
+
+    assert data == {
+        "name": "Round",
+        "start_pose": standing(0, 0, 0, 0, 1),
+        "tasks": [
+            {
+                "id": "A",
+                "type": "inspection",
+                "tag": "1",
+                "pose": standing(1, 2, 0, 1, pytest.approx(0)),
+                "inspection": {
+                    "type": "Image",
+                    "inspection_target": at(0.5, 2, 1.2),
+                    "inspection_description": "valve R25",
+                },
+            },
+            {
+                "id": "B",
+                "type": "inspection",
+                "tag": "2",
+                "pose": standing(9, 0, 0, 0, 1),
+                "inspection": {"type": "Image", "inspection_target": at(4, 2, 3.5)},
+            },
+        ],
+    }
+
+
+def test_counted_groups_are_written_out():
+    mission = Mission(
+        tasks=(measure("A", "1", "B"), measure("B", "2", "C"), measure("C", "1")),
+        groups=(
+            Group(name="G", start="A", end="C", max_repeat_count=2),
+            Group(name="G/H", start="B", end="B", max_repeat_count=2),
+        ),
+    )
+    data = export(mission)
+    ids = [task["id"] for task in data["tasks"]]
+    assert ids == ["A", "B", "B (2)", "C", "A (2)", "B (3)", "B (4)", "C (2)"]
+    assert "".join(task["tag"] for task in data["tasks"]) == "12211221"
+
+
+def test_the_last_way_to_the_dock_is_the_way_home():
+    dock = Pose(x=0, y=0, z=0, yaw=1)
+    home = Task(name="home", action=Action.WAYPOINT, pose=dock)
+    for said in ({"dock": dock}, {"end_area": 1}):
+        data = export(Mission(**said, tasks=(measure("A", "1", "home"), home)))
+        assert data["tasks"][1]["type"] == "return_to_home"
+        imported = from_isar(data, "isar").mission
+        assert imported.dock == imported.tasks[1].pose
+        assert imported.dock.yaw == pytest.approx(1)
+        assert [t["id"] for t in export(imported)["tasks"]] == ["A", "home"]
+
+
+GAS = Reaction(event=EventKind.GAS_LEAK, response=Response.ABORT)
+LOW = Condition(type=ConditionType.LESS, object_id="1", param1=1)
+
+
+@pytest.mark.parametrize(
+    ("mission", "code", "said"),
+    [
+        (Mission(tasks=(measure("A", "1", retries=1),)), "isar-task", "'A' has retries"),
+        (Mission(tasks=(measure("A", "1", velocity=1),)), "isar-task", "'A' has a velocity"),
+        (
+            Mission(tasks=(measure("A", "1", on_failure=OnFailure.ABORT),)),
+            "isar-task",
+            "'A' has a failure policy",
+        ),
+        (
+            Mission(tasks=(measure("A", "1", joint_states=JointState(names=(), positions=())),)),
+            "isar-task",
+            "'A' has joint states",
+        ),
+        (
+            Mission(
+                tasks=(
+                    Task(
+                        name="A",
+                        action=Action.MEASURE,
+                        object_id="1",
+                        transitions=(Transition(target="A", conditions=(LOW,)),),
+                    ),
+                )
+            ),
+            "isar-task",
+            "'A' has conditions",
+        ),
+        (Mission(tasks=(measure("A", "1"),), reactions=(GAS,)), "isar-reaction", "gas_leak"),
+        (Mission(tasks=(measure("A", "1"),), mode=Mode.SUPERVISORY), "isar-mode", "supervisory"),
+        (
+            Mission(
+                tasks=(measure("A", "1"),),
+                groups=(Group(name="G", start="A", end="A", max_repeat_duration=9),),
+            ),
+            "isar-group",
+            "'G' is repeated for a time",
+        ),
+        (
+            Mission(tasks=(Task(name="W", action=Action.WAYPOINT, pose=Pose(x=0, y=0, z=0)),)),
+            "isar-waypoint",
+            "'W' only drives",
+        ),
+        (Mission(tasks=(measure("A", "3"),)), "isar-no-target", "checkpoint '3' of task 'A'"),
+        (Mission(tasks=(measure("A", "1", "A"),)), "isar-endless", "more than 10000 tasks"),
+        (
+            Mission(
+                tasks=(measure("A", "1"),),
+                groups=(Group(name="G", start="A", end="A", max_repeat_count=10**9),),
+            ),
+            "isar-endless",
+            "more than 10000 tasks",
+        ),
+        (Mission(tasks=(Task(name="S", action=Action.START),)), "isar-empty", "without tasks"),
+    ],
+)
+def test_what_isar_can_not_say_is_refused(mission, code, said):
+    with pytest.raises(DiagnosticError) as caught:
+        to_isar(mission, lower(mission), VIEWS)
+    (finding,) = caught.value.diagnostics
+    assert finding.code == f"export.{code}"
+    assert said in finding.message
+    assert finding.hint
+
+
+COORDINATES = st.floats(-1e6, 1e6)
+POSES = st.builds(
+    Pose, x=COORDINATES, y=COORDINATES, z=COORDINATES, yaw=st.floats(-math.pi, math.pi)
+)
+
+
+@settings(deadline=None)
+@given(
+    stops=st.lists(st.tuples(st.sampled_from("12"), POSES), min_size=1, max_size=5),
+    start=st.none() | POSES,
+    designation=st.text(st.characters(exclude_categories=["Cs"]), min_size=1),
+)
+def test_inspections_in_order_come_back(stops, start, designation):
+    names = [f"T{i}" for i in range(len(stops))]
+    tasks = [
+        measure(name, object_id, *names[i + 1 : i + 2], pose=pose)
+        for i, (name, (object_id, pose)) in enumerate(zip(names, stops, strict=True))
+    ]
+    if start:
+        first = (Transition(target=names[0]),)
+        tasks.insert(0, Task(name="START", action=Action.START, pose=start, transitions=first))
+    mission = Mission(designation=designation, tasks=tuple(tasks))
+    imported = from_isar(export(mission), "isar")
+    assert not imported.diagnostics
+    turned = [task.pose.yaw - back.pose.yaw for task, back in zip_tasks(mission, imported.mission)]
+    # A quaternion keeps the heading but for the last digits; -pi comes back as pi.
+    assert [math.cos(turn) for turn in turned] == pytest.approx([1.0] * len(turned))
+    assert level(imported.mission) == level(mission)
+
+
+def zip_tasks(left, right):
+    return zip(left.tasks, right.tasks, strict=True)
+
+
+def level(mission):
+    """The mission with all headings 0."""
+    tasks = tuple(
+        task.model_copy(update={"pose": task.pose.model_copy(update={"yaw": 0.0})})
+        for task in mission.tasks
+    )
+    return mission.model_copy(update={"tasks": tasks})
+
+
+def definition(**task):
+    """The example of isar's README (section "Running a robot mission"), in the frame asset."""
+    point = {"x": 1.0, "y": 1.0, "z": 1.0, "frame_name": "asset"}
+    data = {
+        "id": "example ID",
+        "type": "inspection",
+        "pose": {
+            "position": point,
+            "orientation": {"x": 0.0, "y": 0.0, "z": 0.0, "w": 1.0, "frame_name": "asset"},
+            "frame_name": "asset",
+        },
+        "inspection": {
+            "type": "Image",
+            "inspection_target": point,
+            "inspection_description": "Example description",
+            "duration": None,
+        },
+        "tag": "valve R2",
+        "zoom": None,
+    }
+    return {"id": "example ID", "tasks": [data | task], "name": "Example name"}
+
+
+def test_a_definition_is_read():
+    imported = from_isar(definition(), "isar", CATALOG)
+    assert not imported.diagnostics
+    (task,) = imported.mission.tasks
+    assert (task.name, task.action, task.object_id) == ("example ID", Action.MEASURE, "2")
+    assert imported.mission.designation == "Example name"
+    assert not check(imported.mission, CATALOG)
+
+
+def test_the_body_of_a_request_is_read_too(tmp_path):
+    path = tmp_path / "isar.json"
+    path.write_text(json.dumps({"mission_definition": definition()}))
+    assert read_isar(path, CATALOG) == from_isar(definition(), str(path), CATALOG)
+
+
+def test_what_is_not_taken_over_is_a_warning():
+    robot = definition()["tasks"][0]["pose"] | {"frame_name": "robot"}
+    data = definition(pose=robot, zoom={"objectWidth": 1, "objectHeight": 1}, analysis=["x"])
+    imported = from_isar(data | {"start_pose": robot}, "isar", CATALOG)
+    assert [(f.severity, f.message.split(":")[0]) for f in imported.diagnostics] == [
+        (Severity.WARNING, "start_pose"),
+        (Severity.WARNING, "tasks[0].analysis"),
+        (Severity.WARNING, "tasks[0].pose"),
+        (Severity.WARNING, "tasks[0].zoom"),
+    ]
+    start, task = imported.mission.tasks
+    assert (start.pose, task.pose) == (None, None)
+    assert not check(imported.mission, CATALOG)
+
+
+def test_an_orientation_of_zeros_is_dropped():
+    data = definition()
+    data["tasks"][0]["pose"]["orientation"]["w"] = 0
+    imported = from_isar(data, "isar")
+    assert "length 0" in imported.diagnostics[0].message
+    assert imported.mission.tasks[0].pose is None
+
+
+@pytest.mark.parametrize(
+    ("data", "code", "said"),
+    [
+        (definition(tag=None), "tag", "tasks[0]: has no tag"),
+        (definition(inspection=None), "inspection", "tasks[0]: has no inspection"),
+        (
+            definition(
+                inspection={
+                    "type": "Audio",
+                    "inspection_target": {"x": 0, "y": 0, "z": 0},
+                    "duration": 3,
+                }
+            ),
+            "inspection-type",
+            "tasks[0]: is an inspection of type Audio",
+        ),
+        (definition(type="fly"), "wrong-field", "tasks[0].type: "),
+        (definition(pose={}), "wrong-field", "tasks[0].pose.position: "),
+        ({"tasks": 3}, "wrong-field", "tasks: "),
+        ([], "wrong-field", "the mission: "),
+    ],
+)
+def test_what_argo_can_not_do_is_refused(data, code, said):
+    with pytest.raises(DiagnosticError) as caught:
+        from_isar(data, "isar")
+    found = [f for f in caught.value.diagnostics if f.severity is Severity.ERROR]
+    assert found[0].code == f"isar.{code}"
+    assert found[0].message.startswith(said)
+
+
+@pytest.mark.parametrize(
+    "content",
+    [
+        '{"version": 2, "designation": "\\"inspection\\"", "tasks": []}',
+        '{"tasks": [{"name": "inspection", "action": "MEASURE", "pose": null}], "inspection": 1}',
+        '["inspection"]',
+        '{"inspection": ',
+        '{"x": "inspection", "y": ' + "[" * 100_000,
+        b"\xff",
+    ],
+)
+def test_other_files_are_left_to_the_reader_of_missions(tmp_path, content):
+    path = tmp_path / "plan.json"
+    path.write_bytes(content if isinstance(content, bytes) else content.encode())
+    assert read_isar(path) is None
+    assert read_isar(tmp_path / "missing.json") is None

@@ -1,0 +1,250 @@
+"""Missions in bags, and what is said of bags that hold none."""
+
+import sys
+from contextlib import suppress
+from functools import cache
+
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+from rosbags.rosbag1 import Writer as Ros1Writer
+from rosbags.rosbag2 import CompressionFormat, CompressionMode, StoragePlugin
+from rosbags.rosbag2 import Reader as Ros2Reader
+from rosbags.rosbag2 import Writer as Ros2Writer
+
+from argo_compiler.diagnostics import DiagnosticError
+from argo_compiler.errors import ArgoError
+from argo_compiler.il import Action, Mission, Task, Transition
+from argo_compiler.ros import (
+    Storage,
+    compression,
+    is_bag,
+    read_bag,
+    ros1_types,
+    ros2_types,
+    to_message,
+    to_ros1_bag,
+    to_ros2_bag,
+)
+from argo_compiler.ros import types as ros_types
+from argo_compiler.ros.package import SPECIFICATION
+from tests.conftest import examples
+from tests.missions_all import missions
+
+PLAN = Mission(
+    designation="Öl #1",
+    tasks=(
+        Task(name="S", action=Action.START, transitions=(Transition(target="A"),)),
+        Task(name="A", action=Action.MEASURE, object_id="4"),
+    ),
+)
+FORMS = ["ros1", *Storage]
+
+
+def write(folder, form, mission=PLAN):
+    content = _bag(form) if mission is PLAN else _make(form, mission)
+    if isinstance(content, bytes):
+        path = folder / "mission.bag"
+        path.write_bytes(content)
+        return path
+    path = folder / form.value
+    path.mkdir(exist_ok=True)
+    for name, part in content.items():
+        (path / name).write_bytes(part)
+    return path
+
+
+def _make(form, mission):
+    return to_ros1_bag(mission) if form == "ros1" else to_ros2_bag(mission, form)
+
+
+@cache
+def _bag(form):
+    return _make(form, PLAN)
+
+
+def refusal(path):
+    with pytest.raises(DiagnosticError) as caught:
+        read_bag(path)
+    (finding,) = caught.value.diagnostics
+    assert str(caught.value).startswith(f"{path}: error: ")
+    assert finding.hint
+    return finding
+
+
+@pytest.mark.parametrize("form", FORMS)
+@settings(max_examples=examples(8), deadline=None)
+@given(mission=missions())
+def test_every_mission_comes_back_unchanged(tmp_path_factory, form, mission):
+    path = write(tmp_path_factory.mktemp("bag"), form, mission)
+    assert is_bag(path)
+    assert read_bag(path).model_dump_json() == mission.model_dump_json()
+
+
+@pytest.mark.parametrize("form", FORMS)
+def test_equal_missions_make_equal_bags(form):
+    assert _make(form, PLAN) == _make(form, PLAN)
+
+
+@pytest.mark.parametrize("storage", Storage)
+def test_files_of_a_rosbag2_are_read_by_themselves(tmp_path, storage):
+    (data,) = write(tmp_path, storage).glob("mission.*")
+    assert is_bag(data)
+    assert read_bag(data) == PLAN
+
+
+@pytest.mark.parametrize("storage", Storage)
+def test_ros_2_players_latch_it(tmp_path, storage):
+    with Ros2Reader(write(tmp_path, storage)) as reader:
+        (connection,) = reader.connections
+        (qos,) = connection.ext.offered_qos_profiles
+    assert connection.topic == "/mission"
+    assert (qos.durability.name, qos.reliability.name) == ("TRANSIENT_LOCAL", "RELIABLE")
+
+
+def test_what_is_recognised_as_a_bag(tmp_path):
+    (tmp_path / "plan.json").write_text("{}")
+    (tmp_path / "renamed").write_bytes(to_ros1_bag(PLAN))
+    assert not is_bag(tmp_path / "plan.json")
+    assert not is_bag(tmp_path / "missing.txt")
+    assert is_bag(tmp_path / "renamed")
+    assert is_bag(tmp_path / "missing.bag")
+    assert read_bag(tmp_path / "renamed") == PLAN
+
+
+def test_what_is_no_bag(tmp_path):
+    text = tmp_path / "text.bag"
+    text.write_text("Starting area 1")
+    assert refusal(text).code == "ros.not-a-bag"
+    assert refusal(tmp_path / "missing.bag").code == "file.missing"
+    assert refusal(tmp_path).code == "file.directory"
+    (tmp_path / "metadata.yaml").write_text("[" * 2000)
+    assert refusal(tmp_path).code == "ros.broken-bag"
+    (tmp_path / "metadata.yaml").write_text("#" * (compression.MAX_METADATA_BYTES + 1))
+    assert refusal(tmp_path).code == "ros.compressed"
+
+
+def ros1_bag(path, contents, topic="/mission", **connection):
+    types = ros1_types()
+    with Ros1Writer(path) as writer:
+        added = writer.add_connection(
+            topic, **({"msgtype": SPECIFICATION, "typestore": types.store} | connection)
+        )
+        for time, content in enumerate(contents, 1):
+            writer.write(added, time, content)
+    return path
+
+
+def encoded(mission):
+    return ros1_types().encode(to_message(mission, ros1_types()))
+
+
+def test_bags_without_a_mission(tmp_path):
+    other = ros1_bag(tmp_path / "1.bag", [encoded(PLAN)], topic="/plan")
+    assert refusal(other).message == "has no topic /mission, only /plan"
+    empty = ros1_bag(tmp_path / "2.bag", [])
+    assert refusal(empty).message == "has no message on /mission"
+    typed = ros1_bag(tmp_path / "3.bag", [b""], msgtype="std_msgs/msg/Empty")
+    assert "type std_msgs/msg/Empty on /mission" in refusal(typed).message
+
+
+def test_bags_of_other_definitions(tmp_path):
+    other = ros1_bag(tmp_path / "1.bag", [b""], msgdef="uint8 x\n", md5sum="0" * 32)
+    finding = refusal(other)
+    assert finding.code == "ros.other-definitions"
+    assert "0" * 32 in finding.message
+    assert ros1_types().digest() in finding.hint
+
+
+def test_several_missions_are_refused_and_repetitions_are_not(tmp_path):
+    repeated = ros1_bag(tmp_path / "1.bag", [encoded(PLAN)] * 3)
+    assert read_bag(repeated) == PLAN
+    several = ros1_bag(tmp_path / "2.bag", [encoded(PLAN), encoded(Mission())])
+    assert refusal(several).code == "ros.several-missions"
+
+
+def test_a_wrong_field_in_a_bag_is_named(tmp_path):
+    types = ros1_types()
+    message = to_message(PLAN, types)
+    message.tasks[1].velocity = -1.0
+    path = ros1_bag(tmp_path / "1.bag", [types.encode(message)])
+    assert refusal(path).message.startswith("tasks[1].velocity: ")
+
+
+@pytest.mark.parametrize("form", FORMS)
+@settings(max_examples=examples(60), deadline=None)
+@given(data=st.data())
+def test_broken_bags_end_in_a_message(tmp_path_factory, form, data):
+    path = write(tmp_path_factory.getbasetemp(), form)
+    file = path if form == "ros1" else data.draw(st.sampled_from(sorted(path.iterdir())))
+    content = bytearray(file.read_bytes())
+    if data.draw(st.booleans()):
+        del content[data.draw(st.integers(0, len(content) - 1)) :]
+    else:
+        for _ in range(data.draw(st.integers(1, 4))):
+            place = data.draw(st.integers(0, len(content) - 1))
+            content[place] = data.draw(st.integers(0, 255))
+    file.write_bytes(content)
+    # A byte may have been changed in a text, or not at all: then it is a mission.
+    with suppress(DiagnosticError):
+        assert isinstance(read_bag(path), Mission)
+
+
+@pytest.mark.parametrize("form", FORMS)
+def test_truncated_bags_are_refused(tmp_path, form):
+    path = write(tmp_path, form)
+    file = path if form == "ros1" else next(path.glob("mission.*"))
+    content = file.read_bytes()
+    for size in (20, len(content) // 2, len(content) * 9 // 10):
+        file.write_bytes(content[:size])
+        assert refusal(path).code == "ros.broken-bag"
+
+
+@pytest.mark.parametrize("format", Ros1Writer.CompressionFormat)
+def test_compressed_ros_1_bags_are_read_if_they_do_not_burst(tmp_path, monkeypatch, format):
+    path = tmp_path / "mission.bag"
+    writer = Ros1Writer(path)
+    writer.set_compression(format)
+    with writer:
+        connection = writer.add_connection("/mission", SPECIFICATION, typestore=ros1_types().store)
+        writer.write(connection, 1, encoded(PLAN))
+    assert read_bag(path) == PLAN
+    monkeypatch.setattr(compression, "MAX_CHUNK_BYTES", 100)
+    assert refusal(path).code == "ros.compressed"
+
+
+@pytest.mark.parametrize("mode", [CompressionMode.FILE, CompressionMode.MESSAGE])
+def test_rosbag2_compressed_as_a_whole_is_refused(tmp_path, mode):
+    path = tmp_path / "bag"
+    writer = Ros2Writer(path, version=8)
+    writer.set_compression(mode, CompressionFormat.ZSTD)
+    with writer:
+        writer.add_connection("/mission", SPECIFICATION, typestore=ros2_types().store)
+    assert refusal(path).message.endswith(f"it is compressed by {mode.name.lower()}")
+
+
+def test_compressed_mcap_chunks_are_read_if_they_do_not_burst(tmp_path, monkeypatch):
+    path = tmp_path / "bag"
+    writer = Ros2Writer(path, version=8, storage_plugin=StoragePlugin.MCAP)
+    writer.set_compression(CompressionMode.STORAGE, CompressionFormat.ZSTD)
+    types = ros2_types()
+    with writer:
+        connection = writer.add_connection("/mission", SPECIFICATION, typestore=types.store)
+        writer.write(connection, 1, types.encode(to_message(PLAN, types)))
+    assert b"zstd" in (path / "bag.mcap").read_bytes()
+    assert read_bag(path) == PLAN
+    monkeypatch.setattr(compression, "MAX_CHUNK_BYTES", 100)
+    assert refusal(path).code == "ros.compressed"
+    assert refusal(path / "bag.mcap").code == "ros.compressed"
+
+
+def test_without_rosbags_the_way_to_get_it_is_told(monkeypatch, tmp_path):
+    path = write(tmp_path, "ros1")
+    monkeypatch.setitem(sys.modules, "rosbags", None)
+    monkeypatch.setitem(sys.modules, "rosbags.typesys", None)
+    ros_types.ros1_types.cache_clear()
+    try:
+        with pytest.raises(ArgoError, match=r"pip install 'argo-mission\[ros\]'"):
+            read_bag(path)
+    finally:
+        ros_types.ros1_types.cache_clear()

@@ -1,0 +1,514 @@
+"""The script language form by form: what a line plans, and what is said about one that can't be."""
+
+import re
+from pathlib import Path
+
+import pytest
+
+from argo_compiler.catalog import Catalog
+from argo_compiler.diagnostics import DiagnosticError
+from argo_compiler.il import (
+    Afterwards,
+    ConditionType,
+    EventKind,
+    Mission,
+    OnFailure,
+    Order,
+    Response,
+    Stop,
+)
+from argo_compiler.model import Pose
+from argo_compiler.script import catalog_words, import_script, parse
+
+PLAN = """\
+Mission Protocol #9
+1. Set a starting point in starting area 1
+2. Check checkpoint #1
+3. Check checkpoint #4
+4. Go to the front of the site
+"""
+EXAMPLES = re.findall(
+    r"```(protocol|sheet)\n(.*?)```",
+    (Path(__file__).parents[3] / "docs" / "script.md").read_text(encoding="utf-8"),
+    re.DOTALL,
+)
+
+
+def planned(line: str, catalog: Catalog) -> Mission:
+    result = import_script(f"{PLAN}5. {line}\n", catalog)
+    assert result.diagnostics == ()
+    return result.mission
+
+
+def codes(text: str, catalog: Catalog) -> list[str]:
+    try:
+        found = import_script(text, catalog).diagnostics
+    except DiagnosticError as error:
+        found = error.diagnostics
+    return [finding.code.removeprefix("script.") for finding in found]
+
+
+@pytest.mark.parametrize(
+    "line", [line for kind, block in EXAMPLES if kind == "protocol" for line in block.splitlines()]
+)
+def test_every_line_of_the_reference_is_understood(line: str, catalog: Catalog) -> None:
+    script = parse(f"Mission Protocol\n{line}", catalog_words(catalog))
+    assert [d.code for d in script.diagnostics if not line.startswith("Mission Protocol")] == []
+
+
+def test_the_sheet_of_the_reference(catalog: Catalog) -> None:
+    (sheet,) = (block for kind, block in EXAMPLES if kind == "sheet")
+    mission = import_script(sheet, catalog, start_area=1, end_area=2).mission
+    assert [t.object_id for t in mission.tasks] == [None, "1", "4", "8", "6", "6", "14", None]
+
+
+# ---- numbers and durations
+
+
+@pytest.mark.parametrize(
+    ("said", "number"),
+    [
+        ("fourteen", 14),
+        ("#14", 14),
+        ("no. 14", 14),
+        ("number 14", 14),
+        ("twenty", 20),
+    ],
+)
+def test_numbers_of_checkpoints(said: str, number: int, catalog: Catalog) -> None:
+    assert planned(f"Check checkpoint {said}", catalog).tasks[-1].object_id == str(number)
+
+
+@pytest.mark.parametrize(
+    ("said", "count"),
+    [
+        ("twenty-five times", 25),
+        ("one hundred and five times", 105),
+        ("a hundred times", 100),
+        ("two thousand three hundred and forty-two times", 2342),
+        ("ninety-nine hundred times", 9900),
+        ("nine thousand nine hundred and ninety-nine rounds", 9999),
+        ("once", 1),
+        ("twice", 2),
+        ("three more times", 4),
+        ("twice more", 3),
+        ("again", 2),
+        ("1000001 times", 1000001),
+    ],
+)
+def test_counts(said: str, count: int, catalog: Catalog) -> None:
+    (group,) = planned(f"Repeat steps 2 to 4 {said}", catalog).groups
+    assert group.max_repeat_count == count
+
+
+@pytest.mark.parametrize(
+    ("said", "seconds"),
+    [
+        ("20'", 1200),
+        ("25 min", 1500),
+        ("1 h 30 min", 5400),
+        ("1 hour and 30 minutes", 5400),
+        ("00:12:30", 750),
+        ("ninety seconds", 90),
+        ("half an hour", 1800),
+        ("an hour and a half", 5400),
+        ("two and a half hours", 9000),
+        ("a quarter of an hour", 900),
+        ("a minute", 60),
+        ("2.5 h", 9000),
+        ("754.5 s", 754.5),
+    ],
+)
+def test_durations(said: str, seconds: float, catalog: Catalog) -> None:
+    (group,) = planned(f"Patrol floor 1 for {said}", catalog).groups
+    assert group.max_repeat_duration == seconds
+
+
+# ---- what follows a task
+
+
+@pytest.mark.parametrize(
+    ("said", "type_", "low", "high", "inclusive"),
+    [
+        ("greater than 5", ConditionType.GREATER, 5, None, False),
+        ("more than 5 bar", ConditionType.GREATER, 5, None, False),
+        ("above 2.5", ConditionType.GREATER, 2.5, None, False),
+        ("less than minus 3", ConditionType.LESS, -3, None, False),
+        ("below -3", ConditionType.LESS, -3, None, False),
+        ("at least 5", ConditionType.GREATER, 5, None, True),
+        ("no less than 5", ConditionType.GREATER, 5, None, True),
+        ("greater than or equal to 5", ConditionType.GREATER, 5, None, True),
+        ("at most 5", ConditionType.LESS, 5, None, True),
+        ("between 2 and 3", ConditionType.WITHIN, 2, 3, False),
+        ("from 2 to 3 bar", ConditionType.WITHIN, 2, 3, True),
+        ("normal", ConditionType.WITHIN, 3, 7, True),
+    ],
+)
+def test_comparisons(
+    said: str,
+    type_: ConditionType,
+    low: float,
+    high: float | None,
+    inclusive: bool,
+    catalog: Catalog,
+) -> None:
+    line = f"If the value of checkpoint #1 is {said}, skip to step 2"
+    condition = planned(line, catalog).tasks[3].transitions[0].conditions[0]
+    assert (condition.type, condition.object_id) == (type_, "1")
+    assert (condition.param1, condition.param2, condition.inclusive) == (low, high, inclusive)
+
+
+@pytest.mark.parametrize(
+    ("lines", "ways"),
+    [
+        (["if it is above 5, go to step 2"], {"MEASURE 8": [("MEASURE 1", 1), ("WAYPOINT 1", 0)]}),
+        (
+            ["if it is above 5, go to step 2; otherwise end the mission"],
+            {"MEASURE 8": [("MEASURE 1", 1)]},
+        ),
+        (
+            ["if it is above 5 or it is below 1, go to step 2"],
+            {"MEASURE 8": [("MEASURE 1", 1), ("MEASURE 1", 1), ("WAYPOINT 1", 0)]},
+        ),
+        (
+            ["if it is above 5 and checkpoint #4 is below 1, go to step 2"],
+            {"MEASURE 8": [("MEASURE 1", 2), ("WAYPOINT 1", 0)]},
+        ),
+        (
+            ["otherwise go on; if it is above 5, go to step 2"],
+            {"MEASURE 8": [("WAYPOINT 1", 0), ("MEASURE 1", 1)]},
+        ),
+        (["then go to step 2"], {"MEASURE 8": [("MEASURE 1", 0)]}),
+        (["then end the mission"], {"MEASURE 8": []}),
+        (
+            ["if it is above 5, return to the docking station"],
+            {"MEASURE 8": [("DOCK", 1), ("WAYPOINT 1", 0)], "WAYPOINT 1": [], "DOCK": []},
+        ),
+        (
+            ["if it is above 5, check checkpoint #2 and check checkpoint #3"],
+            {
+                "MEASURE 8": [("MEASURE 2", 1), ("WAYPOINT 1", 0)],
+                "MEASURE 2": [("MEASURE 3", 0)],
+                "MEASURE 3": [("WAYPOINT 1", 0)],
+            },
+        ),
+        (
+            ["if it is above 5, check checkpoint #2; otherwise check checkpoint #3"],
+            {
+                "MEASURE 8": [("MEASURE 2", 1), ("MEASURE 3", 0)],
+                "MEASURE 2": [("WAYPOINT 1", 0)],
+                "MEASURE 3": [("WAYPOINT 1", 0)],
+            },
+        ),
+    ],
+)
+def test_ways_to_go_on(
+    lines: list[str], ways: dict[str, list[tuple[str, int]]], catalog: Catalog
+) -> None:
+    text = (
+        "Mission Protocol\n1. Set a starting point in starting area 1\n2. Check checkpoint #1\n"
+        f"3. Check checkpoint #8; {lines[0]}.\n4. Go to the front of the site\n"
+    )
+    mission = import_script(text, catalog).mission
+    for name, expected in ways.items():
+        task = mission.task(name)
+        assert task is not None
+        assert [(t.target, len(t.conditions)) for t in task.transitions] == expected
+
+
+@pytest.mark.parametrize(
+    ("said", "retries", "policy"),
+    [
+        ("retry twice", 2, OnFailure.CONTINUE),
+        ("retry 3 times, then return to the docking station", 3, OnFailure.RETURN),
+        ("retry once, then abort", 1, OnFailure.ABORT),
+        ("retry once, then return", 1, OnFailure.RETURN),
+        ("if it fails, abort the mission", 0, OnFailure.ABORT),
+        ("if it fails, retry twice, then continue", 2, OnFailure.CONTINUE),
+        ("try again twice; if it still fails, return to the docking station", 2, OnFailure.RETURN),
+    ],
+)
+def test_failures(said: str, retries: int, policy: OnFailure, catalog: Catalog) -> None:
+    task = planned(f"Check checkpoint #8, {said}", catalog).tasks[-1]
+    assert (task.name, task.retries, task.on_failure) == ("MEASURE 8", retries, policy)
+    assert task.transitions == ()
+
+
+# ---- places, speeds, rounds
+
+
+@pytest.mark.parametrize(
+    ("said", "pose"),
+    [
+        ("(12.5, 3, 2.5) heading 180 degrees", Pose(x=12.5, y=3, z=2.5, yaw=3.141592653589793)),
+        ("(12.5, 3, 2.5) heading -0.5 rad", Pose(x=12.5, y=3, z=2.5, yaw=-0.5)),
+        ("x 12.5 y 3 floor 2", Pose(x=12.5, y=3, z=2.5)),
+        ("(-1, minus 2) on the top floor", Pose(x=-1, y=-2, z=12.5)),
+        ("x 1, y 2, z 3", Pose(x=1, y=2, z=3)),
+        ("the front of the UMAD site", Pose(x=-1, y=4, z=0)),
+        ('"front of" " the site"', Pose(x=-1, y=4, z=0)),
+        ("starting area 2", Pose(x=-4, y=6, z=0, yaw=1.5)),
+    ],
+)
+def test_places(said: str, pose: Pose, catalog: Catalog) -> None:
+    assert planned(f"Go to {said}", catalog).tasks[-1].pose == pose
+
+
+def test_the_speed_of_a_way_belongs_to_the_task_before(catalog: Catalog) -> None:
+    mission = planned("Check checkpoints #2 and #3 at 0.3 m/s, leaving at 3.6 km/h", catalog)
+    assert [t.velocity for t in mission.tasks] == [None, None, None, 0.3, 0.3, 1.0]
+    around = planned("Patrol floor 1 twice at 0.3 m/s", catalog)
+    assert [t.velocity for t in around.tasks][3:] == [0.3] * 5
+
+
+@pytest.mark.parametrize(
+    ("line", "name", "start", "end", "count", "duration", "stop"),
+    [
+        ("Repeat steps 2 to 4 twice", "Repeat 2 to 4", "MEASURE 1", "WAYPOINT 1", 2, 0, Stop.HARD),
+        ("Repeat step 3 for 5 min", "Repeat 3", "MEASURE 4", "MEASURE 4", 0, 300, Stop.HARD),
+        (
+            '"Alpha": repeat steps 2-3 for 15 minutes or three times, finishing the round',
+            "Alpha",
+            "MEASURE 1",
+            "MEASURE 4",
+            3,
+            900,
+            Stop.SOFT,
+        ),
+        ("Repeat all steps again", "Repeat", "MEASURE 1", "WAYPOINT 1", 2, 0, Stop.HARD),
+        (
+            'Repeat step "MEASURE 4" endlessly',
+            "Repeat MEASURE 4",
+            "MEASURE 4",
+            "MEASURE 4",
+            0,
+            0,
+            Stop.HARD,
+        ),
+    ],
+)
+def test_repetitions(
+    line: str,
+    name: str,
+    start: str,
+    end: str,
+    count: int,
+    duration: float,
+    stop: Stop,
+    catalog: Catalog,
+) -> None:
+    (group,) = planned(line, catalog).groups
+    assert (group.name, group.start, group.end) == (name, start, end)
+    assert (group.max_repeat_count, group.max_repeat_duration, group.stop) == (
+        count,
+        duration,
+        stop,
+    )
+
+
+def test_rounds_lie_in_rounds(catalog: Catalog) -> None:
+    text = (
+        PLAN + "5. Patrol floor 2 twice\n6. Repeat steps 4 to 5 twice\n7. Repeat steps 2 to 5 twice"
+    )
+    mission = import_script(text, catalog).mission
+    outer = "Repeat 2 to 5"
+    assert [g.name for g in mission.groups] == [
+        f"{outer}/Repeat 4 to 5/Patrol floor 2",
+        f"{outer}/Repeat 4 to 5",
+        outer,
+    ]
+    assert mission.tasks[1].group == outer
+    assert mission.tasks[-1].group == f"{outer}/Repeat 4 to 5/Patrol floor 2"
+
+
+# ---- reactions
+
+
+@pytest.mark.parametrize(
+    ("line", "event", "response", "until", "afterwards"),
+    [
+        ("If a gas leak is detected, report it", EventKind.GAS_LEAK, Response.REPORT, None, "end"),
+        (
+            "If a gas leak is detected, report it and return to the docking station",
+            EventKind.GAS_LEAK,
+            Response.RETURN,
+            None,
+            "end",
+        ),
+        (
+            "When the battery is low, go to the docking station, recharge and resume",
+            EventKind.LOW_BATTERY,
+            Response.RETURN,
+            EventKind.BATTERY_CHARGED,
+            "resume",
+        ),
+        (
+            "In case of an emergency stop, stop and wait",
+            EventKind.EMERGENCY_STOP,
+            Response.PAUSE,
+            None,
+            "end",
+        ),
+        (
+            "On connection loss pause until the connection is restored",
+            EventKind.CONNECTION_LOST,
+            Response.PAUSE,
+            EventKind.CONNECTION_RESTORED,
+            "end",
+        ),
+        (
+            "If the GPA sounds, go to the front of the site and wait for the operator",
+            EventKind.PLATFORM_ALARM,
+            Response.SAFE_AREA,
+            None,
+            "wait",
+        ),
+        (
+            "In case of a malfunction, abort the mission",
+            EventKind.DYSFUNCTION,
+            Response.ABORT,
+            None,
+            "end",
+        ),
+        (
+            "If the time is up, return to the docking station",
+            EventKind.TIME_UP,
+            Response.RETURN,
+            None,
+            "end",
+        ),
+    ],
+)
+def test_reactions(
+    line: str,
+    event: EventKind,
+    response: Response,
+    until: EventKind | None,
+    afterwards: str,
+    catalog: Catalog,
+) -> None:
+    (reaction,) = planned(line, catalog).reactions
+    assert (reaction.event, reaction.response, reaction.until) == (event, response, until)
+    assert reaction.afterwards is Afterwards(afterwards)
+    assert (reaction.pose is not None) == (response is Response.SAFE_AREA)
+
+
+# ---- changes of the plan, the header, the course of lines
+
+
+@pytest.mark.parametrize(
+    ("line", "measured"),
+    [
+        ("Move checkpoint #4 before checkpoint #1", ["4", "1"]),
+        ("Move step 2 after step 3", ["4", "1"]),
+        ("Replace checkpoint #1 by checkpoint #2", ["2", "4"]),
+        ("Delete step 2", ["4"]),
+        ("Delete checkpoints #1 and #4", []),
+        ("Insert checkpoints #2 and #3 before step 3", ["1", "2", "3", "4"]),
+        ("Add checkpoint #2 after step 2", ["1", "2", "4"]),
+    ],
+)
+def test_changes(line: str, measured: list[str], catalog: Catalog) -> None:
+    tasks = planned(line, catalog).tasks
+    assert [t.object_id for t in tasks if t.object_id] == measured
+    following = [t.transitions[0].target for t in tasks[:-1]]
+    assert following == [t.name for t in tasks[1:]]
+
+
+def test_the_header(catalog: Catalog) -> None:
+    text = (
+        "Mission Protocol #9\nMode: supervisory\nMaximum duration: 20'\nOrder: any\n"
+        'Designation: "a \\u002a \\"b\\""\nAnomaly specification: anything\n   unusual\n'
+        "End area: 2\nCurrent: step 1\nStart area: 1\n1. Check #1\n"
+    )
+    mission = import_script(text, catalog).mission
+    assert (mission.mode, mission.order, mission.max_duration) == ("supervisory", Order.ANY, 1200)
+    assert mission.designation == 'a * "b"'
+    assert mission.anomaly_specification == "anything unusual"
+    assert [t.name for t in mission.tasks] == ["START", "MEASURE 1", "DOCK"]
+    assert (mission.start_area, mission.end_area, mission.current) == (1, 2, "MEASURE 1")
+    area = catalog.area(2)
+    assert area is not None
+    assert mission.dock == area.dock
+
+
+def test_a_statement_goes_on_in_the_next_line(catalog: Catalog) -> None:
+    text = (
+        "Mission Protocol\n1. Set a starting point in starting area 1\n"
+        "2. Check checkpoints #1,\n#4 and\n   #8. Then go to the front\n   of the site.\n"
+        "   If the value of checkpoint #8 is above 5, go to step 2.\n"
+    )
+    mission = import_script(text, catalog).mission
+    names = [t.name for t in mission.tasks]
+    assert names == ["START", "MEASURE 1", "MEASURE 4", "MEASURE 8", "WAYPOINT 1"]
+    assert mission.tasks[-1].transitions[0].target == "MEASURE 1"
+
+
+# ---- what can't be
+
+
+@pytest.mark.parametrize(
+    ("line", "code"),
+    [
+        ("Check checkpoint #4: read valve R12", "checkpoint-mismatch"),
+        ("Check checkpoint #4 slowly", "speed"),
+        ("Check checkpoint #2.5", "number"),
+        ("Check checkpoints #3 to #2", "empty-range"),
+        ("Patrol floor 1 for 12:30", "ambiguous-duration"),
+        ("Patrol floor 1 twice three times", "repeated-limit"),
+        ("Check #1 twice", "stray-clause"),
+        ("Check #1 #2", "stray-clause"),
+        ("Go to (1, 2)", "height"),
+        ("Go to (1, 2, 3) on floor 1", "height"),
+        ("Repeat steps 2 to 9 twice", "unknown-step"),
+        ("Repeat steps 4 to 2 twice", "step-range"),
+        ("Repeat steps 2 to 4", "endless-repeat"),
+        ("If the value of checkpoint #1 is equal to 5, go to step 2", "condition"),
+        ("If checkpoint #1 is not 5, go to step 2", "condition"),
+        ("If checkpoint #4 is closed, go to step 2", "condition"),
+        ("If checkpoint #1 is from 3 to 2, go to step 2", "condition"),
+        ("If checkpoint #1 is above 5 deg, go to step 2", "unit"),
+        ("Unless checkpoint #1 is above 5, go to step 2", "condition"),
+        ("If checkpoint #1 is above 5", "unfinished"),
+        ("If checkpoint #1 is above 5, go to step 8", "unknown-step"),
+        ("If checkpoint #1 is above 5, go to step 5", "empty-step"),
+        ("If checkpoint #1 is above 5, delete step 2", "route"),
+        ("Then go to step 2; otherwise go to step 3", "second-route"),
+        ("If a gas leak is detected", "unfinished"),
+        ("If an obstacle is detected, report it", "ambiguous-event"),
+        ("On gas leak: pause. On gas leak: report it.", "second-reaction"),
+        ("If a gas leak is detected, check checkpoint #1", "reaction"),
+        ("Move checkpoint #1", "unfinished"),
+        ("Move checkpoint #1 before checkpoint #1", "self-move"),
+        ("Delete step 9", "not-planned"),
+        ('"a": check #2 and #3', "one-name"),
+        ('"a": check #2 and "a": check #3', "repeated-name"),
+        ('"a\\q": check #2', "quoted-text"),
+        ("Check #2; if it fails, check #3", "failure"),
+        ("Check #2 at 0.3 m/s, leaving at 0.2 m/s; go to (1, 2, 3) at 0.1 m/s", "two-speeds"),
+    ],
+)
+def test_what_is_wrong(line: str, code: str, catalog: Catalog) -> None:
+    assert codes(f"{PLAN}5. {line}\n", catalog) == [code]
+
+
+@pytest.mark.parametrize(
+    ("line", "code"),
+    [
+        ("Battery: full", "unknown-label"),
+        ("Colour of the robot: red", "unknown-label"),
+        ("Mode: automatic", "not-understood"),
+        ("Mode: supervisory\nMain mode: autonomous", "repeated-field"),
+        ("Start area: 2", "area-conflict"),
+        ("End area: 7", "unknown-area"),
+        ("Site: somewhere", "other-site"),
+        ("End area: 7, as planned", ""),
+    ],
+)
+def test_what_is_wrong_in_a_header(line: str, code: str, catalog: Catalog) -> None:
+    assert codes(PLAN.replace("1. Set", f"{line}\n1. Set"), catalog) == [code][: len(code)]
+
+
+def test_an_unknown_label_names_the_known_ones(catalog: Catalog) -> None:
+    with pytest.raises(DiagnosticError, match=r"there is no field `Battery`(?s:.*)`Mode:`"):
+        import_script(PLAN + "Battery: full", catalog)

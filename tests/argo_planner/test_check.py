@@ -1,0 +1,134 @@
+"""What `argo check` finds in scripts and missions."""
+
+import json
+from pathlib import Path
+
+import pytest
+from typer.testing import CliRunner
+
+from argo_compiler.diagnostics import has_errors
+from argo_compiler.errors import ArgoError
+from argo_planner.cli import app
+from argo_planner.commands import check as check_command
+from argo_planner.commands.check import find_all
+
+MISSIONS = Path(__file__).parents[2] / "scenarios" / "umad" / "missions"
+
+
+def found(catalog, tmp_path: Path, name: str, text: str, **areas):
+    path = tmp_path / name
+    path.write_text(text, encoding="utf-8")
+    return find_all(path, catalog, **areas)
+
+
+def places(findings):
+    return [(f.code, f.span.line if f.span else None) for f in findings]
+
+
+def test_missions_that_are_shipped_have_no_errors(catalog):
+    for script in sorted(MISSIONS.glob("*.txt")):
+        findings = find_all(script, catalog, 1, 1)
+        codes = [f.code for f in findings if f.severity == "error"]
+        # Areas are chosen for the scripts that leave them open only.
+        assert set(codes) <= {"script.area-conflict"}, script
+
+
+def test_errors_of_parsing_and_of_looking_up_come_together(catalog, tmp_path: Path):
+    findings = found(
+        catalog,
+        tmp_path,
+        "script.txt",
+        "Mission Protocol #1\n"
+        "1. Set a starting point in starting area 1\n"
+        "2. Befriend checkpoint #1\n"
+        "3. Check checkpoint #77\n",
+    )
+    assert ("script.not-understood", 3) in places(findings)
+    assert ("script.unknown-checkpoint", 4) in places(findings)
+
+
+def test_structure_and_site_are_checked_together(catalog, tmp_path: Path):
+    findings = found(
+        catalog,
+        tmp_path,
+        "plan.json",
+        """{"site": "umad", "end_area": 9, "tasks": [
+ {"name": "A", "action": "MEASURE", "object_id": "77"},
+ {"name": "B", "action": "WAYPOINT",
+  "transitions": [{"target": "AB"}]}]}""",
+    )
+    assert places(findings) == [
+        ("il.unknown-area", 1),
+        ("il.unknown-object", 2),
+        ("il.waypoint-without-pose", 3),
+        ("il.unknown-target", 4),
+    ]
+    assert findings[0].excerpt == '{"site": "umad", "end_area": 9, "tasks": ['
+
+
+def test_the_paths_of_a_sound_mission_are_analysed(catalog, tmp_path: Path):
+    findings = found(
+        catalog,
+        tmp_path,
+        "plan.json",
+        """{"tasks": [
+ {"name": "A", "action": "MEASURE", "object_id": "1"},
+ {"name": "B", "action": "MEASURE", "object_id": "4"}]}""",
+    )
+    assert places(findings) == [("analysis.unreachable-task", 3)]
+    assert not has_errors(findings)
+
+
+@pytest.mark.parametrize(
+    ("name", "code"), [("none.txt", "script.unreadable"), ("none.json", "file.missing")]
+)
+def test_a_file_that_is_not_there_is_a_finding(catalog, tmp_path: Path, name, code):
+    (finding,) = find_all(tmp_path / name, catalog)
+    assert finding.code == code
+
+
+SOUND = {"tasks": [{"name": "A", "action": "MEASURE", "object_id": "1"}]}
+ODD = {**SOUND, "current": "B"}
+WRONG = {"tasks": [{"name": "A", "action": "MEASURE", "object_id": "77"}]}
+
+
+@pytest.fixture
+def argo(monkeypatch, navigator, tmp_path: Path):
+    """Runs a command of `argo` in this process, with a site that is loaded once."""
+    monkeypatch.setattr(check_command, "load_navigator", lambda _: navigator)
+    monkeypatch.chdir(tmp_path)
+    return lambda *arguments: CliRunner().invoke(app, [*arguments])
+
+
+@pytest.mark.parametrize(
+    ("mission", "options", "status", "says"),
+    [
+        (SOUND, [], 0, "plan.json: no findings"),
+        (ODD, [], 0, "plan.json: 1 warning"),
+        (ODD, ["--strict"], 1, "[il.unknown-current]"),
+        (SOUND, ["--strict"], 0, "no findings"),
+        (WRONG, [], 2, "plan.json:1:47: error:"),
+        (WRONG, ["--strict"], 2, "plan.json: 1 error"),
+        (WRONG, ["--format", "json"], 2, '"code": "il.unknown-object"'),
+        (SOUND, ["--format", "sarif"], 0, '"results": []'),
+        (SOUND, ["--format", "xml"], 2, ""),
+    ],
+)
+def test_status_and_output(argo, mission, options, status, says):
+    Path("plan.json").write_text(json.dumps(mission))
+    result = argo("check", "plan.json", *options)
+    assert result.exit_code == status
+    assert says in result.stdout
+
+
+@pytest.mark.parametrize("options", [["-o", "plan.json"], ["--start-area", "1"]])
+def test_requests_that_make_no_sense(argo, options):
+    Path("plan.json").write_text(json.dumps(SOUND))
+    result = argo("check", "plan.json", *options)
+    assert isinstance(result.exception, ArgoError)
+    assert json.loads(Path("plan.json").read_text()) == SOUND
+
+
+@pytest.mark.parametrize("name", ["mission", "machine", "progress"])
+def test_schemas_are_printed(argo, name):
+    assert json.loads(argo("schema", name).stdout)["title"] == f"Argo {name}"

@@ -1,0 +1,41 @@
+"""What `--event TIME=KIND` may say."""
+
+import pytest
+
+from argo_compiler.errors import ArgoError
+from argo_compiler.hfsm import Cancel, Occurred, Pause, Resume
+from argo_compiler.il import EventKind
+from argo_planner.commands.run import parse_events
+
+
+def test_events_come_in_the_order_of_time():
+    assert parse_events(["60.5=pause", "3=gas_leak", "61=resume", "1e3=cancel"]) == [
+        (3.0, Occurred(EventKind.GAS_LEAK)),
+        (60.5, Pause()),
+        (61.0, Resume()),
+        (1000.0, Cancel()),
+    ]
+    assert parse_events([]) == []
+
+
+@pytest.mark.parametrize("kind", [k for k in EventKind if k is not EventKind.TIME_UP])
+def test_every_kind(kind):
+    assert parse_events([f"0={kind}"]) == [(0.0, Occurred(kind))]
+
+
+@pytest.mark.parametrize(
+    ("option", "says"),
+    [
+        ("gas_leak", "write TIME=KIND"),
+        ("=gas_leak", "write TIME=KIND"),
+        ("-1=gas_leak", "write TIME=KIND"),
+        ("nan=gas_leak", "write TIME=KIND"),
+        ("inf=gas_leak", "write TIME=KIND"),
+        ("60=", "no event ``; there are: gas_leak"),
+        ("60=Gas leak", "no event `Gas leak`"),
+        ("60=time_up", "occurs by itself"),
+    ],
+)
+def test_what_is_refused(option, says):
+    with pytest.raises(ArgoError, match=says):
+        parse_events(["1=hot_spot", option])

@@ -1,0 +1,90 @@
+"""Missions from bags and from isar, where a command takes a mission, and back to isar."""
+
+import json
+
+import pytest
+
+from argo_compiler.check import check
+from argo_compiler.errors import ArgoError
+from argo_compiler.files import mission_text
+from argo_compiler.hfsm import lower
+from argo_compiler.il import Action, Mission, Task, Transition
+from argo_compiler.isar import View, to_isar
+from argo_compiler.model import Pose
+from argo_compiler.ros import Storage, to_ros1_bag, to_ros2_bag
+from argo_planner.exporters import exporters
+from argo_planner.loading import is_mission_file, is_own_mission, load_source
+from tests.argo_compiler.script.conftest import CATALOG
+
+PLAN = Mission(
+    designation="Round",
+    tasks=(
+        Task(name="A", action=Action.MEASURE, object_id="1", transitions=(Transition(target="B"),)),
+        Task(name="B", action=Action.MEASURE, object_id="4"),
+    ),
+)
+VIEWS = {id: View(pose=Pose(x=1, y=2, z=0), target=(0, 2, 1)) for id in ("1", "4")}
+
+
+def load(path):
+    return load_source(path, CATALOG, None, None)
+
+
+@pytest.fixture
+def sources(tmp_path):
+    own, bag, isar = (tmp_path / name for name in ("plan.json", "plan.bag", "isar.json"))
+    own.write_text(mission_text(PLAN), encoding="utf-8")
+    bag.write_bytes(to_ros1_bag(PLAN))
+    isar.write_text(to_isar(PLAN, lower(PLAN), VIEWS), encoding="utf-8")
+    folders = []
+    for storage in Storage:
+        folders.append(tmp_path / storage)
+        folders[-1].mkdir()
+        for name, content in to_ros2_bag(PLAN, storage).items():
+            (folders[-1] / name).write_bytes(content)
+    return own, bag, isar, *folders
+
+
+def test_each_form_of_a_mission_is_read(sources):
+    own, _, isar, *_ = sources
+    for source in sources:
+        assert is_mission_file(source)
+        assert is_own_mission(source) == (source == own)
+        if source != isar:
+            assert load(source).mission == PLAN
+    imported = load(isar).mission
+    assert [(t.name, t.object_id, t.transitions) for t in imported.tasks] == [
+        (t.name, t.object_id, t.transitions) for t in PLAN.tasks
+    ]
+
+
+def test_findings_about_them_are_shown_without_a_place(sources):
+    lost = PLAN.tasks[1].model_copy(update={"object_id": "99"})
+    findings = check(PLAN.model_copy(update={"tasks": (PLAN.tasks[0], lost)}), CATALOG)
+    assert findings
+    for source in sources[1:]:
+        placed = load(source).placed(findings)
+        assert [(f.code, f.span) for f in placed] == [(f.code, None) for f in findings]
+
+
+def test_areas_are_not_chosen_for_them(sources):
+    for source in sources:
+        with pytest.raises(ArgoError, match="has its areas already"):
+            load_source(source, CATALOG, 1, None)
+
+
+def test_warnings_of_the_import_are_kept(tmp_path):
+    data = json.loads(to_isar(PLAN, lower(PLAN), VIEWS))
+    data["tasks"][1]["zoom"] = {"objectWidth": 1, "objectHeight": 1}
+    path = tmp_path / "isar.json"
+    path.write_text(json.dumps(data))
+    (finding,) = load(path).diagnostics
+    assert finding.message.startswith("tasks[1].zoom: ")
+
+
+def test_isar_is_told_where_the_checkpoints_of_the_site_are(navigator):
+    exported = exporters(navigator)["isar"].export(PLAN, lower(PLAN))
+    targets = [task["inspection"]["inspection_target"] for task in json.loads(exported)["tasks"]]
+    assert [(t["x"], t["y"], t["z"]) for t in targets] == [
+        navigator.site.checkpoint(id).position for id in (1, 4)
+    ]

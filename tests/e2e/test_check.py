@@ -1,0 +1,28 @@
+"""`argo check` as a user runs it; what it finds is tested in `tests/argo_planner/test_check.py`."""
+
+import json
+from pathlib import Path
+
+from argo_compiler import __version__
+
+WRONG = {"tasks": [{"name": "A", "action": "MEASURE", "object_id": "77"}]}
+
+
+def test_findings_are_written_for_a_code_host(argo, tmp_path: Path) -> None:
+    (tmp_path / "plan.json").write_text(json.dumps(WRONG))
+    result = argo("check", "plan.json", "--format", "sarif", "-o", "f.sarif", cwd=tmp_path)
+    assert result.returncode == 2, result.stderr
+    assert result.stdout == "plan.json: 1 error\n"
+    (run,) = json.loads((tmp_path / "f.sarif").read_text(encoding="utf-8"))["runs"]
+    assert run["results"][0]["ruleId"] == "il.unknown-object"
+
+
+def test_the_version_is_printed(argo) -> None:
+    assert argo("--version").stdout == f"argo {__version__}\n"
+
+
+def test_a_finding_is_not_announced_by_the_programs_name(argo, missions: Path, tmp_path) -> None:
+    result = argo("import", missions / "mission_1.txt", "-o", tmp_path / "m.json")
+    assert result.returncode == 2
+    assert not any(line.startswith("argo:") for line in result.stderr.splitlines())
+    assert "2 errors" in result.stderr.splitlines()[-1]

@@ -1,0 +1,210 @@
+"""Processes that are killed while they run a mission, and others that go on with it.
+
+ARGO_KILLS=200 makes it a campaign.
+"""
+
+import json
+import os
+import random
+import re
+import signal
+import subprocess
+import sys
+from itertools import count
+from pathlib import Path
+
+import pytest
+import yaml
+
+from argo_compiler.files import write_mission
+from argo_compiler.hfsm import Occurred, Pause, Resume
+from argo_compiler.il import Afterwards, EventKind, Group, Reaction, Response
+from argo_compiler.model import Pose
+from argo_env.journal import open_journal
+from argo_env.record import RunRecord
+from argo_env.session import resume, simulate
+from tests.yard import SITE, measure, mission, waypoint, yard
+
+ROOT = Path(__file__).parents[2]
+KILLS = int(os.environ.get("ARGO_KILLS", "8"))
+LONGEST = 1.5  # s that a process lives; a whole run takes about as long
+
+PLAN = mission(
+    measure(1),
+    waypoint("A", 2.05, 2.05),
+    measure(2),
+    waypoint("B", 4.05, 2.05),
+    measure(3),
+    waypoint("C", 3.05, 2.05),
+    groups=(Group(name="Round", start="A", end="C", max_repeat_count=2),),
+    reactions=(
+        Reaction(
+            event=EventKind.GAS_LEAK,
+            response=Response.SAFE_AREA,
+            pose=Pose(x=2.05, y=1.55, z=0.02),
+            until=EventKind.ALL_CLEAR,
+            afterwards=Afterwards.RESUME,
+        ),
+    ),
+)
+EVENTS = (
+    (22.0, Occurred(EventKind.GAS_LEAK)),
+    (35.0, Occurred(EventKind.ALL_CLEAR)),
+    (50.0, Pause()),
+    (55.0, Resume()),
+)
+OPTIONS = (
+    "--event", "22=gas_leak", "--event", "35=all_clear", "--event", "50=pause",
+    "--event", "55=resume", "--value", "2=7.25",
+)  # fmt: skip
+
+ANNOUNCED = re.compile(r"^(\S+) s: (.+): gauge \d \(#(\d)\) shows (\S+) bar$", re.MULTILINE)
+
+
+@pytest.fixture(scope="module")
+def navigator():
+    return yard()
+
+
+@pytest.fixture(scope="module")
+def folder(tmp_path_factory):
+    folder = tmp_path_factory.mktemp("killed")
+    (folder / "yard.yaml").write_text(yaml.safe_dump(SITE), encoding="utf-8")
+    write_mission(PLAN, folder / "plan.json")
+    return folder
+
+
+@pytest.fixture(scope="module")
+def server():
+    """Processes of `argo` that need no time to load."""
+    process = subprocess.Popen(
+        [sys.executable, "-m", "tests.e2e.forked_argo"],
+        cwd=ROOT,
+        stdin=subprocess.PIPE,
+        stdout=subprocess.PIPE,
+        text=True,
+    )
+    yield process
+    process.stdin.close()
+    assert process.wait(timeout=30) == 0
+    process.stdout.close()
+
+
+def run_and_kill(server, output: Path, arguments, after: float | None) -> int:
+    """Runs a command and kills it after a time (s); its exit status, -9 if it was killed."""
+    server.stdin.write(json.dumps([str(output), after, *map(str, arguments)]) + "\n")
+    server.stdin.flush()
+    return int(server.stdout.readline())
+
+
+def announced(output: Path) -> list[tuple[float, str, int, float]]:
+    """The readings that a process said it had made: time, task, checkpoint and value."""
+    text = output.read_text(encoding="utf-8") if output.exists() else ""
+    # A process may be killed in the middle of a line, which then says nothing.
+    found = ANNOUNCED.findall(text[: text.rfind("\n") + 1])
+    return [(float(t), task, int(id), float(value)) for t, task, id, value in found]
+
+
+def require_complete(record: RunRecord, reference: RunRecord, told) -> None:
+    """All that was told is in the record, and all that was to be done was done once."""
+    readings = [(r.t, r.task, r.checkpoint, r.value) for r in record.readings]
+    assert set(told) <= set(readings)
+    assert len(set(told)) == len(told), "nothing is told twice"
+    assert len({r[0] for r in readings}) == len(readings)
+    assert [r[1:] for r in readings] == [
+        (r.task, r.checkpoint, r.value) for r in reference.readings
+    ]
+    done = [t.task for t in record.tasks if t.outcome == "done"]
+    assert done == [t.task for t in reference.tasks if t.outcome == "done"]
+    assert record.result.outcome is reference.result.outcome
+    assert record.result.success
+    assert list(record.path) == sorted(record.path, key=lambda sample: sample.t)
+
+
+def test_runs_that_are_killed_lose_nothing(server, folder, navigator, record_property) -> None:
+    rng = random.Random(7)
+    kills, done, silent, seeds = 0, 0, 0, count()
+    while kills < KILLS:
+        seed = next(seeds)
+        reference = simulate(PLAN, navigator, seed=seed, events=EVENTS, values={2: 7.25})
+        journal = folder / f"{seed}.journal"
+        begin = (
+            "run", folder / "plan.json", "--site", folder / "yard.yaml", "--seed", seed,
+            "--journal", journal, *OPTIONS,
+        )  # fmt: skip
+        told, ended = [], False
+        for process in count():
+            output = folder / f"{seed}-{process}.txt"
+            arguments = ("resume", journal) if journal.exists() else begin
+            # The last processes of the last run may live as long as they like.
+            after = rng.uniform(0.0, LONGEST) if kills < KILLS else None
+            status = run_and_kill(server, output, arguments, after)
+            told += announced(output)
+            if status == 0:
+                ended = True
+                break
+            assert status == -signal.SIGKILL, output.read_text(encoding="utf-8")
+            kills += 1
+            silent += not announced(output)
+        assert ended
+        with open_journal(journal) as book:
+            assert book.ended
+            record = resume(book, navigator)
+        require_complete(record, reference, told)
+        done += 1
+    record_property("kills", kills)
+    print(f"{kills} kills, {done} runs, {silent} processes that told nothing")
+
+
+def test_kill_and_resume_by_the_command(argo, folder: Path, tmp_path: Path, navigator) -> None:
+    journal = tmp_path / "run.journal"
+    begin = (
+        "run", folder / "plan.json", "--site", folder / "yard.yaml", "--seed", 3,
+        "--journal", journal, *OPTIONS,
+    )  # fmt: skip
+    with subprocess.Popen(
+        [sys.executable, "-m", "argo_planner", *map(str, begin)],
+        cwd=tmp_path,
+        stdout=subprocess.DEVNULL,
+        stderr=subprocess.PIPE,
+        text=True,
+    ) as process:
+        line = process.stderr.readline()
+        while not ANNOUNCED.match(line):
+            assert line, "it has ended without a reading"
+            line = process.stderr.readline()
+        process.send_signal(signal.SIGSTOP)
+        refused = argo("resume", journal)
+        process.kill()
+    assert (refused.returncode, refused.stderr.count("in use")) == (2, 1)
+    result = argo("resume", journal, "--report", tmp_path / "report")
+    assert result.returncode == 0, result.stderr
+    assert "The run goes on at" in result.stderr
+    text = (tmp_path / "report" / "report.json").read_text(encoding="utf-8")
+    record = RunRecord.model_validate_json(text)
+    told = [
+        (float(t), task, int(id), float(value))
+        for t, task, id, value in ANNOUNCED.findall(line + result.stderr)
+    ]
+    reference = simulate(PLAN, navigator, seed=3, events=EVENTS, values={2: 7.25})
+    require_complete(record, reference, told)
+    assert len(record.resumed) == 1
+    again = argo("resume", journal, "--report", tmp_path / "again")
+    assert again.returncode == 0, again.stderr
+    assert "had ended already" in again.stderr
+    assert (tmp_path / "again" / "report.json").read_text(encoding="utf-8") == text
+
+
+@pytest.mark.parametrize(
+    ("arguments", "says"),
+    [
+        (["run", "plan.json", "--event", "60=flood"], "no event `flood`; there are: gas_leak"),
+        (["run", "plan.json", "--journal", "plan.json"], "is there already"),
+        (["resume", "plan.json"], "is no journal"),
+    ],
+)
+def test_what_is_refused_before_anything_is_loaded(argo, folder: Path, arguments, says) -> None:
+    result = argo(*arguments, cwd=folder)
+    assert result.returncode == 2
+    assert says in re.sub(r"\s+", " ", result.stderr)
+    assert "Traceback" not in result.stderr

@@ -1,0 +1,76 @@
+"""Missions in which every field of the language takes every kind of value, sensible or not.
+
+Made from the models themselves, so that a new field is among them without being named here.
+"""
+
+from enum import Enum
+from types import NoneType, UnionType
+from typing import Any, Literal, Union, get_args, get_origin
+
+import annotated_types
+from hypothesis import strategies as st
+
+from argo_compiler.il import Mission
+from argo_compiler.model import Model
+
+INTEGERS = st.integers(-(2**63), 2**63 - 1)
+FLOATS = st.floats(allow_nan=False, allow_infinity=False)
+TEXTS = st.text(st.characters(exclude_categories=["Cs"]), max_size=6)
+
+
+def missions() -> st.SearchStrategy[Mission]:
+    """Missions of the right shape; few of them make sense. Integers have up to 64 bits."""
+    return _models(Mission)
+
+
+def _models(model: type[Model]) -> st.SearchStrategy[Any]:
+    return st.builds(
+        model,
+        **{
+            name: _values(field.annotation, tuple(field.metadata))
+            for name, field in model.model_fields.items()
+        },
+    )
+
+
+def _values(annotation: Any, limits: tuple[Any, ...]) -> st.SearchStrategy[Any]:
+    origin, parts = get_origin(annotation), get_args(annotation)
+    if origin in (Union, UnionType):
+        return st.one_of(*(_values(part, limits) for part in parts))
+    if annotation is NoneType:
+        return st.none()
+    if origin is Literal:
+        return st.sampled_from(parts)
+    if origin is tuple:
+        return st.lists(_values(parts[0], ()), max_size=2).map(tuple)
+    if isinstance(annotation, type) and issubclass(annotation, Enum):
+        return st.sampled_from(annotation)
+    if isinstance(annotation, type) and issubclass(annotation, Model):
+        return _models(annotation)
+    plain = {bool: st.booleans(), int: INTEGERS, float: FLOATS, str: TEXTS}[annotation]
+    return plain.map(_mended(limits)).filter(lambda value: _kept(value, limits))
+
+
+def _mended(limits: tuple[Any, ...]) -> Any:
+    """Turns most values into allowed ones, so that few have to be thrown away."""
+
+    def mend(value: Any) -> Any:
+        for limit in limits:
+            if isinstance(limit, annotated_types.MinLen):
+                return value or "x"
+            if isinstance(limit, annotated_types.Ge | annotated_types.Gt):
+                return abs(value) if abs(value) <= 2**63 - 1 or isinstance(value, float) else 0
+        return value
+
+    return mend
+
+
+def _kept(value: Any, limits: tuple[Any, ...]) -> bool:
+    return all(
+        value > limit.gt
+        if isinstance(limit, annotated_types.Gt)
+        else value >= limit.ge
+        if isinstance(limit, annotated_types.Ge)
+        else True
+        for limit in limits
+    )

@@ -1,0 +1,155 @@
+"""Input far larger than any mission: memory and time stay bounded, and the answer is an answer.
+
+Each case runs in a process of its own whose memory and processor time the system limits.
+"""
+
+import json
+import subprocess
+import sys
+import textwrap
+from pathlib import Path
+
+import pytest
+
+ROOT = Path(__file__).parents[1]
+MEMORY_BYTES = 2_000_000_000
+CPU_SECONDS = 120
+
+PRELUDE = f"""
+import resource
+resource.setrlimit(resource.RLIMIT_AS, ({MEMORY_BYTES}, {MEMORY_BYTES}))
+resource.setrlimit(resource.RLIMIT_CPU, ({CPU_SECONDS}, {CPU_SECONDS}))
+import sys
+from pathlib import Path
+from argo_compiler.analysis import analyse
+from argo_compiler.check import check
+from argo_compiler.errors import ArgoError
+from argo_compiler.files import read_mission
+from argo_compiler.hfsm import Executor, lower
+from argo_compiler.script import format_script, import_script, read_script
+from tests.argo_compiler.script.conftest import CATALOG
+
+def everything(mission):
+    executor = Executor(lower(mission))
+    executor.start(0.0)
+    executor.progress()
+    analyse(mission, CATALOG)
+    return import_script(format_script(mission, CATALOG), CATALOG).mission
+
+def answer(path):
+    try:
+        if path.endswith(".json"):
+            mission = read_mission(Path(path))
+        else:
+            mission = import_script(read_script(path), CATALOG).mission
+        everything(mission)
+        print("mission")
+    except ArgoError as error:
+        print("refused", str(error)[-400:])
+
+answer(sys.argv[1])
+"""
+
+
+def answer(path: Path) -> str:
+    done = subprocess.run(
+        [sys.executable, "-c", textwrap.dedent(PRELUDE), str(path)],
+        cwd=ROOT,
+        capture_output=True,
+        text=True,
+        timeout=600,
+    )
+    assert done.returncode == 0, done.stderr[-2000:]
+    return done.stdout
+
+
+def nested(depth: int) -> dict[str, object]:
+    """Groups in groups: the one of depth i goes from the first task to the i-th last one."""
+    tasks = [
+        {
+            "name": f"T{i}",
+            "action": "MEASURE",
+            "object_id": "1",
+            "transitions": [{"target": f"T{i + 1}"}] if i < depth else [],
+        }
+        for i in range(depth + 1)
+    ]
+    names = ["/".join(["g"] * (i + 1)) for i in range(depth)]
+    groups = [
+        {"name": name, "start": "T0", "end": f"T{depth - i}", "max_repeat_count": 2}
+        for i, name in enumerate(names)
+    ]
+    return {"version": 2, "tasks": tasks, "groups": groups}
+
+
+SCRIPTS = {
+    "a million lines": "Mission Protocol #1\n" + "1. Check checkpoint #1\n" * 1_000_000,
+    "a million empty lines": "Mission Protocol #1\n" + "\n" * 1_000_000 + "1. Check checkpoint #1",
+    "a million unknown words": "Mission Protocol #1\n1. Check " + "xyzzy " * 1_000_000,
+    "a name of a megabyte": "Mission Protocol #1\n1. Check the valve " + "R" * 1_000_000,
+    "a number of a megabyte": "Mission Protocol #1\n1. Check checkpoint #" + "9" * 1_000_000,
+    "a million tabs": "Mission Protocol #1\n1. Check" + "\t" * 1_000_000 + "checkpoint #1",
+    "misspelt lines": "Mission Protocol #1\n" + "1. Chekc teh chekpoint #1\n" * 20_000,
+    "different misspelt words": "Mission Protocol #1\n"
+    + "".join(f"{i}. Check chec{i:05d}point #1\n" for i in range(20_000)),
+    "brackets a megabyte deep": "Mission Protocol #1\n1. Go to " + "(" * 1_000_000,
+}
+
+FILES = {
+    "groups a thousand deep": nested(1000),
+    "a name of a megabyte": {
+        "version": 2,
+        "tasks": [{"name": "A" * 1_000_000, "action": "MEASURE", "object_id": "1"}],
+    },
+    "a hundred thousand tasks": {
+        "version": 2,
+        "tasks": [
+            {
+                "name": str(i),
+                "action": "MEASURE",
+                "object_id": "1",
+                "transitions": [{"target": str(i + 1)}] if i < 99_999 else [],
+            }
+            for i in range(100_000)
+        ],
+    },
+    "ten thousand transitions from one task": {
+        "version": 2,
+        "tasks": [
+            {
+                "name": "A",
+                "action": "MEASURE",
+                "object_id": "1",
+                "transitions": [
+                    {
+                        "target": "A",
+                        "conditions": [
+                            {"type": "MEASURED_VALUE_GREATER", "object_id": "1", "param1": i}
+                        ],
+                    }
+                    for i in range(10_000)
+                ],
+            }
+        ],
+    },
+}
+
+
+@pytest.mark.parametrize("name", SCRIPTS)
+def test_hostile_scripts(name: str, tmp_path: Path) -> None:
+    path = tmp_path / "script.txt"
+    path.write_text(SCRIPTS[name], encoding="utf-8")
+    assert answer(path).split()[0] in ("mission", "refused")
+
+
+@pytest.mark.parametrize("name", FILES)
+def test_hostile_files(name: str, tmp_path: Path) -> None:
+    path = tmp_path / "mission.json"
+    path.write_text(json.dumps(FILES[name]), encoding="utf-8")
+    assert answer(path).split()[0] in ("mission", "refused")
+
+
+def test_json_nested_beyond_reason(tmp_path: Path) -> None:
+    path = tmp_path / "mission.json"
+    path.write_text("[" * 1_000_000, encoding="utf-8")
+    assert answer(path).startswith("refused")

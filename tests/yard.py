@@ -1,0 +1,136 @@
+"""A yard: a site and missions that are loaded and run in a second or two."""
+
+from itertools import pairwise
+
+from argo_compiler.il import Action, Mission, Task, Transition
+from argo_compiler.model import Pose
+from argo_env.action import Rig
+from argo_env.navigation import Navigator
+from argo_env.robot.drive import DriveStatus
+from argo_env.robot.pose import BodyPose
+from argo_env.robot.spec import load_robot
+from argo_env.sensing.sensor import Measurement
+from argo_env.site import make_site
+from argo_env.site.spec import SiteSpec
+
+SITE = {
+    "name": "yard",
+    "title": "Yard",
+    "storey": 2.5,
+    "ground": [0, 0, 7, 5],
+    "ground_z": 0.0,
+    "towers": [],
+    "areas": [{"number": 1, "dock": [1.05, 1.05, 0]}],
+    "floors": [
+        {
+            "number": 1,
+            "z": 0.02,
+            "railed": False,
+            "walkways": {"slab": [0.5, 0.5, 6.5, 4.5]},
+            "checkpoints": [
+                {
+                    "id": k,
+                    "kind": "pressure gauge",
+                    "name": f"gauge {k}",
+                    "position": [x, y, 0.8],
+                    "yaw": yaw,
+                    "nominal": {"low": 2, "high": 5},
+                }
+                for k, (x, y, yaw) in enumerate([(2.5, 4.4, -90), (4.5, 4.4, -90), (5, 0.6, 90)], 1)
+            ],
+        }
+    ],
+}
+
+
+def yard():
+    navigator = Navigator(make_site(SiteSpec.model_validate(SITE)), load_robot())
+    navigator.prepare()
+    return navigator
+
+
+def measure(id, **fields):
+    return Task(name=f"MEASURE {id}", action=Action.MEASURE, object_id=str(id), **fields)
+
+
+def waypoint(name, x, y, **fields):
+    return Task(name=name, action=Action.WAYPOINT, pose=Pose(x=x, y=y, z=0.02), **fields)
+
+
+def mission(*tasks, **fields):
+    """The tasks one after the other, where they have no transitions of their own."""
+    start = Task(name="START", action=Action.START, pose=Pose(x=1.05, y=1.05, z=0.02))
+    linked = [
+        a if a.transitions else a.model_copy(update={"transitions": (Transition(target=b.name),)})
+        for a, b in pairwise((start, *tasks))
+    ]
+    return Mission(site="yard", tasks=(*linked, tasks[-1]), **fields)
+
+
+class GlidingDrive:
+    """Follows paths at the planned speeds, without a world below it."""
+
+    name = "gliding"
+    time_step = 0.1
+    failure = None
+
+    def __init__(self, robot):
+        self._robot = robot
+        self._left, self._elapsed, self._velocity = [], 0.0, None
+        self.pose = None
+        self.velocities = []
+
+    def place(self, pose):
+        self.pose, self._left = pose, []
+
+    def begin(self, path, velocity):
+        self._left, self._elapsed, self._velocity = list(path.motions), 0.0, velocity
+        self.velocities.append(velocity)
+
+    def halt(self):
+        self._left = []
+
+    def step(self):
+        self._elapsed += self.time_step
+        while self._left:
+            motion = self._left[0]
+            duration = motion.duration(self._robot, self._velocity)
+            share = min(1.0, self._elapsed / duration) if duration else 1.0
+            a, b = motion.start, motion.end
+            x, y, z = (p + share * (q - p) for p, q in ((a.x, b.x), (a.y, b.y), (a.z, b.z)))
+            self.pose = BodyPose(x, y, z, a.yaw + share * motion.turn)
+            if share < 1.0:
+                return DriveStatus.MOVING
+            self._elapsed -= duration
+            self._left.pop(0)
+        return DriveStatus.ARRIVED
+
+
+class EmptyWorld:
+    """A world in which nothing is ever touched. Keeps what the arm was told."""
+
+    def __init__(self):
+        self.arm = []
+
+    def move_arm(self, joints):
+        self.arm.append(joints)
+
+    def touches(self):
+        return ()
+
+
+class Oracle:
+    """Reads checkpoint k as k plus 1.5, from wherever it is asked."""
+
+    name = "oracle"
+
+    def __init__(self, values=None):
+        self._values = values or {}
+
+    def measure(self, checkpoint_id, _):
+        return Measurement(self._values.get(checkpoint_id, 1.5 + checkpoint_id), 1.0)
+
+
+def fast_rig(navigator, values=None):
+    """All that a mission is carried out with, without physics."""
+    return Rig(EmptyWorld(), navigator, GlidingDrive(navigator.robot), Oracle(values))

@@ -169,7 +169,9 @@ def create_journal(path: Path, header: Header) -> Journal:
     file = _open(draft, os.O_CREAT)
     try:
         _lock(file, path)
-        require_free(path)
+        if path.exists():  # another process was faster; its draft has become the journal
+            draft.unlink(missing_ok=True)
+            require_free(path)
         os.ftruncate(file, 0)
         _write(file, line)
         os.fsync(file)

@@ -153,7 +153,7 @@ class _Lowering:
 
     def _leaf(self, index: int, task: Task) -> Leaf:
         parent = self.layout.innermost[index]
-        conditional = (
+        conditional = [
             Transition(
                 kind=TransitionKind.CONDITIONAL,
                 target=task_id(t.target),
@@ -162,7 +162,7 @@ class _Lowering:
             )
             for t in task.transitions
             if t.conditions
-        )
+        ]
         ending = self.layout.ending[index]
         if ending:
             last = Transition(kind=TransitionKind.DEFAULT, completes=self.group_ids[ending[0]])
@@ -201,14 +201,20 @@ class _Lowering:
         )
 
     def _domain(self, inside: int | None, target: str) -> str:
-        return self._composite_id(self.layout.common(inside, self.position[target]))
+        at = self.position[target]
+        if self.layout.innermost[at] != inside:
+            inside = self.layout.common(inside, at)
+        return MISSION if inside is None else self.group_ids[inside]
 
     def _composite_id(self, index: int | None) -> str:
         return MISSION if index is None else self.group_ids[index]
 
 
 def _unconditional_target(task: Task) -> str | None:
-    return next((t.target for t in task.transitions if not t.conditions), None)
+    for transition in task.transitions:
+        if not transition.conditions:
+            return transition.target
+    return None
 
 
 def _reaction_state(reaction: Reaction, mission: Mission) -> ReactionState:

@@ -19,8 +19,7 @@ _LARGEST = 1_000_000
 T = TypeVar("T")
 
 
-@dataclass(slots=True)
-class Phrase:
+class Phrase(NamedTuple):
     """A rule's part of a statement: what its own parts were built to, and where it stands."""
 
     children: tuple[Any, ...]
@@ -181,10 +180,12 @@ class Builder:
         if plan is None:
             plan = tree.made[type(self)] = _Plan.of(tree.root, type(self))
         values = plan.values.copy()
+        new = tuple.__new__  # as Phrase(...) does it, but for the checks: this is the inner loop
         text, positions = self.text, tree.positions
         for build, only, parts_of, start, end in plan.steps:
             parts = (values[only],) if only >= 0 else parts_of(values)
-            values.append(build(self, Phrase(parts, text, positions[start], positions[end])))
+            phrase = new(Phrase, (parts, text, positions[start], positions[end]))
+            values.append(build(self, phrase))
         return values[-1] if self.findings.errors == errors else None
 
     def number(self, phrase: Phrase) -> Figure:

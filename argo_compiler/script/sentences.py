@@ -45,6 +45,7 @@ from argo_compiler.script.terms import (
 JOINTS = frozenset(["comma", "semicolon", "full stop", "and", "or", "then", "afterwards"])
 _BREAKS = frozenset(["semicolon", "full stop"])
 _LISTS = frozenset(["comma", "and", "or"])
+_NO_DETAIL = Detail()
 
 
 @dataclass(slots=True)
@@ -102,7 +103,7 @@ class SentenceBuilder:
         """what stood since the clause before"""
         self.name: Clause | None = None
         self.subject: Reference | None = None
-        self.detail = Detail()
+        self.detail = _NO_DETAIL
         self.age: float | None = None
         self.compared = False
         """whether the present subject has been compared"""
@@ -174,7 +175,7 @@ class SentenceBuilder:
         else:
             self.path = _Path(clause.start, clause.end, [[]])
             self.mode = "if"
-            self.subject, self.detail, self.age = None, Detail(), None
+            self.subject, self.detail, self.age = None, _NO_DETAIL, None
         self.wanted = clause
 
     def _close_path(self) -> None:
@@ -208,14 +209,14 @@ class SentenceBuilder:
             alternatives.append([])
         match clause.kind:
             case "subject":
-                self.subject, self.detail, self.age = clause.value, Detail(), None
+                self.subject, self.detail, self.age = clause.value, _NO_DETAIL, None
                 self.compared = False
             case "bracket":
                 if self.subject is None:
                     return False
                 self.subject = _both(self.subject, clause.value)
             case "it":
-                self.subject, self.detail, self.age = None, Detail(), None
+                self.subject, self.detail, self.age = None, _NO_DETAIL, None
                 self.compared = False
             case "detail":
                 self.detail = clause.value

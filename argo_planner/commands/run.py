@@ -21,6 +21,8 @@ DEFAULT_PACE = 5.0
 
 _BY_A_PERSON: dict[str, Event] = {"pause": Pause(), "resume": Resume(), "cancel": Cancel()}
 
+KINDS = ", ".join(["pause", "resume", "cancel", *EventKind])
+
 
 def run(
     source: Source,
@@ -40,7 +42,7 @@ def run(
         typer.Option(
             "--event",
             metavar="TIME=KIND",
-            help="what occurs at a time (s), such as 60=gas_leak; also pause, resume, cancel",
+            help=f"what occurs at a time (s), such as 60=gas_leak; {KINDS}",
         ),
     ] = None,
     journal: Annotated[

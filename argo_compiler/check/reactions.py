@@ -87,7 +87,10 @@ def _check_unused(i: int, reaction: Reaction) -> Iterator[Diagnostic]:
     unused = {
         "pose": reaction.pose is not None and response is not Response.SAFE_AREA,
         "until": reaction.until is not None and response not in _HOLDS,
-        "afterwards": reaction.afterwards is not Afterwards.END and response not in _DRIVES,
+        "afterwards": reaction.afterwards is not Afterwards.END
+        and response not in _DRIVES
+        # That is what happens after a pause anyway.
+        and not (response is Response.PAUSE and reaction.afterwards is Afterwards.RESUME),
     }
     for field in (field for field, given in unused.items() if given):
         yield _finding(

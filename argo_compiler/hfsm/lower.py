@@ -91,7 +91,8 @@ class _Lowering:
             for i, task in enumerate(self.mission.tasks)
             if task.action is not Action.START
         )
-        return Hfsm(
+        # Its parts are validated, and its references are made here: a second look takes long.
+        return Hfsm.model_construct(
             composites=(root, *groups),
             leaves=(*leaves, *self._return_leaf()),
             reactions=tuple(

@@ -55,7 +55,7 @@ class _Assembly:
 
     def result(self) -> tuple[tuple[Task, ...], tuple[Group, ...]]:
         ranges, shown = self._groups()
-        self._spread_speeds()
+        self._spread_speeds({r.last for r in ranges})
         tasks = tuple(self._task(i, item, shown[i]) for i, item in enumerate(self.items))
         groups = tuple(
             Group(
@@ -206,8 +206,12 @@ class _Assembly:
 
     # ---- speeds
 
-    def _spread_speeds(self) -> None:
-        """Gives the speed of the way to a task to the task before it."""
+    def _spread_speeds(self, ends: set[int]) -> None:
+        """Gives the speed of the way to a task to the task before it; `ends` are those of rounds.
+
+        In a mission a task has one speed for all ways that lead on from it, so that is said where
+        there are others.
+        """
         for item in self.items:
             if item.arriving is None or item.before is None:
                 continue
@@ -216,6 +220,15 @@ class _Assembly:
                 message = f"two speeds for one way: {before.leaving:g} and {item.arriving:g} m/s"
                 self.findings.error("two-speeds", message, item.source, "leave one of them out")
             before.leaving = item.arriving
+            branches = any(leg.alternatives for leg in before.routes or ())
+            if branches or self.at[id(before)] in ends:
+                name = self.names[self.at[id(before)]]
+                message = (
+                    f"{item.arriving:g} m/s will be the speed of all ways from '{name}', also of "
+                    + ("those that its conditions lead to" if branches else "the next round's")
+                )
+                hint = f"plan a waypoint after '{name}' if the other ways are not to be that fast"
+                self.findings.warning("speed-shared", message, item.source, hint)
         for item in self.items:
             if item.leaving is None:
                 item.leaving = item.passing

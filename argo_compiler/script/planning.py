@@ -336,6 +336,12 @@ class Planner:
             self.findings.error("endless-patrol", message, command.span, hint)
             self.whole = False
             return []
+        if limits.duration and sum(isinstance(p, FloorName) for p in command.places) > 1:
+            message = "this duration can be read as that of each floor or of all together"
+            hint = "write one patrol for each floor, each with its own duration"
+            self.findings.error("ambiguous-duration", message, command.span, hint)
+            self.whole = False
+            return []
         rounds: list[tuple[str, list[Pose]]] = []
         through: list[Pose] = []
         label = ""

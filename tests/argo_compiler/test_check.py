@@ -254,6 +254,10 @@ class TestReactions:
         assert finding.subject == f"reactions{field}"
         assert finding.hint
 
+    def test_a_pause_may_say_that_the_mission_goes_on(self):
+        pause = react(GAS, Response.PAUSE, afterwards=Afterwards.RESUME)
+        assert check(Mission(tasks=CHAIN, reactions=[pause])) == ()
+
     @pytest.mark.parametrize(
         ("code", "field", "reactions"),
         [
@@ -264,7 +268,7 @@ class TestReactions:
             (
                 "il.unused-field",
                 "afterwards",
-                [react(GAS, Response.PAUSE, afterwards=Afterwards.RESUME)],
+                [react(GAS, Response.PAUSE, afterwards=Afterwards.WAIT)],
             ),
             (
                 "il.unused-field",

@@ -184,6 +184,11 @@ SCRIPT = {
         "The numbers of the steps are not one after the other.",
         "Check whether a line is missing or in the wrong place.",
     ),
+    "script.speed-shared": warning(
+        "A speed holds for every way that leads on from the task before, not only for the one that "
+        "the script says it of.",
+        "Plan a waypoint in between if the other ways are to be driven at another speed.",
+    ),
     "script.step-range": error(
         "Steps are named the wrong way round, or several where one is meant.",
         "Write the earlier one first, or name one.",

@@ -484,12 +484,33 @@ def test_a_statement_goes_on_in_the_next_line(catalog: Catalog) -> None:
         ('"a": check #2 and #3', "one-name"),
         ('"a": check #2 and "a": check #3', "repeated-name"),
         ('"a\\q": check #2', "quoted-text"),
+        ('"": check #2', "empty-name"),
+        ("Patrol floors 1 and 2 for 10 minutes", "ambiguous-duration"),
+        ("Check #2. Check #1e999", "number"),
         ("Check #2; if it fails, check #3", "failure"),
         ("Check #2 at 0.3 m/s, leaving at 0.2 m/s; go to (1, 2, 3) at 0.1 m/s", "two-speeds"),
     ],
 )
 def test_what_is_wrong(line: str, code: str, catalog: Catalog) -> None:
     assert codes(f"{PLAN}5. {line}\n", catalog) == [code]
+
+
+@pytest.mark.parametrize(
+    "lines",
+    [
+        "5. Patrol floor 1 twice.\n6. Go to the front of the site at 0.1 m/s.",
+        "5. Check #1. If it is above 4, go to step 3.\n6. Check #2 at 0.1 m/s.",
+    ],
+)
+def test_a_speed_that_other_ways_share_is_said(lines: str, catalog: Catalog) -> None:
+    assert codes(f"{PLAN}{lines}\n", catalog) == ["speed-shared"]
+
+
+@pytest.mark.parametrize("start", ["Start in starting area 1", "Set the start in starting area 1"])
+def test_ways_to_say_where_it_starts(start: str, catalog: Catalog) -> None:
+    text = f"Mission Protocol\n1. {start}\n2. Check #1\n3. Return to the dock in starting area 1\n"
+    mission = import_script(text, catalog).mission
+    assert [task.name for task in mission.tasks] == ["START", "MEASURE 1", "DOCK"]
 
 
 @pytest.mark.parametrize(

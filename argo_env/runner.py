@@ -15,7 +15,7 @@ from argo_compiler.hfsm import (
     Tick,
     lower,
 )
-from argo_compiler.il import Action, EventKind, Mission, Task
+from argo_compiler.il import EventKind, Mission, Task
 from argo_env.action import ActionEnd, ActionUnderWay, Rig
 from argo_env.contacts import ContactWatch
 from argo_env.interruptions import InterruptionWatch
@@ -23,6 +23,7 @@ from argo_env.journal import Journal
 from argo_env.log import Entry, LoggedEvent, RunLog
 from argo_env.record import Contact, Reading, Result, RunRecord, TaskRun, TraceStep
 from argo_env.robot.pose import BodyPose
+from argo_env.starting import start_pose
 from argo_env.velocity import WayVelocity
 from argo_env.verdict import failed_tasks, judge
 
@@ -101,12 +102,7 @@ class MissionRunner:
             if area is not None and area not in site.docks:
                 known = ", ".join(map(str, sorted(site.docks)))
                 raise ArgoError(f"site {site.name} has no starting area {area}; there are: {known}")
-        wanted = site.docks[self._mission.start_area or min(site.docks)]
-        for task in self._mission.tasks:
-            if task.action is Action.START and task.pose:
-                wanted = task.pose
-                break
-        pose = self._rig.navigator.snap(wanted)
+        pose = self._rig.navigator.snap(start_pose(self._mission, site.docks))
         return BodyPose(pose.x, pose.y, pose.z, pose.yaw)
 
     def _replay(self, entry: Entry) -> None:

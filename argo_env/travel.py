@@ -8,6 +8,7 @@ from argo_compiler.il import Action, Mission, Task
 from argo_compiler.model import Pose
 from argo_env.navigation import Navigator, Path
 from argo_env.navigation.path import Motion
+from argo_env.starting import start_pose
 
 _ROUNDING = 1e-6  # of a step, left by sums of floats
 
@@ -42,13 +43,7 @@ class SiteTravel:
 
         Raises UnreachableError if the robot can't stand there.
         """
-        docks = self._navigator.site.docks
-        wanted = docks.get(mission.start_area or min(docks), docks[min(docks)])
-        for task in mission.tasks:
-            if task.action is Action.START and task.pose is not None:
-                wanted = task.pose
-                break
-        return self._navigator.snap(wanted)
+        return self._navigator.snap(start_pose(mission, self._navigator.site.docks))
 
     def leg(self, origin: Standing, task: Task, velocity: float | None) -> Leg | NoWay:
         """The way to the task's place at `velocity` (m/s), and its action."""

@@ -2,6 +2,7 @@
 
 from collections.abc import Iterator
 
+from argo_compiler.check.finding import reaction_finding
 from argo_compiler.diagnostics import Diagnostic, Severity
 from argo_compiler.il import Afterwards, EventKind, Mission, Reaction, Response
 
@@ -16,7 +17,7 @@ def check_reactions(mission: Mission) -> Iterator[Diagnostic]:
         first.setdefault(reaction.event, reaction)
     for i, reaction in enumerate(mission.reactions):
         if first[reaction.event] is not reaction:
-            yield _finding(
+            yield reaction_finding(
                 i,
                 reaction,
                 "il.duplicate-reaction",
@@ -30,7 +31,7 @@ def check_reactions(mission: Mission) -> Iterator[Diagnostic]:
             yield from _check_until(i, reaction, first)
         for field, event in (("event", reaction.event), ("until", reaction.until)):
             if event is EventKind.TIME_UP and mission.max_duration is None:
-                yield _finding(
+                yield reaction_finding(
                     i,
                     reaction,
                     "il.time-up-without-limit",
@@ -42,28 +43,9 @@ def check_reactions(mission: Mission) -> Iterator[Diagnostic]:
                 )
 
 
-def _finding(
-    i: int,
-    reaction: Reaction,
-    code: str,
-    message: str,
-    hint: str,
-    severity: Severity = Severity.ERROR,
-    field: str = "",
-) -> Diagnostic:
-    return Diagnostic(
-        code=code,
-        severity=severity,
-        message=message,
-        span=reaction.source,
-        hint=hint,
-        subject=f"reactions[{i}]{field}",
-    )
-
-
 def _check_places(i: int, reaction: Reaction, mission: Mission) -> Iterator[Diagnostic]:
     if reaction.response is Response.SAFE_AREA and reaction.pose is None:
-        yield _finding(
+        yield reaction_finding(
             i,
             reaction,
             "il.safe-area-without-pose",
@@ -72,7 +54,7 @@ def _check_places(i: int, reaction: Reaction, mission: Mission) -> Iterator[Diag
             field=".response",
         )
     if reaction.response is Response.RETURN and mission.dock is None:
-        yield _finding(
+        yield reaction_finding(
             i,
             reaction,
             "il.no-dock",
@@ -93,7 +75,7 @@ def _check_unused(i: int, reaction: Reaction) -> Iterator[Diagnostic]:
         and not (response is Response.PAUSE and reaction.afterwards is Afterwards.RESUME),
     }
     for field in (field for field, given in unused.items() if given):
-        yield _finding(
+        yield reaction_finding(
             i,
             reaction,
             "il.unused-field",
@@ -109,7 +91,7 @@ def _check_until(
     i: int, reaction: Reaction, first: dict[EventKind, Reaction]
 ) -> Iterator[Diagnostic]:
     if reaction.until is reaction.event:
-        yield _finding(
+        yield reaction_finding(
             i,
             reaction,
             "il.until-itself",
@@ -121,7 +103,7 @@ def _check_until(
         return
     other = first.get(reaction.until) if reaction.until else None
     if other and other.response is not Response.REPORT and other.priority > reaction.priority:
-        yield _finding(
+        yield reaction_finding(
             i,
             reaction,
             "il.until-answered",

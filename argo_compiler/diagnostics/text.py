@@ -33,7 +33,7 @@ def _headline(finding: Diagnostic, source_name: str) -> str:
 
 def _details(finding: Diagnostic) -> list[str]:
     lines = []
-    if finding.span and finding.excerpt and not finding.excerpt.isspace():
+    if finding.span and finding.excerpt:
         excerpt = _printable(finding.excerpt.replace("\t", " "))
         lines.append(_INDENT + excerpt)
         start = finding.span.column - 1

@@ -1,11 +1,12 @@
 """Missions become isar's definitions, where what the robot does can be said as a fixed order."""
 
 import json
-from collections.abc import Iterable, Iterator, Mapping
+from collections.abc import Iterator, Mapping
 from typing import Any
 from uuid import NAMESPACE_URL, uuid5
 
-from argo_compiler.diagnostics import Diagnostic, DiagnosticError, Severity, Span
+from argo_compiler.diagnostics import Diagnostic
+from argo_compiler.export.registry import refusal, refuse
 from argo_compiler.headings import to_quaternion
 from argo_compiler.hfsm import ActionSucceeded, Executor, Hfsm, StartAction
 from argo_compiler.il import Action, Mission, Mode, OnFailure, Task
@@ -33,9 +34,9 @@ def to_isar(mission: Mission, hfsm: Hfsm, views: Mapping[str, View]) -> str:
 
     Raises DiagnosticError with a finding for all that isar can't say.
     """
-    _raise(_unsaid(mission))
+    refuse(_unsaid(mission))
     tasks = _in_order(hfsm)
-    _raise(_unplaced(mission, tasks, views))
+    refuse(_unplaced(mission, tasks, views))
     names: set[str] = set()
     definition: dict[str, Any] = {
         # Made from the mission, so that equal missions are equal files.
@@ -52,7 +53,7 @@ def to_isar(mission: Mission, hfsm: Hfsm, views: Mapping[str, View]) -> str:
 def _unsaid(mission: Mission) -> Iterator[Diagnostic]:
     """All that changes what the robot does and has no place in a definition."""
     if mission.mode is Mode.SUPERVISORY:
-        yield _refusal("isar-mode", "isar has no supervisory missions", "plan it as autonomous")
+        yield refusal("isar-mode", "isar has no supervisory missions", "plan it as autonomous")
     for task in mission.tasks:
         for field, given in (
             ("conditions", any(transition.conditions for transition in task.transitions)),
@@ -62,7 +63,7 @@ def _unsaid(mission: Mission) -> Iterator[Diagnostic]:
             ("joint states", task.joint_states is not None),
         ):
             if given:
-                yield _refusal(
+                yield refusal(
                     "isar-task",
                     f"task '{task.name}' has {field}, which isar's tasks have not",
                     "remove it, or export to a format that has it",
@@ -70,7 +71,7 @@ def _unsaid(mission: Mission) -> Iterator[Diagnostic]:
                 )
     for group in mission.groups:
         if group.max_repeat_duration:
-            yield _refusal(
+            yield refusal(
                 "isar-group",
                 f"group '{group.name}' is repeated for a time; isar repeats nothing, and only a "
                 "number of rounds can be written out",
@@ -78,7 +79,7 @@ def _unsaid(mission: Mission) -> Iterator[Diagnostic]:
                 group.source,
             )
     for reaction in mission.reactions:
-        yield _refusal(
+        yield refusal(
             "isar-reaction",
             f"the reaction to {reaction.event} has no place in isar's missions",
             "remove it; isar's own state machine reacts",
@@ -96,9 +97,9 @@ def _in_order(hfsm: Hfsm) -> tuple[Task, ...]:
         assert isinstance(command, StartAction)
         done.append(command.task)
         if len(done) > MAX_TASKS:
-            _raise(
+            refuse(
                 [
-                    _refusal(
+                    refusal(
                         "isar-endless",
                         f"the mission has more than {MAX_TASKS} tasks, rounds written out",
                         "limit its groups, or lead no transition back",
@@ -113,7 +114,7 @@ def _unplaced(
     mission: Mission, tasks: tuple[Task, ...], views: Mapping[str, View]
 ) -> Iterator[Diagnostic]:
     if not tasks:
-        yield _refusal("isar-empty", "isar has no missions without tasks", "measure something")
+        yield refusal("isar-empty", "isar has no missions without tasks", "measure something")
     seen: set[str] = set()
     for index, task in enumerate(tasks):
         if task.name in seen:
@@ -122,7 +123,7 @@ def _unplaced(
         docks = mission.end_area is not None or task.pose == mission.dock
         home = index == len(tasks) - 1 and docks
         if task.action is Action.WAYPOINT and not home:
-            yield _refusal(
+            yield refusal(
                 "isar-waypoint",
                 f"task '{task.name}' only drives; isar's tasks are inspections, and as the last "
                 "one the way to the dock",
@@ -130,7 +131,7 @@ def _unplaced(
                 task.source,
             )
         elif task.action is Action.MEASURE and task.object_id not in views:
-            yield _refusal(
+            yield refusal(
                 "isar-no-target",
                 f"where checkpoint '{task.object_id}' of task '{task.name}' is, is not known, "
                 "and isar needs a point to look at",
@@ -178,15 +179,3 @@ def _pose(pose: Pose) -> dict[str, Any]:
 
 def _position(x: float, y: float, z: float) -> dict[str, Any]:
     return {"x": x, "y": y, "z": z, "frame_name": FRAME}
-
-
-def _refusal(code: str, message: str, hint: str, span: Span | None = None) -> Diagnostic:
-    return Diagnostic(
-        code=f"export.{code}", severity=Severity.ERROR, message=message, span=span, hint=hint
-    )
-
-
-def _raise(findings: Iterable[Diagnostic]) -> None:
-    found = tuple(findings)
-    if found:
-        raise DiagnosticError("mission", found)

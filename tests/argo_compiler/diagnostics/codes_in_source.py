@@ -13,6 +13,8 @@ from typing import NamedTuple
 
 ROOT = Path(__file__).parents[3]
 PACKAGES = ("argo_compiler", "argo_env", "argo_planner")
+SHARED = frozenset(["refusal"])
+"""functions that pass codes on for other folders as well"""
 
 
 class Source(NamedTuple):
@@ -44,7 +46,7 @@ def codes_in_source() -> set[str]:
     while ahead:
         source = ahead.pop()
         for call in calls[source.function]:
-            if source.folder and call.folder != source.folder:
+            if source.folder and call.folder != source.folder and source.function not in SHARED:
                 continue
             for code, variable, prefix in arguments(call.node, source):
                 if variable is None:

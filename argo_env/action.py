@@ -80,7 +80,7 @@ class ActionUnderWay:
             self._rig.drive.halt()
             self._phase = self._brake
         else:
-            third = self._measuring_time / 3
+            third = self._rig.navigator.robot.sensor.stowing_time
             raised_for = self._measuring_time - self._left
             if raised_for < 2 * third:
                 self._left = min(raised_for, third)

@@ -35,8 +35,8 @@ class SiteTravel:
 
     @property
     def clean_up(self) -> float:
-        """s, to stow the arm; a third of a measurement."""
-        return self._stepped(self._robot.sensor.measuring_time / 3) + self._time_step
+        """s, to stow the arm."""
+        return self._stepped(self._robot.sensor.stowing_time) + self._time_step
 
     def start(self, mission: Mission) -> Pose:
         """Where the robot is put: the pose of START, or the dock of the starting area.

@@ -35,7 +35,12 @@ class SensorSpec(Model):
     max_obliqueness: float = Field(gt=0, lt=90)
     """deg, between the face's normal and the line of sight"""
     measuring_time: float = Field(gt=0)
-    """s, to raise the arm, look, and stow the arm"""
+    """s, to raise the arm, look, and stow the arm, a third each"""
+
+    @property
+    def stowing_time(self) -> float:
+        """s, to stow the raised arm; to raise it takes as long."""
+        return self.measuring_time / 3
 
 
 class PowerSpec(Model):

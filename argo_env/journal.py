@@ -23,10 +23,11 @@ from argo_compiler.diagnostics import Diagnostic
 from argo_compiler.errors import ArgoError
 from argo_compiler.il import Mission
 from argo_compiler.model import Model
-from argo_env.log import Entry, LoggedEvent
+from argo_env.log import Entry
 from argo_env.navigation import Navigator
+from argo_env.settings import RunSettings
 
-VERSION = 1
+VERSION = 2
 """of the journal's format"""
 MAX_BYTES = 1_000_000_000  # of a journal; the longest run takes some 20 MB
 _MARK = "argo journal"
@@ -38,18 +39,14 @@ class Header(Model):
     """The first line: what the run is made from."""
 
     format: Literal["argo journal"] = "argo journal"
-    version: Literal[1] = 1
+    version: Literal[2] = 2
     site: str
     """name of the site, or path of the file that describes it"""
     source: str | None = None
     """the file that the mission was read from"""
     fingerprints: dict[str, str]
     """of all that must be the same when the run goes on, by what it is"""
-    drive: str
-    seed: int
-    values: dict[int, float]
-    events: tuple[tuple[float, LoggedEvent], ...]
-    """those that the run is given, and when (s)"""
+    settings: RunSettings
     mission: Mission
     diagnostics: tuple[Diagnostic, ...]
 

@@ -23,6 +23,7 @@ from argo_env.journal import Journal
 from argo_env.log import Entry, LoggedEvent, RunLog
 from argo_env.record import Contact, Reading, Result, RunRecord, TaskRun, TraceStep
 from argo_env.robot.pose import BodyPose
+from argo_env.settings import RunSettings
 from argo_env.starting import start_pose
 from argo_env.velocity import WayVelocity
 from argo_env.verdict import failed_tasks, judge
@@ -48,17 +49,16 @@ class MissionRunner:
         self,
         mission: Mission,
         rig: Rig,
-        seed: int,
+        settings: RunSettings,
         diagnostics: tuple[Diagnostic, ...] = (),
-        events: Sequence[tuple[float, Event]] = (),
         journal: Journal | None = None,
     ) -> None:
-        """`events` occur at their times (s). With a `journal` the run is written to it, and goes on
-        from what is there already."""
+        """With a `journal` the run is written to it, and goes on from what is there already."""
         self._mission = mission
         self._rig = rig
-        self._seed = seed
+        self._seed = settings.seed
         self._diagnostics = diagnostics
+        events = [(t, event.original()) for t, event in settings.events]
         self._events = sorted(events, key=lambda given: given[0])
         self._journal = journal
         self._hfsm = lower(mission)

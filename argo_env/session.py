@@ -1,38 +1,45 @@
 """One call from a mission to its record: the site, robot, world, drive and sensor put together."""
 
 import time
-from collections.abc import Callable, Mapping, Sequence
-from contextlib import nullcontext
+from collections.abc import Callable, Mapping
 
 import numpy as np
 
 from argo_compiler.diagnostics import Diagnostic
 from argo_compiler.errors import ArgoError
-from argo_compiler.hfsm import Event
 from argo_compiler.il import Mission, Task
 from argo_env.action import Rig
 from argo_env.journal import Header, Journal, JournalPlace, create_journal, fingerprints
-from argo_env.log import LoggedEvent
 from argo_env.navigation import Navigator
 from argo_env.record import RunRecord
 from argo_env.robot.kinematic import KinematicDrive
 from argo_env.runner import Announcer, MissionRunner, Observer
 from argo_env.sensing.ideal import IdealSensor, draw_values
+from argo_env.sensing.sensor import Sensor
+from argo_env.settings import RunSettings
 from argo_env.site import Site
 from argo_env.world import World
 
+SensorMaker = Callable[[World, Mapping[int, float], int], Sensor]
+"""Makes a sensor for the world, in which the checkpoints have these true values, with a seed."""
+
+
+def _ideal(world: World, truth: Mapping[int, float], seed: int) -> Sensor:  # noqa: ARG001
+    return IdealSensor(world, world.robot, truth)
+
+
 DRIVES = {"kinematic": KinematicDrive}
 """The drives by name."""
+
+SENSORS: dict[str, SensorMaker] = {"ideal": _ideal}
+"""The sensors for checkpoints, by name."""
 
 
 def simulate(
     mission: Mission,
     navigator: Navigator,
     *,
-    seed: int = 0,
-    drive: str = "kinematic",
-    values: Mapping[int, float] | None = None,
-    events: Sequence[tuple[float, Event]] = (),
+    settings: RunSettings | None = None,
     diagnostics: tuple[Diagnostic, ...] = (),
     observe: Observer | None = None,
     announce: Announcer | None = None,
@@ -42,32 +49,30 @@ def simulate(
 ) -> RunRecord:
     """Runs the mission on the navigator's site and returns its record.
 
-    The seed draws the checkpoints' true values; `values` replaces some of them. The `events` occur
-    at their simulated times (s). With `pace` a second of wall time shows at most that many seconds
-    of simulated time. With `journal` the run can be resumed after its process has died. Equal
-    arguments give equal records.
+    The settings' seed draws the checkpoints' true values, unless the settings give them. With
+    `pace` a second of wall time shows at most that many seconds of simulated time. With `journal`
+    the run can be resumed after its process has died. Equal arguments give equal records.
 
     Raises:
-        ArgoError: the mission makes no sense on this site, there is no such drive, or the journal
-            can't be written.
+        ArgoError: the mission makes no sense on this site, there is no such drive or sensor, or the
+            journal can't be written.
     """
-    if drive not in DRIVES:
-        raise ArgoError(f"no drive `{drive}`; there are: {', '.join(DRIVES)}")
-    truth = true_values(navigator.site, seed, values or {})
-    source = journal.source.resolve() if journal and journal.source else None
+    settings = settings or RunSettings()
+    check_settings(settings, navigator.site)
+    observe = _paced(observe, pace)
+    if journal is None:
+        return _run(mission, settings, diagnostics, navigator, None, observe, announce, gui)
+    source = journal.source.resolve() if journal.source else None
     header = Header(
-        site=journal.site if journal else navigator.site.name,
+        site=journal.site,
         source=None if source is None else str(source),
-        fingerprints=fingerprints(navigator, mission, source) if journal else {},
-        drive=drive,
-        seed=seed,
-        values=dict(values or {}),
-        events=tuple((t, LoggedEvent.of(event)) for t, event in events),
+        fingerprints=fingerprints(navigator, mission, source),
+        settings=settings,
         mission=mission,
         diagnostics=diagnostics,
     )
-    with create_journal(journal.path, header) if journal else nullcontext() as book:
-        return _run(header, navigator, truth, book, _paced(observe, pace), announce, gui)
+    with create_journal(journal.path, header) as book:
+        return _run(mission, settings, diagnostics, navigator, book, observe, announce, gui)
 
 
 def resume(
@@ -89,37 +94,39 @@ def resume(
     """
     journal.require_unchanged(navigator)
     header = journal.header
-    truth = true_values(navigator.site, header.seed, header.values)
-    return _run(header, navigator, truth, journal, _paced(observe, pace), announce, gui)
+    return _run(
+        header.mission, header.settings, header.diagnostics, navigator, journal,
+        _paced(observe, pace), announce, gui,
+    )  # fmt: skip
+
+
+def check_settings(settings: RunSettings, site: Site) -> None:
+    """Raises ArgoError for settings that no run on the site can have."""
+    if settings.drive not in DRIVES:
+        raise ArgoError(f"no drive `{settings.drive}`; there are: {', '.join(DRIVES)}")
+    if settings.sensor not in SENSORS:
+        raise ArgoError(f"no sensor `{settings.sensor}`; there are: {', '.join(SENSORS)}")
+    true_values(site, settings.seed, settings.values)
 
 
 def _run(
-    header: Header,
+    mission: Mission,
+    settings: RunSettings,
+    diagnostics: tuple[Diagnostic, ...],
     navigator: Navigator,
-    truth: Mapping[int, float],
     journal: Journal | None,
     observe: Observer | None,
     announce: Announcer | None,
     gui: bool,
 ) -> RunRecord:
+    truth = true_values(navigator.site, settings.seed, settings.values)
     with World(navigator.site, navigator.robot, gui) as world:
         for id, value in truth.items():
             world.show_value(id, value)
-        rig = Rig(
-            world,
-            navigator,
-            DRIVES[header.drive](world, navigator.robot),
-            IdealSensor(world, navigator.robot, truth),
-        )
-        runner = MissionRunner(
-            header.mission,
-            rig,
-            header.seed,
-            header.diagnostics,
-            [(t, event.original()) for t, event in header.events],
-            journal,
-        )
-        return runner.run(observe, announce)
+        drive = DRIVES[settings.drive](world, navigator.robot)
+        sensor = SENSORS[settings.sensor](world, truth, settings.seed)
+        rig = Rig(world, navigator, drive, sensor)
+        return MissionRunner(mission, rig, settings, diagnostics, journal).run(observe, announce)
 
 
 def true_values(site: Site, seed: int, given: Mapping[int, float]) -> dict[int, float]:

@@ -8,10 +8,12 @@ from argo_env.robot.pose import BodyPose
 
 @dataclass(frozen=True)
 class Measurement:
-    """A value in the checkpoint's unit, and the distance (m) that it was read from."""
+    """A value in the checkpoint's unit, the distance (m) that it was read from, and how sure the
+    sensor is of it (0 to 1)."""
 
     value: float
     distance: float
+    confidence: float = 1.0
 
 
 class MeasurementError(Exception):

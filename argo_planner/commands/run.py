@@ -12,7 +12,8 @@ from argo_compiler.hfsm import Cancel, Event, Occurred, Pause, Resume, lower
 from argo_compiler.il import EventKind
 from argo_env.journal import JournalPlace, require_free
 from argo_env.pictures import check_film
-from argo_env.session import simulate, true_values
+from argo_env.session import DRIVES, SENSORS, check_settings, simulate
+from argo_env.settings import RunSettings, logged
 from argo_planner.loading import load_mission, load_navigator, make_folder
 from argo_planner.options import EndArea, SiteOption, Source, StartArea
 from argo_planner.running import RunDisplay, conclude
@@ -31,6 +32,12 @@ def run(
     report: Annotated[
         Path | None, typer.Option("--report", metavar="DIR", help="folder for the report")
     ] = None,
+    drive: Annotated[str, typer.Option(help=f"what moves the robot: {', '.join(DRIVES)}")] = (
+        "kinematic"
+    ),
+    sensor: Annotated[
+        str, typer.Option(help=f"what reads the checkpoints: {', '.join(SENSORS)}")
+    ] = "ideal",
     start_area: StartArea = None,
     end_area: EndArea = None,
     value: Annotated[
@@ -70,13 +77,18 @@ def run(
         check_film(render)
     if report:
         make_folder(report)
-    values = parse_values(value or [])
-    events = parse_events(event or [])
+    settings = RunSettings(
+        drive=drive,
+        sensor=sensor,
+        seed=seed,
+        values=parse_values(value or []),
+        events=logged(*parse_events(event or [])),
+    )
     if journal:
         require_free(journal)
     started = time.monotonic()
     navigator = load_navigator(site)
-    true_values(navigator.site, seed, values)  # refuses what the site can't show, before it is long
+    check_settings(settings, navigator.site)  # before it is long
     mission, diagnostics = load_mission(source, navigator, start_area, end_area)
     lower(mission, source_name=str(source))
     navigator.prepare()
@@ -85,9 +97,7 @@ def run(
         record = simulate(
             mission,
             navigator,
-            seed=seed,
-            values=values,
-            events=events,
+            settings=settings,
             diagnostics=diagnostics,
             observe=display.observe,
             announce=display.announce,
@@ -136,6 +146,8 @@ def parse_values(options: list[str]) -> dict[int, float]:
         id, _, value = option.partition("=")
         try:
             number, shown = int(id), float(value)
+            if not math.isfinite(shown):
+                raise ValueError(value)
         except ValueError:
             raise ArgoError(f"--value {option}: write ID=VALUE, such as 8=4.2") from None
         if number in values:

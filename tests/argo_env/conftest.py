@@ -11,6 +11,7 @@ from argo_env.catalog import make_catalog
 from argo_env.navigation import Navigator
 from argo_env.robot.spec import load_robot
 from argo_env.session import simulate
+from argo_env.settings import RunSettings
 from argo_env.site import load_site
 from argo_env.site.urdf import to_urdf
 
@@ -136,11 +137,13 @@ def sheet_run(shipped, navigator):
     """Mission #1, run from area 1 to area 2: the mission's record and what the observer saw."""
     seen = []
     mission = shipped("mission_1.txt", start_area=1, end_area=2).mission
-    record = simulate(mission, navigator, seed=3, observe=lambda *now: seen.append(now))
+    record = simulate(
+        mission, navigator, settings=RunSettings(seed=3), observe=lambda *now: seen.append(now)
+    )
     return record, seen
 
 
 @pytest.fixture(scope="session")
 def protocol_record(shipped, navigator):
     """The record of protocol #2."""
-    return simulate(shipped("protocol_2.txt").mission, navigator, seed=3)
+    return simulate(shipped("protocol_2.txt").mission, navigator, settings=RunSettings(seed=3))

@@ -15,6 +15,7 @@ from argo_env.report import write_report
 from argo_env.runner import MissionRunner
 from argo_env.sensing.sensor import MeasurementError
 from argo_env.session import simulate
+from argo_env.settings import RunSettings, logged
 from tests.conftest import examples
 from tests.yard import fast_rig, measure, mission, waypoint, yard
 
@@ -29,7 +30,9 @@ def navigator():
 
 
 def run(navigator, plan, *events, values=None):
-    return MissionRunner(plan, fast_rig(navigator, values), 1, (), events).run()
+    return MissionRunner(
+        plan, fast_rig(navigator, values), RunSettings(events=logged(*events))
+    ).run()
 
 
 def react(event, response, **fields):
@@ -86,7 +89,7 @@ class TestCleanUp:
         )
         rig = fast_rig(navigator)
         events = ((arrival + 4.0, Occurred(EventKind.GAS_LEAK)),)
-        record = MissionRunner(plan, rig, 1, (), events).run()
+        record = MissionRunner(plan, rig, RunSettings(events=logged(*events))).run()
         first, second = record.tasks
         assert first.outcome == "interrupted"
         assert second.start == first.end
@@ -226,7 +229,8 @@ class TestReactions:
         a, b = waypoint("A", 3.05, 2.05, velocity=0.2), waypoint("B", 4.55, 2.05, velocity=0.3)
         plan = mission(a, b, waypoint("C", 2.05, 2.05), reactions=(shelter,))
         rig = fast_rig(navigator)
-        MissionRunner(plan, rig, 1, (), ((13.0, Occurred(EventKind.GAS_LEAK)),)).run()
+        leak = RunSettings(events=logged((13.0, Occurred(EventKind.GAS_LEAK))))
+        MissionRunner(plan, rig, leak).run()
         assert rig.drive.velocities == [None, 0.2, None, 0.2, 0.3]
 
 
@@ -234,7 +238,7 @@ def test_velocity_of_a_way_back_to_the_same_task(navigator):
     again = Group(name="Twice", start="A", end="A", max_repeat_count=2)
     plan = mission(waypoint("A", 3.05, 2.05, velocity=0.2), groups=(again,))
     rig = fast_rig(navigator)
-    MissionRunner(plan, rig, 1).run()
+    MissionRunner(plan, rig, RunSettings()).run()
     assert rig.drive.velocities == [None, 0.2]
 
 
@@ -257,7 +261,7 @@ class TestFailures:
         rig = fast_rig(navigator)
         moody = self.Moody(failures, rig.sensor)
         rig = type(rig)(rig.world, rig.navigator, rig.drive, moody)
-        return MissionRunner(plan, rig, 1).run()
+        return MissionRunner(plan, rig, RunSettings()).run()
 
     def test_a_retry_that_succeeds_is_a_success(self, navigator):
         record = self.run(navigator, mission(measure(1, retries=2)), 2)
@@ -352,7 +356,8 @@ def test_in_the_world(navigator):
     plan = mission(
         measure(1), dock=DOCK, reactions=(react(EventKind.LOW_BATTERY, Response.RETURN),)
     )
-    record = simulate(plan, navigator, events=[(8.0, Occurred(EventKind.LOW_BATTERY))])
+    settings = RunSettings(events=logged((8.0, Occurred(EventKind.LOW_BATTERY))))
+    record = simulate(plan, navigator, settings=settings)
     assert names(record) == [("MEASURE 1", "interrupted"), ("react to low_battery", "done")]
     assert record.result.outcome is Outcome.RETURNED
     assert math.dist((record.path[-1].x, record.path[-1].y), (DOCK.x, DOCK.y)) < 0.1

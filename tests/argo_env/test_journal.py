@@ -37,6 +37,7 @@ from argo_env.log import LoggedEvent
 from argo_env.navigation import Navigator
 from argo_env.runner import SAMPLE_PERIOD, MissionRunner
 from argo_env.session import resume, simulate
+from argo_env.settings import RunSettings, logged
 from argo_env.site import make_site
 from argo_env.site.spec import SiteSpec
 from argo_env.world import Touch
@@ -83,10 +84,7 @@ def header(navigator, plan=PLAN, events=EVENTS, source=None):
         site="yard",
         source=None if source is None else str(source),
         fingerprints=fingerprints(navigator, plan, source),
-        drive="kinematic",
-        seed=1,
-        values={},
-        events=tuple((t, LoggedEvent.of(event)) for t, event in events),
+        settings=RunSettings(seed=1, events=logged(*events)),
         mission=plan,
         diagnostics=(),
     )
@@ -94,7 +92,7 @@ def header(navigator, plan=PLAN, events=EVENTS, source=None):
 
 def runner(navigator, journal, plan=PLAN, events=EVENTS, values=None):
     rig = fast_rig(navigator, values or {2: 5.5})
-    return MissionRunner(plan, rig, 1, (), events, journal)
+    return MissionRunner(plan, rig, RunSettings(seed=1, events=logged(*events)), (), journal)
 
 
 def resumed(navigator, path):
@@ -286,7 +284,7 @@ def test_contacts_go_on_as_well(navigator, tmp_path):
     def run(journal):
         rig = fast_rig(navigator)
         rig = replace(rig, world=Scraping(rig.drive))
-        return MissionRunner(plan, rig, 1, (), (), journal).run()
+        return MissionRunner(plan, rig, RunSettings(seed=1), (), journal).run()
 
     plan = mission(waypoint("A", 3.05, 1.05), waypoint("B", 1.05, 1.05))
     path = tmp_path / "run.journal"
@@ -311,8 +309,9 @@ def test_simulate_and_resume_in_the_world(navigator, tmp_path):
     plan = mission(measure(1), measure(2), end_area=1)
     path = tmp_path / "run.journal"
     place = JournalPlace(path, "yard")
-    reference = simulate(plan, navigator, seed=4, journal=place, values={2: 4.0})
-    assert simulate(plan, navigator, seed=4, values={2: 4.0}) == reference
+    settings = RunSettings(seed=4, values={2: 4.0})
+    reference = simulate(plan, navigator, settings=settings, journal=place)
+    assert simulate(plan, navigator, settings=settings) == reference
     content = path.read_bytes()
     lines = content.splitlines(keepends=True)
     path.write_bytes(b"".join(lines[: len(lines) // 2])[:-3])
@@ -340,8 +339,8 @@ def events():
 @settings(max_examples=examples(50), deadline=None)
 @given(events())
 def test_events_go_through_json(event):
-    logged = LoggedEvent.of(event)
-    assert LoggedEvent.model_validate_json(logged.model_dump_json()).original() == event
+    text = LoggedEvent.of(event).model_dump_json()
+    assert LoggedEvent.model_validate_json(text).original() == event
 
 
 class TestRefusals:

@@ -16,6 +16,7 @@ from argo_env.navigation.path import Motion
 from argo_env.record import RunRecord
 from argo_env.robot.pose import BodyPose
 from argo_env.session import simulate
+from argo_env.settings import RunSettings
 from argo_env.verdict import is_docked
 
 FRONT = Pose(x=8.05, y=-2.05, z=-0.03, yaw=0.0)
@@ -163,9 +164,9 @@ def short():
 
 
 def test_same_seed_same_record(short, navigator):
-    first, second = (simulate(short, navigator, seed=5) for _ in range(2))
+    first, second = (simulate(short, navigator, settings=RunSettings(seed=5)) for _ in range(2))
     assert first.model_dump_json() == second.model_dump_json()
-    other = simulate(short, navigator, seed=6)
+    other = simulate(short, navigator, settings=RunSettings(seed=6))
     assert other.readings[0].value != first.readings[0].value
     assert other.path == first.path
 
@@ -186,7 +187,8 @@ def test_branches_on_the_measured_value(navigator, value, branch, normal):
     ends = (waypoint("HIGH", 7.05, 1.55, 0.0), waypoint("LOW", 5.05, 1.55, 0.0))
     # The two ends do not lead to each other.
     joined = mission(*tasks, ends[0]).tasks[:2] + ends
-    record = simulate(Mission(site="umad", tasks=joined), navigator, values={1: value})
+    settings = RunSettings(values={1: value})
+    record = simulate(Mission(site="umad", tasks=joined), navigator, settings=settings)
     assert record.result.success
     assert names(record) == ["MEASURE 1", branch]
     assert record.readings[0].value == value

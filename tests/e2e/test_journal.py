@@ -23,6 +23,7 @@ from argo_compiler.model import Pose
 from argo_env.journal import open_journal
 from argo_env.record import RunRecord
 from argo_env.session import resume, simulate
+from argo_env.settings import RunSettings, logged
 from tests.yard import SITE, measure, mission, waypoint, yard
 
 ROOT = Path(__file__).parents[2]
@@ -121,12 +122,16 @@ def require_complete(record: RunRecord, reference: RunRecord, told) -> None:
     assert list(record.path) == sorted(record.path, key=lambda sample: sample.t)
 
 
+def settings(seed: int) -> RunSettings:
+    return RunSettings(seed=seed, events=logged(*EVENTS), values={2: 7.25})
+
+
 def test_runs_that_are_killed_lose_nothing(server, folder, navigator, record_property) -> None:
     rng = random.Random(7)
     kills, done, silent, seeds = 0, 0, 0, count()
     while kills < KILLS:
         seed = next(seeds)
-        reference = simulate(PLAN, navigator, seed=seed, events=EVENTS, values={2: 7.25})
+        reference = simulate(PLAN, navigator, settings=settings(seed))
         journal = folder / f"{seed}.journal"
         begin = (
             "run", folder / "plan.json", "--site", folder / "yard.yaml", "--seed", seed,
@@ -186,7 +191,7 @@ def test_kill_and_resume_by_the_command(argo, folder: Path, tmp_path: Path, navi
         (float(t), task, int(id), float(value))
         for t, task, id, value in ANNOUNCED.findall(line + result.stderr)
     ]
-    reference = simulate(PLAN, navigator, seed=3, events=EVENTS, values={2: 7.25})
+    reference = simulate(PLAN, navigator, settings=settings(3))
     require_complete(record, reference, told)
     assert len(record.resumed) == 1
     again = argo("resume", journal, "--report", tmp_path / "again")

@@ -1,0 +1,15 @@
+"""Random generators: one seed for a run, an independent stream for each purpose."""
+
+import zlib
+
+import numpy as np
+
+
+def generator(seed: int, *purpose: str | int) -> np.random.Generator:
+    """The generator for a purpose, such as `generator(7, "gas sensor")`.
+
+    Streams of different purposes are independent, so that one more draw for one of them changes
+    nothing for the others.
+    """
+    key = [zlib.crc32(str(part).encode()) for part in purpose]
+    return np.random.default_rng([seed, *key])

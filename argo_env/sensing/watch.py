@@ -1,0 +1,34 @@
+"""What the robot notices by itself while it goes: findings, and what makes them."""
+
+from dataclasses import dataclass
+from typing import Protocol
+
+from argo_compiler.il import EventKind
+from argo_env.robot.pose import BodyPose
+from argo_env.site.shapes import Vector
+
+
+@dataclass(frozen=True)
+class Finding:
+    """Something found by sensing."""
+
+    kind: EventKind
+    detail: str
+    """one phrase for the report, such as `gas, 840 ppm, near pump P-301`"""
+    place: Vector | None = None
+    """m, where the robot believes it is; None where the signal does not tell"""
+    confidence: float = 1.0
+    """0 to 1"""
+
+
+class Watch(Protocol):
+    """Looks at one kind of signal again and again, and says what is new in it."""
+
+    name: str
+    period: float
+    """s between two looks"""
+
+    def look(self, now: float, pose: BodyPose) -> tuple[Finding, ...]:
+        """What has been found at time `now` (s) with the robot at `pose`; each thing is told once,
+        and again only after it was gone."""
+        ...

@@ -43,5 +43,6 @@ clean:
 	touch $@
 
 .venv/test.stamp: .venv/python.stamp pyproject.toml constraints.txt
+	$(INSTALL) torch==2.13.0
 	$(INSTALL) --editable '.[dev,film]'
 	touch .venv/demo.stamp $@

@@ -1,0 +1,63 @@
+"""Where recordings are written and what they need: checked before a long run is made."""
+
+import os
+from collections.abc import Iterator
+from contextlib import closing, contextmanager
+from importlib.util import find_spec
+from pathlib import Path
+
+from argo_compiler.errors import ArgoError
+from argo_env.recording.output import RecordingFile
+from argo_env.recording.recorder import Recorder
+
+VERSION = "1"
+"""of what a recording of Argo's holds"""
+MAGIC = b"\x89MCAP0\r\n"
+"""what every .mcap file begins and ends with (MCAP specification)"""
+
+
+_LIBRARIES = ("mcap", "mcap_protobuf", "foxglove_schemas_protobuf")
+
+
+def require_libraries() -> None:
+    """Raises ArgoError if the extra that recordings need isn't installed."""
+    missing = [name for name in _LIBRARIES if find_spec(name) is None]
+    if missing:
+        raise ArgoError(
+            f"recordings need {', '.join(missing)}: pip install 'argo-mission[recording]'"
+        )
+
+
+def check_recording(file: Path) -> None:
+    """Raises ArgoError if no recording can be written there: for its suffix, its folder, or an
+    extra that isn't installed. To be called before a long run is made."""
+    if file.suffix.lower() != ".mcap":
+        raise ArgoError(f"{file}: a recording is an .mcap file; name it so")
+    if not file.absolute().parent.is_dir():
+        raise ArgoError(f"{file}: there is no folder {file.parent}; make it, or choose another")
+    if file.is_dir():
+        raise ArgoError(f"{file}: is a folder; choose another name for the recording")
+    if not os.access(file if file.exists() else file.absolute().parent, os.W_OK):
+        raise ArgoError(f"{file}: can't be written; choose another place for the recording")
+    require_libraries()
+
+
+@contextmanager
+def recording_to(file: Path, source: Path | None = None) -> Iterator[Recorder]:
+    """A recorder that writes to the file, and the text of the mission's `source` with it.
+
+    A recording that was there is replaced. What has been recorded stays, and can be read, if the
+    run fails or its process is killed.
+
+    Raises ArgoError where `check_recording` does, and while it goes on if the disk is full.
+    """
+    check_recording(file)
+    # What this needs is not there without the extra.
+    from argo_env.recording.mcap_recorder import McapRecorder
+
+    with closing(RecordingFile(file)) as stream:
+        recorder = McapRecorder(stream, source)
+        try:
+            yield recorder
+        finally:
+            recorder.close()

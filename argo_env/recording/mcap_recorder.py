@@ -1,0 +1,216 @@
+"""The recorder: all that Foxglove shows of a run, and all that a report is made from."""
+
+import math
+from pathlib import Path
+
+from foxglove_schemas_protobuf.Log_pb2 import Log
+
+from argo_compiler import __version__
+from argo_compiler.errors import ArgoError
+from argo_compiler.hfsm import Executor, Occurred
+from argo_compiler.il import Mission
+from argo_env.action import ActionUnderWay, Rig
+from argo_env.log import Entry
+from argo_env.navigation import Path as Way
+from argo_env.record import Anomaly, Contact, Reading, RunRecord, TaskRun, TraceStep
+from argo_env.recording import messages, scene
+from argo_env.recording.files import VERSION
+from argo_env.recording.motion import Limbs, MotionTopics
+from argo_env.recording.output import RecordingFile
+from argo_env.recording.robot_model import read_model
+from argo_env.recording.shots import write_shot
+from argo_env.recording.topics import BatteryState, MissionState, mission_state
+from argo_env.recording.writer import RecordingWriter, media_type
+from argo_env.report.files import to_json
+from argo_env.robot.spec import robot_folder
+from argo_env.settings import RunSettings
+from argo_env.world import Shot, World
+
+SAMPLE_PERIOD = 0.1
+"""s between recorded poses, at least; a drive with longer steps has one at each"""
+
+
+class McapRecorder:
+    """Writes one run to a file. Holds what was last written, to write what is new only."""
+
+    def __init__(self, stream: RecordingFile, source: Path | None = None) -> None:
+        """`source`: the file that the mission was read from."""
+        self._writer = RecordingWriter(stream)
+        self._source = source
+        self._rig: Rig | None = None
+        self._motion: MotionTopics | None = None
+        self._next = -math.inf  # s, when the next pose is due
+        self._now = 0.0
+        self._sampled = -math.inf
+        self._way: Way | None = None
+        self._state: MissionState | None = None
+        self._traced = 0
+        self._done = 0
+        self._readings: list[Reading] = []
+        self._found: list[Anomaly] = []
+        self._shots: list[Shot] = []
+        self._latest: dict[int, Reading] = {}
+
+    def begin(self, rig: Rig, mission: Mission, settings: RunSettings) -> None:
+        """Writes what does not change: what the run is made from, the site and the robot."""
+        site, robot = rig.navigator.site, rig.navigator.robot
+        path = robot_folder() / robot.urdf
+        model = read_model(path)
+        self._rig = rig
+        self._writer.describe(
+            "argo",
+            {
+                "version": VERSION,
+                "argo": __version__,
+                "time": "nanoseconds of simulated time since the mission's start",
+                "site": site.name,
+                "robot": robot.name,
+                "drive": rig.drive.name,
+                "sensor": rig.sensor.name,
+                "seed": str(settings.seed),
+            },
+        )
+        attach = self._writer.attach
+        if self._source is not None:
+            attach(f"source/{self._source.name}", media_type(self._source), _content(self._source))
+        attach("mission.json", "application/json", mission.model_dump_json(indent=2))
+        attach("settings.json", "application/json", settings.model_dump_json(indent=2))
+        attach("site.json", "application/json", site.spec.model_dump_json(indent=2))
+        attach(path.name, "application/xml", model.text)
+        for number, update in scene.site_scenes(site, 0.0).items():
+            self._writer.put(f"/site/floor_{number}", update, 0.0)
+        self._writer.put("/robot", scene.robot_scene(model, 0.0), 0.0)
+        self._writer.put("/checkpoints", scene.checkpoint_scene(site, {}, 0.0), 0.0)
+        self._motion = MotionTopics(self._writer, model, _limbs(rig))
+        self._motion.begin(0.0)
+        if isinstance(rig.world, World):
+            # They are written at the end of the step in which they were taken.
+            rig.world.on_shot = self._shots.append
+        self._writer.flush(0.0)
+
+    def step(self, now: float, action: ActionUnderWay | None) -> None:
+        """Writes the robot's motion, and the way ahead when there is a new one."""
+        self._now = now
+        for shot in self._shots:
+            write_shot(self._writer, shot, now)
+        self._shots.clear()
+        if now < self._next - 1e-9:
+            return
+        self._sample(now)
+        # Counted from 0, so that steps that do not divide the period make no drift.
+        self._next = (math.floor(now / SAMPLE_PERIOD + 1e-6) + 1) * SAMPLE_PERIOD
+        if action is not None and action.path is not None and action.path is not self._way:
+            self._way = action.path
+            poses = (action.path.start, *(motion.end for motion in action.path.motions))
+            self._writer.put("/path", messages.path(poses, now), now)
+        self._writer.flush_if_due(now)
+
+    def note(self, entry: Entry, executor: Executor) -> None:
+        """Writes what has happened, and how the mission stands now."""
+        now = self._now = entry.t
+        for event in entry.events:
+            original = event.original()
+            if isinstance(original, Occurred):
+                detail = f": {original.detail}" if original.detail else ""
+                self._log(f"{original.event.replace('_', ' ')}{detail}", Log.WARNING, "event", now)
+        for anomaly in entry.found:
+            self._found.append(anomaly)
+            self._writer.put_json("/findings", anomaly, now)
+        if entry.found:
+            self._writer.put("/findings/markers", scene.finding_scene(self._found, now), now)
+        for contact in entry.contacts:
+            self._contact(contact, now)
+        if entry.reading:
+            self._reading(entry.reading)
+        if entry.task:
+            self._task(entry.task)
+        if entry.sample:
+            self._battery(now)
+        if entry.stopped:
+            self._log(entry.stopped, Log.ERROR, "run", now)
+        if entry.events or entry.resumed or entry.ended or self._state is None:
+            self._mission(executor, now)
+
+    def finish(self, record: RunRecord) -> None:
+        """Writes the end of the run and its record."""
+        result, now = record.result, self._now
+        if now != self._sampled:
+            self._sample(now)
+        level = Log.INFO if result.success else Log.ERROR
+        self._log(f"{result.verdict}", level, "verdict", now)
+        self._writer.attach("record.json", "application/json", to_json(record), now)
+
+    def close(self) -> None:
+        """Writes the index of the file."""
+        self._writer.close()
+
+    def _sample(self, now: float) -> None:
+        assert self._rig is not None, "begin comes first"
+        assert self._motion is not None
+        self._sampled = now
+        self._motion.sample(self._rig.drive.pose, now)
+
+    def _mission(self, executor: Executor, now: float) -> None:
+        for e in executor.trace[self._traced :]:
+            self._traced += 1
+            step = TraceStep(t=e.time, source=e.source, target=e.target, cause=e.why)
+            self._writer.put_json("/trace", step, now)
+        abnormal = sum(not reading.normal for reading in self._readings)
+        state = mission_state(executor, self._done, len(self._readings), abnormal)
+        if state != self._state:
+            self._state = state
+            self._writer.put_json("/mission", state, now)
+
+    def _battery(self, now: float) -> None:
+        battery = self._rig.battery if self._rig else None
+        if battery is not None:
+            state = BatteryState(
+                charge=battery.charge, voltage=battery.voltage, current=battery.current
+            )
+            self._writer.put_json("/battery", state, now)
+
+    def _reading(self, reading: Reading) -> None:
+        assert self._rig is not None
+        self._readings.append(reading)
+        self._latest[reading.checkpoint] = reading
+        self._writer.put_json("/readings", reading, reading.t)
+        site = self._rig.navigator.site
+        update = scene.checkpoint_scene(site, self._latest, reading.t)
+        self._writer.put("/checkpoints", update, reading.t)
+        self._log(
+            f"{reading.name} (#{reading.checkpoint}) shows {reading.value:.4g} {reading.unit}, "
+            f"{'normal' if reading.normal else 'abnormal'}",
+            Log.INFO if reading.normal else Log.WARNING,
+            "reading",
+            reading.t,
+        )
+
+    def _task(self, task: TaskRun) -> None:
+        self._done += task.outcome == "done"
+        self._writer.put_json("/tasks", task, task.end)
+        level = {"done": Log.INFO, "failed": Log.ERROR}.get(task.outcome, Log.WARNING)
+        because = f": {task.reason}" if task.reason else ""
+        self._log(f"{task.task} {task.outcome}{because}", level, "task", task.end)
+
+    def _contact(self, contact: Contact, now: float) -> None:
+        self._writer.put_json("/contacts", contact, now)
+        self._log(f"{contact.link} touches {contact.element}", Log.WARNING, "contact", now)
+
+    def _log(self, text: str, level: "Log.Level.ValueType", name: str, now: float) -> None:
+        self._writer.put("/log", messages.log(text, level, name, now), now)
+
+
+def _limbs(rig: Rig) -> Limbs:
+    """Where the robot's joints are; on paper its arm is stowed and its flippers are level."""
+    world = rig.world
+    if isinstance(world, World):
+        return world.joint_positions
+    stowed = {name: math.radians(a) for name, a in rig.navigator.robot.arm_stowed.items()}
+    return lambda names: [stowed.get(name, 0.0) for name in names]
+
+
+def _content(path: Path) -> bytes:
+    try:
+        return path.read_bytes()
+    except OSError as error:
+        raise ArgoError(f"{path}: can't be read: {error.strerror}") from error

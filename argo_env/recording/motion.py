@@ -1,0 +1,90 @@
+"""The robot in motion: transforms of all its frames, its pose and its joints."""
+
+from collections.abc import Callable
+
+from foxglove_schemas_protobuf.FrameTransform_pb2 import FrameTransform
+from foxglove_schemas_protobuf.FrameTransforms_pb2 import FrameTransforms
+from foxglove_schemas_protobuf.JointStates_pb2 import JointStates
+from foxglove_schemas_protobuf.PoseInFrame_pb2 import PoseInFrame
+
+from argo_env.recording.messages import BASE, WORLD, attitude, set_rotation, set_time, set_vector
+from argo_env.recording.robot_model import Joint, Quaternion, RobotModel
+from argo_env.recording.writer import RecordingWriter
+from argo_env.robot.pose import BodyPose
+from argo_env.site.shapes import Vector
+
+LIMB_PERIOD = 1.0
+"""s between two messages about limbs that do not move"""
+
+Limbs = Callable[[list[str]], list[float]]
+"""Positions (rad or m) of the robot's joints of those names."""
+
+
+class MotionTopics:
+    """Writes where the robot is and how its limbs stand. Holds its messages, to fill them anew."""
+
+    def __init__(self, writer: RecordingWriter, model: RobotModel, limbs: Limbs) -> None:
+        self._writer = writer
+        self._limbs = limbs
+        self._moving = [joint for joint in model.joints if joint.moves]
+        self._names = [joint.name for joint in self._moving]
+        self._values: list[float] | None = None
+        self._limbs_due = 0.0
+        self._fixed = [joint for joint in model.joints if not joint.moves]
+        self._base = FrameTransforms(
+            transforms=[FrameTransform(parent_frame_id=WORLD, child_frame_id=BASE)]
+        )
+        self._limb_frames = FrameTransforms(
+            transforms=[_transform(joint, *joint.at(0.0)) for joint in self._moving]
+        )
+        self._pose = PoseInFrame(frame_id=WORLD)
+        self._joints = JointStates()
+        for name in self._names:
+            self._joints.joints.add(name=name)
+
+    def begin(self, t: float) -> None:
+        """Writes what does not change."""
+        still = FrameTransforms(
+            transforms=[_transform(joint, *joint.at(0.0)) for joint in self._fixed]
+        )
+        for transform in still.transforms:
+            set_time(transform.timestamp, t)
+        self._writer.put("/tf_static", still, t)
+
+    def sample(self, body: BodyPose, t: float) -> None:
+        """Writes how the robot stands at time t (s)."""
+        position, rotation = (body.x, body.y, body.z), attitude(body)
+        base = self._base.transforms[0]
+        set_time(base.timestamp, t)
+        set_vector(base.translation, position)
+        set_rotation(base.rotation, rotation)
+        self._writer.put("/tf", self._base, t)
+        set_time(self._pose.timestamp, t)
+        set_vector(self._pose.pose.position, position)
+        set_rotation(self._pose.pose.orientation, rotation)
+        self._writer.put("/pose", self._pose, t)
+        values = self._limbs(self._names)
+        if values != self._values or t >= self._limbs_due - 1e-9:
+            self._write_limbs(values, t)
+            self._values, self._limbs_due = values, t + LIMB_PERIOD
+
+    def _write_limbs(self, values: list[float], t: float) -> None:
+        transforms, states = self._limb_frames.transforms, self._joints.joints
+        for joint, value, transform, state in zip(
+            self._moving, values, transforms, states, strict=True
+        ):
+            position, rotation = joint.at(value)
+            set_time(transform.timestamp, t)
+            set_vector(transform.translation, position)
+            set_rotation(transform.rotation, rotation)
+            state.position = value
+        self._writer.put("/tf_limbs", self._limb_frames, t)
+        set_time(self._joints.timestamp, t)
+        self._writer.put("/joints", self._joints, t)
+
+
+def _transform(joint: Joint, position: Vector, rotation: Quaternion) -> FrameTransform:
+    transform = FrameTransform(parent_frame_id=joint.parent, child_frame_id=joint.child)
+    set_vector(transform.translation, position)
+    set_rotation(transform.rotation, rotation)
+    return transform

@@ -1,0 +1,60 @@
+"""What is recorded as JSON, beside Foxglove's own messages and the parts of the run record."""
+
+from argo_compiler.hfsm import Executor
+from argo_compiler.il import Action, EventKind
+from argo_compiler.model import Model
+
+
+class MissionState(Model):
+    """How the mission stands."""
+
+    task: str | None = None
+    """whose action is under way; absent: none is"""
+    action: Action | None = None
+    object_id: str | None = None
+    states: tuple[str, ...]
+    """ids of the active states, from the mission to the leaf, then the reaction's"""
+    groups: tuple[str, ...]
+    """names of the active groups, the outermost first"""
+    rounds: tuple[int, ...]
+    """which round, from 1, each of these groups is in"""
+    paused: bool
+    reaction: EventKind | None = None
+    """the event whose reaction is active"""
+    outcome: str | None = None
+    """how the mission has ended"""
+    done: int
+    """actions that have ended as planned"""
+    readings: int
+    abnormal: int
+    """readings outside the nominal range"""
+
+
+class BatteryState(Model):
+    """How the battery stands."""
+
+    charge: float
+    """0 to 1"""
+    voltage: float
+    """V, under the present load"""
+    current: float
+    """A; less than 0 while it is charged"""
+
+
+def mission_state(executor: Executor, done: int, readings: int, abnormal: int) -> MissionState:
+    """How the mission stands, as its executor tells it, with what has been done."""
+    running = executor.running
+    return MissionState(
+        task=running.name if running else None,
+        action=running.action if running else None,
+        object_id=running.object_id if running else None,
+        states=executor.configuration,
+        groups=tuple(executor.rounds),
+        rounds=tuple(executor.rounds.values()),
+        paused=executor.paused,
+        reaction=executor.reaction,
+        outcome=executor.outcome,
+        done=done,
+        readings=readings,
+        abnormal=abnormal,
+    )

@@ -1,0 +1,30 @@
+"""Where the sensors are on the robot, and where that is on the site."""
+
+import math
+
+import numpy as np
+from numpy.typing import NDArray
+
+from argo_env.robot.pose import BodyPose
+from argo_env.site.shapes import Vector
+
+NOSE: Vector = (0.4, 0.0, 0.5)
+"""m in the robot's frame: the gas sensor and the ultrasonic microphone"""
+
+
+def rotation(pose: BodyPose) -> NDArray[np.float64]:
+    """Columns are the axes of the robot's frame (ahead, left, up) on the site, shape (3, 3)."""
+    c, s = math.cos(pose.yaw), math.sin(pose.yaw)
+    down, level = math.sin(pose.pitch), math.cos(pose.pitch)
+    return np.array([[c * level, -s, c * down], [s * level, c, s * down], [-down, 0.0, level]])
+
+
+def on_site(pose: BodyPose, place: Vector) -> NDArray[np.float64]:
+    """A place of the robot's frame on the site, in m, shape (3,)."""
+    return np.asarray(np.array([pose.x, pose.y, pose.z]) + rotation(pose) @ np.array(place))
+
+
+def point(values: NDArray[np.float64]) -> Vector:
+    """The array, shape (3,), as a vector, to the millimetre."""
+    x, y, z = (round(v, 3) for v in values.tolist())
+    return x, y, z

@@ -1,0 +1,114 @@
+"""The watch for gas leaks: by the gas itself, and by the hiss of it."""
+
+import math
+from collections import deque
+from dataclasses import dataclass
+
+from argo_compiler.il import EventKind
+from argo_env.robot.pose import BodyPose
+from argo_env.sensing.signals.gas_sensors import GasSensor, UltrasonicMicrophone
+from argo_env.sensing.signals.site_map import SiteMap
+from argo_env.sensing.watch import Finding
+
+GAS_ON, GAS_OFF = 40.0, 20.0
+"""ppm from which there is gas, and under which there is none; noise and drift have a standard
+deviation of 3.6 ppm about 1.9 ppm"""
+HISS_ON, HISS_OFF = 62.0, 55.0
+"""dB from which there is a hiss, and under which there is none"""
+LOOKS, GAS_VOTES, HISS_VOTES = 5, 3, 4
+"""how many of the last looks must agree; a bang is over after one"""
+CLEAR_TIME = 10.0  # s without a signal until the danger is over
+SAME_PLACE = 8.0  # m from where a leak was told within which it is the same
+NEAR = 3.0  # m from where it was strongest within which its absence means anything
+
+
+class Hysteresis:
+    """On when enough of the last values are high, off when all of them are low. Holds them."""
+
+    def __init__(self, on: float, off: float, votes: int) -> None:
+        self._limits = (on, off)
+        self._votes = votes
+        self._values: deque[float] = deque(maxlen=LOOKS)
+        self.active = False
+
+    def update(self, value: float) -> bool:
+        """Whether it is on after this value."""
+        self._values.append(value)
+        on, off = self._limits
+        if sum(v >= on for v in self._values) >= self._votes:
+            self.active = True
+        elif all(v < off for v in self._values):
+            self.active = False
+        return self.active
+
+
+@dataclass
+class _Leak:
+    """A leak that has been told: where it was sensed, and where the most."""
+
+    places: list[BodyPose]
+    worst: BodyPose
+    strength: float
+
+
+class GasWatch:
+    """Tells of each leak once, and that it is over when nothing is sensed any more where it was
+    strongest.
+
+    Holds what the sensors have shown, and where leaks have been told.
+    """
+
+    name = "gas"
+    period = 1.0
+
+    def __init__(self, gas: GasSensor, microphone: UltrasonicMicrophone, site_map: SiteMap) -> None:
+        self._gas_sensor = gas
+        self._microphone = microphone
+        self._map = site_map
+        self._gas = Hysteresis(GAS_ON, GAS_OFF, GAS_VOTES)
+        self._hiss = Hysteresis(HISS_ON, HISS_OFF, HISS_VOTES)
+        self._leaks: list[_Leak] = []
+        self._here: _Leak | None = None
+        self._quiet_since: float | None = None
+
+    def look(self, now: float, pose: BodyPose) -> tuple[Finding, ...]:
+        ppm, level = self._gas_sensor.read(now, pose), self._microphone.read(pose)
+        smelt, heard = self._gas.update(ppm), self._hiss.update(level)
+        if not smelt and not heard:
+            self._here = None
+            return self._all_clear(now, pose)
+        self._quiet_since = None
+        strength = max(ppm / GAS_ON, 10 ** ((level - HISS_ON) / 10))
+        # As long as the signal does not stop, it is the same leak, however far its gas reaches.
+        known = self._here or next((k for k in self._leaks if _near(k, pose)), None)
+        self._here = known or _Leak([], pose, strength)
+        if not _near(self._here, pose):
+            self._here.places.append(pose)
+        if strength > self._here.strength:
+            self._here.worst, self._here.strength = pose, strength
+        if known:
+            return ()
+        self._leaks.append(self._here)
+        near = self._map.nearest_equipment((pose.x, pose.y, pose.z + 0.5))
+        signs = [f"gas, {ppm:.0f} ppm"] * smelt + [f"a hiss, {level:.0f} dB at 40 kHz"] * heard
+        return (Finding(EventKind.GAS_LEAK, f"{' and '.join(signs)}, near {near}"),)
+
+    def _all_clear(self, now: float, pose: BodyPose) -> tuple[Finding, ...]:
+        here = [leak for leak in self._leaks if _apart(pose, leak.worst) <= NEAR]
+        if not here:
+            self._quiet_since = None
+            return ()
+        self._quiet_since = now if self._quiet_since is None else self._quiet_since
+        if now - self._quiet_since < CLEAR_TIME:
+            return ()
+        self._leaks = [leak for leak in self._leaks if leak not in here]
+        return (Finding(EventKind.ALL_CLEAR, "there is no gas any more where it was"),)
+
+
+def _near(leak: _Leak, pose: BodyPose) -> bool:
+    return any(_apart(pose, where) <= SAME_PLACE for where in leak.places)
+
+
+def _apart(a: BodyPose, b: BodyPose) -> float:
+    """m; a storey above or below is far away."""
+    return math.dist((a.x, a.y, 3 * a.z), (b.x, b.y, 3 * b.z))

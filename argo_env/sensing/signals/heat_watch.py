@@ -1,0 +1,148 @@
+"""The watch for hot spots: finds in thermal images what is warmer than it may be."""
+
+import math
+from dataclasses import dataclass
+
+import numpy as np
+from scipy.ndimage import label
+
+from argo_compiler.il import EventKind
+from argo_env.robot.pose import BodyPose
+from argo_env.sensing.signals.frames import point
+from argo_env.sensing.signals.site_map import SiteMap
+from argo_env.sensing.signals.thermal_camera import (
+    COARSE,
+    HEIGHT,
+    WIDTH,
+    ThermalCamera,
+    ThermalImage,
+    pixel_rays,
+)
+from argo_env.sensing.watch import Finding
+from argo_env.site.shapes import Vector
+from argo_env.surroundings.heat import warmest
+
+PANS = (math.radians(40.0), math.radians(-40.0))
+"""rad, the ways in which the camera looks by turns"""
+MARGIN = 8.0
+"""K over what a sound surface can have; camera and dirt have a standard deviation of 1.4 K"""
+SUSPICIOUS = 33.0
+"""K over the air from which a pixel is looked at: no surface but a pump's gets so warm"""
+PIXELS = 3  # of a spot, at least
+PROBES = 7  # pixels of a spot that are looked up on the map, at most
+REACH = 10.0  # m
+LOOKS = 2  # in a row, in which a spot must show
+SAME = 1.5  # m between two places of the same spot
+SURE = 6.0  # m within which a told spot that is in view must show, or is gone
+GONE = 3  # looks that have to miss it
+
+
+@dataclass(frozen=True)
+class Spot:
+    """A spot in an image: its place (m) by the map, what is there, and its temperature (°C)."""
+
+    place: Vector
+    element: str
+    temperature: float
+
+
+@dataclass
+class _Told:
+    place: Vector
+    missed: int = 0
+
+
+class HeatWatch:
+    """Looks ahead to the left and to the right by turns, and stays on what looks like a hot spot
+    until a second image has confirmed it. Tells of each spot once; holds what it has told."""
+
+    name = "heat"
+    period = 3.0
+
+    def __init__(self, camera: ThermalCamera, site_map: SiteMap, air: float) -> None:
+        """`air` is the temperature (°C) that the robot's own thermometer shows."""
+        self._camera = camera
+        self._map = site_map
+        self._air = air
+        self._turn = 0
+        self._candidates: tuple[Spot, ...] = ()
+        self._told: list[_Told] = []
+
+    def look(self, now: float, pose: BodyPose) -> tuple[Finding, ...]:  # noqa: ARG002
+        image = self._camera.take(pose, PANS[self._turn])
+        spots = find_spots(image, self._map, self._air)
+        self._forget(image, spots)
+        new = tuple(s for s in spots if not any(_same(s.place, t.place) for t in self._told))
+        confirmed = [s for s in new if any(_same(s.place, c.place) for c in self._candidates)]
+        self._candidates = tuple(s for s in new if s not in confirmed)
+        if not self._candidates:
+            self._turn = (self._turn + 1) % len(PANS)
+        findings = []
+        for spot in confirmed:
+            self._told.append(_Told(spot.place))
+            detail = f"a hot spot of {spot.temperature:.0f} °C on {spot.element}"
+            findings.append(Finding(EventKind.HOT_SPOT, detail, spot.place))
+        return tuple(findings)
+
+    def _forget(self, image: ThermalImage, spots: tuple[Spot, ...]) -> None:
+        for told in self._told:
+            if any(_same(s.place, told.place) for s in spots):
+                told.missed = 0
+            elif self._in_view(image, told.place):
+                told.missed += 1
+        self._told = [told for told in self._told if told.missed < GONE]
+
+    def _in_view(self, image: ThermalImage, place: Vector) -> bool:
+        row, column, depth = image.project(place)
+        if not (5 <= row <= HEIGHT - 5 and 5 <= column <= WIDTH - 5 and 0.5 < depth < SURE):
+            return False
+        way = np.array(place) - image.origin
+        distance = float(np.linalg.norm(way))
+        free, _ = self._map.distances(image.origin, way[None, :] / distance, REACH)
+        return bool(free[0] >= distance - 0.3)
+
+
+def find_spots(image: ThermalImage, site_map: SiteMap, air: float) -> tuple[Spot, ...]:
+    """The spots that are warmer than what the map shows there can be; the air has `air` °C."""
+    warm = image.pixels > air + SUSPICIOUS
+    if not warm.any():
+        return ()
+    parts, count = label(warm)
+    spots = []
+    for part in range(1, count + 1):
+        rows, columns = np.nonzero(parts == part)
+        if len(rows) < PIXELS:
+            continue
+        warmth = image.pixels[rows, columns]
+        # What is mixed from hot and cold at the rim says little, so the warmest go first.
+        probed = np.argsort(-warmth, kind="stable")[: 4 * PROBES : 4]
+        depths, solids = site_map.distances(
+            image.origin, image.rays(rows[probed], columns[probed]), REACH
+        )
+        known = solids >= 0
+        if not known.any():
+            continue
+        # The image is coarse: what is in the middle of a cell stands for all of it.
+        cells = np.unique(np.column_stack([rows, columns]) // COARSE, axis=0)
+        middles = (cells + 0.5) * COARSE
+        _, beside = site_map.distances(
+            image.origin, pixel_rays(middles[:, 0], middles[:, 1]) @ image.axes.T, REACH
+        )
+        there = [int(k) for k in (*solids, *beside) if k >= 0]
+        allowed = max(warmest(site_map.element(k).role, air) for k in there)
+        if float(np.median(warmth[probed])) <= allowed + MARGIN:
+            continue
+        nearest = int(np.argmin(np.where(known, depths, np.inf)))
+        ray = image.rays(rows[probed[[nearest]]], columns[probed[[nearest]]])[0]
+        spots.append(
+            Spot(
+                point(image.origin + depths[nearest] * ray),
+                site_map.element(int(solids[nearest])).name,
+                float(warmth.max()),
+            )
+        )
+    return tuple(spots)
+
+
+def _same(a: Vector, b: Vector) -> bool:
+    return math.dist(a, b) <= SAME

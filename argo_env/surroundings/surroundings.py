@@ -1,0 +1,72 @@
+"""The surroundings of the robot: the sources that are there now, since when, and the weather."""
+
+from dataclasses import dataclass
+
+from argo_compiler.errors import ArgoError
+from argo_env.site import Site
+from argo_env.site.shapes import Vector
+from argo_env.surroundings.sources import GasLeak, PumpSound, Source
+
+
+@dataclass(frozen=True)
+class Weather:
+    """The weather, the same all over the site."""
+
+    wind: tuple[float, float] = (0.8, 0.4)
+    """m/s along x and y, where it blows to"""
+    diffusivity: float = 0.3
+    """m²/s, of the eddies"""
+    temperature: float = 20.0
+    """°C, of the air"""
+    sun: Vector = (-0.5, -0.5, 0.707)
+    """a vector of length 1 towards the sun, or of length 0 at night"""
+
+
+@dataclass(frozen=True)
+class Release:
+    """Gas that has escaped from a leak between `start` and `end` (s); None: it goes on."""
+
+    leak: GasLeak
+    start: float
+    end: float | None = None
+
+
+class Surroundings:
+    """Holds the sources that are there now. Gas that has escaped stays until it has dispersed."""
+
+    def __init__(self, site: Site, weather: Weather | None = None) -> None:
+        self.site = site
+        self.weather = weather or Weather()
+        self._since: dict[Source, float] = {}
+        self._ended: list[Release] = []
+
+    @property
+    def sources(self) -> tuple[Source, ...]:
+        """The sources that are there now, in the order in which they came."""
+        return tuple(self._since)
+
+    @property
+    def releases(self) -> tuple[Release, ...]:
+        """All gas that escapes or has escaped."""
+        now = [Release(s, t) for s, t in self._since.items() if isinstance(s, GasLeak)]
+        return (*self._ended, *now)
+
+    def add(self, source: Source, now: float = 0.0) -> None:
+        """From time `now` (s) on the source is there; nothing happens if it is there already.
+
+        Raises ArgoError for a pump that the site does not have.
+        """
+        if isinstance(source, PumpSound):
+            known = [pump.name for floor in self.site.spec.floors for pump in floor.pumps]
+            if source.pump not in known:
+                names = ", ".join(known) or "none"
+                raise ArgoError(
+                    f"site {self.site.name} has no pump `{source.pump}`; there are: {names}"
+                )
+        self._since.setdefault(source, now)
+
+    def remove(self, source: Source, now: float = 0.0) -> None:
+        """From time `now` (s) on the source is gone. Raises KeyError if it is not there."""
+        start = self._since.pop(source)
+        if isinstance(source, GasLeak):
+            self._ended.append(Release(source, start, now))

@@ -1,0 +1,61 @@
+"""`argo replay`: what was recorded of a run is shown again, and its report and film made anew."""
+
+import time
+from pathlib import Path
+from typing import Annotated
+
+import typer
+from rich.console import Console
+from rich.markup import escape
+
+from argo_env.navigation import Navigator
+from argo_env.pictures import check_film
+from argo_env.recording.reader import Recording, read_recording
+from argo_env.robot.spec import load_robot
+from argo_planner.loading import make_folder
+from argo_planner.running import conclude
+from argo_planner.summary import clock
+
+
+def replay(
+    recording: Annotated[
+        Path, typer.Argument(metavar="RECORDING", help="the file that `argo run --record` made")
+    ],
+    report: Annotated[
+        Path | None, typer.Option("--report", metavar="DIR", help="folder for the report")
+    ] = None,
+    render: Annotated[
+        Path | None, typer.Option("--render", metavar="FILE.mp4|FILE.gif", help="film the run")
+    ] = None,
+) -> None:
+    """Show what was recorded of a run, and make its report and its film again."""
+    if render:
+        check_film(render)
+    begun = time.monotonic()
+    found = read_recording(recording)
+    if found.record is None and not (report or render):
+        _show_rest(found)
+        raise typer.Exit(1)
+    record = found.require_record()
+    if report:
+        make_folder(report)
+    console = Console(stderr=True, highlight=False)
+    if not found.whole:
+        console.print("The recording's index is missing; all that a report is made from is there.")
+    count = sum(found.messages.values())
+    took = f"Reading {count} messages took {time.monotonic() - begun:.1f} s."
+    conclude(record, Navigator(found.site, load_robot(record.robot)), took, report, render)
+
+
+def _show_rest(recording: Recording) -> None:
+    """What there is of a run that did not come to its end."""
+    console = Console()
+    for reading in recording.readings:
+        console.print(
+            f"{clock(reading.t)} {escape(reading.name)} (#{reading.checkpoint}) shows "
+            f"{reading.value:.2f} {reading.unit}"
+        )
+    ended = ", ".join(f"{run.task} ({run.outcome})" for run in recording.tasks[-3:]) or "none"
+    console.print(f"{len(recording.tasks)} tasks have ended, the last: {escape(ended)}.")
+    loss = escape(recording.loss)
+    console.print(f"[bold red]No success[/]: {loss}; there is no record of the run's end.")

@@ -1,0 +1,337 @@
+"""How well the robot senses gas, heat, sound and obstacles: `python -m benchmarks.signals`.
+
+Random drives over a site are looked at again and again by the watches alone: without any source for
+false alarms, and with one source or obstacle at a time for what is found, and from how far.
+"""
+
+import argparse
+import math
+import time
+from collections import defaultdict
+from collections.abc import Callable, Iterator, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from argo_compiler.il import EventKind
+from argo_compiler.model import Pose
+from argo_env.events.way import BlockedStairs, Brick, MissingPlate
+from argo_env.navigation import Navigator
+from argo_env.robot.drive import DriveStatus
+from argo_env.robot.kinematic import KinematicDrive
+from argo_env.robot.pose import BodyPose
+from argo_env.robot.spec import load_robot
+from argo_env.seeding import generator
+from argo_env.sensing.signals import standard_watches
+from argo_env.sensing.signals.frames import NOSE, on_site
+from argo_env.sensing.signals.microphone import pump_places
+from argo_env.sensing.watch import Finding
+from argo_env.site import Site, load_site
+from argo_env.site.shapes import Box, Cylinder, Role, Solid, Vector
+from argo_env.surroundings import Alarm, GasLeak, HotSpot, PumpFault, PumpSound, Surroundings
+from argo_env.surroundings.sources import Source
+from argo_env.world import World
+
+STANDING = 8.0  # s at each checkpoint
+STEP = 0.1  # s
+
+Track = list[tuple[float, BodyPose]]
+
+
+@dataclass(frozen=True)
+class Found:
+    """What came of one placement: whether it was within reach at all, and what was found."""
+
+    within_reach: bool
+    figures: dict[str, float] | None = None
+
+
+def drives(navigator: Navigator, world: World, count: int, duration: float) -> Iterator[Track]:
+    """Random drives of at least `duration` (s) from checkpoint to checkpoint."""
+    for number in range(count):
+        rng = generator(number, "drive")
+        drive = KinematicDrive(world, navigator.robot, STEP)
+        dock = navigator.snap(next(iter(navigator.site.docks.values())))
+        drive.place(BodyPose(dock.x, dock.y, dock.z, dock.yaw))
+        track: Track = [(0.0, drive.pose)]
+
+        def note(track: Track = track, drive: KinematicDrive = drive) -> None:
+            track.append((round(track[-1][0] + STEP, 3), drive.pose))
+
+        while track[-1][0] < duration:
+            here = Pose(x=drive.pose.x, y=drive.pose.y, z=drive.pose.z, yaw=drive.pose.yaw)
+            goal = navigator.site.checkpoints[int(rng.integers(len(navigator.site.checkpoints)))]
+            drive.begin(navigator.plan_to_view(here, goal.id), None)
+            while drive.step() is DriveStatus.MOVING:
+                note()
+            for _ in range(round(STANDING / STEP)):
+                note()
+        yield track
+
+
+def findings(
+    world: World, around: Surroundings, track: Track, seed: int, names: Sequence[str]
+) -> Iterator[tuple[float, BodyPose, Finding]]:
+    """What the watches of these names find along the track."""
+    watches = [w for w in standard_watches(world, around, seed) if w.name in names]
+    due = dict.fromkeys(names, track[0][0])
+    for now, pose in track:
+        for watch in watches:
+            if now >= due[watch.name] - 1e-6:
+                due[watch.name] += watch.period
+                for finding in watch.look(now, pose):
+                    yield now, pose, finding
+
+
+EVERYTHING = ("gas", "heat", "pumps", "alarm", "terrain")
+
+
+def false_alarms(world: World, tracks: Sequence[Track], missions: int) -> None:
+    """Prints what is found where there is nothing, and what the looks cost."""
+    count, seconds = 0, 0.0
+    cost = -time.process_time()
+    for mission in range(missions):
+        track = tracks[mission % len(tracks)]
+        seconds += track[-1][0]
+        around = Surroundings(world.site)
+        for now, pose, finding in findings(world, around, track, 1000 + mission, EVERYTHING):
+            count += 1
+            print(f"  false alarm in mission {mission} at {now} s, {pose}: {finding}")
+    cost += time.process_time()
+    print(f"false alarms: {count} in {missions} clean missions, {seconds:.0f} s of looks")
+    print(f"cost of all looks: {1000 * cost / seconds:.2f} ms of processor time a simulated second")
+
+
+def ahead(track: Track, rng: np.random.Generator, lowest: int, site: Site) -> int | None:
+    """A moment at which the robot drives on the flat of a floor, after 3 m straight on."""
+    fit = []
+    for k in range(100, len(track) - 20):
+        poses = [p for _, p in track[k - 80 : k + 10 : 10]]
+        level = all(abs(p.pitch) < 0.01 and abs(p.z - poses[0].z) < 0.04 for p in poses)
+        straight = all(abs(math.remainder(p.yaw - poses[0].yaw, math.tau)) < 0.05 for p in poses)
+        way = math.dist((poses[0].x, poses[0].y), (poses[-1].x, poses[-1].y))
+        floor = site.floor_at(poses[0].z)
+        on_deck = abs(poses[0].z - site.spec.floors[floor - 1].z) < 0.01
+        if level and straight and way > 2.9 and on_deck and floor >= lowest:
+            fit.append(k)
+    return int(rng.choice(fit)) if fit else None
+
+
+def gap(pose: BodyPose, corners: Sequence[tuple[float, float]], backwards: bool) -> float:
+    """m from the robot's leading edge to the nearest of `corners`, along its way."""
+    sign, edge = (-1.0, 0.55) if backwards else (1.0, 0.5)
+    c, s = math.cos(pose.yaw), math.sin(pose.yaw)
+    return min(sign * ((x - pose.x) * c + (y - pose.y) * s) for x, y in corners) - edge
+
+
+def obstacle(kind: str, site: Site, tracks: Sequence[Track], number: int) -> Found:
+    """A brick in the lane or a plate missing from it, and how far ahead it is found."""
+    rng = generator(number, kind)
+    track = tracks[number % len(tracks)]
+    moment = ahead(track, rng, 1 if kind == "brick" else 2, site)
+    if moment is None:
+        return Found(False)
+    _, pose = track[moment]
+    aside = float(rng.uniform(-0.2, 0.2))
+    x, y = pose.x - aside * math.sin(pose.yaw), pose.y + aside * math.cos(pose.yaw)
+    floor = site.floor_at(pose.z)
+    if kind == "brick":
+        yaw = float(rng.uniform(-90, 90))
+        fault: Brick | MissingPlate = Brick(
+            floor=floor, place=(x, y), size=(0.1, 0.2, 0.1), yaw=yaw
+        )
+        half = (0.05, 0.1, math.radians(yaw))
+    else:
+        edge = float(rng.uniform(0.4, 0.8)) / 2
+        fault = MissingPlate(floor=floor, rect=(x - edge, y - edge, x + edge, y + edge))
+        half = (edge, edge, 0.0)
+    corners = [
+        (
+            x + a * half[0] * math.cos(half[2]) - b * half[1] * math.sin(half[2]),
+            y + a * half[0] * math.sin(half[2]) + b * half[1] * math.cos(half[2]),
+        )
+        for a in (-1, 1)
+        for b in (-1, 1)
+    ]
+    way = track[moment - 120 if moment >= 120 else 0 : moment + 1]
+    before = way[-2][1]
+    backwards = (
+        math.cos(pose.yaw) * (pose.x - before.x) + math.sin(pose.yaw) * (pose.y - before.y) < 0
+    )
+    with World(site, load_robot(), elements=fault.changed(site)) as world:
+        for _, at, finding in findings(world, Surroundings(site), way, number, ("terrain",)):
+            right = (finding.kind is EventKind.POSITIVE_OBSTACLE) == (kind == "brick")
+            if finding.place is None or not right:
+                return Found(True)
+            off = math.hypot(finding.place[0] - x, finding.place[1] - y)
+            return Found(True, {"m ahead": gap(at, corners, backwards), "m off": off})
+    return Found(True)
+
+
+def blocked_stairs(site: Site, tracks: Sequence[Track], number: int) -> Found:
+    """Barriers at both ends of a stairway that the robot takes."""
+    rng = generator(number, "stairs")
+    track = tracks[number % len(tracks)]
+    base, storey = site.spec.floors[0].z, site.spec.storey
+    steep = [
+        k
+        for k, (_, p) in enumerate(track)
+        if abs(p.pitch) > 0.3 and 0.2 < (p.z - base) / storey % 1.0 < 0.8
+    ]
+    if not steep:
+        return Found(False)
+    moment = int(rng.choice(steep))
+    pose = track[moment][1]
+    tower = "west tower" if pose.x < 5 else "east tower"
+    fault = BlockedStairs(tower=tower, floor=site.floor_at(pose.z))
+    with World(site, load_robot(), elements=fault.changed(site)) as world:
+        barriers = [
+            s for e in fault.changed(site) if e.name.startswith("barrier") for s in e.solids
+        ]
+        start = max(0, moment - 900)
+        for _, at, finding in findings(
+            world, Surroundings(site), track[start : moment + 1], number, ("terrain",)
+        ):
+            apart = min(
+                math.hypot(x - at.x, y - at.y)
+                for b in barriers
+                if abs(b.center[2] - at.z) < 1.5
+                for x, y in np.linspace(*_ends(b), 10)
+            )
+            if finding.kind is EventKind.POSITIVE_OBSTACLE:
+                return Found(True, {"m ahead": apart - 0.55})
+    return Found(True)
+
+
+def _ends(barrier: Solid) -> tuple[tuple[float, float], tuple[float, float]]:
+    """Both ends of a barrier, x and y in m."""
+    assert isinstance(barrier, Box)
+    (x, y, _), half = barrier.center, barrier.size[1] / 2
+    dx, dy = -half * math.sin(barrier.rpy[2]), half * math.cos(barrier.rpy[2])
+    return (x - dx, y - dy), (x + dx, y + dy)
+
+
+def on_surface(site: Site, track: Track, rng: np.random.Generator, reach: float) -> Vector | None:
+    """A place on a pipe or vessel within `reach` (m) of the way, turned to it."""
+    solids = [
+        s
+        for e in site.elements
+        if e.role in (Role.PIPE, Role.VESSEL)
+        for s in e.solids
+        if isinstance(s, Cylinder) and s.rpy[1] == 0.0
+    ]
+    for _ in range(200):
+        pose = track[int(rng.integers(len(track)))][1]
+        solid = solids[int(rng.integers(len(solids)))]
+        (x, y, z), up = solid.center, float(rng.uniform(0.2, 1.8))
+        distance = math.hypot(x - pose.x, y - pose.y)
+        if distance < reach and abs(pose.z + up - z) < solid.length / 2:
+            share = solid.radius / distance
+            return (x + share * (pose.x - x), y + share * (pose.y - y), pose.z + up)
+    return None
+
+
+def nearest(track: Track, place: Vector) -> float:
+    """m from the microphone to the place, where it comes nearest."""
+    return min(math.dist(on_site(p, NOSE).tolist(), place) for _, p in track[::5])
+
+
+def source(
+    kind: EventKind, name: str, make: Callable[[Track, np.random.Generator], Source | None],
+    world: World, tracks: Sequence[Track], number: int,
+) -> Found:  # fmt: skip
+    """A source that is there from a random time on, and when and where it is found."""
+    rng = generator(number, name, kind)
+    track = tracks[number % len(tracks)]
+    made = make(track, rng)
+    if made is None:
+        return Found(False)
+    since = float(rng.uniform(0.0, 60.0)) if isinstance(made, Alarm) else 0.0
+    around = Surroundings(world.site)
+    for part, pairs in ((0, track[: round(since / STEP)]), (1, track[round(since / STEP) :])):
+        if part:
+            around.add(made, since)
+        for now, pose, finding in findings(world, around, pairs, number, (name,)) if pairs else ():
+            if finding.kind is not kind or not part:
+                return Found(True)
+            figures = {"s after": now - since} if isinstance(made, Alarm) else {}
+            if isinstance(made, GasLeak | HotSpot):
+                figures["m away"] = math.dist(on_site(pose, NOSE).tolist(), made.place)
+            if isinstance(made, PumpSound):
+                place = pump_places(world.site)[made.pump]
+                figures["m away"] = math.dist(on_site(pose, NOSE).tolist(), place)
+                figures["right pump"] = float(made.pump in finding.detail)
+            if isinstance(made, HotSpot) and finding.place:
+                figures["m off"] = math.dist(finding.place, made.place)
+            return Found(True, figures)
+    return Found(True)
+
+
+def tell(name: str, results: list[Found]) -> None:
+    """Prints how many of the placements within reach were found, and the figures of these."""
+    reached = [r for r in results if r.within_reach]
+    hits = [r.figures for r in reached if r.figures is not None]
+    values = defaultdict(list)
+    for figures in hits:
+        for key, value in figures.items():
+            values[key].append(value)
+    text = "; ".join(
+        f"{key}: median {np.median(v):.2f}, 5 % {np.percentile(v, 5):.2f}, "
+        f"95 % {np.percentile(v, 95):.2f}"
+        for key, v in values.items()
+    )
+    print(f"{name}: found {len(hits)} of {len(reached)}; {text}", flush=True)
+
+
+def main() -> None:
+    """Runs all of it."""
+    parser = argparse.ArgumentParser(description=__doc__)
+    parser.add_argument("--site", default="umad")
+    parser.add_argument("--placements", type=int, default=60)
+    parser.add_argument("--missions", type=int, default=100)
+    parser.add_argument("--drives", type=int, default=20)
+    arguments = parser.parse_args()
+    site, robot = load_site(arguments.site), load_robot()
+    placements = range(arguments.placements)
+    with World(site, robot) as world:
+        began = time.process_time()
+        tracks = list(drives(Navigator(site, robot), world, arguments.drives, 300.0))
+        seconds = sum(t[-1][0] for t in tracks)
+        print(
+            f"{len(tracks)} drives, {seconds:.0f} s, kinematic: "
+            f"{1000 * (time.process_time() - began) / seconds:.2f} ms a simulated second",
+            flush=True,
+        )
+        for kind in ("brick", "missing plate"):
+            tell(kind, [obstacle(kind, site, tracks, k) for k in placements])
+        tell("blocked stairs", [blocked_stairs(site, tracks, k) for k in placements])
+
+        def leak(track: Track, rng: np.random.Generator) -> GasLeak | None:
+            place = on_surface(site, track, rng, 4.0)
+            return place and GasLeak(place, float(10 ** rng.uniform(-2.3, -1.3)))
+
+        def spot(track: Track, rng: np.random.Generator) -> HotSpot | None:
+            place = on_surface(site, track, rng, 3.0)
+            radius, temperature = float(rng.uniform(0.08, 0.25)), float(rng.uniform(70, 150))
+            return place and HotSpot(place, radius, temperature)
+
+        def pump(fault: PumpFault) -> Callable[[Track, np.random.Generator], PumpSound | None]:
+            def make(track: Track, rng: np.random.Generator) -> PumpSound | None:
+                near = [n for n, p in pump_places(site).items() if nearest(track, p) < 2.5]
+                return PumpSound(near[int(rng.integers(len(near)))], fault) if near else None
+
+            return make
+
+        for name, kind, watch, make in (
+            ("gas leak", EventKind.GAS_LEAK, "gas", leak),
+            ("hot spot", EventKind.HOT_SPOT, "heat", spot),
+            ("bearing", EventKind.ABNORMAL_SOUND, "pumps", pump(PumpFault.BEARING)),
+            ("cavitation", EventKind.ABNORMAL_SOUND, "pumps", pump(PumpFault.CAVITATION)),
+            ("alarm", EventKind.PLATFORM_ALARM, "alarm", lambda *_: Alarm()),
+        ):
+            tell(name, [source(kind, watch, make, world, tracks, k) for k in placements])
+        false_alarms(world, tracks, arguments.missions)
+
+
+if __name__ == "__main__":
+    main()

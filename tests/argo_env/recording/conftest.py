@@ -1,0 +1,71 @@
+"""A run of the yard, recorded: with a reaction, a pause, rounds and an abnormal value."""
+
+from types import SimpleNamespace
+
+import pytest
+
+from argo_compiler.hfsm import Occurred, Pause, Resume
+from argo_compiler.il import Afterwards, EventKind, Group, Reaction, Response
+from argo_compiler.model import Pose
+from argo_env.recording.files import recording_to
+from argo_env.recording.reader import read_recording
+from argo_env.session import simulate
+from argo_env.settings import RunSettings, logged
+from tests.yard import measure, mission, waypoint, yard
+
+PLAN = mission(
+    measure(1),
+    waypoint("A", 2.05, 2.05),
+    measure(2),
+    waypoint("B", 3.05, 2.05),
+    measure(3),
+    groups=(Group(name="Round", start="A", end="B", max_repeat_count=2),),
+    reactions=(
+        Reaction(
+            event=EventKind.GAS_LEAK,
+            response=Response.SAFE_AREA,
+            pose=Pose(x=2.05, y=1.55, z=0.02),
+            until=EventKind.ALL_CLEAR,
+            afterwards=Afterwards.RESUME,
+        ),
+    ),
+)
+SETTINGS = RunSettings(
+    seed=3,
+    values={2: 7.25},
+    events=logged(
+        (22.0, Occurred(EventKind.GAS_LEAK, "by hand")),
+        (35.0, Occurred(EventKind.ALL_CLEAR)),
+        (50.0, Pause()),
+        (55.0, Resume()),
+    ),
+)
+
+
+@pytest.fixture(scope="session")
+def yard_navigator():
+    return yard()
+
+
+@pytest.fixture(scope="session")
+def record_run(yard_navigator):
+    """Runs the plan and records it to a file; returns the run's record."""
+
+    def run(file, settings=SETTINGS, source=None):
+        with recording_to(file, source) as recorder:
+            return simulate(PLAN, yard_navigator, settings=settings, recorder=recorder)
+
+    return run
+
+
+@pytest.fixture(scope="session")
+def recorded(record_run, tmp_path_factory):
+    """The run's record, the file with its recording, and what was read of it."""
+    folder = tmp_path_factory.mktemp("recorded")
+    source = folder / "plan.txt"
+    source.write_text("the plan as a person wrote it", encoding="utf-8")
+    file = folder / "run.mcap"
+    record = record_run(file, source=source)
+    return SimpleNamespace(
+        record=record, file=file, content=file.read_bytes(), found=read_recording(file)
+    )

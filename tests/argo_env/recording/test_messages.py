@@ -1,0 +1,269 @@
+"""What is in a recording, read with the libraries of those who define the formats."""
+
+import json
+import math
+from collections import Counter, defaultdict
+
+import jsonschema
+import numpy as np
+import pytest
+from mcap.reader import make_reader
+from mcap_protobuf.decoder import DecoderFactory
+
+from argo_env.site.shapes import Box
+from argo_env.site.urdf import COLOURS
+
+FOXGLOVE = {
+    "/tf": "FrameTransforms",
+    "/tf_limbs": "FrameTransforms",
+    "/tf_static": "FrameTransforms",
+    "/pose": "PoseInFrame",
+    "/joints": "JointStates",
+    "/path": "PosesInFrame",
+    "/site/floor_1": "SceneUpdate",
+    "/robot": "SceneUpdate",
+    "/checkpoints": "SceneUpdate",
+    "/findings/markers": "SceneUpdate",
+    "/log": "Log",
+}
+OWN = {
+    "/mission": "MissionState",
+    "/trace": "TraceStep",
+    "/tasks": "TaskRun",
+    "/readings": "Reading",
+    "/findings": "Anomaly",
+    "/battery": "BatteryState",
+}
+
+
+@pytest.fixture(scope="module")
+def messages(recorded):
+    """The messages of each topic: schema, channel, message and what it says."""
+    found = defaultdict(list)
+    with recorded.file.open("rb") as stream:
+        reader = make_reader(stream, validate_crcs=True, decoder_factories=[DecoderFactory()])
+        for schema, channel, message in reader.iter_messages():
+            if channel.message_encoding == "protobuf":
+                decoder = DecoderFactory().decoder_for(channel.message_encoding, schema)
+                said = decoder(message.data)
+            else:
+                said = json.loads(message.data)
+            found[channel.topic].append((schema, channel, message, said))
+    return found
+
+
+@pytest.fixture(scope="module")
+def said(messages):
+    """What the messages of each topic say, with their times (s)."""
+    return {
+        topic: [(message.log_time / 1e9, said) for _, _, message, said in rows]
+        for topic, rows in messages.items()
+    }
+
+
+def test_topics_have_the_schemas_that_foxglove_knows(messages) -> None:
+    for topic, name in FOXGLOVE.items():
+        for schema, channel, _, _ in messages[topic]:
+            assert (schema.name, schema.encoding, channel.message_encoding) == (
+                f"foxglove.{name}", "protobuf", "protobuf",
+            )  # fmt: skip
+    for topic, name in OWN.items():
+        for schema, channel, _, _ in messages[topic]:
+            assert (schema.name, schema.encoding, channel.message_encoding) == (
+                f"argo.{name}", "jsonschema", "json",
+            )  # fmt: skip
+    assert FOXGLOVE.keys() | OWN.keys() <= messages.keys()
+
+
+def test_json_messages_keep_their_schema(messages) -> None:
+    for rows in messages.values():
+        for schema, _, _, value in rows:
+            if schema.encoding == "jsonschema":
+                strict = forbid_more(json.loads(schema.data))
+                jsonschema.validate(value, strict)
+                require_plain(strict)
+
+
+def forbid_more(schema):
+    """The same schema, with which fields that it does not name are errors."""
+    if schema["type"] == "object":
+        fields = {name: forbid_more(field) for name, field in schema["properties"].items()}
+        return schema | {"properties": fields, "additionalProperties": False}
+    return schema | ({"items": forbid_more(schema["items"])} if "items" in schema else {})
+
+
+def require_plain(schema) -> None:
+    """Foxglove's open-source version shows no schema with references or alternatives."""
+    assert not {"$ref", "anyOf", "oneOf", "allOf", "prefixItems"} & schema.keys()
+    assert schema["type"] in {"object", "array", "boolean", "integer", "number", "string"}
+    for part in (*schema.get("properties", {}).values(), *filter(None, [schema.get("items")])):
+        require_plain(part)
+
+
+def test_timestamps_are_simulated_time(said, recorded) -> None:
+    for rows in said.values():
+        times = [t for t, _ in rows]
+        assert times == sorted(times)
+        assert times[0] >= 0.0
+        assert times[-1] <= recorded.record.result.duration
+        for t, message in rows:
+            if hasattr(message, "timestamp"):
+                assert stamp(message) == pytest.approx(t, abs=1e-9)
+    assert said["/tf"][-1][0] == recorded.record.result.duration
+
+
+def stamp(message) -> float:
+    return message.timestamp.seconds + message.timestamp.nanos / 1e9
+
+
+def test_poses_come_ten_times_a_second_and_are_those_of_the_record(said, recorded) -> None:
+    poses = {round(t, 6): message for t, message in said["/pose"]}
+    assert np.diff(sorted(poses)) == pytest.approx(0.1, abs=1e-6)
+    for sample in recorded.record.path:
+        pose = poses[sample.t].pose
+        assert poses[sample.t].frame_id == "world"
+        where = (pose.position.x, pose.position.y, pose.position.z)
+        assert where == pytest.approx((sample.x, sample.y, sample.z), abs=1e-4)
+        q = pose.orientation
+        assert math.hypot(q.x, q.y, q.z, q.w) == pytest.approx(1.0)
+        yaw = math.atan2(2 * (q.w * q.z + q.x * q.y), 1 - 2 * (q.y**2 + q.z**2))
+        assert math.remainder(yaw - sample.yaw, math.tau) == pytest.approx(0.0, abs=1e-3)
+
+
+def test_transforms_make_one_tree_that_all_that_is_drawn_hangs_on(said) -> None:
+    parents = {}
+    for topic in ("/tf", "/tf_limbs", "/tf_static"):
+        first = said[topic][0][1]
+        for _, message in said[topic]:
+            assert [t.child_frame_id for t in message.transforms] == [
+                t.child_frame_id for t in first.transforms
+            ]
+        for transform in first.transforms:
+            assert transform.child_frame_id not in parents
+            parents[transform.child_frame_id] = transform.parent_frame_id
+    for frame in parents:
+        chain = [frame]
+        while chain[-1] in parents:
+            chain.append(parents[chain[-1]])
+            assert len(chain) <= len(parents) + 1, "a circle"
+        assert chain[-1] == "world"
+    drawn = {
+        entity.frame_id
+        for topic in ("/robot", "/checkpoints", "/site/floor_1")
+        for _, message in said[topic]
+        for entity in message.entities
+    }
+    assert drawn <= parents.keys() | {"world"}
+    assert "sensor_head" in drawn
+
+
+def test_limbs_are_told_when_they_move_and_once_a_second(said) -> None:
+    assert len(said["/joints"]) == len(said["/tf_limbs"])
+    for (before, _), (after, _) in zip(said["/joints"], said["/joints"][1:], strict=False):
+        assert after - before <= 1.0 + 1e-6
+    shoulder = [
+        next(j.position for j in message.joints if j.name == "arm_shoulder")
+        for _, message in said["/joints"]
+    ]
+    assert len(set(shoulder)) >= 2, "the arm is raised to measure"
+
+
+def test_site_is_drawn_with_all_its_solids(said, recorded) -> None:
+    """Upright solids are cut at the floors, so their volumes are compared, colour by colour."""
+    drawn, meant = Counter(), Counter()
+    for topic, rows in said.items():
+        if topic.startswith("/site/"):
+            assert [t for t, _ in rows] == [0.0]
+            for entity in rows[0][1].entities:
+                for cube in entity.cubes:
+                    drawn[shade(cube)] += cube.size.x * cube.size.y * cube.size.z
+                for tube in entity.cylinders:
+                    drawn[shade(tube)] += math.pi / 4 * tube.size.x * tube.size.y * tube.size.z
+    for element in recorded.found.site.elements:
+        key = tuple(round(c, 3) for c in COLOURS[element.material])
+        for solid in element.solids:
+            meant[key] += (
+                math.prod(solid.size)
+                if isinstance(solid, Box)
+                else math.pi * solid.radius**2 * solid.length
+            )
+    assert drawn == pytest.approx(meant)
+
+
+def shade(primitive):
+    return tuple(round(getattr(primitive.color, c), 3) for c in "rgb")
+
+
+def test_readings_tasks_and_trace_are_those_of_the_record(said, recorded) -> None:
+    record = recorded.record
+    for topic, models in (
+        ("/readings", record.readings), ("/tasks", record.tasks), ("/trace", record.trace),
+        ("/findings", record.anomalies),
+    ):  # fmt: skip
+        assert [message for _, message in said[topic]] == [
+            json.loads(model.model_dump_json(exclude_none=True)) for model in models
+        ]
+
+
+def test_checkpoints_change_colour_when_they_are_read(said, recorded) -> None:
+    updates = [message for _, message in said["/checkpoints"]]
+    assert len(updates) == 1 + len(recorded.record.readings)
+    for update in updates:
+        assert len(update.entities) == 3, "each message tells of all, so that one is enough"
+    texts = [{e.id: e.texts[0].text for e in update.entities} for update in updates]
+    assert texts[0]["checkpoint 2"] == "#2 gauge 2"
+    assert texts[-1]["checkpoint 2"] == "#2 gauge 2: 7.25 bar"
+    red, green = (
+        next(e for e in updates[-1].entities if e.id == f"checkpoint {k}").cylinders[0].color
+        for k in (2, 1)
+    )
+    assert red.r > 2 * red.g
+    assert green.g > 2 * green.r
+
+
+def test_findings_are_marked_where_they_are(said, recorded) -> None:
+    marks = said["/findings/markers"][-1][1].entities
+    placed = [anomaly for anomaly in recorded.record.anomalies if anomaly.place]
+    assert len(marks) == len(placed) >= 1
+    for entity, anomaly in zip(marks, placed, strict=True):
+        ball = entity.spheres[0].pose.position
+        assert (ball.x, ball.y, ball.z) == pytest.approx(anomaly.place)
+        assert anomaly.detail in entity.texts[0].text
+
+
+def test_battery_is_that_of_the_path(said, recorded) -> None:
+    charges = {round(t, 6): state["charge"] for t, state in said["/battery"]}
+    for sample in recorded.record.path:
+        assert charges[sample.t] == pytest.approx(sample.charge, abs=1e-4)
+    assert charges[max(charges)] < charges[0.0]
+    assert all(23.0 <= state["voltage"] <= 29.0 for _, state in said["/battery"])
+
+
+def test_mission_state_tells_what_interrupts_it(said, recorded) -> None:
+    states = said["/mission"]
+    assert states[0][0] == 0.0
+    reacting = [t for t, state in states if state.get("reaction") == "gas_leak"]
+    assert reacting[0] == pytest.approx(22.0)
+    assert next(t for t, state in states if state["paused"]) == pytest.approx(50.0)
+    assert {round for _, state in states for round in state["rounds"]} == {1, 2}
+    last = states[-1][1]
+    assert last["outcome"] == recorded.record.result.outcome
+    assert last["readings"] == len(recorded.record.readings)
+    assert last["abnormal"] == 2
+    assert last["done"] == sum(t.outcome == "done" for t in recorded.record.tasks)
+
+
+def test_log_tells_events_and_the_verdict(said, recorded) -> None:
+    lines = [(message.level, message.message) for _, message in said["/log"]]
+    assert (3, "gas leak: by hand") in lines
+    assert lines[-1][1] == recorded.record.result.verdict
+
+
+def test_path_begins_where_the_robot_is(said) -> None:
+    poses = {round(t, 6): message.pose.position for t, message in said["/pose"]}
+    assert len(said["/path"]) >= 5
+    for t, way in said["/path"]:
+        assert way.frame_id == "world"
+        # The step in which the way was planned is a part of it already.
+        here, start = poses[round(t, 6)], way.poses[0].position
+        assert math.dist((here.x, here.y), (start.x, start.y)) <= 0.1

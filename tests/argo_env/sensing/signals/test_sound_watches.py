@@ -1,0 +1,112 @@
+"""Pumps that sound unlike themselves, and the alarm with its beat."""
+
+import math
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from argo_compiler.il import EventKind
+from argo_env.robot.pose import BodyPose
+from argo_env.sensing.signals.alarm_watch import LOOKS, RECORDING, AlarmWatch, fits_beat, hears_tone
+from argo_env.sensing.signals.microphone import Microphone, pump_places
+from argo_env.sensing.signals.pump_watch import PumpWatch
+from argo_env.surroundings import Alarm, PumpFault, PumpSound, Surroundings
+from argo_env.surroundings.sound import ALARM_TONE, RATE, alarm_sound
+from tests.argo_env.sensing.signals.plant import Z, lane, told
+from tests.conftest import examples
+
+BESIDE = BodyPose(3.0, 3.0, Z, 0.5)
+
+
+def pumps(site, seed=0):
+    around = Surroundings(site)
+    return PumpWatch(Microphone(around, np.random.default_rng(seed)), site), around
+
+
+def alarm(site, seed=0):
+    around = Surroundings(site)
+    return AlarmWatch(Microphone(around, np.random.default_rng(seed))), around
+
+
+def stand(watch, seconds, start=0.0, pose=BESIDE):
+    count = round(seconds / watch.period)
+    times = [start + k * watch.period for k in range(count)]
+    return [(t, f) for t in times for f in watch.look(t, pose)]
+
+
+@pytest.mark.parametrize("fault", PumpFault)
+@pytest.mark.parametrize("name", ["pump P-1", "pump P-2"])
+@settings(deadline=None, max_examples=examples(4))
+@given(st.floats(1.2, 2.5), st.floats(0, 2 * math.pi), st.integers(0, 99))
+def test_a_pump_with_a_fault_is_found_and_one_without_is_not(site, name, fault, r, turn, seed):
+    x, y, _ = pump_places(site)[name]
+    pose = BodyPose(x + r * math.cos(turn) - 0.4, y + r * math.sin(turn), Z, 0.0)
+    watch, around = pumps(site, seed)
+    assert stand(watch, 40.0, pose=pose) == []
+    around.add(PumpSound(name, fault))
+    ((_, finding),) = stand(watch, 20.0, 40.0, pose)
+    assert finding.kind is EventKind.ABNORMAL_SOUND
+    assert finding.detail.startswith(name)
+    assert finding.place == pump_places(site)[name]
+    around.remove(PumpSound(name, fault))
+    assert stand(watch, 20.0, 60.0, pose) == []
+    around.add(PumpSound(name, fault))
+    assert len(stand(watch, 20.0, 80.0, pose)) == 1
+
+
+def test_far_from_pumps_it_does_not_listen(site):
+    watch, around = pumps(site)
+    around.add(PumpSound("pump P-1"))
+    assert stand(watch, 40.0, pose=BodyPose(15.0, 0.0, Z, 0.0)) == []
+
+
+@settings(deadline=None, max_examples=examples(8))
+@given(st.floats(0.0, 30.0), st.integers(0, 99))
+def test_the_alarm_is_told_and_is_over_when_it_is(site, start, seed):
+    watch, around = alarm(site, seed)
+    assert stand(watch, start) == []
+    begin = round(start / watch.period) * watch.period
+    around.add(Alarm(), begin)
+    ((heard, finding),) = stand(watch, 12.0, begin)
+    assert finding.kind is EventKind.PLATFORM_ALARM
+    assert heard - begin < 8.0
+    around.remove(Alarm(), begin + 12.0)
+    ((_, finding),) = stand(watch, 12.0, begin + 12.0)
+    assert finding.kind is EventKind.ALL_CLEAR
+
+
+def test_driving_past_pumps_there_is_no_alarm(site):
+    for seed in range(3):
+        assert told(alarm(site, seed)[0], lane(0.5, 15.0, y=3.5)) == []
+
+
+@settings(deadline=None, max_examples=examples(60))
+@given(st.floats(0.0, 2.0))
+def test_the_beat_is_known_whenever_it_began(shift):
+    times = [0.4 * k for k in range(LOOKS)]
+    heard = [(t, bool(np.any(alarm_sound(t + shift, 800, 85.0)))) for t in times]
+    # A recording that has only just a bit of the tone may or may not count.
+    assert fits_beat(heard)
+
+
+@pytest.mark.parametrize("beat", [(0.5, 1.0), (0.3, 2.0), (1.7, 2.0), (2.0, 4.0), (9.0, 9.0)])
+def test_other_beats_are_not_the_alarm(beat):
+    on, period = beat
+    for shift in np.arange(0.0, period, 0.05):
+        times = [0.4 * k for k in range(LOOKS)]
+        assert not fits_beat([(t, (t + shift) % period < on) for t in times])
+
+
+@settings(deadline=None, max_examples=examples(40))
+@given(st.floats(300.0, 3000.0), st.integers(0, 99))
+def test_only_its_own_tone_is_heard(pitch, seed):
+    time = np.arange(round(RECORDING * RATE)) / RATE
+    noise = np.random.default_rng(seed).standard_normal(len(time)).astype(np.float32)
+    tone = (10 * np.sin(2 * math.pi * pitch * time)).astype(np.float32)
+    assert not hears_tone(noise)
+    if abs(pitch - ALARM_TONE) > 100:
+        assert not hears_tone(noise + tone)
+    elif abs(pitch - ALARM_TONE) < 5:
+        assert hears_tone(noise + tone)

@@ -1,0 +1,113 @@
+"""Recordings made and replayed by the command, also of processes that are killed."""
+
+import re
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+import yaml
+
+from argo_compiler.files import write_mission
+from argo_compiler.il import Group
+from argo_env.recording.reader import read_recording
+from tests.yard import SITE, measure, mission, waypoint
+
+SHORT = mission(measure(1), waypoint("A", 2.05, 2.05))
+LONG = mission(
+    measure(1),
+    waypoint("A", 2.05, 2.05),
+    measure(2),
+    groups=(Group(name="Round", start="A", end="MEASURE 2", max_repeat_count=400),),
+)
+
+
+@pytest.fixture(scope="module")
+def folder(tmp_path_factory) -> Path:
+    folder = tmp_path_factory.mktemp("replay")
+    (folder / "yard.yaml").write_text(yaml.safe_dump(SITE), encoding="utf-8")
+    write_mission(SHORT, folder / "short.json")
+    write_mission(LONG, folder / "long.json")
+    return folder
+
+
+def results(output: str) -> str:
+    """What a command printed of the run, without what it says of its own time and files."""
+    return output[: output.index("Success: ")]
+
+
+def same_files(a: Path, b: Path) -> bool:
+    names = sorted(p.name for p in a.iterdir())
+    assert names == sorted(p.name for p in b.iterdir())
+    return all((a / name).read_bytes() == (b / name).read_bytes() for name in names)
+
+
+def test_replay_shows_and_makes_again_what_the_run_did(argo, folder: Path) -> None:
+    run = ("run", "short.json", "--site", "yard.yaml", "--seed", 3)
+    first = argo(
+        *run, "--record", "run.mcap", "--report", "report", "--render", "film.gif", cwd=folder
+    )
+    assert first.returncode == 0, first.stderr
+    assert "Recording: run.mcap" in first.stdout
+    again = argo("run", "short.json", "--site", "yard.yaml", "--seed", 3, "--record", "2.mcap",
+                 cwd=folder)  # fmt: skip
+    assert again.returncode == 0, again.stderr
+    assert (folder / "2.mcap").read_bytes() == (folder / "run.mcap").read_bytes()
+    # Without the files of the mission and the site: the recording has all of it.
+    elsewhere = folder / "elsewhere"
+    elsewhere.mkdir()
+    (folder / "run.mcap").rename(elsewhere / "run.mcap")
+    made = argo("replay", "run.mcap", "--report", "report", "--render", "film.gif", cwd=elsewhere)
+    assert made.returncode == 0, made.stderr
+    assert results(made.stdout) == results(first.stdout)
+    assert same_files(folder / "report", elsewhere / "report")
+    assert (folder / "film.gif").read_bytes() == (elsewhere / "film.gif").read_bytes()
+
+
+def test_a_run_that_is_killed_can_be_replayed_up_to_there(argo, folder: Path) -> None:
+    command = (
+        "run", "long.json", "--site", "yard.yaml", "--record", "killed.mcap",
+        "--journal", "killed.journal",
+    )  # fmt: skip
+    with subprocess.Popen(
+        [sys.executable, "-m", "argo_planner", *command],
+        cwd=folder,
+        stdout=subprocess.DEVNULL,
+        stderr=subprocess.PIPE,
+        text=True,
+    ) as process:
+        told = 0
+        while told < 5:
+            line = process.stderr.readline()
+            assert line, "it has ended before it was killed"
+            told += "shows" in line
+        process.kill()
+    found = read_recording(folder / "killed.mcap")
+    assert (found.whole, found.record) == (False, None)
+    # One reading takes about ten seconds of simulated time, after which all is on disk.
+    assert len(found.readings) >= 3
+    shown = argo("replay", "killed.mcap", cwd=folder)
+    text = re.sub(r"\s+", " ", shown.stdout)
+    assert (shown.returncode, shown.stderr) == (1, "")
+    assert "gauge 1 (#1) shows" in text
+    assert f"breaks off after {found.until:g} s" in text
+    refused = argo("replay", "killed.mcap", "--report", "none", cwd=folder)
+    assert refused.returncode == 2
+    assert "has no record of the run" in refused.stderr
+    assert "Traceback" not in refused.stderr
+    assert not (folder / "none").exists()
+
+
+@pytest.mark.parametrize(
+    ("arguments", "says"),
+    [
+        (("run", "short.json", "--record", "run.bag"), "name it so"),
+        (("replay", "short.json"), "is no .mcap file"),
+        (("replay", "short.json", "--render", "film.avi"), "a film is an .mp4 or a .gif"),
+    ],
+)
+def test_what_is_refused(argo, folder: Path, arguments, says) -> None:
+    result = argo(*arguments, cwd=folder)
+    assert result.returncode == 2
+    assert says in re.sub(r"\s+", " ", result.stderr)
+    assert "Traceback" not in result.stderr

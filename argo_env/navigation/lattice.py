@@ -15,13 +15,14 @@ from scipy.sparse.csgraph import connected_components
 from argo_env.navigation.raster import CELL
 from argo_env.navigation.stencil import HEADINGS, Stencil, heading_angle, standing, turning
 from argo_env.navigation.surface import Surface
+from argo_env.robot.calibration import MotionKind, drive_kind
 from argo_env.robot.spec import RobotSpec
 
 MARGIN = 0.02  # m kept free around the footprint
 ROOM = 0.1  # m around the footprint where driving is preferred
 CRAMPED_FACTOR = 1.2  # what a second with less room counts
 LEVEL = 0.1  # m of height between front and rear, or left and right, that still counts as flat
-TURNING_LEVEL = 0.05  # m of height within the circle of a turn
+TURNING_LEVEL = 0.025  # m of height within the circle of a turn: belts scrape along a higher rim
 
 
 @dataclass(frozen=True)
@@ -30,8 +31,9 @@ class Lattice:
     `heading[s]`; `rise[s]` is the height of its front above its rear in m.
 
     `costs` is the sparse matrix of moves from state to state: the seconds they take, and a little
-    more where the robot has little room, so that paths keep to the middle. `state_of[cell,
-    heading]` finds a state, -1 where the robot can't stand.
+    more where the robot has little room, so that paths keep to the middle. `roomy[s]` says whether
+    there is room around state s. `state_of[cell, heading]` finds a state, -1 where the robot can't
+    stand.
     """
 
     surface: Surface
@@ -39,6 +41,7 @@ class Lattice:
     cell: NDArray[np.int64]
     heading: NDArray[np.int64]
     rise: NDArray[np.float64]
+    roomy: NDArray[np.bool_]
     state_of: NDArray[np.int64]
     costs: csr_array
 
@@ -46,10 +49,18 @@ class Lattice:
     def size(self) -> int:
         return len(self.cell)
 
-    def poses(self) -> NDArray[np.float64]:
-        """x, y, z (m) and yaw (rad) of every state, shape (size, 4)."""
-        positions = self.surface.positions()[self.cell]
-        return np.column_stack([positions, self.heading * heading_angle(1)])
+    def seconds(
+        self, costs: NDArray[np.float64], source: NDArray[np.int64], target: NDArray[np.int64]
+    ) -> NDArray[np.float64]:
+        """The seconds that moves of the given `costs` from `source` to `target` take."""
+        return costs / _factor(self.roomy, source, target)
+
+    def poses(self, states: NDArray[np.int64] | slice = slice(None)) -> NDArray[np.float64]:
+        """x, y, z (m) and yaw (rad) of the states, shape (n, 4)."""
+        cell = self.cell[states]
+        x, y = self.surface.grid.centers(self.surface.i[cell], self.surface.j[cell])
+        yaw = self.heading[states] * heading_angle(1)
+        return np.column_stack([x, y, self.surface.z[cell], yaw])
 
 
 def build_lattice(surface: Surface, robot: RobotSpec) -> Lattice:
@@ -70,9 +81,16 @@ def build_lattice(surface: Surface, robot: RobotSpec) -> Lattice:
         *_turns(surface, robot, state_of),
     ]
     source, target, seconds = (np.concatenate(parts) for parts in zip(*edges, strict=True))
-    costs = seconds * np.where(roomy[source] & roomy[target], 1.0, CRAMPED_FACTOR)
+    costs = seconds * _factor(roomy, source, target)
     matrix = coo_array((costs, (source, target)), shape=(len(cell), len(cell))).tocsr()
-    return Lattice(surface, robot, cell, heading_of, rise, state_of, matrix)
+    return Lattice(surface, robot, cell, heading_of, rise, roomy, state_of, matrix)
+
+
+def _factor(
+    roomy: NDArray[np.bool_], source: NDArray[np.int64], target: NDArray[np.int64]
+) -> NDArray[np.float64]:
+    """What a second of each move counts."""
+    return np.where(roomy[source] & roomy[target], 1.0, CRAMPED_FACTOR)
 
 
 def connected_part(lattice: Lattice, state: int) -> Lattice:
@@ -89,6 +107,7 @@ def connected_part(lattice: Lattice, state: int) -> Lattice:
         lattice.cell[kept],
         lattice.heading[kept],
         lattice.rise[kept],
+        lattice.roomy[kept],
         state_of,
         csr_array(lattice.costs[kept][:, kept]),
     )
@@ -133,23 +152,29 @@ def _drives(
         source, target = np.flatnonzero(ok), target[ok]
         mean_rise = (rise[source] + rise[target]) / 2
         step = np.where(heading[source] % 2 == 0, CELL, CELL * np.sqrt(2.0))
-        flat, stairs = drive_speed(robot, gear, False), drive_speed(robot, gear, True)
+        flat, stairs = (robot.real_speed(drive_kind(gear, tilted)) for tilted in (False, True))
         speed = np.where(np.abs(mean_rise) > LEVEL, stairs, flat)
         edges.append((source, target, step * np.hypot(1.0, mean_rise / length) / speed))
     return edges
 
 
-def drive_speed(robot: RobotSpec, gear: int, on_stairs: bool) -> float:
-    """m/s in gear +1 or -1. On stairs the front is the lower end: backwards is up."""
-    if on_stairs:
-        return robot.stair_down_speed if gear > 0 else robot.stair_up_speed
-    return robot.speed if gear > 0 else robot.reverse_speed
+def _turn_seconds(robot: RobotSpec) -> float:
+    """s for a turn by one heading.
+
+    A way is turns and drives by turns, so with every turn the time is lost that setting off for it
+    and for the drive after it takes. Most are by two headings.
+    """
+    paces = robot.calibration
+    return (
+        heading_angle(1) / robot.real_speed(MotionKind.TURN)
+        + (paces.turn.lost + paces.ahead.lost) / 2
+    )
 
 
 def _turns(surface: Surface, robot: RobotSpec, state_of: NDArray[np.int64]) -> list[Edges]:
     """Turns in place by one heading, both ways, where the swept circle is free and flat."""
     edges = []
-    seconds = heading_angle(1) / robot.turn_rate_radians
+    seconds = _turn_seconds(robot)
     for heading in range(HEADINGS):
         here, there = state_of[:, heading], state_of[:, (heading + 1) % HEADINGS]
         middle = np.flatnonzero((here >= 0) & (there >= 0))

@@ -2,27 +2,29 @@
 
 import math
 from collections.abc import Sequence
+from dataclasses import replace
 from functools import cached_property, lru_cache
 from itertools import pairwise
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.sparse.csgraph import dijkstra
 
 from argo_compiler.errors import ArgoError
 from argo_compiler.model import Pose
-from argo_env.navigation.lattice import LEVEL, Lattice, build_lattice, connected_part
+from argo_env.navigation.blockage import Blockage, close, closed_cells
+from argo_env.navigation.lattice import LEVEL, TURNING_LEVEL, Lattice, build_lattice, connected_part
 from argo_env.navigation.path import Motion, Path, merge, wrap
 from argo_env.navigation.raster import Grid
+from argo_env.navigation.regions import find_cuts, make_partition, repartition
+from argo_env.navigation.routes import Routes
 from argo_env.navigation.smoothing import FlatMap, smooth
-from argo_env.navigation.stencil import HEADINGS
+from argo_env.navigation.stencil import HEADINGS, heading_angle
 from argo_env.navigation.surface import Surface, find_surface
 from argo_env.navigation.views import find_views
 from argo_env.robot.spec import RobotSpec
 from argo_env.site import Site
 
 SNAP_DISTANCE = 0.5  # m that a wanted pose may be away from one where the robot can stand
-_TREES = 64  # shortest-path trees that are kept
 
 
 class UnreachableError(ArgoError):
@@ -30,19 +32,38 @@ class UnreachableError(ArgoError):
 
 
 class Navigator:
-    """Finds the fastest paths on a site. Holds the site's lattice and a cache of search trees."""
+    """Finds the fastest paths on a site. Holds the site's lattice and what it knows of the ways."""
 
     def __init__(self, site: Site, robot: RobotSpec) -> None:
         self.site = site
         self.robot = robot
+        self.blockages: tuple[Blockage, ...] = ()
         # The cache belongs to this object, not to the class, and goes with it.
-        self._tree = lru_cache(maxsize=_TREES)(self._search)
         self._views = lru_cache(maxsize=None)(self._find_views)
+        self._viewing_state = lru_cache(maxsize=None)(self._find_viewing_state)
         self._flat_map = lru_cache(maxsize=None)(self._make_flat_map)
 
+    def avoiding(self, blockages: Sequence[Blockage]) -> "Navigator":
+        """A navigator of the same site that also keeps clear of `blockages`.
+
+        Raster and surface are shared. Docks and checkpoints may be out of reach then: the paths
+        there raise UnreachableError. A robot that stands where it may no longer be starts from the
+        nearest place where it may.
+        """
+        if not blockages:
+            return self
+        other = Navigator(self.site, self.robot)
+        other.blockages = (*self.blockages, *blockages)
+        other.surface = self.surface
+        other.lattice = close(self.lattice, blockages)
+        changed = np.diff(other.lattice.costs.indptr) != np.diff(self.lattice.costs.indptr)
+        partition = repartition(self._routes.partition, other.lattice, changed)
+        other._routes = Routes(other.lattice, partition)
+        return other
+
     def prepare(self) -> None:
-        """Builds surface and lattice now, so that no later call takes the time for it."""
-        _ = self.lattice
+        """Finds out now what all queries share, so that no later call takes the time for it."""
+        self._routes.prepare()
 
     @cached_property
     def surface(self) -> Surface:
@@ -74,17 +95,13 @@ class Navigator:
                 )
         return lattice
 
-    @cached_property
-    def _poses(self) -> NDArray[np.float64]:
-        return self.lattice.poses()
-
     def snap(self, pose: Pose) -> Pose:
         """The pose nearest to `pose` that the robot can take; its heading stays.
 
         Raises UnreachableError if there is none within SNAP_DISTANCE.
         """
-        x, y, z, _ = self._poses[self._state_at(pose)].tolist()
-        return Pose(x=round(x, 6), y=round(y, 6), z=round(z, 6), yaw=pose.yaw)
+        (place,) = _poses(self.lattice, [self._state_at(pose)])
+        return place.model_copy(update={"yaw": pose.yaw})
 
     def plan(self, start: Pose, goal: Pose) -> Path:
         """The fastest path from pose to pose.
@@ -94,25 +111,65 @@ class Navigator:
         """
         source = self._state_at(start)
         target = self._state_at(goal)
-        path = self._smoothed(source, target, start)
+        states = self._routes.find(source, (np.array([target]), np.zeros(1)))
+        if states is None:
+            raise self._no_way(start, f"({goal.x:.2f}, {goal.y:.2f}, {goal.z:.2f})")
+        path = self._smoothed(states, start)
         return self._with_final_turn(path, goal.yaw)
 
-    def plan_to_view(self, start: Pose, checkpoint_id: int) -> Path:
+    def plan_to_view(self, start: Pose, checkpoint_id: int, turned: float = 0.0) -> Path:
         """The path to the best place to read the checkpoint from: near in time, and a good view.
+        Its face may be taken to be `turned` (rad) against the plan.
 
         Raises UnreachableError if there is no such place, KeyError if there is no such checkpoint.
         """
+        return self._smoothed(self._way_to_view(start, checkpoint_id, turned), start)
+
+    def travel_times(self, places: Sequence[Pose | int]) -> NDArray[np.float64]:
+        """Seconds from each of `places` to each other, shape (n, n): row from, column to. A place
+        is a pose or the id of a checkpoint.
+
+        A time is what the cheapest way from state to state of the lattice takes, corners not cut:
+        a few per cent more than the path that `plan` gives. A checkpoint stands for one pose,
+        whatever comes before or after it: where `plan_to_view` leads from the docking station of
+        the lowest number. Where there is no way the time is inf; from a place to itself it is 0.
+
+        Raises UnreachableError for a pose where the robot can't stand and a checkpoint that it
+        can't see, KeyError if there is no such checkpoint.
+        """
+        return self._routes.times(self._states(places))
+
+    def travel_times_from(self, start: Pose, places: Sequence[Pose | int]) -> NDArray[np.float64]:
+        """Seconds from `start` to each of `places`, shape (n,): as `travel_times` has them, and
+        errors likewise."""
+        return np.asarray(self._routes.times(self._states([start, *places]), 1)[0, 1:])
+
+    def viewing_pose(self, checkpoint_id: int) -> Pose:
+        """The pose that `travel_times` counts with for a checkpoint.
+
+        Raises UnreachableError if it can't be seen, KeyError if there is no such checkpoint.
+        """
+        return _poses(self.lattice, [self._viewing_state(checkpoint_id)])[0]
+
+    def can_view(self, checkpoint_id: int) -> bool:
+        """Whether the checkpoint can be read from anywhere on the lattice."""
+        return len(self._views(checkpoint_id)[0]) > 0
+
+    def _find_viewing_state(self, checkpoint_id: int) -> int:
         states, costs = self._views(checkpoint_id)
-        if not len(states):
-            checkpoint = self.site.checkpoint(checkpoint_id)
-            raise UnreachableError(
-                f"checkpoint {checkpoint_id} ({checkpoint.name}) can't be seen from anywhere that"
-                " the robot can reach"
-            )
-        source = self._state_at(start)
-        seconds, _ = self._tree(source)
-        best = states[int(np.argmin(seconds[states] + costs))]
-        return self._smoothed(source, int(best), start)
+        total = self._from_first_dock[states] + costs
+        if not np.isfinite(total.min(initial=np.inf)):
+            # Says why.
+            return self._way_to_view(self._first_dock, checkpoint_id)[-1]
+        return int(states[int(np.argmin(total))])
+
+    @cached_property
+    def _first_dock(self) -> Pose:
+        return self.site.docks[min(self.site.docks)]
+
+    @cached_property
+    def _from_first_dock(self) -> NDArray[np.float64]:
+        return self._routes.costs_from(self._state_at(self._first_dock))
 
     def turning_places(self, floor: int) -> NDArray[np.float64]:
         """Poses (x, y, z, yaw) on a floor's deck in each of which the robot can turn all round."""
@@ -125,6 +182,12 @@ class Navigator:
         cells = np.flatnonzero(free)
         return np.column_stack([self.surface.positions()[cells], np.zeros(len(cells))])
 
+    def _states(self, places: Sequence[Pose | int]) -> NDArray[np.int64]:
+        states = [
+            self._state_at(p) if isinstance(p, Pose) else self._viewing_state(p) for p in places
+        ]
+        return np.array(states, dtype=np.int64)
+
     def _state_at(self, pose: Pose) -> int:
         state = _nearest(self.lattice, pose)
         if state is None:
@@ -134,25 +197,49 @@ class Navigator:
             )
         return state
 
-    def _search(self, source: int) -> tuple[NDArray[np.float64], NDArray[np.int32]]:
-        """The cost in s from `source` to every state, and the state before each on the way."""
-        seconds, before = dijkstra(
-            self.lattice.costs, indices=np.array([source]), return_predecessors=True
+    def _no_way(self, start: Pose, goal: str) -> UnreachableError:
+        reasons = ", ".join(dict.fromkeys(b.reason for b in self.blockages))
+        return UnreachableError(
+            f"there is no way from ({start.x:.2f}, {start.y:.2f}, {start.z:.2f}) to {goal}"
+            + (f" that avoids what is closed: {reasons}" if reasons else "")
         )
-        return seconds[0], before[0]
 
-    def _find_views(self, checkpoint_id: int) -> tuple[NDArray[np.int64], NDArray[np.float64]]:
-        return find_views(self.site, self.site.checkpoint(checkpoint_id), self.lattice)
+    def _way_to_view(self, start: Pose, checkpoint_id: int, turned: float = 0.0) -> list[int]:
+        goals = self._views(checkpoint_id, turned)
+        if not len(goals[0]):
+            checkpoint = self.site.checkpoint(checkpoint_id)
+            raise UnreachableError(
+                f"checkpoint {checkpoint_id} ({checkpoint.name}) can't be seen from anywhere that"
+                " the robot can reach"
+            )
+        states = self._routes.find(self._state_at(start), goals)
+        if states is None:
+            raise self._no_way(start, f"a view of checkpoint {checkpoint_id}")
+        return states
+
+    @cached_property
+    def _routes(self) -> Routes:
+        cuts = find_cuts(self.lattice, [f.z for f in self.site.spec.floors])
+        return Routes(self.lattice, make_partition(self.lattice, cuts))
+
+    def _find_views(
+        self, checkpoint_id: int, turned: float = 0.0
+    ) -> tuple[NDArray[np.int64], NDArray[np.float64]]:
+        planned = self.site.checkpoint(checkpoint_id)
+        return find_views(self.site, replace(planned, yaw=planned.yaw + turned), self.lattice)
 
     def _make_flat_map(self, z: float) -> FlatMap:
-        return FlatMap.at(self.surface, z)
+        cells = FlatMap.at(self.surface, z)
+        if not self.blockages:
+            return cells
+        free = cells.free.copy()
+        closed = closed_cells(self.surface, self.blockages)
+        closed &= np.abs(self.surface.z - z) <= TURNING_LEVEL
+        free[self.surface.i[closed], self.surface.j[closed]] = False
+        return FlatMap(cells.grid, free)
 
-    def _smoothed(self, source: int, target: int, start: Pose) -> Path:
-        _, before = self._tree(source)
-        states = [target]
-        while states[-1] != source:
-            states.append(int(before[states[-1]]))
-        path = _to_path(self.lattice, self._poses, states[::-1])
+    def _smoothed(self, states: list[int], start: Pose) -> Path:
+        path = _to_path(self.lattice, states)
         if path.start.yaw != start.yaw:
             here = path.start.model_copy(update={"yaw": start.yaw})
             turn = Motion(here, path.start, turn=wrap(path.start.yaw - start.yaw))
@@ -164,13 +251,7 @@ class Navigator:
         if abs(angle) < 1e-9:
             return path
         end = path.end.model_copy(update={"yaw": yaw})
-        poses = np.array(
-            [
-                [end.x, end.y, path.end.yaw + share * angle]
-                for share in np.linspace(0.0, 1.0, 2 + math.ceil(abs(angle) / 0.1))
-            ]
-        )
-        if not self._flat_map(round(end.z, 3)).clear(poses, self.robot.footprint):
+        if not self._flat_map(round(end.z, 3)).clear_turn(path.end, angle, self.robot.footprint):
             return path
         motions = merge((*path.motions, Motion(path.end, end, turn=angle)))
         return Path(path.start, tuple(motions))
@@ -178,13 +259,14 @@ class Navigator:
 
 def _nearest(lattice: Lattice, pose: Pose) -> int | None:
     """The state nearest to the pose, first by place, then by heading; None if all are far."""
-    positions = lattice.surface.positions()
-    step = np.hypot(positions[:, 0] - pose.x, positions[:, 1] - pose.y)
-    step += np.abs(positions[:, 2] - pose.z)
-    near = np.flatnonzero(step <= SNAP_DISTANCE)
+    surface = lattice.surface
+    around = surface.near(pose.x, pose.y, SNAP_DISTANCE)
+    x, y = surface.grid.centers(surface.i[around], surface.j[around])
+    step = np.hypot(x - pose.x, y - pose.y) + np.abs(surface.z[around] - pose.z)
+    near, step = around[step <= SNAP_DISTANCE], step[step <= SNAP_DISTANCE]
     heading = round(pose.yaw / (2 * math.pi / HEADINGS)) % HEADINGS
     aside = [min(k, HEADINGS - k) for k in ((h - heading) % HEADINGS for h in range(HEADINGS))]
-    cost = step[near, None] + 0.05 * np.array(aside)[None, :]
+    cost = step[:, None] + 0.05 * np.array(aside)[None, :]
     cost = np.where(lattice.state_of[near] >= 0, cost, np.inf)
     if not cost.size or not np.isfinite(cost.min()):
         return None
@@ -192,18 +274,34 @@ def _nearest(lattice: Lattice, pose: Pose) -> int | None:
     return int(lattice.state_of[near[cell], turned])
 
 
-def _to_path(lattice: Lattice, poses: NDArray[np.float64], states: Sequence[int]) -> Path:
+def _to_path(lattice: Lattice, states: Sequence[int]) -> Path:
     """The motions through lattice states, joined where they go on alike."""
-    corners = [
-        Pose(x=round(x, 6), y=round(y, 6), z=round(z, 6), yaw=wrap(yaw))
-        for x, y, z, yaw in poses[list(states)].tolist()
+    way = np.array(states)
+    poses, heading = lattice.poses(way), lattice.heading[way]
+    step, turn = np.diff(poses[:, :2], axis=0), np.diff(heading)
+    turn = (turn + HEADINGS // 2) % HEADINGS - HEADINGS // 2
+    yaw = poses[:-1, 3]
+    ahead = step[:, 0] * np.cos(yaw) + step[:, 1] * np.sin(yaw) > 0
+    tilted = np.abs(lattice.rise[way[:-1]] + lattice.rise[way[1:]]) / 2 > LEVEL
+    # The heading only changes in turns, so that drives are alike if their gear and slope are.
+    kind = np.where(turn != 0, -1, 2 * ahead + tilted)
+    ends = [*(np.flatnonzero(np.diff(kind)) + 1).tolist(), len(kind)] if len(kind) else []
+    corners = _poses(lattice, [states[k] for k in (0, *ends)])
+    motions, first = [], 0
+    for (a, b), end in zip(pairwise(corners), ends, strict=True):
+        if kind[first] < 0:
+            turned = int(turn[first:end].sum()) * heading_angle(1)
+            motions.append(Motion(a, b, turn=turned))
+        else:
+            gear = 1 if ahead[first] else -1
+            motions.append(Motion(a, b, gear=gear, on_stairs=bool(tilted[first])))
+        first = end
+    return Path(corners[0], tuple(motions))
+
+
+def _poses(lattice: Lattice, states: Sequence[int]) -> list[Pose]:
+    """The poses of lattice states."""
+    rows = lattice.poses(np.array(states)).tolist()
+    return [
+        Pose(x=round(x, 6), y=round(y, 6), z=round(z, 6), yaw=wrap(yaw)) for x, y, z, yaw in rows
     ]
-    motions = []
-    for k, (a, b) in enumerate(pairwise(corners)):
-        if a.yaw != b.yaw:
-            motions.append(Motion(a, b, turn=wrap(b.yaw - a.yaw)))
-            continue
-        ahead = (b.x - a.x) * math.cos(a.yaw) + (b.y - a.y) * math.sin(a.yaw)
-        rise = float(lattice.rise[states[k]] + lattice.rise[states[k + 1]]) / 2
-        motions.append(Motion(a, b, gear=1 if ahead > 0 else -1, on_stairs=abs(rise) > LEVEL))
-    return Path(corners[0], tuple(merge(motions)))

@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from argo_compiler.model import Pose
-from argo_env.navigation.lattice import drive_speed
+from argo_env.robot.calibration import MotionKind, drive_kind
 from argo_env.robot.spec import RobotSpec
 
 
@@ -24,6 +24,10 @@ class Motion:
     """1 forwards, -1 backwards; turns have 1"""
     on_stairs: bool = False
     """the robot is tilted: down forwards, or up backwards"""
+
+    @property
+    def kind(self) -> MotionKind:
+        return MotionKind.TURN if self.turn else drive_kind(self.gear, self.on_stairs)
 
     @property
     def length(self) -> float:
@@ -43,19 +47,19 @@ class Motion:
         )
 
     def speed(self, robot: RobotSpec, velocity: float | None = None) -> float:
-        """m/s of a drive; `velocity` (m/s) replaces the planning speed where that is faster than
-        what the motion allows on stairs or backwards."""
-        planned = drive_speed(robot, self.gear, self.on_stairs)
+        """m/s that a drive aims at; `velocity` (m/s) replaces the robot's own speed on the flat
+        ahead, and on stairs and backwards where it is the slower one."""
+        planned = robot.told_speed(self.kind)
         if velocity is None:
             return planned
         flat_ahead = self.gear > 0 and not self.on_stairs
         return velocity if flat_ahead else min(velocity, planned)
 
     def duration(self, robot: RobotSpec, velocity: float | None = None) -> float:
-        """s that the motion takes."""
+        """s that the motion takes, by the robot's calibration."""
         if self.turn:
-            return abs(self.turn) / robot.turn_rate_radians
-        return self.length / self.speed(robot, velocity)
+            return robot.seconds(self.kind, abs(self.turn))
+        return robot.seconds(self.kind, self.length, self.speed(robot, velocity))
 
 
 @dataclass(frozen=True)

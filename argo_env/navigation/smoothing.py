@@ -3,6 +3,8 @@
 import math
 from collections.abc import Callable
 from dataclasses import dataclass
+from functools import cached_property
+from itertools import pairwise
 
 import numpy as np
 from numpy.typing import NDArray
@@ -11,11 +13,12 @@ from argo_compiler.model import Pose
 from argo_env.navigation.lattice import MARGIN, TURNING_LEVEL
 from argo_env.navigation.path import Motion, Path, merge, wrap
 from argo_env.navigation.raster import CELL, Grid
-from argo_env.navigation.stencil import cells_around, overlaps
+from argo_env.navigation.stencil import overlaps
 from argo_env.navigation.surface import Surface
+from argo_env.robot.calibration import MotionKind
 from argo_env.robot.spec import Footprint, RobotSpec
 
-_DRIVE_STEP = 0.05  # m between the poses that are looked at
+_SAME_PLACE, _SAME_YAW = 1e-9, 1e-9  # m, rad
 _TURN_STEP = math.radians(5.0)
 _VERTEX_SPACING = 1.0  # m between places where a short cut may begin or end
 _VERTEX_TURN = math.radians(90.0)  # less than half a turn, so that its direction stays clear
@@ -23,7 +26,11 @@ _VERTEX_TURN = math.radians(90.0)  # less than half a turn, so that its directio
 
 @dataclass(frozen=True)
 class FlatMap:
-    """The cells at one height: `free[i, j]` says whether the surface goes on there."""
+    """The cells at one height: `free[i, j]` says whether the surface goes on there.
+
+    The checks are for a robot that stands on free cells: what it sweeps from there hangs together,
+    so it leaves the free cells over one of those that border on them, and only these are looked at.
+    """
 
     grid: Grid
     free: NDArray[np.bool_]
@@ -36,18 +43,45 @@ class FlatMap:
         free[surface.i[level], surface.j[level]] = True
         return FlatMap(surface.grid, free)
 
-    def clear(self, poses: NDArray[np.float64], footprint: Footprint) -> bool:
-        """Whether a robot at all `poses`, shape (n, 3) as x, y, yaw, touches free cells only."""
-        around = cells_around(footprint, MARGIN)
-        i = np.floor((poses[:, 0] - self.grid.x0) / CELL).astype(np.int64)[:, None, None]
-        j = np.floor((poses[:, 1] - self.grid.y0) / CELL).astype(np.int64)[:, None, None]
-        i, j = np.broadcast_arrays(i + around[None, :, None], j + around[None, None, :])
-        x, y = self.grid.centers(i, j)
-        at_x, at_y, yaw = (poses[:, k, None, None] for k in range(3))
-        touched = overlaps(footprint, MARGIN, yaw, x - at_x, y - at_y)
-        i, j = i[touched], j[touched]
-        inside = (i >= 0) & (i < self.grid.nx) & (j >= 0) & (j < self.grid.ny)
-        return bool(inside.all()) and bool(self.free[i, j].all())
+    @cached_property
+    def _border(self) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+        """x, ascending, and y of the centres of the cells that are not free and touch free ones."""
+        free = np.pad(self.free, 2)
+        nearby = np.zeros_like(free)
+        for di in (-1, 0, 1):
+            for dj in (-1, 0, 1):
+                nearby |= np.roll(free, (di, dj), axis=(0, 1))
+        i, j = np.nonzero(nearby & ~free)
+        return self.grid.centers(i - 2, j - 2)
+
+    def _border_near(
+        self, x0: float, y0: float, x1: float, y1: float, reach: float
+    ) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+        """The border within `reach` (m) of a rectangle."""
+        x, y = self._border
+        part = slice(*np.searchsorted(x, (x0 - reach, x1 + reach)))
+        x, y = x[part], y[part]
+        near = (y >= y0 - reach) & (y <= y1 + reach)
+        return x[near], y[near]
+
+    def clear_drive(self, a: Pose, b: Pose, footprint: Footprint) -> bool:
+        """Whether the robot touches free cells only, all the way straight ahead from a to b."""
+        reach = footprint.radius + MARGIN + CELL
+        x, y = self._border_near(min(a.x, b.x), min(a.y, b.y), max(a.x, b.x), max(a.y, b.y), reach)
+        ahead, yaw = math.dist((a.x, a.y), (b.x, b.y)), math.atan2(b.y - a.y, b.x - a.x)
+        swept = footprint.model_copy(update={"front": footprint.front + ahead})
+        return not overlaps(swept, MARGIN, yaw, x - a.x, y - a.y).any()
+
+    def clear_turn(self, at: Pose, turn: float, footprint: Footprint) -> bool:
+        """Whether the robot touches free cells only while it turns in place by `turn` (rad)."""
+        reach = footprint.radius + MARGIN + CELL
+        x, y = self._border_near(at.x, at.y, at.x, at.y, reach)
+        x, y = x - at.x, y - at.y
+        near = np.hypot(x, y) <= reach
+        if not near.any():
+            return True
+        yaws = at.yaw + turn * np.linspace(0.0, 1.0, 1 + math.ceil(abs(turn) / _TURN_STEP))
+        return not overlaps(footprint, MARGIN, yaws[:, None], x[near], y[near]).any()
 
 
 def smooth(path: Path, flat_map: Callable[[float], FlatMap], robot: RobotSpec) -> Path:
@@ -71,20 +105,58 @@ def _shorten(
         return stretch
     poses = _vertices(stretch)
     cells = flat_map(poses[0].z)
+    pieces = [_connect(a, b) for a, b in pairwise(poses)]
+    plain = _elapsed(pieces, robot)
+    table = np.array([[p.x, p.y, p.yaw] for p in poses])
     kept: list[Motion] = []
-    here, at = poses[0], 0
+    at = 0
     while at < len(poses) - 1:
-        for to in range(len(poses) - 1, at, -1):
-            short_cut = _connect(here, poses[to])
-            plain = _plain(here, poses[at + 1 : to + 1])
-            if to == at + 1 or (
-                _duration(short_cut, robot) < _duration(plain, robot) - 1e-9
-                and all(cells.clear(_sampled(m), robot.footprint) for m in short_cut)
-            ):
-                kept += plain if to == at + 1 else short_cut
-                here, at = poses[to], to
+        to, motions = at + 1, pieces[at]
+        saved = plain[at + 2 :] - plain[at] - _direct(table[at], table[at + 2 :], robot)
+        for further in np.flatnonzero(saved > 1e-9)[::-1].tolist():
+            # The drive first: it is what fails most.
+            if not cells.clear_drive(poses[at], poses[at + 2 + further], robot.footprint):
+                continue
+            short_cut = _connect(poses[at], poses[at + 2 + further])
+            if all(cells.clear_turn(m.start, m.turn, robot.footprint) for m in short_cut if m.turn):
+                to, motions = at + 2 + further, short_cut
                 break
+        kept += motions
+        at = to
     return merge(kept)
+
+
+def _elapsed(pieces: list[list[Motion]], robot: RobotSpec) -> NDArray[np.float64]:
+    """s at the start and after each of the pieces of a way, shape (n + 1,). Motions that go on
+    alike are one motion, and set off once."""
+    times, last = [0.0], None
+    for piece in pieces:
+        time = times[-1]
+        for motion in piece:
+            lost = robot.calibration.pace(motion.kind).lost if motion.kind == last else 0.0
+            time += motion.duration(robot) - lost
+            last = motion.kind
+        times.append(time)
+    return np.array(times)
+
+
+def _direct(
+    here: NDArray[np.float64], there: NDArray[np.float64], robot: RobotSpec
+) -> NDArray[np.float64]:
+    """s to turn towards each of the poses `there`, shape (n, 3) as x, y, yaw, drive to it, and turn
+    as it asks, from the pose `here`."""
+    x, y = there[:, 0] - here[0], there[:, 1] - here[1]
+    length, towards = np.hypot(x, y), np.arctan2(y, x)
+    drives = length >= _SAME_PLACE
+    first = np.where(drives, towards, there[:, 2]) - here[2]
+    last = np.where(drives, there[:, 2] - towards, 0.0)
+    seconds = np.zeros(len(there))
+    for angle in (first, last):
+        size = np.abs((angle + np.pi) % (2 * np.pi) - np.pi)
+        turns = size / robot.real_speed(MotionKind.TURN) + robot.calibration.turn.lost
+        seconds += np.where(size < _SAME_YAW, 0.0, turns)
+    drive = length / robot.real_speed(MotionKind.AHEAD) + robot.calibration.ahead.lost
+    return np.asarray(seconds + np.where(drives, drive, 0.0))
 
 
 def _vertices(stretch: list[Motion]) -> list[Pose]:
@@ -101,7 +173,7 @@ def _vertices(stretch: list[Motion]) -> list[Pose]:
 
 def _connect(a: Pose, b: Pose) -> list[Motion]:
     """Turn towards b, drive there, turn as b asks."""
-    if math.dist((a.x, a.y), (b.x, b.y)) < 1e-9:
+    if math.dist((a.x, a.y), (b.x, b.y)) < _SAME_PLACE:
         return _turn(a, b.yaw)
     yaw = math.atan2(b.y - a.y, b.x - a.x)
     start, end = a.model_copy(update={"yaw": yaw}), b.model_copy(update={"yaw": yaw})
@@ -110,32 +182,6 @@ def _connect(a: Pose, b: Pose) -> list[Motion]:
 
 def _turn(pose: Pose, yaw: float) -> list[Motion]:
     angle = wrap(yaw - pose.yaw)
-    if abs(angle) < 1e-9:
+    if abs(angle) < _SAME_YAW:
         return []
     return [Motion(pose, pose.model_copy(update={"yaw": yaw}), turn=angle)]
-
-
-def _plain(here: Pose, poses: list[Pose]) -> list[Motion]:
-    """The motions through the given vertices as they are."""
-    motions = []
-    for pose in poses:
-        if (pose.x, pose.y) == (here.x, here.y):
-            motions += _turn(here, pose.yaw)
-        else:
-            motions.append(Motion(here, pose))
-        here = pose
-    return motions
-
-
-def _duration(motions: list[Motion], robot: RobotSpec) -> float:
-    return sum(m.duration(robot) for m in motions)
-
-
-def _sampled(motion: Motion) -> NDArray[np.float64]:
-    """Poses along the motion as x, y, yaw."""
-    a, b = motion.start, motion.end
-    count = 1 + math.ceil(max(motion.length / _DRIVE_STEP, abs(motion.turn) / _TURN_STEP))
-    share = np.linspace(0.0, 1.0, count)
-    return np.column_stack(
-        [a.x + share * (b.x - a.x), a.y + share * (b.y - a.y), a.yaw + share * motion.turn]
-    )

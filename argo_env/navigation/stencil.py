@@ -16,7 +16,8 @@ from argo_env.robot.spec import Footprint
 
 HEADINGS = 8
 """Headings of the lattice, one in 45 degrees."""
-_SWEEP_STEPS = 9  # footprints looked at for a turn of 45 degrees: one in 5 degrees
+SWEEP_STEPS = 9
+"""Steps in which the area of a turn of 45 degrees is looked at: one in 5 degrees."""
 
 
 @dataclass(frozen=True)
@@ -78,21 +79,38 @@ def overlaps(
     """Whether a robot with heading `yaw` (rad), `margin` (m) added on all sides, touches the cells
     whose centres lie at (x, y) from its point of rotation, in m. The arrays are broadcast.
 
-    Two convex shapes are apart if a normal of one of their edges parts them; a cell that is only
-    touched at its edge is apart.
+    A cell that is only touched at its edge is apart.
+    """
+    half_cell = CELL / 2 - 1e-6
+    return touches(footprint, margin, yaw, x, y, (half_cell, half_cell))
+
+
+def touches(
+    footprint: Footprint,
+    margin: float,
+    yaw: float | NDArray[np.float64],
+    x: NDArray[np.float64],
+    y: NDArray[np.float64],
+    half: tuple[float, float],
+) -> NDArray[np.bool_]:
+    """Whether a robot with heading `yaw` (rad), `margin` (m) added on all sides, touches the
+    rectangles of half edges `half` (m) about (x, y) from its point of rotation, in m.
+
+    Two convex shapes are apart if a normal of one of their edges parts them.
     """
     cos, sin = np.cos(yaw), np.sin(yaw)
     front, rear = footprint.front + margin, footprint.rear + margin
     middle, half_length = (front - rear) / 2, (front + rear) / 2
-    half_width, half_cell = footprint.half_width + margin, CELL / 2 - 1e-6
-    spread = half_cell * (np.abs(cos) + np.abs(sin))
-    extent_x = np.abs(cos) * half_length + np.abs(sin) * half_width
-    extent_y = np.abs(sin) * half_length + np.abs(cos) * half_width
+    half_width = footprint.half_width + margin
+    abs_cos, abs_sin = np.abs(cos), np.abs(sin)
+    extent_x = abs_cos * half_length + abs_sin * half_width
+    extent_y = abs_sin * half_length + abs_cos * half_width
+    along, left = x * cos + y * sin, y * cos - x * sin
     return np.asarray(
-        (np.abs(x * cos + y * sin - middle) < half_length + spread)
-        & (np.abs(y * cos - x * sin) < half_width + spread)
-        & (np.abs(x - middle * cos) < extent_x + half_cell)
-        & (np.abs(y - middle * sin) < extent_y + half_cell)
+        (np.abs(along - middle) < half_length + half[0] * abs_cos + half[1] * abs_sin)
+        & (np.abs(left) < half_width + half[0] * abs_sin + half[1] * abs_cos)
+        & (np.abs(x - middle * cos) < extent_x + half[0])
+        & (np.abs(y - middle * sin) < extent_y + half[1])
     )
 
 
@@ -120,8 +138,8 @@ def standing(footprint: Footprint, heading: int, margin: float) -> Stencil:
 def turning(footprint: Footprint, heading: int, margin: float) -> Stencil:
     """The stencil of a turn in place from `heading` to the next one, counter-clockwise."""
     cells: set[tuple[int, int]] = set()
-    for k in range(_SWEEP_STEPS + 1):
-        yaw = heading_angle(heading) + k / _SWEEP_STEPS * heading_angle(1)
+    for k in range(SWEEP_STEPS + 1):
+        yaw = heading_angle(heading) + k / SWEEP_STEPS * heading_angle(1)
         cells |= covered(footprint, yaw, margin)
     return make_stencil(cells)
 

@@ -4,12 +4,14 @@ Several cells may lie above each other: decks over decks, flights over flights. 
 special here: treads are cells whose neighbour lies one rise higher.
 """
 
+import math
 from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
 from numpy.typing import NDArray
 
-from argo_env.navigation.raster import Columns, Grid, rasterise
+from argo_env.navigation.raster import CELL, Columns, Grid, rasterise
 from argo_env.site.shapes import Element
 
 DIRECTIONS: tuple[tuple[int, int], ...] = (
@@ -38,6 +40,19 @@ class Surface:
         """Centres of the cells on the surface, in m, shape (size, 3)."""
         x, y = self.grid.centers(self.i, self.j)
         return np.stack([x, y, self.z], axis=1)
+
+    @cached_property
+    def _columns(self) -> NDArray[np.int64]:
+        return self.i * self.grid.ny + self.j
+
+    def near(self, x: float, y: float, distance: float) -> NDArray[np.int64]:
+        """The cells, ascending, of the square about (x, y) that reaches `distance` (m) far."""
+        i0, i1 = (math.floor((x + d - self.grid.x0) / CELL) for d in (-distance, distance))
+        j0, j1 = (math.floor((y + d - self.grid.y0) / CELL) for d in (-distance, distance))
+        rows = np.arange(max(i0, 0), min(i1, self.grid.nx - 1) + 1) * self.grid.ny
+        first = np.searchsorted(self._columns, rows + min(max(j0, 0), self.grid.ny))
+        last = np.searchsorted(self._columns, rows + min(max(j1 + 1, 0), self.grid.ny))
+        return np.concatenate([np.arange(a, b) for a, b in zip(first, last, strict=True)] or [rows])
 
 
 def find_surface(

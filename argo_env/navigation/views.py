@@ -1,12 +1,14 @@
 """From where a checkpoint can be read: states with its face in range and in sight."""
 
+import math
+
 import numpy as np
 from numpy.typing import NDArray
 
 from argo_env.navigation.lattice import LEVEL, Lattice
 from argo_env.robot.spec import RobotSpec
 from argo_env.site import Site, SiteCheckpoint
-from argo_env.site.shapes import crossing, half_extents
+from argo_env.site.shapes import crossing
 
 FACE_GAP = 0.02  # m in front of a checkpoint's face where a line of sight ends
 _OBLIQUE_COST = 6.0  # s that the most oblique view is worth against a frontal one
@@ -38,11 +40,12 @@ def find_views(
 
     Both arrays are empty if there is no such state.
     """
-    sensor, poses = lattice.robot.sensor, lattice.poses()
-    target = sight_target(checkpoint)
-    near = np.hypot(poses[:, 0] - target[0], poses[:, 1] - target[1]) <= sensor.max_range + 1.0
-    states = np.flatnonzero(near & (np.abs(lattice.rise) <= LEVEL))
-    cameras = camera_positions(poses[states], lattice.robot)
+    sensor, target = lattice.robot.sensor, sight_target(checkpoint)
+    reach = sensor.max_range + math.hypot(*sensor.offset[:2])
+    states = lattice.state_of[lattice.surface.near(target[0], target[1], reach)]
+    states = states[states >= 0]
+    states = states[np.abs(lattice.rise[states]) <= LEVEL]
+    cameras = camera_positions(lattice.poses(states), lattice.robot)
     sight = target - cameras
     distance = np.linalg.norm(sight, axis=1)
     cosine = -(sight @ face_normal(checkpoint)) / np.maximum(distance, 1e-9)
@@ -67,12 +70,8 @@ def in_sight(
         return clear
     low = np.minimum(origins.min(axis=0), target)
     high = np.maximum(origins.max(axis=0), target)
-    for element in site.elements:
-        for solid in element.solids:
-            half = half_extents(solid)
-            center = np.array(solid.center)
-            if (center + half < low).any() or (center - half > high).any():
-                continue
-            entry, leave = crossing(solid, origins, target - origins)
-            clear &= ~((entry <= 1.0) & (leave >= 0.0))
+    index = site.solids
+    for solid in index.between(low, high):
+        entry, leave = crossing(solid, origins, target - origins)
+        clear &= ~((entry <= 1.0) & (leave >= 0.0))
     return clear

@@ -1,8 +1,24 @@
-"""Which element is at a point: the solids of one material in arrays."""
+"""What is where: the solids of a site in arrays."""
 
 import numpy as np
+from numpy.typing import NDArray
 
-from argo_env.site.shapes import Box, Element, Vector
+from argo_env.site.shapes import Box, Element, Solid, Vector, half_extents
+
+
+class SolidIndex:
+    """Finds the solids that may reach into a box."""
+
+    def __init__(self, elements: tuple[Element, ...]) -> None:
+        self._solids = [solid for element in elements for solid in element.solids]
+        centers = np.array([s.center for s in self._solids])
+        halves = np.array([half_extents(s) for s in self._solids])
+        self._low, self._high = centers - halves, centers + halves
+
+    def between(self, low: NDArray[np.float64], high: NDArray[np.float64]) -> list[Solid]:
+        """The solids whose bounding boxes touch the box from `low` to `high` (m), in order."""
+        inside = ((self._high >= low) & (self._low <= high)).all(axis=1)
+        return [self._solids[k] for k in np.flatnonzero(inside).tolist()]
 
 
 class ElementIndex:

@@ -2,6 +2,7 @@
 
 import math
 from dataclasses import dataclass
+from functools import cached_property
 from pathlib import Path
 
 from argo_compiler.catalog import CheckpointKind, Interval
@@ -9,6 +10,8 @@ from argo_compiler.errors import ArgoError
 from argo_compiler.model import Pose
 from argo_env import resources
 from argo_env.site.build import build_site
+from argo_env.site.family import PREFIX, is_family, parse_family
+from argo_env.site.index import SolidIndex
 from argo_env.site.reading import read_spec
 from argo_env.site.shapes import Element, Vector
 from argo_env.site.spec import SiteSpec
@@ -57,12 +60,24 @@ class Site:
     def name(self) -> str:
         return self.spec.name
 
+    @cached_property
+    def solids(self) -> SolidIndex:
+        """All solids of the site, to be found by where they are."""
+        return SolidIndex(self.elements)
+
     def checkpoint(self, id: int) -> SiteCheckpoint:
         """The checkpoint with this id; KeyError if there is none."""
         for checkpoint in self.checkpoints:
             if checkpoint.id == id:
                 return checkpoint
         raise KeyError(id)
+
+    def measured_by(self, object_id: str | None) -> SiteCheckpoint:
+        """The checkpoint that tasks call `object_id`; ArgoError if there is none."""
+        for checkpoint in self.checkpoints:
+            if str(checkpoint.id) == object_id:
+                return checkpoint
+        raise ArgoError(f"site {self.name} has no checkpoint {object_id}")
 
     def floor_at(self, z: float) -> int:
         """The number of the floor whose storey holds the height z (m)."""
@@ -75,15 +90,24 @@ def site_names() -> tuple[str, ...]:
 
 
 def load_site(name: str) -> Site:
-    """The site of that name, or the one that the file `name` describes.
+    """The site of that name, the one that the file `name` describes, or a generated one such as
+    `generated:floors=3,seed=7`.
 
     Raises ArgoError, with the place in the file, if there is no such site or it makes no sense.
     """
+    if is_family(name):
+        # Navigation is about sites, and only what it has checked is given out.
+        from argo_env.navigation.generated import generate
+
+        return generate(parse_family(name)).site
     path = Path(name)
     if path.suffix not in {".yaml", ".yml"}:
         if name not in site_names():
             known = ", ".join(site_names())
-            raise ArgoError(f"no site `{name}`; there are: {known}, or a path to a site's .yaml")
+            raise ArgoError(
+                f"no site `{name}`; there are: {known}, or a path to a site's .yaml, or"
+                f" {PREFIX}floors=3,seed=7"
+            )
         path = resources.scenarios() / name / "site.yaml"
     return make_site(read_spec(path))
 

@@ -18,6 +18,7 @@ COLOURS: dict[str, tuple[float, float, float]] = {
     "pipe": (0.36, 0.58, 0.62),
     "pump": (0.24, 0.45, 0.35),
     "dock": (0.16, 0.36, 0.66),
+    "brick": (0.70, 0.32, 0.24),
 }
 """Red, green and blue from 0 to 1 for each material."""
 

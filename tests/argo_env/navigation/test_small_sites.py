@@ -7,8 +7,16 @@ import pytest
 from argo_compiler.errors import ArgoError
 from argo_compiler.model import Pose
 from argo_env.navigation import Navigator, UnreachableError
+from argo_env.robot.calibration import Calibration
+from argo_env.robot.spec import load_robot
 from argo_env.site import make_site
 from argo_env.site.spec import SiteSpec
+
+
+@pytest.fixture(scope="module")
+def robot():
+    """A robot that does as it is told, so that times can be worked out."""
+    return load_robot().model_copy(update={"calibration": Calibration()})
 
 
 def navigator(robot, floors, ground=(0, 0, 12, 12), towers=(), areas=None):

@@ -1,0 +1,56 @@
+"""The way back along which the robot came, where it can't turn any more."""
+
+import math
+from dataclasses import replace
+
+import numpy as np
+
+from argo_compiler.model import Pose
+from argo_env.navigation.path import Motion, Path, wrap
+
+_SPACING = 0.05  # m or rad between the places of a way that are compared with the robot's
+_RADIAN = 0.3  # m that a radian counts as in this
+
+
+def way_back(path: Path, pose: Pose, length: float) -> Path:
+    """From where a robot at `pose` is on the path it is on, `length` m back along it, in reverse.
+
+    It has no motions where the path begins there.
+    """
+    if not path.motions:
+        return Path(pose, ())
+    index, share = _place_on(path, pose)
+    motions: list[Motion] = []
+    left = length
+    for k in range(index, -1, -1):
+        motion = path.motions[k]
+        done = share if k == index else 1.0
+        back = min(done, left / motion.length) if motion.length else done
+        if back > 0.0:
+            motions.append(_reversed(motion, done, done - back))
+            left -= back * motion.length
+        if left <= 1e-9:
+            break
+    start = motions[0].start if motions else pose
+    return Path(start, tuple(motions))
+
+
+def _reversed(motion: Motion, first: float, last: float) -> Motion:
+    """The motion backwards from one share of it to a lesser one."""
+    turn = -(first - last) * motion.turn
+    gear = motion.gear if motion.turn else -motion.gear
+    return replace(motion, start=motion.at(first), end=motion.at(last), turn=turn, gear=gear)
+
+
+def _place_on(path: Path, pose: Pose) -> tuple[int, float]:
+    """The motion and the share of it at which the pose is nearest to the path."""
+    best, nearest = (0, 0.0), math.inf
+    for k, motion in enumerate(path.motions):
+        count = 2 + int(max(motion.length, abs(motion.turn)) / _SPACING)
+        for share in np.linspace(0.0, 1.0, count).tolist():
+            at = motion.at(share)
+            away = math.dist((at.x, at.y, at.z), (pose.x, pose.y, pose.z))
+            away += _RADIAN * abs(wrap(at.yaw - pose.yaw))
+            if away < nearest:
+                best, nearest = (k, share), away
+    return best

@@ -1,0 +1,116 @@
+"""Families of generated sites: the parameters that a site is drawn from, and their text form."""
+
+from collections.abc import Callable
+from enum import StrEnum
+from typing import Any
+
+from pydantic import Field, ValidationError, field_validator
+
+from argo_compiler.errors import ArgoError
+from argo_compiler.model import Model
+
+PREFIX = "generated:"
+TEST_SEEDS = 1_000_000
+"""Seeds from here on are for testing: train on smaller ones."""
+_SIZE = (12, 40)  # m, least and most of each edge
+
+
+class Stairs(StrEnum):
+    """The stair towers of a site; two are independent ways up."""
+
+    STRAIGHT = "straight"
+    """flights one above the other, on the west side"""
+    DOG_LEG = "dog-leg"
+    """flights that turn back at a half landing, on the east side"""
+    BOTH = "both"
+
+
+class Family(Model):
+    """What a generated site is drawn from. Equal parameters always give the same site.
+
+    Seeds below TEST_SEEDS are for training, the others for testing.
+    """
+
+    floors: int = Field(3, ge=1, le=12)
+    size: tuple[int, int] = (20, 14)
+    """m from west to east and from south to north, of the decks"""
+    stairs: Stairs = Stairs.BOTH
+    clutter: float = Field(0.5, ge=0, le=1)
+    """how much stands about: vessels, pumps, pipes, barriers, platforms; 0 is none"""
+    checkpoints: int = Field(20, ge=0, le=500)
+    """on all floors together"""
+    seed: int = Field(0, ge=0)
+
+    @field_validator("size")
+    @classmethod
+    def _buildable(cls, size: tuple[int, int]) -> tuple[int, int]:
+        least, most = _SIZE
+        if not all(least <= edge <= most for edge in size):
+            raise ValueError(f"both edges must be {least} to {most} m")
+        return size
+
+    @property
+    def for_testing(self) -> bool:
+        return self.seed >= TEST_SEEDS
+
+    def __str__(self) -> str:
+        width, depth = self.size
+        return (
+            f"{PREFIX}floors={self.floors},size={width}x{depth},stairs={self.stairs},"
+            f"clutter={self.clutter:g},checkpoints={self.checkpoints},seed={self.seed}"
+        )
+
+
+def is_family(name: str) -> bool:
+    """Whether a site's name is that of a generated one."""
+    return name.startswith(PREFIX)
+
+
+def parse_family(text: str) -> Family:
+    """The family that a text such as `generated:floors=3,size=20x14,seed=7` names.
+
+    What is not given has its default. Raises ArgoError, with all that may be given.
+    """
+    given: dict[str, Any] = {}
+    for part in text.removeprefix(PREFIX).split(","):
+        if not part.strip():
+            continue
+        key, equals, value = (piece.strip() for piece in part.partition("="))
+        if not equals or key not in Family.model_fields:
+            raise _error(text, f"`{part.strip()}` is none of its parameters")
+        if key in given:
+            raise _error(text, f"{key} is given twice")
+        try:
+            given[key] = _READERS[key](value)
+        except ValueError:
+            raise _error(text, f"{key} can't be `{value}`") from None
+    try:
+        return Family.model_validate(given)
+    except ValidationError as error:
+        fault = error.errors(include_url=False)[0]
+        message = fault["msg"].removeprefix("Value error, ")
+        raise _error(text, f"{fault['loc'][0]}: {message}") from None
+
+
+def _size(text: str) -> tuple[int, int]:
+    width, depth = text.split("x")
+    return int(width), int(depth)
+
+
+_READERS: dict[str, Callable[[str], Any]] = {
+    "floors": int,
+    "size": _size,
+    "stairs": Stairs,
+    "clutter": float,
+    "checkpoints": int,
+    "seed": int,
+}
+
+
+def _error(text: str, message: str) -> ArgoError:
+    least, most = _SIZE
+    return ArgoError(
+        f"site `{text}`: {message}; write {PREFIX}floors=1..12,size=WxD ({least} to {most} m),"
+        f"stairs={'|'.join(Stairs)},clutter=0..1,checkpoints=0..500,seed=N, in any order,"
+        " each of them optional"
+    )

@@ -1,0 +1,75 @@
+"""What a site should keep to: ISO 14122-3 for its stairs, the competition's rules for checkpoints.
+
+A site that does not is still a site; `argo sites` says where it differs.
+"""
+
+import math
+from collections.abc import Iterator
+
+from argo_env.site.spec import FloorSpec, Rect, SiteSpec, TowerSpec
+
+PITCH = (20.0, 45.0)  # deg, of a flight
+GOING = (0.21, 0.31)  # m
+STRIDE = (0.60, 0.66)  # m, going + 2 rise
+WIDTH = 0.8  # m of a flight, at least
+LANDING = 0.8  # m, at least
+HEIGHT = (0.2, 2.0)  # m of a checkpoint above its deck (thesis 1.2)
+BESIDE = 0.5  # m that a checkpoint may be beside the walkway (thesis 1.2)
+_TOLERANCE = 1e-3  # m
+
+
+def breaches(spec: SiteSpec) -> list[str]:
+    """What is not as the norm and the rules ask, in the order of the description."""
+    found = [line for tower in spec.towers for line in _stairs(tower, spec)]
+    return [*found, *(line for floor in spec.floors for line in _checkpoints(floor))]
+
+
+def _stairs(tower: TowerSpec, spec: SiteSpec) -> Iterator[str]:
+    risen = sum(flight.risers * flight.rise for flight in tower.flights)
+    if abs(risen - spec.storey) > 5 * _TOLERANCE:
+        yield f"{tower.name}: its flights rise {risen:.3f} m, a storey is {spec.storey:.3f} m"
+    for flight in tower.flights:
+        pitch = math.degrees(math.atan2(flight.rise, flight.going))
+        measures = (
+            ("its pitch", pitch, PITCH, "deg"),
+            ("its going", flight.going, GOING, "m"),
+            ("going + 2 rise", flight.going + 2 * flight.rise, STRIDE, "m"),
+        )
+        for name, value, (low, high), unit in measures:
+            if not low - _TOLERANCE <= value <= high + _TOLERANCE:
+                yield (
+                    f"{tower.name}, {flight.name}: {name} is {value:.3g} {unit}; ISO 14122-3 asks "
+                    f"for {low:g} to {high:g} {unit}"
+                )
+        if flight.width < WIDTH - _TOLERANCE:
+            yield (
+                f"{tower.name}, {flight.name}: it is {flight.width:.3g} m wide; ISO 14122-3 asks "
+                f"for {WIDTH:g} m"
+            )
+    for landing in tower.landings:
+        x0, y0, x1, y1 = landing.rect
+        if min(x1 - x0, y1 - y0) < LANDING - _TOLERANCE:
+            yield (
+                f"{tower.name}, {landing.name}: it is {min(x1 - x0, y1 - y0):.3g} m long; "
+                f"ISO 14122-3 asks for {LANDING:g} m"
+            )
+
+
+def _checkpoints(floor: FloorSpec) -> Iterator[str]:
+    for checkpoint in floor.checkpoints:
+        x, y, height = checkpoint.position
+        if not HEIGHT[0] - _TOLERANCE <= height <= HEIGHT[1] + _TOLERANCE:
+            yield (
+                f"checkpoint {checkpoint.id}: it is {height:.3g} m high; the rules ask for "
+                f"{HEIGHT[0]:g} to {HEIGHT[1]:g} m"
+            )
+        beside = min(_distance(x, y, rect) for rect in floor.walkways.values())
+        if beside > BESIDE + _TOLERANCE:
+            yield (
+                f"checkpoint {checkpoint.id}: it is {beside:.3g} m beside the walkway; the rules "
+                f"ask for {BESIDE:g} m at most"
+            )
+
+
+def _distance(x: float, y: float, rect: Rect) -> float:
+    return math.hypot(max(rect[0] - x, 0.0, x - rect[2]), max(rect[1] - y, 0.0, y - rect[3]))

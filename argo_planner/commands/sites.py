@@ -1,0 +1,59 @@
+"""`argo sites`: which sites there are, and whether one can be driven."""
+
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+from argo_compiler.errors import ArgoError
+from argo_env.navigation import Navigator
+from argo_env.navigation.checking import unseen_checkpoints, unserved_floors
+from argo_env.site import load_site, site_names
+from argo_env.site.norms import breaches
+from argo_env.site.writing import to_yaml
+from argo_planner.loading import load_navigator, write_text
+
+
+def show_sites(
+    site: Annotated[
+        str | None,
+        typer.Argument(metavar="SITE", help="a site to check: its name, its .yaml, or generated:…"),
+    ] = None,
+    output: Annotated[
+        Path | None,
+        typer.Option("-o", "--output", help="a .yaml to write the site's description to"),
+    ] = None,
+) -> None:
+    """List the sites, or check one; exits with status 2 if it can't be driven."""
+    if site is None:
+        if output:
+            raise ArgoError("--output writes the description of one site: say which")
+        for name in site_names():
+            spec = load_site(name).spec
+            count = sum(len(floor.checkpoints) for floor in spec.floors)
+            print(f"{name}: {spec.title}, floors: {len(spec.floors)}, checkpoints: {count}")
+        return
+    navigator = load_navigator(site)
+    if output:
+        write_text(output, to_yaml(navigator.site.spec))
+    navigator.prepare()  # says what is wrong with its docking stations
+    for breach in breaches(navigator.site.spec):
+        print(f"{site}: note: {breach}")
+    faults = _faults(navigator)
+    for fault in faults:
+        print(f"{site}: error: {fault}")
+    if faults:
+        raise typer.Exit(2)
+    print(f"{site}: every floor and every checkpoint can be reached from every dock, and back")
+
+
+def _faults(navigator: Navigator) -> list[str]:
+    floors = [
+        f"floor {number} can't be reached and patrolled; give its corners 1.4 m by 1.4 m to turn in"
+        for number in unserved_floors(navigator)
+    ]
+    return floors + [
+        f"checkpoint {id} ({navigator.site.checkpoint(id).name}) can't be read from anywhere that"
+        " the robot can reach; move or turn it"
+        for id in unseen_checkpoints(navigator)
+    ]

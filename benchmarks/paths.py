@@ -1,0 +1,149 @@
+"""How long paths and travel times take: `python -m benchmarks.paths`.
+
+Times are CPU seconds of this process, so that other processes disturb them less; caches and
+hyperthreads are still shared, so run it on a quiet machine.
+"""
+
+import resource
+import time
+from collections.abc import Callable, Iterable
+from functools import partial
+
+import numpy as np
+from scipy.sparse.csgraph import dijkstra
+
+from argo_compiler.model import Pose
+from argo_env.navigation import Blockage, Navigator
+from argo_env.navigation.generated import generate
+from argo_env.robot.spec import load_robot
+from argo_env.site import load_site
+from argo_env.site.family import TEST_SEEDS, Family
+
+PAIRS = 100
+LARGE = Family(floors=12, size=(30, 20), checkpoints=500, seed=TEST_SEEDS)
+
+Query = tuple[Pose, Pose | int]
+
+
+def timed(work: Callable[[], object]) -> float:
+    """CPU seconds that the work takes."""
+    started = time.process_time()
+    work()
+    return time.process_time() - started
+
+
+def memory() -> str:
+    """The most memory that this process has had so far."""
+    return f"{resource.getrusage(resource.RUSAGE_SELF).ru_maxrss / 1024:.0f} MiB at most so far"
+
+
+def plan(navigator: Navigator, query: Query) -> object:
+    """The path that a query asks for."""
+    start, goal = query
+    if isinstance(goal, Pose):
+        return navigator.plan(start, goal)
+    return navigator.plan_to_view(start, goal)
+
+
+def measure_queries(navigator: Navigator, name: str, queries: Iterable[Query]) -> None:
+    """Prints how long the queries take when asked for the first and for the second time."""
+    first, again = [], []
+    for query in queries:
+        first.append(timed(partial(plan, navigator, query)))
+        again.append(timed(partial(plan, navigator, query)))
+    print(
+        f"  {name:<42} median {1e3 * np.median(first):5.1f} ms, 9 of 10 within "
+        f"{1e3 * np.percentile(first, 90):5.1f} ms; again {1e3 * np.median(again):5.1f} ms"
+    )
+
+
+def poses(navigator: Navigator, states: np.ndarray) -> list[Pose]:
+    """The poses of states of the lattice."""
+    return [
+        Pose(x=x, y=y, z=z, yaw=yaw) for x, y, z, yaw in navigator.lattice.poses(states).tolist()
+    ]
+
+
+def paths_on_umad() -> Navigator:
+    """Prints what single paths on UMAD take."""
+    site, robot = load_site("umad"), load_robot()
+    navigator = Navigator(site, robot)
+    took = timed(lambda: navigator.lattice)
+    states, moves = navigator.lattice.size, navigator.lattice.costs.nnz
+    print(f"UMAD: lattice of {states} states and {moves} moves built in {took:.1f} s", end="")
+    print(f", ways between its portals in {timed(navigator.prepare):.1f} s; {memory()}")
+    random = np.random.default_rng(1)
+    z = navigator.lattice.poses()[:, 2]
+    floors = [np.flatnonzero(np.abs(z - floor.z) < 0.1) for floor in site.spec.floors]
+    anywhere = poses(navigator, random.integers(navigator.lattice.size, size=2 * PAIRS))
+    ids = [c.id for c in site.checkpoints]
+    views = [navigator.viewing_pose(id) for id in ids]
+    legs = [(start, id) for start in (*site.docks.values(), *views) for id in random.choice(ids, 6)]
+    spread = poses(
+        navigator,
+        np.array([random.choice(floors[k]) for k in random.integers(len(floors), size=2 * PAIRS)]),
+    )
+    on_the_ground = poses(navigator, random.choice(floors[0], size=PAIRS))
+    print("Paths on UMAD, cold and again:")
+    measure_queries(navigator, "from docks and checkpoints to checkpoints", legs)
+    measure_queries(navigator, "random poses, floors drawn evenly", pairs(spread))
+    measure_queries(navigator, "random states (most lie on open ground)", pairs(anywhere))
+    measure_queries(navigator, "random poses, both on the ground floor", pairs(on_the_ground))
+    compare(navigator, random)
+    brick = Blockage((6.4, 5.0, 7.2, 5.4), 2.5, "a brick")
+    took = timed(lambda: navigator.avoiding([brick]).plan_to_view(site.docks[1], 8))
+    print(f"  avoiding a blockage, and the first path round it: {1e3 * took:.0f} ms")
+    return navigator
+
+
+def pairs(places: list[Pose]) -> list[Query]:
+    """Every second pose as a start, the one after it as its goal."""
+    return list(zip(places[::2], places[1::2], strict=True))
+
+
+def compare(navigator: Navigator, random: np.random.Generator) -> None:
+    """Prints how far travel times are from those of one search over the whole lattice, and from
+    the durations of the paths."""
+    states = random.integers(navigator.lattice.size, size=12)
+    places = poses(navigator, states)
+    found = navigator.travel_times(places)
+    paths = [[navigator.plan(a, b).duration(navigator.robot) for b in places] for a in places]
+    apart = ~np.eye(len(places), dtype=bool)
+    ratio = (found / np.maximum(paths, 1e-9))[apart]
+    print(
+        f"  travel times over the durations of smoothed paths: median {np.median(ratio):.3f}, "
+        f"{ratio.min():.3f} to {ratio.max():.3f}"
+    )
+    costs = dijkstra(navigator.lattice.costs, indices=states)[:, states]
+    print(f"  least and most of costs over times: {_range(costs[apart] / found[apart])} (1 to 1.2)")
+
+
+def _range(values: np.ndarray) -> str:
+    return f"{values.min():.3f} to {values.max():.3f}"
+
+
+def matrices(umad: Navigator) -> None:
+    """Prints what travel times between all checkpoints take, on UMAD and on a large site."""
+    fresh = Navigator(umad.site, umad.robot)
+    fresh.prepare()
+    ids = [c.id for c in fresh.site.checkpoints]
+    first = timed(lambda: fresh.travel_times(ids))
+    again = timed(lambda: fresh.travel_times(ids))
+    print(f"Travel times of {len(ids)} checkpoints on UMAD: {first:.2f} s, again {again:.2f} s")
+    print(f"{LARGE}:")
+    print(f"  drawn and checked in {timed(lambda: generate(LARGE)):.1f} s; {memory()}")
+    large = generate(LARGE)
+    ids = [c.id for c in large.site.checkpoints]
+    print(f"  {large.lattice.size} states, {large.lattice.costs.nnz} moves")
+    print(f"  ways between its portals in {timed(large.prepare):.1f} s; {memory()}")
+    took = timed(lambda: large.travel_times(ids))
+    print(f"  travel times of {len(ids)} checkpoints: {took:.1f} s; {memory()}")
+
+
+def main() -> None:
+    """Prints all of it."""
+    matrices(paths_on_umad())
+
+
+if __name__ == "__main__":
+    main()

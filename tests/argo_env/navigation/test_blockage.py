@@ -1,0 +1,135 @@
+"""Parts of the surface that are closed after the site was built."""
+
+import math
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from argo_compiler.model import Pose
+from argo_env.navigation import Blockage, UnreachableError
+from tests.conftest import examples
+
+FLIGHT = Blockage((3.0, 1.0, 3.5, 2.1), 1.0, "the stairs are blocked")
+
+
+def over(pose, footprint, rect, margin=0.0):
+    """Whether any of a grid of points under the robot lies in the rectangle."""
+    along = np.linspace(-footprint.rear - margin, footprint.front + margin, 23)
+    left = np.linspace(-footprint.half_width - margin, footprint.half_width + margin, 13)
+    along, left = (a.ravel() for a in np.meshgrid(along, left))
+    x = pose.x + along * math.cos(pose.yaw) - left * math.sin(pose.yaw)
+    y = pose.y + along * math.sin(pose.yaw) + left * math.cos(pose.yaw)
+    return bool(((x >= rect[0]) & (x <= rect[2]) & (y >= rect[1]) & (y <= rect[3])).any())
+
+
+def driven(path):
+    """Poses every few centimetres and degrees along a path."""
+    for motion in path.motions:
+        count = 2 + math.ceil(max(motion.length / 0.05, abs(motion.turn) / math.radians(3)))
+        yield from (motion.at(share) for share in np.linspace(0.0, 1.0, count))
+
+
+@settings(max_examples=examples(6), deadline=None)
+@given(
+    x=st.floats(0.5, 9.5), y=st.floats(0.5, 7.0), width=st.floats(0.0, 1.2),
+    depth=st.floats(0.0, 1.2), seed=st.integers(0, 10**6),
+)  # fmt: skip
+def test_no_way_leads_over_what_is_closed(hall, robot, x, y, width, depth, seed):
+    rect = (x, y, x + width, y + depth)
+    avoiding = hall.avoiding([Blockage(rect, 0.0, "a brick")])
+    random = np.random.default_rng(seed)
+    ground = np.flatnonzero(hall.lattice.surface.z[hall.lattice.cell] < 0.05)
+    poses = [
+        Pose(x=px, y=py, z=pz, yaw=yaw)
+        for px, py, pz, yaw in hall.lattice.poses(random.choice(ground, 3)).tolist()
+    ]
+    for start in poses:
+        for goal in poses:
+            try:
+                path = avoiding.plan(start, goal)
+            except UnreachableError:
+                continue
+            assert not any(over(p, robot.footprint, rect) for p in driven(path) if p.z < 0.9)
+
+
+def test_a_way_round_takes_longer_and_the_first_navigator_is_as_before(hall, robot):
+    start, goal = Pose(x=1.05, y=4.05, z=0.0), Pose(x=6.05, y=6.55, z=0.0)
+    direct = hall.plan(start, goal)
+    middle = direct.motions[len(direct.motions) // 2].at(0.5)
+    rect = (middle.x - 0.2, middle.y - 0.2, middle.x + 0.2, middle.y + 0.2)
+    avoiding = hall.avoiding([Blockage(rect, 0.0, "a brick")])
+    assert avoiding.plan(start, goal).duration(robot) > direct.duration(robot)
+    assert hall.plan(start, goal) == direct
+    assert avoiding.site is hall.site
+    assert avoiding.surface is hall.surface
+    assert hall.avoiding([]) is hall
+
+
+def test_what_is_closed_below_does_not_close_what_is_above(hall):
+    below = Blockage((5.64, 0.6, 9.6, 2.4), 0.0, "a leak")
+    start, goal = Pose(x=6.5, y=1.55, z=2.5), Pose(x=9.0, y=1.55, z=2.5)
+    assert hall.avoiding([below]).plan(start, goal) == hall.plan(start, goal)
+
+
+def test_blocked_stairs_part_the_floors(hall):
+    avoiding = hall.avoiding([FLIGHT])
+    dock = hall.site.docks[1]
+    for refused in (
+        lambda: avoiding.plan_to_view(dock, 4),
+        lambda: avoiding.plan(dock, Pose(x=9.0, y=1.5, z=2.5)),
+        lambda: avoiding.plan(Pose(x=9.0, y=1.5, z=2.5), dock),
+    ):
+        with pytest.raises(UnreachableError, match="the stairs are blocked"):
+            refused()
+    # On either side all is as it was.
+    assert avoiding.plan_to_view(dock, 3) == hall.plan_to_view(dock, 3)
+    up = Pose(x=9.0, y=1.5, z=2.5)
+    assert avoiding.plan_to_view(up, 6) == hall.plan_to_view(up, 6)
+    times = avoiding.travel_times([dock, up])
+    assert np.isinf(times[[0, 1], [1, 0]]).all()
+    assert np.diag(times).tolist() == [0.0, 0.0]
+
+
+def test_a_robot_that_meets_it_on_the_stairs_goes_back(hall):
+    """Up it comes backwards, so it leaves forwards, and the other way round."""
+    on_the_flight = hall.plan(hall.site.docks[1], Pose(x=9.0, y=1.5, z=2.5))
+    below = next(p for p in driven(on_the_flight) if 0.4 < p.z < 0.5)
+    ahead = Blockage((below.x + 0.8, 1.0, below.x + 1.0, 2.1), below.z + 0.5, "a brick")
+    avoiding = hall.avoiding([ahead])
+    back = avoiding.plan(below, hall.site.docks[1])
+    assert back.end.z < 0.1
+    assert {m.gear for m in back.motions if m.on_stairs} == {1}
+
+
+def test_one_after_the_other_is_as_together(hall):
+    bricks = [Blockage((2, 3, 2.4, 3.2), 0.0, "a brick"), Blockage((4, 3, 4.2, 4.4), 0.0, "a bag")]
+    together, after = hall.avoiding(bricks), hall.avoiding(bricks[:1]).avoiding(bricks[1:])
+    assert together.blockages == after.blockages
+    assert together.lattice.state_of.tolist() == after.lattice.state_of.tolist()
+    goal = Pose(x=6.05, y=4.05, z=0.0)
+    for dock in hall.site.docks.values():
+        assert together.plan(dock, goal) == after.plan(dock, goal)
+
+
+def test_states_over_it_are_closed_and_no_others(hall, robot):
+    rect = (4.03, 3.02, 4.31, 3.24)
+    closed = hall.avoiding([Blockage(rect, 0.0, "a brick")]).lattice
+    lattice = hall.lattice
+    near = lattice.surface.near(4.2, 3.1, 1.0)
+    states = lattice.state_of[near]
+    gone = (states >= 0) & (closed.state_of[near] < 0)
+    assert gone.sum() > 100
+    for (k, heading), was in np.ndenumerate(states):
+        if was < 0 or not -0.1 < lattice.surface.z[near[k]] < 0.1:
+            continue
+        ((x, y, z, yaw),) = lattice.poses(np.array([was])).tolist()
+        pose = Pose(x=x, y=y, z=z, yaw=yaw)
+        if over(pose, robot.footprint, rect):
+            assert gone[k, heading], pose
+        if gone[k, heading]:
+            # The margin, and what lies between the points that are looked at.
+            wide = (rect[0] - 0.06, rect[1] - 0.06, rect[2] + 0.06, rect[3] + 0.06)
+            assert over(pose, robot.footprint, wide, margin=0.02), pose
+    assert (closed.state_of >= 0).sum() == lattice.size - gone.sum()

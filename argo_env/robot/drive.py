@@ -1,5 +1,7 @@
 """What every drive can do, whatever it costs: move the robot along a path."""
 
+from collections.abc import Sequence
+from dataclasses import dataclass
 from enum import StrEnum
 from typing import Protocol
 
@@ -13,6 +15,23 @@ class DriveStatus(StrEnum):
     MOVING = "moving"
     ARRIVED = "arrived"
     FAILED = "failed"
+
+
+class Trouble(StrEnum):
+    """What can go wrong on the way."""
+
+    SLIPPING = "slipping"
+    STUCK = "stuck"
+    TIPPED = "tipped over"
+
+
+@dataclass(frozen=True)
+class Incident:
+    """Something that went wrong, and where."""
+
+    trouble: Trouble
+    detail: str
+    pose: BodyPose
 
 
 class Drive(Protocol):
@@ -30,6 +49,11 @@ class Drive(Protocol):
     @property
     def failure(self) -> str | None:
         """After FAILED: what happened, in words."""
+        ...
+
+    @property
+    def incidents(self) -> Sequence[Incident]:
+        """What went wrong since the robot was placed, whether it went on or not."""
         ...
 
     def place(self, pose: BodyPose) -> None:

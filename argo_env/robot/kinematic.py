@@ -1,13 +1,13 @@
 """The kinematic drive: the robot follows its path on the surface at the planned speeds."""
 
 import math
-from collections import deque
 
 from argo_env.navigation.path import Motion, Path, wrap
-from argo_env.robot.drive import DriveStatus
+from argo_env.robot.drive import DriveStatus, Incident
 from argo_env.robot.pose import BodyPose
 from argo_env.robot.spec import RobotSpec
 from argo_env.robot.support import resting_poses
+from argo_env.robot.timetable import Timetable, steps
 from argo_env.world import World
 
 FLIPPERS_RAISED = math.radians(30.0)
@@ -16,7 +16,7 @@ FLIPPER_RATE = math.radians(110.0)  # rad/s (public model files of the taurob tr
 
 
 class KinematicDrive:
-    """Follows paths without forces. Holds the robot's pose and what is left of its path.
+    """Follows paths without forces. Holds the robot's pose, its path and the time on it.
 
     Height and pitch come from how the tracks rest on the geometry; nothing stops the robot from
     overlapping with the site, so whoever runs it looks at `World.touches`.
@@ -30,10 +30,10 @@ class KinematicDrive:
         self._robot = robot
         self._pose = BodyPose(0.0, 0.0, 0.0, 0.0)
         self._flippers = FLIPPERS_RAISED
-        self._left: deque[Motion] = deque()
-        self._velocity: float | None = None
-        self._poses: list[BodyPose] = []
-        self._elapsed = 0.0  # s since the present motion began
+        self._timetable: Timetable | None = None
+        self._steps = 0
+        self._motion: Motion | None = None
+        self._poses: list[BodyPose] = []  # along the motion
 
     @property
     def pose(self) -> BodyPose:
@@ -43,6 +43,10 @@ class KinematicDrive:
     def failure(self) -> str | None:
         return None
 
+    @property
+    def incidents(self) -> tuple[Incident, ...]:
+        return ()
+
     def place(self, pose: BodyPose) -> None:
         """Puts the robot there, at rest."""
         self.halt()
@@ -51,40 +55,36 @@ class KinematicDrive:
 
     def begin(self, path: Path, velocity: float | None) -> None:
         """Sets off along `path` at `velocity` (m/s) on the flat, or at the robot's own speeds."""
-        self._left = deque(path.motions)
-        self._velocity = velocity
-        self._enter_motion()
+        self._timetable = Timetable(path, self._robot, velocity)
+        self._steps = 0
 
     def halt(self) -> None:
         """Stops where it is and forgets the path."""
-        self._left.clear()
-        self._poses = []
+        self._timetable, self._motion = None, None
 
     def step(self) -> DriveStatus:
         """Moves along the path for one time step, over as many motions as that takes."""
-        time = self.time_step
-        while self._left:
-            motion = self._left[0]
-            duration = motion.duration(self._robot, self._velocity)
-            if self._elapsed + time < duration:
-                self._elapsed += time
-                self._pose = _interpolated(self._poses, self._elapsed / duration)
-                break
-            time -= duration - self._elapsed
-            self._pose = _interpolated(self._poses, 1.0)
-            self._left.popleft()
-            self._enter_motion()
+        if self._timetable is not None:
+            self._steps += 1
+            arrived = self._steps >= steps(self._timetable.duration, self.time_step)
+            t = math.inf if arrived else self._steps * self.time_step
+            place = self._timetable.at(t)
+            if place is not None:
+                self._follow(*place)
+            if arrived:
+                self.halt()
         self._move_flippers()
         self._show()
-        return DriveStatus.MOVING if self._left else DriveStatus.ARRIVED
+        return DriveStatus.ARRIVED if self._timetable is None else DriveStatus.MOVING
 
-    def _enter_motion(self) -> None:
-        self._elapsed = 0.0
-        if self._left:
-            self._poses = resting_poses(self._world, self._left[0], self._robot)
+    def _follow(self, motion: Motion, share: float) -> None:
+        if motion is not self._motion:
+            self._motion = motion
+            self._poses = resting_poses(self._world, motion, self._robot)
+        self._pose = _interpolated(self._poses, share)
 
     def _move_flippers(self) -> None:
-        on_stairs = bool(self._left) and self._left[0].on_stairs
+        on_stairs = self._motion is not None and self._motion.on_stairs
         wanted = FLIPPERS_FLAT if on_stairs else FLIPPERS_RAISED
         most = FLIPPER_RATE * self.time_step
         self._flippers += min(most, max(-most, wanted - self._flippers))

@@ -9,6 +9,7 @@ from pydantic import Field, ValidationError
 from argo_compiler.errors import ArgoError
 from argo_compiler.model import Model
 from argo_env import resources
+from argo_env.robot.calibration import Calibration, MotionKind
 
 
 class Footprint(Model):
@@ -56,10 +57,18 @@ class PowerSpec(Model):
     """down stairs"""
     measuring: float = Field(gt=0)
     """standing, the arm in motion or raised"""
+    standing: float = Field(gt=0)
+    """standing, the arm stowed"""
+    charging: float = Field(gt=0)
+    """W that the docking station gives beside what the robot draws"""
 
 
 class RobotSpec(Model):
-    """A robot: its model, its measures and the speeds that a plan counts with."""
+    """A robot: its model, its measures, the speeds that it aims at and what becomes of them.
+
+    `speed` to `turn_rate` are what a drive is told; `seconds` says how long a motion takes in fact,
+    and all plans count with that.
+    """
 
     name: str
     urdf: str
@@ -91,23 +100,55 @@ class RobotSpec(Model):
     arm_raised: dict[str, float]
     """deg, joints of the arm while measuring"""
     sensor: SensorSpec
+    calibration: Calibration = Calibration()
+    """from `<name>.calibration.yaml`, where there is one"""
 
     @property
     def turn_rate_radians(self) -> float:
         """rad/s."""
         return math.radians(self.turn_rate)
 
+    def told_speed(self, kind: MotionKind) -> float:
+        """m/s that a drive of this kind aims at; rad/s for a turn."""
+        return {
+            MotionKind.AHEAD: self.speed,
+            MotionKind.REVERSE: self.reverse_speed,
+            MotionKind.UP: self.stair_up_speed,
+            MotionKind.DOWN: self.stair_down_speed,
+            MotionKind.TURN: self.turn_rate_radians,
+        }[kind]
+
+    def real_speed(self, kind: MotionKind) -> float:
+        """m/s that a drive of this kind reaches; rad/s for a turn."""
+        return self.told_speed(kind) * self.calibration.pace(kind).share
+
+    def seconds(self, kind: MotionKind, amount: float, told: float | None = None) -> float:
+        """How long a motion over `amount` (m, or rad for a turn) takes, if it is `told` a speed of
+        its own (m/s)."""
+        pace = self.calibration.pace(kind)
+        return amount / ((told or self.told_speed(kind)) * pace.share) + pace.lost
+
 
 def load_robot(name: str = "tracker") -> RobotSpec:
     """The robot of that name; ArgoError if there is none or its description makes no sense."""
-    path = robot_folder() / f"{name}.yaml"
+    path, calibrated = robot_folder() / f"{name}.yaml", calibration_file(name)
     if not path.is_file():
-        known = ", ".join(sorted(p.stem for p in robot_folder().glob("*.yaml")))
-        raise ArgoError(f"no robot `{name}`; there are: {known}")
+        known = sorted(p.stem for p in robot_folder().glob("*.yaml") if "." not in p.stem)
+        raise ArgoError(f"no robot `{name}`; there are: {', '.join(known)}")
     try:
-        return RobotSpec.model_validate(yaml.safe_load(path.read_text(encoding="utf-8")))
+        spec = RobotSpec.model_validate(yaml.safe_load(path.read_text(encoding="utf-8")))
+        if not calibrated.is_file():
+            return spec
+        path = calibrated
+        paces = Calibration.model_validate(yaml.safe_load(path.read_text(encoding="utf-8")))
     except (yaml.YAMLError, ValidationError) as error:
         raise ArgoError(f"{path}: {error}") from error
+    return spec.model_copy(update={"calibration": paces})
+
+
+def calibration_file(name: str) -> Path:
+    """Where the calibration of the robot of that name lies, if there is one."""
+    return robot_folder() / f"{name}.calibration.yaml"
 
 
 def robot_folder() -> Path:

@@ -9,6 +9,7 @@ import pytest
 from argo_compiler.model import Pose
 from argo_env.navigation import Path
 from argo_env.navigation.path import Motion, wrap
+from argo_env.robot.calibration import Calibration
 from argo_env.robot.drive import DriveStatus
 from argo_env.robot.kinematic import KinematicDrive
 from argo_env.robot.pose import BodyPose
@@ -16,6 +17,11 @@ from argo_env.robot.pose import BodyPose
 
 def body(pose):
     return BodyPose(pose.x, pose.y, pose.z, pose.yaw)
+
+
+def as_told(robot):
+    """The robot without a calibration: it goes at the speed that it is told, at once."""
+    return robot.model_copy(update={"calibration": Calibration()})
 
 
 def follow(world, robot, path, velocity=None, time_step=0.1):
@@ -90,14 +96,14 @@ def test_speed_and_turn_rate_are_kept(simulation, robot, paths, way, velocity):
 
 def test_drives_at_the_velocity_asked_for_on_the_flat(simulation, robot):
     a, b = (Pose(x=x, y=-2.05, z=-0.03, yaw=0.0) for x in (5.05, 8.05))
-    poses, drive = follow(simulation, robot, Path(a, (Motion(a, b),)), 0.3)
+    poses, drive = follow(simulation, as_told(robot), Path(a, (Motion(a, b),)), 0.3)
     steps = [math.dist((p.x, p.y), (q.x, q.y)) for p, q in pairwise(poses)]
     assert steps[:-1] == pytest.approx([0.3 * drive.time_step] * (len(steps) - 1))
 
 
 @pytest.mark.parametrize(("way", "gear"), [("up", -1), ("down", 1)])
 def test_heads_down_the_stairs_both_ways(simulation, robot, paths, way, gear):
-    poses, _ = follow(simulation, robot, paths[way])
+    poses, _ = follow(simulation, as_told(robot), paths[way])
     tilted = [(a, b) for a, b in pairwise(poses) if a.pitch > math.radians(25)]
     assert len(tilted) > 50
     for a, b in tilted:
@@ -156,6 +162,7 @@ def test_small_and_large_steps_agree(simulation, robot, paths):
 
 
 def test_one_step_goes_over_many_short_motions(simulation, robot):
+    robot = as_told(robot)
     corners = [Pose(x=5.05 + 0.01 * k, y=-2.05, z=-0.03, yaw=0.0) for k in range(6)]
     path = Path(corners[0], tuple(Motion(a, b) for a, b in pairwise(corners)))
     poses, _ = follow(simulation, robot, path)

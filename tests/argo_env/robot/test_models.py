@@ -30,9 +30,13 @@ def urdf(robot):
 
 
 def surface_points(part):
-    """Points of a box or cylinder in its link's frame whose hull is the part, shape (n, 3)."""
+    """Points in its link's frame whose hull is the box, cylinder or mesh, shape (n, 3)."""
     geometry = part.geometry
-    if geometry.box is not None:
+    if geometry.mesh is not None:
+        text = (resources.urdf() / "checkpoints" / geometry.mesh.filename).read_text()
+        lines = (line.split() for line in text.splitlines())
+        points = np.array([line[1:] for line in lines if line and line[0] == "v"], dtype=float)
+    elif geometry.box is not None:
         points = np.array(list(itertools.product((-0.5, 0.5), repeat=3))) * geometry.box.size
     else:
         angle = np.linspace(0.0, 2 * math.pi, 721)

@@ -1,0 +1,189 @@
+"""Traction of belts by contact-surface motion.
+
+A belt is a smooth body that pushes on the ground along its normals only; what its surface would do
+by friction is added as a force at every contact. The idea is that of M. Pecka, K. Zimmermann and
+T. Svoboda, "Fast simulation of vehicles with non-deformable tracks" (IROS 2017), who give contacts
+of a rigid track the belt's surface velocity. There a physics engine's friction solver is told that
+velocity; PyBullet's can't be, so here friction is a force, as elastic and damped grousers make it.
+"""
+
+from dataclasses import dataclass, replace
+from math import sqrt
+from typing import Any
+
+Contact = tuple[Any, ...]
+"""One row of PyBullet's `getContactPoints`."""
+
+Wrench = tuple[float, float, float, float, float, float]
+
+_LINK, _OTHER, _POINT, _NORMAL, _FORCE = 3, 4, 5, 7, 9  # what is where in such a row
+_SMOOTH = 0.05  # of the grip is left on walls and rails, so that the robot does not climb them
+_SUMS = 14  # force; its slip along and across, place and square of place along the body;
+# tangent and its moment; place
+_BELTS = 4  # left and right track, left and right flipper
+INNER, TRACK_TOP = 0.16, 0.355  # m: tracks lie outside of this and below that, the hull does not
+_CAP = 1.5  # of the weight, up to which contacts stiffen the belts; keeps impacts stable
+
+
+@dataclass(frozen=True)
+class Traction:
+    """How belts hold on to what they stand on."""
+
+    grip: float = 2.2
+    """highest force along the belt over the normal force; over 1, as grousers hook into nosings"""
+    side_grip: float = 0.5
+    """the same across the belt: rubber that slides on steel or concrete"""
+    damping: float = 3.9
+    """s/m: share of the highest force for each m/s of slip; with the grip above, a product of more
+    than 12 s/m is unstable at 240 Hz"""
+    stiffness: float = 77.0
+    """1/m: share of the highest force for each m that grousers are bent; so it stands on slopes"""
+
+    def scaled(self, factor: float) -> "Traction":
+        """The same with another grip along and across."""
+        return replace(self, grip=factor * self.grip, side_grip=factor * self.side_grip)
+
+
+class Belts:
+    """The forces of all belts of a robot. Holds how far the grousers of each belt are bent.
+
+    A belt, of a track or of a flipper, slips in three ways: along, across, and by twisting on the
+    spot. The three share its grip, in the direction in which it slips, so that a belt which
+    is twisted slides sideways at the least force, as real ones do.
+    """
+
+    def __init__(
+        self, center: tuple[float, float, float], traction: Traction, weight: float
+    ) -> None:
+        """`center` (m) is where the body's centre of mass lies in its frame; `weight` (N) is that
+        of the robot."""
+        self._center = center
+        self._traction = traction
+        self._cap = _CAP * weight
+        self.bends = [0.0] * (3 * _BELTS)
+        """m along, across and by twisting, for each belt"""
+
+    def wrench(
+        self,
+        contacts: list[Contact],
+        walking: int,
+        speeds: tuple[float, float],
+        place: tuple[float, float, float],
+        axes: tuple[float, ...],
+        velocity: tuple[float, float, float],
+        spin: tuple[float, float, float],
+        dt: float,
+    ) -> tuple[Wrench, list[Contact]]:
+        """Force (N) and torque (N m) of all belts about `place` (m), in the world's axes, and the
+        contacts that are none of belts with what one walks on.
+
+        `walking` is the link of the ground that one walks on; `speeds` are those of the left and
+        right belts (m/s); `axes` is the body's rotation matrix row by row; `velocity` and `spin`
+        are those of the body at `place`, its centre of mass; `dt` (s) is the time since the last
+        call.
+        """
+        # Plain floats: this runs 240 times a simulated second.
+        px, py, pz = place
+        fx, lx, ux, fy, ly, uy, fz, lz, uz = axes
+        vx, vy, vz = velocity
+        wx, wy, wz = spin
+        _, center_y, center_z = self._center
+        sums = [[0.0] * _SUMS for _ in range(_BELTS)]
+        strange = []
+        total = 0.0
+        for contact in contacts:
+            force = contact[_FORCE]
+            if force <= 0.0:
+                continue
+            x, y, z = contact[_POINT]
+            x, y, z = x - px, y - py, z - pz
+            left = x * lx + y * ly + z * lz + center_y
+            if contact[_LINK] >= 0:
+                belt = 2
+            elif abs(left) > INNER and x * ux + y * uy + z * uz + center_z < TRACK_TOP:
+                belt = 0
+            else:
+                strange.append(contact)
+                continue
+            if contact[_OTHER] != walking:
+                strange.append(contact)
+            nx, ny, nz = contact[_NORMAL]
+            # The belt runs along its left axis times the normal.
+            tx, ty, tz = ly * nz - lz * ny, lz * nx - lx * nz, lx * ny - ly * nx
+            length = sqrt(tx * tx + ty * ty + tz * tz)
+            if length < 0.01:
+                continue  # a flank, where nothing runs
+            # From here on the tangent is the force times the unit vector.
+            if contact[_OTHER] != walking:
+                force *= _SMOOTH
+            tx, ty, tz = force * tx, force * ty, force * tz
+            force *= length
+            if left < 0.0:
+                belt += 1
+                speed = speeds[1]
+            else:
+                speed = speeds[0]
+            sx, sy, sz = vx + wy * z - wz * y, vy + wz * x - wx * z, vz + wx * y - wy * x
+            ahead = x * fx + y * fy + z * fz
+            on = sums[belt]
+            on[0] += force
+            on[1] += sx * tx + sy * ty + sz * tz - force * speed
+            on[2] += force * (sx * lx + sy * ly + sz * lz)
+            on[3] += force * ahead
+            on[4] += force * ahead * ahead
+            on[5] += tx
+            on[6] += ty
+            on[7] += tz
+            on[8] += y * tz - z * ty
+            on[9] += z * tx - x * tz
+            on[10] += x * ty - y * tx
+            on[11] += force * x
+            on[12] += force * y
+            on[13] += force * z
+            total += force
+        scale = self._cap / total if total > self._cap else 1.0
+        turning = wx * ux + wy * uy + wz * uz
+        ox = oy = oz = mx = my = mz = 0.0
+        for belt, on in enumerate(sums):
+            force = on[0]
+            if force == 0.0:
+                at = 3 * belt
+                self.bends[at] = self.bends[at + 1] = self.bends[at + 2] = 0.0
+                continue
+            along, across, twist = self._push(belt, on, turning, dt)
+            along, across, twist = scale * along, scale * across, scale * twist
+            ox += along * on[5] + across * force * lx
+            oy += along * on[6] + across * force * ly
+            oz += along * on[7] + across * force * lz
+            x, y, z = on[11], on[12], on[13]
+            mx += along * on[8] + across * (y * lz - z * ly) + twist * ux
+            my += along * on[9] + across * (z * lx - x * lz) + twist * uy
+            mz += along * on[10] + across * (x * ly - y * lx) + twist * uz
+        return (ox, oy, oz, mx, my, mz), strange
+
+    def _push(
+        self, belt: int, on: list[float], turning: float, dt: float
+    ) -> tuple[float, float, float]:
+        """Bends the grousers of a belt by its slip; gives its force along and across over the
+        normal force, and its torque in N m. Grousers that would push harder than the grip allows
+        slide instead."""
+        bends, at = self.bends, 3 * belt
+        normal, slip, side, ahead, square = on[:5]
+        slip, side, ahead = slip / normal, side / normal, ahead / normal
+        # Contacts at the ends of a belt that lies flat stand for even pressure between them.
+        half = sqrt(max(0.0, square / normal - ahead * ahead))
+        twist = turning * half
+        k, c = self._traction.stiffness, self._traction.damping
+        a, b, m = bends[at] + slip * dt, bends[at + 1] + side * dt, bends[at + 2] + twist * dt
+        push_a, push_b, push_m = -k * a - c * slip, -k * b - c * side, -k * m - c * twist
+        over = sqrt(push_a * push_a + push_b * push_b + push_m * push_m)
+        if over > 1.0:
+            push_a, push_b, push_m = push_a / over, push_b / over, push_m / over
+            # A quick slip must not leave grousers bent further than they can push.
+            a = max(-1.0, min(1.0, -push_a - c * slip)) / k
+            b = max(-1.0, min(1.0, -push_b - c * side)) / k
+            m = max(-1.0, min(1.0, -push_m - c * twist)) / k
+        bends[at], bends[at + 1], bends[at + 2] = a, b, m
+        side_grip = self._traction.side_grip
+        torque = side_grip * normal * half / 2 * push_m
+        return self._traction.grip * push_a, side_grip * push_b, torque

@@ -1,0 +1,122 @@
+"""The comparison of the drives: its random missions, and its figures on runs that are made up."""
+
+import numpy as np
+import pytest
+
+from argo_compiler.check import check
+from argo_compiler.il import Action
+from argo_compiler.model import Pose
+from argo_env.catalog import make_catalog
+from argo_env.navigation import Navigator
+from argo_env.robot.calibration import Calibration, Pace
+from argo_env.robot.drive import DriveStatus
+from argo_env.robot.fitting import errors, fit
+from argo_env.robot.route import RouteDrive
+from argo_env.robot.spec import load_robot
+from argo_env.robot.timetable import Timetable
+from argo_env.site import load_site
+from benchmarks.drives import Run, compare, drive_along, random_mission, run
+
+
+@pytest.fixture(scope="module")
+def navigator():
+    return Navigator(load_site("umad"), load_robot())
+
+
+def test_missions_are_sound_and_drawn_from_their_seed(navigator):
+    catalog = make_catalog(navigator)
+    missions = [random_mission(navigator, seed) for seed in range(30)]
+    assert missions == [random_mission(navigator, seed) for seed in range(30)]
+    assert len({m.model_dump_json() for m in missions}) == 30
+    floors, docks = set(), set()
+    for mission in missions:
+        assert not check(mission, catalog)
+        assert 5 <= len(mission.tasks) <= 10
+        docks.add((mission.start_area, mission.end_area))
+        for task in mission.tasks[1:-1]:
+            if task.action is Action.MEASURE:
+                floors.add(navigator.site.checkpoint(int(task.object_id)).floor)
+            else:
+                floors.add(navigator.site.floor_at(task.pose.z))
+    assert floors == {1, 2, 3, 4, 5, 6}
+    assert len(docks) == 4
+
+
+def test_a_run_of_one(navigator):
+    found = run(navigator, 3, "route")
+    assert found.verdict is None
+    assert found.simulated > 100
+
+
+def test_the_errors_are_against_the_tracked_drive():
+    runs = [Run(0, "tracked", None, 100.0, 4.0), Run(1, "tracked", None, 200.0, 4.0)]
+    runs += [Run(2, "tracked", "it fell over", 50.0, 4.0)]
+    for seed in range(3):
+        runs.append(Run(seed, "route", None, 99.0 if seed == 0 else 206.0, 0.01))
+        runs.append(Run(seed, "kinematic", None, 100.0 if seed == 0 else 200.0, 1.0))
+    lines = list(compare(runs))
+    assert lines[0].startswith("2 of 3 missions")
+    assert any("it fell over" in line for line in lines)
+    table = {line.split()[0]: line.split() for line in lines[-3:]}
+    assert table["route"][1:8:2] == ["2.00", "2.80", "3.00", "+1.00"]
+    assert table["kinematic"][1:8:2] == ["0.00", "0.00", "0.00", "+0.00"]
+    assert table["tracked"][-2] == "38"
+
+
+class Telling(RouteDrive):
+    """The route drive, with word of which motion is under way."""
+
+    def begin(self, path, velocity):
+        super().begin(path, velocity)
+        self._table = Timetable(path, self._robot, velocity)
+
+    @property
+    def motion(self):
+        return self._timetable and self._table.at(self._steps * self.time_step)[0]
+
+
+class Stuck(Telling):
+    """Gets stuck after a while."""
+
+    failure = "it is stuck"
+
+    def step(self):
+        super().step()
+        return DriveStatus.FAILED if self._steps > 100 else DriveStatus.MOVING
+
+
+PACES = Calibration(
+    ahead=Pace(share=0.9, lost=1.0),
+    reverse=Pace(share=0.8),
+    up=Pace(share=0.7, lost=2.0),
+    down=Pace(share=0.85, lost=1.5),
+    turn=Pace(share=0.95, lost=0.5),
+)
+
+
+def test_times_of_motions_add_up_and_give_the_paces_again(navigator):
+    robot = navigator.robot.model_copy(update={"calibration": PACES})
+    docks, timed = navigator.site.docks, []
+    for a, b in ((1, 2), (2, 1)):
+        for floor in (2, 4):
+            x, y, z, _ = navigator.turning_places(floor)[5 * a].tolist()
+            above = Pose(x=x, y=y, z=z, yaw=1.0)
+            for path in (navigator.plan(docks[a], above), navigator.plan(above, docks[b])):
+                found = drive_along(Telling(robot, 0.02), path)
+                assert [d.motions for d in found] == [(m,) for m in path.motions]
+                seconds = sum(d.seconds for d in found)
+                assert seconds == pytest.approx(path.duration(robot), abs=0.02 + 1e-6)
+                timed += found
+    fitted = navigator.robot.model_copy(update={"calibration": fit(timed, navigator.robot)})
+    # Flights are alike, so that share and loss may be mistaken for each other there; times not.
+    assert errors(timed, fitted) == pytest.approx(np.zeros(len(timed)), abs=0.03)
+    for kind in ("ahead", "turn"):
+        found, true = getattr(fitted.calibration, kind), getattr(PACES, kind)
+        assert found.share == pytest.approx(true.share, abs=0.01)
+        assert found.lost == pytest.approx(true.lost, abs=0.05)
+
+
+def test_a_way_that_fails_has_no_times(navigator):
+    path = navigator.plan(*(navigator.site.docks[n] for n in (1, 2)))
+    with pytest.raises(RuntimeError, match="stuck"):
+        drive_along(Stuck(navigator.robot), path)

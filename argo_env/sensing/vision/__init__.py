@@ -1,0 +1,1 @@
+"""Reading checkpoints from the images of the camera on the arm."""

@@ -1,0 +1,253 @@
+"""Fitting the pose of a face to a picture: the drawn face is laid over it until it matches.
+
+Levenberg-Marquardt on the differences in brightness between the picture and the drawn face, over
+the middle of the face and its turn and roll, with Tukey's weights, so that needles, levers and what
+stands in the way count little. Direct alignment in the manner of Baker and Matthews, "Lucas-Kanade
+20 years on" (2004), with a model of 5 parameters instead of a free homography.
+"""
+
+import math
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from argo_env.sensing.vision.arm import CameraPose
+from argo_env.sensing.vision.camera import Lens
+from argo_env.sensing.vision.instrument import Template
+
+_STEPS = np.array([0.0005, 0.0005, 0.0005, 0.005, 0.005])  # m and rad, of the derivatives
+_TOLERANCE = 0.30  # of the contrast of the face: a point that differs by less matches
+_HAZE = 0.35  # of white: black that is brighter than drawn by more is not of a face
+_MIN_CONTRAST = 0.02  # of full scale between black and white of a face, to be one
+
+
+@dataclass(frozen=True)
+class FacePose:
+    """Where a face is: its middle (m, in the site's frame), where it looks (`yaw`, rad), and its
+    roll about its normal (rad, counter-clockwise seen along the normal)."""
+
+    x: float
+    y: float
+    z: float
+    yaw: float
+    roll: float
+
+    @property
+    def center(self) -> NDArray[np.float64]:
+        return np.array([self.x, self.y, self.z])
+
+    @property
+    def normal(self) -> NDArray[np.float64]:
+        return np.array([math.cos(self.yaw), math.sin(self.yaw), 0.0])
+
+    def to_site(self, points: NDArray[np.float64]) -> NDArray[np.float64]:
+        """Points of the instrument's frame in the site's, shape (..., 3)."""
+        cos, sin = math.cos(self.yaw), math.sin(self.yaw)
+        c, s = math.cos(self.roll), math.sin(self.roll)
+        rotation = np.array([[cos, -sin * c, sin * s], [sin, cos * c, -cos * s], [0.0, s, c]])
+        return np.asarray(points @ rotation.T + self.center)
+
+
+@dataclass(frozen=True)
+class Photo:
+    """A picture to read in: its brightness and its redness (both 0 to 1, shape (size, size)), and
+    what it was taken with."""
+
+    brightness: NDArray[np.float32]
+    redness: NDArray[np.float32]
+    lens: Lens
+    pose: CameraPose
+
+    def blurred(self, sigma: float) -> "Photo":
+        """The picture blurred by `sigma` (px)."""
+        import cv2
+
+        if sigma < 0.4:
+            return self
+        soft = cv2.GaussianBlur(self.brightness, (0, 0), sigma)
+        return Photo(np.asarray(soft), self.redness, self.lens, self.pose)
+
+
+@dataclass(frozen=True)
+class Fit:
+    """How well a face at `pose` matches the picture."""
+
+    pose: FacePose
+    match: float
+    """0 to 1, the share of the face that looks as drawn, its dark and bright parts alike"""
+    contrast: float
+    """of full scale, between the white and the black of the face"""
+
+
+def sample(image: NDArray[np.float32], spots: NDArray[np.float64]) -> NDArray[np.float64]:
+    """The image at spots (column and row, px), shape (..., 2); NaN outside of it."""
+    import cv2
+
+    spots = spots.astype(np.float32)
+    flat = spots.reshape(-1, 2)
+    found = np.empty(len(flat))
+    # OpenCV takes maps of up to 32,767 columns.
+    for first in range(0, len(flat), 30_000):
+        part = flat[first : first + 30_000]
+        found[first : first + 30_000] = cv2.remap(
+            image,
+            np.ascontiguousarray(part[None, :, 0]),
+            np.ascontiguousarray(part[None, :, 1]),
+            cv2.INTER_LINEAR,
+            borderMode=cv2.BORDER_CONSTANT,
+            borderValue=math.nan,
+        )[0]
+    return found.reshape(spots.shape[:-1])
+
+
+def compare(photo: Photo, template: Template, pose: FacePose) -> Fit:
+    """How well the face at `pose` matches the picture."""
+    values, weights = _look(photo, template, pose)
+    face, gain, offset = _levels(values, template, weights)
+    match = _match(values, template, weights, gain, offset) if face else 0.0
+    return Fit(pose, match, gain)
+
+
+def refine(
+    photo: Photo, template: Template, pose: FacePose, rolled: bool, iterations: int = 12
+) -> Fit:
+    """The pose near `pose` that matches best; the roll stays where it is unless `rolled`."""
+    free = 5 if rolled else 4
+    parameters = np.array([pose.x, pose.y, pose.z, pose.yaw, pose.roll])
+    damping = 1e-3
+    values, weights = _look(photo, template, pose)
+    good, gain, offset = _levels(values, template, weights)
+    for _ in range(iterations):
+        if not good:
+            break
+        difference = values - gain * template.brightness - offset
+        robust = weights * _tukey(difference, 1.5 * _TOLERANCE * gain)
+        match = _match(values, template, weights, gain, offset)
+        jacobian = np.empty((len(values), free))
+        for k in range(free):
+            shifted = parameters.copy()
+            shifted[k] += _STEPS[k]
+            there = _brightness(photo, template, FacePose(*shifted.tolist()))
+            jacobian[:, k] = (there - values) / _STEPS[k]
+        jacobian[~np.isfinite(jacobian)] = 0.0
+        # The brightness of the whole face is no matter of its pose.
+        full = np.column_stack([jacobian, -template.brightness, -np.ones(len(values))])
+        normal = full.T @ (robust[:, None] * full) + 1e-12 * np.eye(free + 2)
+        gradient = full.T @ (robust * np.where(np.isfinite(difference), difference, 0.0))
+        for _ in range(4):
+            damped = normal + damping * np.diag(np.diag(normal))
+            step = np.clip(
+                np.linalg.solve(damped, -gradient)[:free], -40 * _STEPS[:free], 40 * _STEPS[:free]
+            )
+            trial = parameters.copy()
+            trial[:free] += step
+            trial_values, trial_weights = _look(photo, template, FacePose(*trial.tolist()))
+            levels = _levels(trial_values, template, trial_weights, (gain, offset))
+            if levels[0] and _match(trial_values, template, trial_weights, *levels[1:]) > match:
+                parameters, values, weights = trial, trial_values, trial_weights
+                good, gain, offset = levels
+                damping = max(damping / 5, 1e-6)
+                break
+            damping *= 8
+        else:
+            break
+        if np.abs(step / _STEPS[:free]).max() < 0.1:
+            break
+    return compare(photo, template, FacePose(*parameters.tolist()))
+
+
+def _brightness(photo: Photo, template: Template, pose: FacePose) -> NDArray[np.float64]:
+    """The picture's brightness at the template's points; NaN outside of it."""
+    return sample(photo.brightness, photo.lens.project(pose.to_site(template.points), photo.pose))
+
+
+def _look(
+    photo: Photo, template: Template, pose: FacePose
+) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+    """The picture at the template's points, and the weights of those that are seen."""
+    spots = photo.lens.project(pose.to_site(template.points), photo.pose)
+    values = sample(photo.brightness, spots)
+    red = sample(photo.redness, spots)
+    seen = np.isfinite(values) & ~(red > 0.35)
+    # What lies outside of the picture counts as a mismatch, what is red does not count at all.
+    outside = ~np.isfinite(values)
+    weights = np.where(seen | outside, template.weights, 0.0)
+    return values, weights
+
+
+def _levels(
+    values: NDArray[np.float64],
+    template: Template,
+    weights: NDArray[np.float64],
+    start: tuple[float, float] | None = None,
+) -> tuple[bool, float, float]:
+    """Gain and offset of the picture's brightness against the drawn one, and whether there is a
+    face's contrast at all; from a `start` that is near, or from the medians."""
+    seen = np.isfinite(values) & (weights > 0)
+    if seen.sum() < 20:
+        return False, 1.0, 0.0
+    v, t, w = values[seen], template.brightness[seen], weights[seen]
+    starts = _first_levels(v, t) if start is None else [start]
+    found = [_fit_levels(v, t, w, first, 4 if start is None else 1) for first in starts]
+    _, gain, offset = max(found)
+    white, black = gain * t.max() + offset, gain * t.min() + offset
+    drawn = float(template.brightness.min() / template.brightness.max())
+    return gain > _MIN_CONTRAST and black < (drawn + _HAZE) * white, gain, offset
+
+
+def _first_levels(v: NDArray[np.float64], t: NDArray[np.float64]) -> list[tuple[float, float]]:
+    """Guesses of gain and offset: from most of what should be white and of what should be black,
+    and, where much of that is covered, from the brightest of it with black as no light."""
+    bright = float(np.percentile(v, 85)) / float(t.max())
+    guesses = [(max(bright, _MIN_CONTRAST), 0.0)]
+    white = t > (t.min() + t.max()) / 2
+    if min(white.sum(), (~white).sum()) >= 10:
+        light, dark = float(np.median(v[white])), float(np.median(v[~white]))
+        high, low = float(np.median(t[white])), float(np.median(t[~white]))
+        gain = max((light - dark) / (high - low), _MIN_CONTRAST)
+        guesses.append((gain, light - gain * high))
+    return guesses
+
+
+def _fit_levels(
+    v: NDArray[np.float64],
+    t: NDArray[np.float64],
+    w: NDArray[np.float64],
+    start: tuple[float, float],
+    rounds: int,
+) -> tuple[float, float, float]:
+    """The weight of the points that fit, and the gain and offset at which they do, from a start."""
+    gain, offset = start
+    total = 0.0
+    for _ in range(rounds):
+        robust = w * _tukey(v - gain * t - offset, 1.5 * _TOLERANCE * gain)
+        total = float(robust.sum())
+        if total < 0.05:
+            break
+        mean_t, mean_v = (robust @ t) / total, (robust @ v) / total
+        variance = robust @ (t - mean_t) ** 2
+        if variance < 1e-6:
+            break
+        gain = max(float(robust @ ((t - mean_t) * (v - mean_v)) / variance), _MIN_CONTRAST)
+        offset = float(mean_v - gain * mean_t)
+    return total, gain, offset
+
+
+def _match(
+    values: NDArray[np.float64],
+    template: Template,
+    weights: NDArray[np.float64],
+    gain: float,
+    offset: float,
+) -> float:
+    difference = (values - gain * template.brightness - offset) / (_TOLERANCE * gain)
+    alike = np.exp(-(difference**2))
+    total = weights.sum()
+    return float(weights @ np.where(np.isfinite(alike), alike, 0.0) / total) if total > 0 else 0.0
+
+
+def _tukey(difference: NDArray[np.float64], scale: float) -> NDArray[np.float64]:
+    """Tukey's biweight; 0 beyond `scale` and where there is no difference to speak of (NaN)."""
+    share = np.where(np.isfinite(difference), difference / scale, 2.0)
+    return np.where(np.abs(share) < 1.0, (1.0 - share**2) ** 2, 0.0)

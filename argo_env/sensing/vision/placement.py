@@ -1,0 +1,43 @@
+"""Where a checkpoint really is, against the plan."""
+
+import math
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from argo_env.site import SiteCheckpoint
+from argo_env.site.shapes import Vector
+
+MAX_OFFSET = 0.10  # m, the radius of the sphere (thesis, 1.2)
+MAX_TURN = math.pi / 2  # rad, either way (thesis, 1.2)
+
+
+@dataclass(frozen=True)
+class Placement:
+    """How a checkpoint stands against the plan."""
+
+    offset: Vector = (0.0, 0.0, 0.0)
+    """m, along the site's axes"""
+    turn: float = 0.0
+    """rad about the vertical"""
+    roll: float = 0.0
+    """rad about the normal of its face, clockwise as one sees it from the front, after the turn"""
+
+
+AS_PLANNED = Placement()
+
+
+def displaced(checkpoint: SiteCheckpoint, placement: Placement) -> SiteCheckpoint:
+    """The checkpoint, planned there, where it really is."""
+    x, y, z = (p + d for p, d in zip(checkpoint.position, placement.offset, strict=True))
+    return replace(checkpoint, position=(x, y, z), yaw=checkpoint.yaw + placement.turn)
+
+
+def draw_placement(rng: np.random.Generator, upright: bool = False) -> Placement:
+    """A placement as the rules of the challenge allow: somewhere in the sphere, turned and rolled
+    by up to ±90°, all uniform. Level gauges are `upright`, not rolled: they show nothing else."""
+    direction = rng.normal(size=3)
+    direction *= MAX_OFFSET * rng.uniform() ** (1 / 3) / np.linalg.norm(direction)
+    turn, roll = rng.uniform(-MAX_TURN, MAX_TURN, size=2)
+    x, y, z = direction.tolist()
+    return Placement((x, y, z), float(turn), 0.0 if upright else float(roll))

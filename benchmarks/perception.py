@@ -1,0 +1,271 @@
+"""How well the camera reads checkpoints: `python -m benchmarks.perception`.
+
+Each trial puts a checkpoint of UMAD elsewhere than planned (within a sphere of 10 cm, turned and
+rolled by up to ±90°), lets it show any value of its scale in light of 0.3 to 1, in a third of the
+trials puts a pipe or a board between it and the robot, and reads it from where the robot would
+stop. Whether a checkpoint is readable is decided by geometry alone, before it is read: from some
+view that the arm reaches, in range and at most 60° off the face's normal, at least 70 % of the face
+and 70 % of the indicator are in sight.
+"""
+
+import argparse
+import json
+import math
+import time
+from collections.abc import Iterator, Sequence
+from concurrent.futures import ProcessPoolExecutor
+from contextlib import nullcontext
+from dataclasses import asdict, dataclass
+from functools import cache, partial
+from pathlib import Path
+
+import numpy as np
+from numpy.typing import NDArray
+
+from argo_compiler.catalog import CheckpointKind
+from argo_env.navigation import Navigator
+from argo_env.robot.pose import BodyPose
+from argo_env.robot.spec import load_robot
+from argo_env.seeding import generator
+from argo_env.sensing.sensor import MeasurementError
+from argo_env.sensing.vision.align import FacePose
+from argo_env.sensing.vision.instrument import Instrument
+from argo_env.sensing.vision.placement import AS_PLANNED, draw_placement
+from argo_env.sensing.vision.sensor import INSTRUMENTS, CameraSensor
+from argo_env.sensing.vision.views import plan_views, solids_near
+from argo_env.site import load_site
+from argo_env.site.shapes import Box, Cylinder, Solid
+from argo_env.world import World
+
+SURE = 0.9
+"""a reading with at least this confidence is a sure one"""
+_OBLIQUE = math.radians(60)
+_IN_SIGHT = 0.7  # of the face and of the indicator
+_ALLOWED = {  # share of the scale that a reading may be off
+    CheckpointKind.PRESSURE_GAUGE: 0.02,
+    CheckpointKind.LIQUID_LEVEL_GAUGE: 0.02,
+    CheckpointKind.VALVE: 5 / 90,
+}
+
+
+@dataclass(frozen=True)
+class Trial:
+    """One checkpoint, put somewhere and read."""
+
+    number: int
+    kind: str
+    checkpoint: int
+    turn: float
+    """deg"""
+    roll: float
+    """deg"""
+    light: float
+    occluded: bool
+    """whether something was put in the way"""
+    readable: bool
+    error: float | None
+    """of the scale; None if nothing was read"""
+    right: bool
+    confidence: float
+    reason: str | None
+    """why nothing was read"""
+    seconds: float
+    """wall time of the reading"""
+
+
+class Setting:
+    """The site with a robot before its checkpoints. Holds a world."""
+
+    def __init__(self) -> None:
+        self.site = load_site("umad")
+        self.navigator = Navigator(self.site, load_robot())
+        self.world = World(self.site, self.navigator.robot)
+        starts = list(self.site.docks.values())
+        self.stands = {
+            c.id: [self.navigator.plan_to_view(start, c.id).end for start in starts]
+            for c in self.site.checkpoints
+        }
+
+    def run(self, seed: int, number: int) -> Trial:
+        """The trial of that number."""
+        rng = generator(seed, "perception", number)
+        kind = list(CheckpointKind)[int(rng.integers(len(CheckpointKind)))]
+        checkpoint = rng.choice([c.id for c in self.site.checkpoints if c.kind is kind])
+        planned = self.site.checkpoint(int(checkpoint))
+        instrument = INSTRUMENTS[kind]
+        stand = self.stands[planned.id][int(rng.integers(2))]
+        pose = BodyPose(stand.x, stand.y, stand.z, stand.yaw)
+        placement = draw_placement(rng, upright=not instrument.rolled)
+        share = float(rng.uniform())
+        world = self.world
+        world.place_robot(pose)
+        world.move_arm(world.robot.arm_raised)
+        world.light = float(rng.uniform(0.3, 1.0))
+        world.displace(planned.id, placement)
+        scale = planned.range
+        world.show_value(planned.id, scale.low + share * (scale.high - scale.low))
+        screen = None
+        if rng.uniform() < 1 / 3:
+            actual = np.array(world.in_place(planned.id).position)
+            screen = world.add_screen("screen", draw_screen(rng, pose, actual), (0.4, 0.42, 0.45))
+        try:
+            actual_face = world.in_place(planned.id)
+            face = FacePose(*actual_face.position, actual_face.yaw, placement.roll)
+            readable = self._readable(face, instrument, pose, share)
+            began = time.perf_counter()
+            error, confidence, reason = None, 0.0, None
+            try:
+                found = CameraSensor(world, seed=seed + number).measure(planned.id, pose)
+                error = (found.value - scale.low) / (scale.high - scale.low) - share
+                confidence = found.confidence
+            except MeasurementError as failure:
+                reason = str(failure).split(": ", 1)[1]
+            seconds = time.perf_counter() - began
+        finally:
+            world.displace(planned.id, AS_PLANNED)
+            if screen is not None:
+                world.remove_screen(screen)
+        return Trial(
+            number, kind.value, planned.id,
+            math.degrees(placement.turn), math.degrees(placement.roll), world.light,
+            screen is not None, readable, error,
+            error is not None and abs(error) <= _ALLOWED[kind], confidence, reason, seconds,
+        )  # fmt: skip
+
+    def _readable(
+        self, face: FacePose, instrument: Instrument, pose: BodyPose, share: float
+    ) -> bool:
+        """Whether the face and its indicator are in sight from somewhere, by geometry alone."""
+        solids = solids_near(self.site, face.center, 1.5)
+        size = 0.8 * instrument.shape.half_width
+        indicator = instrument.indicator
+        position = indicator.low + share * (indicator.high - indicator.low)
+        moved = indicator.move(indicator.body, np.array([position]))[0]
+        front = np.array([0.012, 0.0, 0.0])
+        hand = face.to_site(moved * np.array([0.0, 1.0, 1.0]) + front)
+        plate = face.to_site(face_points(instrument) + front)
+        for view in plan_views(self.world, pose, face, solids, size, (), 1.0):
+            if view.obliqueness > _OBLIQUE:
+                continue
+            eye = view.camera.position
+            if min(self._in_sight(eye, plate), self._in_sight(eye, hand)) >= _IN_SIGHT:
+                return True
+        return False
+
+    def _in_sight(self, eye: NDArray[np.float64], points: NDArray[np.float64]) -> float:
+        x, y, z = eye.tolist()
+        return float(np.isinf(self.world.ranges((x, y, z), points)).mean())
+
+
+def face_points(instrument: Instrument) -> NDArray[np.float64]:
+    """Points spread over a face, in the instrument's frame, shape (n, 3)."""
+    shape = instrument.shape
+    y, z = np.meshgrid(np.linspace(-0.95, 0.95, 12), np.linspace(-0.95, 0.95, 12))
+    inside = np.hypot(y, z) < 0.95 if shape.round else np.ones(y.shape, dtype=bool)
+    return np.column_stack(
+        [np.zeros(inside.sum()), y[inside] * shape.half_width, z[inside] * shape.half_height]
+    )
+
+
+def draw_screen(rng: np.random.Generator, pose: BodyPose, target: NDArray[np.float64]) -> Solid:
+    """A pipe or a board somewhere between the robot's raised camera and a point."""
+    camera = np.array([pose.x, pose.y, pose.z + 1.15])
+    sight = target - camera
+    side = np.array([-sight[1], sight[0], 0.0]) / np.hypot(sight[0], sight[1])
+    place = camera + rng.uniform(0.4, 0.8) * sight + rng.uniform(-0.12, 0.12) * side
+    x, y, z = (place + np.array([0.0, 0.0, rng.uniform(-0.12, 0.12)])).tolist()
+    turn = (0.0, float(rng.uniform(-math.pi, math.pi)), math.atan2(sight[1], sight[0]) + 1.57)
+    if rng.uniform() < 0.5:
+        return Cylinder((x, y, z), float(rng.uniform(0.01, 0.03)), 0.8, turn)
+    return Box(
+        (x, y, z), (float(rng.uniform(0.04, 0.14)), 0.012, float(rng.uniform(0.1, 0.3))), turn
+    )
+
+
+@cache
+def setting() -> Setting:
+    """The setting of this process."""
+    import cv2
+
+    cv2.setNumThreads(1)  # the processes share the cores
+    return Setting()
+
+
+def run_trial(seed: int, number: int) -> Trial:
+    """The trial of that number, in this process's setting."""
+    return setting().run(seed, number)
+
+
+def run_trials(seed: int, count: int, jobs: int) -> Iterator[Trial]:
+    """All trials, in order, as they come out."""
+    with ProcessPoolExecutor(jobs) as pool:
+        yield from pool.map(partial(run_trial, seed), range(count))
+
+
+def report(trials: Sequence[Trial]) -> Iterator[str]:
+    """What came out, line by line."""
+
+    def rate(part: int, whole: int) -> str:
+        return f"{part} of {whole} ({100 * part / whole:.1f} %)" if whole else "none"
+
+    groups = [("all", list(trials))]
+    groups += [(k.value, [t for t in trials if t.kind == k.value]) for k in CheckpointKind]
+    groups += [("something in the way", [t for t in trials if t.occluded])]
+    for name, group in groups:
+        readable = [t for t in group if t.readable]
+        right = [t for t in readable if t.right]
+        yield f"{name}: readable {rate(len(readable), len(group))}, of these read right " + rate(
+            len(right), len(readable)
+        )
+    read = [t for t in trials if t.error is not None]
+    sure = [t for t in read if t.confidence >= SURE]
+    wrong = [t for t in sure if not t.right]
+    rest = [t for t in trials if not t.readable]
+    yield f"sure readings (confidence from {SURE}): {len(sure)}, of these wrong " + rate(
+        len(wrong), len(sure)
+    )
+    yield f"wrong readings: {rate(sum(not t.right for t in read), len(read))} of all readings"
+    refused = sum(t.error is None for t in rest)
+    good = sum(t.right for t in rest)
+    yield (
+        f"not readable: {len(rest)}: reported as such {refused}, yet read right {good}, wrong "
+        + str(len(rest) - refused - good)
+    )
+    for low, high in ((0.5, 0.7), (0.7, 0.9), (0.9, 0.98), (0.98, 1.01)):
+        band = [t for t in read if low <= t.confidence < high]
+        share = rate(sum(t.right for t in band), len(band))
+        yield f"confidence {low} to {min(high, 1.0)}: right {share}"
+    for kind in CheckpointKind:
+        errors = [abs(t.error) for t in read if t.kind == kind.value and t.error is not None]
+        if errors:
+            yield f"median error, {kind.value}: {100 * float(np.median(errors)):.2f} % of the scale"
+    reasons = sorted({t.reason for t in trials if t.reason})
+    for reason in reasons:
+        yield f"reported as: {reason}: {sum(t.reason == reason for t in trials)}"
+    seconds = [t.seconds for t in trials]
+    slow = np.quantile(seconds, 0.95)
+    yield f"time for a reading: median {np.median(seconds):.2f} s, 95 % {slow:.2f} s"
+
+
+def main() -> None:
+    """Runs the trials and prints what came out."""
+    parser = argparse.ArgumentParser(description=__doc__)
+    parser.add_argument("--seed", type=int, default=2016, help="default: the seed of the report")
+    parser.add_argument("--trials", type=int, default=600)
+    parser.add_argument("--jobs", type=int, default=2)
+    parser.add_argument("--out", type=Path, help="a file for all trials, a line of JSON each")
+    options = parser.parse_args()
+    trials = []
+    with options.out.open("w", encoding="utf-8") if options.out else nullcontext() as file:
+        for trial in run_trials(options.seed, options.trials, options.jobs):
+            trials.append(trial)
+            if file:
+                file.write(json.dumps(asdict(trial)) + "\n")
+                file.flush()
+    print(f"{len(trials)} trials, seed {options.seed}")
+    for line in report(trials):
+        print(line)
+
+
+if __name__ == "__main__":
+    main()

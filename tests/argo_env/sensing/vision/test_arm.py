@@ -1,0 +1,119 @@
+"""The camera's arm against PyBullet's forward kinematics, and what it keeps clear of."""
+
+import math
+
+import numpy as np
+import pybullet
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from argo_env.navigation.views import face_normal
+from argo_env.robot.pose import BodyPose
+from argo_env.robot.spec import robot_folder
+from argo_env.sensing.vision.align import FacePose
+from argo_env.sensing.vision.arm import JOINTS, forward, inverse
+from argo_env.sensing.vision.views import plan_views, solids_near
+from tests.conftest import examples
+
+LENS = 0.07  # m ahead of the camera's link
+LIMITS = {"arm_yaw": 3.1, "arm_shoulder": 1.75, "arm_elbow": 2.9, "arm_wrist": 2.9}
+
+angles = st.tuples(*(st.floats(-LIMITS.get(name, 2.5), LIMITS.get(name, 2.5)) for name in JOINTS))
+poses = st.builds(
+    BodyPose, *[st.floats(-20, 20)] * 3, st.floats(-4, 4), st.floats(-0.6, 0.6)
+)  # fmt: skip
+
+
+@pytest.fixture(scope="module")
+def tracker(robot):
+    client = pybullet.connect(pybullet.DIRECT)
+    path = robot_folder() / robot.urdf
+    body = pybullet.loadURDF(str(path), useFixedBase=True, physicsClientId=client)
+    infos = [
+        pybullet.getJointInfo(body, k, physicsClientId=client)
+        for k in range(pybullet.getNumJoints(body, physicsClientId=client))
+    ]
+    yield client, body, {info[1].decode(): info for info in infos}
+    pybullet.disconnect(client)
+
+
+def by_pybullet(tracker, joints, pose):
+    """The lens and the line of sight of the robot at `pose`."""
+    client, body, infos = tracker
+    base = pybullet.getDynamicsInfo(body, -1, physicsClientId=client)
+    place = pybullet.multiplyTransforms(
+        (pose.x, pose.y, pose.z),
+        pybullet.getQuaternionFromEuler((0.0, pose.pitch, pose.yaw)),
+        base[3],
+        base[4],
+    )
+    pybullet.resetBasePositionAndOrientation(body, *place, physicsClientId=client)
+    for name, angle in zip(JOINTS, joints, strict=True):
+        pybullet.resetJointState(body, infos[name][0], angle, physicsClientId=client)
+    state = pybullet.getLinkState(
+        body, infos["camera_pan"][0], computeForwardKinematics=True, physicsClientId=client
+    )
+    axes = np.array(pybullet.getMatrixFromQuaternion(state[5])).reshape(3, 3)
+    return np.array(state[4]) + LENS * axes[:, 0], axes
+
+
+@given(joints=angles, pose=poses)
+@settings(max_examples=examples(60), deadline=None)
+def test_forward_kinematics_is_pybullets(tracker, joints, pose):
+    camera = forward(np.array(joints), pose)
+    lens, axes = by_pybullet(tracker, joints, pose)
+    assert camera.position == pytest.approx(lens, abs=1e-5)
+    assert camera.rotation[:, 2] == pytest.approx(axes[:, 0], abs=1e-5)
+    assert camera.rotation[:, 1] == pytest.approx(-axes[:, 2], abs=1e-5)
+
+
+@given(joints=angles, pose=poses, reach=st.floats(0.3, 2.0))
+@settings(max_examples=examples(60), deadline=None)
+def test_inverse_kinematics_brings_the_lens_there(tracker, joints, pose, reach):
+    camera = forward(np.array(joints), pose)
+    target = camera.position + reach * camera.rotation[:, 2]
+    found = list(inverse(camera.position, target, pose))
+    for solution in found:
+        again = forward(solution, pose)
+        assert again.position == pytest.approx(camera.position, abs=1e-6)
+        assert again.rotation[:, 2] == pytest.approx(camera.rotation[:, 2], abs=1e-6)
+        for name, angle in zip(JOINTS, solution, strict=True):
+            low, high = tracker[2][name][8:10]
+            assert low <= angle <= high
+    assert found, "the joints that it came from are one way at least"
+
+
+@pytest.mark.parametrize("id", [1, 2, 4, 5, 10, 12, 16, 19])
+def test_planned_views_touch_nothing_and_see_the_checkpoint(id, simulation, navigator, umad, robot):
+    checkpoint = umad.checkpoint(id)
+    stand = navigator.plan_to_view(umad.docks[1], id).end
+    pose = BodyPose(stand.x, stand.y, stand.z, stand.yaw)
+    simulation.place_robot(pose)
+    face = FacePose(*checkpoint.position, checkpoint.yaw, 0.0)
+    solids = solids_near(umad, face.center, 1.5)
+    views = plan_views(simulation, pose, face, solids, 0.05, (), 0.5)
+    obliqueness = []
+    for _, view in zip(range(6), views, strict=False):
+        simulation.set_joints(dict(zip(JOINTS, view.joints.tolist(), strict=True)))
+        assert simulation.touches() == ()
+        sensor = robot.sensor
+        assert sensor.min_range <= view.distance <= sensor.max_range
+        sight = view.camera.position - face.center
+        angle = math.acos(sight @ face_normal(checkpoint) / np.linalg.norm(sight))
+        assert view.obliqueness == pytest.approx(angle, abs=1e-6)
+        obliqueness.append(math.degrees(angle))
+    simulation.move_arm(robot.arm_stowed)
+    assert min(obliqueness) <= 40
+
+
+def test_arm_check_moves_nothing_and_names_what_is_hit(simulation, robot):
+    simulation.place_robot(BodyPose(3.25, 4.2, 0.0, 0.0))
+    before = simulation.joint_positions(JOINTS)
+    raised = {name: math.radians(angle) for name, angle in robot.arm_raised.items()}
+    assert simulation.arm_obstacle(raised, 0.02) == "separator V-201"
+    folded = dict.fromkeys(JOINTS, 0.0) | {"arm_shoulder": 1.7, "arm_elbow": 0.3}
+    simulation.place_robot(BodyPose(8.0, 1.6, 0.0, 0.0))
+    assert simulation.arm_obstacle(folded, 0.02) == "base_link"
+    assert simulation.arm_obstacle(raised, 0.02) is None
+    assert simulation.joint_positions(JOINTS) == before

@@ -1,0 +1,170 @@
+"""Checkpoints read from pictures: what the sensor says, and what it says when it can't."""
+
+import math
+import subprocess
+import sys
+
+import numpy as np
+import pytest
+
+from argo_compiler.catalog import CheckpointKind
+from argo_env.robot.pose import BodyPose
+from argo_env.sensing.sensor import MeasurementError
+from argo_env.sensing.vision.faces import draw_face, face_file
+from argo_env.sensing.vision.placement import AS_PLANNED, Placement, draw_placement
+from argo_env.sensing.vision.sensor import CameraSensor
+from argo_env.site.shapes import Box
+
+pytest.importorskip("cv2")
+from PIL import Image
+
+DIAL, LEVEL, VALVE = 1, 2, 4
+ALLOWED = {DIAL: 0.2, LEVEL: 2.0, VALVE: 5.0}  # bar, %, deg
+
+
+@pytest.fixture
+def stage(simulation, navigator, umad, robot):
+    """Puts the robot before a checkpoint that shows a value, and puts all back in the end."""
+    screens = []
+
+    def put(id, value, placement=AS_PLANNED, light=1.0):
+        stand = navigator.plan_to_view(umad.docks[1], id).end
+        pose = BodyPose(stand.x, stand.y, stand.z, stand.yaw)
+        simulation.place_robot(pose)
+        simulation.move_arm(robot.arm_raised)
+        simulation.show_value(id, value)
+        simulation.displace(id, placement)
+        simulation.light = light
+        return pose
+
+    put.world, put.screens = simulation, screens
+    yield put
+    simulation.light = 1.0
+    simulation.move_arm(robot.arm_stowed)
+    for id in ALLOWED:
+        simulation.displace(id, AS_PLANNED)
+    for screen in screens:
+        simulation.remove_screen(screen)
+
+
+@pytest.mark.parametrize("id", [DIAL, LEVEL, VALVE])
+def test_reads_any_value_where_planned(stage, umad, id):
+    scale = umad.checkpoint(id).range
+    rng = np.random.default_rng(id)
+    for share in (0.0, 1.0, *rng.uniform(size=2)):
+        value = scale.low + float(share) * (scale.high - scale.low)
+        pose = stage(id, value)
+        found = CameraSensor(stage.world, seed=3).measure(id, pose)
+        assert found.value == pytest.approx(value, abs=ALLOWED[id] / 2)
+        assert scale.low <= found.value <= scale.high
+        assert 0.9 <= found.confidence <= 1.0
+        assert 0.3 <= found.distance <= 2.0
+
+
+@pytest.mark.parametrize(
+    ("id", "value", "placement", "light"),
+    [
+        (DIAL, 7.3, Placement((0.05, 0.03, -0.06), math.radians(40), math.radians(-70)), 1.0),
+        (DIAL, 1.2, Placement((-0.07, 0.0, 0.05), math.radians(-35), math.radians(85)), 0.35),
+        (LEVEL, 81.0, Placement((0.04, -0.05, 0.06), math.radians(-45)), 0.4),
+        (VALVE, 62.0, Placement((0.0, 0.06, 0.04), math.radians(30), math.radians(-80)), 0.5),
+    ],
+)
+def test_reads_what_is_displaced_turned_and_dim(stage, id, value, placement, light):
+    pose = stage(id, value, placement, light)
+    found = CameraSensor(stage.world, seed=5).measure(id, pose)
+    assert found.value == pytest.approx(value, abs=ALLOWED[id])
+
+
+def test_looks_past_what_is_in_the_way(stage, umad):
+    pose = stage(DIAL, 4.4)
+    x, y, z = umad.checkpoint(DIAL).position
+    screen = Box((x, y + 0.25, z), (0.05, 0.01, 0.4))
+    stage.screens.append(stage.world.add_screen("board", screen, (0.4, 0.4, 0.4)))
+    found = CameraSensor(stage.world, seed=1).measure(DIAL, pose)
+    assert found.value == pytest.approx(4.4, abs=0.2)
+
+
+@pytest.mark.parametrize("id", [DIAL, LEVEL, VALVE])
+def test_too_dark(stage, id):
+    pose = stage(id, 30.0 if id != DIAL else 3.0, light=0.02)
+    with pytest.raises(MeasurementError, match="too dark"):
+        CameraSensor(stage.world).measure(id, pose)
+
+
+def test_not_there(stage):
+    pose = stage(DIAL, 3.0, Placement((0.0, 0.0, -30.0)))
+    with pytest.raises(MeasurementError, match="pressure gauge 1: not found"):
+        CameraSensor(stage.world).measure(DIAL, pose)
+
+
+def test_all_hidden(stage, umad):
+    pose = stage(VALVE, 45.0)
+    x, y, z = umad.checkpoint(VALVE).position
+    board = Box((x + 0.15, y, z), (0.01, 1.2, 1.2))
+    stage.screens.append(stage.world.add_screen("board", board, (0.4, 0.4, 0.4)))
+    with pytest.raises(MeasurementError, match=r"valve R25: (not found|hidden|the camera)"):
+        CameraSensor(stage.world).measure(VALVE, pose)
+
+
+def test_from_too_far_away(stage):
+    pose = stage(DIAL, 3.0)
+    away = BodyPose(pose.x, pose.y + 6.0, pose.z, pose.yaw)
+    with pytest.raises(MeasurementError, match="can't get it in view"):
+        CameraSensor(stage.world).measure(DIAL, away)
+
+
+def test_unknown_checkpoint(stage):
+    with pytest.raises(KeyError):
+        CameraSensor(stage.world).measure(99, stage(DIAL, 3.0))
+
+
+def test_same_seed_same_reading_and_pictures_are_told(stage):
+    pose = stage(DIAL, 6.1, light=0.6)
+    world, shots = stage.world, []
+    before = world.joint_positions(("arm_yaw", "arm_elbow", "camera_pan"))
+    world.on_shot = shots.append
+    try:
+        first = CameraSensor(world, seed=8).measure(DIAL, pose)
+        count = len(shots)
+        again = CameraSensor(world, seed=8).measure(DIAL, pose)
+        other = CameraSensor(world, seed=9).measure(DIAL, pose)
+    finally:
+        world.on_shot = None
+    assert first == again
+    assert first.value != other.value
+    assert world.joint_positions(("arm_yaw", "arm_elbow", "camera_pan")) == before
+    assert count >= 2
+    for one, two in zip(shots[:count], shots[count:], strict=False):
+        assert np.array_equal(one.pixels, two.pixels)
+        assert one.pixels.dtype == np.uint8
+        assert one.rotation.T @ one.rotation == pytest.approx(np.eye(3), abs=1e-9)
+
+
+@pytest.mark.parametrize("kind", CheckpointKind)
+def test_shipped_faces_are_the_drawn_ones(kind):
+    with Image.open(face_file(kind)) as image:
+        shipped = np.asarray(image.convert("L"), dtype=float)
+    drawn = np.asarray(draw_face(kind).convert("L"), dtype=float)
+    assert shipped.shape == drawn.shape
+    # Fonts differ a little from version to version.
+    assert np.abs(shipped - drawn).mean() <= 3.0
+
+
+def test_placements_fill_what_the_rules_allow():
+    rng = np.random.default_rng(0)
+    drawn = [draw_placement(rng) for _ in range(500)]
+    distances = [math.hypot(*p.offset) for p in drawn]
+    assert 0.095 < max(distances) <= 0.1
+    # Half of a sphere's volume lies beyond 0.79 of its radius.
+    assert 0.4 < np.mean(np.array(distances) > 0.0794) < 0.6
+    for angle in ("turn", "roll"):
+        values = [getattr(p, angle) for p in drawn]
+        assert -math.pi / 2 <= min(values) < -1.5
+        assert 1.5 < max(values) <= math.pi / 2
+    assert draw_placement(rng, upright=True).roll == 0.0
+
+
+def test_importing_argo_env_needs_no_opencv():
+    code = "import sys, argo_env.session; sys.exit('cv2' in sys.modules)"
+    assert subprocess.run([sys.executable, "-c", code], check=False).returncode == 0

@@ -1,0 +1,102 @@
+"""The site that Drive-v0 drives on: its world, the robot's body in it, and the ways there."""
+
+from dataclasses import replace
+from types import TracebackType
+from typing import Self
+
+import numpy as np
+from numpy.typing import NDArray
+
+from argo_compiler.errors import ArgoError
+from argo_env.envs.guide import Guide
+from argo_env.envs.sites import navigator_of
+from argo_env.events.kinds import AnyFault, changed_site, settle
+from argo_env.events.machine import DriveDysfunction
+from argo_env.navigation import Navigator
+from argo_env.pictures.chase import ChaseCamera
+from argo_env.pictures.scene import Scene
+from argo_env.robot.pose import BodyPose
+from argo_env.robot.tracked.body import TrackedBody
+from argo_env.world import World
+
+ON_THE_WAY = ("brick", "missing_plate", "blocked_stairs")
+"""kinds of faults that change the site"""
+DYSFUNCTION = "drive_dysfunction"
+_PICTURE = (640, 360)  # px
+
+
+class DriveSite:
+    """Holds two PyBullet connections, and a third one once it has drawn; close it."""
+
+    def __init__(self, scenario: str, faults: tuple[AnyFault, ...] = ()) -> None:
+        """Places the faults by their own seeds, 0 where they have none.
+
+        Raises ArgoError if there is no such site, or faults that the environment does not know.
+        """
+        for fault in faults:
+            if fault.kind not in (*ON_THE_WAY, DYSFUNCTION):
+                raise ArgoError(
+                    f"argo/Drive-v0 does not know the fault `{fault.kind}`; "
+                    f"it knows: {', '.join((*ON_THE_WAY, DYSFUNCTION))}"
+                )
+        navigator = navigator_of(scenario)
+        site = navigator.site
+        settled = settle(faults, site, 0)
+        real = changed_site(site, settled)
+        if real.elements != site.elements:
+            # The way shown and the progress made are those of the site as it is.
+            navigator = Navigator(real, navigator.robot)
+        self.site = site
+        self.robot = navigator.robot
+        self.navigator = navigator
+        self.guide = Guide(navigator)
+        self.dysfunctions = tuple(f for f in settled if isinstance(f, DriveDysfunction))
+        self._real = replace(site, elements=real.elements)
+        self.world = World(site, self.robot, elements=real.elements)
+        self.body = TrackedBody(self.world, self.robot)
+        self._scene: Scene | None = None
+        self._camera: ChaseCamera | None = None
+
+    def __enter__(self) -> Self:
+        return self
+
+    def __exit__(
+        self,
+        kind: type[BaseException] | None,
+        error: BaseException | None,
+        trace: TracebackType | None,
+    ) -> None:
+        self.close()
+
+    def close(self) -> None:
+        """Ends the connections."""
+        self.body.close()
+        self.world.close()
+        if self._scene:
+            self._scene.close()
+            self._scene = None
+
+    def speed_share(self, now: float) -> float:
+        """The share of its speed that the drive makes at time `now` (s)."""
+        shares = [
+            f.speed or 0.0
+            for f in self.dysfunctions
+            if f.begins <= now and (f.ends is None or now < f.ends)
+        ]
+        return min(shares, default=1.0)
+
+    def picture(self, pose: BodyPose, flipper: float) -> NDArray[np.uint8]:
+        """The robot from behind, shape (360, 640, 3); `flipper` in degrees."""
+        if self._scene is None:
+            self._scene = Scene(self._real, self.robot)
+            self._camera = None
+        if self._camera is None:
+            self._camera = ChaseCamera(self._scene, _PICTURE, 0.1)
+        self._scene.show_floors(self.site.floor_at(pose.z))
+        joints = {f"{side}_flipper_joint": flipper for side in ("left", "right")}
+        self._scene.place_robot(pose, self.robot.arm_stowed | joints)
+        return self._scene.look(self._camera.follow(pose)).colours
+
+    def forget_view(self) -> None:
+        """The next picture is taken from where the robot is seen best, whatever came before."""
+        self._camera = None

@@ -1,0 +1,426 @@
+"""`argo/Inspect-v0`: choose the next checkpoint; the simulator drives there and reads it."""
+
+from collections.abc import Mapping
+from functools import lru_cache
+from typing import Annotated, Any, cast
+
+import gymnasium as gym
+import numpy as np
+from gymnasium import spaces
+from numpy.typing import NDArray
+from pydantic import Field
+
+from argo_compiler.errors import ArgoError
+from argo_compiler.il import EventKind
+from argo_compiler.model import Model
+from argo_env.envs.inspection_run import Deed, Inspection, TravelTimes
+from argo_env.envs.observations import Observation, dict_space
+from argo_env.envs.options import read_options
+from argo_env.envs.plan_pictures import Marker, draw_plan
+from argo_env.envs.rendering import Window, check_render_mode
+from argo_env.envs.sites import navigator_of
+from argo_env.events.kinds import KINDS, AnyFault
+from argo_env.events.machine import EmergencyStop
+from argo_env.robot.route import RouteDrive
+from argo_env.session import DRIVES, check_settings
+from argo_env.settings import RunSettings
+from argo_env.site import Site
+
+READING, ABNORMAL, FINDING, CONTACT, DOCKED, DEAD = 10.0, 10.0, 5.0, -1.0, 20.0, -20.0
+"""points: see the description of the environment"""
+_TRIES = 2  # readings of a checkpoint that may fail before it is given up
+_PATIENCE = 10.0  # s that an illegal action costs, and a stay in a dock takes at least
+_FPS = 2
+_EVENTS = tuple(EventKind)
+
+
+class InspectOptions(Model):
+    """What `reset(options=...)` of Inspect-v0 may say."""
+
+    scenario: str | None = None
+    floor: int | tuple[int, ...] = ()
+    faults: Annotated[int, Field(ge=0, le=8)] | tuple[AnyFault, ...] | None = None
+    seed: int | None = Field(default=None, ge=0)
+
+    @property
+    def floors(self) -> tuple[int, ...]:
+        return (self.floor,) if isinstance(self.floor, int) else self.floor
+
+
+class InspectEnv(gym.Env[Observation, np.int64]):
+    """## Description
+    A robot reads the checkpoints of a site and has to be docked in time. The agent chooses where to
+    go next; the robot plans its path, drives and measures as it does in a mission, and on the way
+    notices what its watches notice. Things go wrong: see Randomisation.
+
+    ## Observation Space
+    A `Dict`. With n slots for checkpoints (in the order of their numbers) and d for docks there are
+    n + d places. All are `float32` from 0 to 1 but for the last two.
+
+    | key | shape | meaning |
+    |---|---|---|
+    | `travel` | (n + d,) | estimated way to each place from here, as a share of the time limit; 1 also where there is no way |
+    | `points` | (n + d,) | points to be had there for sure, of 20 |
+    | `failed` | (n + d,) | how often it failed, of 2 |
+    | `left` | (1,) | time that is left, as a share of the limit |
+    | `battery` | (1,) | charge that the voltage speaks for |
+    | `floor` | (1,) | floor where the robot is, of all |
+    | `noticed` | (k,) | `int8`, 1 for each `EventKind` that was noticed so far |
+    | `mask` | (n + d,) | `int8`, 1 where the action is legal |
+
+    ## Action Space
+    `Discrete(n + d)`: read checkpoint k; or go to dock k - n. The end dock ends the episode; in any
+    other one the robot stays until its battery is full. Docks are always legal. A checkpoint is
+    legal until it was read, or failed twice, as long as a way there is known; none is after the
+    platform alarm. `action_masks()` gives the mask as booleans, as MaskablePPO of sb3-contrib asks
+    for. An illegal action makes the robot wait for 10 s, and `info["illegal"]` is true.
+
+    ## Rewards
+    Points of Argo's own (those of the competition are not public), as terms in `info["terms"]`:
+
+    | term | points |
+    |---|---|
+    | `reading` | 10 for each checkpoint read |
+    | `abnormal` | 10 more if its value is outside the nominal range |
+    | `finding` | 5 for each thing noticed on the way |
+    | `contact` | -1 for each contact with the site (drive `kinematic`) |
+    | `docked` | 20 for the end dock |
+    | `dead` | -20 if the battery is empty |
+
+    `info` also tells `time` (s), `failure` (in words, or empty), the kinds of what was `found`, and
+    the value of the `reading` if there is one.
+
+    ## Starting State
+    In one of the docks, drawn, with a full battery and all checkpoints to be read. The end dock is
+    drawn as well.
+
+    ## Episode End
+    Terminated when the robot is in its end dock, or its battery is empty. Truncated when the time
+    limit is reached.
+
+    ## Randomisation
+    What the checkpoints show, within their nominal ranges; start and end dock; and `faults`: so
+    many, drawn from the kinds that the drive can find, with random times and places. The drive
+    `route` has no world, so faults that are found by gas, heat, sound or sight need `kinematic`.
+    Seeds from 1,000,000 on are for tests by convention: train with lower ones.
+
+    ## Arguments
+    - `scenario` ("umad"): name or file of a site, or `generated:floors=3,seed=7`.
+    - `drive` ("route"): `route` goes by travel times; `kinematic` drives in PyBullet, with contacts
+      and all watches, at a small part of the speed.
+    - `time_limit` (1800): s of simulated time.
+    - `faults` (1): how many are drawn for each episode.
+    - `checkpoints` (None): n; None: as many as the site has. `docks` (None): d, likewise.
+
+    `reset(options=...)`, which hold until others are given (`{}`: none):
+    - `scenario`: another site, with no more checkpoints and docks than n and d.
+    - `floor`: number, or list of numbers: only checkpoints on these floors are to be read.
+    - `faults`: how many, or a list as in a file of faults, such as `[{"kind": "low_battery"}]`.
+    - `seed`: of the simulation, in place of a drawn one.
+
+    `get_state()` gives what `set_state(state)` goes on from, the generator included. It does the
+    actions since the reset again.
+
+    ## Version History
+    - v0: first version
+    """  # noqa: E501
+
+    metadata = {  # noqa: RUF012
+        "render_modes": ["human", "rgb_array"],
+        "render_fps": _FPS,
+    }
+
+    def __init__(
+        self,
+        scenario: str = "umad",
+        drive: str = RouteDrive.name,
+        time_limit: float = 1800.0,
+        faults: int = 1,
+        checkpoints: int | None = None,
+        docks: int | None = None,
+        render_mode: str | None = None,
+    ) -> None:
+        """Raises ArgoError if there is no such scenario, drive or render mode."""
+        check_render_mode(render_mode, self.metadata["render_modes"])
+        if drive not in DRIVES:
+            raise ArgoError(f"no drive `{drive}`; there are: {', '.join(DRIVES)}")
+        if time_limit <= 0:
+            raise ArgoError(f"the time limit is {time_limit:g} s, and must be more than 0")
+        self.render_mode = render_mode
+        self._scenario, self._drive, self._limit = scenario, drive, time_limit
+        self._default_faults = faults
+        site = navigator_of(scenario).site
+        self._slots = len(site.checkpoints) if checkpoints is None else checkpoints
+        self._docks = len(site.docks) if docks is None else docks
+        places = self._slots + self._docks
+        share, one = spaces.Box(0.0, 1.0, (places,)), spaces.Box(0.0, 1.0, (1,))
+        parts: dict[str, spaces.Space[Any]] = {
+            "travel": share,
+            "points": share,
+            "failed": share,
+            "left": one,
+            "battery": one,
+            "floor": one,
+            "noticed": spaces.MultiBinary(len(_EVENTS)),
+            "mask": spaces.MultiBinary(places),
+        }
+        self.observation_space = dict_space(parts)
+        self.action_space = spaces.Discrete(places)
+        self._options = InspectOptions()
+        self._prepare()
+        self._run: Inspection | None = None
+        self._window: Window | None = None
+
+    # -- the environment
+
+    def reset(
+        self, *, seed: int | None = None, options: dict[str, Any] | None = None
+    ) -> tuple[Observation, dict[str, Any]]:
+        super().reset(seed=seed)
+        if options is not None:
+            before = self._options
+            self._options = read_options(InspectOptions, options, "argo/Inspect-v0")
+            try:
+                self._prepare()
+            except ArgoError:
+                self._options = before
+                self._prepare()
+                raise
+        self._begun = self.np_random.bit_generator.state
+        rng, site = self.np_random, self._navigator.site
+        drawn = int(rng.integers(2**31))
+        docks = sorted(site.docks)
+        start, self._end = (int(rng.choice(len(docks))) for _ in range(2))
+        settings = RunSettings(
+            drive=self._drive,
+            seed=drawn if self._options.seed is None else self._options.seed,
+            faults=self._faults(rng),
+        )
+        check_settings(settings, site)
+        if self._run:
+            self._run.close()
+        self._run = Inspection(self._navigator, settings, site.docks[docks[start]], self._limit)
+        self._read = np.zeros(self._slots, np.bool_)
+        self._failed = np.zeros(self._slots + self._docks, np.int64)
+        self._actions: list[int] = []
+        pose = self._run.pose
+        self._way = [(pose.x, pose.y, float(site.floor_at(pose.z)))]
+        observation = self._observe()
+        self._show()
+        return observation, {"settings": settings.model_dump(mode="json")}
+
+    def step(self, action: np.int64 | int) -> tuple[Observation, float, bool, bool, dict[str, Any]]:
+        run, place = self._running, int(action)
+        illegal = not self._mask[place]
+        if illegal:
+            deed, docked = run.stand(_PATIENCE), False
+        else:
+            deed, docked = self._go(place)
+        terms = {
+            "reading": READING if deed.reading else 0.0,
+            "abnormal": ABNORMAL if deed.reading and not deed.reading.normal else 0.0,
+            "finding": FINDING * len(deed.found),
+            "contact": CONTACT * deed.contacts,
+            "docked": DOCKED if docked else 0.0,
+            "dead": DEAD if run.dead and not docked else 0.0,
+        }
+        self._actions.append(place)
+        pose = run.pose
+        self._way.append((pose.x, pose.y, float(self._navigator.site.floor_at(pose.z))))
+        terminated = docked or run.dead
+        info: dict[str, Any] = {
+            "terms": terms,
+            "time": run.now,
+            "illegal": illegal,
+            "failure": deed.failure or "",
+            "found": tuple(anomaly.kind.value for anomaly in deed.found),
+        }
+        if deed.reading:
+            info["reading"] = deed.reading.value
+        observation = self._observe()
+        self._show()
+        truncated = run.time_up and not terminated
+        return observation, sum(terms.values()), terminated, truncated, info
+
+    def action_masks(self) -> NDArray[np.bool_]:
+        """Which actions are legal now, shape (n + d,)."""
+        return self._mask.copy()
+
+    def render(self) -> NDArray[np.uint8] | None:
+        """The site's floors with what was read; with `human` it is in a window."""
+        if self.render_mode is None:
+            return None
+        picture = self._picture()
+        if self.render_mode == "rgb_array":
+            return picture
+        self._window = self._window or Window("argo/Inspect-v0")
+        self._window.show(picture)
+        return None
+
+    def close(self) -> None:
+        if self._run:
+            self._run.close()
+            self._run = None
+        if self._window:
+            self._window.close()
+            self._window = None
+
+    # -- states
+
+    def get_state(self) -> dict[str, Any]:
+        """All that the future depends on, as plain data that can be pickled."""
+        return {
+            "begun": self._begun,
+            "options": self._options.model_dump(mode="json", exclude_unset=True),
+            "actions": tuple(self._actions),
+            "generator": self.np_random.bit_generator.state,
+        }
+
+    def set_state(self, state: Mapping[str, Any]) -> Observation:
+        """Goes on from what `get_state` gave; returns the observation of that moment."""
+        mode, self.render_mode = self.render_mode, None
+        self.np_random.bit_generator.state = state["begun"]
+        observation, _ = self.reset(options=dict(state["options"]))
+        for action in state["actions"]:
+            observation = self.step(action)[0]
+        self.np_random.bit_generator.state = state["generator"]
+        self.render_mode = mode
+        return observation
+
+    # -- inside
+
+    @property
+    def _running(self) -> Inspection:
+        if self._run is None:
+            raise gym.error.ResetNeeded("call reset before step")
+        return self._run
+
+    def _prepare(self) -> None:
+        """Makes the site ready that the options ask for; ArgoError if it does not fit."""
+        scenario = self._options.scenario or self._scenario
+        self._navigator = navigator_of(scenario)
+        site = self._navigator.site
+        if len(site.checkpoints) > self._slots or len(site.docks) > self._docks:
+            raise ArgoError(
+                f"site {site.name} has {len(site.checkpoints)} checkpoints and {len(site.docks)} "
+                f"docks, and there is room for {self._slots} and {self._docks}: make the "
+                "environment with larger `checkpoints` and `docks`"
+            )
+        floors = [floor.number for floor in site.spec.floors]
+        for floor in self._options.floors:
+            if floor not in floors:
+                raise ArgoError(f"site {site.name} has the floors 1 to {max(floors)}, not {floor}")
+        asked = self._options.floors or floors
+        self._asked = np.zeros(self._slots, np.bool_)
+        self._asked[: len(site.checkpoints)] = [c.floor in asked for c in site.checkpoints]
+        if isinstance(self._options.faults, tuple):
+            check_settings(RunSettings(drive=self._drive, faults=self._options.faults), site)
+
+    def _faults(self, rng: np.random.Generator) -> tuple[AnyFault, ...]:
+        given = self._options.faults
+        if isinstance(given, tuple):
+            return given
+        count = self._default_faults if given is None else given
+        paper = self._drive == RouteDrive.name
+        site = self._navigator.site
+        kinds = [
+            kind
+            for kind, model in KINDS.items()
+            if not (model.needs_world and paper) and (kind != "abnormal_pump" or _has_pump(site))
+        ]
+        drawn = [kinds[k] for k in rng.permutation(len(kinds))[:count]]
+        return tuple(_fault(kind, rng) for kind in drawn)
+
+    def _go(self, place: int) -> tuple[Deed, bool]:
+        """Carries the action out; whether the robot is in its end dock then."""
+        run, site = self._running, self._navigator.site
+        if place < self._slots:
+            deed = run.read(site.checkpoints[place].id)
+            if deed.reading:
+                self._read[place] = True
+        else:
+            dock = site.docks[sorted(site.docks)[place - self._slots]]
+            deed = run.drive(dock)
+        if deed.failure is not None:
+            self._failed[place] += 1
+        arrived = place >= self._slots and deed.failure is None and not (run.time_up or run.dead)
+        if arrived and place != self._slots + self._end:
+            stay = run.stand(_PATIENCE, charging=True)
+            return Deed(found=deed.found + stay.found, contacts=deed.contacts), False
+        return deed, arrived
+
+    def _observe(self) -> Observation:
+        run, site, n = self._running, self._navigator.site, self._slots
+        travel = self._travel()
+        alarm = EventKind.PLATFORM_ALARM in run.noticed
+        mask = np.zeros(n + self._docks, np.bool_)
+        mask[:n] = self._asked & ~self._read & (self._failed[:n] < _TRIES) & np.isfinite(travel[:n])
+        if alarm:
+            mask[:n] = False
+        mask[n : n + len(site.docks)] = True
+        self._mask = mask
+        points = np.where(mask, READING, 0.0)
+        points[n:] = 0.0
+        points[n + self._end] = DOCKED
+        one = np.float32
+        floor = site.floor_at(run.pose.z) / len(site.spec.floors)
+        noticed = set(run.noticed)
+        return {
+            "travel": np.minimum(travel / self._limit, 1.0).astype(one),
+            "points": (points / DOCKED).astype(one),
+            "failed": np.minimum(self._failed / _TRIES, 1.0).astype(one),
+            "left": np.array([max(0.0, 1.0 - run.now / self._limit)], dtype=one),
+            "battery": np.array([run.charge], dtype=one),
+            "floor": np.array([floor], dtype=one),
+            "noticed": np.array([kind in noticed for kind in _EVENTS], dtype=np.int8),
+            "mask": mask.astype(np.int8),
+        }
+
+    def _travel(self) -> NDArray[np.float64]:
+        """Estimated s to each place, infinite for empty slots and where there is no way."""
+        run, site, n = self._running, self._navigator.site, self._slots
+        docks = len(site.docks)
+        times = _travel_times(self._options.scenario or self._scenario).row(run.pose, run.navigator)
+        travel = np.full(n + self._docks, np.inf)
+        travel[: len(times) - docks] = times[docks:]
+        travel[n : n + docks] = times[:docks]
+        return travel
+
+    def _picture(self) -> NDArray[np.uint8]:
+        run, site = self._running, self._navigator.site
+        markers = []
+        for k, c in enumerate(site.checkpoints):
+            state = "done" if self._read[k] else "open" if self._mask[k] else "closed"
+            markers.append(Marker((c.position[0], c.position[1], c.floor), str(c.id), 11.0, state))
+        for k, number in enumerate(sorted(site.docks)):
+            pose = site.docks[number]
+            name = f"dock {number}" + (" (end)" if k == self._end else "")
+            markers.append(Marker((pose.x, pose.y, site.floor_at(pose.z)), name, 5.0, "dock"))
+        noticed = ", ".join(dict.fromkeys(kind.value for kind in run.noticed)) or "nothing"
+        headline = (
+            f"{run.now:.0f} s of {self._limit:.0f} s    battery {run.charge:.0%}    "
+            f"read {self._read.sum()} of {self._asked.sum()}    noticed: {noticed}"
+        )
+        return draw_plan(markers, self._way, headline, len(site.spec.floors))
+
+    def _show(self) -> None:
+        if self.render_mode == "human":
+            self.render()
+
+
+@lru_cache(maxsize=8)
+def _travel_times(scenario: str) -> TravelTimes:
+    return TravelTimes(navigator_of(scenario))
+
+
+def _has_pump(site: Site) -> bool:
+    return any(floor.pumps for floor in site.spec.floors)
+
+
+def _fault(kind: str, rng: np.random.Generator) -> AnyFault:
+    """A fault of that kind, what matters drawn by the run's seed; someone releases an emergency
+    stop after a minute."""
+    if kind == "emergency_stop":
+        at = round(float(rng.uniform(0.0, 600.0)), 1)
+        return EmergencyStop(at=at, until=at + 60.0)
+    return cast("AnyFault", KINDS[kind].model_validate({}))

@@ -1,0 +1,180 @@
+"""Which instance an episode has: options, a hash of seed and episode, and instances in arrays."""
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from functools import lru_cache
+from typing import Any, overload
+
+import numpy as np
+from numpy.typing import NDArray
+from pydantic import Field
+
+from argo_compiler.errors import ArgoError
+from argo_compiler.model import Model
+from argo_env.envs.options import read_options
+from argo_env.envs.route_instance import DOCK, RouteInstance
+from argo_env.envs.route_sources import (
+    TEST,
+    TRAINING,
+    RandomRoutes,
+    RouteFaults,
+    RouteSource,
+    SiteRoutes,
+    check_floors,
+)
+
+_KEPT = 256  # instances that a single environment keeps
+_WORD = (1 << 64) - 1
+Words = NDArray[np.uint64]
+
+
+class RouteOptions(Model):
+    """What `reset(options=...)` of Route-v0 may say."""
+
+    scenario: str | None = None
+    floor: int | tuple[int, ...] = ()
+    faults: RouteFaults = RouteFaults()
+    instance: int | tuple[int, ...] | None = Field(default=None)
+    test: bool = False
+
+    @property
+    def floors(self) -> tuple[int, ...]:
+        return (self.floor,) if isinstance(self.floor, int) else self.floor
+
+
+@dataclass(frozen=True)
+class Pool:
+    """Instances in arrays, one row for each; see `RouteInstance` for what they are."""
+
+    numbers: NDArray[np.int64]
+    each: bool
+    """whether row k belongs to environment k, in place of being drawn"""
+    arrival: NDArray[np.float32]
+    """this and the next two with the rows of all instances one below the other"""
+    need: NDArray[np.float32]
+    travel: NDArray[np.float32]
+    before: NDArray[np.int8]
+    effect: NDArray[np.int16]
+    """shape (m * (n + 1), n + 1): what the visit of a node takes from `missing`"""
+    missing: NDArray[np.int16]
+    prizes: NDArray[np.float64]
+    home: NDArray[np.float32]
+    budget: NDArray[np.float32]
+
+    def choose(self, rows: NDArray[np.int64], drawn: Words) -> NDArray[np.int64]:
+        """The row of the pool for each environment."""
+        if self.each:
+            return rows
+        return (drawn % np.uint64(len(self.numbers))).astype(np.int64)
+
+
+class Episodes:
+    """Gives the instances that the options ask for. Holds the options and what it has made."""
+
+    def __init__(
+        self, checkpoints: int, scenario: str, budget: float, source: RouteSource | None
+    ) -> None:
+        """Raises ArgoError if there is no such scenario."""
+        if source is None and checkpoints < 1:
+            raise ArgoError(f"a route needs checkpoints, not {checkpoints}")
+        self._own = source
+        self._scenario = scenario
+        self._budget = budget
+        self._checkpoints = source.checkpoints if source else checkpoints
+        self.size = self._checkpoints + 1
+        self.choose(RouteOptions())
+
+    def choose(self, options: RouteOptions) -> None:
+        """From now on instances are as the options say."""
+        self.options = options
+        self.source = self.source_of(options)
+        self.instance = lru_cache(maxsize=_KEPT)(self._draw)
+        self._pool: Pool | None = None
+
+    def source_of(self, options: RouteOptions) -> RouteSource:
+        """The source that the options ask for."""
+        if options.scenario is None and self._own is not None:
+            return self._own
+        scenario = options.scenario or self._scenario
+        if scenario == "random":
+            return RandomRoutes(self._checkpoints, budget=self._budget)
+        return _site_routes(self._checkpoints, scenario, self._budget)
+
+    @property
+    def numbers(self) -> range | tuple[int, ...]:
+        """The numbers of the instances that episodes draw from."""
+        if isinstance(self.options.instance, int):
+            return (self.options.instance,)
+        return self.options.instance or (TEST if self.options.test else TRAINING)
+
+    @property
+    def pool(self) -> Pool:
+        """All instances that episodes draw from, made when they are asked for."""
+        if self._pool is None:
+            made = [self._draw(number) for number in self.numbers]
+            self._pool = Pool(
+                numbers=np.array(self.numbers, dtype=np.int64),
+                each=isinstance(self.options.instance, tuple),
+                arrival=np.concatenate([_resting(m) for m in made]),
+                need=np.concatenate([m.need for m in made]),
+                travel=np.concatenate([m.travel for m in made]),
+                before=np.stack([m.before for m in made]).astype(np.int8),
+                effect=np.concatenate([m.effect for m in made]),
+                missing=np.stack([m.before.sum(axis=0, dtype=np.int16) for m in made]),
+                prizes=np.stack([m.prizes for m in made]),
+                home=np.stack([m.home for m in made]),
+                budget=np.array([m.budget for m in made], dtype=np.float32),
+            )
+        return self._pool
+
+    def _draw(self, number: int) -> RouteInstance:
+        return self.source.draw(number, self.options.floors, self.options.faults)
+
+
+def read_route_options(
+    given: Mapping[str, Any], episodes: Episodes, count: int | None = None
+) -> RouteOptions:
+    """The options, checked, for one environment or for a batch of `count`; else ArgoError."""
+    options = read_options(RouteOptions, given, "argo/Route-v0")
+    if isinstance(options.instance, tuple) and len(options.instance) != count:
+        wanted = "one number" if count is None else f"one number, or one for each of {count}"
+        raise ArgoError(f"option `instance` of argo/Route-v0 is {wanted}")
+    numbers = options.instance if isinstance(options.instance, tuple) else (options.instance or 0,)
+    if min(numbers) < 0:
+        raise ArgoError(f"there is no instance {min(numbers)}; numbers begin at 0")
+    source = episodes.source_of(options)
+    check_floors(source, options.scenario or "", options.floors)
+    return options
+
+
+@overload
+def episode_number(key: int, episode: int) -> int: ...
+@overload
+def episode_number(key: Words, episode: Words) -> Words: ...
+def episode_number(key: Any, episode: Any) -> Any:
+    """A number of 64 bits for each episode of an environment: the outputs of splitmix64 (Steele,
+    Lea and Flood, "Fast splittable pseudorandom number generators", 2014) that began at `key`."""
+    if isinstance(key, int):
+        z = (key + (episode + 1) * 0x9E3779B97F4A7C15) & _WORD
+        z = ((z ^ (z >> 30)) * 0xBF58476D1CE4E5B9) & _WORD
+        z = ((z ^ (z >> 27)) * 0x94D049BB133111EB) & _WORD
+        return z ^ (z >> 31)
+    # Arrays of words wrap around by themselves.
+    z = key + (episode + np.uint64(1)) * np.uint64(0x9E3779B97F4A7C15)
+    z = (z ^ (z >> np.uint64(30))) * np.uint64(0xBF58476D1CE4E5B9)
+    z = (z ^ (z >> np.uint64(27))) * np.uint64(0x94D049BB133111EB)
+    return z ^ (z >> np.uint64(31))
+
+
+def _resting(instance: RouteInstance) -> NDArray[np.float32]:
+    """`arrival`, with no time passing for a robot that is docked already."""
+    arrival = instance.arrival.copy()
+    arrival[DOCK, DOCK] = 0.0
+    return arrival
+
+
+@lru_cache(maxsize=16)
+def _site_routes(checkpoints: int, scenario: str, budget: float) -> SiteRoutes:
+    source = SiteRoutes(checkpoints, scenario, budget)
+    _ = source.floors  # so that a scenario that does not exist is told of here
+    return source

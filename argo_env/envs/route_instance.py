@@ -1,0 +1,175 @@
+"""A route instance: travel times, prizes, precedence and a budget; and what a route is worth."""
+
+from collections.abc import Iterable, Sequence
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+from numpy.typing import NDArray
+
+from argo_compiler.errors import ArgoError
+
+DOCK = 0
+"""the node where every route ends"""
+TICK = 1 / 64
+"""s. Times are whole ticks, and below 2^18 s: so their sums are exact in single precision, in
+whatever order they are made, and the environment, its batch and `evaluate` agree to the bit."""
+_LONGEST = 2.0**18  # s
+_VISITED = 1000  # more than the checkpoints that one can wait for
+
+
+@dataclass(frozen=True)
+class RouteInstance:
+    """One problem with n checkpoints: the nodes 1 to n; node 0 is the dock; row n + 1 the start."""
+
+    arrival: NDArray[np.float32]
+    """s from the end of one visit to the end of the next, the measurement included, shape
+    (n + 2, n + 1): row from, column to; inf where there is no way, and from the dock"""
+    prizes: NDArray[np.float64]
+    """0 to 1, shape (n + 1,); the dock has 0"""
+    before: NDArray[np.bool_]
+    """shape (n + 1, n + 1): whether row must be visited before column"""
+    budget: float
+    """s in which the robot has to be docked"""
+    places: NDArray[np.float64]
+    """x, y (m) and floor, for pictures, shape (n + 2, 3)"""
+
+    @property
+    def size(self) -> int:
+        """The number of nodes, the dock included."""
+        return len(self.prizes)
+
+    @property
+    def start(self) -> int:
+        """The row of the place where the robot sets off."""
+        return self.size
+
+    @cached_property
+    def home(self) -> NDArray[np.float32]:
+        """The way to the dock as a share of the budget, at most 1, shape (n + 1,)."""
+        home: NDArray[np.float32] = np.minimum(
+            self.arrival[: self.size, DOCK] / np.float32(self.budget), np.float32(1.0)
+        )
+        home[DOCK] = 0.0
+        return home
+
+    @cached_property
+    def need(self) -> NDArray[np.float32]:
+        """s that a visit takes and the way to the dock after it, shape of `arrival`."""
+        home = self.arrival[: self.size, DOCK].copy()
+        home[DOCK] = 0.0
+        return np.asarray(self.arrival + home, dtype=np.float32)
+
+    @cached_property
+    def travel(self) -> NDArray[np.float32]:
+        """`arrival` as a share of the budget, 1 where it takes longer."""
+        return np.asarray(np.minimum(self.arrival / np.float32(self.budget), np.float32(1.0)))
+
+    @cached_property
+    def missing(self) -> NDArray[np.int16]:
+        """How many checkpoints must come before each node; a node is free at 0."""
+        return np.asarray(self.before.sum(axis=0, dtype=np.int16))
+
+    @cached_property
+    def effect(self) -> NDArray[np.int16]:
+        """What the visit of a node (row) takes from `missing`: one for each node that it must come
+        before, and so much from itself that it is not free again."""
+        effect = self.before.astype(np.int16)
+        np.fill_diagonal(effect, -_VISITED)
+        return effect
+
+    @cached_property
+    def needs(self) -> list[NDArray[np.float32]]:
+        """The rows of `need`."""
+        return list(self.need)
+
+    @cached_property
+    def travels(self) -> list[NDArray[np.float32]]:
+        """The rows of `travel`."""
+        return list(self.travel)
+
+    @cached_property
+    def left(self) -> NDArray[np.float32]:
+        """The budget as an array of one number."""
+        return np.array([self.budget], dtype=np.float32)
+
+
+def make_instance(
+    times: NDArray[np.float64],
+    service: NDArray[np.float64],
+    prizes: NDArray[np.float64],
+    pairs: Iterable[tuple[int, int]],
+    budget: float,
+    places: NDArray[np.float64],
+) -> RouteInstance:
+    """An instance from travel times (s), shape (n + 2, n + 1) as in `RouteInstance`, and the time
+    that the visit of each node takes (s), shape (n + 1,). Times are rounded up to whole ticks.
+
+    Raises ArgoError if shapes don't fit, a prize is not from 0 to 1, a time is negative or the
+    dock can't be reached in time.
+    """
+    n = len(prizes)
+    if times.shape != (n + 1, n) or service.shape != (n,) or places.shape != (n + 1, 3):
+        raise ArgoError(
+            f"a route instance with {n - 1} checkpoints needs times of shape {(n + 1, n)}, "
+            f"not {times.shape}, {n} service times and {n + 1} places"
+        )
+    if prizes.min() < 0.0 or prizes.max() > 1.0 or prizes[DOCK] != 0.0:
+        raise ArgoError("prizes are from 0 to 1, and 0 at the dock")
+    if times.min() < 0.0 or service.min() < 0.0:
+        raise ArgoError("a travel or service time is negative")
+    if not 0.0 < budget < _LONGEST:
+        raise ArgoError(f"a budget is more than 0 and less than {_LONGEST:.0f} s, not {budget:g}")
+    arrival = np.ceil((times + service) / TICK) * TICK
+    arrival[arrival >= _LONGEST] = np.inf
+    arrival[DOCK] = np.inf
+    budget = float(np.floor(budget / TICK) * TICK)
+    if arrival[n, DOCK] > budget:
+        raise ArgoError(f"the way from the start to the dock takes longer than {budget:g} s")
+    before = np.zeros((n, n), dtype=np.bool_)
+    for first, then in pairs:
+        before[first, then] = True
+    if np.diagonal(before).any():
+        raise ArgoError("a checkpoint is to be visited before itself")
+    instance = RouteInstance(
+        arrival.astype(np.float32), prizes.astype(np.float64), before, budget, places
+    )
+    for array in (instance.arrival, instance.prizes, before, places):
+        array.setflags(write=False)
+    return instance
+
+
+@dataclass(frozen=True)
+class Score:
+    """What a route is worth."""
+
+    prize: float
+    time: float
+    """s until the robot is docked"""
+    visited: tuple[int, ...]
+    illegal: int | None
+    """the first node of the route that was not allowed, and not driven to"""
+
+
+def evaluate(instance: RouteInstance, route: Sequence[int]) -> Score:
+    """What the route, nodes in order, is worth. The robot goes to the dock at its end, and already
+    where it would break a rule: visit a node again or before its time, or be docked too late.
+
+    Written for reading, and on purpose without anything that the environment uses.
+    """
+    place, time, prize = instance.start, 0.0, 0.0
+    visited: list[int] = []
+    illegal = None
+    for node in route:
+        if node == DOCK:
+            break
+        arrived = time + float(instance.arrival[place, node])
+        docked = arrived + float(instance.arrival[node, DOCK])
+        first = [k for k in range(instance.size) if instance.before[k, node]]
+        if node in visited or docked > instance.budget or any(k not in visited for k in first):
+            illegal = int(node)
+            break
+        place, time = node, arrived
+        prize += float(instance.prizes[node])
+        visited.append(int(node))
+    return Score(prize, time + float(instance.arrival[place, DOCK]), tuple(visited), illegal)

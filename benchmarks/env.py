@@ -1,0 +1,289 @@
+"""Steps per second of Argo's environments beside their peers, in one run.
+
+    python benchmarks/env.py            # everything that is installed
+    python benchmarks/env.py route      # or only: route, drive, inspect
+    python benchmarks/env.py resets     # memory over 1,000 resets of each environment
+    python benchmarks/env.py expert     # how often the expert of Drive-v0 gets to its goal
+
+Peers that are not installed are named as such. A step is a transition: the steps in which a batch
+begins episodes anew are not counted. What is timed is `step` of the
+environment without wrappers, with random legal actions that are drawn outside the timing. Each
+figure is the best of some windows of time, since other work on the machine only ever slows.
+"""
+
+import gc
+import importlib
+import sys
+import time
+from collections.abc import Callable, Iterator
+from pathlib import Path
+from typing import Any
+
+import gymnasium as gym
+import numpy as np
+
+import argo_env  # noqa: F401
+from argo_env.envs import ENVIRONMENTS
+from argo_env.envs.expert import Expert
+from argo_env.pybullet_client import quiet
+
+WINDOWS, WINDOW = 5, 1.0  # s
+NODES = 20
+Stepper = Iterator[tuple[int, float]]
+"""Yields how many transitions were made and how long (s) that took."""
+
+
+def best(stepper: Stepper, window: float = WINDOW) -> float:
+    """Transitions per second in the best window of time."""
+    next(stepper)
+    rates = []
+    for _ in range(WINDOWS):
+        count, spent, end = 0, 0.0, time.perf_counter() + window
+        while time.perf_counter() < end:
+            steps, seconds = next(stepper)
+            count, spent = count + steps, spent + seconds
+        rates.append(count / spent)
+    return max(rates)
+
+
+def single(env: gym.Env, choose: Callable) -> Stepper:
+    """Steps of one Gymnasium environment."""
+    observation, _ = env.reset(seed=0)
+    while True:
+        action = choose(observation)
+        begun = time.perf_counter()
+        observation, _, terminated, truncated, _ = env.step(action)
+        yield 1, time.perf_counter() - begun
+        if terminated or truncated:
+            observation, _ = env.reset()
+
+
+def legal(seed: int = 0) -> Callable:
+    """Chooses a legal action at random."""
+    rng = np.random.default_rng(seed)
+
+    def choose(observation: dict) -> int:
+        return int((rng.random(observation["mask"].shape) * observation["mask"]).argmax(-1))
+
+    return choose
+
+
+def argo_batch(count: int) -> Stepper:
+    """Steps of the vector environment."""
+    env = gym.make_vec(
+        "argo/Route-v0",
+        num_envs=count,
+        vectorization_mode="vector_entry_point",
+        checkpoints=NODES,
+    ).unwrapped
+    rng = np.random.default_rng(0)
+    observation, _ = env.reset(seed=0)
+    ended = np.zeros(count, bool)
+    while True:
+        mask = observation["mask"]
+        actions = (rng.random(mask.shape, dtype=np.float32) * mask).argmax(axis=1)
+        begun = time.perf_counter()
+        observation, _, terminated, _, _ = env.step(actions)
+        spent = time.perf_counter() - begun
+        yield count - int(ended.sum()), spent
+        ended = terminated
+
+
+def rl4co_batch(count: int) -> Stepper:
+    """RL4CO's orienteering environment; it is reset when all its episodes have ended."""
+    import torch
+    from rl4co.envs import OPEnv
+
+    torch.set_num_threads(1)
+    env = OPEnv(generator_params={"num_loc": NODES})
+    state = env.reset(batch_size=[count])
+    while True:
+        mask = state["action_mask"]
+        state.set("action", (torch.rand(mask.shape) * mask).argmax(-1))
+        alive = int((~state["done"].reshape(-1)).sum())
+        begun = time.perf_counter()
+        state = env.step(state)["next"]
+        spent = time.perf_counter() - begun
+        yield alive, spent
+        if bool(state["done"].all()):
+            state = env.reset(batch_size=[count])
+
+
+def jumanji_batch(name: str, count: int) -> Stepper:
+    """A Jumanji environment, compiled and mapped over the batch; reset when all have ended."""
+    import jax
+    import jax.numpy as jnp
+    import jumanji
+
+    env = jumanji.make(name)
+    key = jax.random.PRNGKey(0)
+    one = count == 1
+    reset = jax.jit(env.reset if one else jax.vmap(env.reset))
+    step = jax.jit(env.step if one else jax.vmap(env.step))
+
+    @jax.jit
+    def choose(key, mask):
+        drawn = jax.random.uniform(key, mask.shape) * mask
+        return jnp.argmax(drawn, axis=-1).astype(jnp.int32)
+
+    state, timestep = reset(key if one else jax.random.split(key, count))
+    # Compiled before anything is timed.
+    jax.block_until_ready(step(state, choose(key, timestep.observation.action_mask)))
+    while True:
+        key, drawn = jax.random.split(key)
+        actions = jax.block_until_ready(choose(drawn, timestep.observation.action_mask))
+        alive = int((~timestep.last()).sum())
+        begun = time.perf_counter()
+        state, timestep = step(state, actions)
+        jax.block_until_ready((state, timestep))
+        yield alive, time.perf_counter() - begun
+        if bool(timestep.last().all()):
+            state, timestep = reset(key if one else jax.random.split(key, count))
+
+
+def report(name: str, stepper: Callable[[], Stepper], needs: str | None = None) -> None:
+    """Prints one figure, or that the peer is not installed."""
+    if needs is not None:
+        try:
+            importlib.import_module(needs)
+        except ImportError:
+            print(f"{name:48s} not installed", flush=True)
+            return
+    print(f"{name:48s} {best(stepper()):14,.0f} steps/s", flush=True)
+
+
+def route() -> None:
+    """Route-v0 beside RL4CO and Jumanji."""
+    for count in (1, 64, 1024):
+        print(f"-- routes, {NODES} nodes, batch {count}")
+        if count == 1:
+            env = gym.make("argo/Route-v0", checkpoints=NODES, disable_env_checker=True).unwrapped
+            report("argo/Route-v0 (single)", lambda env=env: single(env, legal()))
+        else:
+            report("argo/Route-v0 (vector)", lambda count=count: argo_batch(count))
+        report("RL4CO OP", lambda count=count: rl4co_batch(count), "rl4co")
+        for name in ("TSP-v1", "CVRP-v1"):
+            report(
+                f"Jumanji {name}", lambda n=name, count=count: jumanji_batch(n, count), "jumanji"
+            )
+
+
+def peers() -> None:
+    """The PyBullet environments of others."""
+
+    def panda(name: str) -> Stepper:
+        importlib.import_module("panda_gym")
+        with quiet():
+            env = gym.make(name, disable_env_checker=True).unwrapped
+        env.action_space.seed(0)
+        return single(env, lambda _: env.action_space.sample())
+
+    def drones() -> Stepper:
+        from gym_pybullet_drones.envs.HoverAviary import HoverAviary
+
+        with quiet():
+            env = HoverAviary()
+        env.action_space.seed(0)
+        return single(env, lambda _: env.action_space.sample())
+
+    for name in ("PandaReach-v3", "PandaPickAndPlace-v3"):
+        report(f"panda-gym {name}", lambda name=name: panda(name), "panda_gym")
+    report("gym-pybullet-drones HoverAviary", drones, "gym_pybullet_drones")
+
+
+def drive() -> None:
+    """Drive-v0 beside other PyBullet environments."""
+    print("-- driving: 24 steps of physics at 240 Hz and 54 rays in each step of Drive-v0")
+    env = gym.make("argo/Drive-v0", disable_env_checker=True).unwrapped
+    env.action_space.seed(0)
+    report("argo/Drive-v0", lambda: single(env, lambda _: env.action_space.sample()))
+    peers()
+
+
+def inspect() -> None:
+    """Inspect-v0, whose step is a whole drive and a measurement."""
+    print("-- inspecting: a step is a drive and a measurement, about a minute of simulated time")
+    env = gym.make("argo/Inspect-v0", disable_env_checker=True).unwrapped
+    for seed in range(4):  # the navigator keeps what it has searched
+        env.reset(seed=seed)
+    times: list[float] = []
+
+    def timed() -> Stepper:
+        for steps, seconds in single(env, legal()):
+            times.append(env._run.now)
+            yield steps, seconds
+
+    report("argo/Inspect-v0", timed)
+    gains = np.diff(times)
+    print(f"{'':48s} {np.mean(gains[gains > 0]):14,.0f} s simulated in a step")
+    peers()
+
+
+def resets(count: int = 1000) -> None:
+    """Prints what each environment's memory grows by over many resets."""
+    for id in ENVIRONMENTS:
+        env = gym.make(id, disable_env_checker=True).unwrapped
+
+        def resident() -> float:
+            gc.collect()
+            return int(Path("/proc/self/statm").read_text().split()[1]) * 4096 / 1e6
+
+        # Caches of the ways fill up first.
+        for seed in range(150):
+            env.reset(seed=seed)
+        before, begun = resident(), time.perf_counter()
+        for _ in range(count):
+            env.reset()
+        spent = time.perf_counter() - begun
+        print(
+            f"{id:20s} {count} resets: {resident() - before:+.1f} MB of {before:.0f} MB, "
+            f"{1e3 * spent / count:.2f} ms each",
+            flush=True,
+        )
+        env.close()
+
+
+def expert(count: int = 16) -> None:
+    """Prints how often the expert gets to its goal on UMAD, by where the goal is."""
+    env: Any = gym.make("argo/Drive-v0", disable_env_checker=True).unwrapped
+    ways: dict[str, list[tuple[bool, float, float, bool]]] = {}
+    begun, steps = time.perf_counter(), 0
+    for seed in range(1_000_000, 1_000_000 + count):
+        env.reset(seed=seed)
+        rise = env.goal[2] - env.pose.z
+        way = "same floor" if abs(rise) < 1.0 else "upwards" if rise > 0 else "downwards"
+        driver, total, over, touched = Expert(env), 0.0, False, False
+        while not over:
+            _, reward, terminated, truncated, info = env.step(driver.act())
+            total, over, steps = total + reward, terminated or truncated, steps + 1
+            touched = touched or bool(info["touched"])
+        ways.setdefault(way, []).append((info["success"], info["time"], total, touched))
+        if not info["success"]:
+            print(f"seed {seed}: {way}, {info['terms']}, at {env.pose}", flush=True)
+    for way, ends in sorted(ways.items()):
+        reached, times, returns, touches = zip(*ends, strict=True)
+        print(
+            f"{way:12s} {sum(reached)} of {len(ends)} reached, {np.mean(times):.0f} s simulated, "
+            f"return {np.mean(returns):.1f}, {sum(touches)} with a contact"
+        )
+    print(f"{steps / (time.perf_counter() - begun):.0f} steps/s")
+    env.close()
+
+
+def main() -> None:
+    """Runs what the arguments name."""
+    parts = {
+        "route": route,
+        "drive": drive,
+        "inspect": inspect,
+        "resets": resets,
+        "expert": expert,
+    }
+    for name in sys.argv[1:] or ("route", "drive", "inspect"):
+        if name not in parts:
+            sys.exit(f"no part `{name}`; there are: {', '.join(parts)}")
+        parts[name]()
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,245 @@
+"""Drive-v0: the tracked robot under continuous commands."""
+
+import math
+
+import gymnasium as gym
+import numpy as np
+import pytest
+
+import argo_env  # noqa: F401
+from argo_compiler.errors import ArgoError
+from argo_env.envs import lidar
+from argo_env.envs.drive import CONTACT, GOAL, PROGRESS, TIME, TIPPING
+from argo_env.envs.expert import Expert
+from tests.argo_env.envs.rollouts import digest
+
+
+@pytest.fixture(scope="module")
+def env():
+    """On UMAD; a test says in the options of its reset what it needs."""
+    env = gym.make("argo/Drive-v0", disable_env_checker=True).unwrapped
+    yield env
+    env.close()
+
+
+@pytest.fixture
+def make(yard_file):
+    """Makes environments on the yard."""
+    made = []
+
+    def one(**arguments):
+        env = gym.make(
+            "argo/Drive-v0", **{"scenario": yard_file} | arguments, disable_env_checker=True
+        )
+        made.append(env)
+        return env
+
+    yield one
+    for env in made:
+        env.close()
+
+
+def follow(observation):
+    """A plain controller on the level: turn to the heading of the plan, then drive to its place."""
+    x, y, _, sine, cosine = observation["way"]
+    turn = math.atan2(sine, cosine)
+    gear = 1 if x >= 0 else -1
+    if abs(turn) > 0.2:
+        return np.array([0.0, np.clip(2 * turn, -1, 1), 0.25], np.float32)
+    speed = gear * min(0.8, 2 * math.hypot(x, y))
+    return np.array([speed, np.clip(1.5 * turn + 2 * gear * y, -1, 1), 0.25], np.float32)
+
+
+def drive(env, expert, until=lambda: False):
+    """Steps by the expert to the end of the episode, or until something is so; each step's
+    outcome."""
+    outcomes = []
+    while not (until() or (outcomes and (outcomes[-1][2] or outcomes[-1][3]))):
+        outcomes.append(env.step(expert.act()))
+    return outcomes
+
+
+def repeat(env, action, steps):
+    """The outcomes of one action, again and again, until the episode ends."""
+    outcomes = []
+    for _ in range(steps):
+        outcomes.append(env.step(np.array(action, np.float32)))
+        if outcomes[-1][2]:
+            break
+    return outcomes
+
+
+@pytest.fixture(scope="module")
+def descent(env):
+    """A drive to a goal one floor down: the states in mid-flight, and all outcomes."""
+    env.reset(seed=21, options={"floor": [5, 6], "max_way": 60.0})
+    expert, top = Expert(env), env.pose.z
+    first = drive(env, expert, lambda: env.pose.z < top - 1.3)
+    middle = env.get_state()
+    return middle, first + drive(env, expert)
+
+
+def test_the_expert_gets_a_floor_down(descent, navigator):
+    middle, outcomes = descent
+    *_, terminated, truncated, info = outcomes[-1]
+    assert (terminated, truncated, info["success"]) == (True, False, True)
+    floors = [navigator.site.floor_at(middle[place][2]) for place in ("start", "goal")]
+    assert floors == [6, 5]
+    # Forwards on the flight.
+    pitches = [observation["body"][0] * 90 for observation, *_ in outcomes]
+    assert max(pitches) == pytest.approx(32.5, abs=5.0)
+
+
+def test_the_expert_gets_a_floor_up(env, navigator):
+    _, info = env.reset(seed=25, options={"floor": [4, 5], "max_way": 60.0})
+    assert [navigator.site.floor_at(z) for z in (env.pose.z, info["goal"][2])] == [4, 5]
+    outcomes = drive(env, Expert(env))
+    assert outcomes[-1][4]["success"]
+    # Backwards on the flight.
+    steep = [o["body"] for o, *_ in outcomes if o["body"][0] * 90 > 25]
+    assert len(steep) > 50
+    assert np.mean([body[2] for body in steep]) < -0.1
+
+
+def test_the_expert_takes_over_from_another_driver(make):
+    env = make(max_way=30.0)  # in Gymnasium's wrappers
+    env.reset(seed=4)
+    expert, rng = Expert(env), np.random.default_rng(0)
+    for _ in range(30):
+        expert.act()
+        env.step(np.array([*rng.uniform(0.2, 1, 2), 0.25], np.float32))
+    assert drive(env, expert)[-1][4]["success"]
+
+
+def test_the_expert_sets_off_after_a_turn(env):
+    """It does not swing about the heading that it turned to."""
+    env.reset(seed=1_000_002, options={})
+    expert, start = Expert(env), env.pose
+    drive(env, expert, lambda: math.hypot(env.pose.x - start.x, env.pose.y - start.y) > 0.3)
+    assert len(env.get_state()["actions"]) < 60
+
+
+def test_the_expert_is_for_this_environment():
+    with pytest.raises(ArgoError, match="Drive-v0"):
+        Expert(gym.make("argo/Route-v0"))
+
+
+def test_on_a_flight_a_restored_state_goes_on_the_same(env, descent):
+    middle, outcomes = descent
+    heard = []
+    for _ in range(2):
+        env.set_state(middle)
+        heard.append(repeat(env, (-0.3, 0.4, 0.1), 8))
+    assert digest(heard[0]) == digest(heard[1])
+    # Nor does asking for the state change what follows.
+    actions = middle["actions"]
+    env.set_state(middle | {"actions": actions[:-1]})
+    env.get_state()
+    assert digest(env.step(np.array(actions[-1]))) == digest(outcomes[len(actions) - 1])
+
+
+def test_on_a_flight_a_restored_snapshot_of_the_body_goes_on_the_same(env, descent):
+    env.set_state(descent[0])
+    body = env.site.body
+    moment = body.snapshot()
+    first = [o for o, *_ in repeat(env, (-0.3, 0.4, 0.1), 8)]
+    repeat(env, (0.5, 0.0, 1.0), 5)
+    body.restore(moment)
+    assert digest([o for o, *_ in repeat(env, (-0.3, 0.4, 0.1), 8)]) == digest(first)
+    body.release(moment)
+
+
+def test_turning_across_a_flight_tips_the_robot_over(env, descent):
+    env.set_state(descent[0])
+    outcomes = repeat(env, (1.0, 1.0, -1.0), 30)
+    *_, last = outcomes
+    observation, reward, terminated, truncated, info = last
+    assert (terminated, truncated, info["success"]) == (True, False, False)
+    assert info["terms"]["tipped"] == TIPPING
+    assert reward == pytest.approx(sum(info["terms"].values()))
+    pitch, roll = observation["body"][:2] * math.pi / 2
+    assert math.cos(pitch) * math.cos(roll) < math.cos(math.radians(60))
+    assert abs(roll) > math.radians(30)
+    assert all(info["terms"]["tipped"] == 0.0 for *_, info in outcomes[:-1])
+
+
+def test_following_the_way_reaches_the_goal(env):
+    observation, _ = env.reset(seed=5, options={"floor": 1, "max_way": 12.0})
+    before, total, steps = env.get_state(), 0.0, 0
+    togo = observation["goal"][3] * 300
+    over = False
+    while not over:
+        observation, _, over, truncated, info = env.step(follow(observation))
+        total += info["terms"]["progress"]
+        steps += 1
+        assert not truncated
+    assert info["success"]
+    assert info["terms"]["goal"] == GOAL
+    assert info["terms"]["time"] == TIME
+    # What is gained on the way adds up to what there was to go.
+    assert total == pytest.approx(PROGRESS * (togo - observation["goal"][3] * 300), abs=1e-3)
+    assert len(env.get_state()["actions"]) == steps
+    assert not before["actions"]
+
+
+def test_commands_move_the_robot_as_they_say(env):
+    env.reset(seed=3, options={"floor": 1})
+    start = env.get_state()
+    ways = {}
+    for name, action in {"stay": (0, 0, 0), "turn": (0, 1, 0), "flippers": (0, 0, 1)}.items():
+        first = env.set_state(start)
+        ways[name] = first, repeat(env, action, 12)[-1][0]
+    first, last = ways["stay"]
+    assert np.abs(last["body"][2:4]).max() < 0.02
+    assert ways["turn"][1]["body"][3] > 0.2
+    assert ways["flippers"][1]["body"][4] > 0.9
+    # To the left turned, the goal goes to the right.
+    before = math.atan2(first["goal"][1], first["goal"][0])
+    after = math.atan2(ways["turn"][1]["goal"][1], ways["turn"][1]["goal"][0])
+    assert math.sin(after - before) < 0
+
+
+def test_the_time_limit_truncates(make):
+    env = make(time_limit=0.5)
+    env.reset(seed=1)
+    ends = [outcome[2:4] for outcome in repeat(env, (0, 0, 0), 5)]
+    assert ends == [(False, False)] * 4 + [(False, True)]
+
+
+def test_lidar_meets_what_stands_around(env):
+    for seed in range(3):
+        observation, _ = env.reset(seed=seed, options={"floor": 3})
+        # Railings and equipment are near everywhere on a floor.
+        assert 0.02 < observation["lidar"].min() < 0.6
+        # The robot stands on the level.
+        assert np.abs(observation["ground"][8:14]).max() < 0.02
+        assert len(observation["lidar"]) == lidar.RAYS
+
+
+def test_pressing_against_a_railing_costs(env):
+    env.reset(seed=1, options={"floor": 3, "max_way": 60.0})
+    infos = [info for *_, info in repeat(env, (1, 0.05, -1), 120)]
+    pressed = [info for info in infos if info["touched"]]
+    assert pressed
+    assert all(info["terms"]["contact"] == CONTACT for info in pressed)
+
+
+def test_a_dysfunction_slows_the_robot(make):
+    env = make()
+    faults = [{"kind": "drive_dysfunction", "at": 0.0, "speed": 0.0}]
+    env.reset(seed=3, options={"faults": faults})
+    observation, *_ = repeat(env, (1, 1, 1), 10)[-1]
+    assert np.abs(observation["body"][2:4]).max() < 0.02
+
+
+def test_start_and_goal_are_on_the_floors_asked_for(env, navigator):
+    heights = {f.number: f.z for f in navigator.site.spec.floors}
+    for seed in range(4):
+        _, info = env.reset(seed=seed, options={"floor": [2, 5]})
+        assert min(abs(info["goal"][2] - heights[f]) for f in (2, 5)) < 0.05
+        assert min(abs(env.get_state()["start"][2] - heights[f]) for f in (2, 5)) < 0.05
+
+
+def test_faults_that_it_does_not_know_are_refused(env):
+    with pytest.raises(ArgoError, match="brick"):
+        env.reset(options={"faults": [{"kind": "gas_leak"}]})

@@ -1,0 +1,139 @@
+"""Inspect-v0: actions are drives and measurements, and faults change what comes of them."""
+
+import gymnasium as gym
+import numpy as np
+import pytest
+
+import argo_env  # noqa: F401
+from argo_compiler.errors import ArgoError
+from argo_env.envs.inspection import ABNORMAL, DEAD, DOCKED, FINDING, READING
+
+CHECKPOINTS = 20  # of the site
+
+
+@pytest.fixture
+def make():
+    made = []
+
+    def one(**arguments):
+        env = gym.make("argo/Inspect-v0", disable_env_checker=True, **arguments).unwrapped
+        made.append(env)
+        return env
+
+    yield one
+    for env in made:
+        env.close()
+
+
+def end_dock(observation):
+    """The action that ends the episode: the only dock that has points."""
+    docks = np.flatnonzero(observation["points"][CHECKPOINTS:])
+    assert len(docks) == 1
+    return CHECKPOINTS + int(docks[0])
+
+
+def nearest(observation):
+    return int(np.argmin(np.where(observation["mask"], observation["travel"], 2)[:CHECKPOINTS]))
+
+
+def test_a_reading_takes_its_time_and_is_done_once(make, navigator):
+    env = make(faults=0)
+    observation, _ = env.reset(seed=2)
+    k = nearest(observation)
+    expected = observation["travel"][k] * 1800
+    after, reward, terminated, truncated, info = env.step(k)
+    assert (reward, terminated, truncated) == (READING, False, False)
+    nominal = navigator.site.checkpoints[k].nominal
+    assert nominal.contains(info["reading"])
+    measuring = navigator.robot.sensor.measuring_time
+    assert info["time"] == pytest.approx(expected + measuring, rel=0.25)
+    assert after["left"][0] == pytest.approx(1 - info["time"] / 1800)
+    assert after["mask"][k] == 0
+    assert after["battery"][0] < observation["battery"][0]
+    _, reward, _, _, info = env.step(k)
+    assert (reward, info["illegal"]) == (0.0, True)
+
+
+def test_docking_ends_the_episode(make):
+    env = make(faults=0)
+    observation, _ = env.reset(seed=3, options={"floor": 1})
+    assert observation["mask"][:CHECKPOINTS].sum() == 4
+    _, reward, terminated, truncated, info = env.step(end_dock(observation))
+    assert (reward, terminated, truncated) == (DOCKED, True, False)
+    assert info["terms"]["docked"] == DOCKED
+
+
+def test_the_time_limit_truncates(make):
+    env = make(faults=0, time_limit=20.0)
+    observation, _ = env.reset(seed=2)
+    far = int(np.argmax(np.where(observation["mask"], observation["points"], 0)[:CHECKPOINTS]))
+    _, reward, terminated, truncated, info = env.step(far)
+    assert (terminated, truncated) == (False, True)
+    assert (reward, info["time"]) == (0.0, 20.0)
+
+
+def test_an_empty_battery_terminates(make):
+    env = make()
+    faults = [{"kind": "worn_battery", "capacity": 0.01}]
+    observation, _ = env.reset(seed=2, options={"faults": faults})
+    over = False
+    while not over:
+        observation, _, over, truncated, info = env.step(nearest(observation))
+        assert not truncated
+    assert info["terms"]["dead"] == DEAD
+
+
+def test_an_abnormal_value_is_worth_more(make):
+    env = make()
+    faults = [{"kind": "abnormal_value", "checkpoint": 1, "at": 0.0}]
+    env.reset(seed=2, options={"faults": faults})
+    _, reward, _, _, info = env.step(0)
+    assert info["terms"]["abnormal"] == ABNORMAL
+    assert reward == READING + ABNORMAL + info["terms"]["finding"]
+
+
+def test_a_camera_that_fails_is_noticed_and_checkpoints_are_given_up(make):
+    env = make()
+    faults = [{"kind": "sensor_dysfunction", "effect": "fails", "at": 0.0}]
+    observation, _ = env.reset(seed=2, options={"faults": faults, "floor": 1})
+    k = nearest(observation)
+    for _ in range(2):
+        assert observation["mask"][k] == 1
+        observation, _, _, _, info = env.step(k)
+        assert info["failure"]
+        assert "reading" not in info
+    assert observation["mask"][k] == 0
+    assert observation["noticed"].sum() >= 1
+    # The terms of the first step had the finding.
+    assert FINDING > 0
+
+
+def test_a_site_with_too_many_checkpoints_is_refused():
+    with pytest.raises(ArgoError, match="20 checkpoints"):
+        gym.make("argo/Inspect-v0", checkpoints=3, disable_env_checker=True)
+    with pytest.raises(ArgoError, match="route, kinematic"):
+        gym.make("argo/Inspect-v0", drive="flying", disable_env_checker=True)
+
+
+def test_the_kinematic_drive_finds_what_blocks_the_stairs(make):
+    env = make(drive="kinematic")
+    faults = [{"kind": "blocked_stairs", "tower": "west tower", "floor": 1}]
+    observation, info = env.reset(seed=2, options={"faults": faults, "floor": 2})
+    assert info["settings"]["drive"] == "kinematic"
+    k = 4  # the checkpoint on floor 2 that the fastest way to leads over the western stairs
+    expected = observation["travel"][k] * 1800
+    observation, _, _, _, info = env.step(k)
+    assert info["found"] == ("positive_obstacle",)
+    # It got there all the same, by the other stairs.
+    assert info["terms"]["reading"] == READING
+    assert info["time"] > expected + 30.0
+    assert observation["noticed"].sum() == 1
+
+
+def test_after_the_platform_alarm_only_docks_are_legal(make):
+    env = make(drive="kinematic")
+    faults = [{"kind": "platform_alarm", "at": 5.0}]
+    observation, _ = env.reset(seed=2, options={"faults": faults, "floor": 1})
+    observation, _, _, _, info = env.step(nearest(observation))
+    assert "platform_alarm" in info["found"]
+    assert np.flatnonzero(observation["mask"]).tolist() == [20, 21]

@@ -1,5 +1,6 @@
 """The action of a task: drive there, measure, and clean up when it is cancelled."""
 
+import math
 from collections.abc import Callable
 from dataclasses import dataclass
 
@@ -7,23 +8,43 @@ from argo_compiler.errors import ArgoError
 from argo_compiler.hfsm import ActionFailed, ActionStopped, ActionSucceeded
 from argo_compiler.il import Action, Task
 from argo_compiler.model import Pose
+from argo_env.events.schedule import Schedule
 from argo_env.navigation import Navigator, Path, UnreachableError
+from argo_env.navigation.blockage import leads_through
+from argo_env.navigation.retreat import way_back
+from argo_env.paper_world import AnyWorld
 from argo_env.record import DIGITS, Reading, TaskRun
+from argo_env.robot.battery import Battery
 from argo_env.robot.drive import Drive, DriveStatus
-from argo_env.sensing.sensor import Measurement, MeasurementError, Sensor
-from argo_env.world import World
+from argo_env.robot.pose import BodyPose
+from argo_env.sensing.sensor import Measurement, MeasurementError, PoorViewError, Sensor
+from argo_env.sensing.watch import Watch
 
 ActionEnd = ActionSucceeded | ActionFailed | ActionStopped
+
+RETREAT = 1.0
+"""m that the robot goes back where it is cornered"""
+_NEAR = 0.15  # m: a cell's diagonal
+
+TURNS = (0.0, math.radians(55.0), math.radians(-55.0))
+"""rad that the face of a checkpoint is taken to be turned against the plan, one view after the
+other: it may be turned by up to 90 degrees, and is read at up to 60 degrees"""
 
 
 @dataclass(frozen=True)
 class Rig:
     """What a mission is carried out with."""
 
-    world: World
+    world: AnyWorld
     navigator: Navigator
     drive: Drive
     sensor: Sensor
+    watches: tuple[Watch, ...] = ()
+    """what notices things by itself"""
+    battery: Battery | None = None
+    """None: the robot has power without end"""
+    schedule: Schedule | None = None
+    """what goes wrong, and when; None: nothing does"""
 
 
 class ActionUnderWay:
@@ -43,9 +64,10 @@ class ActionUnderWay:
         started: float,
         distance_before: float,
         climbed_before: float,
+        came: Path | None = None,
     ) -> None:
-        """`velocity` (m/s) is that of the way there, None the robot's own; the rest is when (s) and
-        after what way (m) it was started."""
+        """`velocity` (m/s) is that of the way there, None the robot's own; then when (s) and after
+        what way (m) it was started, and the path that the robot `came` by."""
         self.task = task
         self._started = started
         self._distance_before = distance_before
@@ -55,8 +77,13 @@ class ActionUnderWay:
         self.interrupted = False
         """whether it was cancelled by what only interrupts the mission"""
         self.measurement: Measurement | None = None
+        self.path: Path | None = None
+        """the way there, once it is planned"""
         self._velocity = velocity
         self._rig = rig
+        self._came = came
+        self._retreated = False
+        self._views = 0  # that have been gone to
         self._left = 0.0  # s of the measurement, or until the arm is stowed
         self._phase: Callable[[], ActionEnd | None] = self._set_off
 
@@ -76,7 +103,7 @@ class ActionUnderWay:
         self.cancelled, self.interrupted = reason, interrupted
         if self._phase == self._set_off:
             self._phase = self._stop
-        elif self._phase == self._drive:
+        elif self._phase in (self._drive, self._turn_off, self._retreat):
             self._rig.drive.halt()
             self._phase = self._brake
         else:
@@ -85,6 +112,24 @@ class ActionUnderWay:
             if raised_for < 2 * third:
                 self._left = min(raised_for, third)
                 self._phase = self._stow
+
+    def detour(self, rig: Rig) -> None:
+        """Goes on with a rig whose navigator knows of something new in the way. If the present way
+        leads there, the robot halts and takes another."""
+        self._rig = rig
+        navigator = rig.navigator
+        blocked = self.path is not None and leads_through(
+            self.path, navigator.blockages, navigator.robot
+        )
+        if blocked and self._phase == self._drive:
+            self._retreated = False
+            rig.drive.halt()
+            self._phase = self._turn_off
+
+    @property
+    def measuring(self) -> bool:
+        """Whether the arm is in motion or raised."""
+        return self._phase in (self._measure, self._stow)
 
     def reading(self, now: float) -> Reading | None:
         """What was measured, at time `now` (s), if anything was."""
@@ -104,6 +149,8 @@ class ActionUnderWay:
             nominal=checkpoint.nominal,
             normal=checkpoint.nominal.contains(value),
             distance=round(self.measurement.distance, DIGITS),
+            views=self._views,
+            confidence=round(self.measurement.confidence, DIGITS),
         )
 
     def run(self, end: ActionEnd, now: float, distance: float, climbed: float) -> TaskRun:
@@ -134,12 +181,46 @@ class ActionUnderWay:
         return self._rig.navigator.robot.sensor.measuring_time
 
     def _set_off(self) -> ActionEnd | None:
+        navigator, drive = self._rig.navigator, self._rig.drive
+        may_retreat = self._came is not None and bool(navigator.blockages) and not self._retreated
         try:
-            self._rig.drive.begin(self._path(), self._velocity)
+            if may_retreat and not _is_free(navigator, drive.pose):
+                return self._go_back()
+            path = self._path()
+        except UnreachableError as error:
+            # From where there is room to turn there may be a way.
+            return self._go_back() if may_retreat else ActionFailed(self.task.name, str(error))
         except ArgoError as error:
             return ActionFailed(self.task.name, str(error))
+        self.path = self._came = path
+        drive.begin(path, self._velocity)
         self._phase = self._drive
         return self._drive()
+
+    def _go_back(self) -> ActionEnd | None:
+        """Sets off back the way that the robot came, to plan from there."""
+        assert self._came is not None
+        self._retreated = True
+        back = way_back(self._came, _standing(self._rig.drive.pose), RETREAT)
+        self._rig.drive.begin(back, self._velocity)
+        self._phase = self._retreat
+        return None
+
+    def _retreat(self) -> ActionEnd | None:
+        return self._then(self._set_off)
+
+    def _turn_off(self) -> ActionEnd | None:
+        return self._then(self._set_off)
+
+    def _then(self, following: Callable[[], ActionEnd | None]) -> ActionEnd | None:
+        """What follows when the drive has arrived, or come to rest."""
+        match self._rig.drive.step():
+            case DriveStatus.MOVING:
+                return None
+            case DriveStatus.FAILED:
+                return self._drive_failed()
+            case DriveStatus.ARRIVED:
+                return following()
 
     def _drive(self) -> ActionEnd | None:
         match self._rig.drive.step():
@@ -160,18 +241,31 @@ class ActionUnderWay:
             return None
         try:
             self.measurement = self._rig.sensor.measure(self._checkpoint_id(), self._rig.drive.pose)
+        except PoorViewError as error:
+            return self._look_again(str(error))
         except MeasurementError as error:
             return ActionFailed(self.task.name, str(error))
         return ActionSucceeded(self.task.name, self.measurement.value)
 
+    def _look_again(self, failure: str) -> ActionEnd | None:
+        """Goes to the next view, as of a face that is turned; with none left, `failure` stands."""
+        navigator, pose = self._rig.navigator, self._rig.drive.pose
+        while self.cancelled is None and self._views < len(TURNS):
+            turned = TURNS[self._views]
+            self._views += 1
+            try:
+                path = navigator.plan_to_view(_standing(pose), self._checkpoint_id(), turned)
+            except UnreachableError:
+                continue
+            self._rig.world.move_arm(navigator.robot.arm_stowed)
+            self.path = self._came = path
+            self._rig.drive.begin(path, self._velocity)
+            self._phase = self._drive
+            return None
+        return ActionFailed(self.task.name, failure)
+
     def _brake(self) -> ActionEnd | None:
-        match self._rig.drive.step():
-            case DriveStatus.MOVING:
-                return None
-            case DriveStatus.FAILED:
-                return self._drive_failed()
-            case DriveStatus.ARRIVED:
-                return self._stop()
+        return self._then(self._stop)
 
     def _stow(self) -> ActionEnd | None:
         return self._stop() if self._time_over() else None
@@ -187,18 +281,27 @@ class ActionUnderWay:
         return self._left <= 1e-9
 
     def _path(self) -> Path:
-        here = self._rig.drive.pose
-        start = Pose(x=here.x, y=here.y, z=here.z, yaw=here.yaw)
+        start = _standing(self._rig.drive.pose)
         if self.task.action is Action.MEASURE:
+            self._views = 1
             return self._rig.navigator.plan_to_view(start, self._checkpoint_id())
         if self.task.pose is None:
             raise UnreachableError(f"task {self.task.name} has no pose")
         return self._rig.navigator.plan(start, self.task.pose)
 
     def _checkpoint_id(self) -> int:
-        """The number of the task's checkpoint; UnreachableError if the site does not have it."""
-        site = self._rig.navigator.site
-        known = {str(c.id): c.id for c in site.checkpoints}
-        if self.task.object_id not in known:
-            raise UnreachableError(f"site {site.name} has no checkpoint {self.task.object_id}")
-        return known[self.task.object_id]
+        """The number of the task's checkpoint; ArgoError if the site does not have it."""
+        return self._rig.navigator.site.measured_by(self.task.object_id).id
+
+
+def _is_free(navigator: Navigator, pose: BodyPose) -> bool:
+    """Whether a robot at `pose` has a place to set off from right there."""
+    try:
+        place = navigator.snap(_standing(pose))
+    except UnreachableError:
+        return False
+    return math.dist((place.x, place.y, place.z), (pose.x, pose.y, pose.z)) <= _NEAR
+
+
+def _standing(pose: BodyPose) -> Pose:
+    return Pose(x=pose.x, y=pose.y, z=pose.z, yaw=pose.yaw)

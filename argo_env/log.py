@@ -20,7 +20,7 @@ from argo_compiler.hfsm import (
 )
 from argo_compiler.il import EventKind
 from argo_compiler.model import Model
-from argo_env.record import DIGITS, Contact, PathSample, Reading, TaskRun
+from argo_env.record import DIGITS, Anomaly, Contact, Mishap, PathSample, Reading, TaskRun
 from argo_env.robot.pose import BodyPose
 from argo_env.site import Site
 
@@ -73,12 +73,20 @@ class Entry(Model):
     """m, driven since the mission's start"""
     climbed: float
     """m, upwards since the mission's start"""
+    charge: float | None = None
+    """of the battery, 0 to 1"""
     given: int = 0
     """how many of the events that the run was given had occurred"""
+    added: tuple[tuple[float, LoggedEvent], ...] = ()
+    """events that the run is given from here on, and when (s)"""
     running: str | None = None
     """the task whose action ran before the events"""
     events: tuple[LoggedEvent, ...] = ()
     """for the executor, in this order"""
+    found: tuple[Anomaly, ...] = ()
+    """what the robot noticed by itself"""
+    mishaps: tuple[Mishap, ...] = ()
+    """what the drive had trouble with"""
     reading: Reading | None = None
     task: TaskRun | None = None
     """the run of a task that has ended"""
@@ -113,6 +121,10 @@ class RunLog:
         self.last: Entry | None = None
         self.tasks: list[TaskRun] = []
         self.readings: list[Reading] = []
+        self.anomalies: list[Anomaly] = []
+        self.mishaps: list[Mishap] = []
+        self.last_event = 0.0
+        """s, when the executor was told of something last"""
         self.contacts: list[Contact] = []
         self.path: list[PathSample] = []
         self.resumed: list[float] = []
@@ -123,6 +135,10 @@ class RunLog:
             self.tasks.append(entry.task)
         if entry.reading:
             self.readings.append(entry.reading)
+        self.anomalies += entry.found
+        self.mishaps += entry.mishaps
+        if entry.events:
+            self.last_event = entry.t
         self.contacts += entry.contacts
         if entry.resumed:
             self.resumed.append(entry.t)
@@ -132,4 +148,7 @@ class RunLog:
     def _sample(self, entry: Entry) -> PathSample:
         x, y, z, yaw, pitch = (round(v, DIGITS) for v in entry.pose)
         floor = self._site.floor_at(entry.pose[2])
-        return PathSample(t=entry.t, x=x, y=y, z=z, yaw=yaw, pitch=pitch, floor=floor)
+        charge = None if entry.charge is None else round(entry.charge, DIGITS)
+        return PathSample(
+            t=entry.t, x=x, y=y, z=z, yaw=yaw, pitch=pitch, floor=floor, charge=charge
+        )

@@ -9,6 +9,10 @@ from argo_compiler.diagnostics import Diagnostic
 from argo_compiler.hfsm import Hfsm, Outcome
 from argo_compiler.il import Action, EventKind, Mission
 from argo_compiler.model import Model
+from argo_env.events.kinds import AnyFault
+from argo_env.robot.drive import Trouble
+from argo_env.site.shapes import Vector
+from argo_env.site.spec import Rect
 
 DIGITS = 4
 """of recorded lengths and angles: below what the geometry means"""
@@ -30,6 +34,8 @@ class PathSample(Model):
     pitch: float
     """rad, positive with the front down"""
     floor: int
+    charge: float | None = None
+    """of the battery, 0 to 1; None: it has none that is looked at"""
 
 
 class TaskRun(Model):
@@ -69,6 +75,10 @@ class Reading(Model):
     """whether the value lies in the nominal range"""
     distance: float
     """m, from the camera to the face"""
+    views: int = 1
+    """from how many places it was tried, the last one with success"""
+    confidence: float = 1.0
+    """of the sensor that it is right, 0 to 1"""
 
 
 class Contact(Model):
@@ -90,6 +100,39 @@ class Contact(Model):
     """m"""
     depth: float
     """m, the deepest overlap"""
+
+
+class Mishap(Model):
+    """The robot slipped, was stuck or tipped over; it may have got free again."""
+
+    t: float
+    """s"""
+    trouble: Trouble
+    detail: str
+    """in a few words, such as `of 0.45 m went 0.09 m`"""
+    place: Vector
+    """m"""
+    floor: int
+
+
+class Anomaly(Model):
+    """Something that the robot found by sensing, or that tells that such a thing is over."""
+
+    t: float
+    """s"""
+    kind: EventKind
+    detail: str
+    """in a few words, such as `gas, 840 ppm, near pump P-301`"""
+    source: str
+    """the watch that found it"""
+    place: Vector | None = None
+    """m, where it is; None where the signal does not tell"""
+    floor: int | None = None
+    """the floor of `place`"""
+    confidence: float = 1.0
+    """0 to 1"""
+    extent: Rect | None = None
+    """m, [x0, y0, x1, y1]: what an obstacle closes of the surface"""
 
 
 class Interruption(Model):
@@ -145,7 +188,7 @@ class Result(Model):
 class RunRecord(Model):
     """A whole run."""
 
-    version: int = 2
+    version: int = 3
     """of this format"""
     mission: Mission
     hfsm: Hfsm
@@ -163,5 +206,11 @@ class RunRecord(Model):
     trace: tuple[TraceStep, ...]
     path: tuple[PathSample, ...]
     interruptions: tuple[Interruption, ...] = ()
+    mishaps: tuple[Mishap, ...] = ()
+    """what the drive had trouble with, in the order of time"""
+    anomalies: tuple[Anomaly, ...] = ()
+    """what was found, in the order of time"""
+    faults: tuple[AnyFault, ...] = ()
+    """what really went wrong, with all that the seed drew; the robot was told nothing of it"""
     resumed: tuple[float, ...] = ()
     """s, when the run went on from its journal after its process had died"""

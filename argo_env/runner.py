@@ -1,7 +1,7 @@
 """The mission runner: the loop between the state machine and what carries its actions out."""
 
-import math
 from collections.abc import Callable, Sequence
+from dataclasses import replace
 
 from argo_compiler.diagnostics import Diagnostic
 from argo_compiler.errors import ArgoError
@@ -15,27 +15,36 @@ from argo_compiler.hfsm import (
     Tick,
     lower,
 )
-from argo_compiler.il import EventKind, Mission, Task
+from argo_compiler.il import Mission, Task
 from argo_env.action import ActionEnd, ActionUnderWay, Rig
-from argo_env.contacts import ContactWatch
+from argo_env.given import GivenEvents
 from argo_env.interruptions import InterruptionWatch
 from argo_env.journal import Journal
 from argo_env.log import Entry, LoggedEvent, RunLog
-from argo_env.record import Contact, Reading, Result, RunRecord, TaskRun, TraceStep
+from argo_env.navigation import Path
+from argo_env.odometry import Odometry
+from argo_env.perceiving import Perception, abnormal_reading, blockage
+from argo_env.record import Anomaly, Reading, RunRecord, TaskRun
+from argo_env.recording.recorder import Recorder
 from argo_env.robot.pose import BodyPose
+from argo_env.robot.powertrain import Powertrain
 from argo_env.settings import RunSettings
 from argo_env.starting import start_pose
+from argo_env.summary import make_record
 from argo_env.velocity import WayVelocity
-from argo_env.verdict import failed_tasks, judge
 
 SAMPLE_PERIOD = 0.5  # s between recorded places of the robot
 TIME_LIMIT = 4 * 3600.0  # s of simulated time after which a run is stopped
+SETTLING = 120.0  # s that a robot which stands still waits for what faults may lead to
 
 Observer = Callable[[float, Task | None], None]
 """Told the simulated time (s) and the task under way after every step."""
 
-Announcer = Callable[[Reading], None]
-"""Told each reading when it is certain: with a journal, when it is on disk."""
+Announcer = Callable[[Reading | Anomaly], None]
+"""Told each reading and each finding when it is certain: with a journal, when it is on disk."""
+
+LoggedEvents = Sequence[tuple[float, LoggedEvent]]
+"""Events and their times (s)."""
 
 
 class MissionRunner:
@@ -56,31 +65,37 @@ class MissionRunner:
         """With a `journal` the run is written to it, and goes on from what is there already."""
         self._mission = mission
         self._rig = rig
-        self._seed = settings.seed
+        self._settings = settings
         self._diagnostics = diagnostics
-        events = [(t, event.original()) for t, event in settings.events]
-        self._events = sorted(events, key=lambda given: given[0])
+        self._given = GivenEvents(settings.events)
         self._journal = journal
         self._hfsm = lower(mission)
         self._executor = Executor(self._hfsm)
         self._log = RunLog(rig.navigator.site)
-        self._contacts = ContactWatch()
-        self._closed: list[Contact] = []
+        site, robot = rig.navigator.site, rig.navigator.robot
+        self._odometry = Odometry(robot, rig.battery, site)
+        self._perception = Perception(rig.watches, site, rig.drive.time_step)
         self._interruptions = InterruptionWatch()
         self._velocity = WayVelocity(mission)
         self._action: ActionUnderWay | None = None
+        self._came: Path | None = None
         self._steps = 0
-        self._distance = 0.0
-        self._climbed = 0.0
-        self._given = 0
+        self._recorder: Recorder | None = None
 
     @property
     def _now(self) -> float:
         """s; counted in steps, so that nothing adds up."""
         return round(self._steps * self._rig.drive.time_step, 6)
 
-    def run(self, observe: Observer | None = None, announce: Announcer | None = None) -> RunRecord:
-        """Runs the mission to its end; returns the record.
+    def run(
+        self,
+        observe: Observer | None = None,
+        announce: Announcer | None = None,
+        recorder: Recorder | None = None,
+        events: LoggedEvents = (),
+    ) -> RunRecord:
+        """Runs the mission to its end; returns the record. A run that goes on from its journal may
+        be given further `events` and their times (s).
 
         Raises ArgoError if the mission makes no sense, the robot can't stand where it starts, or
         the journal does not fit or can't be written.
@@ -90,11 +105,23 @@ class MissionRunner:
             self._replay(entry)
         last = self._log.last
         self._rig.drive.place(last.body_pose if last else self._start_pose())
+        if self._rig.schedule:
+            self._rig.schedule.advance(self._now)
+        if last:
+            self._odometry.restore(last)
+            self._perception.remember(self._log.anomalies, self._now)
         if last is None or not last.ended:
             resumed = last is not None and not self._executor.finished
-            self._note(sample=self._unsampled, resumed=resumed)
+            self._recorder = recorder
+            if recorder:
+                recorder.step(self._now, None)
+            self._note(sample=self._unsampled, resumed=resumed, added=events)
             self._go_on(observe, announce)
-        return self._record()
+        return make_record(
+            self._mission, self._hfsm, self._rig, self._settings.seed, self._diagnostics, self._log,
+            self._executor, self._interruptions.all(self._now),
+            self._rig.schedule.faults if self._rig.schedule else (),
+        )  # fmt: skip
 
     def _start_pose(self) -> BodyPose:
         site = self._rig.navigator.site
@@ -108,9 +135,8 @@ class MissionRunner:
     def _replay(self, entry: Entry) -> None:
         """Does again what led to an entry, but for what the robot did."""
         self._steps = round(entry.t / self._rig.drive.time_step)
-        self._distance, self._climbed = entry.distance, entry.climbed
-        self._given = entry.given
-        self._contacts.restore(entry.touching)
+        self._odometry.restore(entry)
+        self._given.occurred = entry.given
         try:
             if entry.events and entry.running != self._running:
                 raise ValueError(f"{entry.running} is said to run, and {self._running} does")
@@ -125,86 +151,101 @@ class MissionRunner:
         stopped = None
         while not self._executor.finished and (stopped := self._reason_to_stop()) is None:
             self._advance(announce)
+            if self._recorder:
+                self._recorder.step(self._now, self._action)
             if observe:
                 observe(self._now, self._action.task if self._action else None)
         action = self._action
         if action:
             action.cancel("the run was stopped", interrupted=False)
         run = self._run_of(action, ActionStopped(action.task.name)) if action else None
-        self._closed += self._contacts.open
-        self._contacts.restore(())
+        self._odometry.close()
         self._note(task=run, sample=self._unsampled, ended=True, stopped=stopped)
 
     def _reason_to_stop(self) -> str | None:
-        if self._now >= TIME_LIMIT:
-            return f"it was stopped after {self._now:.0f} s"
-        waits = self._executor.running is None and self._executor.next_deadline is None
-        if waits and self._given == len(self._events):
-            why = "paused" if self._executor.paused else "waiting for an event"
-            return f"the robot stands still since {self._now:.0f} s, {why}, and nothing more occurs"
-        return None
+        now, executor, schedule = self._now, self._executor, self._rig.schedule
+        if now >= TIME_LIMIT:
+            return f"it was stopped after {now:.0f} s"
+        if self._odometry.empty:
+            return f"the battery was empty after {now:.0f} s"
+        waits = executor.running is None and executor.next_deadline is None
+        held = isinstance(self._rig.drive, Powertrain) and self._rig.drive.held
+        if not (waits or held) or self._given.pending or self._odometry.charging:
+            return None
+        since = self._log.last_event
+        if schedule is not None and schedule.faults:
+            # What has begun or ended may still be found.
+            since = max(since, schedule.last_change)
+            if schedule.pending or now < since + SETTLING:
+                return None
+        why = "held by its emergency stop" if held else "waiting for an event"
+        why = "paused" if executor.paused else why
+        return f"the robot stands still since {since:.0f} s, {why}, and nothing more occurs"
 
     def _advance(self, announce: Announcer | None) -> None:
         """One step of simulated time: the robot moves, and the executor hears what happened."""
         self._steps += 1
-        action, end = self._action, self._move()
-        reading = action.reading(self._now) if action and end else None
-        events: list[Event] = []
-        if reading and not reading.normal:
-            # Before the end, so that a reaction to it comes first and no next task is begun.
-            shows = f"{reading.name} shows {reading.value:g} {reading.unit}"
-            events.append(Occurred(EventKind.ABNORMAL_READING, shows))
+        now, drive, site = self._now, self._rig.drive, self._rig.navigator.site
+        if self._rig.schedule:
+            self._rig.schedule.advance(now)
+        before, action = drive.pose, self._action
+        end = action.step() if action else None
+        if action:
+            self._odometry.moved(before, drive.pose, self._rig.world.touches(), now)
+            self._odometry.trouble(drive.incidents, now)
+        self._odometry.spend(
+            before, drive.pose, drive.time_step, action is not None and action.measuring
+        )
+        noticed = self._perception.look(self._steps, now, drive.pose)
+        reading = action.reading(now) if action and end else None
+        abnormal = [abnormal_reading(reading, site)] if reading and not reading.normal else []
+        found = (*noticed, *abnormal)
+        # Before the end, so that a reaction to it comes first and no next task is begun.
+        events: list[Event] = [Occurred(anomaly.kind, anomaly.detail) for anomaly in found]
         run = self._run_of(action, end) if action and end else None
         events += (end,) if end else ()
-        while self._given < len(self._events) and self._events[self._given][0] <= self._now:
-            events.append(self._events[self._given][1])
-            self._given += 1
-        due = self._steps % max(1, round(SAMPLE_PERIOD / self._rig.drive.time_step)) == 0
+        events += self._given.due(now)
+        due = self._steps % max(1, round(SAMPLE_PERIOD / drive.time_step)) == 0
         if events or due:
-            self._note(events, reading=reading, task=run, sample=due)
-        if reading and announce:
-            announce(reading)
+            self._note(events, found=found, reading=reading, task=run, sample=due)
+        if announce:
+            for news in (*noticed, *((reading,) if reading else ())):
+                announce(news)
         deadline = self._executor.next_deadline
-        if not self._executor.finished and deadline is not None and deadline <= self._now:
+        if not self._executor.finished and deadline is not None and deadline <= now:
             self._note([Tick()])
-
-    def _move(self) -> ActionEnd | None:
-        """The step of the action under way; returns its end, if that is it."""
-        if self._action is None:
-            return None
-        before = self._rig.drive.pose
-        end = self._action.step()
-        after = self._rig.drive.pose
-        self._distance += math.dist((before.x, before.y, before.z), (after.x, after.y, after.z))
-        self._climbed += max(0.0, after.z - before.z)
-        self._closed += self._contacts.note(self._rig.world.touches(), self._now)
-        return end
 
     def _note(
         self,
         events: Sequence[Event] = (),
         *,
+        found: Sequence[Anomaly] = (),
         reading: Reading | None = None,
         task: TaskRun | None = None,
         sample: bool = False,
         resumed: bool = False,
         ended: bool = False,
         stopped: str | None = None,
+        added: LoggedEvents = (),
     ) -> None:
         """Makes an entry of the present moment, writes it, and acts on it."""
-        pose = self._rig.drive.pose
+        pose, odometry = self._rig.drive.pose, self._odometry
         entry = Entry(
             t=self._now,
             pose=(pose.x, pose.y, pose.z, pose.yaw, pose.pitch),
-            distance=self._distance,
-            climbed=self._climbed,
-            given=self._given,
+            distance=odometry.distance,
+            climbed=odometry.climbed,
+            charge=odometry.charge,
+            given=self._given.occurred,
+            added=tuple(added),
             running=self._running,
             events=tuple(LoggedEvent.of(event) for event in events),
+            found=tuple(found),
             reading=reading,
             task=task,
-            contacts=tuple(self._closed),
-            touching=self._contacts.open,
+            mishaps=tuple(odometry.mishaps),
+            contacts=tuple(odometry.over),
+            touching=odometry.touching,
             sample=sample,
             resumed=resumed,
             ended=ended,
@@ -212,13 +253,21 @@ class MissionRunner:
         )
         if self._journal:
             self._journal.append(entry)
-        self._closed.clear()
+        odometry.over.clear()
+        odometry.mishaps.clear()
         self._take(entry)
+        if self._recorder:
+            self._recorder.note(entry, self._executor)
 
     def _take(self, entry: Entry) -> None:
         """Adds an entry to the log and tells the executor its events."""
         self._log.add(entry)
+        self._given.add(entry.added)
+        if closed := [b for anomaly in entry.found if (b := blockage(anomaly))]:
+            navigator = self._rig.navigator.avoiding(closed)
+            self._rig = replace(self._rig, navigator=navigator)
         if entry.task:
+            self._came = (self._action and self._action.path) or self._came
             self._action = None
             if entry.task.outcome == "done":
                 self._velocity.arrived(entry.task.task)
@@ -226,6 +275,8 @@ class MissionRunner:
             if not self._executor.finished:
                 self._obey(self._executor.handle(event.original(), self._now))
                 self._interruptions.look(self._executor, self._now)
+        if closed and self._action:
+            self._action.detour(self._rig)
 
     def _obey(self, commands: Sequence[StartAction | CancelAction]) -> None:
         for command in commands:
@@ -233,7 +284,7 @@ class MissionRunner:
                 case StartAction(task):
                     self._action = ActionUnderWay(
                         task, self._velocity.to(task), self._rig,
-                        self._now, self._distance, self._climbed,
+                        self._now, self._odometry.distance, self._odometry.climbed, self._came,
                     )  # fmt: skip
                 case CancelAction(_, reason):
                     if self._action:
@@ -241,7 +292,7 @@ class MissionRunner:
                         self._action.cancel(reason, interrupted=goes_on)
 
     def _run_of(self, action: ActionUnderWay, end: ActionEnd) -> TaskRun:
-        return action.run(end, self._now, self._distance, self._climbed)
+        return action.run(end, self._now, self._odometry.distance, self._odometry.climbed)
 
     @property
     def _running(self) -> str | None:
@@ -250,37 +301,3 @@ class MissionRunner:
     @property
     def _unsampled(self) -> bool:
         return not self._log.path or self._log.path[-1].t < self._now
-
-    def _record(self) -> RunRecord:
-        log, site = self._log, self._rig.navigator.site
-        return RunRecord(
-            mission=self._mission,
-            hfsm=self._hfsm,
-            site=site.name,
-            robot=self._rig.navigator.robot.name,
-            drive=self._rig.drive.name,
-            sensor=self._rig.sensor.name,
-            seed=self._seed,
-            diagnostics=self._diagnostics,
-            result=self._result(),
-            tasks=tuple(log.tasks),
-            readings=tuple(log.readings),
-            contacts=tuple(sorted(log.contacts, key=lambda c: (c.start, c.link, c.element))),
-            trace=tuple(
-                TraceStep(t=e.time, source=e.source, target=e.target, cause=e.why)
-                for e in self._executor.trace
-            ),
-            path=tuple(log.path),
-            interruptions=self._interruptions.all(self._now),
-            resumed=tuple(log.resumed),
-        )
-
-    def _result(self) -> Result:
-        return judge(
-            self._mission,
-            self._hfsm,
-            self._rig.navigator.site.docks,
-            self._log,
-            self._executor.outcome if self._executor.finished else None,
-            failed_tasks(self._log.tasks, self._executor.trace),
-        )

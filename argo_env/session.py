@@ -2,6 +2,7 @@
 
 import time
 from collections.abc import Callable, Mapping
+from contextlib import ExitStack
 
 import numpy as np
 
@@ -9,16 +10,38 @@ from argo_compiler.diagnostics import Diagnostic
 from argo_compiler.errors import ArgoError
 from argo_compiler.il import Mission, Task
 from argo_env.action import Rig
+from argo_env.events.kinds import changed_site, settle
+from argo_env.events.network import Network
+from argo_env.events.schedule import Schedule
+from argo_env.events.stage import Stage
 from argo_env.journal import Header, Journal, JournalPlace, create_journal, fingerprints
 from argo_env.navigation import Navigator
+from argo_env.paper_world import AnyWorld, PaperWorld
 from argo_env.record import RunRecord
+from argo_env.recording.recorder import Recorder
+from argo_env.robot.battery import Battery
+from argo_env.robot.drive import Drive
 from argo_env.robot.kinematic import KinematicDrive
-from argo_env.runner import Announcer, MissionRunner, Observer
+from argo_env.robot.powertrain import Powertrain
+from argo_env.robot.route import RouteDrive
+from argo_env.robot.spec import RobotSpec
+from argo_env.robot.tracked.drive import TrackedDrive
+from argo_env.runner import Announcer, LoggedEvents, MissionRunner, Observer
+from argo_env.seeding import generator
 from argo_env.sensing.ideal import IdealSensor, draw_values
+from argo_env.sensing.instrument import Instrument
+from argo_env.sensing.onboard import onboard_watches
 from argo_env.sensing.sensor import Sensor
+from argo_env.sensing.signals import standard_watches
+from argo_env.sensing.vision.sensor import CameraSensor
+from argo_env.sensing.watch import Watch
 from argo_env.settings import RunSettings
 from argo_env.site import Site
+from argo_env.surroundings import Surroundings
 from argo_env.world import World
+
+DriveMaker = Callable[[World, RobotSpec], Drive]
+"""Makes a drive that moves the robot in the world."""
 
 SensorMaker = Callable[[World, Mapping[int, float], int], Sensor]
 """Makes a sensor for the world, in which the checkpoints have these true values, with a seed."""
@@ -28,10 +51,17 @@ def _ideal(world: World, truth: Mapping[int, float], seed: int) -> Sensor:  # no
     return IdealSensor(world, world.robot, truth)
 
 
-DRIVES = {"kinematic": KinematicDrive}
-"""The drives by name."""
+def _camera(world: World, truth: Mapping[int, float], seed: int) -> Sensor:  # noqa: ARG001
+    return CameraSensor(world, seed)
 
-SENSORS: dict[str, SensorMaker] = {"ideal": _ideal}
+
+WORLD_DRIVES: dict[str, DriveMaker] = {"kinematic": KinematicDrive, "tracked": TrackedDrive}
+"""The drives in PyBullet's world, by name."""
+
+DRIVES = (RouteDrive.name, *WORLD_DRIVES)
+"""The names of all drives; `route` has no world."""
+
+SENSORS: dict[str, SensorMaker] = {"ideal": _ideal, CameraSensor.name: _camera}
 """The sensors for checkpoints, by name."""
 
 
@@ -46,12 +76,14 @@ def simulate(
     gui: bool = False,
     pace: float | None = None,
     journal: JournalPlace | None = None,
+    recorder: Recorder | None = None,
 ) -> RunRecord:
     """Runs the mission on the navigator's site and returns its record.
 
     The settings' seed draws the checkpoints' true values, unless the settings give them. With
     `pace` a second of wall time shows at most that many seconds of simulated time. With `journal`
-    the run can be resumed after its process has died. Equal arguments give equal records.
+    the run can be resumed after its process has died. A `recorder` is told all that happens. Equal
+    arguments give equal records.
 
     Raises:
         ArgoError: the mission makes no sense on this site, there is no such drive or sensor, or the
@@ -61,7 +93,9 @@ def simulate(
     check_settings(settings, navigator.site)
     observe = _paced(observe, pace)
     if journal is None:
-        return _run(mission, settings, diagnostics, navigator, None, observe, announce, gui)
+        return _run(
+            mission, settings, diagnostics, navigator, None, observe, announce, gui, recorder
+        )
     source = journal.source.resolve() if journal.source else None
     header = Header(
         site=journal.site,
@@ -72,7 +106,9 @@ def simulate(
         diagnostics=diagnostics,
     )
     with create_journal(journal.path, header) as book:
-        return _run(mission, settings, diagnostics, navigator, book, observe, announce, gui)
+        return _run(
+            mission, settings, diagnostics, navigator, book, observe, announce, gui, recorder
+        )
 
 
 def resume(
@@ -83,11 +119,14 @@ def resume(
     announce: Announcer | None = None,
     gui: bool = False,
     pace: float | None = None,
+    recorder: Recorder | None = None,
+    events: LoggedEvents = (),
 ) -> RunRecord:
     """Goes on with the run of a journal and returns the record of the whole of it.
 
     The robot goes on from where it was last known to be, and the action that ran begins anew. If
-    the run had ended, its record is made again.
+    the run had ended, its record is made again. Further `events` occur at their times (s), at once
+    if these are over.
 
     Raises:
         ArgoError: the site, the robot, the mission's file or Argo is not what the run began with.
@@ -96,7 +135,7 @@ def resume(
     header = journal.header
     return _run(
         header.mission, header.settings, header.diagnostics, navigator, journal,
-        _paced(observe, pace), announce, gui,
+        _paced(observe, pace), announce, gui, recorder, events,
     )  # fmt: skip
 
 
@@ -106,7 +145,19 @@ def check_settings(settings: RunSettings, site: Site) -> None:
         raise ArgoError(f"no drive `{settings.drive}`; there are: {', '.join(DRIVES)}")
     if settings.sensor not in SENSORS:
         raise ArgoError(f"no sensor `{settings.sensor}`; there are: {', '.join(SENSORS)}")
+    if settings.drive == RouteDrive.name and settings.sensor != IdealSensor.name:
+        raise ArgoError(
+            f"the drive `{settings.drive}` has no world that the sensor `{settings.sensor}` could "
+            f"look at; take the sensor `{IdealSensor.name}` or another drive"
+        )
     true_values(site, settings.seed, settings.values)
+    settle(settings.faults, site, settings.seed)
+    unseen = [f.kind for f in settings.faults if f.needs_world]
+    if settings.drive == RouteDrive.name and unseen:
+        raise ArgoError(
+            f"the drive `{settings.drive}` has no world in which a fault like `{unseen[0]}` could "
+            "be found; take another drive"
+        )
 
 
 def _run(
@@ -118,15 +169,48 @@ def _run(
     observe: Observer | None,
     announce: Announcer | None,
     gui: bool,
+    recorder: Recorder | None,
+    events: LoggedEvents = (),
 ) -> RunRecord:
-    truth = true_values(navigator.site, settings.seed, settings.values)
-    with World(navigator.site, navigator.robot, gui) as world:
+    with ExitStack() as stack:
+        rig = outfit(settings, navigator, gui, stack)
+        runner = MissionRunner(mission, rig, settings, diagnostics, journal)
+        if recorder is None:
+            return runner.run(observe, announce, events=events)
+        recorder.begin(rig, mission, settings)
+        record = runner.run(observe, announce, recorder, events)
+        recorder.finish(record)
+        return record
+
+
+def outfit(settings: RunSettings, navigator: Navigator, gui: bool, stack: ExitStack) -> Rig:
+    """All that a mission is carried out with, put together; `stack` closes it."""
+    site, robot, seed = navigator.site, navigator.robot, settings.seed
+    truth = true_values(site, seed, settings.values)
+    faults = settle(settings.faults, site, seed)
+    surroundings = Surroundings(site)
+    world: AnyWorld
+    watches: tuple[Watch, ...] = ()
+    if settings.drive == RouteDrive.name:
+        if gui:
+            raise ArgoError(f"the drive `{settings.drive}` has no world to show in a window")
+        world = PaperWorld(site, robot)
+        inner: Drive = RouteDrive(robot)
+        camera: Sensor = IdealSensor(world, robot, truth)
+    else:
+        real = changed_site(site, faults).elements
+        world = stack.enter_context(World(site, robot, gui, real))
+        inner = WORLD_DRIVES[settings.drive](world, robot)
+        camera = SENSORS[settings.sensor](world, truth, seed)
+        watches = standard_watches(world, surroundings, seed)
         for id, value in truth.items():
             world.show_value(id, value)
-        drive = DRIVES[settings.drive](world, navigator.robot)
-        sensor = SENSORS[settings.sensor](world, truth, settings.seed)
-        rig = Rig(world, navigator, drive, sensor)
-        return MissionRunner(mission, rig, settings, diagnostics, journal).run(observe, announce)
+    drive, network, battery = Powertrain(inner), Network(site), Battery(robot)
+    sensor = Instrument(camera, site, generator(seed, "instrument"))
+    stage = Stage(world, truth, surroundings, drive, sensor, battery, network)
+    watches += onboard_watches(robot, battery, network, drive, sensor)
+    schedule = Schedule(faults, stage)
+    return Rig(world, navigator, drive, sensor, watches, battery, schedule)
 
 
 def true_values(site: Site, seed: int, given: Mapping[int, float]) -> dict[int, float]:

@@ -4,6 +4,7 @@ from pydantic import Field
 
 from argo_compiler.hfsm import Event
 from argo_compiler.model import Model
+from argo_env.events.kinds import AnyFault
 from argo_env.log import LoggedEvent
 
 
@@ -20,6 +21,8 @@ class RunSettings(Model):
     """what checkpoints show, by number, where it is not drawn"""
     events: tuple[tuple[float, LoggedEvent], ...] = ()
     """what the run is told, and when (s)"""
+    faults: tuple[AnyFault, ...] = ()
+    """what goes wrong; the robot finds out by sensing"""
 
 
 def logged(*events: tuple[float, Event]) -> tuple[tuple[float, LoggedEvent], ...]:

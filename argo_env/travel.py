@@ -1,16 +1,14 @@
 """Travel times and energy of a robot on a site, for the analysis of missions."""
 
-import math
-
 from argo_compiler.analysis import Leg, NoWay, Standing
 from argo_compiler.errors import ArgoError
 from argo_compiler.il import Action, Mission, Task
 from argo_compiler.model import Pose
 from argo_env.navigation import Navigator, Path
 from argo_env.navigation.path import Motion
+from argo_env.robot.calibration import MotionKind
+from argo_env.robot.timetable import steps
 from argo_env.starting import start_pose
-
-_ROUNDING = 1e-6  # of a step, left by sums of floats
 
 
 class SiteTravel:
@@ -24,7 +22,6 @@ class SiteTravel:
         self._navigator = navigator
         self._robot = navigator.robot
         self._time_step = time_step
-        self._checkpoints = {str(c.id): c.id for c in navigator.site.checkpoints}
         self._ways: dict[tuple[Pose, str | Pose | None], Path | NoWay] = {}
         self._legs: dict[tuple[Pose, str | Pose | None, float | None], Leg | NoWay] = {}
 
@@ -68,9 +65,8 @@ class SiteTravel:
     def _plan(self, origin: Pose, place: str | Pose | None) -> Path:
         if isinstance(place, Pose):
             return self._navigator.plan(origin, place)
-        if place not in self._checkpoints:
-            raise ArgoError(f"site {self._navigator.site.name} has no checkpoint {place}")
-        return self._navigator.plan_to_view(origin, self._checkpoints[place])
+        checkpoint = self._navigator.site.measured_by(place)
+        return self._navigator.plan_to_view(origin, checkpoint.id)
 
     def _leg(self, way: Path, velocity: float | None, measures: bool) -> Leg:
         robot, power = self._robot, self._robot.power
@@ -82,11 +78,11 @@ class SiteTravel:
 
     def _watts(self, motion: Motion) -> float:
         power = self._robot.power
-        if motion.turn:
-            return power.turning
-        if motion.on_stairs:
-            return power.climbing if motion.gear < 0 else power.descending
-        return power.driving
+        return {
+            MotionKind.TURN: power.turning,
+            MotionKind.UP: power.climbing,
+            MotionKind.DOWN: power.descending,
+        }.get(motion.kind, power.driving)
 
     def _stepped(self, seconds: float) -> float:
-        return math.ceil(seconds / self._time_step - _ROUNDING) * self._time_step
+        return steps(seconds, self._time_step) * self._time_step

@@ -26,7 +26,11 @@ _ENDINGS = {
 
 def is_docked(pose: BodyPose, docks: Mapping[int, Pose], area: int) -> bool:
     """Whether a robot at `pose` is in the station of that area: within 10 cm and 5 degrees."""
-    dock = docks[area]
+    return at_dock(pose, docks[area])
+
+
+def at_dock(pose: BodyPose, dock: Pose) -> bool:
+    """Whether a robot at `pose` is in the station of that pose."""
     away = math.dist((pose.x, pose.y, pose.z), (dock.x, dock.y, dock.z))
     return away <= DOCKED_DISTANCE and abs(wrap(pose.yaw - dock.yaw)) <= DOCKED_ANGLE
 

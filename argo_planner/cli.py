@@ -13,9 +13,11 @@ from argo_planner.commands.compile import compile_mission
 from argo_planner.commands.export import export_mission
 from argo_planner.commands.format import format_mission
 from argo_planner.commands.import_script import import_script
+from argo_planner.commands.replay import replay
 from argo_planner.commands.resume import resume_run
 from argo_planner.commands.run import run
 from argo_planner.commands.schema import show_schema
+from argo_planner.commands.sites import show_sites
 
 app = typer.Typer(
     name="argo",
@@ -33,6 +35,8 @@ app.command("format")(format_mission)
 app.command("export")(export_mission)
 app.command("run")(run)
 app.command("resume")(resume_run)
+app.command("replay")(replay)
+app.command("sites")(show_sites)
 app.command("schema")(show_schema)
 
 

@@ -25,12 +25,16 @@ from argo_compiler.script.source import Source as Script
 from argo_compiler.writing import write_whole
 from argo_env.catalog import make_catalog
 from argo_env.navigation import Navigator
+from argo_env.navigation.generated import generate
 from argo_env.robot.spec import load_robot
 from argo_env.site import load_site
+from argo_env.site.family import is_family, parse_family
 
 
 def load_navigator(site: str) -> Navigator:
-    """The navigator of the site of that name, or of the one that the file `site` describes."""
+    """The navigator of a site by its name, by the file that describes it, or of a generated one."""
+    if is_family(site):
+        return generate(parse_family(site))  # which has been made already, to check it
     return Navigator(load_site(site), load_robot())
 
 

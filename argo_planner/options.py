@@ -12,7 +12,10 @@ Source = Annotated[
         help="a mission script, a mission's .json, or a bag",
     ),
 ]
-SiteOption = Annotated[str, typer.Option("--site", help="a site's name, or a path to its .yaml")]
+SiteOption = Annotated[
+    str,
+    typer.Option("--site", help="a site's name, a path to its .yaml, or generated:floors=3,seed=7"),
+]
 StartArea = Annotated[
     int | None, typer.Option("--start-area", help="the starting area, where the script leaves it")
 ]

@@ -10,9 +10,10 @@ from rich.markup import escape
 from rich.progress import BarColumn, Progress, TextColumn, TimeElapsedColumn
 
 from argo_compiler.il import Task
+from argo_env.events.kinds import changed_site
 from argo_env.navigation import Navigator
 from argo_env.pictures import write_film, write_overview
-from argo_env.record import Reading, RunRecord
+from argo_env.record import Anomaly, Reading, RunRecord
 from argo_env.report import write_report
 from argo_planner.summary import show_record
 
@@ -29,12 +30,15 @@ class RunDisplay:
         """Shows the time (s) and the task under way."""
         self._progress.update(self._bar, completed=now, description=task.name if task else "waits")
 
-    def announce(self, reading: Reading) -> None:
-        """Shows a reading in a line of its own, which stays."""
-        text = (
-            f"{reading.t!r} s: {reading.task}: {reading.name} (#{reading.checkpoint}) shows "
-            f"{reading.value!r} {reading.unit}"
-        )
+    def announce(self, news: Reading | Anomaly) -> None:
+        """Shows a reading or a finding in a line of its own, which stays."""
+        if isinstance(news, Reading):
+            text = (
+                f"{news.t!r} s: {news.task}: {news.name} (#{news.checkpoint}) shows "
+                f"{news.value!r} {news.unit}"
+            )
+        else:
+            text = f"{news.t!r} s: found: {news.kind.replace('_', ' ')}: {news.detail}"
         self._progress.console.print(escape(text), soft_wrap=True, highlight=False)
 
     def __enter__(self) -> Self:
@@ -59,18 +63,19 @@ def conclude(
 ) -> None:
     """Shows the results and writes what was asked for; exits with status 1 if it is no success."""
     console = Console()
+    real = changed_site(navigator.site, record.faults)
     show_record(record, console)
     console.print(took)
     if report:
         page = write_report(record, navigator.site, report)
-        write_overview(record, navigator.site, navigator.robot, report / "site.png")
+        write_overview(record, real, navigator.robot, report / "site.png")
         console.print(f"Report: {escape(str(page))}", soft_wrap=True)
     if render:
         with _progress() as progress:
             bar = progress.add_task("filming", total=1.0)
             write_film(
                 record,
-                navigator.site,
+                real,
                 navigator.robot,
                 render,
                 progress=lambda share: progress.update(bar, completed=share),

@@ -14,16 +14,25 @@ def show_record(record: RunRecord, console: Console) -> None:
     result = record.result
     limit = f" of at most {clock(result.max_duration)}" if result.max_duration else ""
     touches = f"{len(record.contacts)} contact{'s' if len(record.contacts) != 1 else ''}"
+    found = len(record.anomalies)
+    findings = f"{found} finding{'s' if found != 1 else ''}, " if found else ""
     docked = {True: "docked", False: "not docked", None: "no docking asked for"}[result.docked]
     console.print(
         f"{clock(result.duration)}{limit}, {result.distance:.1f} m, "
-        f"{result.climbed:.1f} m climbed, {touches}, {docked}"
+        f"{result.climbed:.1f} m climbed, {touches}, {findings}{docked}"
     )
     for contact in record.contacts[:10]:
         console.print(
             f"  contact at {clock(contact.start)}: {escape(contact.link)} with "
             f"{escape(contact.element)}, {contact.depth * 1000:.0f} mm deep",
             style="red",
+        )
+    for mishap in record.mishaps[:10]:
+        x, y, z = mishap.place
+        console.print(
+            f"  {mishap.trouble} at {clock(mishap.t)} on floor {mishap.floor}, at "
+            f"({x:.2f}, {y:.2f}, {z:.2f}): {escape(mishap.detail)}",
+            style="yellow",
         )
     style, word = ("bold green", "Success") if result.success else ("bold red", "No success")
     console.print(f"[{style}]{word}[/]: {escape(result.verdict)}.")

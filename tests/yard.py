@@ -73,6 +73,7 @@ class GlidingDrive:
     name = "gliding"
     time_step = 0.1
     failure = None
+    incidents = ()
 
     def __init__(self, robot):
         self._robot = robot

@@ -29,7 +29,11 @@ class _Generator(GenerateJsonSchema):
 
 def schema_text(name: SchemaName) -> str:
     """The schema of that name as it is shipped."""
-    model = MODELS[name]
+    return schema_of(MODELS[name], name)
+
+
+def schema_of(model: type[Model], name: str) -> str:
+    """The schema of the files that hold such a model; `name` says what they are."""
     schema = model.model_json_schema(schema_generator=_Generator)
     described = {m.__name__: m for m in _models(model)}
     for title, definition in [(model.__name__, schema), *schema.get("$defs", {}).items()]:

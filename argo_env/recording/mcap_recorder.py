@@ -118,6 +118,8 @@ class McapRecorder:
             self._writer.put_json("/findings", anomaly, now)
         if entry.found:
             self._writer.put("/findings/markers", scene.finding_scene(self._found, now), now)
+        for mishap in entry.mishaps:
+            self._log(f"{mishap.trouble}: {mishap.detail}", Log.WARNING, "drive", now)
         for contact in entry.contacts:
             self._contact(contact, now)
         if entry.reading:

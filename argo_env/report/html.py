@@ -7,6 +7,7 @@ from jinja2 import Environment, StrictUndefined, Template
 
 from argo_compiler.export import to_mermaid
 from argo_env.record import Reading, RunRecord
+from argo_env.report.charge import charge_curve
 from argo_env.report.elevation import elevation
 from argo_env.report.machine import drawable, machine
 from argo_env.report.plan import floor_plan, visited_floors
@@ -30,6 +31,7 @@ def page(record: RunRecord, site: Site) -> str:
         failed=[t for t in record.tasks if t.outcome == "failed"],
         readings=[(reading, markup(_bar(reading))) for reading in record.readings],
         timeline=markup(timeline(record)) if record.tasks else None,
+        charge=None if (curve := charge_curve(record)) is None else markup(curve),
         plans=[(n, markup(floor_plan(site, record, n))) for n in floors],
         unvisited=others,
         elevation=markup(elevation(site, record)) if record.path else None,

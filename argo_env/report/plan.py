@@ -3,10 +3,12 @@
 import math
 from itertools import pairwise
 
+from argo_compiler.il import EventKind
 from argo_env.record import PathSample, RunRecord
 from argo_env.report.canvas import Canvas
 from argo_env.report.outline import on_floor, outline
 from argo_env.report.svg import Node, drawing, node
+from argo_env.report.timeline import found_mark
 from argo_env.report.track import arrows, flag, stretches, track
 from argo_env.site import Site, SiteCheckpoint
 
@@ -32,6 +34,11 @@ def floor_plan(site: Site, record: RunRecord, number: int) -> Node:
     measured = {r.checkpoint: r.normal for r in record.readings}
     marks = [_checkpoint(canvas, c, measured) for c in site.checkpoints if c.floor == number]
     contacts = [_cross(canvas, c.x, c.y) for c in record.contacts if site.floor_at(c.z) == number]
+    found = [
+        found_mark(*canvas.at(a.place[0], a.place[1]), k)
+        for k, a in enumerate(record.anomalies, start=1)
+        if a.place is not None and a.floor == number and a.kind is not EventKind.ABNORMAL_READING
+    ]
     return drawing(
         canvas.width,
         canvas.height,
@@ -41,6 +48,7 @@ def floor_plan(site: Site, record: RunRecord, number: int) -> Node:
         *_path(canvas, parts, record),
         *marks,
         *contacts,
+        *found,
         _north(canvas),
         canvas.scale_bar(),
         class_="drawing plan",

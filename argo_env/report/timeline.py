@@ -27,7 +27,7 @@ def timeline(record: RunRecord) -> Node:
     end = max([record.result.duration, *(run.end for run in record.tasks), 1.0])
     px = (WIDTH - LABELS - 20) / end
     bottom = HEAD + ROW * len(rows)
-    parts = _axis(end, px, bottom) + _rounds(record, px, bottom)
+    parts = time_axis(end, px, HEAD, bottom) + _rounds(record, px, bottom)
     parts += _interruptions(record, px, bottom)
     for name, row in rows.items():
         y = HEAD + ROW * row
@@ -48,6 +48,7 @@ def timeline(record: RunRecord) -> Node:
             text = f"{reading.name}: {reading.value:.4g} {reading.unit} at {clock(reading.t)}"
             mark.append(node("title", text=text))
             parts.append(mark)
+    parts += _anomalies(record, px, bottom)
     return drawing(WIDTH, bottom + 24, "Tasks along the time", *parts, class_="drawing timeline")
 
 
@@ -67,12 +68,13 @@ def _bar(run: TaskRun, y: float, px: float) -> Node:
     return bar
 
 
-def _axis(end: float, px: float, bottom: float) -> list[Node]:
+def time_axis(end: float, px: float, top: float, bottom: float) -> list[Node]:
+    """Lines from `top` to `bottom` at full minutes or so up to `end` (s), with `px` for 1 s."""
     step = next((s for s in _STEPS if s * px >= 60), 3600 * math.ceil(60 / (3600 * px)))
     marks = []
     for t in range(0, math.floor(end) + 1, step):
         x = LABELS + t * px
-        marks.append(node("path", d=f"M{x:.1f},{HEAD:g}V{bottom:g}", class_="grid"))
+        marks.append(node("path", d=f"M{x:.1f},{top:g}V{bottom:g}", class_="grid"))
         marks.append(node("text", x=x, y=bottom + 16, text=clock(t), class_="axis middle"))
     return marks
 
@@ -98,6 +100,32 @@ def _interruptions(record: RunRecord, px: float, bottom: float) -> list[Node]:
         line.append(node("title", text=f"resumed from the journal at {clock(t)}"))
         marks.append(line)
     return marks
+
+
+def _anomalies(record: RunRecord, px: float, bottom: float) -> list[Node]:
+    """A line at each finding, with its number where there is room."""
+    marks = []
+    free_from = -math.inf
+    for number, anomaly in enumerate(record.anomalies, start=1):
+        x = LABELS + anomaly.t * px
+        line = node("path", d=f"M{x:.1f},{HEAD - 8:g}V{bottom:g}", class_="found-line")
+        what = anomaly.kind.replace("_", " ")
+        line.append(node("title", text=f"{number} {what}: {anomaly.detail}, {clock(anomaly.t)}"))
+        marks.append(line)
+        if x > free_from:
+            marks.append(found_mark(x, HEAD - 8, number))
+            free_from = x + 16
+    return marks
+
+
+def found_mark(x: float, y: float, number: int) -> Node:
+    """A diamond about a place in px with the number of a finding."""
+    return node(
+        "g",
+        node("path", d=f"M{x:.1f},{y - 9:.1f}l9,9l-9,9l-9,-9z"),
+        node("text", x=x, y=y + 3.5, text=f"{number}", class_="middle"),
+        class_="found",
+    )
 
 
 def _rounds(record: RunRecord, px: float, bottom: float) -> list[Node]:

@@ -5,11 +5,11 @@ from collections.abc import Mapping
 import numpy as np
 
 from argo_env.navigation.views import camera_positions, face_normal, sight_target
+from argo_env.paper_world import AnyWorld
 from argo_env.robot.pose import BodyPose
 from argo_env.robot.spec import RobotSpec
-from argo_env.sensing.sensor import Measurement, MeasurementError
+from argo_env.sensing.sensor import Measurement, MeasurementError, PoorViewError
 from argo_env.site import Site
-from argo_env.world import World
 
 
 class IdealSensor:
@@ -17,14 +17,14 @@ class IdealSensor:
 
     name = "ideal"
 
-    def __init__(self, world: World, robot: RobotSpec, truth: Mapping[int, float]) -> None:
+    def __init__(self, world: AnyWorld, robot: RobotSpec, truth: Mapping[int, float]) -> None:
         self._world = world
         self._robot = robot
         self._truth = truth
 
     def measure(self, checkpoint_id: int, pose: BodyPose) -> Measurement:
         """The true value; MeasurementError if the camera can't see the face from there."""
-        checkpoint = self._world.site.checkpoint(checkpoint_id)
+        checkpoint = self._world.in_place(checkpoint_id)
         sensor = self._robot.sensor
         camera = camera_positions(np.array([[pose.x, pose.y, pose.z, pose.yaw]]), self._robot)[0]
         target = sight_target(checkpoint)
@@ -38,13 +38,13 @@ class IdealSensor:
         cosine = float(-sight @ face_normal(checkpoint)) / distance
         obliqueness = float(np.degrees(np.arccos(np.clip(cosine, -1.0, 1.0))))
         if obliqueness > sensor.max_obliqueness:
-            raise MeasurementError(
+            raise PoorViewError(
                 f"{checkpoint.name} is seen at {obliqueness:.0f} degrees to its face; the camera "
                 f"reads up to {sensor.max_obliqueness:.0f}"
             )
         obstacle = self._world.obstacle_between(tuple(camera.tolist()), tuple(target.tolist()))
         if obstacle is not None:
-            raise MeasurementError(f"{checkpoint.name} is hidden behind {obstacle}")
+            raise PoorViewError(f"{checkpoint.name} is hidden behind {obstacle}")
         return Measurement(self._truth[checkpoint_id], distance)
 
 

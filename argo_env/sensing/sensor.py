@@ -20,6 +20,10 @@ class MeasurementError(Exception):
     """The checkpoint could not be read; the message says why."""
 
 
+class PoorViewError(MeasurementError):
+    """It could not be read from there, but perhaps from elsewhere."""
+
+
 class Sensor(Protocol):
     """Reads checkpoints."""
 

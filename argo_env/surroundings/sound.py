@@ -7,8 +7,7 @@ each time (Randall and Antoni, Rolling element bearing diagnostics, 2011). Cavit
 noise from 1 kHz up. Levels fall by 6 dB with each doubling of the distance; solids and the air do
 little to these frequencies over a few metres, and are left out.
 
-The alarm is the intermittent tone of constant frequency that the British PFEER regulations (1995,
-regulation 11) keep for the general alarm; 1000 Hz, 1 s on and 1 s off, is our choice.
+The alarm is a tone of 1000 Hz, 1 s on and 1 s off. Tone and cadence are this project's own choice.
 """
 
 import math

@@ -2,6 +2,7 @@
 
 import math
 import time
+from contextlib import ExitStack
 from pathlib import Path
 from typing import Annotated
 
@@ -10,11 +11,13 @@ import typer
 from argo_compiler.errors import ArgoError
 from argo_compiler.hfsm import Cancel, Event, Occurred, Pause, Resume, lower
 from argo_compiler.il import EventKind
+from argo_env.events.reading import read_faults
 from argo_env.journal import JournalPlace, require_free
 from argo_env.pictures import check_film
+from argo_env.recording.files import check_recording, recording_to
 from argo_env.session import DRIVES, SENSORS, check_settings, simulate
 from argo_env.settings import RunSettings, logged
-from argo_planner.loading import load_mission, load_navigator, make_folder
+from argo_planner.loading import keep_input, load_mission, load_navigator, make_folder
 from argo_planner.options import EndArea, SiteOption, Source, StartArea
 from argo_planner.running import RunDisplay, conclude
 
@@ -52,6 +55,10 @@ def run(
             help=f"what occurs at a time (s), such as 60=gas_leak; {KINDS}",
         ),
     ] = None,
+    faults: Annotated[
+        Path | None,
+        typer.Option("--faults", metavar="FILE.yaml", help="what goes wrong; see docs/faults.md"),
+    ] = None,
     journal: Annotated[
         Path | None,
         typer.Option(
@@ -69,12 +76,21 @@ def run(
     render: Annotated[
         Path | None, typer.Option("--render", metavar="FILE.mp4|FILE.gif", help="film the run")
     ] = None,
+    recording: Annotated[
+        Path | None,
+        typer.Option(
+            "--record", metavar="FILE.mcap", help="record the run, for Foxglove and `argo replay`"
+        ),
+    ] = None,
 ) -> None:
     """Run a mission on a site, show what was measured, and write a report."""
     if pace is not None and not gui:
         raise ArgoError("--pace is how fast the window shows the run: give --gui as well")
     if render:
         check_film(render)
+    if recording:
+        check_recording(recording)
+        keep_input(source, recording)
     if report:
         make_folder(report)
     settings = RunSettings(
@@ -83,6 +99,7 @@ def run(
         seed=seed,
         values=parse_values(value or []),
         events=logged(*parse_events(event or [])),
+        faults=read_faults(faults) if faults else (),
     )
     if journal:
         require_free(journal)
@@ -93,7 +110,8 @@ def run(
     lower(mission, source_name=str(source))
     navigator.prepare()
     loaded = time.monotonic()
-    with RunDisplay(mission.max_duration) as display:
+    with ExitStack() as stack:
+        display = stack.enter_context(RunDisplay(mission.max_duration))
         record = simulate(
             mission,
             navigator,
@@ -104,12 +122,15 @@ def run(
             gui=gui,
             pace=(pace or DEFAULT_PACE) if gui else None,
             journal=JournalPlace(journal, site_reference(site), source) if journal else None,
+            recorder=stack.enter_context(recording_to(recording, source)) if recording else None,
         )
     ended = time.monotonic()
     took = (
         f"Loading took {loaded - started:.1f} s, the run {ended - loaded:.1f} s: "
         f"{record.result.duration / max(1e-9, ended - loaded):.0f} times real time."
     )
+    if recording:
+        took += f"\nRecording: {recording}"
     conclude(record, navigator, took, report, render)
 
 

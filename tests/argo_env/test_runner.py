@@ -14,6 +14,7 @@ from argo_compiler.model import Pose
 from argo_env.navigation import Path
 from argo_env.navigation.path import Motion
 from argo_env.record import RunRecord
+from argo_env.robot.calibration import MotionKind
 from argo_env.robot.pose import BodyPose
 from argo_env.session import simulate
 from argo_env.settings import RunSettings
@@ -254,7 +255,8 @@ def test_velocity_is_that_of_the_way_to_the_next_task(navigator):
     took = {t.task: t.end - t.start for t in record.tasks}
     speeds = {"A": 0.2, "B": 0.3, "C": navigator.robot.speed}
     for name, speed in speeds.items():
-        assert took[name] == pytest.approx(3.0 / speed, abs=0.2)
+        planned = navigator.robot.seconds(MotionKind.AHEAD, 3.0, speed)
+        assert took[name] == pytest.approx(planned, abs=0.2)
 
 
 def test_too_long_is_no_success(navigator):
@@ -322,8 +324,9 @@ def test_contacts_are_counted(navigator):
     assert [c.start for c in record.contacts] == sorted(c.start for c in record.contacts)
     y = record.path[0].y
     (hull,) = (c for c in record.contacts if c.link == "base_link")
-    assert hull.start == pytest.approx((y - 0.35 - 0.12) / 0.4, abs=0.25)
-    assert hull.end == pytest.approx((y + 0.39 - 0.08) / 0.4, abs=0.25)
+    speed = 3.0 / navigator.robot.seconds(MotionKind.AHEAD, 3.0)
+    assert hull.start == pytest.approx((y - 0.35 - 0.12) / speed, abs=0.25)
+    assert hull.end == pytest.approx((y + 0.39 - 0.08) / speed, abs=0.25)
     # Of two rails and posts it is as deep as half the height of what overlaps, or more.
     assert 0.02 <= hull.depth <= 0.4
     assert hull.x == pytest.approx(3.05, abs=0.4)

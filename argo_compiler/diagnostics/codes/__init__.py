@@ -7,6 +7,7 @@ it, and so are the tables in `docs/diagnostics.md`, which `make generated` write
 from argo_compiler.diagnostics.codes.analysis import ANALYSIS
 from argo_compiler.diagnostics.codes.code import Code
 from argo_compiler.diagnostics.codes.export import EXPORT
+from argo_compiler.diagnostics.codes.faults import FAULTS
 from argo_compiler.diagnostics.codes.file import FILE
 from argo_compiler.diagnostics.codes.handover import HANDOVER
 from argo_compiler.diagnostics.codes.il import IL
@@ -24,6 +25,7 @@ CODES: dict[str, Code] = {
     **ISAR,
     **ROS,
     **SITE,
+    **FAULTS,
     **HANDOVER,
 }
 """by the code's name"""

@@ -20,19 +20,21 @@ PROMINENCE = 20.0
 LOOKS, MISMATCHES = 10, 1
 """recordings that must fit the beat, and how many of them may not"""
 SHORTEST = 0.01  # s of tone in a recording from which it shows
+IDLE = 2  # looks of which it takes one while there is nothing to hear
 CLEAR_TIME = 6.0  # s without the tone until the alarm is over
 _PHASES = np.arange(0.0, ALARM_PERIOD, 0.02)
 
 
 def hears_tone(samples: NDArray[np.float32]) -> bool:
     """Whether the alarm's tone stands out of a recording."""
-    power = np.abs(np.fft.rfft(samples)) ** 2
     line = len(samples) / RATE  # bins a hertz
-    low, high = round((ALARM_TONE - TONE_BAND) * line), round((ALARM_TONE + TONE_BAND) * line) + 1
     first, last = round(AROUND[0] * line), round(AROUND[1] * line)
-    beside = power[first:last].sum() - power[low:high].sum()
-    noise = beside / (last - first - (high - low))
-    return bool(power[low:high].max() > 10 ** (PROMINENCE / 10) * noise)
+    spectrum = np.fft.rfft(samples)[first:last]
+    power = spectrum.real**2 + spectrum.imag**2
+    low, high = round((ALARM_TONE - TONE_BAND) * line), round((ALARM_TONE + TONE_BAND) * line) + 1
+    tone = power[low - first : high - first]
+    noise = (power.sum() - tone.sum()) / (len(power) - len(tone))
+    return bool(tone.max() > 10 ** (PROMINENCE / 10) * noise)
 
 
 def fits_beat(heard: Sequence[tuple[float, bool]]) -> bool:
@@ -58,12 +60,12 @@ class AlarmWatch:
         self._heard: deque[tuple[float, bool]] = deque(maxlen=LOOKS)
         self._last_tone: float | None = None
         self._told = False
-        self._pause = True
+        self._idle = 0
 
     def look(self, now: float, pose: BodyPose) -> tuple[Finding, ...]:
-        # It listens half as often while there is nothing to hear.
-        self._pause = not self._pause
-        if self._pause and not any(on for _, on in self._heard):
+        # It listens less often while there is nothing to hear.
+        self._idle = (self._idle + 1) % IDLE
+        if self._idle != 1 and not any(on for _, on in self._heard):
             return ()
         tone = hears_tone(self._microphone.record(now, pose, RECORDING))
         self._heard.append((now, tone))

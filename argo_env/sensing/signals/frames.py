@@ -21,7 +21,12 @@ def rotation(pose: BodyPose) -> NDArray[np.float64]:
 
 def on_site(pose: BodyPose, place: Vector) -> NDArray[np.float64]:
     """A place of the robot's frame on the site, in m, shape (3,)."""
-    return np.asarray(np.array([pose.x, pose.y, pose.z]) + rotation(pose) @ np.array(place))
+    ahead, left, up = place
+    c, s = math.cos(pose.yaw), math.sin(pose.yaw)
+    down, level = math.sin(pose.pitch), math.cos(pose.pitch)
+    flat = level * ahead + down * up
+    x, y, z = c * flat - s * left, s * flat + c * left, level * up - down * ahead
+    return np.array([pose.x + x, pose.y + y, pose.z + z])
 
 
 def point(values: NDArray[np.float64]) -> Vector:

@@ -116,23 +116,20 @@ def find_spots(image: ThermalImage, site_map: SiteMap, air: float) -> tuple[Spot
         warmth = image.pixels[rows, columns]
         # What is mixed from hot and cold at the rim says little, so the warmest go first.
         probed = np.argsort(-warmth, kind="stable")[: 4 * PROBES : 4]
-        depths, solids = site_map.distances(
-            image.origin, image.rays(rows[probed], columns[probed]), REACH
-        )
-        known = solids >= 0
-        if not known.any():
-            continue
         # The image is coarse: what is in the middle of a cell stands for all of it.
-        cells = np.unique(np.column_stack([rows, columns]) // COARSE, axis=0)
-        middles = (cells + 0.5) * COARSE
-        _, beside = site_map.distances(
-            image.origin, pixel_rays(middles[:, 0], middles[:, 1]) @ image.axes.T, REACH
-        )
-        there = [int(k) for k in (*solids, *beside) if k >= 0]
+        cells = np.unique(rows // COARSE * WIDTH + columns // COARSE)
+        middles = (np.column_stack(np.divmod(cells, WIDTH)) + 0.5) * COARSE
+        beside = pixel_rays(middles[:, 0], middles[:, 1]) @ image.axes.T
+        rays = np.concatenate([image.rays(rows[probed], columns[probed]), beside])
+        depths, solids = site_map.distances(image.origin, rays, REACH)
+        there = [int(k) for k in solids if k >= 0]
+        depths, solids = depths[: len(probed)], solids[: len(probed)]
+        if not np.isfinite(depths).any():
+            continue
         allowed = max(warmest(site_map.element(k).role, air) for k in there)
         if float(np.median(warmth[probed])) <= allowed + MARGIN:
             continue
-        nearest = int(np.argmin(np.where(known, depths, np.inf)))
+        nearest = int(np.argmin(depths))
         ray = image.rays(rows[probed[[nearest]]], columns[probed[[nearest]]])[0]
         spots.append(
             Spot(

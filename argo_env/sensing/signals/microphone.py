@@ -1,6 +1,7 @@
 """The microphone: sound pressure over time, as all that sounds adds up where the robot is."""
 
 import math
+from collections.abc import Iterable, Mapping
 
 import numpy as np
 from numpy.typing import NDArray
@@ -9,7 +10,7 @@ from argo_env.robot.pose import BodyPose
 from argo_env.sensing.signals.frames import NOSE, on_site
 from argo_env.site import Site
 from argo_env.site.shapes import Vector
-from argo_env.surroundings import Alarm, PumpSound, Surroundings
+from argo_env.surroundings import Alarm, PumpFault, PumpSound, Surroundings
 from argo_env.surroundings.sound import (
     LENGTH,
     RATE,
@@ -36,6 +37,27 @@ def pump_places(site: Site) -> dict[str, Vector]:
     }
 
 
+def hear(
+    ear: Vector,
+    places: Iterable[tuple[str, Vector]],
+    faults: Mapping[str, PumpFault],
+    count: int,
+    rng: np.random.Generator,
+) -> NDArray[np.float32]:
+    """Pa, `count` samples: the site and its pumps, some of which have faults, as heard at `ear`."""
+    samples = rng.standard_normal(count, dtype=np.float32)
+    samples *= np.float32(pressure(SITE_NOISE))
+    if rng.random() < BANG_SHARE:
+        fading = np.exp(-np.arange(count) / (0.02 * RATE))
+        samples += pressure(BANG) * fading * rng.standard_normal(count)
+    heard = [(name, d) for name, place in places if (d := math.dist(ear, place)) <= HEARING]
+    starts = rng.integers(LENGTH - count, size=len(heard)).tolist()
+    for (name, distance), start in zip(heard, starts, strict=True):
+        sound = pump_sound(name, faults.get(name))[start : start + count]
+        samples += sound * np.float32(1 / max(distance, NEAREST))
+    return samples
+
+
 class Microphone:
     """Records sound."""
 
@@ -47,20 +69,11 @@ class Microphone:
     def record(self, now: float, pose: BodyPose, duration: float) -> NDArray[np.float32]:
         """Pa, RATE samples a second, over `duration` (s) from time `now` (s) on."""
         count = round(duration * RATE)
-        samples = self._rng.standard_normal(count, dtype=np.float32)
-        samples *= np.float32(pressure(SITE_NOISE))
-        if self._rng.random() < BANG_SHARE:
-            fading = np.exp(-np.arange(count) / (0.02 * RATE))
-            samples += pressure(BANG) * fading * self._rng.standard_normal(count)
-        ear = on_site(pose, NOSE)
-        faults = {s.pump: s.fault for s in self._surroundings.sources if isinstance(s, PumpSound)}
-        for name, place in self._places.items():
-            distance = math.dist(ear.tolist(), place)
-            if distance <= HEARING:
-                start = int(self._rng.integers(LENGTH - count))
-                heard = pump_sound(name, faults.get(name))[start : start + count]
-                samples += heard / max(distance, NEAREST)
-        for source in self._surroundings.sources:
+        x, y, z = on_site(pose, NOSE).tolist()
+        sources = self._surroundings.sources
+        faults = {s.pump: s.fault for s in sources if isinstance(s, PumpSound)}
+        samples = hear((x, y, z), self._places.items(), faults, count, self._rng)
+        for source in sources:
             if isinstance(source, Alarm):
                 samples += alarm_sound(now, count, source.level)
         return samples

@@ -3,105 +3,124 @@
 import math
 from collections import deque
 from dataclasses import dataclass
+from functools import lru_cache
 
 import numpy as np
 from numpy.typing import NDArray
+from scipy.optimize import lsq_linear, nnls
 
 from argo_compiler.il import EventKind
 from argo_env.robot.pose import BodyPose
 from argo_env.seeding import generator
 from argo_env.sensing.signals.frames import NOSE, on_site, point
-from argo_env.sensing.signals.microphone import Microphone, pump_places
+from argo_env.sensing.signals.microphone import NEAREST, Microphone, hear, pump_places
 from argo_env.sensing.watch import Finding
 from argo_env.site import Site
 from argo_env.site.shapes import Vector
-from argo_env.surroundings import Surroundings
 from argo_env.surroundings.sound import BEARING_ORDER, RATE, shaft_rate
 
-RECORDING = 0.5  # s
-NEAR = 3.5
-"""m within which a pump stands out of the site's noise"""
-NOISE_BAND = (2000.0, 7000.0)
+RECORDING = 0.25  # s
+NEAR = 5.0
+"""m from the nearest pump within which it listens"""
+BLOCKS = 5  # of a recording, the power of which is looked at one by one
+BAND = (2000.0, 7000.0)
 """Hz: over the lines of a sound pump"""
+BANG = 2.0
+"""times the middle block that no block may have; metal on metal is over within one"""
+LOUD = 10**0.2
+"""times what sound pumps make together from which a recording is abnormal: 2 dB, 12 times the
+standard deviation"""
+WORST = 100.0
+"""times its own power (20 dB) that a fault may add to a pump; what would need more is elsewhere"""
+LEAST = 1.5
+"""times its own power that a fault adds at least (4 dB in all)"""
+LOOKS, ENOUGH = 8, 3
+"""abnormal recordings in a row that are kept, and that are needed"""
+QUIET, BESIDE = 4, 2.0
+"""normal recordings within so many m from a pump until what was told of it is over"""
+SPREAD, FLOOR = 0.1, 0.06
+"""standard deviation of what a recording has too much: share of that, and share of what is normal;
+about twice what was measured"""
+MISFIT = 3.0  # mean square of the deviations up to which the pumps explain what is heard
+PROOF = 16.0  # sum of squared deviations that only this pump's fault explains: 4 deviations
+HEARD = 12.0  # m from where it was recorded within which a pump may be what is heard
+BEARING_SHARE = 0.3
+"""of what there is too much: the part that swells with a bearing's rate; impacts alone have 0.6 or
+more, and steady noise 0.1"""
 RINGING_BAND = (2500.0, 5000.0)
 """Hz: where housings ring"""
-RESOLUTION = 0.03
+SLIP = 0.03
 """share by which the balls may slip"""
-RISE = {"noise": 4.0, "impacts": 8.0}
-"""dB over the pump's baseline from which a feature is abnormal ..."""
-DEVIATIONS = 6.0
-"""... if that is also so many standard deviations of the baseline"""
-LOOKS, VOTES = 4, 3
-"""how many of the last recordings must be abnormal"""
-RINGS, TAKES = (0.8, 1.4, 2.3, 3.6), 5
-"""m from the pump at which its baseline is recorded, and how often at each"""
-NORMAL = 1.48  # standard deviations of a normal distribution in its median absolute deviation
-TELLING = 0.5  # dB of spread by which another pump must fit better than the nearest
-AUDIBLE = 8.0  # m within which a pump with a fault may be the one that is heard
-MEANING = {"noise": "louder over 2 kHz", "impacts": "with impacts as of a bearing"}
-
-
-def features(samples: NDArray[np.float32], shaft: float, distance: float) -> dict[str, float]:
-    """In dB: the level of the noise over the lines, brought to 1 m, and how much of the sound in
-    the ringing band swells with the rate at which balls pass a spall, for a shaft of `shaft` turns
-    a second: the squared envelope's line at that rate beside its mean (Randall and Antoni, 2011).
-    """
-    spectrum = np.fft.rfft(samples)
-    line = len(samples) / RATE  # bins a hertz
-    power = np.abs(spectrum[round(NOISE_BAND[0] * line) : round(NOISE_BAND[1] * line)]) ** 2
-    nearer = 20 * math.log10(distance)
-    noise = 10 * math.log10(float(power.sum()) / len(samples) ** 2) + nearer
-    # A part of the spectrum alone is that of the band's analytic signal, moved to 0 Hz.
-    ringing = np.fft.ifft(spectrum[round(RINGING_BAND[0] * line) : round(RINGING_BAND[1] * line)])
-    envelope = np.abs(np.fft.rfft(np.abs(ringing) ** 2))
-    rate = BEARING_ORDER * shaft * line
-    low, high = math.floor(rate * (1 - RESOLUTION)), math.ceil(rate * (1 + RESOLUTION))
-    swell = float(envelope[low : high + 1].max() / envelope[0])
-    return {"noise": noise, "impacts": 10 * math.log10(swell)}
+RINGS, TAKES = (0.8, 1.6, 3.2), 3
+"""m from each pump where its sound was recorded when all were well, and how often at each"""
 
 
 @dataclass(frozen=True)
 class Baseline:
-    """How a pump sounds when it is well: the middle of each feature at each of RINGS, and the
-    standard deviation about it."""
+    """The power over the lines when all is well: of the site, and of each pump at 1 m."""
 
-    middle: dict[str, NDArray[np.float64]]
-    deviation: dict[str, float]
-
-    def abnormal(self, found: dict[str, float], distance: float) -> list[str]:
-        """The features that have risen."""
-        return [
-            key
-            for key, value in found.items()
-            if value - float(np.interp(distance, RINGS, self.middle[key]))
-            > max(RISE[key], DEVIATIONS * self.deviation[key])
-        ]
+    site: float
+    pumps: dict[str, float]
 
 
-def learn(site: Site, pump: str) -> Baseline:
-    """The baseline as recorded once, when all pumps of the site ran well."""
-    place = pump_places(site)[pump]
-    rng = generator(0, "commissioning", pump)
-    microphone = Microphone(Surroundings(site), rng)
-    shaft = shaft_rate(pump)
-    rings: list[list[dict[str, float]]] = []
-    for distance in RINGS:
-        takes = []
-        for angle in rng.uniform(0.0, 2 * math.pi, TAKES):
-            pose = _beside(place, distance, float(angle))
-            takes.append(features(microphone.record(0.0, pose, RECORDING), shaft, distance))
-        rings.append(takes)
-    values = {k: np.array([[take[k] for take in takes] for takes in rings]) for k in RISE}
-    # Medians, as metal may have struck metal in one of the takes.
-    middle = {k: np.median(v, axis=1) for k, v in values.items()}
-    spread = {k: float(np.median(np.abs(v - middle[k][:, None]))) for k, v in values.items()}
-    return Baseline(middle, {k: NORMAL * v for k, v in spread.items()})
+@dataclass(frozen=True)
+class Look:
+    """One abnormal recording."""
+
+    ear: Vector
+    """m, where it was taken"""
+    normal: float
+    """the power over the lines there would be if all pumps were well"""
+    excess: float
+    """what is heard beyond that"""
+    envelope: NDArray[np.float64]
+    """how much of the sound swells at which rate, a line each 1 / RECORDING Hz; 1 for all of it"""
+
+
+def power(samples: NDArray[np.float32]) -> float | None:
+    """The mean power over the lines; None if metal has struck metal meanwhile."""
+    blocks = samples.reshape(BLOCKS, -1)
+    line = blocks.shape[1] / RATE  # bins a hertz
+    spectra = np.fft.rfft(blocks)[:, round(BAND[0] * line) : round(BAND[1] * line)]
+    powers = (spectra.real**2 + spectra.imag**2).sum(axis=1) / blocks.shape[1] ** 2
+    return None if powers.max() > BANG * np.median(powers) else float(powers.mean())
+
+
+def envelope(samples: NDArray[np.float32]) -> NDArray[np.float64]:
+    """The spectrum of the squared envelope in the ringing band, beside its mean (Randall and
+    Antoni, 2011)."""
+    line = len(samples) / RATE
+    part = np.fft.rfft(samples)[round(RINGING_BAND[0] * line) : round(RINGING_BAND[1] * line)]
+    # A part of the spectrum alone is that of the band's analytic signal, moved to 0 Hz.
+    result = np.abs(np.fft.rfft(np.abs(np.fft.ifft(part)) ** 2))
+    return np.asarray(result / result[0])
+
+
+@lru_cache(maxsize=16)
+def learn(places: tuple[tuple[str, Vector], ...]) -> Baseline:
+    """What was recorded once around the pumps, when all of them ran well."""
+    rng = generator(0, "commissioning")
+    ears, powers = [], []
+    for _, (x, y, z) in places:
+        for distance in RINGS:
+            for angle in rng.uniform(0.0, 2 * math.pi, TAKES).tolist():
+                ear = (x + distance * math.cos(angle), y + distance * math.sin(angle), z)
+                heard = power(hear(ear, places, {}, round(RECORDING * RATE), rng))
+                if heard is not None:
+                    ears.append(ear)
+                    powers.append(heard)
+    reach = np.column_stack([np.ones(len(ears)), _reach(ears, [place for _, place in places])])
+    parts, _ = nnls(reach / np.array(powers)[:, None], np.ones(len(powers)))
+    site, *pumps = parts.tolist()
+    return Baseline(site, dict(zip((name for name, _ in places), pumps, strict=True)))
 
 
 class PumpWatch:
-    """Listens to the nearest pump while it is near enough, and compares it with its own baseline.
+    """Listens while a pump is near, and finds the pumps whose faults explain what there is more to
+    hear than when all were well.
 
-    Holds the baselines that it has needed, and what it has heard last.
+    A fault's share falls with the square of the distance, so places tell pumps apart: a pump is
+    told only if no faults of the others explain the same. Holds the last abnormal recordings.
     """
 
     name = "pumps"
@@ -109,68 +128,96 @@ class PumpWatch:
 
     def __init__(self, microphone: Microphone, site: Site) -> None:
         self._microphone = microphone
-        self._site = site
         self._places = pump_places(site)
-        self._baselines: dict[str, Baseline] = {}
-        self._last: deque[_Look] = deque(maxlen=LOOKS)
-        self._told: set[str] = set()
+        self._looks: deque[Look] = deque(maxlen=LOOKS)
+        self._told: dict[str, int] = {}
+        """how many recordings beside it have been normal since"""
 
     def look(self, now: float, pose: BodyPose) -> tuple[Finding, ...]:
         ear = point(on_site(pose, NOSE))
-        near = {n: d for n, p in self._places.items() if (d := math.dist(ear, p)) <= NEAR}
-        if not near:
+        if all(math.dist(ear, place) > NEAR for place in self._places.values()):
+            self._looks.clear()
             return ()
-        nearest = min(near, key=lambda name: near[name])
-        distance = max(near[nearest], RINGS[0])
-        if nearest not in self._baselines:
-            self._baselines[nearest] = learn(self._site, nearest)
-        sound = self._microphone.record(now, pose, RECORDING)
-        found = features(sound, shaft_rate(nearest), distance)
-        risen = self._baselines[nearest].abnormal(found, distance)
-        if self._last and self._last[-1].nearest != nearest:
-            self._last.clear()
-        level = found["noise"] - 20 * math.log10(distance)
-        self._last.append(_Look(nearest, ear, level, bool(risen)))
-        bad = [look for look in self._last if look.abnormal]
-        if not bad and len(self._last) == LOOKS:
-            self._told.discard(nearest)
-        if not risen or len(bad) < VOTES:
+        samples = self._microphone.record(now, pose, RECORDING)
+        heard = power(samples)
+        if heard is None:
             return ()
-        pump = self._whose(bad)
-        if pump in self._told:
+        baseline = learn(tuple(self._places.items()))
+        own = np.array(list(baseline.pumps.values()))
+        normal = baseline.site + float(_reach([ear], list(self._places.values()))[0] @ own)
+        if heard <= LOUD * normal:
+            # What began or ended meanwhile must not be mixed with what was before.
+            self._looks.clear()
+            self._forget(ear)
             return ()
-        self._told.add(pump)
-        how = " and ".join(MEANING[key] for key in risen)
-        return (Finding(EventKind.ABNORMAL_SOUND, f"{pump} sounds {how}", self._places[pump]),)
+        self._looks.append(Look(ear, normal, heard - normal, envelope(samples)))
+        self._told = dict.fromkeys(self._told, 0)
+        if len(self._looks) < ENOUGH:
+            return ()
+        return tuple(
+            self._finding(name)
+            for name in culprits(tuple(self._looks), self._places, baseline)
+            if name not in self._told
+        )
 
-    def _whose(self, looks: list["_Look"]) -> str:
-        """The pump that the sound comes from: the one from which the level falls as it should with
-        the distance, if that tells pumps apart; else the nearest."""
-        spread = {}
-        for name, place in self._places.items():
-            away = [math.dist(look.ear, place) for look in looks]
-            if min(away) <= AUDIBLE:
-                levels = [k.level + 20 * math.log10(d) for k, d in zip(looks, away, strict=True)]
-                spread[name] = float(np.std(levels))
-        nearest, best = looks[-1].nearest, min(spread, key=lambda name: spread[name])
-        return best if spread[nearest] - spread[best] > TELLING else nearest
+    def _finding(self, pump: str) -> Finding:
+        alone = not self._told
+        self._told[pump] = 0
+        rate = BEARING_ORDER * shaft_rate(pump) * RECORDING
+        low, high = math.floor(rate * (1 - SLIP)), math.ceil(rate * (1 + SLIP))
+        best = max(self._looks, key=lambda look: look.excess / look.normal)
+        total = best.excess + best.normal
+        swell = float(best.envelope[low : high + 1].max()) * total / best.excess
+        # Beside another faulty pump the impacts may be that one's.
+        impacts = alone and swell > BEARING_SHARE
+        how = "with impacts as of a bearing" if impacts else "louder over 2 kHz"
+        detail = f"{pump} sounds {how}"
+        return Finding(EventKind.ABNORMAL_SOUND, detail, self._places[pump])
+
+    def _forget(self, ear: Vector) -> None:
+        """A normal recording was taken here: counts for the pumps that stand beside."""
+        for name in self._told:
+            self._told[name] += math.dist(ear, self._places[name]) <= BESIDE
+        self._told = {name: count for name, count in self._told.items() if count < QUIET}
 
 
-@dataclass(frozen=True)
-class _Look:
-    """One recording: the nearest pump, where it was taken (m), the level of the noise over the
-    lines (dB), and whether that pump would be abnormal."""
+def culprits(looks: tuple[Look, ...], places: dict[str, Vector], baseline: Baseline) -> list[str]:
+    """The pumps near enough to be told without whose fault the looks can't be explained."""
+    ears = [look.ear for look in looks]
+    away = {name: min(math.dist(ear, place) for ear in ears) for name, place in places.items()}
+    names = [name for name in places if away[name] <= HEARD and baseline.pumps[name] > 0.0]
+    excess = np.array([look.excess for look in looks])
+    deviation = np.hypot(SPREAD * excess, FLOOR * np.array([look.normal for look in looks]))
+    own = np.array([baseline.pumps[name] for name in names])
+    # Unknown is how many times its own power each pump has more.
+    made = _reach(ears, [places[name] for name in names]) * own / deviation[:, None]
+    wanted = excess / deviation
+    if not names:
+        return []
+    more, rest = _explained(made, wanted)
+    if rest > MISFIT * len(looks):
+        return []
+    return [
+        name
+        for k, name in enumerate(names)
+        if away[name] <= NEAR
+        and more[k] >= LEAST
+        and _explained(np.delete(made, k, axis=1), wanted)[1] - rest >= PROOF
+    ]
 
-    nearest: str
-    ear: Vector
-    level: float
-    abnormal: bool
+
+def _explained(
+    made: NDArray[np.float64], wanted: NDArray[np.float64]
+) -> tuple[NDArray[np.float64], float]:
+    """The least squares that faults leave, none of them beyond WORST: how much each adds, and the
+    sum of squares that is left."""
+    if not made.shape[1]:
+        return np.empty(0), float(wanted @ wanted)
+    fit = lsq_linear(made, wanted, (0.0, WORST), method="bvls")
+    return fit.x, 2 * float(fit.cost)
 
 
-def _beside(place: Vector, distance: float, angle: float) -> BodyPose:
-    """A pose with the microphone `distance` (m) from the place, in the direction `angle` (rad)."""
-    x, y, z = place
-    ahead, _, up = NOSE
-    return BodyPose(
-        x + distance * math.cos(angle) - ahead, y + distance * math.sin(angle), z - up, 0.0
-    )
+def _reach(ears: list[Vector], places: list[Vector]) -> NDArray[np.float64]:
+    """The share of a pump's power at 1 m that arrives, shape (ears, places)."""
+    apart = np.array(ears)[:, None, :] - np.array(places)
+    return np.asarray(1 / np.maximum((apart**2).sum(axis=2), NEAREST**2))

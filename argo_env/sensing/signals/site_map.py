@@ -8,6 +8,8 @@ from argo_env.site.shapes import WALKING_ROLES, Box, Element, Role, Vector, half
 
 EQUIPMENT = frozenset({Role.VESSEL, Role.PIPE, Role.PUMP})
 
+_TINY = 1e-9
+
 
 class SiteMap:
     """The solids of a site in arrays, for many rays from one point at once."""
@@ -20,6 +22,10 @@ class SiteMap:
         self._rotations = np.array([s.rotation() for _, s in parts])
         half = np.array([half_extents(s) for _, s in parts])
         self._low, self._high = self._centers - half, self._centers + half
+        # Axis by axis, as most solids are ruled out by a few comparisons of whole columns.
+        self._bounds = [
+            (self._low[:, k].copy() - _TINY, self._high[:, k].copy() + _TINY) for k in range(3)
+        ]
         self._round = np.array([not isinstance(s, Box) for _, s in parts])
         self._halves = np.array(
             [
@@ -37,56 +43,73 @@ class SiteMap:
         """The distance (m) to the first solid from `origin`, shape (3,) or (n, 3), in each of
         `directions`, unit vectors of the shape (n, 3), and which solid it is; inf and -1 where
         there is none within `reach`."""
-        places = np.concatenate([np.atleast_2d(origin), origin + reach * directions])
-        low, high = places.min(axis=0), places.max(axis=0)
-        near = np.flatnonzero(((self._low <= high) & (self._high >= low)).all(axis=1))
-        if origin.ndim == 1:
-            near = near[self._between(near, origin, directions)]
-        if not len(near):
-            return np.full(len(directions), np.inf), np.full(len(directions), -1)
-        # Frames of the solids; arrays are (ray, solid, axis).
-        rotations, halves, round_ = self._rotations[near], self._halves[near], self._round[near]
-        offset = np.atleast_2d(origin)[:, None, :] - self._centers[near]
-        start = np.einsum("rmk,mkj->rmj", offset, rotations)
-        slope = np.einsum("rk,mkj->rmj", directions, rotations)
-        slope = np.where(np.abs(slope) < 1e-9, 1e-9, slope)
+        ends = origin + reach * directions
+        near = np.ones(len(self._centers), dtype=bool)
+        for axis, (low, high) in enumerate(self._bounds):
+            start, end = origin[..., axis], ends[:, axis]
+            near &= low <= max(start.max(), end.max())
+            near &= high >= min(start.min(), end.min())
+        rays, solids = self._candidates(np.flatnonzero(near), origin, directions, reach)
+        result, which = np.full(len(directions), np.inf), np.full(len(directions), -1)
+        if not len(rays):
+            return result, which
+        distance = self._entries(
+            origin[rays] if origin.ndim == 2 else origin, directions[rays], solids
+        )
+        # The nearest first, and of equals the first solid.
+        order = np.lexsort((solids, distance, rays))
+        first = order[np.r_[True, np.diff(rays[order]) > 0]]
+        first = first[distance[first] <= reach]
+        result[rays[first]], which[rays[first]] = distance[first], solids[first]
+        return result, which
+
+    def _candidates(
+        self,
+        near: NDArray[np.int64],
+        origin: NDArray[np.float64],
+        directions: NDArray[np.float64],
+        reach: float,
+    ) -> tuple[NDArray[np.int64], NDArray[np.int64]]:
+        """Pairs of a ray and one of the solids `near` whose upright bounds it meets."""
+        enter, leave = np.zeros((len(directions), len(near))), np.inf
+        for axis, (low, high) in enumerate(self._bounds):
+            start = origin[..., axis].reshape(-1, 1)
+            slope = _nonzero(directions[:, axis, None])
+            one, other = (low[near] - start) / slope, (high[near] - start) / slope
+            enter = np.maximum(enter, np.minimum(one, other))
+            leave = np.minimum(leave, np.maximum(one, other))
+        rays, columns = np.nonzero((enter <= leave) & (enter <= reach))
+        return rays, near[columns]
+
+    def _entries(
+        self,
+        origin: NDArray[np.float64],
+        directions: NDArray[np.float64],
+        solids: NDArray[np.int64],
+    ) -> NDArray[np.float64]:
+        """The distance (m) to where each ray enters the solid that goes with it; inf if it does
+        not, or starts within. The arrays have one row for each pair."""
+        rotations, halves, round_ = (
+            self._rotations[solids],
+            self._halves[solids],
+            self._round[solids],
+        )
+        start = np.einsum("pk,pkj->pj", origin - self._centers[solids], rotations)
+        slope = _nonzero(np.einsum("pk,pkj->pj", directions, rotations))
         first, second = (-halves - start) / slope, (halves - start) / slope
         entries, leaves = np.minimum(first, second), np.maximum(first, second)
         if round_.any():
             # The round side of a cylinder stands for the slabs across its axis.
-            s, d, radius = start[:, round_], slope[:, round_], halves[round_, 0]
-            a = d[..., 0] ** 2 + d[..., 1] ** 2
-            b = d[..., 0] * s[..., 0] + d[..., 1] * s[..., 1]
-            discriminant = b**2 - a * (s[..., 0] ** 2 + s[..., 1] ** 2 - radius**2)
+            s, d, radius = start[round_], slope[round_], halves[round_, 0]
+            a = d[:, 0] ** 2 + d[:, 1] ** 2
+            b = d[:, 0] * s[:, 0] + d[:, 1] * s[:, 1]
+            discriminant = b**2 - a * (s[:, 0] ** 2 + s[:, 1] ** 2 - radius**2)
             root = np.sqrt(np.maximum(discriminant, 0.0))
             hit = discriminant >= 0
-            for axis in (0, 1):
-                entries[:, round_, axis] = np.where(hit, (-b - root) / a, np.inf)
-                leaves[:, round_, axis] = np.where(hit, (-b + root) / a, -np.inf)
-        entry, leave = entries.max(axis=2), leaves.min(axis=2)
-        distance = np.where((entry <= leave) & (entry >= 0.0), entry, np.inf)
-        best = distance.argmin(axis=1)
-        result = distance[np.arange(len(directions)), best]
-        result = np.where(result <= reach, result, np.inf)
-        return result, np.where(np.isfinite(result), near[best], -1)
-
-    def _between(
-        self, solids: NDArray[np.int64], origin: NDArray[np.float64], rays: NDArray[np.float64]
-    ) -> NDArray[np.bool_]:
-        """Which solids reach between the two upright planes through `origin` that hold all rays."""
-        ahead = np.arctan2(*rays[:, 1::-1].sum(axis=0))
-        aside = np.arctan2(rays[:, 1], rays[:, 0]) - ahead
-        aside = (aside + np.pi) % (2 * np.pi) - np.pi
-        kept = np.ones(len(solids), dtype=bool)
-        if np.abs(aside).max() > 1.5:
-            return kept
-        middle = (self._low[solids, :2] + self._high[solids, :2]) / 2 - origin[:2]
-        half = (self._high[solids, :2] - self._low[solids, :2]) / 2
-        for angle, sign in ((aside.max(), 1.0), (aside.min(), -1.0)):
-            # The normal points into the wedge.
-            normal = sign * np.array([np.sin(ahead + angle), -np.cos(ahead + angle)])
-            kept &= middle @ normal + half @ np.abs(normal) >= -1e-9
-        return kept
+            entries[round_, :2] = np.where(hit, (-b - root) / a, np.inf)[:, None]
+            leaves[round_, :2] = np.where(hit, (-b + root) / a, -np.inf)[:, None]
+        entry, leave = entries.max(axis=1), leaves.min(axis=1)
+        return np.where((entry <= leave) & (entry >= 0.0), entry, np.inf)
 
     def element(self, solid: int) -> Element:
         """The element that a solid belongs to."""
@@ -111,3 +134,7 @@ class SiteMap:
         outside = np.maximum(np.maximum(self._low - at, at - self._high), 0.0)
         distance = np.where(self._equipment, np.linalg.norm(outside, axis=1), np.inf)
         return self._elements[int(distance.argmin())].name
+
+
+def _nonzero(slope: NDArray[np.float64]) -> NDArray[np.float64]:
+    return np.where(np.abs(slope) < _TINY, _TINY, slope)

@@ -1,0 +1,15 @@
+"""The codes of findings about files of faults."""
+
+from argo_compiler.diagnostics.codes.code import error
+
+FAULTS = {
+    "faults.duplicate-key": error(
+        "A mapping in the file of faults has the same key twice.", "Remove one of the two."
+    ),
+    "faults.not-yaml": error("The file of faults is no YAML.", "Correct the file at the mark."),
+    "faults.wrong-field": error(
+        "A fault is of no known kind, or a field of it is unknown, missing, or has a value that "
+        "makes no sense.",
+        "Correct the field; docs/faults.md lists the kinds and their fields.",
+    ),
+}

@@ -1,0 +1,94 @@
+"""All kinds of faults, and what a file of faults may say."""
+
+from collections.abc import Sequence
+from dataclasses import replace
+from typing import Annotated
+
+from pydantic import Field
+
+from argo_compiler.errors import ArgoError
+from argo_compiler.model import Model
+from argo_env.events.checkpoints import AbnormalValue, DisplacedCheckpoint
+from argo_env.events.fault import Fault
+from argo_env.events.machine import (
+    ConnectionLoss,
+    DriveDysfunction,
+    EmergencyStop,
+    LowBattery,
+    SensorDysfunction,
+    WornBattery,
+)
+from argo_env.events.process import AbnormalPump, GasLeakFault, HotSpotFault, PlatformAlarm
+from argo_env.events.way import BlockedStairs, Brick, MissingPlate
+from argo_env.seeding import generator
+from argo_env.site import Site
+
+KINDS: dict[str, type[Fault]] = {
+    str(model.model_fields["kind"].default): model
+    for model in (
+        AbnormalValue,
+        DisplacedCheckpoint,
+        GasLeakFault,
+        HotSpotFault,
+        AbnormalPump,
+        PlatformAlarm,
+        Brick,
+        MissingPlate,
+        BlockedStairs,
+        LowBattery,
+        WornBattery,
+        ConnectionLoss,
+        EmergencyStop,
+        SensorDysfunction,
+        DriveDysfunction,
+    )
+}
+"""The kinds of faults by name."""
+
+AnyFault = Annotated[
+    AbnormalValue
+    | DisplacedCheckpoint
+    | GasLeakFault
+    | HotSpotFault
+    | AbnormalPump
+    | PlatformAlarm
+    | Brick
+    | MissingPlate
+    | BlockedStairs
+    | LowBattery
+    | WornBattery
+    | ConnectionLoss
+    | EmergencyStop
+    | SensorDysfunction
+    | DriveDysfunction,
+    Field(discriminator="kind"),
+]
+
+
+class FaultFile(Model):
+    """A file of faults."""
+
+    faults: tuple[AnyFault, ...]
+
+
+def settle(faults: Sequence[AnyFault], site: Site, seed: int) -> tuple[AnyFault, ...]:
+    """The faults with all that was left out drawn: each by its own seed, or by the run's.
+
+    Raises ArgoError, with the place in the list, for what the site does not have.
+    """
+    settled: list[AnyFault] = []
+    for number, fault in enumerate(faults):
+        own = seed if fault.seed is None else fault.seed
+        try:
+            rng = generator(own, "fault", fault.kind, number if fault.seed is None else 0)
+            settled.append(fault.settled(site, rng))
+        except ArgoError as error:
+            raise ArgoError(f"faults[{number}] ({fault.kind}): {error}") from None
+    return tuple(settled)
+
+
+def changed_site(site: Site, faults: Sequence[AnyFault]) -> Site:
+    """The site as it really is with settled faults: bricks lie on it, and plates are missing."""
+    for fault in faults:
+        site = replace(site, elements=fault.changed(site))
+    return site

@@ -1,0 +1,105 @@
+"""What the robot notices by itself: watches are called at their periods, and each thing is told
+once, also when the run has been resumed meanwhile."""
+
+import math
+from collections.abc import Iterable, Sequence
+
+from argo_compiler.il import EventKind
+from argo_env.navigation import Blockage
+from argo_env.record import DIGITS, Anomaly, Reading
+from argo_env.robot.pose import BodyPose
+from argo_env.sensing.signals.terrain_watch import KNOWN, ObstacleFinding
+from argo_env.sensing.watch import Finding, Watch
+from argo_env.site import Site
+from argo_env.site.shapes import Vector
+
+OBSTACLES = frozenset({EventKind.POSITIVE_OBSTACLE, EventKind.NEGATIVE_OBSTACLE})
+_AROUND = 0.25  # m about the place of an obstacle whose extent was not seen
+_SAME_PLACE = 1.0  # m within which two findings of a kind are one, after a run was resumed
+_SAME_TIME = 15.0  # s after a run was resumed in which what has no place may be told again
+
+
+class Perception:
+    """Calls the watches of one run. Holds what was told before the run was resumed."""
+
+    def __init__(self, watches: Sequence[Watch], site: Site, time_step: float) -> None:
+        """`time_step` (s): how often it is asked."""
+        self._site = site
+        every = [max(1, round(watch.period / time_step)) for watch in watches]
+        # Those of one period look in turn, not all in the same step.
+        self._turns = [
+            (watch, steps, k % steps)
+            for k, (watch, steps) in enumerate(zip(watches, every, strict=True))
+        ]
+        self._known: list[Anomaly] = []
+        self._resumed = -math.inf
+
+    def remember(self, told: Iterable[Anomaly], now: float) -> None:
+        """The run goes on at time `now` (s) after these have been told; the watches are new."""
+        self._known, self._resumed = list(told), now
+
+    def look(self, step: int, now: float, pose: BodyPose) -> tuple[Anomaly, ...]:
+        """What is found in the step of that number, at time `now` (s) with the robot at `pose`."""
+        found = []
+        for watch, every, turn in self._turns:
+            if step % every == turn:
+                for finding in watch.look(now, pose):
+                    if not self._was_told(finding, now):
+                        found.append(self._anomaly(watch, finding, now))
+        return tuple(found)
+
+    def _was_told(self, finding: Finding, now: float) -> bool:
+        for known in self._known:
+            if known.kind is not finding.kind:
+                continue
+            if finding.kind in OBSTACLES and known.place and finding.place:
+                same = math.dist(known.place, finding.place) <= _SAME_PLACE
+            else:
+                same = now - self._resumed <= _SAME_TIME
+            if same:
+                self._known.remove(known)
+                return True
+        return False
+
+    def _anomaly(self, watch: Watch, finding: Finding, now: float) -> Anomaly:
+        place = finding.place
+        return Anomaly(
+            t=now,
+            kind=finding.kind,
+            detail=finding.detail,
+            source=watch.name,
+            place=None if place is None else _rounded(place),
+            floor=None if place is None else self._site.floor_at(place[2]),
+            confidence=round(finding.confidence, DIGITS),
+            extent=finding.blockage.rect if isinstance(finding, ObstacleFinding) else None,
+        )
+
+
+def blockage(anomaly: Anomaly) -> Blockage | None:
+    """What an obstacle closes of the surface; None for all else.
+
+    It may reach a little farther than was seen from the one side, without being told again.
+    """
+    if anomaly.kind not in OBSTACLES or anomaly.place is None:
+        return None
+    x, y, z = anomaly.place
+    x0, y0, x1, y1 = anomaly.extent or (x, y, x, y)
+    more = KNOWN if anomaly.extent else _AROUND
+    return Blockage((x0 - more, y0 - more, x1 + more, y1 + more), z, anomaly.detail)
+
+
+def abnormal_reading(reading: Reading, site: Site) -> Anomaly:
+    """What a reading outside the checkpoint's nominal range tells."""
+    return Anomaly(
+        t=reading.t,
+        kind=EventKind.ABNORMAL_READING,
+        detail=f"{reading.name} shows {reading.value:g} {reading.unit}",
+        source="reading",
+        place=_rounded(site.checkpoint(reading.checkpoint).position),
+        floor=reading.floor,
+    )
+
+
+def _rounded(place: Vector) -> Vector:
+    x, y, z = (round(v, DIGITS) for v in place)
+    return x, y, z

@@ -1,0 +1,194 @@
+"""The watches over the robot itself: battery, connection, emergency stop, drive and camera.
+
+Each looks at signals that such a robot has: volts and amperes, whether a packet comes back, the
+circuit of the emergency stop, the way made against the way planned, pictures of a test pattern.
+"""
+
+import math
+from collections import deque
+
+import numpy as np
+from numpy.typing import NDArray
+
+from argo_compiler.il import EventKind
+from argo_env.events.network import Network
+from argo_env.navigation.path import Path, wrap
+from argo_env.robot.battery import Battery, estimated_charge
+from argo_env.robot.pose import BodyPose
+from argo_env.robot.powertrain import Powertrain
+from argo_env.robot.spec import RobotSpec
+from argo_env.sensing.instrument import Instrument
+from argo_env.sensing.watch import Finding, Watch
+
+LOW, FULL = 0.2, 0.99
+"""shares of the charge: below the one the battery is low, from the other on it is charged again"""
+WINDOW = 10.0  # s over which the way made is compared with the way planned
+SLOW = 0.6  # share of the planned speed below which something is wrong
+_SAMPLE = 0.2  # s between the places on the planned way that the robot's are compared with
+_RADIAN = 0.3  # m that a radian counts as in this
+NOISY = 0.01  # standard deviation in the test pattern above which the camera is too noisy
+
+
+class BatteryWatch:
+    """Estimates the charge from voltage and current. Holds whether it has been low."""
+
+    name = "battery"
+    period = 1.0
+
+    def __init__(self, battery: Battery) -> None:
+        self._battery = battery
+        self._low = False
+
+    def look(self, now: float, pose: BodyPose) -> tuple[Finding, ...]:  # noqa: ARG002
+        voltage = self._battery.voltage
+        charge = estimated_charge(voltage, self._battery.current)
+        if not self._low and charge < LOW:
+            self._low = True
+            return (Finding(EventKind.LOW_BATTERY, f"{voltage:.1f} V, {charge:.0%} charged"),)
+        if self._low and charge >= FULL:
+            self._low = False
+            return (Finding(EventKind.BATTERY_CHARGED, f"{voltage:.1f} V, {charge:.0%} charged"),)
+        return ()
+
+
+class ConnectionWatch:
+    """Asks the base station for a sign of life. Holds how many it has missed."""
+
+    name = "connection"
+    period = 0.5
+
+    def __init__(self, network: Network, missed: int = 4) -> None:
+        """The connection is lost when `missed` answers in a row have not come."""
+        self._network = network
+        self._limit = missed
+        self._missed = 0
+
+    def look(self, now: float, pose: BodyPose) -> tuple[Finding, ...]:  # noqa: ARG002
+        place = (pose.x, pose.y, pose.z)
+        if not self._network.connected(pose):
+            self._missed += 1
+            if self._missed == self._limit:
+                silent = self._limit * self.period
+                return (Finding(EventKind.CONNECTION_LOST, f"no answer for {silent:g} s", place),)
+            return ()
+        lost, self._missed = self._missed >= self._limit, 0
+        if lost:
+            return (Finding(EventKind.CONNECTION_RESTORED, "the base station answers", place),)
+        return ()
+
+
+class EmergencyStopWatch:
+    """Looks at the circuit of the emergency stop. Holds how it was."""
+
+    name = "emergency stop"
+    period = 0.1
+
+    def __init__(self, drive: Powertrain) -> None:
+        self._drive = drive
+        self._pressed = False
+
+    def look(self, now: float, pose: BodyPose) -> tuple[Finding, ...]:  # noqa: ARG002
+        before, self._pressed = self._pressed, self._drive.pressed
+        if self._pressed and not before:
+            return (Finding(EventKind.EMERGENCY_STOP, "someone has pressed the emergency stop"),)
+        return ()
+
+
+class DriveWatch:
+    """Compares the way that the robot makes with the one that was planned. Holds both."""
+
+    name = "drive"
+    period = 1.0
+
+    def __init__(self, drive: Powertrain, robot: RobotSpec) -> None:
+        self._drive = drive
+        self._robot = robot
+        self._way: tuple[Path, float | None] | None = None
+        self._plan: NDArray[np.float64] = np.empty((0, 4))
+        self._at = 0
+        self._progress: deque[tuple[float, float]] = deque()
+        self._told = False
+
+    def look(self, now: float, pose: BodyPose) -> tuple[Finding, ...]:
+        way = self._drive.way
+        if way is None or self._drive.pressed:
+            self._way = None
+            return ()
+        if way is not self._way:
+            self._way, self._at = way, 0
+            self._plan = _places(*way, self._robot)
+            self._progress.clear()
+        self._at = self._nearest(pose)
+        self._progress.append((now, self._at * _SAMPLE))
+        while now - self._progress[0][0] > WINDOW + 1e-6:
+            self._progress.popleft()
+        since, before = self._progress[0]
+        if now - since < WINDOW - 1e-6 or self._at >= len(self._plan) - 1:
+            return ()
+        share = (self._progress[-1][1] - before) / (now - since)
+        if share >= SLOW:
+            self._told = False
+            return ()
+        if self._told:
+            return ()
+        self._told = True
+        detail = f"the drive makes {share:.0%} of the planned speed"
+        return (Finding(EventKind.DYSFUNCTION, detail, (pose.x, pose.y, pose.z)),)
+
+    def _nearest(self, pose: BodyPose) -> int:
+        """Where on the plan the robot is: at most twice as far on as time would have it."""
+        ahead = self._plan[self._at : self._at + round(2 * self.period / _SAMPLE) + 1]
+        apart = ahead - np.array([pose.x, pose.y, pose.z, pose.yaw])
+        apart[:, 3] = _RADIAN * np.remainder(apart[:, 3] + math.pi, math.tau) - _RADIAN * math.pi
+        return self._at + int(np.argmin((apart**2).sum(axis=1)))
+
+
+class CameraWatch:
+    """Takes pictures of the test pattern. Holds whether the camera was found out of order."""
+
+    name = "camera"
+    period = 5.0
+
+    def __init__(self, sensor: Instrument) -> None:
+        self._sensor = sensor
+        self._told = False
+
+    def look(self, now: float, pose: BodyPose) -> tuple[Finding, ...]:  # noqa: ARG002
+        pattern = self._sensor.test()
+        spread = 0.0 if pattern is None else float(np.sqrt(np.mean(np.square(pattern))))
+        before, self._told = self._told, pattern is None or spread > NOISY
+        if not self._told or before:
+            return ()
+        detail = (
+            "the camera gives no picture"
+            if pattern is None
+            else f"the camera's picture of the test pattern is off by {spread:.1%} of the scale"
+        )
+        return (Finding(EventKind.DYSFUNCTION, detail),)
+
+
+def onboard_watches(
+    robot: RobotSpec, battery: Battery, network: Network, drive: Powertrain, sensor: Instrument
+) -> tuple[Watch, ...]:
+    """All watches over the robot itself, for one run."""
+    return (
+        EmergencyStopWatch(drive),
+        BatteryWatch(battery),
+        ConnectionWatch(network),
+        DriveWatch(drive, robot),
+        CameraWatch(sensor),
+    )
+
+
+def _places(path: Path, velocity: float | None, robot: RobotSpec) -> NDArray[np.float64]:
+    """x, y, z (m) and yaw (rad) every _SAMPLE s along the plan, shape (n, 4)."""
+    rows, t = [], 0.0
+    for motion in path.motions:
+        duration = motion.duration(robot, velocity)
+        while t < duration:
+            pose = motion.at(t / duration)
+            rows.append((pose.x, pose.y, pose.z, wrap(pose.yaw)))
+            t += _SAMPLE
+        t -= duration
+    end = path.end
+    return np.array([*rows, (end.x, end.y, end.z, end.yaw)])

@@ -1,0 +1,86 @@
+"""Faults on the command line: told as they are found, kept in the journal, shown in the report."""
+
+import json
+
+import pytest
+import yaml
+
+from argo_compiler.files import write_mission
+from argo_env.record import RunRecord
+from tests.yard import SITE, measure, mission, waypoint
+
+FAULTS = """\
+faults:
+  - {kind: brick, floor: 1, place: [3.0, 2.0], yaw: 0}
+  - {kind: abnormal_value, checkpoint: 3, value: 8.0, at: 5}
+  - {kind: connection_loss, at: 4, until: 12}
+"""
+
+
+@pytest.fixture
+def folder(tmp_path):
+    (tmp_path / "yard.yaml").write_text(yaml.safe_dump(SITE), encoding="utf-8")
+    (tmp_path / "faults.yaml").write_text(FAULTS, encoding="utf-8")
+    write_mission(mission(waypoint("A", 5.05, 2.55), measure(3)), tmp_path / "mission.json")
+    return tmp_path
+
+
+def test_found_told_kept_and_shown(argo, folder):
+    ran = argo(
+        "run", "mission.json", "--site", "yard.yaml", "--faults", "faults.yaml", "--report", "out",
+        "--journal", "run.journal", cwd=folder,
+    )  # fmt: skip
+    assert ran.returncode == 0, ran.stderr
+    shown = ran.stdout + ran.stderr
+    for kind in ("positive obstacle", "connection lost", "connection restored"):
+        assert f"s: found: {kind}: " in shown
+    assert "4 findings" in ran.stdout
+    record = RunRecord.model_validate(json.loads((folder / "out" / "report.json").read_text()))
+    assert len(record.anomalies) == 4
+    assert [f.kind for f in record.faults] == ["brick", "abnormal_value", "connection_loss"]
+    page = (folder / "out" / "report.html").read_text(encoding="utf-8")
+    assert "What was found" in page
+    assert "the base station answers" in page
+    # From half of its journal it goes on with the same faults, and with one more event.
+    lines = (folder / "run.journal").read_bytes().splitlines(keepends=True)
+    (folder / "run.journal").write_bytes(b"".join(lines[: len(lines) // 2]))
+    resumed = argo(
+        "resume", "run.journal", "--report", "again", "--event", "1=hot_spot", cwd=folder
+    )
+    assert resumed.returncode == 0, resumed.stderr
+    again = RunRecord.model_validate(json.loads((folder / "again" / "report.json").read_text()))
+    assert sorted(a.kind for a in again.anomalies) == sorted(a.kind for a in record.anomalies)
+    assert [r.value for r in again.readings] == [r.value for r in record.readings]
+    assert any("hot spot" in step.cause for step in again.trace)
+
+
+@pytest.mark.parametrize(
+    ("text", "says"),
+    [
+        ("faults:\n  - {kind: brick, floor: 3}\n", "faults[0] (brick): site yard has no floor 3"),
+        ("faults:\n  - {kind: bricks}\n", "faults.yaml:2:5: error: faults[0]: no kind `bricks`"),
+    ],
+)
+def test_faults_that_make_no_sense(argo, folder, text, says):
+    (folder / "faults.yaml").write_text(text, encoding="utf-8")
+    ran = argo("run", "mission.json", "--site", "yard.yaml", "--faults", "faults.yaml", cwd=folder)
+    assert ran.returncode == 2
+    assert says in ran.stderr
+    assert "Traceback" not in ran.stderr
+
+
+def test_a_drive_without_a_world_finds_no_brick(argo, folder):
+    ran = argo(
+        "run", "mission.json", "--site", "yard.yaml", "--faults", "faults.yaml", "--drive", "route",
+        cwd=folder,
+    )  # fmt: skip
+    assert ran.returncode == 2
+    assert "take another drive" in ran.stderr
+
+
+def test_the_schema(argo):
+    shown = argo("schema", "faults")
+    assert (
+        "gas_leak"
+        in json.loads(shown.stdout)["properties"]["faults"]["items"]["discriminator"]["mapping"]
+    )

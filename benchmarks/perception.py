@@ -250,7 +250,7 @@ def report(trials: Sequence[Trial]) -> Iterator[str]:
 def main() -> None:
     """Runs the trials and prints what came out."""
     parser = argparse.ArgumentParser(description=__doc__)
-    parser.add_argument("--seed", type=int, default=2016, help="default: the seed of the report")
+    parser.add_argument("--seed", type=int, default=2018, help="default: the seed of the report")
     parser.add_argument("--trials", type=int, default=600)
     parser.add_argument("--jobs", type=int, default=2)
     parser.add_argument("--out", type=Path, help="a file for all trials, a line of JSON each")

@@ -22,6 +22,7 @@ MARGIN = 0.02  # m kept free around the footprint
 ROOM = 0.1  # m around the footprint where driving is preferred
 CRAMPED_FACTOR = 1.2  # what a second with less room counts
 LEVEL = 0.1  # m of height between front and rear, or left and right, that still counts as flat
+DRIVING_LEVEL = 0.05  # m of height that a level drive goes over
 TURNING_LEVEL = 0.025  # m of height within the circle of a turn: belts scrape along a higher rim
 
 

@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 from argo_compiler.errors import ArgoError
 from argo_compiler.model import Pose
 from argo_env.navigation.blockage import Blockage, close, closed_cells
-from argo_env.navigation.lattice import LEVEL, TURNING_LEVEL, Lattice, build_lattice, connected_part
+from argo_env.navigation.lattice import DRIVING_LEVEL, LEVEL, Lattice, build_lattice, connected_part
 from argo_env.navigation.path import Motion, Path, merge, wrap
 from argo_env.navigation.raster import Grid
 from argo_env.navigation.regions import find_cuts, make_partition, repartition
@@ -234,9 +234,9 @@ class Navigator:
             return cells
         free = cells.free.copy()
         closed = closed_cells(self.surface, self.blockages)
-        closed &= np.abs(self.surface.z - z) <= TURNING_LEVEL
+        closed &= np.abs(self.surface.z - z) <= DRIVING_LEVEL
         free[self.surface.i[closed], self.surface.j[closed]] = False
-        return FlatMap(cells.grid, free)
+        return FlatMap(cells.grid, free, cells.rims)
 
     def _smoothed(self, states: list[int], start: Pose) -> Path:
         path = _to_path(self.lattice, states)

@@ -10,11 +10,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 from argo_compiler.model import Pose
-from argo_env.navigation.lattice import MARGIN, TURNING_LEVEL
+from argo_env.navigation.lattice import DRIVING_LEVEL, MARGIN, TURNING_LEVEL
 from argo_env.navigation.path import Motion, Path, merge, wrap
 from argo_env.navigation.raster import CELL, Grid
 from argo_env.navigation.stencil import overlaps
-from argo_env.navigation.surface import Surface
+from argo_env.navigation.surface import DIRECTIONS, Surface
 from argo_env.robot.calibration import MotionKind
 from argo_env.robot.spec import Footprint, RobotSpec
 
@@ -22,6 +22,10 @@ _SAME_PLACE, _SAME_YAW = 1e-9, 1e-9  # m, rad
 _TURN_STEP = math.radians(5.0)
 _VERTEX_SPACING = 1.0  # m between places where a short cut may begin or end
 _VERTEX_TURN = math.radians(90.0)  # less than half a turn, so that its direction stays clear
+
+
+Places = tuple[NDArray[np.float64], NDArray[np.float64]]
+"""x, ascending, and y of the centres of cells, in m."""
 
 
 @dataclass(frozen=True)
@@ -34,54 +38,77 @@ class FlatMap:
 
     grid: Grid
     free: NDArray[np.bool_]
+    rims: NDArray[np.bool_]
+    """free cells beside a rim over which the robot must not turn"""
 
     @staticmethod
     def at(surface: Surface, z: float) -> "FlatMap":
         """The map of all cells within the height that counts as flat about z (m)."""
         free = np.zeros((surface.grid.nx, surface.grid.ny), dtype=bool)
-        level = np.abs(surface.z - z) <= TURNING_LEVEL
+        level = np.abs(surface.z - z) <= DRIVING_LEVEL
         free[surface.i[level], surface.j[level]] = True
-        return FlatMap(surface.grid, free)
+        height = np.full((surface.grid.nx + 2, surface.grid.ny + 2), np.nan)
+        height[1 + surface.i[level], 1 + surface.j[level]] = surface.z[level]
+        rims = np.zeros_like(height, dtype=bool)
+        for di, dj in DIRECTIONS:
+            rims |= np.abs(np.roll(height, (di, dj), axis=(0, 1)) - height) > TURNING_LEVEL
+        return FlatMap(surface.grid, free, rims[1:-1, 1:-1])
 
     @cached_property
-    def _border(self) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
-        """x, ascending, and y of the centres of the cells that are not free and touch free ones."""
+    def _border(self) -> Places:
+        """The cells that are not free and touch free ones."""
+        return self._places(self._beside_free)
+
+    @cached_property
+    def _turning_border(self) -> Places:
+        """The border and the rims, alike."""
+        return self._places(self._beside_free | np.pad(self.rims, 2))
+
+    @cached_property
+    def _beside_free(self) -> NDArray[np.bool_]:
+        """Of the grid with two more cells on each side."""
         free = np.pad(self.free, 2)
         nearby = np.zeros_like(free)
         for di in (-1, 0, 1):
             for dj in (-1, 0, 1):
                 nearby |= np.roll(free, (di, dj), axis=(0, 1))
-        i, j = np.nonzero(nearby & ~free)
-        return self.grid.centers(i - 2, j - 2)
+        return nearby & ~free
 
-    def _border_near(
-        self, x0: float, y0: float, x1: float, y1: float, reach: float
-    ) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
-        """The border within `reach` (m) of a rectangle."""
-        x, y = self._border
-        part = slice(*np.searchsorted(x, (x0 - reach, x1 + reach)))
-        x, y = x[part], y[part]
-        near = (y >= y0 - reach) & (y <= y1 + reach)
-        return x[near], y[near]
+    def _places(self, cells: NDArray[np.bool_]) -> Places:
+        i, j = np.nonzero(cells)
+        return self.grid.centers(i - 2, j - 2)
 
     def clear_drive(self, a: Pose, b: Pose, footprint: Footprint) -> bool:
         """Whether the robot touches free cells only, all the way straight ahead from a to b."""
         reach = footprint.radius + MARGIN + CELL
-        x, y = self._border_near(min(a.x, b.x), min(a.y, b.y), max(a.x, b.x), max(a.y, b.y), reach)
+        low, high = (min(a.x, b.x), min(a.y, b.y)), (max(a.x, b.x), max(a.y, b.y))
+        x, y = _near(self._border, low, high, reach)
         ahead, yaw = math.dist((a.x, a.y), (b.x, b.y)), math.atan2(b.y - a.y, b.x - a.x)
         swept = footprint.model_copy(update={"front": footprint.front + ahead})
         return not overlaps(swept, MARGIN, yaw, x - a.x, y - a.y).any()
 
     def clear_turn(self, at: Pose, turn: float, footprint: Footprint) -> bool:
-        """Whether the robot touches free cells only while it turns in place by `turn` (rad)."""
+        """Whether the robot touches free cells only, and no rim, while it turns in place by `turn`
+        (rad)."""
         reach = footprint.radius + MARGIN + CELL
-        x, y = self._border_near(at.x, at.y, at.x, at.y, reach)
+        x, y = _near(self._turning_border, (at.x, at.y), (at.x, at.y), reach)
         x, y = x - at.x, y - at.y
         near = np.hypot(x, y) <= reach
         if not near.any():
             return True
         yaws = at.yaw + turn * np.linspace(0.0, 1.0, 1 + math.ceil(abs(turn) / _TURN_STEP))
         return not overlaps(footprint, MARGIN, yaws[:, None], x[near], y[near]).any()
+
+
+def _near(
+    places: Places, low: tuple[float, float], high: tuple[float, float], reach: float
+) -> Places:
+    """Those within `reach` (m) of the rectangle from `low` to `high`."""
+    x, y = places
+    part = slice(*np.searchsorted(x, (low[0] - reach, high[0] + reach)))
+    x, y = x[part], y[part]
+    near = (y >= low[1] - reach) & (y <= high[1] + reach)
+    return x[near], y[near]
 
 
 def smooth(path: Path, flat_map: Callable[[float], FlatMap], robot: RobotSpec) -> Path:

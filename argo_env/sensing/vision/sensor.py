@@ -48,7 +48,7 @@ _STEEP = math.radians(62)
 
 
 class CameraSensor:
-    """Reads checkpoints by camera. Holds the picture noise's seed and how much it has measured."""
+    """Reads checkpoints by camera. Holds the world that it takes pictures of."""
 
     name = "camera"
 

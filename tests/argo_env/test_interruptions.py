@@ -229,7 +229,7 @@ class TestReactions:
         a, b = waypoint("A", 3.05, 2.05, velocity=0.2), waypoint("B", 4.55, 2.05, velocity=0.3)
         plan = mission(a, b, waypoint("C", 2.05, 2.05), reactions=(shelter,))
         rig = fast_rig(navigator)
-        leak = RunSettings(events=logged((13.0, Occurred(EventKind.GAS_LEAK))))
+        leak = RunSettings(events=logged((16.0, Occurred(EventKind.GAS_LEAK))))
         MissionRunner(plan, rig, leak).run()
         assert rig.drive.velocities == [None, 0.2, None, 0.2, 0.3]
 

@@ -31,7 +31,7 @@ def test_record_says_what_it_was_made_with(short, navigator):
 
 
 def test_unknown_drive(short, navigator):
-    with pytest.raises(ArgoError, match="no drive `rocket`; there are: kinematic"):
+    with pytest.raises(ArgoError, match="no drive `rocket`; there are: route, kinematic, tracked"):
         simulate(short, navigator, settings=RunSettings(drive="rocket"))
     assert set(DRIVES) >= {"kinematic"}
 

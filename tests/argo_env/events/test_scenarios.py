@@ -32,8 +32,8 @@ class Answer:
     interrupted: bool = False
     detour: bool = False
     """whether it has to go a longer way"""
-    views: int = 1
-    """that the reading with most views took"""
+    looks_again: bool = False
+    """whether a checkpoint is read from another view only"""
     operator: float | None = None
     """s, when a person lets the mission go on"""
 
@@ -41,7 +41,7 @@ class Answer:
 ANSWERS = {
     "abnormal_value": Answer((EventKind.ABNORMAL_READING,)),
     # It is read all the same; nothing is wrong with the process.
-    "displaced_checkpoint": Answer(detour=True, views=2),
+    "displaced_checkpoint": Answer(detour=True, looks_again=True),
     "gas_leak": Answer(
         (EventKind.GAS_LEAK, EventKind.ALL_CLEAR), drives_to="react to gas_leak", interrupted=True
     ),
@@ -149,7 +149,7 @@ def test_found_and_answered(missions, navigator, clean, kind):
     if answer.outcome is Outcome.COMPLETED:
         assert record.result.success
         assert [r.checkpoint for r in record.readings] == [r.checkpoint for r in usual.readings]
-        assert max(r.views for r in record.readings) == answer.views
+        assert (max(r.views for r in record.readings) > 1) == answer.looks_again
     if kind != "abnormal_value":
         values = [r.value for r in usual.readings]
         assert [r.value for r in record.readings] == values[: len(record.readings)]

@@ -4,15 +4,12 @@ import math
 
 from argo_env.navigation.path import Motion, Path, wrap
 from argo_env.robot.drive import DriveStatus, Incident
+from argo_env.robot.flipper_motion import FLAT, RAISED, RATE
 from argo_env.robot.pose import BodyPose
 from argo_env.robot.spec import RobotSpec
 from argo_env.robot.support import resting_poses
 from argo_env.robot.timetable import Timetable, steps
 from argo_env.world import World
-
-FLIPPERS_RAISED = math.radians(30.0)
-FLIPPERS_FLAT = 0.0
-FLIPPER_RATE = math.radians(110.0)  # rad/s (public model files of the taurob tracker)
 
 
 class KinematicDrive:
@@ -29,7 +26,7 @@ class KinematicDrive:
         self._world = world
         self._robot = robot
         self._pose = BodyPose(0.0, 0.0, 0.0, 0.0)
-        self._flippers = FLIPPERS_RAISED
+        self._flippers = RAISED
         self._timetable: Timetable | None = None
         self._steps = 0
         self._motion: Motion | None = None
@@ -85,8 +82,8 @@ class KinematicDrive:
 
     def _move_flippers(self) -> None:
         on_stairs = self._motion is not None and self._motion.on_stairs
-        wanted = FLIPPERS_FLAT if on_stairs else FLIPPERS_RAISED
-        most = FLIPPER_RATE * self.time_step
+        wanted = FLAT if on_stairs else RAISED
+        most = RATE * self.time_step
         self._flippers += min(most, max(-most, wanted - self._flippers))
 
     def _show(self) -> None:

@@ -8,6 +8,7 @@ from pathlib import Path
 from typing import Any
 
 from argo_env.pybullet_client import Connection, pybullet, quiet
+from argo_env.robot.flipper_motion import RATE
 from argo_env.robot.pose import BodyPose
 from argo_env.robot.spec import RobotSpec, robot_folder
 from argo_env.robot.tracked.belts import Belts, Traction
@@ -20,7 +21,6 @@ from argo_env.world import Touch, World
 TIME_STEP = 1 / 240  # s
 GRAVITY = 9.81  # m/s²
 FLIPPER_LIMITS = (math.radians(-30.0), math.radians(50.0))  # rad, up is positive
-FLIPPER_RATE = math.radians(110.0)  # rad/s (public model files of the taurob tracker)
 FLIPPER_TORQUE = 150.0  # N m, each (assumption: two flippers can lift one end of the robot)
 ACCELERATION = 1.0  # m/s², of the belts
 SWING = 3.0  # rad/s², of the turning rate
@@ -274,7 +274,7 @@ class TrackedBody(Connection):
                 pybullet.POSITION_CONTROL,
                 targetPosition=self._command.flipper,
                 force=FLIPPER_TORQUE,
-                maxVelocity=FLIPPER_RATE,
+                maxVelocity=RATE,
                 physicsClientId=self._client,
             )
 

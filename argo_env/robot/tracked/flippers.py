@@ -10,11 +10,10 @@ from dataclasses import dataclass
 import numpy as np
 
 from argo_env.navigation.path import Motion
+from argo_env.robot.flipper_motion import FLAT, RAISED, RATE
 from argo_env.robot.pose import BodyPose
 from argo_env.world import World
 
-RAISED = math.radians(30.0)
-FLAT = 0.0
 _LOWEST = math.radians(-30.0)
 _TOUCHING = math.radians(-7.0)  # just above the ground that the tracks stand on
 _PUSH = math.radians(-10.0)  # onto the first tread
@@ -23,7 +22,6 @@ _TIP = -0.49  # m, where the tip is along the robot when the flippers lie flat
 _CLEARANCE = 0.115  # m, of the flat tip above the ground
 _LOWERING = math.radians(12.0)  # rad/s, at which the robot is let down
 _LIFTING = math.radians(15.0)  # rad/s, at which the rear is lifted
-_QUICK = math.radians(110.0)  # rad/s
 _AT_RISER = -0.52  # m, where the first riser is along the robot when its rear is about to touch it
 _GAP = math.radians(10.0)  # kept above the deck, where the flippers must not lift
 _SHY = math.radians(5.0)  # less than would lift the robot to the pitch of the flight
@@ -83,31 +81,31 @@ class Flippers:
     def step(self, flight: Flight | None, motion: Motion | None, pose: BodyPose, dt: float) -> bool:
         """Moves the commanded angle on by `dt` (s). Returns whether the robot should go slowly."""
         if flight is None or motion is None:
-            self._towards(RAISED, _QUICK, dt)
+            self._towards(RAISED, RATE, dt)
             return False
         top, foot = flight.edges(pose)
         on_flight = pose.pitch > flight.slope - _TIPPED
         if motion.gear < 0:
             if top > -0.35:
                 if on_flight:
-                    self._towards(_touching(min(pose.pitch, flight.slope), top) + _GAP, _QUICK, dt)
+                    self._towards(_touching(min(pose.pitch, flight.slope), top) + _GAP, RATE, dt)
                 else:
-                    self._towards(FLAT, _LOWERING if pose.pitch > _LEVEL else _QUICK, dt)
+                    self._towards(FLAT, _LOWERING if pose.pitch > _LEVEL else RATE, dt)
                 return top > 0.0 and pose.pitch > _LEVEL
             if foot < _AT_RISER:
-                self._towards(RAISED, _QUICK, dt)
+                self._towards(RAISED, RATE, dt)
                 return False
             if foot < -0.3 and pose.pitch < math.radians(8.0):
                 self._towards(_PUSH, _LIFTING, dt)
                 return True
         elif -0.35 < top < 0.22:
             wanted = _touching(flight.slope, top) + (_SHY if top > 0.0 else _GAP)
-            self._towards(wanted, _LIFTING if wanted < self.angle else _QUICK, dt)
+            self._towards(wanted, _LIFTING if wanted < self.angle else RATE, dt)
             return top > -0.1
         elif top >= 0.22:
-            self._towards(_TOUCHING, _QUICK, dt)
+            self._towards(_TOUCHING, RATE, dt)
             return False
-        self._towards(FLAT, _QUICK, dt)
+        self._towards(FLAT, RATE, dt)
         return False
 
     def _towards(self, angle: float, rate: float, dt: float) -> None:

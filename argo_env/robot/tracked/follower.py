@@ -11,12 +11,14 @@ _BRAKING = 0.3  # m/s², with which it stops at the end of a drive
 _SLOWING = 0.8  # rad/s², the same for turns
 _NEAR = 0.01  # m from its end at which a drive is done
 _ALIGNED = math.radians(0.7)  # from its end at which a turn is done
+_CROOKED = math.radians(1.5)  # from the path's last heading at which a turn is added
 _TURNED = math.radians(3.0)  # rad/s under which it is
 _CREEP = 0.04  # m/s, the least speed towards an end
 _HEADING_GAIN = 2.0  # 1/s
 _LATERAL_GAIN = 2.5  # rad of heading for each m beside the line
 _MOST_CROSSING = math.radians(15.0)  # at which it goes back to the line
 _MOST_CROSSING_ON_STAIRS = math.radians(6.0)
+_STRAIGHTENING = 0.5  # rad of crossing for each m to the end, so that it arrives straight
 _MOST_TURNING_ON_STAIRS = 0.2  # rad/s
 _WILD = math.radians(20.0)  # of heading error, at which a drive waits for the heading
 
@@ -41,7 +43,7 @@ class Follower:
         turns about when it turns in place."""
         self.motions: list[Motion] = list(path.motions)
         self._end = path.end
-        self._ends_with_turn = bool(path.motions) and bool(path.motions[-1].turn)
+        self._corrections = [self._heading_correction, self._way_correction]
         self.at = 0
         self._robot = robot
         self._velocity = velocity
@@ -65,21 +67,28 @@ class Follower:
                 if left > (0.0 if passing else _NEAR):
                     return self._driving(motion, pose, left)
             self.at += 1
-            if self.motion is None and self._ends_with_turn:
-                self._ends_with_turn = False
-                self._correct(pose)
+            while self.motion is None and self._corrections:
+                self.motions += self._corrections.pop(0)(pose)
         return Step(0.0, 0.0, None)
 
-    def _correct(self, pose: BodyPose) -> None:
-        """Adds a short drive, since the last turn may have swung the robot along its heading."""
+    def _heading_correction(self, pose: BodyPose) -> list[Motion]:
+        """A turn at the end, since the last drive may have come in from beside its line."""
+        error = wrap(self._end.yaw - pose.yaw)
+        if not self.motions or abs(error) <= _CROOKED:
+            return []
+        crooked = self._end.model_copy(update={"yaw": pose.yaw})
+        return [Motion(crooked, self._end, turn=error)]
+
+    def _way_correction(self, pose: BodyPose) -> list[Motion]:
+        """A short drive at the end, since the last turn may have swung the robot along its
+        heading."""
         end = self._end
         ahead = math.cos(end.yaw), math.sin(end.yaw)
         left = (end.x - pose.x) * ahead[0] + (end.y - pose.y) * ahead[1]
-        if abs(left) > 2 * _NEAR:
-            here = {"x": end.x - left * ahead[0], "y": end.y - left * ahead[1]}
-            self.motions.append(
-                Motion(end.model_copy(update=here), end, gear=1 if left > 0 else -1)
-            )
+        if not self.motions or abs(left) <= 2 * _NEAR:
+            return []
+        short = end.model_copy(update={"x": end.x - left * ahead[0], "y": end.y - left * ahead[1]})
+        return [Motion(short, end, gear=1 if left > 0 else -1)]
 
     def left(self, motion: Motion, pose: BodyPose) -> float:
         """m on the ground plan to the end of a drive."""
@@ -121,6 +130,8 @@ class Follower:
             speed = min(speed, max(_CREEP, math.sqrt(2 * _BRAKING * left)))
         side, heading = self.beside(motion, pose)
         most = _MOST_CROSSING_ON_STAIRS if motion.on_stairs else _MOST_CROSSING
+        if not self._goes_on():
+            most = min(most, _STRAIGHTENING * max(0.0, left))
         wanted = -motion.gear * max(-most, min(most, _LATERAL_GAIN * side))
         rate = _HEADING_GAIN * wrap(wanted - heading)
         limit = _MOST_TURNING_ON_STAIRS if motion.on_stairs else self._robot.turn_rate_radians

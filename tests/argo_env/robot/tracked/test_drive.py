@@ -90,6 +90,15 @@ def test_goes_back_to_its_line_from_beside_it(drive):
     assert poses[-1].x == pytest.approx(7.0, abs=0.03)
 
 
+@pytest.mark.parametrize("length", [0.1, 0.4])
+def test_a_short_drive_from_beside_its_line_ends_as_the_path_is_turned(drive, length):
+    path = straight(at(4.0, -2.05, -0.03), length)
+    status, poses = follow(drive, path, start=BodyPose(4.0, -1.99, -0.03, math.radians(8)))
+    assert status is DriveStatus.ARRIVED
+    assert abs(poses[-1].yaw) <= math.radians(2)
+    assert poses[-1].x == pytest.approx(4.0 + length, abs=0.03)
+
+
 def test_turns_the_long_way_if_the_path_does(drive):
     a = at(5.0, -2.05, -0.03)
     b = a.model_copy(update={"yaw": math.radians(-100)})

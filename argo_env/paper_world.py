@@ -5,12 +5,12 @@ from functools import cached_property
 from typing import Protocol
 
 import numpy as np
-from numpy.typing import NDArray
 
 from argo_env.robot.spec import RobotSpec
 from argo_env.sensing.vision.placement import AS_PLANNED, Placement, displaced
 from argo_env.site import Site, SiteCheckpoint
-from argo_env.site.shapes import Box, Solid, Vector, crossing
+from argo_env.site.rays import SolidRays
+from argo_env.site.shapes import Vector
 from argo_env.world import Touch
 
 
@@ -80,32 +80,13 @@ class PaperWorld:
 
     def obstacle_between(self, origin: Vector, target: Vector) -> str | None:
         """The name of the first element on the straight line; None if clear."""
-        a, b = np.array(origin), np.array(target)
-        names, solids, centers, radii = self._solids
-        # Those whose sphere the line does not even touch need no closer look.
-        along = np.clip(((centers - a) @ (b - a)) / max(float((b - a) @ (b - a)), 1e-12), 0.0, 1.0)
-        away = np.linalg.norm(centers - a - along[:, None] * (b - a), axis=1)
-        first, found = np.inf, None
-        for k in np.flatnonzero(away <= radii).tolist():
-            entry, leave = crossing(solids[k], a[None, :], b - a)
-            if entry[0] <= 1.0 and leave[0] >= 0.0 and entry[0] < first:
-                first, found = float(entry[0]), names[k]
-        return found
+        way = np.array(target) - np.array(origin)
+        length = float(np.linalg.norm(way))
+        direction = way / length if length else np.array([0.0, 0.0, 1.0])
+        _, (solid,) = self._rays.first(np.array(origin), direction[None, :], length, inside=True)
+        return None if solid < 0 else self._rays.elements[solid].name
 
     @cached_property
-    def _solids(
-        self,
-    ) -> tuple[list[str], list[Solid], NDArray[np.float64], NDArray[np.float64]]:
-        """All solids of the site: their elements' names, they themselves, their middles (m, shape
-        (n, 3)) and the radii of spheres around them (m)."""
-        parts = [(e.name, s) for e in self.site.elements for s in e.solids]
-        sizes = [
-            s.size if isinstance(s, Box) else (2 * s.radius, 2 * s.radius, s.length)
-            for _, s in parts
-        ]
-        return (
-            [name for name, _ in parts],
-            [solid for _, solid in parts],
-            np.array([solid.center for _, solid in parts]),
-            np.linalg.norm(np.array(sizes), axis=1) / 2 + 1e-9,
-        )
+    def _rays(self) -> SolidRays:
+        # Made when it is first needed: many runs on paper look at nothing.
+        return SolidRays(self.site.elements)

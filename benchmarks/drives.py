@@ -251,7 +251,11 @@ def main() -> None:
     ) as pool:
         if not arguments.fit:
             jobs = [(seed, drive) for seed in seeds for drive in (*CHEAP, "tracked")]
-            print("\n".join(compare(list(pool.map(_run, jobs)))))
+            runs = []
+            for done in pool.map(_run, jobs):
+                print(f"mission {done.seed}, {done.drive}: {done.simulated:.1f} s", flush=True)
+                runs.append(done)
+            print("\n".join(["", *compare(runs)]))
             return
         timed = list(pool.map(_timed, seeds))
     drives = [d for found, _ in timed for d in found]

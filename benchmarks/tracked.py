@@ -135,7 +135,11 @@ def stairs(seeds: int, processes: int) -> None:
     ]
     context = get_context("spawn")
     with ProcessPoolExecutor(processes, mp_context=context) as pool:
-        outcomes = list(pool.map(run, climbs, chunksize=4))
+        outcomes = []
+        for outcome in pool.map(run, climbs, chunksize=4):
+            outcomes.append(outcome)
+            if len(outcomes) % 20 == 0:
+                print(f"{len(outcomes)} of {len(climbs)} climbs", flush=True)
     print(f"{'way':22} flights  ok  stuck  slips  time/plan  end cm (max)  end deg  slip  contacts")
     for tower, up in product(LANDINGS, (True, False)):
         rows = [o for o in outcomes if o.climb.tower == tower and o.climb.up == up]

@@ -57,9 +57,11 @@ def _models(model: type[Model]) -> set[type[Model]]:
 
 
 def _describe(definition: dict[str, Any], model: type[Model]) -> None:
-    for name, text in field_docstrings(model).items():
-        if name in definition.get("properties", {}):
-            definition["properties"][name].setdefault("description", text)
+    # A field that is inherited is described where it is said first.
+    for base in (c for c in model.__mro__ if issubclass(c, Model)):
+        for name, text in field_docstrings(base).items():
+            if name in definition.get("properties", {}):
+                definition["properties"][name].setdefault("description", text)
 
 
 def field_docstrings(model: type[Model]) -> dict[str, str]:

@@ -66,7 +66,7 @@ class TimedFault(Fault):
     """A fault that begins during the run, and may end."""
 
     at: float | None = Field(default=None, ge=0)
-    """s, when it begins"""
+    """s, when it begins; None: the seed draws it, up to 120 s"""
     until: float | None = Field(default=None, gt=0)
     """s, when it ends; None: it stays"""
 

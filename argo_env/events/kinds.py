@@ -69,6 +69,7 @@ class FaultFile(Model):
     """A file of faults."""
 
     faults: tuple[AnyFault, ...]
+    """what goes wrong; each by its `kind`, and what is left out is drawn by the seed"""
 
 
 def settle(faults: Sequence[AnyFault], site: Site, seed: int) -> tuple[AnyFault, ...]:

@@ -86,6 +86,7 @@ class SensorDysfunction(TimedFault):
 
     kind: Literal["sensor_dysfunction"] = "sensor_dysfunction"
     effect: Literal["fails", "noise"] | None = None
+    """whether there are no readings at all, or readings with noise"""
     noise: float = Field(default=0.1, gt=0, le=1)
     """with noise: standard deviation of readings, as a share of the scale"""
 

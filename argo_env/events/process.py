@@ -93,6 +93,7 @@ class AbnormalPump(ProcessFault):
     pump: str | None = None
     """name of the pump"""
     defect: PumpFault | None = None
+    """what it sounds like"""
 
     def settled(self, site: Site, rng: np.random.Generator) -> Self:
         known = [pump.name for floor in site.spec.floors for pump in floor.pumps]

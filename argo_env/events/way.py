@@ -31,6 +31,7 @@ class Brick(Fault):
     needs_world: ClassVar[bool] = True
     kind: Literal["brick"] = "brick"
     floor: int | None = Field(default=None, ge=1)
+    """number of the floor that it lies on"""
     place: Point | None = None
     """m, x and y of its middle; needs `floor`"""
     size: tuple[float, float, float] = (0.3, 0.2, 0.2)
@@ -63,6 +64,7 @@ class MissingPlate(Fault):
     needs_world: ClassVar[bool] = True
     kind: Literal["missing_plate"] = "missing_plate"
     floor: int | None = Field(default=None, ge=1)
+    """number of the floor; the lowest has no plates"""
     rect: Rect | None = None
     """m, [x0, y0, x1, y1]; needs `floor`; drawn: a square of 0.6 m"""
 

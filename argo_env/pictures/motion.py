@@ -6,11 +6,11 @@ import numpy as np
 
 from argo_compiler.errors import ArgoError
 from argo_env.record import RunRecord
+from argo_env.robot.flipper_motion import FLAT, RAISED
 from argo_env.robot.pose import BodyPose
 from argo_env.robot.spec import RobotSpec
 from argo_env.site import Site
 
-FLIPPERS_RAISED = 30.0  # deg, while driving on the flat
 _STAIR_PITCH = math.radians(5.0)  # from which the flippers lie flat
 _PITCH_RAMP = math.radians(2.0)  # to each side of it, so that they don't jump
 _ARM_TIME = 2.0  # s to raise or to stow the arm
@@ -49,7 +49,8 @@ class Motion:
     def joints(self, t: float) -> dict[str, float]:
         """Positions of the robot's joints at the time t (s), in degrees, by name."""
         stairs = (abs(self.pose(t).pitch) - _STAIR_PITCH) / _PITCH_RAMP
-        flippers = FLIPPERS_RAISED * min(1.0, max(0.0, (1.0 - stairs) / 2))
+        level = min(1.0, max(0.0, (1.0 - stairs) / 2))
+        flippers = math.degrees(FLAT + level * (RAISED - FLAT))
         raised = self._raised(t)
         stowed, up = self._robot.arm_stowed, self._robot.arm_raised
         arm = {name: stowed[name] + raised * (up[name] - stowed[name]) for name in stowed}

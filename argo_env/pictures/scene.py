@@ -94,7 +94,7 @@ class Scene(Connection):
                 math.radians(angle),
                 physicsClientId=self._client,
             )
-        self._place(self._robot_body, (pose.x, pose.y, pose.z), (0.0, pose.pitch, pose.yaw))
+        self._place(self._robot_body, (pose.x, pose.y, pose.z), (pose.roll, pose.pitch, pose.yaw))
 
     def hide_robot(self) -> None:
         """Takes the robot out of sight until it is placed again."""

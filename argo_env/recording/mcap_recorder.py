@@ -1,6 +1,7 @@
 """The recorder: all that Foxglove shows of a run, and all that a report is made from."""
 
 import math
+from dataclasses import replace
 from pathlib import Path
 
 from foxglove_schemas_protobuf.Log_pb2 import Log
@@ -24,6 +25,7 @@ from argo_env.recording.writer import RecordingWriter, media_type
 from argo_env.report.files import to_json
 from argo_env.robot.spec import robot_folder
 from argo_env.settings import RunSettings
+from argo_env.site import Site, SiteCheckpoint
 from argo_env.world import Shot, World
 
 SAMPLE_PERIOD = 0.1
@@ -50,6 +52,7 @@ class McapRecorder:
         self._found: list[Anomaly] = []
         self._shots: list[Shot] = []
         self._latest: dict[int, Reading] = {}
+        self._drawn: list[SiteCheckpoint] = []
 
     def begin(self, rig: Rig, mission: Mission, settings: RunSettings) -> None:
         """Writes what does not change: what the run is made from, the site and the robot."""
@@ -77,10 +80,10 @@ class McapRecorder:
         attach("settings.json", "application/json", settings.model_dump_json(indent=2))
         attach("site.json", "application/json", site.spec.model_dump_json(indent=2))
         attach(path.name, "application/xml", model.text)
-        for number, update in scene.site_scenes(site, 0.0).items():
+        for number, update in scene.site_scenes(_as_it_is(rig), 0.0).items():
             self._writer.put(f"/site/floor_{number}", update, 0.0)
         self._writer.put("/robot", scene.robot_scene(model, 0.0), 0.0)
-        self._writer.put("/checkpoints", scene.checkpoint_scene(site, {}, 0.0), 0.0)
+        self._draw_checkpoints(0.0)
         self._motion = MotionTopics(self._writer, model, _limbs(rig))
         self._motion.begin(0.0)
         if isinstance(rig.world, World):
@@ -151,6 +154,19 @@ class McapRecorder:
         assert self._motion is not None
         self._sampled = now
         self._motion.sample(self._rig.drive.pose, now)
+        if self._checkpoints() != self._drawn:
+            self._draw_checkpoints(now)
+
+    def _checkpoints(self) -> list[SiteCheckpoint]:
+        """The checkpoints where they really are."""
+        assert self._rig is not None
+        world = self._rig.world
+        return [world.in_place(c.id) for c in world.site.checkpoints]
+
+    def _draw_checkpoints(self, now: float) -> None:
+        self._drawn = self._checkpoints()
+        update = scene.checkpoint_scene(self._drawn, self._latest, now)
+        self._writer.put("/checkpoints", update, now)
 
     def _mission(self, executor: Executor, now: float) -> None:
         for e in executor.trace[self._traced :]:
@@ -172,13 +188,10 @@ class McapRecorder:
             self._writer.put_json("/battery", state, now)
 
     def _reading(self, reading: Reading) -> None:
-        assert self._rig is not None
         self._readings.append(reading)
         self._latest[reading.checkpoint] = reading
         self._writer.put_json("/readings", reading, reading.t)
-        site = self._rig.navigator.site
-        update = scene.checkpoint_scene(site, self._latest, reading.t)
-        self._writer.put("/checkpoints", update, reading.t)
+        self._draw_checkpoints(reading.t)
         self._log(
             f"{reading.name} (#{reading.checkpoint}) shows {reading.value:.4g} {reading.unit}, "
             f"{'normal' if reading.normal else 'abnormal'}",
@@ -200,6 +213,14 @@ class McapRecorder:
 
     def _log(self, text: str, level: "Log.Level.ValueType", name: str, now: float) -> None:
         self._writer.put("/log", messages.log(text, level, name, now), now)
+
+
+def _as_it_is(rig: Rig) -> Site:
+    """The site with what faults have put into the way, and without what they have taken away."""
+    site, world = rig.navigator.site, rig.world
+    if not isinstance(world, World):
+        return site
+    return replace(site, elements=tuple(e for e in world.solids if e.solids))
 
 
 def _limbs(rig: Rig) -> Limbs:

@@ -59,7 +59,7 @@ def set_rotation(message: QuaternionMessage, q: Quaternion) -> None:
 
 def attitude(body: BodyPose) -> Quaternion:
     """The attitude of the robot's body."""
-    return from_rpy((0.0, body.pitch, body.yaw))
+    return from_rpy((body.roll, body.pitch, body.yaw))
 
 
 def colour(c: Colour) -> Color:

@@ -51,9 +51,11 @@ def robot_scene(model: RobotModel, t: float) -> SceneUpdate:
     )
 
 
-def checkpoint_scene(site: Site, readings: Mapping[int, Reading], t: float) -> SceneUpdate:
-    """All checkpoints, with what was read last of each: grey before that, then green or red."""
-    return SceneUpdate(entities=[_checkpoint(c, readings.get(c.id), t) for c in site.checkpoints])
+def checkpoint_scene(
+    checkpoints: Iterable[SiteCheckpoint], readings: Mapping[int, Reading], t: float
+) -> SceneUpdate:
+    """Checkpoints, with what was read last of each: grey before that, then green or red."""
+    return SceneUpdate(entities=[_checkpoint(c, readings.get(c.id), t) for c in checkpoints])
 
 
 def finding_scene(found: Sequence[Anomaly], t: float) -> SceneUpdate:

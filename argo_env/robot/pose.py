@@ -7,7 +7,8 @@ from dataclasses import dataclass
 class BodyPose:
     """Where the robot's origin is, on the ground between its tracks (m), and its attitude (rad).
 
-    Pitch is positive with the front down, as a turn about the robot's y axis.
+    Pitch is positive with the front down, as a turn about the robot's y axis, roll with the right
+    side down, as one about its x axis. Of fixed axes, roll comes first, then pitch, then yaw.
     """
 
     x: float
@@ -15,3 +16,4 @@ class BodyPose:
     z: float
     yaw: float
     pitch: float = 0.0
+    roll: float = 0.0

@@ -77,6 +77,17 @@ def test_raised_arm_touches_what_is_above(simulation, robot):
         simulation.move_arm(robot.arm_stowed)
 
 
+def test_a_robot_that_leans_to_its_left_touches_what_is_there(simulation, robot):
+    simulation.move_arm(robot.arm_raised)
+    try:
+        for roll, leans in ((-0.3, {"separator V-201"}), (0.0, set()), (0.3, set())):
+            simulation.place_robot(BodyPose(3.5, 3.2, 0.0, 0.0, roll=roll))
+            touches = [t for t in simulation.touches() if t.link in {"forearm", "sensor_head"}]
+            assert {t.element for t in touches} == leans
+    finally:
+        simulation.move_arm(robot.arm_stowed)
+
+
 def test_obstacle_between_names_the_first_thing(simulation):
     clear = simulation.obstacle_between((4.0, 2.0, 1.5), (4.0, 1.0, 1.5))
     assert clear is None

@@ -158,7 +158,10 @@ class TrackedBody(Connection):
     def pose(self) -> BodyPose:
         place, axes = self._frame()
         return BodyPose(
-            *place, math.atan2(axes[3], axes[0]), math.atan2(-axes[6], math.hypot(axes[0], axes[3]))
+            *place,
+            math.atan2(axes[3], axes[0]),
+            math.atan2(-axes[6], math.hypot(axes[0], axes[3])),
+            math.atan2(axes[7], axes[8]),
         )
 
     @property
@@ -170,8 +173,7 @@ class TrackedBody(Connection):
     @property
     def roll(self) -> float:
         """rad, positive with the left side up."""
-        _, axes = self._frame()
-        return math.atan2(axes[7], axes[8])
+        return self.pose.roll
 
     @property
     def velocity(self) -> tuple[float, float]:

@@ -40,7 +40,7 @@ def forward(joints: NDArray[np.float64], pose: BodyPose) -> CameraPose:
     head = _FOOT + np.array([reach * math.cos(yaw), reach * math.sin(yaw), rise])
     turned = _about_z(yaw) @ _about_y(shoulder + elbow + wrist) @ _about_z(pan)
     eye = head + _LENS * turned[:, 0]
-    body = _about_z(pose.yaw) @ _about_y(pose.pitch)
+    body = _about_z(pose.yaw) @ _about_y(pose.pitch) @ _about_x(pose.roll)
     axes = body @ turned
     optical = np.column_stack([-axes[:, 1], -axes[:, 2], axes[:, 0]])
     return CameraPose(body @ eye + np.array([pose.x, pose.y, pose.z]), optical)
@@ -54,7 +54,7 @@ def inverse(
     Up to eight: the arm's yaw or that plus a half turn, the camera's picture upright or upside
     down, the elbow bent either way. None if that is out of reach.
     """
-    body = _about_z(pose.yaw) @ _about_y(pose.pitch)
+    body = _about_z(pose.yaw) @ _about_y(pose.pitch) @ _about_x(pose.roll)
     sight = body.T @ (target - eye)
     sight /= np.linalg.norm(sight)
     head = body.T @ (eye - np.array([pose.x, pose.y, pose.z])) - _LENS * sight - _FOOT
@@ -97,3 +97,8 @@ def _about_z(angle: float) -> NDArray[np.float64]:
 def _about_y(angle: float) -> NDArray[np.float64]:
     cos, sin = math.cos(angle), math.sin(angle)
     return np.array([[cos, 0.0, sin], [0.0, 1.0, 0.0], [-sin, 0.0, cos]])
+
+
+def _about_x(angle: float) -> NDArray[np.float64]:
+    cos, sin = math.cos(angle), math.sin(angle)
+    return np.array([[1.0, 0.0, 0.0], [0.0, cos, -sin], [0.0, sin, cos]])

@@ -1,30 +1,18 @@
 """Finding a face in a picture: first where something like it is, then how it stands exactly."""
 
 import math
-from dataclasses import dataclass, replace
-from functools import cache
-from itertools import product
+from dataclasses import replace
 
 import numpy as np
 from numpy.typing import NDArray
 
-from argo_env.sensing.vision.align import FacePose, Fit, Photo, compare, refine, sample
-from argo_env.sensing.vision.faces import PIXELS_PER_METRE
-from argo_env.sensing.vision.instrument import (
-    Instrument,
-    Template,
-    blurred_texture,
-    make_template,
-    texture,
-)
+from argo_env.sensing.vision.align import FacePose, Fit, Photo, compare, refine
+from argo_env.sensing.vision.candidates import find_candidates
+from argo_env.sensing.vision.instrument import Instrument, make_template
 from argo_env.sensing.vision.outlines import find_outlines
 from argo_env.sensing.vision.placement import MAX_OFFSET, MAX_TURN
+from argo_env.sensing.vision.rolls import likely_rolls, spacing
 
-_COARSE_HALF = 11.0  # px, half the width of a face in the picture that is searched
-_COARSE_STEP = math.radians(12)  # between the turns that are tried
-_COARSE_DEPTHS = (-0.075, 0.0, 0.075)  # m, tried against the planned distance
-_STEEPEST = math.radians(76)  # obliqueness beyond which a face is not looked for
-_CANDIDATES = 24  # that are looked at more closely
 _OUTLINES = 30  # that are looked at more closely
 _FITS = 7  # that are fitted
 _CLEARLY = 0.86  # match from which nothing else is looked for
@@ -32,9 +20,6 @@ _AS_GOOD = 0.12  # likeness that another pose may lack to be tried
 _CLEAR = 0.94  # match from which no other candidate is tried
 _OWN_BLUR = 1.1  # px, of the pictures themselves
 _BLUR_STEP = 0.0003  # m
-_DARKEST = 0.03  # of full scale: white that is darker is not looked at
-_BODY = 0.22  # brightness of the bodies behind the faces
-_ROLLS = np.radians(np.arange(-93, 94, 3))
 _ROUGH, _SOFT, _SHARP = 0.006, 0.003, 0.0012  # m, blur of the drawn face from fit to fit
 _SLACK = 0.015  # m, and rad times 10, beyond the rules' limits
 
@@ -51,15 +36,15 @@ def find_face(photo: Photo, instrument: Instrument, planned: FacePose) -> Fit | 
     ]
     starts: list[tuple[float, FacePose]] = []
     for candidate in _best_apart(outlines, _OUTLINES):
-        starts += _rolls(fine, instrument, candidate, _SOFT)
-        starts += _rolls(rough, instrument, candidate, _ROUGH)
+        starts += likely_rolls(fine, instrument, candidate, _SOFT)
+        starts += likely_rolls(rough, instrument, candidate, _ROUGH)
     best = _best_fit(photo, rough, fine, instrument, planned, starts)
     if best is not None and best.match > _CLEARLY:
         return best
     # The outline may be hidden in part, or run into what is behind.
     starts = []
-    for candidate in _candidates(photo, instrument, planned):
-        starts += _rolls(rough, instrument, candidate, _ROUGH)
+    for candidate in find_candidates(photo, instrument, planned):
+        starts += likely_rolls(rough, instrument, candidate, _ROUGH)
     other = _best_fit(photo, rough, fine, instrument, planned, starts)
     return max((f for f in (best, other) if f), key=lambda fit: fit.match, default=None)
 
@@ -76,7 +61,7 @@ def _best_fit(
     fits = []
     for pose in _best_apart(starts, _FITS):
         for blur, blurred in ((_ROUGH, rough), (_SOFT, fine)):
-            template = make_template(instrument, _spacing(instrument), blur)
+            template = make_template(instrument, spacing(instrument), blur)
             fit = refine(blurred, template, pose, instrument.rolled, 8)
             pose = fit.pose
         if _allowed(fit.pose, planned):
@@ -96,10 +81,10 @@ def look_closer(photo: Photo, instrument: Instrument, pose: FacePose) -> Fit:
     if best.match > _CLEAR:
         return best
     fine = photo.blurred(_SOFT / _pixel(photo, pose.center))
-    here = _rolls(fine, instrument, best.pose, _SOFT)
+    here = likely_rolls(fine, instrument, best.pose, _SOFT)
     starts = list(here)
     for start in (_mirrored(best.pose, photo), *_slipped(best.pose, photo, instrument)):
-        starts += _rolls(fine, instrument, start, _SOFT)
+        starts += likely_rolls(fine, instrument, start, _SOFT)
     as_good = max((likeness for likeness, _ in here), default=0.0) - _AS_GOOD
     others = _best_apart([s for s in starts if s[0] > as_good], 4)
     # Seen turned to the other side, a face is elsewhere too: the fit must find where.
@@ -135,14 +120,10 @@ def sharpen(photo: Photo, instrument: Instrument, pose: FacePose) -> Fit:
     # In steps, so that there are few different templates.
     own = math.ceil(_OWN_BLUR * pixel / _BLUR_STEP) * _BLUR_STEP
     for blur in (_ROUGH, _SOFT, max(_SHARP, own)):
-        template = make_template(instrument, _spacing(instrument), blur)
+        template = make_template(instrument, spacing(instrument), blur)
         blurred = photo.blurred(math.sqrt(max(blur**2 - own**2, 0.0)) / pixel)
         pose = refine(blurred, template, pose, instrument.rolled).pose
     return compare(blurred, template, pose)
-
-
-def _spacing(instrument: Instrument) -> float:
-    return 0.004 if instrument.shape.round else 0.0045
 
 
 def _pixel(photo: Photo, point: NDArray[np.float64]) -> float:
@@ -174,199 +155,3 @@ def _allowed(pose: FacePose, planned: FacePose, slack: float = _SLACK) -> bool:
         and abs(turn) <= MAX_TURN + 10 * slack
         and abs(pose.roll) <= MAX_TURN + 10 * slack
     )
-
-
-def _candidates(photo: Photo, instrument: Instrument, planned: FacePose) -> list[FacePose]:
-    """Places and turns at which the picture is like the face, all rolls taken together."""
-    import cv2
-
-    eye = photo.pose.position
-    distance = float(np.linalg.norm(planned.center - eye))
-    width = instrument.shape.half_width * photo.lens.focal / distance
-    shrink = min(1.0, _COARSE_HALF / width)
-    small = cv2.resize(photo.brightness, None, fx=shrink, fy=shrink, interpolation=cv2.INTER_AREA)
-    scale = small.shape[0] / photo.lens.size
-    toward = math.atan2(eye[1] - planned.y, eye[0] - planned.x)
-    found: list[tuple[float, FacePose]] = []
-    turns = np.arange(-math.pi / 2, math.pi / 2 + 1e-9, _COARSE_STEP)
-    for turn, depth in product(turns.tolist(), _COARSE_DEPTHS):
-        yaw = planned.yaw + turn
-        if math.cos(yaw - toward) < math.cos(_STEEPEST):
-            continue
-        center = eye + (planned.center - eye) * (distance + depth) / distance
-        patch = _patch(photo, instrument, replace(_at(center, yaw), roll=0.0), scale)
-        if patch is None or min(np.subtract(small.shape, patch[0].shape)) < 1:
-            continue
-        looks, mask = patch
-        likeness = np.asarray(
-            cv2.matchTemplate(small, looks, cv2.TM_CCOEFF_NORMED, mask=mask), dtype=np.float64
-        )
-        likeness = np.where(np.isfinite(likeness) & (np.abs(likeness) <= 1.001), likeness, -1.0)
-        half = (np.array(looks.shape[::-1]) - 1) / 2
-        for _ in range(4):
-            row, column = np.unravel_index(int(likeness.argmax()), likeness.shape)
-            value = float(likeness[row, column])
-            if value < 0.25:
-                break
-            spot = ((np.array([column, row]) + half + 0.5) / scale) - 0.5
-            found.append((value, _at(_beyond(photo, spot, distance + depth), yaw)))
-            likeness[max(0, row - 4) : row + 5, max(0, column - 4) : column + 5] = -1.0
-    found.sort(key=lambda pair: -pair[0])
-    kept: list[FacePose] = []
-    for _, pose in found:
-        if np.linalg.norm(pose.center - planned.center) > MAX_OFFSET + 0.06:
-            continue
-        if all(
-            np.linalg.norm(pose.center - other.center) > 0.025
-            or abs(pose.yaw - other.yaw) > 1.5 * _COARSE_STEP
-            for other in kept
-        ):
-            kept.append(pose)
-        if len(kept) == _CANDIDATES:
-            break
-    return kept
-
-
-def _at(center: NDArray[np.float64], yaw: float) -> FacePose:
-    x, y, z = center.tolist()
-    return FacePose(x, y, z, yaw, 0.0)
-
-
-def _beyond(photo: Photo, spot: NDArray[np.float64], distance: float) -> NDArray[np.float64]:
-    """The point (m) at a distance from the camera that is seen at column and row `spot`."""
-    middle = (photo.lens.size - 1) / 2
-    ray = photo.pose.rotation @ np.array([*((spot - middle) / photo.lens.focal), 1.0])
-    return np.asarray(photo.pose.position + ray * distance / np.linalg.norm(ray))
-
-
-def _patch(
-    photo: Photo, instrument: Instrument, pose: FacePose, scale: float
-) -> tuple[NDArray[np.float32], NDArray[np.float32]] | None:
-    """What the face at `pose` looks like in a picture that is shrunk by `scale`, all rolls taken
-    together, and which of its pixels are the face's; None if it is too thin to be seen."""
-    shape = instrument.shape
-    aspect = shape.half_height / shape.half_width
-    slices = ((-shape.depth, shape.half_width), *instrument.body)
-    corners = np.array(
-        [
-            [x, y * half, z * half * aspect]
-            for x, half in slices
-            for y, z in product((-1.0, 1.0), repeat=2)
-        ]
-    )
-    spots = photo.lens.project(pose.to_site(corners), photo.pose) * scale
-    low, high = spots.min(axis=0), spots.max(axis=0)
-    size = np.ceil(high - low).astype(int) + 1
-    if size.min() < 4:
-        return None
-    # Pixels of the patch, cast back onto the plane of the face.
-    columns, rows = np.meshgrid(np.arange(size[0]), np.arange(size[1]))
-    middle = (photo.lens.size - 1) / 2
-    center = (low + high) / 2
-    u = (columns - (size[0] - 1) / 2 + center[0]) / scale - middle
-    v = (rows - (size[1] - 1) / 2 + center[1]) / scale - middle
-    rays = np.stack([u, v, np.full(u.shape, photo.lens.focal)], axis=-1) @ photo.pose.rotation.T
-    normal = pose.normal
-    looks = np.full(u.shape, _BODY)
-    mask = np.zeros(u.shape, dtype=bool)
-    for x, half in reversed(slices):
-        reach = ((pose.center + x * normal - photo.pose.position) @ normal) / (rays @ normal)
-        points = photo.pose.position + rays * reach[..., None] - pose.center
-        across = points @ np.array([-math.sin(pose.yaw), math.cos(pose.yaw), 0.0])
-        up = points[..., 2]
-        if shape.round:
-            inside = np.hypot(across, up) < half
-        else:
-            inside = (np.abs(across) < half) & (np.abs(up) < half * aspect)
-        mask |= inside
-    # The last slice is the face itself.
-    looks = np.where(inside, _drawn(instrument, across, up), looks)
-    return looks.astype(np.float32), mask.astype(np.float32)
-
-
-def _drawn(
-    instrument: Instrument, across: NDArray[np.float64], up: NDArray[np.float64]
-) -> NDArray[np.float64]:
-    """The brightness of the face at places on it (m), all rolls taken together."""
-    shape = instrument.shape
-    if shape.round:
-        profile = _profile(instrument)
-        radius = np.hypot(across, up) * 1000
-        return np.asarray(profile[np.minimum(radius.astype(int), len(profile) - 1)])
-    image = blurred_texture(instrument.kind, _SOFT)
-    column = np.clip((across + shape.half_width) * PIXELS_PER_METRE, 0, image.shape[1] - 1)
-    row = np.clip((shape.half_height - up) * PIXELS_PER_METRE, 0, image.shape[0] - 1)
-    return np.asarray(image[row.astype(int), column.astype(int)])
-
-
-@cache
-def _profile(instrument: Instrument) -> NDArray[np.float64]:
-    """Mean brightness of a round face at each mm of radius."""
-    image = texture(instrument.kind)
-    height, width = image.shape
-    rows, columns = np.indices(image.shape)
-    radius = np.hypot(rows - height / 2, columns - width / 2) / PIXELS_PER_METRE * 1000
-    ring = radius.astype(int).ravel()
-    mean = np.bincount(ring, image.ravel()) / np.maximum(np.bincount(ring), 1)
-    mean = mean[: int(instrument.shape.half_width * 1000) + 1]
-    mean[: int(instrument.hidden_radius * 1000)] = 0.3
-    return np.asarray(mean)
-
-
-@dataclass(frozen=True)
-class _RolledFaces:
-    """A face at every roll, at the same points: its brightness and weights, (rolls, points)."""
-
-    template: Template
-    brightness: NDArray[np.float32]
-    weights: NDArray[np.float32]
-
-
-@cache
-def _rolled_faces(instrument: Instrument, blur: float) -> _RolledFaces:
-    template = make_template(instrument, 1.5 * _spacing(instrument), blur)
-    faces = template.brightness[None]
-    if instrument.rolled:
-        image = blurred_texture(instrument.kind, blur)
-        half = instrument.shape.half_width
-        y, z = template.points[:, 1], template.points[:, 2]
-        cos, sin = np.cos(_ROLLS)[:, None], np.sin(_ROLLS)[:, None]
-        column = ((half + y * cos + z * sin) * PIXELS_PER_METRE).astype(int)
-        row = ((half - z * cos + y * sin) * PIXELS_PER_METRE).astype(int)
-        faces = image[np.clip(row, 0, image.shape[0] - 1), np.clip(column, 0, image.shape[1] - 1)]
-    bright = faces > (faces.min() + faces.max()) / 2
-    weights = np.where(
-        bright,
-        0.5 / bright.sum(axis=1, keepdims=True),
-        0.5 / (~bright).sum(axis=1, keepdims=True),
-    )
-    return _RolledFaces(template, faces.astype(np.float32), weights.astype(np.float32))
-
-
-def _rolls(
-    photo: Photo, instrument: Instrument, pose: FacePose, blur: float
-) -> list[tuple[float, FacePose]]:
-    """The pose with the rolls at which the face is most like the picture, and how much so."""
-    faces = _rolled_faces(instrument, blur)
-    spots = photo.lens.project(pose.to_site(faces.template.points), photo.pose)
-    values = sample(photo.brightness, spots)
-    red = sample(photo.redness, spots)
-    seen = np.isfinite(values) & ~(red > 0.35)
-    if seen.sum() < len(seen) / 4:
-        return []
-    values = values[seen].astype(np.float32)
-    # White is most of what is seen; black reflects nearly nothing.
-    white = float(np.percentile(values, 70)) / float(faces.brightness.max())
-    if white < _DARKEST:
-        return []
-    weights = faces.weights[:, seen]
-    difference = (values - white * faces.brightness[:, seen]) / (0.35 * white)
-    likeness = (weights * np.exp(-(difference**2))).sum(axis=1) / weights.sum(axis=1)
-    if not instrument.rolled:
-        return [(float(likeness[0]), replace(pose, roll=0.0))]
-    found = []
-    for _ in range(3):
-        best = int(likeness.argmax())
-        found.append((float(likeness[best]), replace(pose, roll=float(_ROLLS[best]))))
-        likeness = np.where(np.abs(_ROLLS - _ROLLS[best]) > math.radians(12), likeness, -1.0)
-    return found

@@ -23,6 +23,7 @@ _AZIMUTHS = np.radians(np.arange(-75, 76, 15))
 _ELEVATIONS = np.radians([0, -18, 18, 36])
 _DISTANCES = np.array([0.35, 0.45, 0.55, 0.7, 0.9, 1.15, 1.5, 1.9])  # m
 _CLEARANCE = 0.02  # m that the arm keeps from everything
+_STEP = 0.05  # rad of the joint that turns most, between the places of the arm that are checked
 _FAR_COST = 0.25  # rad of obliqueness that a metre of distance is worth
 _SAME_COST = 0.9  # rad of obliqueness that a look from the same place as before is worth
 _HIDDEN_COST = 1.5  # rad of obliqueness that a face out of sight is worth
@@ -74,13 +75,28 @@ def plan_views(
         if not math.isfinite(cost[k]):
             return
         for joints in inverse(eyes[k], face.center, pose):
-            positions = dict(zip(JOINTS, joints.tolist(), strict=True))
-            if world.arm_obstacle(positions, _CLEARANCE) is None:
+            if _within_reach(world, joints):
                 sight = eyes[k] - face.center
                 distance = float(np.linalg.norm(sight))
                 cosine = float(sight @ face.normal) / distance
                 yield ArmView(joints, forward(joints, pose), math.acos(min(1.0, cosine)), distance)
                 break
+
+
+def _within_reach(world: World, joints: NDArray[np.float64]) -> bool:
+    """Whether the arm, raised, gets there and back with all joints turning evenly, and touches
+    nothing."""
+    raised = np.radians([world.robot.arm_raised[name] for name in JOINTS])
+    way = raised - joints
+    count = max(1, math.ceil(float(np.abs(way).max()) / _STEP))
+    # From the far end, since most of what is in the way is near the checkpoint.
+    return all(
+        world.arm_obstacle(
+            dict(zip(JOINTS, (joints + k / count * way).tolist(), strict=True)), _CLEARANCE
+        )
+        is None
+        for k in range(count)
+    )
 
 
 def _eyes(face: FacePose, sensor: SensorSpec) -> NDArray[np.float64]:

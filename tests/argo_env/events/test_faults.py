@@ -82,6 +82,15 @@ class TestFiles:
             validator.validate(data)
         assert not validator.is_valid({"faults": [{"kind": "brick", "at": 3}]})
 
+    def test_the_schema_says_what_each_field_is(self):
+        schema = json.loads(schema_of(FaultFile, "faults"))
+        for model in (schema, *(d for d in schema["$defs"].values() if "properties" in d)):
+            for name, field in model["properties"].items():
+                assert name == "kind" or field["description"], f"{model['title']}.{name}"
+        moved = schema["$defs"]["DisplacedCheckpoint"]["properties"]
+        assert moved["at"]["description"].startswith("s, when it is moved")
+        assert moved["until"]["description"] == "s, when it ends; None: it stays"
+
     @pytest.mark.parametrize(
         ("data", "says"),
         [

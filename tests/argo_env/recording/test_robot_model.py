@@ -5,7 +5,9 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
+from argo_env.recording.messages import attitude
 from argo_env.recording.robot_model import add, from_rpy, multiply, read_model, rotate
+from argo_env.robot.pose import BodyPose
 from argo_env.robot.spec import load_robot, robot_folder
 from tests.conftest import examples
 
@@ -61,6 +63,15 @@ def test_links_are_where_pybullet_has_them(body, data) -> None:
 @given(st.tuples(angles, angles, angles))
 def test_rpy_means_what_it_means_to_pybullet(rpy) -> None:
     mine, theirs = from_rpy(rpy), pybullet.getQuaternionFromEuler(rpy)
+    assert abs(sum(a * b for a, b in zip(mine, theirs, strict=True))) == pytest.approx(1.0)
+
+
+@settings(deadline=None, max_examples=examples(20))
+@given(st.tuples(angles, angles, angles))
+def test_a_body_is_recorded_with_its_roll(rpy) -> None:
+    roll, pitch, yaw = rpy
+    mine = attitude(BodyPose(1.0, 2.0, 3.0, yaw, pitch, roll))
+    theirs = pybullet.getQuaternionFromEuler(rpy)
     assert abs(sum(a * b for a, b in zip(mine, theirs, strict=True))) == pytest.approx(1.0)
 
 

@@ -36,6 +36,16 @@ def test_rests_level_where_it_is_put(body):
     assert body.touches() == ()
 
 
+@pytest.mark.parametrize(("heading", "up"), [(0.0, 1), (math.pi, -1)])
+def test_leans_to_the_side_that_is_lower(body, robot, heading, up):
+    """With one track on the edge of the slab, 3 cm above the gravel, and the other beside it."""
+    body.reset(BodyPose(8.0, 0.1, 0.0, heading))
+    seconds(body, 1.0)
+    lean = math.asin(0.03 / robot.track_gauge)
+    assert body.pose.roll == pytest.approx(up * lean, rel=0.3)
+    assert body.pose.pitch == pytest.approx(0.0, abs=0.002)
+
+
 @pytest.mark.parametrize("speed", [0.4, 0.15, -0.25])
 def test_drives_straight_at_the_speed_commanded(body, speed):
     body.reset(GRAVEL)

@@ -14,6 +14,7 @@ from argo_env.robot.spec import robot_folder
 from argo_env.sensing.vision.align import FacePose
 from argo_env.sensing.vision.arm import JOINTS, forward, inverse
 from argo_env.sensing.vision.views import plan_views, solids_near
+from argo_env.site.shapes import Box
 from tests.conftest import examples
 
 LENS = 0.07  # m ahead of the camera's link
@@ -21,8 +22,12 @@ LIMITS = {"arm_yaw": 3.1, "arm_shoulder": 1.75, "arm_elbow": 2.9, "arm_wrist": 2
 
 angles = st.tuples(*(st.floats(-LIMITS.get(name, 2.5), LIMITS.get(name, 2.5)) for name in JOINTS))
 poses = st.builds(
-    BodyPose, *[st.floats(-20, 20)] * 3, st.floats(-4, 4), st.floats(-0.6, 0.6)
-)  # fmt: skip
+    BodyPose,
+    *[st.floats(-20, 20)] * 3,
+    st.floats(-4, 4),
+    st.floats(-0.6, 0.6),
+    st.floats(-0.6, 0.6),
+)
 
 
 @pytest.fixture(scope="module")
@@ -44,7 +49,7 @@ def by_pybullet(tracker, joints, pose):
     base = pybullet.getDynamicsInfo(body, -1, physicsClientId=client)
     place = pybullet.multiplyTransforms(
         (pose.x, pose.y, pose.z),
-        pybullet.getQuaternionFromEuler((0.0, pose.pitch, pose.yaw)),
+        pybullet.getQuaternionFromEuler((pose.roll, pose.pitch, pose.yaw)),
         base[3],
         base[4],
     )
@@ -105,6 +110,44 @@ def test_planned_views_touch_nothing_and_see_the_checkpoint(id, simulation, navi
         obliqueness.append(math.degrees(angle))
     simulation.move_arm(robot.arm_stowed)
     assert min(obliqueness) <= 40
+
+
+def on_the_way(robot, joints):
+    """Places of the arm between where it is raised and `joints`, by name, in rad."""
+    raised = np.radians([robot.arm_raised[name] for name in JOINTS])
+    for share in np.linspace(0.0, 1.0, 120):
+        yield dict(zip(JOINTS, (raised + share * (joints - raised)).tolist(), strict=True))
+
+
+@pytest.mark.parametrize("id", [1, 2, 4, 5, 10])
+def test_the_arm_gets_to_a_view_past_what_is_in_the_way(id, simulation, navigator, umad, robot):
+    checkpoint = umad.checkpoint(id)
+    stand = navigator.plan_to_view(umad.docks[1], id).end
+    pose = BodyPose(stand.x, stand.y, stand.z, stand.yaw)
+    simulation.place_robot(pose)
+    face = FacePose(*checkpoint.position, checkpoint.yaw, 0.0)
+
+    def best_view():
+        return next(plan_views(simulation, pose, face, (), 0.05, (), 0.5))
+
+    free = best_view()
+    way = list(on_the_way(robot, free.joints))
+    # Something small where the camera would pass, and neither begins nor ends.
+    camera = forward(np.array([*way[60].values()]), pose)
+    middle = camera.position - LENS * camera.rotation[:, 2]
+    box = Box(tuple(middle.tolist()), (0.05, 0.05, 0.05))
+    screen = simulation.add_screen("box", box, (0.4, 0.4, 0.4))
+    try:
+        assert simulation.arm_obstacle(way[0], 0.0) is None
+        assert simulation.arm_obstacle(way[-1], 0.02) is None
+        assert simulation.arm_obstacle(way[60], 0.0) == "box"
+        past = best_view()
+        assert not np.array_equal(past.joints, free.joints)
+        for positions in on_the_way(robot, past.joints):
+            assert simulation.arm_obstacle(positions, 0.0) is None
+    finally:
+        simulation.remove_screen(screen)
+        simulation.move_arm(robot.arm_stowed)
 
 
 def test_arm_check_moves_nothing_and_names_what_is_hit(simulation, robot):

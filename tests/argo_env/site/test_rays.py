@@ -1,0 +1,70 @@
+"""Rays against many solids at once, against one line and one solid at a time."""
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from argo_env.site.rays import SolidRays
+from argo_env.site.shapes import Box, Cylinder, Element, Role, crossing
+from tests.conftest import examples
+
+turns = st.one_of(st.just((0.0, 0.0, 0.0)), st.tuples(*[st.floats(-3.1, 3.1)] * 3))
+middles = st.tuples(*[st.floats(-3.0, 3.0)] * 3)
+sizes = st.floats(0.05, 2.0)
+solids = st.one_of(
+    st.builds(Box, middles, st.tuples(sizes, sizes, sizes), turns),
+    st.builds(Cylinder, middles, sizes, sizes, turns),
+)
+
+
+def gathered(parts):
+    """The solids in elements of up to two."""
+    pairs = [tuple(parts[k : k + 2]) for k in range(0, len(parts), 2)]
+    return tuple(Element(f"part {k}", Role.STRUCTURE, p, "steel") for k, p in enumerate(pairs))
+
+
+def one_by_one(parts, origin, direction, reach, inside):
+    """The distance to the first solid and its number, from `crossing`."""
+    best = np.inf, -1
+    for number, solid in enumerate(parts):
+        entry, leave = (t[0] for t in crossing(solid, origin[None], direction))
+        if entry <= min(leave, reach) and (leave if inside else entry) >= 0.0:
+            best = min(best, (entry, number))
+    return best
+
+
+@given(
+    st.lists(solids, max_size=8),
+    st.integers(0, 2**32 - 1),
+    st.booleans(),
+    st.booleans(),
+)
+@settings(max_examples=examples(150), deadline=None)
+def test_many_rays_are_as_one_by_one(parts, seed, inside, apart):
+    rng, reach = np.random.default_rng(seed), 5.0
+    directions = rng.normal(size=(30, 3))
+    directions /= np.linalg.norm(directions, axis=1)[:, None]
+    origins = rng.uniform(-4.0, 4.0, (30, 3))
+    if not apart:
+        origins[:] = origins[0]
+    elements = gathered(parts)
+    rays = SolidRays(elements)
+    assert [e.name for e in rays.elements] == [e.name for e in elements for _ in e.solids]
+    distances, found = rays.first(origins if apart else origins[0], directions, reach, inside)
+    for origin, direction, distance, solid in zip(
+        origins, directions, distances, found.tolist(), strict=True
+    ):
+        known, which = one_by_one(parts, origin, direction, reach, inside)
+        assert distance == pytest.approx(known, abs=1e-6)
+        assert solid == which
+
+
+def test_a_ray_from_inside_begins_behind_itself():
+    rays = SolidRays(
+        gathered([Box((0.0, 0.0, 0.0), (2.0, 2.0, 2.0)), Cylinder((3.0, 0, 0), 0.5, 1.0)])
+    )
+    ahead = np.array([[1.0, 0.0, 0.0]])
+    assert [v[0] for v in rays.first(np.zeros(3), ahead, 9.0)] == [2.5, 1]
+    assert [v[0] for v in rays.first(np.zeros(3), ahead, 9.0, inside=True)] == [-1.0, 0]
+    assert [v[0] for v in rays.first(np.zeros(3), ahead, 2.0)] == [np.inf, -1]

@@ -51,10 +51,12 @@ def measure_queries(navigator: Navigator, name: str, queries: Iterable[Query]) -
     for query in queries:
         first.append(timed(partial(plan, navigator, query)))
         again.append(timed(partial(plan, navigator, query)))
-    print(
-        f"  {name:<42} median {1e3 * np.median(first):5.1f} ms, 9 of 10 within "
-        f"{1e3 * np.percentile(first, 90):5.1f} ms; again {1e3 * np.median(again):5.1f} ms"
-    )
+    print(f"  {name:<42} {summary(first)}; again {summary(again)}")
+
+
+def summary(seconds: list[float]) -> str:
+    """Median, 95th percentile and worst, in ms."""
+    return "/".join(f"{1e3 * t:.1f}" for t in np.percentile(seconds, [50, 95, 100])) + " ms"
 
 
 def poses(navigator: Navigator, states: np.ndarray) -> list[Pose]:
@@ -71,7 +73,9 @@ def paths_on_umad() -> Navigator:
     took = timed(lambda: navigator.lattice)
     states, moves = navigator.lattice.size, navigator.lattice.costs.nnz
     print(f"UMAD: lattice of {states} states and {moves} moves built in {took:.1f} s", end="")
-    print(f", ways between its portals in {timed(navigator.prepare):.1f} s; {memory()}")
+    print(
+        f", ways between its portals and landmarks in {timed(navigator.prepare):.1f} s; {memory()}"
+    )
     random = np.random.default_rng(1)
     z = navigator.lattice.poses()[:, 2]
     floors = [np.flatnonzero(np.abs(z - floor.z) < 0.1) for floor in site.spec.floors]
@@ -83,13 +87,16 @@ def paths_on_umad() -> Navigator:
         navigator,
         np.array([random.choice(floors[k]) for k in random.integers(len(floors), size=2 * PAIRS)]),
     )
-    on_the_ground = poses(navigator, random.choice(floors[0], size=PAIRS))
-    print("Paths on UMAD, cold and again:")
+    on_the_ground = poses(navigator, random.choice(floors[0], size=2 * PAIRS))
+    print("Paths on UMAD, median/95th percentile/worst, cold and again:")
     measure_queries(navigator, "from docks and checkpoints to checkpoints", legs)
     measure_queries(navigator, "random poses, floors drawn evenly", pairs(spread))
     measure_queries(navigator, "random states (most lie on open ground)", pairs(anywhere))
     measure_queries(navigator, "random poses, both on the ground floor", pairs(on_the_ground))
     compare(navigator, random)
+    for _ in range(2):
+        took = timed(lambda: navigator.turning_places(1))
+        print(f"  places to turn on the ground floor: {1e3 * took:.1f} ms")
     brick = Blockage((6.4, 5.0, 7.2, 5.4), 2.5, "a brick")
     took = timed(lambda: navigator.avoiding([brick]).plan_to_view(site.docks[1], 8))
     print(f"  avoiding a blockage, and the first path round it: {1e3 * took:.0f} ms")
@@ -135,7 +142,7 @@ def matrices(umad: Navigator) -> None:
     large = generate(LARGE)
     ids = [c.id for c in large.site.checkpoints]
     print(f"  {large.lattice.size} states, {large.lattice.costs.nnz} moves")
-    print(f"  ways between its portals in {timed(large.prepare):.1f} s; {memory()}")
+    print(f"  ways between its portals and landmarks in {timed(large.prepare):.1f} s; {memory()}")
     took = timed(lambda: large.travel_times(ids))
     print(f"  travel times of {len(ids)} checkpoints: {took:.1f} s; {memory()}")
 

@@ -8,16 +8,14 @@ import gymnasium as gym
 import numpy as np
 from gymnasium import spaces
 from numpy.typing import NDArray
-from pydantic import Field
 
 from argo_compiler.errors import ArgoError
-from argo_compiler.model import Model
 from argo_env.envs import lidar
 from argo_env.envs.drive_site import DriveSite
+from argo_env.envs.drive_sites import DriveOptions, DriveSites
 from argo_env.envs.observations import Observation, dict_space
 from argo_env.envs.options import read_options
-from argo_env.envs.rendering import Window, check_render_mode
-from argo_env.events.kinds import AnyFault
+from argo_env.envs.rendering import Rendering, check_render_mode
 from argo_env.navigation.path import wrap
 from argo_env.robot.pose import BodyPose
 from argo_env.robot.tracked.body import FLIPPER_LIMITS, TIME_STEP
@@ -37,23 +35,9 @@ PROGRESS, GOAL, TIPPING, CONTACT, TIME = 0.1, 10.0, -10.0, -0.05, -0.01
 _NEAREST = 5.0  # s that a start is away from its goal at least
 _FAR = (20.0, 20.0, 10.0)  # m that are 1 in the observation of the goal
 _LONG = 300.0  # s, likewise
-_KEPT = 4  # sites that are kept ready
 
 
-class DriveOptions(Model):
-    """What `reset(options=...)` of Drive-v0 may say."""
-
-    scenario: str | tuple[str, ...] | None = None
-    floor: int | tuple[int, ...] = ()
-    faults: tuple[AnyFault, ...] = ()
-    max_way: float | None = Field(default=None, gt=0)
-
-    @property
-    def floors(self) -> tuple[int, ...]:
-        return (self.floor,) if isinstance(self.floor, int) else self.floor
-
-
-class DriveEnv(gym.Env[Observation, NDArray[np.float32]]):
+class DriveEnv(Rendering, gym.Env[Observation, NDArray[np.float32]]):
     """## Description
     A tracked robot of 60 kg or so has to get to a goal somewhere on a site with several floors. Its
     dynamics are those of the drive `tracked`: rigid bodies at 240 Hz, belts by contact-surface
@@ -129,6 +113,7 @@ class DriveEnv(gym.Env[Observation, NDArray[np.float32]]):
     - v0: first version
     """  # noqa: E501
 
+    _title = "argo/Drive-v0"
     metadata = {  # noqa: RUF012
         "render_modes": ["human", "rgb_array"],
         "render_fps": round(1 / PERIOD),
@@ -147,7 +132,6 @@ class DriveEnv(gym.Env[Observation, NDArray[np.float32]]):
         if time_limit <= 0 or max_way <= 0:
             raise ArgoError("time_limit and max_way must be more than 0 s")
         self.render_mode = render_mode
-        self._scenarios = (scenario,) if isinstance(scenario, str) else tuple(scenario)
         self._max_way = max_way
         self._limit = round(time_limit / PERIOD)
         self._waypoint = waypoint
@@ -161,10 +145,8 @@ class DriveEnv(gym.Env[Observation, NDArray[np.float32]]):
             parts["way"] = spaces.Box(-1.0, 1.0, (5,))
         self.observation_space = dict_space(parts)
         self.action_space = spaces.Box(-1.0, 1.0, (3,), np.float32)
-        self._options = DriveOptions()
-        self._sites: dict[str, DriveSite] = {}
-        self._site = self._make(self._scenarios[0])
-        self._window: Window | None = None
+        self._sites = DriveSites((scenario,) if isinstance(scenario, str) else tuple(scenario))
+        self._site = self._sites.make(self._sites.names[0])
 
     # -- the environment
 
@@ -173,11 +155,11 @@ class DriveEnv(gym.Env[Observation, NDArray[np.float32]]):
     ) -> tuple[Observation, dict[str, Any]]:
         super().reset(seed=seed)
         if options is not None:
-            self._choose(read_options(DriveOptions, options, "argo/Drive-v0"))
-        rng, chosen = self.np_random, self._options
-        names = self._names(chosen)
+            self._sites.choose(read_options(DriveOptions, options, "argo/Drive-v0"))
+        rng, chosen = self.np_random, self._sites.options
+        names = self._sites.names
         name = names[int(rng.integers(len(names)))]
-        guide = self._make(name).guide
+        guide = self._sites.make(name).guide
         floors = chosen.floors or guide.floors
         goals = guide.goals(floors)
         x, y, z = goals[int(rng.integers(len(goals)))].tolist()
@@ -223,24 +205,9 @@ class DriveEnv(gym.Env[Observation, NDArray[np.float32]]):
         truncated = len(self._actions) >= self._limit and not terminated
         return observation, sum(terms.values()), terminated, truncated, info
 
-    def render(self) -> NDArray[np.uint8] | None:
-        """The robot from behind; with `human` it is in a window."""
-        if self.render_mode is None:
-            return None
-        picture = self._site.picture(self._pose, math.degrees(self._site.body.flipper))
-        if self.render_mode == "rgb_array":
-            return picture
-        self._window = self._window or Window("argo/Drive-v0")
-        self._window.show(picture)
-        return None
-
     def close(self) -> None:
-        for site in self._sites.values():
-            site.close()
-        self._sites.clear()
-        if self._window:
-            self._window.close()
-            self._window = None
+        self._sites.close()
+        super().close()
 
     @property
     def pose(self) -> BodyPose:
@@ -263,7 +230,7 @@ class DriveEnv(gym.Env[Observation, NDArray[np.float32]]):
         """All that the future depends on, as plain data that can be pickled."""
         return {
             "scenario": self._name,
-            "options": self._options.model_dump(mode="json", exclude_unset=True),
+            "options": self._sites.options.model_dump(mode="json", exclude_unset=True),
             "start": self._start,
             "goal": self._goal,
             "actions": tuple(self._actions),
@@ -272,7 +239,7 @@ class DriveEnv(gym.Env[Observation, NDArray[np.float32]]):
 
     def set_state(self, state: Mapping[str, Any]) -> Observation:
         """Goes on from what `get_state` gave; returns the observation of that moment."""
-        self._choose(read_options(DriveOptions, state["options"], "argo/Drive-v0"))
+        self._sites.choose(read_options(DriveOptions, state["options"], "argo/Drive-v0"))
         self._begin(state["scenario"], state["start"], state["goal"])
         for action in state["actions"]:
             self._drive(action)
@@ -289,7 +256,7 @@ class DriveEnv(gym.Env[Observation, NDArray[np.float32]]):
     def _begin(self, name: str, start: Start, goal: Place) -> None:
         """Puts the robot at its start (x, y, z, yaw) on the site of that name."""
         self._name, self._start, self._goal = name, start, goal
-        self._site = self._make(name)
+        self._site = self._sites.make(name)
         self._site.body.reset(BodyPose(*start))
         self._site.body.touches()
         self._site.forget_view()
@@ -305,42 +272,6 @@ class DriveEnv(gym.Env[Observation, NDArray[np.float32]]):
         )
         body.advance(SUBSTEPS)
         self._actions.append(action)
-
-    def _names(self, options: DriveOptions) -> tuple[str, ...]:
-        given = options.scenario
-        return self._scenarios if given is None else (given,) if isinstance(given, str) else given
-
-    def _choose(self, options: DriveOptions) -> None:
-        """Takes the options on; ArgoError if a site does not have what they ask for."""
-        before = self._options
-        if options.faults != before.faults:
-            self._drop_sites()
-        self._options = options
-        try:
-            for name in self._names(options):
-                site = self._make(name)
-                for floor in options.floors:
-                    if floor not in site.guide.floors:
-                        known = ", ".join(map(str, site.guide.floors))
-                        raise ArgoError(f"site {name} has the floors {known}, not {floor}")
-        except ArgoError:
-            if options.faults != before.faults:
-                self._drop_sites()
-            self._options = before
-            raise
-
-    def _make(self, name: str) -> DriveSite:
-        """The site of that name, ready; the ones used longest ago make room for it."""
-        site = self._sites.pop(name, None) or DriveSite(name, self._options.faults)
-        self._sites[name] = site
-        while len(self._sites) > _KEPT:
-            self._sites.pop(next(iter(self._sites))).close()
-        return site
-
-    def _drop_sites(self) -> None:
-        for site in self._sites.values():
-            site.close()
-        self._sites.clear()
 
     def _observe(self) -> Observation:
         site, body = self._site, self._site.body
@@ -375,6 +306,6 @@ class DriveEnv(gym.Env[Observation, NDArray[np.float32]]):
         cos, sin = math.cos(pose.yaw), math.sin(pose.yaw)
         return cos * dx + sin * dy, cos * dy - sin * dx, z - pose.z
 
-    def _show(self) -> None:
-        if self.render_mode == "human":
-            self.render()
+    def _picture(self) -> NDArray[np.uint8]:
+        """The robot from behind."""
+        return self._site.picture(self._pose, math.degrees(self._site.body.flipper))

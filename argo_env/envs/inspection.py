@@ -1,30 +1,26 @@
 """`argo/Inspect-v0`: choose the next checkpoint; the simulator drives there and reads it."""
 
 from collections.abc import Mapping
-from functools import lru_cache
-from typing import Annotated, Any, cast
+from typing import Any
 
 import gymnasium as gym
 import numpy as np
 from gymnasium import spaces
 from numpy.typing import NDArray
-from pydantic import Field
 
 from argo_compiler.errors import ArgoError
 from argo_compiler.il import EventKind
-from argo_compiler.model import Model
-from argo_env.envs.inspection_run import Deed, Inspection, TravelTimes
+from argo_env.envs.inspection_options import InspectOptions, draw_faults
+from argo_env.envs.inspection_run import Deed, Inspection, travel_times
 from argo_env.envs.observations import Observation, dict_space
 from argo_env.envs.options import read_options
 from argo_env.envs.plan_pictures import Marker, draw_plan
-from argo_env.envs.rendering import Window, check_render_mode
+from argo_env.envs.rendering import Rendering, check_render_mode
 from argo_env.envs.sites import navigator_of
-from argo_env.events.kinds import KINDS, AnyFault
-from argo_env.events.machine import EmergencyStop
+from argo_env.events.kinds import AnyFault
 from argo_env.robot.route import RouteDrive
 from argo_env.session import DRIVES, check_settings
 from argo_env.settings import RunSettings
-from argo_env.site import Site
 
 READING, ABNORMAL, FINDING, CONTACT, DOCKED, DEAD = 10.0, 10.0, 5.0, -1.0, 20.0, -20.0
 """points: see the description of the environment"""
@@ -34,20 +30,7 @@ _FPS = 2
 _EVENTS = tuple(EventKind)
 
 
-class InspectOptions(Model):
-    """What `reset(options=...)` of Inspect-v0 may say."""
-
-    scenario: str | None = None
-    floor: int | tuple[int, ...] = ()
-    faults: Annotated[int, Field(ge=0, le=8)] | tuple[AnyFault, ...] | None = None
-    seed: int | None = Field(default=None, ge=0)
-
-    @property
-    def floors(self) -> tuple[int, ...]:
-        return (self.floor,) if isinstance(self.floor, int) else self.floor
-
-
-class InspectEnv(gym.Env[Observation, np.int64]):
+class InspectEnv(Rendering, gym.Env[Observation, np.int64]):
     """## Description
     A robot reads the checkpoints of a site and has to be docked in time. The agent chooses where to
     go next; the robot plans its path, drives and measures as it does in a mission, and on the way
@@ -125,6 +108,7 @@ class InspectEnv(gym.Env[Observation, np.int64]):
     - v0: first version
     """  # noqa: E501
 
+    _title = "argo/Inspect-v0"
     metadata = {  # noqa: RUF012
         "render_modes": ["human", "rgb_array"],
         "render_fps": _FPS,
@@ -169,7 +153,6 @@ class InspectEnv(gym.Env[Observation, np.int64]):
         self._options = InspectOptions()
         self._prepare()
         self._run: Inspection | None = None
-        self._window: Window | None = None
 
     # -- the environment
 
@@ -246,24 +229,11 @@ class InspectEnv(gym.Env[Observation, np.int64]):
         """Which actions are legal now, shape (n + d,)."""
         return self._mask.copy()
 
-    def render(self) -> NDArray[np.uint8] | None:
-        """The site's floors with what was read; with `human` it is in a window."""
-        if self.render_mode is None:
-            return None
-        picture = self._picture()
-        if self.render_mode == "rgb_array":
-            return picture
-        self._window = self._window or Window("argo/Inspect-v0")
-        self._window.show(picture)
-        return None
-
     def close(self) -> None:
         if self._run:
             self._run.close()
             self._run = None
-        if self._window:
-            self._window.close()
-            self._window = None
+        super().close()
 
     # -- states
 
@@ -321,15 +291,7 @@ class InspectEnv(gym.Env[Observation, np.int64]):
         if isinstance(given, tuple):
             return given
         count = self._default_faults if given is None else given
-        paper = self._drive == RouteDrive.name
-        site = self._navigator.site
-        kinds = [
-            kind
-            for kind, model in KINDS.items()
-            if not (model.needs_world and paper) and (kind != "abnormal_pump" or _has_pump(site))
-        ]
-        drawn = [kinds[k] for k in rng.permutation(len(kinds))[:count]]
-        return tuple(_fault(kind, rng) for kind in drawn)
+        return draw_faults(count, self._drive, self._navigator.site, rng)
 
     def _go(self, place: int) -> tuple[Deed, bool]:
         """Carries the action out; whether the robot is in its end dock then."""
@@ -380,13 +342,14 @@ class InspectEnv(gym.Env[Observation, np.int64]):
         """Estimated s to each place, infinite for empty slots and where there is no way."""
         run, site, n = self._running, self._navigator.site, self._slots
         docks = len(site.docks)
-        times = _travel_times(self._options.scenario or self._scenario).row(run.pose, run.navigator)
+        times = travel_times(self._options.scenario or self._scenario).row(run.pose, run.navigator)
         travel = np.full(n + self._docks, np.inf)
         travel[: len(times) - docks] = times[docks:]
         travel[n : n + docks] = times[:docks]
         return travel
 
     def _picture(self) -> NDArray[np.uint8]:
+        """The site's floors with what was read."""
         run, site = self._running, self._navigator.site
         markers = []
         for k, c in enumerate(site.checkpoints):
@@ -402,25 +365,3 @@ class InspectEnv(gym.Env[Observation, np.int64]):
             f"read {self._read.sum()} of {self._asked.sum()}    noticed: {noticed}"
         )
         return draw_plan(markers, self._way, headline, len(site.spec.floors))
-
-    def _show(self) -> None:
-        if self.render_mode == "human":
-            self.render()
-
-
-@lru_cache(maxsize=8)
-def _travel_times(scenario: str) -> TravelTimes:
-    return TravelTimes(navigator_of(scenario))
-
-
-def _has_pump(site: Site) -> bool:
-    return any(floor.pumps for floor in site.spec.floors)
-
-
-def _fault(kind: str, rng: np.random.Generator) -> AnyFault:
-    """A fault of that kind, what matters drawn by the run's seed; someone releases an emergency
-    stop after a minute."""
-    if kind == "emergency_stop":
-        at = round(float(rng.uniform(0.0, 600.0)), 1)
-        return EmergencyStop(at=at, until=at + 60.0)
-    return cast("AnyFault", KINDS[kind].model_validate({}))

@@ -3,6 +3,7 @@
 import math
 from contextlib import ExitStack
 from dataclasses import dataclass, replace
+from functools import lru_cache
 
 import numpy as np
 from numpy.typing import NDArray
@@ -11,6 +12,7 @@ from argo_compiler.hfsm import ActionFailed
 from argo_compiler.il import Action, EventKind, Task
 from argo_compiler.model import Pose
 from argo_env.action import ActionUnderWay
+from argo_env.envs.sites import navigator_of
 from argo_env.navigation import Navigator, UnreachableError
 from argo_env.odometry import Odometry
 from argo_env.perceiving import Perception, blockage
@@ -200,3 +202,9 @@ def _free(navigator: Navigator, pose: Pose) -> bool:
     except UnreachableError:
         return False
     return True
+
+
+@lru_cache(maxsize=8)
+def travel_times(scenario: str) -> TravelTimes:
+    """The travel times of a site, found once."""
+    return TravelTimes(navigator_of(scenario))

@@ -1,4 +1,4 @@
-"""Pictures in a window, for `render_mode="human"`."""
+"""How an environment shows itself: as pictures, or in a window for `render_mode="human"`."""
 
 import os
 import sys
@@ -63,3 +63,37 @@ class Window:
     @property
     def _interactive(self) -> bool:
         return str(self._pyplot.get_backend()).lower() != "agg"
+
+
+class Rendering:
+    """What environments have in common that draw a picture of themselves."""
+
+    render_mode: str | None
+    _title: str
+    """of the window"""
+    _window: Window | None = None
+
+    def render(self) -> NDArray[np.uint8] | None:
+        """A picture, shape (height, width, 3); with `human` it is in a window."""
+        if self.render_mode is None:
+            return None
+        picture = self._picture()
+        if self.render_mode == "rgb_array":
+            return picture
+        self._window = self._window or Window(self._title)
+        self._window.show(picture)
+        return None
+
+    def close(self) -> None:
+        """Closes the window."""
+        if self._window:
+            self._window.close()
+            self._window = None
+
+    def _picture(self) -> NDArray[np.uint8]:
+        raise NotImplementedError
+
+    def _show(self) -> None:
+        """Brings the window up to date, if there is one."""
+        if self.render_mode == "human":
+            self.render()

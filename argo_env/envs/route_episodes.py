@@ -1,4 +1,5 @@
-"""Which instance an episode has: options, a hash of seed and episode, and instances in arrays."""
+"""What single routes and batches share: the observation space, and which instance an episode has:
+options, a hash of seed and episode, and instances in arrays."""
 
 from collections.abc import Mapping
 from dataclasses import dataclass
@@ -6,11 +7,13 @@ from functools import lru_cache
 from typing import Any, overload
 
 import numpy as np
+from gymnasium import spaces
 from numpy.typing import NDArray
 from pydantic import Field
 
 from argo_compiler.errors import ArgoError
 from argo_compiler.model import Model
+from argo_env.envs.observations import Observation, dict_space
 from argo_env.envs.options import read_options
 from argo_env.envs.route_instance import DOCK, RouteInstance
 from argo_env.envs.route_sources import (
@@ -23,6 +26,7 @@ from argo_env.envs.route_sources import (
     check_floors,
 )
 
+FPS = 4  # of films
 _KEPT = 256  # instances that a single environment keeps
 _WORD = (1 << 64) - 1
 Words = NDArray[np.uint64]
@@ -178,3 +182,20 @@ def _site_routes(checkpoints: int, scenario: str, budget: float) -> SiteRoutes:
     source = SiteRoutes(checkpoints, scenario, budget)
     _ = source.floors  # so that a scenario that does not exist is told of here
     return source
+
+
+def observation_space(size: int, full: bool) -> spaces.Space[Observation]:
+    """The space of the observations with `size` nodes."""
+    share = spaces.Box(0.0, 1.0, (size,), np.float32)
+    parts: dict[str, spaces.Space[Any]] = {
+        "travel": share,
+        "home": share,
+        "prize": share,
+        "left": spaces.Box(0.0, 1.0, (1,), np.float32),
+        "mask": spaces.MultiBinary(size),
+    }
+    if full:
+        parts["matrix"] = spaces.Box(0.0, 1.0, (size + 1, size), np.float32)
+        parts["before"] = spaces.MultiBinary((size, size))
+        parts["place"] = spaces.Discrete(size + 1)
+    return dict_space(parts)

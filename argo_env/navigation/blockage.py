@@ -7,6 +7,7 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.sparse import csr_array
 
+from argo_compiler.model import Pose
 from argo_env.navigation.lattice import MARGIN, Lattice
 from argo_env.navigation.path import Path
 from argo_env.navigation.raster import CELL
@@ -16,6 +17,8 @@ from argo_env.robot.spec import RobotSpec
 from argo_env.site.spec import Rect
 
 LAYER = 1.0  # m above and below a blockage in which the surface is closed; storeys are higher
+
+_TURN_STEP = 0.05  # rad between the headings of a turn that are looked at
 
 
 @dataclass(frozen=True)
@@ -112,6 +115,23 @@ def _touched(
         for k in range(SWEEP_STEPS + 1)
     ]
     return swept[0], np.any(swept, axis=0)
+
+
+def turns_over(start: Pose, turn: float, blockages: Sequence[Blockage], robot: RobotSpec) -> bool:
+    """Whether a robot that turns in place from `start` by `turn` (rad) touches a blockage that it
+    does not touch at the start."""
+    yaw = start.yaw + turn * np.linspace(0.0, 1.0, 2 + int(abs(turn) / _TURN_STEP))
+    for blockage in blockages:
+        if abs(start.z - blockage.z) > LAYER:
+            continue
+        x0, y0, x1, y1 = blockage.rect
+        x = np.full(len(yaw), (x0 + x1) / 2 - start.x)
+        y = np.full(len(yaw), (y0 + y1) / 2 - start.y)
+        half = (x1 - x0) / 2, (y1 - y0) / 2
+        touched = touches(robot.footprint, 0.0, yaw, x, y, half)
+        if touched.any() and not touched[0]:
+            return True
+    return False
 
 
 def leads_through(path: Path, blockages: Sequence[Blockage], robot: RobotSpec) -> bool:

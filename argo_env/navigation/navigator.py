@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 
 from argo_compiler.errors import ArgoError
 from argo_compiler.model import Pose
-from argo_env.navigation.blockage import Blockage, close, closed_cells
+from argo_env.navigation.blockage import Blockage, close, closed_cells, turns_over
 from argo_env.navigation.lattice import DRIVING_LEVEL, LEVEL, Lattice, build_lattice, connected_part
 from argo_env.navigation.path import Motion, Path, merge, wrap
 from argo_env.navigation.raster import Grid
@@ -174,12 +174,17 @@ class Navigator:
     def turning_places(self, floor: int) -> NDArray[np.float64]:
         """Poses (x, y, z, yaw) on a floor's deck in each of which the robot can turn all round."""
         floor_z = next(f.z for f in self.site.spec.floors if f.number == floor)
+        places = self._turning_places
+        return places[np.abs(places[:, 2] - floor_z) <= 0.01]
+
+    @cached_property
+    def _turning_places(self) -> NDArray[np.float64]:
+        """Those of all floors."""
         source, target = self.lattice.costs.tocoo().coords
         here = self.lattice.cell[source]
         turns = np.bincount(here[here == self.lattice.cell[target]], minlength=self.surface.size)
         # Both ways from each heading, if none is missing.
-        free = (turns == 2 * HEADINGS) & (np.abs(self.surface.z - floor_z) <= 0.01)
-        cells = np.flatnonzero(free)
+        cells = np.flatnonzero(turns == 2 * HEADINGS)
         return np.column_stack([self.surface.positions()[cells], np.zeros(len(cells))])
 
     def _states(self, places: Sequence[Pose | int]) -> NDArray[np.int64]:
@@ -243,6 +248,8 @@ class Navigator:
         if path.start.yaw != start.yaw:
             here = path.start.model_copy(update={"yaw": start.yaw})
             turn = Motion(here, path.start, turn=wrap(path.start.yaw - start.yaw))
+            if turns_over(here, turn.turn, self.blockages, self.robot):
+                raise self._no_way(start, f"({path.end.x:.2f}, {path.end.y:.2f}, {path.end.z:.2f})")
             path = Path(here, (turn, *path.motions) if abs(turn.turn) > 1e-9 else path.motions)
         return smooth(path, lambda z: self._flat_map(round(z, 3)), self.robot)
 

@@ -5,7 +5,7 @@ of a region never changes. So a query searches near its two ends only. Nothing i
 ways found are as cheap as those of one search over the whole lattice.
 """
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from functools import cached_property
 from itertools import pairwise
@@ -15,6 +15,7 @@ from numpy.typing import NDArray
 from scipy.sparse import csr_array
 from scipy.sparse.csgraph import dijkstra
 
+from argo_env.navigation.landmarks import Landmarks
 from argo_env.navigation.lattice import Lattice
 
 Trees = tuple[NDArray[np.float64], NDArray[np.int32]]
@@ -35,6 +36,12 @@ class Region:
     back: csr_array
     entries: NDArray[np.int64]
     exits: NDArray[np.int64]
+    landmarks: Landmarks
+
+    @cached_property
+    def heads(self) -> NDArray[np.intp]:
+        """Where each move ahead leads, in the numbers that numpy takes fastest."""
+        return self.ahead.indices.astype(np.intp)
 
     @cached_property
     def from_entries(self) -> Trees:
@@ -52,6 +59,13 @@ def search(graph: csr_array, sources: NDArray[np.int64], limit: float = np.inf) 
     if not len(sources):
         return np.empty((0, graph.shape[0])), np.empty((0, graph.shape[0]), dtype=np.int32)
     return dijkstra(graph, indices=sources, return_predecessors=True, limit=limit)
+
+
+def walk(following: NDArray[np.int32], start: int) -> Iterator[int]:
+    """`start` and what follows it, up to the end."""
+    while start >= 0:
+        yield start
+        start = int(following[start])
 
 
 def find_cuts(lattice: Lattice, floors: Sequence[float]) -> list[float]:
@@ -103,7 +117,7 @@ def repartition(partition: Partition, lattice: Lattice, changed: NDArray[np.bool
     `changed`; regions without them are shared, with all that is known of them."""
     crossings = _crossings(lattice, partition.region)
     regions = [
-        _region(lattice, old.members, partition.local, crossings)
+        _region(lattice, old.members, partition.local, crossings, old.landmarks)
         if changed[old.members].any()
         else old
         for old in partition.regions
@@ -124,6 +138,7 @@ def _region(
     members: NDArray[np.int64],
     local: NDArray[np.int64],
     crossings: tuple[NDArray[np.int64], NDArray[np.int64], NDArray[np.float64]],
+    landmarks: Landmarks | None = None,
 ) -> Region:
     ahead = csr_array(lattice.costs[members][:, members])
     # scipy searches with 32-bit numbers and would convert them for every search.
@@ -131,10 +146,12 @@ def _region(
     inside = np.zeros(lattice.size, dtype=bool)
     inside[members] = True
     sources, targets, _ = crossings
+    back = csr_array(ahead.T.tocsr())
     return Region(
         members,
         ahead,
-        csr_array(ahead.T.tocsr()),
+        back,
         local[np.unique(targets[inside[targets]])],
         local[np.unique(sources[inside[sources]])],
+        landmarks or Landmarks(ahead, back, lattice.poses(members)[:, :2]),
     )

@@ -8,6 +8,7 @@ from itertools import pairwise
 
 import numpy as np
 from numpy.typing import NDArray
+from scipy.ndimage import distance_transform_edt
 
 from argo_compiler.model import Pose
 from argo_env.navigation.lattice import DRIVING_LEVEL, MARGIN, TURNING_LEVEL
@@ -78,6 +79,29 @@ class FlatMap:
         i, j = np.nonzero(cells)
         return self.grid.centers(i - 2, j - 2)
 
+    @cached_property
+    def _room(self) -> NDArray[np.float64]:
+        """How far the centre of each cell is from that of the nearest cell of the border (m), of
+        the grid with two more cells on each side; 0 where it is not free."""
+        room = distance_transform_edt(~self._beside_free) * CELL
+        return np.where(np.pad(self.free, 2), room, 0.0)
+
+    def obvious_drives(
+        self, a: NDArray[np.float64], ends: NDArray[np.float64], footprint: Footprint
+    ) -> tuple[NDArray[np.bool_], NDArray[np.bool_]]:
+        """Of the drives from the place `a` (x, y) to each of `ends`, shape (n, 2): which ones are
+        clear for sure, and which ones surely are not, by the room around places along them."""
+        away = ends - a
+        longest = float(np.hypot(away[:, 0], away[:, 1]).max(initial=0.0))
+        shares = np.arange(2 + int(longest / CELL)) / (1 + int(longest / CELL))
+        i = ((a[0] - self.grid.x0 + away[:, :1] * shares) / CELL).astype(np.int64) + 2
+        j = ((a[1] - self.grid.y0 + away[:, 1:] * shares) / CELL).astype(np.int64) + 2
+        least = self._room[i, j].min(axis=1)
+        aside = CELL * math.sqrt(0.5)  # of a place from the centre of its cell
+        inner = min(footprint.half_width, footprint.front, footprint.rear) + MARGIN
+        outer = footprint.radius + MARGIN
+        return least > outer + 2 * aside + CELL / 2, least < inner - aside
+
     def clear_drive(self, a: Pose, b: Pose, footprint: Footprint) -> bool:
         """Whether the robot touches free cells only, all the way straight ahead from a to b."""
         reach = footprint.radius + MARGIN + CELL
@@ -135,18 +159,20 @@ def _shorten(
     pieces = [_connect(a, b) for a, b in pairwise(poses)]
     plain = _elapsed(pieces, robot)
     table = np.array([[p.x, p.y, p.yaw] for p in poses])
+    saved = plain - plain[:, None] - _direct(table[:, None], table, robot)
     kept: list[Motion] = []
     at = 0
     while at < len(poses) - 1:
         to, motions = at + 1, pieces[at]
-        saved = plain[at + 2 :] - plain[at] - _direct(table[at], table[at + 2 :], robot)
-        for further in np.flatnonzero(saved > 1e-9)[::-1].tolist():
+        worth = at + 2 + np.flatnonzero(saved[at, at + 2 :] > 1e-9)[::-1]
+        clear, blocked = cells.obvious_drives(table[at, :2], table[worth, :2], robot.footprint)
+        for further, sure in zip(worth[~blocked].tolist(), clear[~blocked].tolist(), strict=True):
             # The drive first: it is what fails most.
-            if not cells.clear_drive(poses[at], poses[at + 2 + further], robot.footprint):
+            if not sure and not cells.clear_drive(poses[at], poses[further], robot.footprint):
                 continue
-            short_cut = _connect(poses[at], poses[at + 2 + further])
+            short_cut = _connect(poses[at], poses[further])
             if all(cells.clear_turn(m.start, m.turn, robot.footprint) for m in short_cut if m.turn):
-                to, motions = at + 2 + further, short_cut
+                to, motions = further, short_cut
                 break
         kept += motions
         at = to
@@ -170,14 +196,14 @@ def _elapsed(pieces: list[list[Motion]], robot: RobotSpec) -> NDArray[np.float64
 def _direct(
     here: NDArray[np.float64], there: NDArray[np.float64], robot: RobotSpec
 ) -> NDArray[np.float64]:
-    """s to turn towards each of the poses `there`, shape (n, 3) as x, y, yaw, drive to it, and turn
-    as it asks, from the pose `here`."""
-    x, y = there[:, 0] - here[0], there[:, 1] - here[1]
+    """s to turn from each of the poses `here` towards one of `there`, drive to it, and turn as it
+    asks. Poses are x, y, yaw; the arrays are broadcast."""
+    x, y, yaw = there[..., 0] - here[..., 0], there[..., 1] - here[..., 1], there[..., 2]
     length, towards = np.hypot(x, y), np.arctan2(y, x)
     drives = length >= _SAME_PLACE
-    first = np.where(drives, towards, there[:, 2]) - here[2]
-    last = np.where(drives, there[:, 2] - towards, 0.0)
-    seconds = np.zeros(len(there))
+    first = np.where(drives, towards, yaw) - here[..., 2]
+    last = np.where(drives, yaw - towards, 0.0)
+    seconds = np.zeros(length.shape)
     for angle in (first, last):
         size = np.abs((angle + np.pi) % (2 * np.pi) - np.pi)
         turns = size / robot.real_speed(MotionKind.TURN) + robot.calibration.turn.lost

@@ -10,6 +10,7 @@ from hypothesis import strategies as st
 from argo_compiler.model import Pose
 from argo_env.navigation import Blockage, UnreachableError
 from tests.conftest import examples
+from tests.yard import yard
 
 FLIGHT = Blockage((3.0, 1.0, 3.5, 2.1), 1.0, "the stairs are blocked")
 
@@ -45,7 +46,8 @@ def test_no_way_leads_over_what_is_closed(hall, robot, x, y, width, depth, seed)
         Pose(x=px, y=py, z=pz, yaw=yaw)
         for px, py, pz, yaw in hall.lattice.poses(random.choice(ground, 3)).tolist()
     ]
-    for start in poses:
+    # A robot that is on what is closed can only go off it.
+    for start in (p for p in poses if not over(p, robot.footprint, rect)):
         for goal in poses:
             try:
                 path = avoiding.plan(start, goal)
@@ -133,3 +135,13 @@ def test_states_over_it_are_closed_and_no_others(hall, robot):
             wide = (rect[0] - 0.06, rect[1] - 0.06, rect[2] + 0.06, rect[3] + 0.06)
             assert over(pose, robot.footprint, wide, margin=0.02), pose
     assert (closed.state_of >= 0).sum() == lattice.size - gone.sum()
+
+
+def test_without_a_way_round_there_is_none():
+    """Within one region, small and without landmarks."""
+    navigator = yard()
+    wall = Blockage((3.4, 0.0, 3.6, 5.0), 0.02, "a trench")
+    start, goal = Pose(x=1.55, y=1.55, z=0.02), Pose(x=5.55, y=2.55, z=0.02)
+    assert navigator.plan(start, goal).length > 4.0
+    with pytest.raises(UnreachableError, match="a trench"):
+        navigator.avoiding([wall]).plan(start, goal)

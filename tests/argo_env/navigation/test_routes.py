@@ -7,6 +7,7 @@ from hypothesis import strategies as st
 from scipy.sparse.csgraph import dijkstra
 
 from argo_compiler.model import Pose
+from argo_env.navigation import Blockage
 from argo_env.navigation.regions import find_cuts, make_partition
 from argo_env.navigation.routes import Routes
 from tests.conftest import examples
@@ -76,6 +77,35 @@ def test_the_best_of_several_goals(hall, found, seed):
     total = dijkstra(lattice.costs, indices=source)[goals] + extra
     arrived = extra[[k for k, goal in enumerate(goals) if goal == way[-1]]].min()
     assert cost(lattice, way) + arrived == pytest.approx(total.min(), abs=1e-6)
+
+
+@settings(max_examples=examples(3), deadline=None)
+@given(seed=st.integers(0, 10**6), closing=st.booleans())
+def test_landmarks_of_a_large_region_lose_no_way(navigator, umad, seed, closing):
+    """Also where moves are gone since the landmarks were found, and to the best of many goals."""
+    random = np.random.default_rng(seed)
+    if closing:
+        x, y = random.uniform((2.0, -3.0), (14.0, 12.0)).tolist()
+        navigator = navigator.avoiding(
+            [Blockage((x, y, x + 1.5, y + 1.5), umad.spec.ground_z, "a brick")]
+        )
+    lattice = navigator.lattice
+    found = navigator._routes
+    ground = np.flatnonzero(np.abs(lattice.poses()[:, 2] - umad.spec.ground_z) < 0.1)
+    sources, goals = random.choice(ground, size=(2, 3))
+    extra = random.uniform(0.0, 20.0, 3)
+    costs = dijkstra(lattice.costs, indices=sources)
+    for source, reference in zip(sources.tolist(), costs, strict=True):
+        wanted = [(goals[[k]], np.zeros(1), reference[goals[k]]) for k in range(3)]
+        wanted.append((goals, extra, (reference[goals] + extra).min()))
+        for ends, more, least in wanted:
+            way = found.find(source, (ends, more))
+            if way is None:
+                assert least == np.inf
+                continue
+            arrived = more[ends == way[-1]].min()
+            assert way[0] == source
+            assert cost(lattice, way) + arrived == pytest.approx(least, abs=1e-6)
 
 
 def test_what_was_asked_before_makes_no_difference(hall, found):

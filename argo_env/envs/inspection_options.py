@@ -1,0 +1,52 @@
+"""What the caller of Inspect-v0 may ask for, and the faults that are drawn."""
+
+from typing import Annotated, cast
+
+import numpy as np
+from pydantic import Field
+
+from argo_compiler.model import Model
+from argo_env.events.kinds import KINDS, AnyFault
+from argo_env.events.machine import EmergencyStop
+from argo_env.robot.route import RouteDrive
+from argo_env.site import Site
+
+
+class InspectOptions(Model):
+    """What `reset(options=...)` of Inspect-v0 may say."""
+
+    scenario: str | None = None
+    floor: int | tuple[int, ...] = ()
+    faults: Annotated[int, Field(ge=0, le=8)] | tuple[AnyFault, ...] | None = None
+    seed: int | None = Field(default=None, ge=0)
+
+    @property
+    def floors(self) -> tuple[int, ...]:
+        return (self.floor,) if isinstance(self.floor, int) else self.floor
+
+
+def draw_faults(
+    count: int, drive: str, site: Site, rng: np.random.Generator
+) -> tuple[AnyFault, ...]:
+    """Up to `count` faults of different kinds, of those that the drive can find on the site."""
+    paper = drive == RouteDrive.name
+    kinds = [
+        kind
+        for kind, model in KINDS.items()
+        if not (model.needs_world and paper) and (kind != "abnormal_pump" or _has_pump(site))
+    ]
+    drawn = [kinds[k] for k in rng.permutation(len(kinds))[:count]]
+    return tuple(_fault(kind, rng) for kind in drawn)
+
+
+def _has_pump(site: Site) -> bool:
+    return any(floor.pumps for floor in site.spec.floors)
+
+
+def _fault(kind: str, rng: np.random.Generator) -> AnyFault:
+    """A fault of that kind, what matters drawn by the run's seed; someone releases an emergency
+    stop after a minute."""
+    if kind == "emergency_stop":
+        at = round(float(rng.uniform(0.0, 600.0)), 1)
+        return EmergencyStop(at=at, until=at + 60.0)
+    return cast("AnyFault", KINDS[kind].model_validate({}))

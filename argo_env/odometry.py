@@ -56,6 +56,8 @@ class Odometry:
         self._contacts.restore(entry.touching)
         if self._battery and entry.charge is not None:
             self._battery.charge = entry.charge
+            # If it does not stand there, the next step shows it.
+            self.charging = entry.charge < 1.0 and self._docked(entry.body_pose)
 
     def close(self) -> None:
         """No contact goes on any longer."""
@@ -92,6 +94,12 @@ class Odometry:
         power = self._robot.power
         watts = load(power, before, after, seconds, measuring)
         stands = watts in (power.standing, power.measuring)
-        docked = stands and any(at_dock(after, dock) for dock in self._site.docks.values())
+        docked = stands and self._docked(after)
         self.charging = docked and self._battery.charge < 1.0
-        self._battery.use(watts - power.charging if self.charging else watts, seconds)
+        if docked:
+            # The station powers the robot, and what it gives besides goes into the battery.
+            watts = -power.charging if self.charging else 0.0
+        self._battery.use(watts, seconds)
+
+    def _docked(self, pose: BodyPose) -> bool:
+        return any(at_dock(pose, dock) for dock in self._site.docks.values())

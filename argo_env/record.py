@@ -109,7 +109,7 @@ class Mishap(Model):
     """s"""
     trouble: Trouble
     detail: str
-    """in a few words, such as `of 0.45 m went 0.09 m`"""
+    """in a few words, such as `made 0.09 m of 0.45 m commanded`"""
     place: Vector
     """m"""
     floor: int

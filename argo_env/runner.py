@@ -107,9 +107,10 @@ class MissionRunner:
         self._rig.drive.place(last.body_pose if last else self._start_pose())
         if self._rig.schedule:
             self._rig.schedule.advance(self._now)
-        if last:
+        if self._journal and last:
             self._odometry.restore(last)
-            self._perception.remember(self._log.anomalies, self._now)
+            told = [(a, e.body_pose) for e in self._journal.entries for a in e.found]
+            self._perception.remember(told, self._now)
         if last is None or not last.ended:
             resumed = last is not None and not self._executor.finished
             self._recorder = recorder
@@ -169,7 +170,7 @@ class MissionRunner:
         if self._odometry.empty:
             return f"the battery was empty after {now:.0f} s"
         waits = executor.running is None and executor.next_deadline is None
-        held = isinstance(self._rig.drive, Powertrain) and self._rig.drive.held
+        held = isinstance(self._rig.drive, Powertrain) and self._rig.drive.pressed
         if not (waits or held) or self._given.pending or self._odometry.charging:
             return None
         since = self._log.last_event

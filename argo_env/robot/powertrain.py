@@ -1,4 +1,4 @@
-"""The drive with what can stop it: an emergency stop, an empty battery, a dysfunction."""
+"""The drive with what can stop it: an emergency stop, a dysfunction."""
 
 import math
 from collections.abc import Sequence
@@ -20,8 +20,6 @@ class Powertrain:
         self.time_step = drive.time_step
         self.pressed = False
         """whether the emergency stop is pressed: brakes hold the robot where it is"""
-        self.dead = False
-        """whether the battery gives no power"""
         self.share = 1.0
         """of its speed that the drive makes"""
         self.way: tuple[Path, float | None] | None = None
@@ -43,11 +41,6 @@ class Powertrain:
     def incidents(self) -> Sequence[Incident]:
         return self._drive.incidents
 
-    @property
-    def held(self) -> bool:
-        """Whether it can't move, whatever it is told."""
-        return self.pressed or self.dead
-
     def place(self, pose: BodyPose) -> None:
         """Puts the robot there, at rest."""
         self.way = None
@@ -66,7 +59,7 @@ class Powertrain:
 
     def step(self) -> DriveStatus:
         """Goes on for one time step; a robot that is slowed makes fewer of the drive's steps."""
-        if self.held:
+        if self.pressed:
             return DriveStatus.ARRIVED if self.way is None else DriveStatus.MOVING
         if self.way is not None:
             self._credit += self.share

@@ -12,7 +12,7 @@ from argo_env.robot.tracked.body import TIME_STEP, TrackedBody
 from argo_env.robot.tracked.flippers import CAREFUL, Flight, Flippers, find_flight
 from argo_env.robot.tracked.follower import Follower
 from argo_env.robot.tracked.recovery import ATTEMPTS, GOING_ON, Phase, phases
-from argo_env.robot.tracked.watch import Watch
+from argo_env.robot.tracked.watch import WINDOW, Watch
 from argo_env.world import Touch, World
 
 _CONTROL = 0.05  # s between commands
@@ -44,7 +44,7 @@ class TrackedDrive:
         self._follower: Follower | None = None
         self._flippers = Flippers()
         self._flight: tuple[Motion, Flight] | None = None
-        self._watch = Watch(_CONTROL)
+        self._watch = Watch(self.time_step)
         self._phases: deque[Phase] = deque()
         self._phase_left = 0.0
         self._attempts = 0
@@ -162,7 +162,8 @@ class TrackedDrive:
         if self._attempts >= ATTEMPTS:
             self._failure = (
                 f"the robot is stuck at {at}{f' against {against}' if against else ''}: "
-                f"{incident.detail} within 3 s, and backing off {ATTEMPTS} times did not help"
+                f"{incident.detail} within {WINDOW:.0f} s, and backing off {ATTEMPTS} times did "
+                "not help"
             )
             return
         motion = self._follower.motion

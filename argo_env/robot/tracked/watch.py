@@ -8,7 +8,7 @@ from argo_env.navigation.path import wrap
 from argo_env.robot.drive import Incident, Trouble
 from argo_env.robot.pose import BodyPose
 
-WINDOW = 3.0  # s that are looked back
+WINDOW = 5.0  # s that are looked back; as it tips over an edge, a robot loses half its way for 3 s
 _LEAST_WAY = 0.12  # m commanded within the window, from which a way is judged
 _LEAST_TURN = math.radians(15.0)
 _STUCK = 0.2  # share of what was commanded, under which the robot is stuck
@@ -61,8 +61,8 @@ class Watch:
         if (way <= _LEAST_WAY and turn <= _LEAST_TURN) or share >= _SLIPPING:
             return None
         detail = (
-            f"of {way:.2f} m went {went:.2f} m"
+            f"made {went:.2f} m of {way:.2f} m commanded"
             if way > _LEAST_WAY
-            else f"of {math.degrees(turn):.0f}° turned {math.degrees(turned):.0f}°"
+            else f"turned {math.degrees(turned):.0f}° of {math.degrees(turn):.0f}° commanded"
         )
         return Incident(Trouble.STUCK if share < _STUCK else Trouble.SLIPPING, detail, pose)

@@ -28,8 +28,10 @@ POSITION_ERROR, HEIGHT_ERROR = 0.01, 0.003
 YAW_ERROR, PITCH_ERROR = math.radians(0.3), math.radians(0.1)
 """rad"""
 _STEPS = 0.025 * np.arange(-3, 4)
-ELSEWHERE = np.stack(np.meshgrid(_STEPS, _STEPS), axis=-1).reshape(-1, 2)
-"""m: where else the robot may be; what the map explains from any of these places is no finding"""
+_RISES = 0.015 * np.arange(-1, 2)
+ELSEWHERE = np.stack(np.meshgrid(_STEPS, _STEPS, _RISES), axis=-1).reshape(-1, 3)
+"""m: where else the robot may be; what the map explains from any of these places is no finding. Up
+and down too, for rays that pass just over the edges of treads"""
 PLANAR = 0.035  # m off the plane that the robot stands on within which the lane is as it should be
 RAISED, SUNK = 0.05, 0.08
 """m above or below all that the map lets expect from which something is wrong"""
@@ -151,12 +153,11 @@ class TerrainScanner:
     ) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
         """The least and the most that the map lets expect below the plane of the lane, if the
         robot is not where it believes to be."""
-        places = np.column_stack([ELSEWHERE, np.zeros(len(ELSEWHERE))])
-        origins = origin + np.repeat(places, len(rays), axis=0)
+        origins = origin + np.repeat(ELSEWHERE, len(rays), axis=0)
         reach, planar, fall = pattern.reach[rays], pattern.planar[rays], pattern.fall[rays]
-        many = np.tile(directions, (len(places), 1))
+        many = np.tile(directions, (len(ELSEWHERE), 1))
         depth, _ = self._map.distances(origins, many, float(reach.max()))
-        expected = (np.minimum(depth.reshape(len(places), -1), reach) - planar) * fall
+        expected = (np.minimum(depth.reshape(len(ELSEWHERE), -1), reach) - planar) * fall
         return expected.min(axis=0), expected.max(axis=0)
 
     def _localised(self, pose: BodyPose) -> BodyPose:

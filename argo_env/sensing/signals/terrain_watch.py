@@ -12,7 +12,13 @@ from argo_env.navigation.blockage import LAYER, Blockage
 from argo_env.navigation.path import wrap
 from argo_env.robot.pose import BodyPose
 from argo_env.sensing.signals.frames import point
-from argo_env.sensing.signals.terrain_scanner import Pattern, Scan, TerrainScanner, make_pattern
+from argo_env.sensing.signals.terrain_scanner import (
+    RAISED,
+    Pattern,
+    Scan,
+    TerrainScanner,
+    make_pattern,
+)
 from argo_env.sensing.watch import Finding
 from argo_env.site.spec import Rect
 
@@ -136,6 +142,8 @@ class TerrainWatch:
                 lowest = scan.hits[rays][scan.hits[rays][:, 2].argmin()]
                 z = self._scanner.ground_below(lowest + LIFT) or z
             z, height = round(z, 3), float(scan.hits[rays][:, 2].max()) - z
+            if kind is EventKind.POSITIVE_OBSTACLE and height < RAISED:
+                continue  # an edge that is not quite where it is believed to be
             findings.append(_finding(kind, (x0, y0, x1, y1), z, height))
             self._told.append(_Told(kind, (x0, y0, x1, y1), z))
         return findings

@@ -10,7 +10,7 @@ from argo_env.navigation.path import Motion, Path, wrap
 from argo_env.robot.drive import DriveStatus, Trouble
 from argo_env.robot.pose import BodyPose
 from argo_env.robot.tracked.drive import TrackedDrive
-from argo_env.robot.tracked.watch import Watch
+from argo_env.robot.tracked.watch import WINDOW, Watch
 
 TOWERS = {"west": ((1.9, 2.8), (1.9, 7.95)), "east": ((12.3, 5.55), (12.3, 5.55))}
 
@@ -179,6 +179,17 @@ def test_a_wall_in_the_way_is_told_after_recovery_was_tried(drive):
     assert status is DriveStatus.ARRIVED
 
 
+def test_being_stuck_is_noticed_within_the_window(drive):
+    drive.place(BodyPose(1.9, 7.7, 0.0, 0.0))
+    drive.begin(straight(at(1.9, 7.7, 0.0), 2.3), None)
+    farthest, standing = -math.inf, 0.0
+    while not drive.incidents:
+        assert drive.step() is DriveStatus.MOVING
+        standing = 0.0 if drive.pose.x > farthest + 0.01 else standing + drive.time_step
+        farthest = max(farthest, drive.pose.x)
+    assert 0.4 * WINDOW <= standing <= WINDOW
+
+
 def test_tipping_over_is_told(drive):
     drive.place(BodyPose(5.0, -2.05, 0.6, 0.0, math.radians(75)))
     drive.begin(straight(at(5.0, -2.05, -0.03), 2.0), None)
@@ -193,9 +204,9 @@ def test_tipping_over_is_told(drive):
 
 
 def look(watch, speeds, moved, rate=0.0, turned=0.0):
-    """What the watch says last, when the robot is commanded and moves like that for 4 s."""
+    """What the watch says last, when the robot is commanded and moves like that for long enough."""
     incident, x, yaw = None, 0.0, 0.0
-    for _ in range(80):
+    for _ in range(round((WINDOW + 1.0) / 0.05)):
         x, yaw = x + 0.05 * moved, yaw + 0.05 * turned
         incident = watch.look(BodyPose(x, 0.0, 0.0, yaw), 0.0, speeds, rate)
     return incident and incident.trouble

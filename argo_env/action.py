@@ -188,8 +188,12 @@ class ActionUnderWay:
                 return self._go_back()
             path = self._path()
         except UnreachableError as error:
-            # From where there is room to turn there may be a way.
-            return self._go_back() if may_retreat else ActionFailed(self.task.name, str(error))
+            if may_retreat:
+                # From where there is room to turn there may be a way.
+                return self._go_back()
+            if self._views > 1:
+                return self._look_again(str(error))
+            return ActionFailed(self.task.name, str(error))
         except ArgoError as error:
             return ActionFailed(self.task.name, str(error))
         self.path = self._came = path
@@ -283,8 +287,9 @@ class ActionUnderWay:
     def _path(self) -> Path:
         start = _standing(self._rig.drive.pose)
         if self.task.action is Action.MEASURE:
-            self._views = 1
-            return self._rig.navigator.plan_to_view(start, self._checkpoint_id())
+            self._views = max(1, self._views)
+            turned = TURNS[self._views - 1]
+            return self._rig.navigator.plan_to_view(start, self._checkpoint_id(), turned)
         if self.task.pose is None:
             raise UnreachableError(f"task {self.task.name} has no pose")
         return self._rig.navigator.plan(start, self.task.pose)

@@ -2,21 +2,20 @@
 once, also when the run has been resumed meanwhile."""
 
 import math
-from collections.abc import Iterable, Sequence
+from collections.abc import Sequence
 
 from argo_compiler.il import EventKind
 from argo_env.navigation import Blockage
 from argo_env.record import DIGITS, Anomaly, Reading
 from argo_env.robot.pose import BodyPose
 from argo_env.sensing.signals.terrain_watch import KNOWN, ObstacleFinding
-from argo_env.sensing.watch import Finding, Watch
+from argo_env.sensing.watch import Finding, RememberingWatch, Told, Watch
 from argo_env.site import Site
 from argo_env.site.shapes import Vector
 
 OBSTACLES = frozenset({EventKind.POSITIVE_OBSTACLE, EventKind.NEGATIVE_OBSTACLE})
 _AROUND = 0.25  # m about the place of an obstacle whose extent was not seen
-_SAME_PLACE = 1.0  # m within which two findings of a kind are one, after a run was resumed
-_SAME_TIME = 15.0  # s after a run was resumed in which what has no place may be told again
+_SAME_PLACE = 1.0  # m within which a watch finds the same again, after a run was resumed
 
 
 class Perception:
@@ -32,11 +31,15 @@ class Perception:
             for k, (watch, steps) in enumerate(zip(watches, every, strict=True))
         ]
         self._known: list[Anomaly] = []
-        self._resumed = -math.inf
 
-    def remember(self, told: Iterable[Anomaly], now: float) -> None:
-        """The run goes on at time `now` (s) after these have been told; the watches are new."""
-        self._known, self._resumed = list(told), now
+    def remember(self, told: Sequence[tuple[Anomaly, BodyPose]], now: float) -> None:
+        """The run goes on at time `now` (s) after these have been told, with the robot at these
+        poses; the watches are new."""
+        self._known = [anomaly for anomaly, _ in told]
+        for watch, _, _ in self._turns:
+            if isinstance(watch, RememberingWatch):
+                own = [Told(a.kind, pose) for a, pose in told if a.source == watch.name]
+                watch.remember(own, now)
 
     def look(self, step: int, now: float, pose: BodyPose) -> tuple[Anomaly, ...]:
         """What is found in the step of that number, at time `now` (s) with the robot at `pose`."""
@@ -44,19 +47,16 @@ class Perception:
         for watch, every, turn in self._turns:
             if step % every == turn:
                 for finding in watch.look(now, pose):
-                    if not self._was_told(finding, now):
+                    if not self._was_told(watch, finding):
                         found.append(self._anomaly(watch, finding, now))
         return tuple(found)
 
-    def _was_told(self, finding: Finding, now: float) -> bool:
+    def _was_told(self, watch: Watch, finding: Finding) -> bool:
+        if finding.place is None or isinstance(watch, RememberingWatch):
+            return False
         for known in self._known:
-            if known.kind is not finding.kind:
-                continue
-            if finding.kind in OBSTACLES and known.place and finding.place:
-                same = math.dist(known.place, finding.place) <= _SAME_PLACE
-            else:
-                same = now - self._resumed <= _SAME_TIME
-            if same:
+            same = (known.kind, known.source) == (finding.kind, watch.name)
+            if same and known.place and math.dist(known.place, finding.place) <= _SAME_PLACE:
                 self._known.remove(known)
                 return True
         return False

@@ -1,6 +1,6 @@
 """Reads a model from a YAML file, with errors that say where the file is wrong."""
 
-from collections.abc import Hashable, Iterator
+from collections.abc import Hashable, Iterator, Mapping
 from pathlib import Path
 from typing import Any, NamedTuple, TypeVar
 
@@ -12,6 +12,7 @@ from argo_compiler.errors import ArgoError
 from argo_compiler.fields import field_hint
 from argo_compiler.json_places import JsonPath, format_path
 from argo_compiler.model import Model
+from argo_env.yaml_messages import message_of
 
 MAX_FINDINGS = 20
 
@@ -42,9 +43,10 @@ def read_yaml(
     not_yaml: str,
     duplicate_key: str,
     wrong_field: str,
+    no_field: Mapping[str, str] | None = None,
 ) -> ModelT:
-    """The model in a YAML file. `things` names what the file holds, such as `sites`; the last
-    three are the codes of findings.
+    """The model in a YAML file. `things` names what the file holds, such as `sites`; the next
+    three are the codes of findings. `no_field` has hints for fields that only some things have.
 
     Raises ArgoError if the file can't be read, and DiagnosticError if it is no such thing.
     """
@@ -62,7 +64,7 @@ def read_yaml(
     try:
         found = model.model_validate(data)
     except ValidationError as error:
-        for flaw in _wrong_fields(error, model, things, tree, data):
+        for flaw in _wrong_fields(error, model, things, no_field or {}, tree, data):
             findings.append(_diagnostic(wrong_field, flaw))
     if findings:
         raise _error(path, text, findings)
@@ -107,7 +109,12 @@ def _diagnostic(code: str, flaw: _Flaw) -> Diagnostic:
 
 
 def _wrong_fields(
-    error: ValidationError, model: type[Model], things: str, tree: yaml.Node | None, data: Any
+    error: ValidationError,
+    model: type[Model],
+    things: str,
+    no_field: Mapping[str, str],
+    tree: yaml.Node | None,
+    data: Any,
 ) -> Iterator[_Flaw]:
     faults = error.errors(include_url=False)[:MAX_FINDINGS]
     faulty = {fault["loc"][:end] for fault in faults for end in range(len(fault["loc"]))}
@@ -115,10 +122,12 @@ def _wrong_fields(
         if fault["type"] == "too_short" and fault["loc"] in faulty:
             continue  # of what is in it nothing was left
         path = fault.get("ctx", {}).get("path") or _in_file(fault["loc"], data)
-        message, hint = fault["msg"].removeprefix("Value error, "), None
+        message, hint = message_of(fault, path), _beginning(model, fault["loc"])
         unknown = fault["type"] == "extra_forbidden"
         if unknown:
             message, hint = f"{things} have no such field", field_hint(model, fault["loc"])
+            if len(path) > 1:
+                hint = no_field.get(str(path[-1]), hint)
         elif fault["type"] == "duplicate":
             hint = "give each a name or number of its own"
         elif fault["type"] in {"union_tag_invalid", "union_tag_not_found"}:
@@ -126,9 +135,17 @@ def _wrong_fields(
             message = f"no kind `{context['tag']}`" if "tag" in context else "it has no `kind`"
             hint = f"there are: {context['expected_tags']}" if "tag" in context else "give its kind"
         subject = format_path(path)
-        whole = f"the {things.removesuffix('s')}"
+        whole = "the file" if fault["type"] == "model_type" else f"the {things.removesuffix('s')}"
         yield _Flaw(f"{subject or whole}: {message}", hint, subject or None,
                     _place(tree, path, key=unknown))  # fmt: skip
+
+
+def _beginning(model: type[Model], path: JsonPath) -> str | None:
+    """How a file begins that holds one list and nothing else, if that is what is wrong."""
+    names = list(model.model_fields)
+    if len(names) == 1 and path in {(), (names[0],)}:
+        return f"begin with `{names[0]}:` and a list below it"
+    return None
 
 
 def _in_file(path: JsonPath, data: Any) -> JsonPath:

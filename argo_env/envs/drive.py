@@ -13,8 +13,9 @@ from argo_compiler.errors import ArgoError
 from argo_env.envs import lidar
 from argo_env.envs.drive_site import DriveSite
 from argo_env.envs.drive_sites import DriveOptions, DriveSites
+from argo_env.envs.episode import Parts, check_begun, check_state, check_under_way, no_state
 from argo_env.envs.observations import Observation, dict_space
-from argo_env.envs.options import read_options
+from argo_env.envs.options import check_positive, read_options
 from argo_env.envs.rendering import Rendering, check_render_mode
 from argo_env.navigation.path import wrap
 from argo_env.robot.pose import BodyPose
@@ -35,6 +36,10 @@ PROGRESS, GOAL, TIPPING, CONTACT, TIME = 0.1, 10.0, -10.0, -0.05, -0.01
 _NEAREST = 5.0  # s that a start is away from its goal at least
 _FAR = (20.0, 20.0, 10.0)  # m that are 1 in the observation of the goal
 _LONG = 300.0  # s, likewise
+_STATE: Parts = {
+    "scenario": str, "options": dict, "start": (tuple, list), "goal": (tuple, list),
+    "actions": (tuple, list), "generator": dict,
+}  # fmt: skip
 
 
 class DriveEnv(Rendering, gym.Env[Observation, NDArray[np.float32]]):
@@ -129,8 +134,7 @@ class DriveEnv(Rendering, gym.Env[Observation, NDArray[np.float32]]):
     ) -> None:
         """Raises ArgoError if there is no such scenario or render mode."""
         check_render_mode(render_mode, self.metadata["render_modes"])
-        if time_limit <= 0 or max_way <= 0:
-            raise ArgoError("time_limit and max_way must be more than 0 s")
+        check_positive(self._title, time_limit=time_limit, max_way=max_way)
         self.render_mode = render_mode
         self._max_way = max_way
         self._limit = round(time_limit / PERIOD)
@@ -147,6 +151,7 @@ class DriveEnv(Rendering, gym.Env[Observation, NDArray[np.float32]]):
         self.action_space = spaces.Box(-1.0, 1.0, (3,), np.float32)
         self._sites = DriveSites((scenario,) if isinstance(scenario, str) else tuple(scenario))
         self._site = self._sites.make(self._sites.names[0])
+        self._over: bool | None = None
 
     # -- the environment
 
@@ -155,7 +160,9 @@ class DriveEnv(Rendering, gym.Env[Observation, NDArray[np.float32]]):
     ) -> tuple[Observation, dict[str, Any]]:
         super().reset(seed=seed)
         if options is not None:
-            self._sites.choose(read_options(DriveOptions, options, "argo/Drive-v0"))
+            self._sites.choose(read_options(DriveOptions, options, self._title))
+        # Until the new episode has begun there is none.
+        self._over = None
         rng, chosen = self.np_random, self._sites.options
         names = self._sites.names
         name = names[int(rng.integers(len(names)))]
@@ -169,23 +176,19 @@ class DriveEnv(Rendering, gym.Env[Observation, NDArray[np.float32]]):
         x, y, z = starts[int(rng.integers(len(starts)))].tolist()
         self._begin(name, (x, y, z, float(rng.uniform(-math.pi, math.pi))), goal)
         observation = self._observe()
+        self._over = False
         self._show()
         return observation, {"goal": self._goal, "scenario": self._site.site.name}
 
     def step(
         self, action: NDArray[np.float32]
     ) -> tuple[Observation, float, bool, bool, dict[str, Any]]:
-        site, body = self._site, self._site.body
-        ahead, turn, flipper = np.clip(np.asarray(action, dtype=np.float64), -1.0, 1.0).tolist()
-        self._drive((ahead, turn, flipper))
+        check_under_way(self._over, self._title)
+        body = self._site.body
+        self._drive(self._read_action(action))
         before = self._togo
         observation = self._observe()
-        pose = self._pose
-        flat = math.hypot(pose.x - self._goal[0], pose.y - self._goal[1])
-        success = flat <= REACHED and abs(pose.z - self._goal[2]) <= REACHED
-        lowest = site.site.spec.ground_z - 1.0
-        upright = math.cos(pose.pitch) * math.cos(body.roll)
-        tipped = upright < math.cos(TIPPED) or pose.z < lowest
+        success, tipped = self._success, self._tipped
         touches = body.touches()
         terms = {
             "progress": PROGRESS * (before - self._togo),
@@ -201,22 +204,26 @@ class DriveEnv(Rendering, gym.Env[Observation, NDArray[np.float32]]):
             "touched": ", ".join(sorted({touch.element for touch in touches})),
             "time": self._time,
         }
-        self._show()
         truncated = len(self._actions) >= self._limit and not terminated
+        self._over = terminated or truncated
+        self._show()
         return observation, sum(terms.values()), terminated, truncated, info
 
     def close(self) -> None:
         self._sites.close()
+        self._over = None
         super().close()
 
     @property
     def pose(self) -> BodyPose:
         """Where the robot is in truth."""
+        check_begun(self._over, self._title)
         return self._pose
 
     @property
     def goal(self) -> Place:
         """x, y, z (m) of this episode's goal."""
+        check_begun(self._over, self._title)
         return self._goal
 
     @property
@@ -228,6 +235,7 @@ class DriveEnv(Rendering, gym.Env[Observation, NDArray[np.float32]]):
 
     def get_state(self) -> dict[str, Any]:
         """All that the future depends on, as plain data that can be pickled."""
+        check_begun(self._over, self._title)
         return {
             "scenario": self._name,
             "options": self._sites.options.model_dump(mode="json", exclude_unset=True),
@@ -238,14 +246,22 @@ class DriveEnv(Rendering, gym.Env[Observation, NDArray[np.float32]]):
         }
 
     def set_state(self, state: Mapping[str, Any]) -> Observation:
-        """Goes on from what `get_state` gave; returns the observation of that moment."""
-        self._sites.choose(read_options(DriveOptions, state["options"], "argo/Drive-v0"))
+        """Goes on from what `get_state` gave; returns the observation of that moment. Raises
+        ArgoError if it is no state of this environment."""
+        check_state(state, _STATE, self._title)
+        if len(state["start"]) != 4 or len(state["goal"]) != 3:
+            raise no_state(self._title)
+        actions = [self._read_action(action) for action in state["actions"]]
+        self._sites.choose(read_options(DriveOptions, state["options"], self._title))
+        self._over = None
         self._begin(state["scenario"], state["start"], state["goal"])
-        for action in state["actions"]:
+        for action in actions:
             self._drive(action)
         self._site.body.touches()
         self.np_random.bit_generator.state = state["generator"]
-        return self._observe()
+        observation = self._observe()
+        self._over = self._success or self._tipped or len(self._actions) >= self._limit
+        return observation
 
     # -- inside
 
@@ -261,6 +277,30 @@ class DriveEnv(Rendering, gym.Env[Observation, NDArray[np.float32]]):
         self._site.body.touches()
         self._site.forget_view()
         self._actions: list[Action] = []
+
+    def _read_action(self, action: Any) -> Action:
+        """The action, numbers beyond -1 and 1 taken as these; ArgoError if it is none."""
+        try:
+            values = np.asarray(action, dtype=np.float64)
+        except (TypeError, ValueError):
+            values = np.empty(0)
+        if values.shape != (3,) or not np.isfinite(values).all():
+            raise ArgoError(f"{self._title}: no action {action!r}; it is three numbers, -1 to 1")
+        ahead, turn, flipper = np.clip(values, -1.0, 1.0).tolist()
+        return ahead, turn, flipper
+
+    @property
+    def _success(self) -> bool:
+        """Whether the robot was at its goal when it was last observed."""
+        pose, (x, y, z) = self._pose, self._goal
+        return math.hypot(pose.x - x, pose.y - y) <= REACHED and abs(pose.z - z) <= REACHED
+
+    @property
+    def _tipped(self) -> bool:
+        """Whether it has tipped over or fallen."""
+        pose, site = self._pose, self._site
+        upright = math.cos(pose.pitch) * math.cos(site.body.roll)
+        return upright < math.cos(TIPPED) or pose.z < site.site.spec.ground_z - 1.0
 
     def _drive(self, action: Action) -> None:
         """Carries an action out for 0.1 s."""
@@ -308,4 +348,5 @@ class DriveEnv(Rendering, gym.Env[Observation, NDArray[np.float32]]):
 
     def _picture(self) -> NDArray[np.uint8]:
         """The robot from behind."""
+        check_begun(self._over, self._title)
         return self._site.picture(self._pose, math.degrees(self._site.body.flipper))

@@ -8,6 +8,7 @@ from argo_env.envs.drive_site import DriveSite
 from argo_env.events.kinds import AnyFault
 
 _KEPT = 4  # sites that are kept ready
+_NO_SITE = "argo/Drive-v0 needs a `scenario`: the name of a site, or of several"
 
 
 class DriveOptions(Model):
@@ -27,6 +28,8 @@ class DriveSites:
     """Makes the sites that the options ask for, and `scenarios` where they name none; close it."""
 
     def __init__(self, scenarios: tuple[str, ...]) -> None:
+        if not scenarios:
+            raise ArgoError(_NO_SITE)
         self.options = DriveOptions()
         self._scenarios = scenarios
         self._ready: dict[str, DriveSite] = {}
@@ -34,34 +37,44 @@ class DriveSites:
     @property
     def names(self) -> tuple[str, ...]:
         """Of the sites that an episode may be on."""
-        given = self.options.scenario
+        return self._names(self.options)
+
+    def _names(self, options: DriveOptions) -> tuple[str, ...]:
+        given = options.scenario
         return self._scenarios if given is None else (given,) if isinstance(given, str) else given
 
     def choose(self, options: DriveOptions) -> None:
-        """Takes the options on; ArgoError if a site does not have what they ask for."""
-        before = self.options
-        if options.faults != before.faults:
-            self.close()
-        self.options = options
+        """Takes the options on; ArgoError if a site does not have what they ask for, and then all
+        is as it was."""
+        names = self._names(options)
+        if not names:
+            raise ArgoError(_NO_SITE)
+        same = options.faults == self.options.faults
+        made: dict[str, DriveSite] = {}
         try:
-            for name in self.names:
-                site = self.make(name)
+            for name in names:
+                site = self._ready.get(name) if same else None
+                if site is None:
+                    site = made.pop(name, None) or DriveSite(name, options.faults)
+                    _keep(made, name, site)
                 for floor in options.floors:
                     if floor not in site.guide.floors:
                         known = ", ".join(map(str, site.guide.floors))
                         raise ArgoError(f"site {name} has the floors {known}, not {floor}")
         except ArgoError:
-            if options.faults != before.faults:
-                self.close()
-            self.options = before
+            for site in made.values():
+                site.close()
             raise
+        if not same:
+            self.close()
+        self.options = options
+        for name, site in made.items():
+            _keep(self._ready, name, site)
 
     def make(self, name: str) -> DriveSite:
         """The site of that name, ready; the ones used longest ago make room for it."""
         site = self._ready.pop(name, None) or DriveSite(name, self.options.faults)
-        self._ready[name] = site
-        while len(self._ready) > _KEPT:
-            self._ready.pop(next(iter(self._ready))).close()
+        _keep(self._ready, name, site)
         return site
 
     def close(self) -> None:
@@ -69,3 +82,10 @@ class DriveSites:
         for site in self._ready.values():
             site.close()
         self._ready.clear()
+
+
+def _keep(sites: dict[str, DriveSite], name: str, site: DriveSite) -> None:
+    """Adds the site; the ones added longest ago make room for it."""
+    sites[name] = site
+    while len(sites) > _KEPT:
+        sites.pop(next(iter(sites))).close()

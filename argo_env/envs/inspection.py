@@ -10,10 +10,18 @@ from numpy.typing import NDArray
 
 from argo_compiler.errors import ArgoError
 from argo_compiler.il import EventKind
-from argo_env.envs.inspection_options import InspectOptions, draw_faults
+from argo_env.envs.episode import (
+    Parts,
+    check_begun,
+    check_state,
+    check_under_way,
+    no_state,
+    read_choice,
+)
+from argo_env.envs.inspection_options import MOST_FAULTS, InspectOptions, draw_faults
 from argo_env.envs.inspection_run import Deed, Inspection, travel_times
 from argo_env.envs.observations import Observation, dict_space
-from argo_env.envs.options import read_options
+from argo_env.envs.options import check_positive, read_options
 from argo_env.envs.plan_pictures import Marker, draw_plan
 from argo_env.envs.rendering import Rendering, check_render_mode
 from argo_env.envs.sites import navigator_of
@@ -28,6 +36,7 @@ _TRIES = 2  # readings of a checkpoint that may fail before it is given up
 _PATIENCE = 10.0  # s that an illegal action costs, and a stay in a dock takes at least
 _FPS = 2
 _EVENTS = tuple(EventKind)
+_STATE: Parts = {"begun": dict, "options": dict, "actions": (tuple, list), "generator": dict}
 
 
 class InspectEnv(Rendering, gym.Env[Observation, np.int64]):
@@ -128,8 +137,9 @@ class InspectEnv(Rendering, gym.Env[Observation, np.int64]):
         check_render_mode(render_mode, self.metadata["render_modes"])
         if drive not in DRIVES:
             raise ArgoError(f"no drive `{drive}`; there are: {', '.join(DRIVES)}")
-        if time_limit <= 0:
-            raise ArgoError(f"the time limit is {time_limit:g} s, and must be more than 0")
+        check_positive(self._title, time_limit=time_limit)
+        if not (isinstance(faults, int | np.integer) and 0 <= faults <= MOST_FAULTS):
+            raise ArgoError(f"{self._title}: `faults` is {faults!r}, not 0 to {MOST_FAULTS}")
         self.render_mode = render_mode
         self._scenario, self._drive, self._limit = scenario, drive, time_limit
         self._default_faults = faults
@@ -150,9 +160,9 @@ class InspectEnv(Rendering, gym.Env[Observation, np.int64]):
         }
         self.observation_space = dict_space(parts)
         self.action_space = spaces.Discrete(places)
-        self._options = InspectOptions()
-        self._prepare()
+        self._prepare(InspectOptions())
         self._run: Inspection | None = None
+        self._over: bool | None = None
 
     # -- the environment
 
@@ -161,14 +171,9 @@ class InspectEnv(Rendering, gym.Env[Observation, np.int64]):
     ) -> tuple[Observation, dict[str, Any]]:
         super().reset(seed=seed)
         if options is not None:
-            before = self._options
-            self._options = read_options(InspectOptions, options, "argo/Inspect-v0")
-            try:
-                self._prepare()
-            except ArgoError:
-                self._options = before
-                self._prepare()
-                raise
+            self._prepare(read_options(InspectOptions, options, self._title))
+        # Until the new episode has begun there is none.
+        self._over = None
         self._begun = self.np_random.bit_generator.state
         rng, site = self.np_random, self._navigator.site
         drawn = int(rng.integers(2**31))
@@ -188,12 +193,14 @@ class InspectEnv(Rendering, gym.Env[Observation, np.int64]):
         self._actions: list[int] = []
         pose = self._run.pose
         self._way = [(pose.x, pose.y, float(site.floor_at(pose.z)))]
+        self._over = False
         observation = self._observe()
         self._show()
         return observation, {"settings": settings.model_dump(mode="json")}
 
     def step(self, action: np.int64 | int) -> tuple[Observation, float, bool, bool, dict[str, Any]]:
-        run, place = self._running, int(action)
+        check_under_way(self._over, self._title)
+        run, place = self._running, read_choice(action, self._slots + self._docks, self._title)
         illegal = not self._mask[place]
         if illegal:
             deed, docked = run.stand(_PATIENCE), False
@@ -223,22 +230,26 @@ class InspectEnv(Rendering, gym.Env[Observation, np.int64]):
         observation = self._observe()
         self._show()
         truncated = run.time_up and not terminated
+        self._over = terminated or truncated
         return observation, sum(terms.values()), terminated, truncated, info
 
     def action_masks(self) -> NDArray[np.bool_]:
         """Which actions are legal now, shape (n + d,)."""
+        check_begun(self._over, self._title)
         return self._mask.copy()
 
     def close(self) -> None:
         if self._run:
             self._run.close()
             self._run = None
+        self._over = None
         super().close()
 
     # -- states
 
     def get_state(self) -> dict[str, Any]:
         """All that the future depends on, as plain data that can be pickled."""
+        check_begun(self._over, self._title)
         return {
             "begun": self._begun,
             "options": self._options.model_dump(mode="json", exclude_unset=True),
@@ -247,29 +258,35 @@ class InspectEnv(Rendering, gym.Env[Observation, np.int64]):
         }
 
     def set_state(self, state: Mapping[str, Any]) -> Observation:
-        """Goes on from what `get_state` gave; returns the observation of that moment."""
+        """Goes on from what `get_state` gave; returns the observation of that moment. Raises
+        ArgoError if it is no state of this environment."""
+        check_state(state, _STATE, self._title)
         mode, self.render_mode = self.render_mode, None
-        self.np_random.bit_generator.state = state["begun"]
-        observation, _ = self.reset(options=dict(state["options"]))
-        for action in state["actions"]:
-            observation = self.step(action)[0]
-        self.np_random.bit_generator.state = state["generator"]
-        self.render_mode = mode
+        try:
+            self.np_random.bit_generator.state = state["begun"]
+            observation, _ = self.reset(options=dict(state["options"]))
+            for action in state["actions"]:
+                observation = self.step(action)[0]
+            self.np_random.bit_generator.state = state["generator"]
+        except gym.error.ResetNeeded:  # it goes on after its end
+            raise no_state(self._title) from None
+        finally:
+            self.render_mode = mode
         return observation
 
     # -- inside
 
     @property
     def _running(self) -> Inspection:
-        if self._run is None:
-            raise gym.error.ResetNeeded("call reset before step")
+        check_begun(self._over, self._title)
+        assert self._run is not None
         return self._run
 
-    def _prepare(self) -> None:
-        """Makes the site ready that the options ask for; ArgoError if it does not fit."""
-        scenario = self._options.scenario or self._scenario
-        self._navigator = navigator_of(scenario)
-        site = self._navigator.site
+    def _prepare(self, options: InspectOptions) -> None:
+        """Takes the options on, and makes the site ready that they ask for; ArgoError if it does
+        not fit, and then nothing has changed."""
+        navigator = navigator_of(options.scenario or self._scenario)
+        site = navigator.site
         if len(site.checkpoints) > self._slots or len(site.docks) > self._docks:
             raise ArgoError(
                 f"site {site.name} has {len(site.checkpoints)} checkpoints and {len(site.docks)} "
@@ -277,14 +294,16 @@ class InspectEnv(Rendering, gym.Env[Observation, np.int64]):
                 "environment with larger `checkpoints` and `docks`"
             )
         floors = [floor.number for floor in site.spec.floors]
-        for floor in self._options.floors:
+        for floor in options.floors:
             if floor not in floors:
                 raise ArgoError(f"site {site.name} has the floors 1 to {max(floors)}, not {floor}")
-        asked = self._options.floors or floors
+        if isinstance(options.faults, tuple):
+            check_settings(RunSettings(drive=self._drive, faults=options.faults), site)
+        asked = options.floors or floors
+        self._options, self._navigator = options, navigator
+        self._travel_times = travel_times(navigator)
         self._asked = np.zeros(self._slots, np.bool_)
         self._asked[: len(site.checkpoints)] = [c.floor in asked for c in site.checkpoints]
-        if isinstance(self._options.faults, tuple):
-            check_settings(RunSettings(drive=self._drive, faults=self._options.faults), site)
 
     def _faults(self, rng: np.random.Generator) -> tuple[AnyFault, ...]:
         given = self._options.faults
@@ -342,7 +361,7 @@ class InspectEnv(Rendering, gym.Env[Observation, np.int64]):
         """Estimated s to each place, infinite for empty slots and where there is no way."""
         run, site, n = self._running, self._navigator.site, self._slots
         docks = len(site.docks)
-        times = travel_times(self._options.scenario or self._scenario).row(run.pose, run.navigator)
+        times = self._travel_times.row(run.pose, run.navigator)
         travel = np.full(n + self._docks, np.inf)
         travel[: len(times) - docks] = times[docks:]
         travel[n : n + docks] = times[:docks]

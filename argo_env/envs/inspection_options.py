@@ -5,11 +5,14 @@ from typing import Annotated, cast
 import numpy as np
 from pydantic import Field
 
+from argo_compiler.errors import ArgoError
 from argo_compiler.model import Model
-from argo_env.events.kinds import KINDS, AnyFault
+from argo_env.events.kinds import KINDS, AnyFault, settle
 from argo_env.events.machine import EmergencyStop
 from argo_env.robot.route import RouteDrive
 from argo_env.site import Site
+
+MOST_FAULTS = 8
 
 
 class InspectOptions(Model):
@@ -17,7 +20,7 @@ class InspectOptions(Model):
 
     scenario: str | None = None
     floor: int | tuple[int, ...] = ()
-    faults: Annotated[int, Field(ge=0, le=8)] | tuple[AnyFault, ...] | None = None
+    faults: Annotated[int, Field(ge=0, le=MOST_FAULTS)] | tuple[AnyFault, ...] | None = None
     seed: int | None = Field(default=None, ge=0)
 
     @property
@@ -28,19 +31,25 @@ class InspectOptions(Model):
 def draw_faults(
     count: int, drive: str, site: Site, rng: np.random.Generator
 ) -> tuple[AnyFault, ...]:
-    """Up to `count` faults of different kinds, of those that the drive can find on the site."""
+    """Up to `count` faults of different kinds, of those that the drive can find and the site
+    can have."""
     paper = drive == RouteDrive.name
     kinds = [
         kind
         for kind, model in KINDS.items()
-        if not (model.needs_world and paper) and (kind != "abnormal_pump" or _has_pump(site))
+        if not (model.needs_world and paper) and _fits(kind, site)
     ]
     drawn = [kinds[k] for k in rng.permutation(len(kinds))[:count]]
     return tuple(_fault(kind, rng) for kind in drawn)
 
 
-def _has_pump(site: Site) -> bool:
-    return any(floor.pumps for floor in site.spec.floors)
+def _fits(kind: str, site: Site) -> bool:
+    """Whether the site has what such a fault needs, such as a pump or stairs."""
+    try:
+        settle([cast("AnyFault", KINDS[kind].model_validate({}))], site, 0)
+    except ArgoError:
+        return False
+    return True
 
 
 def _fault(kind: str, rng: np.random.Generator) -> AnyFault:

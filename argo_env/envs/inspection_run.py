@@ -12,7 +12,6 @@ from argo_compiler.hfsm import ActionFailed
 from argo_compiler.il import Action, EventKind, Task
 from argo_compiler.model import Pose
 from argo_env.action import ActionUnderWay
-from argo_env.envs.sites import navigator_of
 from argo_env.navigation import Navigator, UnreachableError
 from argo_env.odometry import Odometry
 from argo_env.perceiving import Perception, blockage
@@ -205,6 +204,6 @@ def _free(navigator: Navigator, pose: Pose) -> bool:
 
 
 @lru_cache(maxsize=8)
-def travel_times(scenario: str) -> TravelTimes:
-    """The travel times of a site, found once."""
-    return TravelTimes(navigator_of(scenario))
+def travel_times(navigator: Navigator) -> TravelTimes:
+    """The travel times of a navigator's site, found once."""
+    return TravelTimes(navigator)

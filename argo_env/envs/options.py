@@ -1,24 +1,100 @@
 """What `reset(options=...)` and a constructor's arguments have in common: they are checked."""
 
-from collections.abc import Mapping
-from typing import Any, TypeVar
+import math
+from collections.abc import Iterator, Mapping
+from types import UnionType
+from typing import Any, TypeVar, Union, get_args, get_origin
 
 from pydantic import ValidationError
+from pydantic_core import ErrorDetails
 
 from argo_compiler.errors import ArgoError
+from argo_compiler.fields import field_hint
+from argo_compiler.json_places import JsonPath, format_path
 from argo_compiler.model import Model
+from argo_env.yaml_messages import message_of
 
 Options = TypeVar("Options", bound=Model)
 
 
-def read_options(model: type[Options], given: Mapping[str, Any], env: str) -> Options:
+def read_options(model: type[Options], given: Any, env: str) -> Options:
     """The options as data; ArgoError that names what is wrong, and what there is."""
+    known = f"there are: {', '.join(model.model_fields)}"
+    if not isinstance(given, Mapping):
+        raise ArgoError(f"options of {env} are a dictionary, not {given!r}; {known}")
+    data = dict(given)
     try:
-        return model.model_validate(dict(given))
+        return model.model_validate(data)
     except ValidationError as error:
-        known = ", ".join(model.model_fields)
-        wrong = "; ".join(
-            f"`{'.'.join(map(str, e['loc']))}`: {e['msg'].removeprefix('Value error, ')}"
-            for e in error.errors()
-        )
-        raise ArgoError(f"options of {env}: {wrong}; there are: {known}") from None
+        found = _meant(model, error.errors(include_url=False))
+        wrong = "; ".join(_said(model, one, data) for one in found)
+        raise ArgoError(f"options of {env}: {wrong}; {known}") from None
+
+
+def check_positive(env: str, **arguments: float) -> None:
+    """Raises ArgoError for the first argument that is no finite number above 0."""
+    for name, value in arguments.items():
+        if not (math.isfinite(value) and value > 0):
+            raise ArgoError(f"{env}: `{name}` is {value:g}, and has to be finite and more than 0")
+
+
+def _said(model: type[Model], error: ErrorDetails, data: Any) -> str:
+    """Where it is wrong, what is wrong, and what to do about it."""
+    path = _without_kinds(error["loc"], data)
+    place, context = f"`{format_path(path)}`", error.get("ctx", {})
+    if error["type"] == "extra_forbidden":
+        return f"{place}: there is no such option ({field_hint(model, error['loc'])})"
+    if error["type"] == "union_tag_not_found":
+        return f"{place}: it has no `kind`"
+    if error["type"] == "union_tag_invalid":
+        return f"{place}: no kind `{context['tag']}`, only {context['expected_tags']}"
+    return f"{place}: {message_of(error, path)}"
+
+
+def _without_kinds(path: JsonPath, data: Any) -> JsonPath:
+    """The path in the data: less the kinds of faults, which pydantic adds."""
+    found: list[int | str] = []
+    for step in path:
+        if isinstance(data, Mapping) and step not in data and data.get("kind") == step:
+            continue
+        found.append(step)
+        try:
+            data = data[step]
+        except (KeyError, IndexError, TypeError):
+            data = None
+    return tuple(found)
+
+
+def _meant(model: type[Model], errors: list[ErrorDetails]) -> Iterator[ErrorDetails]:
+    """The errors; of an option that may be of several types, those of the type that was meant."""
+    choices: dict[int | str, list[ErrorDetails]] = {}
+    for error in errors:
+        name, *rest = error["loc"]
+        field = model.model_fields.get(str(name))
+        if field is None or not _is_choice(field.annotation):
+            yield error
+            continue
+        inner = error.copy()
+        inner["loc"] = (name, *rest[1:])  # less pydantic's name for the type
+        choices.setdefault(name, []).append(inner)
+    for found in choices.values():
+        fit = [e for e in found if len(e["loc"]) > 1 or not _is_of_another_type(e)]
+        if fit:
+            yield from fit
+            continue
+        # No type fits: "has to be a whole number, or a list".
+        both = found[0].copy()
+        said = [message_of(e, e["loc"]) for e in found]
+        both["type"] = "choice"
+        both["msg"] = ", or ".join([said[0], *(s.rpartition("has to be ")[2] for s in said[1:])])
+        yield both
+
+
+def _is_choice(annotation: Any) -> bool:
+    """Whether it is a union of types, None not counted."""
+    kinds = [kind for kind in get_args(annotation) if kind is not type(None)]
+    return get_origin(annotation) in {Union, UnionType} and len(kinds) > 1
+
+
+def _is_of_another_type(error: ErrorDetails) -> bool:
+    return error["type"].endswith(("_type", "_parsing")) or error["type"] == "int_from_float"

@@ -8,6 +8,14 @@ import numpy as np
 from gymnasium import spaces
 from numpy.typing import NDArray
 
+from argo_env.envs.episode import (
+    Parts,
+    check_begun,
+    check_state,
+    check_under_way,
+    no_state,
+    read_choice,
+)
 from argo_env.envs.observations import Observation
 from argo_env.envs.plan_pictures import draw_route
 from argo_env.envs.rendering import Rendering, check_render_mode
@@ -25,6 +33,9 @@ from argo_env.envs.route_sources import RouteSource
 __all__ = ["RouteEnv", "RouteVectorEnv"]
 
 _NOTHING = np.zeros(1, np.int16)
+_STATE: Parts = {
+    "key": int, "episode": int, "options": dict, "route": (tuple, list), "generator": dict,
+}  # fmt: skip
 
 
 class RouteEnv(Rendering, gym.Env[Observation, np.int64]):
@@ -119,6 +130,7 @@ budget; 1 also where it is longer |
         self._episode = 0
         self._options: dict[str, Any] = {}
         self._route: list[int] = []
+        self._over: bool | None = None
 
     def reset(
         self, *, seed: int | None = None, options: dict[str, Any] | None = None
@@ -138,11 +150,14 @@ budget; 1 also where it is longer |
         self._left = self.instance.left
         self._missing = self.instance.missing.copy()
         self._prizes = self.instance.prizes.astype(np.float32)
+        self._over = False
         self._show()
         return self._observe(), {"instance": self._number}
 
     def step(self, action: np.int64 | int) -> tuple[Observation, float, bool, bool, dict[str, Any]]:
-        instance, node = self.instance, int(action)
+        check_under_way(self._over, self._title)
+        instance = self.instance
+        node = read_choice(action, instance.size, self._title)
         illegal = not self._mask[node]
         if illegal:
             node = DOCK
@@ -153,16 +168,19 @@ budget; 1 also where it is longer |
         self._prizes[node] = 0.0
         self._place = node
         self._route.append(node)
+        self._over = node == DOCK
         self._show()
         info = {"terms": {"prize": prize}, "time": self._time(), "illegal": illegal}
         return self._observe(), prize, node == DOCK, False, info
 
     def action_masks(self) -> NDArray[np.bool_]:
         """Which actions are legal now, shape (n + 1,)."""
+        check_begun(self._over, self._title)
         return self._mask.copy()
 
     def get_state(self) -> dict[str, Any]:
         """All that the future depends on, as plain data that can be pickled."""
+        check_begun(self._over, self._title)
         return {
             "key": self._key,
             "episode": self._episode,
@@ -172,14 +190,21 @@ budget; 1 also where it is longer |
         }
 
     def set_state(self, state: Mapping[str, Any]) -> Observation:
-        """Goes on from what `get_state` gave; returns the observation of that moment."""
+        """Goes on from what `get_state` gave; returns the observation of that moment. Raises
+        ArgoError if it is no state of this environment."""
+        check_state(state, _STATE, self._title)
         mode, self.render_mode = self.render_mode, None
-        self.np_random.bit_generator.state = state["generator"]
-        self._key, self._episode = state["key"], state["episode"] - 1
-        observation, _ = self.reset(options=dict(state["options"]))
-        for node in state["route"]:
-            observation = self.step(node)[0]
-        self.render_mode = mode
+        try:
+            self._over = None
+            self.np_random.bit_generator.state = state["generator"]
+            self._key, self._episode = state["key"], state["episode"] - 1
+            observation, _ = self.reset(options=dict(state["options"]))
+            for node in state["route"]:
+                observation = self.step(node)[0]
+        except gym.error.ResetNeeded:  # it goes on after its end
+            raise no_state(self._title) from None
+        finally:
+            self.render_mode = mode
         return observation
 
     def _observe(self) -> Observation:
@@ -207,4 +232,5 @@ budget; 1 also where it is longer |
 
     def _picture(self) -> NDArray[np.uint8]:
         """The route so far."""
+        check_begun(self._over, self._title)
         return draw_route(self.instance, self._route, self._time())

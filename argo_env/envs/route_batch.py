@@ -3,6 +3,7 @@
 from collections.abc import Mapping, Sequence
 from typing import Any
 
+import gymnasium as gym
 import numpy as np
 from gymnasium import spaces
 from gymnasium.utils import seeding
@@ -10,18 +11,23 @@ from gymnasium.vector import AutoresetMode, VectorEnv
 from gymnasium.vector.utils import batch_space
 from numpy.typing import NDArray
 
+from argo_compiler.errors import ArgoError
+from argo_env.envs.episode import no_state
 from argo_env.envs.observations import Observation
 from argo_env.envs.plan_pictures import draw_route
 from argo_env.envs.rendering import check_render_mode
 from argo_env.envs.route_episodes import (
     FPS,
     Episodes,
+    RouteOptions,
     episode_number,
     observation_space,
     read_route_options,
 )
 from argo_env.envs.route_instance import DOCK
 from argo_env.envs.route_sources import RouteSource
+
+_NAME = "argo/Route-v0"
 
 
 class RouteVectorEnv(VectorEnv[Observation, NDArray[np.int64], NDArray[Any]]):
@@ -71,6 +77,7 @@ class RouteVectorEnv(VectorEnv[Observation, NDArray[np.int64], NDArray[Any]]):
         self._ended = np.zeros(num_envs, np.bool_)
         self._missing = np.zeros((num_envs, n), np.int16)
         self._prizes = np.zeros((num_envs, n), np.float32)
+        self._mask: NDArray[np.bool_] | None = None
 
     def reset(
         self,
@@ -107,9 +114,9 @@ class RouteVectorEnv(VectorEnv[Observation, NDArray[np.int64], NDArray[Any]]):
     def step(
         self, actions: NDArray[np.int64]
     ) -> tuple[Observation, NDArray[Any], NDArray[Any], NDArray[Any], dict[str, Any]]:
+        mask, nodes = self._legal, self._nodes(actions)
         rows, going, pool = self._all, ~self._ended, self._episodes.pool
-        nodes = np.asarray(actions, dtype=np.int64)
-        illegal = ~self._mask[rows, nodes]
+        illegal = ~mask[rows, nodes]
         nodes = np.where(illegal, DOCK, nodes)
         # Those that begin anew take part as well, and are put to their start after that.
         anew = self._ended.nonzero()[0]
@@ -140,12 +147,13 @@ class RouteVectorEnv(VectorEnv[Observation, NDArray[np.int64], NDArray[Any]]):
 
     def action_masks(self) -> NDArray[np.bool_]:
         """Which actions are legal now, shape (num_envs, n + 1)."""
-        return self._mask.copy()
+        return self._legal.copy()
 
     def render(self) -> tuple[NDArray[np.uint8], ...] | None:
         """A picture of each route's present state, without the way that led there."""
         if self.render_mode is None:
             return None
+        _ = self._legal
         numbers = self._episodes.pool.numbers[self._chosen]
         return tuple(
             draw_route(self._episodes.instance(int(number)), [int(place)], float(time))
@@ -158,11 +166,47 @@ class RouteVectorEnv(VectorEnv[Observation, NDArray[np.int64], NDArray[Any]]):
         return {"options": self._episodes.options, "arrays": kept}
 
     def set_state(self, state: Mapping[str, Any]) -> Observation:
-        """Goes on from what `get_state` gave; returns the observation of that moment."""
+        """Goes on from what `get_state` gave; returns the observation of that moment. Raises
+        ArgoError if it is no state of such a batch, of the same size."""
+        if not self._fits(state):
+            raise no_state(f"a batch of {self.num_envs} {_NAME}")
         self._episodes.choose(state["options"])
         for name, array in state["arrays"].items():
             getattr(self, name)[...] = array
         return self._observe()
+
+    @property
+    def _legal(self) -> NDArray[np.bool_]:
+        """The mask; ResetNeeded if there are no episodes yet."""
+        if self._mask is None:
+            raise gym.error.ResetNeeded(f"{_NAME}: no episode has begun: call reset")
+        return self._mask
+
+    def _nodes(self, actions: Any) -> NDArray[np.int64]:
+        """The actions as an array, shape (num_envs,); ArgoError if they are none."""
+        nodes, size = np.asarray(actions), self._missing.shape[1]
+        if nodes.shape == (self.num_envs,) and nodes.dtype.kind in "iu":
+            nodes = np.ascontiguousarray(nodes, dtype=np.int64)
+            # As words, so that numbers below 0 are large ones.
+            if nodes.view(np.uint64).max() < size:
+                return nodes
+        raise ArgoError(
+            f"{_NAME}: no actions {actions!r}; they are {self.num_envs} whole numbers, "
+            f"0 to {size - 1}"
+        )
+
+    def _fits(self, state: Any) -> bool:
+        """Whether it is a state of such a batch."""
+        if not isinstance(state, Mapping) or state.keys() != {"options", "arrays"}:
+            return False
+        options, arrays = state["options"], state["arrays"]
+        if not isinstance(options, RouteOptions) or not isinstance(arrays, Mapping):
+            return False
+        return arrays.keys() == set(_STATE) and all(
+            isinstance(array := arrays[name], np.ndarray)
+            and (array.dtype, array.shape) == ((own := getattr(self, name)).dtype, own.shape)
+            for name in _STATE
+        )
 
     def _begin(self, rows: NDArray[np.int64]) -> None:
         """New instances for these routes."""

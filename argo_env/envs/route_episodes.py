@@ -14,7 +14,7 @@ from pydantic import Field
 from argo_compiler.errors import ArgoError
 from argo_compiler.model import Model
 from argo_env.envs.observations import Observation, dict_space
-from argo_env.envs.options import read_options
+from argo_env.envs.options import check_positive, read_options
 from argo_env.envs.route_instance import DOCK, RouteInstance
 from argo_env.envs.route_sources import (
     TEST,
@@ -81,6 +81,8 @@ class Episodes:
         """Raises ArgoError if there is no such scenario."""
         if source is None and checkpoints < 1:
             raise ArgoError(f"a route needs checkpoints, not {checkpoints}")
+        if source is None:
+            check_positive("argo/Route-v0", budget=budget)
         self._own = source
         self._scenario = scenario
         self._budget = budget

@@ -25,6 +25,8 @@ class Fault(Model):
 
     needs_world: ClassVar[bool] = False
     """whether only a drive with a world has anything that shows it"""
+    adds_up: ClassVar[bool] = False
+    """whether its effect is its own, and stays when another fault of its kind ends"""
 
     @model_serializer(mode="wrap")
     def _with_kind(self, handler: SerializerFunctionWrapHandler) -> dict[str, Any]:
@@ -53,10 +55,13 @@ class Fault(Model):
         return site.elements
 
     def begin(self, stage: "Stage", now: float) -> None:
-        """Takes effect at time `now` (s)."""
+        """Takes effect at time `now` (s).
+
+        One that does not add up does so again each time that another one of its kind has ended.
+        """
 
     def end(self, stage: "Stage", now: float) -> None:
-        """Takes the effect back."""
+        """Takes the effect back; one that does not add up, that of all of its kind."""
 
     def _with(self, **fields: Any) -> Self:
         return self.model_copy(update=fields)
@@ -87,4 +92,4 @@ class TimedFault(Fault):
     def settled(self, site: Site, rng: np.random.Generator) -> Self:  # noqa: ARG002
         latest = LATEST if self.until is None else min(LATEST, self.until)
         drawn = round(float(rng.uniform(0.0, latest)), 1)
-        return self if self.at is not None else self._with(at=min(drawn, latest - 0.1))
+        return self if self.at is not None else self._with(at=max(0.0, min(drawn, latest - 0.1)))

@@ -1,6 +1,6 @@
 """Faults of the robot itself and of what it depends on: battery, network, drive and sensor."""
 
-from typing import TYPE_CHECKING, Literal, Self
+from typing import TYPE_CHECKING, ClassVar, Literal, Self
 
 import numpy as np
 from pydantic import Field
@@ -50,6 +50,7 @@ class WornBattery(Fault):
 class ConnectionLoss(TimedFault):
     """There is no signal in a part of the site; without `rect` and `floor`, nowhere."""
 
+    adds_up: ClassVar[bool] = True
     kind: Literal["connection_loss"] = "connection_loss"
     rect: Rect | None = None
     """m, [x0, y0, x1, y1]; None: the whole floor"""
@@ -105,7 +106,7 @@ class SensorDysfunction(TimedFault):
 
 
 class DriveDysfunction(TimedFault):
-    """The drive makes only a part of its speed, or none."""
+    """The drive makes only a part of its speed, or none. Of several the worst counts."""
 
     kind: Literal["drive_dysfunction"] = "drive_dysfunction"
     speed: float | None = Field(default=None, ge=0, lt=1)
@@ -117,7 +118,7 @@ class DriveDysfunction(TimedFault):
 
     def begin(self, stage: "Stage", now: float) -> None:  # noqa: ARG002
         assert self.speed is not None
-        stage.drive.share = self.speed
+        stage.drive.share = min(stage.drive.share, self.speed)
 
     def end(self, stage: "Stage", now: float) -> None:  # noqa: ARG002
         stage.drive.share = 1.0

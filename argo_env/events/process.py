@@ -15,6 +15,9 @@ from argo_env.surroundings.sources import Source
 if TYPE_CHECKING:
     from argo_env.events.stage import Stage
 
+_BESIDE, _ABOVE, _BELOW = 5.0, 10.0, 1.0
+"""m beside the ground, above the highest floor and below the ground, within which there may be
+something that leaks or glows"""
 _BEHIND = 0.2  # m behind the face of a checkpoint, where the pipe or vessel is that carries it
 
 
@@ -22,6 +25,7 @@ class ProcessFault(TimedFault):
     """A fault that the surroundings show: a source of gas, heat or sound."""
 
     needs_world: ClassVar[bool] = True
+    adds_up: ClassVar[bool] = True
 
     def source(self) -> Source:
         """What it puts there."""
@@ -44,6 +48,7 @@ class GasLeakFault(ProcessFault):
     """kg/s"""
 
     def settled(self, site: Site, rng: np.random.Generator) -> Self:
+        _check_place(site, self.place)
         place, rate = _near_equipment(site, rng, 0.0), round(float(rng.uniform(0.01, 0.04)), 4)
         return (
             super()
@@ -69,6 +74,7 @@ class HotSpotFault(ProcessFault):
     """m"""
 
     def settled(self, site: Site, rng: np.random.Generator) -> Self:
+        _check_place(site, self.place)
         place = _near_equipment(site, rng, 0.3)
         temperature = round(float(rng.uniform(80.0, 150.0)), 1)
         return (
@@ -123,6 +129,20 @@ class PlatformAlarm(ProcessFault):
 
     def source(self) -> Source:
         return Alarm(self.level)
+
+
+def _check_place(site: Site, place: Vector | None) -> None:
+    if place is None:
+        return
+    x0, y0, x1, y1 = site.spec.ground
+    top, bottom = max(f.z for f in site.spec.floors), site.spec.ground_z
+    x, y, z = place
+    beside = max(x0 - x, x - x1, y0 - y, y - y1)
+    if beside > _BESIDE or z > top + _ABOVE or z < bottom - _BELOW:
+        raise ArgoError(
+            f"there is no equipment at ({x:g}, {y:g}, {z:g}): site {site.name} lies between "
+            f"({x0:g}, {y0:g}) and ({x1:g}, {y1:g}), and its highest floor at {top:g} m"
+        )
 
 
 def _near_equipment(site: Site, rng: np.random.Generator, up: float) -> Vector:

@@ -18,4 +18,8 @@ def read_faults(path: Path) -> tuple[AnyFault, ...]:
         not_yaml="faults.not-yaml",
         duplicate_key="faults.duplicate-key",
         wrong_field="faults.wrong-field",
+        no_field={
+            "at": "a fault of this kind is there from the start: remove it",
+            "until": "a fault of this kind is there from the start, and stays: remove it",
+        },
     ).faults

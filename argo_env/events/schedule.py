@@ -1,13 +1,14 @@
-"""When faults begin and end."""
+"""When faults begin and end, and which of them count where several meet."""
 
 from collections.abc import Sequence
 
+from argo_env.events.fault import Fault
 from argo_env.events.kinds import AnyFault
 from argo_env.events.stage import Stage
 
 
 class Schedule:
-    """Lets faults begin and end at their times. Holds how far it has come."""
+    """Lets faults begin and end at their times. Holds how far it has come, and what has begun."""
 
     def __init__(self, faults: Sequence[AnyFault], stage: Stage) -> None:
         """The faults must be settled."""
@@ -18,6 +19,7 @@ class Schedule:
         # Of one time, ends come first; else they are in the order of the list.
         self._moments = sorted(moments, key=lambda m: (m[0], m[1]))
         self._next = 0
+        self._active: list[AnyFault] = []  # in the order in which they began
 
     @property
     def pending(self) -> bool:
@@ -35,6 +37,15 @@ class Schedule:
             at, begins, fault = self._moments[self._next]
             self._next += 1
             if begins:
+                self._active.append(fault)
                 fault.begin(self._stage, at)
             else:
+                self._active.remove(fault)
                 fault.end(self._stage, at)
+                self._renew(type(fault), at)
+
+    def _renew(self, kind: type[Fault], now: float) -> None:
+        """Lets those of a kind that have not ended take effect again after one that has."""
+        for fault in self._active:
+            if type(fault) is kind and not kind.adds_up:
+                fault.begin(self._stage, now)

@@ -6,7 +6,7 @@ rays, contacts, pictures and dynamics all meet the same thing.
 
 import math
 from dataclasses import replace
-from typing import ClassVar, Literal, Self
+from typing import Annotated, ClassVar, Literal, Self
 
 import numpy as np
 from pydantic import Field
@@ -23,6 +23,7 @@ BARRIER = (0.06, 1.0)  # m, thickness and height of what blocks stairs
 _BARRIER_DISTANCE = 0.25  # m from the nosing to the barrier
 _FROM_RIM = 0.35  # m that a drawn place is away from the rim of its walkway, where there is room
 _TOUCHING = 1e-6  # m
+_Length = Annotated[float, Field(gt=0)]
 
 
 class Brick(Fault):
@@ -34,7 +35,7 @@ class Brick(Fault):
     """number of the floor that it lies on"""
     place: Point | None = None
     """m, x and y of its middle; needs `floor`"""
-    size: tuple[float, float, float] = (0.3, 0.2, 0.2)
+    size: tuple[_Length, _Length, _Length] = (0.3, 0.2, 0.2)
     """m, along its own axes"""
     yaw: float | None = None
     """deg"""

@@ -6,6 +6,7 @@ circuit of the emergency stop, the way made against the way planned, pictures of
 
 import math
 from collections import deque
+from collections.abc import Sequence
 
 import numpy as np
 from numpy.typing import NDArray
@@ -18,7 +19,7 @@ from argo_env.robot.pose import BodyPose
 from argo_env.robot.powertrain import Powertrain
 from argo_env.robot.spec import RobotSpec
 from argo_env.sensing.instrument import Instrument
-from argo_env.sensing.watch import Finding, Watch
+from argo_env.sensing.watch import Finding, Told, Watch
 
 LOW, FULL = 0.2, 0.99
 """shares of the charge: below the one the battery is low, from the other on it is charged again"""
@@ -38,6 +39,9 @@ class BatteryWatch:
     def __init__(self, battery: Battery) -> None:
         self._battery = battery
         self._low = False
+
+    def remember(self, told: Sequence[Told], now: float) -> None:  # noqa: ARG002
+        self._low = bool(told) and told[-1].kind is EventKind.LOW_BATTERY
 
     def look(self, now: float, pose: BodyPose) -> tuple[Finding, ...]:  # noqa: ARG002
         voltage = self._battery.voltage
@@ -63,6 +67,10 @@ class ConnectionWatch:
         self._limit = missed
         self._missed = 0
 
+    def remember(self, told: Sequence[Told], now: float) -> None:  # noqa: ARG002
+        lost = bool(told) and told[-1].kind is EventKind.CONNECTION_LOST
+        self._missed = self._limit if lost else 0
+
     def look(self, now: float, pose: BodyPose) -> tuple[Finding, ...]:  # noqa: ARG002
         place = (pose.x, pose.y, pose.z)
         if not self._network.connected(pose):
@@ -87,6 +95,9 @@ class EmergencyStopWatch:
         self._drive = drive
         self._pressed = False
 
+    def remember(self, told: Sequence[Told], now: float) -> None:  # noqa: ARG002
+        self._pressed = bool(told)  # if it no longer is, the first look shows it
+
     def look(self, now: float, pose: BodyPose) -> tuple[Finding, ...]:  # noqa: ARG002
         before, self._pressed = self._pressed, self._drive.pressed
         if self._pressed and not before:
@@ -108,6 +119,9 @@ class DriveWatch:
         self._at = 0
         self._progress: deque[tuple[float, float]] = deque()
         self._told = False
+
+    def remember(self, told: Sequence[Told], now: float) -> None:  # noqa: ARG002
+        self._told = bool(told)  # until the robot is seen to be fast enough again
 
     def look(self, now: float, pose: BodyPose) -> tuple[Finding, ...]:
         way = self._drive.way
@@ -152,6 +166,9 @@ class CameraWatch:
     def __init__(self, sensor: Instrument) -> None:
         self._sensor = sensor
         self._told = False
+
+    def remember(self, told: Sequence[Told], now: float) -> None:  # noqa: ARG002
+        self._told = bool(told)  # if the camera is well again, the first picture shows it
 
     def look(self, now: float, pose: BodyPose) -> tuple[Finding, ...]:  # noqa: ARG002
         pattern = self._sensor.test()

@@ -1,7 +1,8 @@
 """What the robot notices by itself while it goes: findings, and what makes them."""
 
+from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import Protocol
+from typing import Protocol, runtime_checkable
 
 from argo_compiler.il import EventKind
 from argo_env.robot.pose import BodyPose
@@ -31,4 +32,21 @@ class Watch(Protocol):
     def look(self, now: float, pose: BodyPose) -> tuple[Finding, ...]:
         """What has been found at time `now` (s) with the robot at `pose`; each thing is told once,
         and again only after it was gone."""
+        ...
+
+
+@dataclass(frozen=True)
+class Told:
+    """What a watch has told before the run was resumed, and where the robot was then."""
+
+    kind: EventKind
+    pose: BodyPose
+
+
+@runtime_checkable
+class RememberingWatch(Watch, Protocol):
+    """A watch whose findings have no place by which they are known again."""
+
+    def remember(self, told: Sequence[Told], now: float) -> None:
+        """Goes on at time `now` (s) as the one that has told all these, in this order."""
         ...

@@ -37,22 +37,22 @@ class Surroundings:
     def __init__(self, site: Site, weather: Weather | None = None) -> None:
         self.site = site
         self.weather = weather or Weather()
-        self._since: dict[Source, float] = {}
+        self._there: list[tuple[Source, float]] = []  # and since when
         self._ended: list[Release] = []
 
     @property
     def sources(self) -> tuple[Source, ...]:
-        """The sources that are there now, in the order in which they came."""
-        return tuple(self._since)
+        """The sources that are there now, in the order in which they came; equal ones add up."""
+        return tuple(source for source, _ in self._there)
 
     @property
     def releases(self) -> tuple[Release, ...]:
         """All gas that escapes or has escaped."""
-        now = [Release(s, t) for s, t in self._since.items() if isinstance(s, GasLeak)]
+        now = [Release(s, t) for s, t in self._there if isinstance(s, GasLeak)]
         return (*self._ended, *now)
 
     def add(self, source: Source, now: float = 0.0) -> None:
-        """From time `now` (s) on the source is there; nothing happens if it is there already.
+        """From time `now` (s) on the source is there, beside equal ones that are there already.
 
         Raises ArgoError for a pump that the site does not have.
         """
@@ -63,10 +63,16 @@ class Surroundings:
                 raise ArgoError(
                     f"site {self.site.name} has no pump `{source.pump}`; there are: {names}"
                 )
-        self._since.setdefault(source, now)
+        self._there.append((source, now))
 
     def remove(self, source: Source, now: float = 0.0) -> None:
-        """From time `now` (s) on the source is gone. Raises KeyError if it is not there."""
-        start = self._since.pop(source)
+        """From time `now` (s) on the source is gone, of equal ones that which came first.
+
+        Raises KeyError if it is not there.
+        """
+        first = next((k for k, (there, _) in enumerate(self._there) if there == source), None)
+        if first is None:
+            raise KeyError(source)
+        _, start = self._there.pop(first)
         if isinstance(source, GasLeak):
             self._ended.append(Release(source, start, now))

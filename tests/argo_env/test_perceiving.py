@@ -1,6 +1,7 @@
 """Watches in a run: called at their periods, their findings told once, obstacles driven around."""
 
 import math
+from dataclasses import replace
 from itertools import pairwise
 
 import pytest
@@ -10,15 +11,16 @@ from hypothesis import strategies as st
 from argo_compiler.hfsm import Cause, Occurred, Outcome, Resume
 from argo_compiler.il import Afterwards, EventKind, OnFailure, Reaction, Response
 from argo_compiler.model import Pose
-from argo_env.action import Rig
+from argo_env.action import TURNS, Rig
 from argo_env.events.kinds import FaultFile
 from argo_env.events.schedule import Schedule
 from argo_env.journal import JournalPlace, open_journal
 from argo_env.navigation import Blockage
-from argo_env.perceiving import Perception
+from argo_env.perceiving import Perception, blockage
 from argo_env.record import Anomaly
 from argo_env.robot.pose import BodyPose
 from argo_env.runner import SETTLING, MissionRunner
+from argo_env.sensing.sensor import Measurement, PoorViewError
 from argo_env.sensing.signals.terrain_watch import ObstacleFinding
 from argo_env.sensing.watch import Finding
 from argo_env.session import resume, simulate
@@ -135,6 +137,44 @@ class TestObstacles:
         for a, b in pairwise(record.path):
             assert math.dist((a.x, a.y), (b.x, b.y)) <= 0.4 * (b.t - a.t) + 0.08
 
+    def test_a_detour_leads_to_the_view_that_was_under_way(self, navigator):
+        looks = []
+
+        class Turned:
+            """A checkpoint that can't be read from the first view."""
+
+            name = "turned"
+
+            def measure(self, _, pose):
+                looks.append(pose)
+                if len(looks) == 1:
+                    raise PoorViewError("too much from the side")
+                return Measurement(4.0, 1.0)
+
+        class OnTheWay(Scripted):
+            """Finds something ahead as soon as the robot is on its way to the next view."""
+
+            def look(self, _, pose):
+                if not looks or self._left:
+                    return ()
+                if math.dist((pose.x, pose.y), (looks[0].x, looks[0].y)) < 0.1:
+                    return ()
+                self._left = [Pose(x=pose.x, y=pose.y, z=pose.z, yaw=pose.yaw)]
+                view = navigator.plan_to_view(self._left[0], 1, TURNS[1]).end
+                return (obstacle((pose.x + view.x) / 2, (pose.y + view.y) / 2, 0.05),)
+
+        rig = fast_rig(navigator)
+        watch = OnTheWay(period=0.1)
+        rig = replace(rig, sensor=Turned(), watches=(watch,))
+        record = MissionRunner(mission(measure(1)), rig, RunSettings()).run()
+        (found,), (reading,) = record.anomalies, record.readings
+        assert record.result.success
+        assert len(looks) == reading.views == 2
+        aware = navigator.avoiding([blockage(found)])
+        unturned, turned = (aware.plan_to_view(watch._left[0], 1, t).end for t in TURNS[:2])
+        assert math.dist((looks[1].x, looks[1].y), (turned.x, turned.y)) < 0.01
+        assert math.dist((unturned.x, unturned.y), (turned.x, turned.y)) > 0.1
+
     def test_one_that_is_not_in_the_way_changes_nothing(self, navigator):
         aside = obstacle(1.05, 4.0)
         record = run(navigator, self.PLAN, Scripted((3.0, aside)))
@@ -173,8 +213,8 @@ class TestObstacles:
         assert record.tasks[1].start == 30.0
 
 
-def anomaly(kind, t, place=None):
-    return Anomaly(t=t, kind=kind, detail="", source="", place=place)
+def anomaly(kind, t, place=None, source="scripted"):
+    return Anomaly(t=t, kind=kind, detail="", source=source, place=place)
 
 
 FAULTS = FaultFile.model_validate(
@@ -204,15 +244,38 @@ class TestResumed:
 
     def look(self, navigator, told, finding, now):
         perception = Perception((Scripted((0.0, finding), period=0.1),), navigator.site, 0.1)
-        perception.remember(told, 100.0)
+        perception.remember([(a, BodyPose(0, 0, 0, 0)) for a in told], 100.0)
         return perception.look(round(now * 10), now, BodyPose(0, 0, 0, 0))
 
     def test_not_told_twice(self, navigator):
-        leak = Finding(EventKind.GAS_LEAK, "gas")
-        told = [anomaly(EventKind.GAS_LEAK, 90.0)]
-        assert self.look(navigator, told, leak, 100.5) == ()
-        assert len(self.look(navigator, told, leak, 300.0)) == 1
-        assert len(self.look(navigator, told, Finding(EventKind.HOT_SPOT, ""), 100.5)) == 1
+        spot = Finding(EventKind.HOT_SPOT, "", (2.3, 2.2, 1.0))
+        told = [anomaly(EventKind.HOT_SPOT, 90.0, (2.0, 2.0, 1.0))]
+        assert self.look(navigator, told, spot, 100.5) == ()
+        assert self.look(navigator, told, spot, 300.0) == ()
+
+    def test_other_things_are_told(self, navigator):
+        at, away = (2.0, 2.0, 1.0), (4.0, 2.0, 1.0)
+        told = [anomaly(EventKind.HOT_SPOT, 90.0, at)]
+        for kind, place in (
+            (EventKind.HOT_SPOT, away), (EventKind.HOT_SPOT, None), (EventKind.GAS_LEAK, at)
+        ):  # fmt: skip
+            assert len(self.look(navigator, told, Finding(kind, "", place), 100.5)) == 1
+        told = [anomaly(EventKind.HOT_SPOT, 90.0, at, source="another watch")]
+        assert len(self.look(navigator, told, Finding(EventKind.HOT_SPOT, "", at), 100.5)) == 1
+
+    def test_a_watch_remembers_only_what_it_has_told_itself(self, navigator):
+        class Remembering(Scripted):
+            def remember(self, told, now):
+                self.told = [(each.kind, each.pose) for each in told], now
+
+        watch = Remembering((0.0, Finding(EventKind.ALL_CLEAR, "", (2.0, 2.0, 1.0))), period=0.1)
+        perception = Perception((watch,), navigator.site, 0.1)
+        pose = BodyPose(1, 2, 3, 0)
+        own = anomaly(EventKind.ALL_CLEAR, 90.0, (2.0, 2.0, 1.0))
+        other = anomaly(EventKind.GAS_LEAK, 95.0, source="another watch")
+        perception.remember([(own, pose), (other, pose)], 100.0)
+        assert watch.told == ([(EventKind.ALL_CLEAR, pose)], 100.0)
+        assert len(perception.look(1001, 100.1, pose)) == 1
 
     def test_obstacles_are_known_by_their_place(self, navigator):
         told = [anomaly(EventKind.POSITIVE_OBSTACLE, 90.0, (2.0, 2.0, 0.02))]
@@ -271,6 +334,67 @@ class TestResumed:
             second = resume(journal, navigator)
         assert 40.0 in [s.t for s in second.trace if "all clear" in s.cause]
         assert [s.t for s in second.trace if "hot spot" in s.cause] == hot
+
+
+class TestResumedWhileItWaits:
+    """With the drive `route`: cut where a reaction waits for what ends it."""
+
+    LOW = Reaction(
+        event=EventKind.LOW_BATTERY, response=Response.RETURN, until=EventKind.BATTERY_CHARGED,
+        afterwards=Afterwards.RESUME,
+    )  # fmt: skip
+    LOST = Reaction(
+        event=EventKind.CONNECTION_LOST, response=Response.PAUSE,
+        until=EventKind.CONNECTION_RESTORED,
+    )  # fmt: skip
+
+    def cut_where(self, navigator, path, reaction, faults, wanted):
+        """The record of the whole run, and of one that is cut at the wanted entry and resumed."""
+        faults = FaultFile.model_validate({"faults": faults}).faults
+        plan = mission(waypoint("A", 5.05, 2.55), reactions=(reaction,), dock=DOCK)
+        settings = RunSettings(drive="route", faults=faults)
+        whole = simulate(plan, navigator, settings=settings, journal=JournalPlace(path, "yard"))
+        assert whole.result.success
+        lines = path.read_bytes().splitlines(keepends=True)
+        with open_journal(path) as journal:
+            at = next(k for k, entry in enumerate(journal.entries) if wanted(entry))
+        path.write_bytes(b"".join(lines[: at + 2]))
+        with open_journal(path) as journal:
+            return whole, resume(journal, navigator)
+
+    @pytest.mark.parametrize("charge", [0.3, 0.7, 0.98])
+    def test_charging(self, navigator, tmp_path, charge):
+        low = [{"kind": "low_battery", "charge": 0.202}, {"kind": "worn_battery", "capacity": 0.1}]
+        whole, again = self.cut_where(
+            navigator, tmp_path / "run.journal", self.LOW, low,
+            lambda e: e.charge > charge and e.t > 5,
+        )  # fmt: skip
+        assert again.result.success
+        kinds = [EventKind.LOW_BATTERY, EventKind.BATTERY_CHARGED]
+        assert [a.kind for a in again.anomalies] == kinds
+        assert again.result.duration == pytest.approx(whole.result.duration, abs=2.0)
+
+    @pytest.mark.parametrize("cut", [5.0, 11.9, 12.1])
+    def test_the_connection_is_back_before_or_after(self, navigator, tmp_path, cut):
+        loss = [{"kind": "connection_loss", "at": 2, "until": 12}]
+        whole, again = self.cut_where(
+            navigator, tmp_path / "run.journal", self.LOST, loss, lambda e: e.t >= cut
+        )
+        kinds = [EventKind.CONNECTION_LOST, EventKind.CONNECTION_RESTORED]
+        assert [a.kind for a in again.anomalies] == kinds
+        assert again.result.success
+        assert again.result.duration == pytest.approx(whole.result.duration, abs=2.0)
+
+    def test_lost_once_more_right_after(self, navigator, tmp_path):
+        losses = [
+            {"kind": "connection_loss", "at": 1, "until": 4},
+            {"kind": "connection_loss", "at": 7, "until": 12},
+        ]
+        _, again = self.cut_where(
+            navigator, tmp_path / "run.journal", self.LOST, losses, lambda e: e.t >= 6
+        )
+        kinds = [EventKind.CONNECTION_LOST, EventKind.CONNECTION_RESTORED]
+        assert [a.kind for a in again.anomalies] == 2 * kinds
 
 
 class TestStandingStill:

@@ -220,7 +220,7 @@ def test_measurement_that_is_not_possible_fails(navigator):
     class Dreamer(Stub):
         """Thinks that every checkpoint can be read from where the robot is."""
 
-        def plan_to_view(self, start, _):
+        def plan_to_view(self, start, *_):
             return Path(start, ())
 
     record = simulate(mission(start(), measure(1)), Dreamer(navigator))

@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 from argo_compiler.il import EventKind
 from argo_env.robot.pose import BodyPose
 from argo_env.sensing.signals.microphone import Microphone
-from argo_env.sensing.watch import Finding
+from argo_env.sensing.watch import Finding, Told
 from argo_env.surroundings.sound import ALARM_ON, ALARM_PERIOD, ALARM_TONE, RATE
 
 RECORDING = 0.05  # s
@@ -61,6 +61,10 @@ class AlarmWatch:
         self._last_tone: float | None = None
         self._told = False
         self._idle = 0
+
+    def remember(self, told: Sequence[Told], now: float) -> None:
+        self._told = bool(told) and told[-1].kind is EventKind.PLATFORM_ALARM
+        self._last_tone = now if self._told else None
 
     def look(self, now: float, pose: BodyPose) -> tuple[Finding, ...]:
         # It listens less often while there is nothing to hear.

@@ -2,13 +2,14 @@
 
 import math
 from collections import deque
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 from argo_compiler.il import EventKind
 from argo_env.robot.pose import BodyPose
 from argo_env.sensing.signals.gas_sensors import GasSensor, UltrasonicMicrophone
 from argo_env.sensing.signals.site_map import SiteMap
-from argo_env.sensing.watch import Finding
+from argo_env.sensing.watch import Finding, Told
 
 GAS_ON, GAS_OFF = 40.0, 20.0
 """ppm from which there is gas, and under which there is none; noise and drift have a standard
@@ -18,6 +19,7 @@ HISS_ON, HISS_OFF = 62.0, 55.0
 LOOKS, GAS_VOTES, HISS_VOTES = 5, 3, 4
 """how many of the last looks must agree; a bang is over after one"""
 CLEAR_TIME = 10.0  # s without a signal until the danger is over
+WARMING_UP = 15.0  # s after a run was resumed until the sensors show what went on meanwhile
 SAME_PLACE = 8.0  # m from where a leak was told within which it is the same
 NEAR = 3.0  # m from where it was strongest within which its absence means anything
 
@@ -70,12 +72,25 @@ class GasWatch:
         self._leaks: list[_Leak] = []
         self._here: _Leak | None = None
         self._quiet_since: float | None = None
+        self._shown_from = 0.0  # s, when a signal that goes on would show
+
+    def remember(self, told: Sequence[Told], now: float) -> None:
+        """Takes a leak to be the worst where it was told."""
+        for each in told:
+            if each.kind is EventKind.GAS_LEAK:
+                self._leaks.append(_Leak([each.pose], each.pose, 1.0))
+            elif self._leaks:
+                pose = each.pose
+                self._leaks.remove(min(self._leaks, key=lambda leak: _apart(pose, leak.worst)))
+        self._here = self._leaks[-1] if self._leaks else None
+        self._shown_from = now + WARMING_UP
 
     def look(self, now: float, pose: BodyPose) -> tuple[Finding, ...]:
         ppm, level = self._gas_sensor.read(now, pose), self._microphone.read(pose)
         smelt, heard = self._gas.update(ppm), self._hiss.update(level)
         if not smelt and not heard:
-            self._here = None
+            if now >= self._shown_from:
+                self._here = None
             return self._all_clear(now, pose)
         self._quiet_since = None
         strength = max(ppm / GAS_ON, 10 ** ((level - HISS_ON) / 10))

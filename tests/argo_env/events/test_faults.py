@@ -58,6 +58,15 @@ class TestFiles:
                 "may be at most 0.1 m",
             ),
             ("faults: [\n", 2, "is not YAML"),
+            ("- kind: gas_leak\n", 1, "begin with `faults:` and a list below it"),
+            ("faults:\n", 1, "begin with `faults:` and a list below it"),
+            ("{}\n", 1, "begin with `faults:` and a list below it"),
+            ("faults:\n  - kind: gas_leak\n    at: soon\n", 3, "`at` has to be a number"),
+            ("faults:\n  - kind: gas_leak\n    at: -1\n", 3, "`at` has to be at least 0"),
+            ("faults:\n  - kind: gas_leak\n    place: [1, 2]\n", 3, "`place[2]` is missing"),
+            ("faults:\n  - kind: hot_spot\n    radius: 3\n", 3, "`radius` has to be at most 1"),
+            ("faults:\n  - kind: brick\n    size: [0.1, 0, 1]\n", 3, "has to be more than 0"),
+            ("faults:\n  - kind: brick\n    at: 3\n", 3, "is there from the start"),
         ],
     )
     def test_errors_tell_the_place(self, tmp_path, text, line, says):
@@ -71,8 +80,9 @@ class TestFiles:
     def test_a_file_that_is_none(self, tmp_path):
         with pytest.raises(ArgoError, match="can't be read"):
             read_faults(tmp_path / "absent.yaml")
-        with pytest.raises(DiagnosticError):
-            read_faults(written(tmp_path, ""))
+        with pytest.raises(DiagnosticError) as caught:
+            read_faults(written(tmp_path, "# none\n"))
+        assert caught.value.diagnostics[0].hint == "begin with `faults:` and a list below it"
 
     def test_the_schema_agrees(self):
         schema = json.loads(schema_of(FaultFile, "faults"))
@@ -106,6 +116,9 @@ class TestFiles:
             ({"kind": "blocked_stairs", "tower": "tower"}, "west tower, east tower"),
             ({"kind": "blocked_stairs", "floor": 6}, "no stairs up from floor 6"),
             ({"kind": "connection_loss", "floor": 7}, "no floor 7"),
+            ({"kind": "gas_leak", "place": [99, 0, 1]}, "no equipment at (99, 0, 1)"),
+            ({"kind": "gas_leak", "place": [0, 0, -9]}, "no equipment at"),
+            ({"kind": "hot_spot", "place": [0, 0, 30]}, "its highest floor at 12.5 m"),
         ],
     )
     def test_what_the_site_does_not_have(self, umad, data, says):
@@ -136,6 +149,12 @@ class TestDrawing:
         assert settled.model_dump(include=set(given)) == given
         assert settled.begins == given.get("at", 0.0)
         assert settled.ends == given.get("until")
+
+    @settings(max_examples=examples(30), deadline=None)
+    @given(seed=st.integers(0, 2**32), until=st.floats(1e-6, 500.0))
+    def test_a_fault_begins_before_it_ends(self, umad, seed, until):
+        (fault,) = settle(faults_of({"kind": "emergency_stop", "until": until}), umad, seed)
+        assert 0.0 <= fault.begins < fault.ends
 
     def test_a_seed_of_its_own(self, umad):
         own = faults_of({"kind": "gas_leak", "seed": 5})

@@ -8,6 +8,7 @@ from argo_compiler.il import EventKind
 from argo_env.robot.pose import BodyPose
 from argo_env.sensing.signals.gas_sensors import GasSensor, UltrasonicMicrophone
 from argo_env.sensing.signals.gas_watch import GasWatch, Hysteresis
+from argo_env.sensing.watch import Told
 from argo_env.surroundings import GasLeak, Surroundings, Weather
 from tests.argo_env.sensing.signals.plant import Z, lane, told
 from tests.conftest import examples
@@ -45,6 +46,36 @@ def test_a_leak_is_told_once_and_is_over_when_it_is_closed(site, world, site_map
     around.add(on_pipe(), 300.0)
     again = [f for t, p in STANDING[300:] for f in eye.look(t, p)]
     assert [finding.kind for finding in again] == [EventKind.GAS_LEAK]
+
+
+class TestResumed:
+    """The watch is a new one, and remembers what the one before has told."""
+
+    def test_what_is_over_meanwhile_is_told(self, site, world, site_map):
+        eye, _ = watch(site, world, site_map)
+        eye.remember([Told(EventKind.GAS_LEAK, STANDING[0][1])], 0.0)
+        assert [f.kind for *_, f in told(eye, STANDING[:60])] == [EventKind.ALL_CLEAR]
+
+    def test_what_was_over_is_not_told_again(self, site, world, site_map):
+        eye, _ = watch(site, world, site_map)
+        pose = STANDING[0][1]
+        eye.remember([Told(EventKind.GAS_LEAK, pose), Told(EventKind.ALL_CLEAR, pose)], 0.0)
+        assert told(eye, STANDING[:60]) == []
+
+    def test_what_goes_on_is_not_told_again_even_far_from_where_it_was(self, site, world, site_map):
+        eye, around = watch(site, world, site_map)
+        around.add(on_pipe(), -1000.0)
+        x, y, z, yaw = 20.0, 2.0, Z, 0.0
+        eye.remember([Told(EventKind.GAS_LEAK, BodyPose(x, y, z, yaw))], 0.0)
+        assert told(eye, STANDING[:60]) == []
+
+    def test_another_one_is(self, site, world, site_map):
+        eye, around = watch(site, world, site_map)
+        eye.remember([Told(EventKind.GAS_LEAK, BodyPose(40.0, 2.0, Z, 0.0))], 0.0)
+        assert told(eye, STANDING[:30]) == []
+        around.add(on_pipe(), 30.0)
+        then = [f.kind for t, p in STANDING[30:90] for f in eye.look(t, p)]
+        assert then == [EventKind.GAS_LEAK]
 
 
 def test_upwind_it_is_heard_and_not_smelt(site, world, site_map):

@@ -12,6 +12,7 @@ from argo_env.robot.pose import BodyPose
 from argo_env.sensing.signals.alarm_watch import LOOKS, RECORDING, AlarmWatch, fits_beat, hears_tone
 from argo_env.sensing.signals.microphone import Microphone, pump_places
 from argo_env.sensing.signals.pump_watch import PumpWatch
+from argo_env.sensing.watch import Told
 from argo_env.site import load_site
 from argo_env.surroundings import Alarm, PumpFault, PumpSound, Surroundings
 from argo_env.surroundings.sound import ALARM_TONE, RATE, alarm_sound
@@ -131,6 +132,26 @@ def test_the_alarm_is_told_and_is_over_when_it_is(site, start, seed):
     assert heard - begin < 8.0
     around.remove(Alarm(), begin + 12.0)
     ((_, finding),) = stand(watch, 12.0, begin + 12.0)
+    assert finding.kind is EventKind.ALL_CLEAR
+
+
+def test_an_alarm_that_is_over_before_the_run_is_resumed(site):
+    watch, _ = alarm(site)
+    watch.remember([Told(EventKind.PLATFORM_ALARM, BESIDE)], 100.0)
+    ((_, finding),) = stand(watch, 30.0, 100.0)
+    assert finding.kind is EventKind.ALL_CLEAR
+    watch, _ = alarm(site)
+    watch.remember([Told(k, BESIDE) for k in (EventKind.PLATFORM_ALARM, EventKind.ALL_CLEAR)], 100)
+    assert stand(watch, 30.0, 100.0) == []
+
+
+def test_an_alarm_that_still_sounds_when_the_run_is_resumed(site):
+    watch, around = alarm(site)
+    around.add(Alarm(), 80.0)
+    watch.remember([Told(EventKind.PLATFORM_ALARM, BESIDE)], 100.0)
+    assert stand(watch, 20.0, 100.0) == []
+    around.remove(Alarm(), 120.0)
+    ((_, finding),) = stand(watch, 20.0, 120.0)
     assert finding.kind is EventKind.ALL_CLEAR
 
 

@@ -1,0 +1,206 @@
+"""What environments refuse, and that they can be used afterwards."""
+
+import math
+
+import gymnasium as gym
+import numpy as np
+import pytest
+from gymnasium.error import ResetNeeded
+
+import argo_env  # noqa: F401
+from argo_compiler.errors import ArgoError
+from argo_env.envs import ENVIRONMENTS
+from argo_env.envs.drive import DriveEnv
+from argo_env.envs.inspection import InspectEnv
+from argo_env.envs.inspection_options import draw_faults
+from argo_env.envs.inspection_run import travel_times
+from argo_env.envs.route import RouteEnv, RouteVectorEnv
+from argo_env.envs.sites import navigator_of
+from argo_env.events.kinds import settle
+from argo_env.site import load_site
+from tests.argo_env.envs import rollouts
+
+ONE_FLOOR = "generated:floors=1,seed=3"
+CHOICES = (-1, 999, None, "dock", np.array([0, 1]), 1.5, np.float64(1.0))
+COMMANDS = (np.zeros(2), np.full(3, math.nan), None, "ahead", 1.0, np.full(3, math.inf))
+
+
+@pytest.fixture(params=sorted(ENVIRONMENTS))
+def id(request):
+    return request.param
+
+
+@pytest.fixture
+def env(id, yard_file):
+    small = {} if id == "argo/Route-v0" else {"scenario": yard_file}
+    made = gym.make(id, disable_env_checker=True, **small).unwrapped
+    yield made
+    made.close()
+
+
+def an_action(env, observation):
+    return rollouts.choose(env, observation, np.random.default_rng(0))
+
+
+def test_faults_that_are_drawn_fit_the_site():
+    site = load_site(ONE_FLOOR)
+    for seed in range(30):
+        faults = draw_faults(8, "kinematic", site, np.random.default_rng(seed))
+        assert len({fault.kind for fault in faults}) == 8
+        settle(faults, site, seed)
+
+
+def test_observations_do_not_depend_on_what_the_process_has_kept(yard_file):
+    heard = []
+    for forget in (False, True):
+        env = InspectEnv(yard_file, faults=0)
+        observation, _ = env.reset(seed=1)
+        if forget:  # as when other environments have been on many other sites
+            navigator_of.cache_clear()
+            travel_times.cache_clear()
+        heard.append(rollouts.digest(rollouts.rollout(env, 1, 3, observation)))
+        env.close()
+    assert heard[0] == heard[1]
+
+
+def test_drive_goes_on_after_refused_options(yard_file):
+    env = DriveEnv(yard_file)
+    env.reset(seed=1)
+    for options in (
+        {"faults": [{"kind": "brick", "floor": 9}]},
+        {"scenario": [yard_file, "nowhere"]},
+        {"faults": [{"kind": "gas_leak"}]},
+        {"faults": [{"kind": "drive_dysfunction"}], "floor": 7},
+        {"scenario": []},
+        {"scenario": 3},
+    ):
+        with pytest.raises(ArgoError):
+            env.reset(options=options)
+        env.step(np.zeros(3))
+        env.get_state()
+    assert env.reset()[1]["scenario"]
+    env.close()
+
+
+@pytest.mark.parametrize(
+    ("kind", "arguments", "words"),
+    [
+        (DriveEnv, {"scenario": ()}, "scenario"),
+        (DriveEnv, {"time_limit": math.nan}, "time_limit"),
+        (DriveEnv, {"max_way": 0.0}, "max_way"),
+        (InspectEnv, {"time_limit": math.nan}, "time_limit"),
+        (InspectEnv, {"time_limit": math.inf}, "time_limit"),
+        (InspectEnv, {"faults": -1}, "0 to 8"),
+        (InspectEnv, {"faults": 9}, "0 to 8"),
+        (RouteEnv, {"budget": math.nan}, "budget"),
+    ],
+)
+def test_bad_arguments_are_refused(kind, arguments, words):
+    with pytest.raises(ArgoError, match=words):
+        kind(**arguments)
+
+
+def test_nothing_goes_without_an_episode(env, id):
+    calls = [lambda: env.step(env.action_space.sample()), env.get_state]
+    if id != "argo/Drive-v0":
+        calls.append(env.action_masks)
+    for call in calls:
+        with pytest.raises(ResetNeeded, match=f"{id}: .* call reset"):
+            call()
+
+
+def test_wrong_actions_are_refused_and_change_nothing(env, id):
+    observation, _ = env.reset(seed=1)
+    state = rollouts.digest(env.get_state())
+    for action in COMMANDS if id == "argo/Drive-v0" else CHOICES:
+        with pytest.raises(ArgoError, match=rf"{id}: no action .*(whole|three) number"):
+            env.step(action)
+    assert rollouts.digest(env.get_state()) == state
+    env.step(np.asarray(an_action(env, observation)))
+
+
+def test_wrong_actions_of_a_batch_are_refused():
+    batch = RouteVectorEnv(3, checkpoints=4)
+    with pytest.raises(ResetNeeded):
+        batch.step(np.zeros(3, np.int64))
+    batch.reset(seed=1)
+    before = rollouts.digest(batch.get_state()["arrays"])
+    for actions in ([0, 0], [0, 0, 5], [0, -1, 0], [0.0, 1.0, 2.0], None, "dock", 0, [[0, 0, 0]]):
+        with pytest.raises(ArgoError, match="3 whole numbers, 0 to 4"):
+            batch.step(actions)
+    assert rollouts.digest(batch.get_state()["arrays"]) == before
+    for state in ({"x": 1}, None, RouteVectorEnv(2, checkpoints=4).get_state()):
+        with pytest.raises(ArgoError, match="no state of a batch of 3"):
+            batch.set_state(state)
+    batch.step([0, 1, 2])
+
+
+def test_after_its_end_an_episode_does_not_go_on(env, id):
+    if id == "argo/Drive-v0":
+        env.reset(seed=1)
+        state = env.get_state()
+        env.set_state(state | {"goal": state["start"][:3]})  # there already
+        action = np.zeros(3)
+    else:
+        observation, _ = env.reset(seed=1)
+        action = 0
+        if id == "argo/Inspect-v0":
+            action = int(np.argmax(observation["points"]))  # the end dock
+        assert env.step(action)[2]
+        env.set_state(env.get_state())
+    with pytest.raises(ResetNeeded, match="the episode is over: call reset"):
+        env.step(action)
+    observation, _ = env.reset()
+    env.step(an_action(env, observation))
+
+
+def test_what_is_no_state_is_refused(env, id):
+    env.render_mode = "rgb_array"
+    observation, _ = env.reset(seed=1)
+    env.step(an_action(env, observation))
+    state = env.get_state()
+    other = RouteEnv() if id != "argo/Route-v0" else RouteVectorEnv(2)
+    other.reset(seed=1)
+    for wrong in ({"x": 1}, None, other.get_state(), state | {"generator": {"state": 1}}):
+        with pytest.raises(ArgoError, match=f"no state of {id}"):
+            env.set_state(wrong)
+    assert rollouts.digest(env.get_state()) == rollouts.digest(state)
+    with pytest.raises(ArgoError, match="nowhere"):
+        env.set_state(state | {"options": {"scenario": "nowhere"}})
+    assert env.render_mode == "rgb_array"
+    env.set_state(state)
+
+
+@pytest.mark.parametrize(
+    ("options", "words"),
+    [
+        ([1], "are a dictionary"),
+        ({"faults": "many"}, "faults"),
+        ({"faults": [{"kind": "gas"}]}, "faults"),
+        ({"faults": [{"kind": "low_battery", "charg": 1}]}, "faults"),
+        ({"faults": [{}, 3]}, "faults"),
+        ({"floor": "first"}, "`floor` has to be a whole number, or a list"),
+        ({"floor": [1, "a"]}, r"`floor\[1\]`: .* a whole number;"),
+    ],
+)
+def test_wrong_options_are_told_in_plain_words(env, options, words):
+    with pytest.raises(ArgoError, match=words) as error:
+        env.reset(options=options)
+    for internal in ("constrained", "tagged", "union", "tuple", "valid"):
+        assert internal not in str(error.value)
+
+
+@pytest.mark.parametrize(
+    ("faults", "words"),
+    [
+        (9, "`faults`: `faults` has to be at most 8;"),
+        ("many", "`faults`: `faults` has to be a whole number, or a list;"),
+        ([{"kind": "low_battery", "charg": 1}], r"`faults\[0\].charg`: .* `charge` meant"),
+        ([{"kind": "low_battery", "charge": 3}], r"`faults\[0\].charge`: .* at most 1;"),
+        ([{"kind": "gas"}], r"`faults\[0\]`: no kind `gas`"),
+    ],
+)
+def test_of_wrong_faults_the_one_mistake_is_told(yard_file, faults, words):
+    env = InspectEnv(yard_file)
+    with pytest.raises(ArgoError, match=words):
+        env.reset(options={"faults": faults})

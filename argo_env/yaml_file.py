@@ -12,7 +12,7 @@ from argo_compiler.errors import ArgoError
 from argo_compiler.fields import field_hint
 from argo_compiler.json_places import JsonPath, format_path
 from argo_compiler.model import Model
-from argo_env.yaml_messages import message_of
+from argo_env.yaml_messages import message_of, path_in_data
 
 MAX_FINDINGS = 20
 
@@ -121,7 +121,7 @@ def _wrong_fields(
     for fault in faults:
         if fault["type"] == "too_short" and fault["loc"] in faulty:
             continue  # of what is in it nothing was left
-        path = fault.get("ctx", {}).get("path") or _in_file(fault["loc"], data)
+        path = fault.get("ctx", {}).get("path") or path_in_data(fault["loc"], data)
         message, hint = message_of(fault, path), _beginning(model, fault["loc"])
         unknown = fault["type"] == "extra_forbidden"
         if unknown:
@@ -146,20 +146,6 @@ def _beginning(model: type[Model], path: JsonPath) -> str | None:
     if len(names) == 1 and path in {(), (names[0],)}:
         return f"begin with `{names[0]}:` and a list below it"
     return None
-
-
-def _in_file(path: JsonPath, data: Any) -> JsonPath:
-    """The path without the names of the models that a choice was made among."""
-    found: list[str | int] = []
-    for step in path:
-        if isinstance(data, dict) and step not in data and data.get("kind") == step:
-            continue
-        found.append(step)
-        try:
-            data = data[step]
-        except (KeyError, IndexError, TypeError):
-            data = None
-    return tuple(found)
 
 
 def _place(tree: yaml.Node | None, path: JsonPath, key: bool = False) -> Span | None:

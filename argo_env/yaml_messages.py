@@ -1,4 +1,7 @@
-"""What is wrong with a value of a YAML file, in plain words."""
+"""What is wrong with a value of a YAML file or of options, in plain words, and where."""
+
+from collections.abc import Mapping
+from typing import Any
 
 from pydantic_core import ErrorDetails
 
@@ -45,3 +48,17 @@ def _name(path: JsonPath) -> str:
     """The last name of a path, with the numbers after it."""
     names = [k for k, step in enumerate(path) if isinstance(step, str)]
     return f"`{format_path(path[names[-1] :])}`" if names else "it"
+
+
+def path_in_data(path: JsonPath, data: Any) -> JsonPath:
+    """The path without the kinds of things that a choice was made among, which pydantic adds."""
+    found: list[int | str] = []
+    for step in path:
+        if isinstance(data, Mapping) and step not in data and data.get("kind") == step:
+            continue
+        found.append(step)
+        try:
+            data = data[step]
+        except (KeyError, IndexError, TypeError):
+            data = None
+    return tuple(found)

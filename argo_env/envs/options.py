@@ -10,9 +10,9 @@ from pydantic_core import ErrorDetails
 
 from argo_compiler.errors import ArgoError
 from argo_compiler.fields import field_hint
-from argo_compiler.json_places import JsonPath, format_path
+from argo_compiler.json_places import format_path
 from argo_compiler.model import Model
-from argo_env.yaml_messages import message_of
+from argo_env.yaml_messages import message_of, path_in_data
 
 Options = TypeVar("Options", bound=Model)
 
@@ -40,7 +40,7 @@ def check_positive(env: str, **arguments: float) -> None:
 
 def _said(model: type[Model], error: ErrorDetails, data: Any) -> str:
     """Where it is wrong, what is wrong, and what to do about it."""
-    path = _without_kinds(error["loc"], data)
+    path = path_in_data(error["loc"], data)
     place, context = f"`{format_path(path)}`", error.get("ctx", {})
     if error["type"] == "extra_forbidden":
         return f"{place}: there is no such option ({field_hint(model, error['loc'])})"
@@ -49,20 +49,6 @@ def _said(model: type[Model], error: ErrorDetails, data: Any) -> str:
     if error["type"] == "union_tag_invalid":
         return f"{place}: no kind `{context['tag']}`, only {context['expected_tags']}"
     return f"{place}: {message_of(error, path)}"
-
-
-def _without_kinds(path: JsonPath, data: Any) -> JsonPath:
-    """The path in the data: less the kinds of faults, which pydantic adds."""
-    found: list[int | str] = []
-    for step in path:
-        if isinstance(data, Mapping) and step not in data and data.get("kind") == step:
-            continue
-        found.append(step)
-        try:
-            data = data[step]
-        except (KeyError, IndexError, TypeError):
-            data = None
-    return tuple(found)
 
 
 def _meant(model: type[Model], errors: list[ErrorDetails]) -> Iterator[ErrorDetails]:

@@ -3,7 +3,7 @@
 import math
 from collections.abc import Sequence
 from dataclasses import replace
-from functools import cached_property, lru_cache
+from functools import cached_property
 from itertools import pairwise
 
 import numpy as np
@@ -26,6 +26,9 @@ from argo_env.site import Site
 
 SNAP_DISTANCE = 0.5  # m that a wanted pose may be away from one where the robot can stand
 
+Views = tuple[NDArray[np.int64], NDArray[np.float64]]
+"""States of the lattice from which a checkpoint is seen, and what each costs as a goal, in s."""
+
 
 class UnreachableError(ArgoError):
     """There is no way to where the robot should go; the message says what and why."""
@@ -38,10 +41,9 @@ class Navigator:
         self.site = site
         self.robot = robot
         self.blockages: tuple[Blockage, ...] = ()
-        # The cache belongs to this object, not to the class, and goes with it.
-        self._views = lru_cache(maxsize=None)(self._find_views)
-        self._viewing_state = lru_cache(maxsize=None)(self._find_viewing_state)
-        self._flat_map = lru_cache(maxsize=None)(self._make_flat_map)
+        self._found_views: dict[tuple[int, float], Views] = {}
+        self._viewing_states: dict[int, int] = {}
+        self._flat_maps: dict[float, FlatMap] = {}
 
     def avoiding(self, blockages: Sequence[Blockage]) -> "Navigator":
         """A navigator of the same site that also keeps clear of `blockages`.
@@ -155,6 +157,11 @@ class Navigator:
         """Whether the checkpoint can be read from anywhere on the lattice."""
         return len(self._views(checkpoint_id)[0]) > 0
 
+    def _viewing_state(self, checkpoint_id: int) -> int:
+        if checkpoint_id not in self._viewing_states:
+            self._viewing_states[checkpoint_id] = self._find_viewing_state(checkpoint_id)
+        return self._viewing_states[checkpoint_id]
+
     def _find_viewing_state(self, checkpoint_id: int) -> int:
         states, costs = self._views(checkpoint_id)
         total = self._from_first_dock[states] + costs
@@ -227,11 +234,19 @@ class Navigator:
         cuts = find_cuts(self.lattice, [f.z for f in self.site.spec.floors])
         return Routes(self.lattice, make_partition(self.lattice, cuts))
 
-    def _find_views(
-        self, checkpoint_id: int, turned: float = 0.0
-    ) -> tuple[NDArray[np.int64], NDArray[np.float64]]:
-        planned = self.site.checkpoint(checkpoint_id)
-        return find_views(self.site, replace(planned, yaw=planned.yaw + turned), self.lattice)
+    def _views(self, checkpoint_id: int, turned: float = 0.0) -> Views:
+        key = checkpoint_id, turned
+        if key not in self._found_views:
+            planned = self.site.checkpoint(checkpoint_id)
+            face = replace(planned, yaw=planned.yaw + turned)
+            self._found_views[key] = find_views(self.site, face, self.lattice)
+        return self._found_views[key]
+
+    def _flat_map(self, z: float) -> FlatMap:
+        z = round(z, 3)
+        if z not in self._flat_maps:
+            self._flat_maps[z] = self._make_flat_map(z)
+        return self._flat_maps[z]
 
     def _make_flat_map(self, z: float) -> FlatMap:
         cells = FlatMap.at(self.surface, z)
@@ -251,14 +266,14 @@ class Navigator:
             if turns_over(here, turn.turn, self.blockages, self.robot):
                 raise self._no_way(start, f"({path.end.x:.2f}, {path.end.y:.2f}, {path.end.z:.2f})")
             path = Path(here, (turn, *path.motions) if abs(turn.turn) > 1e-9 else path.motions)
-        return smooth(path, lambda z: self._flat_map(round(z, 3)), self.robot)
+        return smooth(path, self._flat_map, self.robot)
 
     def _with_final_turn(self, path: Path, yaw: float) -> Path:
         angle = wrap(yaw - path.end.yaw)
         if abs(angle) < 1e-9:
             return path
         end = path.end.model_copy(update={"yaw": yaw})
-        if not self._flat_map(round(end.z, 3)).clear_turn(path.end, angle, self.robot.footprint):
+        if not self._flat_map(end.z).clear_turn(path.end, angle, self.robot.footprint):
             return path
         motions = merge((*path.motions, Motion(path.end, end, turn=angle)))
         return Path(path.start, tuple(motions))

@@ -156,7 +156,7 @@ def _shorten(
         return stretch
     poses = _vertices(stretch)
     cells = flat_map(poses[0].z)
-    pieces = [_connect(a, b) for a, b in pairwise(poses)]
+    pieces = [connect(a, b) for a, b in pairwise(poses)]
     plain = _elapsed(pieces, robot)
     table = np.array([[p.x, p.y, p.yaw] for p in poses])
     saved = plain - plain[:, None] - _direct(table[:, None], table, robot)
@@ -170,7 +170,7 @@ def _shorten(
             # The drive first: it is what fails most.
             if not sure and not cells.clear_drive(poses[at], poses[further], robot.footprint):
                 continue
-            short_cut = _connect(poses[at], poses[further])
+            short_cut = connect(poses[at], poses[further])
             if all(cells.clear_turn(m.start, m.turn, robot.footprint) for m in short_cut if m.turn):
                 to, motions = further, short_cut
                 break
@@ -224,16 +224,17 @@ def _vertices(stretch: list[Motion]) -> list[Pose]:
     return poses
 
 
-def _connect(a: Pose, b: Pose) -> list[Motion]:
+def connect(a: Pose, b: Pose) -> list[Motion]:
     """Turn towards b, drive there, turn as b asks."""
     if math.dist((a.x, a.y), (b.x, b.y)) < _SAME_PLACE:
-        return _turn(a, b.yaw)
+        return turn(a, b.yaw)
     yaw = math.atan2(b.y - a.y, b.x - a.x)
     start, end = a.model_copy(update={"yaw": yaw}), b.model_copy(update={"yaw": yaw})
-    return [*_turn(a, yaw), Motion(start, end), *_turn(end, b.yaw)]
+    return [*turn(a, yaw), Motion(start, end), *turn(end, b.yaw)]
 
 
-def _turn(pose: Pose, yaw: float) -> list[Motion]:
+def turn(pose: Pose, yaw: float) -> list[Motion]:
+    """The turn in place to a heading of `yaw` (rad), if that is one."""
     angle = wrap(yaw - pose.yaw)
     if abs(angle) < _SAME_YAW:
         return []

@@ -3,11 +3,14 @@
 import math
 from abc import ABC, abstractmethod
 
+from argo_compiler.model import Pose
 from argo_env.navigation.path import Motion, Path
 from argo_env.robot.drive import DriveStatus, Incident
 from argo_env.robot.pose import BodyPose
 from argo_env.robot.spec import RobotSpec
 from argo_env.robot.timetable import Timetable, steps
+
+_SAME_PLACE = 1e-3  # m
 
 
 class TimedDrive(ABC):
@@ -40,7 +43,7 @@ class TimedDrive(ABC):
 
     def begin(self, path: Path, velocity: float | None) -> None:
         """Sets off along `path` at `velocity` (m/s) on the flat, or at the robot's own speeds."""
-        self._timetable = Timetable(path, self._robot, velocity)
+        self._timetable = Timetable(self._from_here(path), self._robot, velocity)
         self._steps = 0
 
     def halt(self) -> None:
@@ -60,6 +63,15 @@ class TimedDrive(ABC):
             return DriveStatus.MOVING
         self.halt()
         return DriveStatus.ARRIVED
+
+    def _from_here(self, path: Path) -> Path:
+        """The path, with the way to its start if that is beside the robot: paths begin where the
+        navigator's lattice has a state, some centimetres from a robot that was stopped."""
+        start, pose = path.start, self._pose
+        if math.dist((start.x, start.y), (pose.x, pose.y)) < _SAME_PLACE:
+            return path
+        here = Pose(x=pose.x, y=pose.y, z=pose.z, yaw=start.yaw)
+        return Path(here, (Motion(here, start), *path.motions))
 
     @abstractmethod
     def _pose_at(self, motion: Motion, share: float) -> BodyPose:

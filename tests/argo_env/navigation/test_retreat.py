@@ -1,6 +1,7 @@
 """Back along the way that the robot came."""
 
 import math
+from itertools import groupby
 
 import pytest
 from hypothesis import given, settings
@@ -9,7 +10,7 @@ from hypothesis import strategies as st
 from argo_compiler.model import Pose
 from argo_env.navigation import Path
 from argo_env.navigation.path import wrap
-from argo_env.navigation.retreat import way_back
+from argo_env.navigation.retreat import driven, way_back
 from tests.conftest import examples
 from tests.yard import yard
 
@@ -44,3 +45,40 @@ def test_the_same_places_in_reverse(path, data, share, length):
 def test_of_no_way_at_all():
     here = Pose(x=1.0, y=1.0, z=0.0)
     assert way_back(Path(here, ()), here, 1.0) == Path(here, ())
+
+
+def gears_of(path):
+    """Ahead and back, in turns."""
+    return [gear for gear, _ in groupby(m.gear for m in path.motions if not m.turn)]
+
+
+@settings(max_examples=examples(40), deadline=None)
+@given(st.integers(2, 60), st.booleans())
+def test_the_way_that_was_seen_is_the_way_that_was_driven(path, count, forwards):
+    places = [m.at(k / count) for m in path.motions for k in range(count + 1)]
+    gears = gears_of(path)
+    if not forwards:
+        places.reverse()
+        gears = [-gear for gear in reversed(gears)]
+    seen = driven(places)
+    assert gears_of(seen) == gears
+    assert seen.length == pytest.approx(path.length, rel=0.02)
+    at = places[0]
+    for motion in seen.motions:
+        assert math.dist((motion.start.x, motion.start.y), (at.x, at.y)) < 1e-6
+        assert abs(wrap(motion.start.yaw - at.yaw)) < 1e-6
+        assert abs(wrap(motion.start.yaw + motion.turn - motion.end.yaw)) < 1e-6
+        at = motion.end
+    assert math.dist((at.x, at.y), (places[-1].x, places[-1].y)) < 0.06
+
+
+def test_stairs_are_gone_back_as_they_were_come():
+    flight = [Pose(x=0.2 * k, y=0.01 * (k % 2), z=0.16 * k, yaw=0.03 * (k % 2)) for k in range(9)]
+    down = way_back(driven(flight), flight[-1], 1.0)
+    assert all(m.on_stairs and m.gear < 0 and not m.turn for m in down.motions)
+    assert down.length == pytest.approx(1.0, abs=0.01)
+
+
+def test_a_robot_that_stood_still_came_from_nowhere():
+    here = Pose(x=1.0, y=1.0, z=0.0, yaw=0.5)
+    assert driven([here]) == driven([here, here]) == Path(here, ())

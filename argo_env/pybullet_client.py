@@ -3,11 +3,14 @@
 import ctypes
 import os
 import sys
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
 from pathlib import Path
 from types import TracebackType
 from typing import Self
+
+import numpy as np
+from numpy.typing import NDArray
 
 from argo_env.site.shapes import Vector
 
@@ -35,7 +38,10 @@ def quiet() -> Iterator[None]:
 with quiet():
     import pybullet
 
-__all__ = ["Connection", "pybullet", "quiet"]
+__all__ = ["SUN", "Connection", "pybullet", "quiet"]
+
+SUN: Vector = (0.55, -0.75, 1.25)
+"""direction towards the light of all pictures"""
 
 
 class Connection:
@@ -59,6 +65,30 @@ class Connection:
     def close(self) -> None:
         """Ends the connection; the object is of no use afterwards."""
         pybullet.disconnect(physicsClientId=self._client)
+
+    def _render(
+        self, view: Sequence[float], projection: Sequence[float], size: tuple[int, int]
+    ) -> tuple[NDArray[np.uint8], NDArray[np.float64]]:
+        """What a camera sees in daylight, without shadows: red, green and blue, shape (height,
+        width, 3), and OpenGL's depth buffer, shape (height, width). The matrices are OpenGL's,
+        column by column; `size` is width and height in px."""
+        width, height = size
+        image = pybullet.getCameraImage(
+            width,
+            height,
+            view,
+            projection,
+            lightDirection=SUN,
+            lightAmbientCoeff=0.62,
+            lightDiffuseCoeff=0.42,
+            lightSpecularCoeff=0.0,
+            shadow=0,
+            renderer=pybullet.ER_TINY_RENDERER,
+            flags=pybullet.ER_NO_SEGMENTATION_MASK,
+            physicsClientId=self._client,
+        )
+        colours = np.asarray(image[2], dtype=np.uint8).reshape(height, width, 4)[:, :, :3]
+        return colours, np.asarray(image[3], dtype=np.float64).reshape(height, width)
 
     def _load(self, path: Path, fixed: bool) -> int:
         body: int = pybullet.loadURDF(str(path), useFixedBase=fixed, physicsClientId=self._client)

@@ -26,7 +26,6 @@ _ARM = {  # links of the arm, and what of the robot each could hit
     "camera": (*_HULL, "arm_base", "upper_arm"),
 }
 _ARM_REACH = 2.5  # m from the robot's middle, in which all is that the arm may touch
-_SUN: Vector = (0.55, -0.75, 1.25)  # direction towards the light
 
 
 @dataclass(frozen=True, eq=False)
@@ -224,22 +223,7 @@ class World(Bodies):
     ) -> NDArray[np.uint8]:
         """What a camera sees in daylight, red, green and blue, shape (height, width, 3). The
         matrices are OpenGL's, column by column; `size` is width and height in px."""
-        width, height = size
-        image = pybullet.getCameraImage(
-            width,
-            height,
-            view,
-            projection,
-            lightDirection=_SUN,
-            lightAmbientCoeff=0.62,
-            lightDiffuseCoeff=0.42,
-            lightSpecularCoeff=0.0,
-            shadow=0,
-            renderer=pybullet.ER_TINY_RENDERER,
-            flags=pybullet.ER_NO_SEGMENTATION_MASK,
-            physicsClientId=self._client,
-        )
-        return np.asarray(image[2], dtype=np.uint8).reshape(height, width, 4)[:, :, :3]
+        return self._render(view, projection, size)[0]
 
     def _look_at_site(self) -> None:
         """Sets the window's camera so that the whole site is in view, from the south-west."""

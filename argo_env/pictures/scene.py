@@ -19,8 +19,6 @@ from argo_env.site import Site
 from argo_env.site.shapes import Box, Cylinder, Element, Role, Solid, Vector, half_extents
 from argo_env.site.urdf import to_urdf
 
-SUN: Vector = (0.55, -0.75, 1.25)
-"""direction towards the light"""
 _UNDER_DECK = 0.25  # m below a floor that belongs to it: its plates and beams
 _HIDDEN: Vector = (0.0, 0.0, -1000.0)
 _SOLID_BIT = 1  # what a ray along a line of sight stops at
@@ -102,23 +100,7 @@ class Scene(Connection):
 
     def look(self, camera: Camera) -> View:
         """What the camera sees, without shadows."""
-        width, height = camera.size
-        image = pybullet.getCameraImage(
-            width,
-            height,
-            camera.view_matrix,
-            camera.projection_matrix,
-            lightDirection=SUN,
-            lightAmbientCoeff=0.62,
-            lightDiffuseCoeff=0.42,
-            lightSpecularCoeff=0.0,
-            shadow=0,
-            renderer=pybullet.ER_TINY_RENDERER,
-            flags=pybullet.ER_NO_SEGMENTATION_MASK,
-            physicsClientId=self._client,
-        )
-        colours = np.asarray(image[2], dtype=np.uint8).reshape(height, width, 4)[:, :, :3]
-        buffer = np.asarray(image[3], dtype=np.float64).reshape(height, width)
+        colours, buffer = self._render(camera.view_matrix, camera.projection_matrix, camera.size)
         return View(colours, depth_in_metres(buffer, camera))
 
     def blocked(self, start: Vector, ends: list[Vector]) -> NDArray[np.bool_]:

@@ -1,6 +1,7 @@
 """The camera's arm against PyBullet's forward kinematics, and what it keeps clear of."""
 
 import math
+from itertools import product
 
 import numpy as np
 import pybullet
@@ -8,6 +9,8 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
+from argo_env.action import TURNS
+from argo_env.navigation import UnreachableError
 from argo_env.navigation.views import face_normal
 from argo_env.robot.pose import BodyPose
 from argo_env.robot.spec import robot_folder
@@ -160,3 +163,20 @@ def test_arm_check_moves_nothing_and_names_what_is_hit(simulation, robot):
     assert simulation.arm_obstacle(folded, 0.02) == "base_link"
     assert simulation.arm_obstacle(raised, 0.02) is None
     assert simulation.joint_positions(JOINTS) == before
+
+
+def test_is_raised_at_every_view_without_touching_anything(simulation, navigator, robot):
+    stowed, raised = (
+        np.radians([pose[name] for name in JOINTS]) for pose in (robot.arm_stowed, robot.arm_raised)
+    )
+    dock = navigator.site.docks[1]
+    for checkpoint, turned in product(navigator.site.checkpoints, TURNS):
+        try:
+            at = navigator.plan_to_view(dock, checkpoint.id, turned).end
+        except UnreachableError:
+            continue
+        simulation.place_robot(BodyPose(at.x, at.y, at.z, at.yaw))
+        for share in np.linspace(0.0, 1.0, 25):
+            joints = (stowed + share * (raised - stowed)).tolist()
+            positions = dict(zip(JOINTS, joints, strict=True))
+            assert simulation.arm_obstacle(positions, 0.0) is None, checkpoint.id

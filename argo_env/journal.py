@@ -13,8 +13,7 @@ import zlib
 from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
-from types import TracebackType
-from typing import Literal, NoReturn, Self, TypeVar
+from typing import Literal, NoReturn, TypeVar
 
 from pydantic import ValidationError
 
@@ -23,6 +22,7 @@ from argo_compiler.diagnostics import Diagnostic
 from argo_compiler.errors import ArgoError
 from argo_compiler.il import Mission
 from argo_compiler.model import Model
+from argo_env.closing import Closing
 from argo_env.log import Entry
 from argo_env.navigation import Navigator
 from argo_env.settings import RunSettings
@@ -60,7 +60,7 @@ class JournalPlace:
     source: Path | None = None
 
 
-class Journal:
+class Journal(Closing):
     """An open journal. Holds the file and its lock; close it, or use it as a context."""
 
     def __init__(self, path: Path, file: int, header: Header, entries: Sequence[Entry], size: int):
@@ -117,17 +117,6 @@ class Journal:
 
     def close(self) -> None:
         os.close(self._file)
-
-    def __enter__(self) -> Self:
-        return self
-
-    def __exit__(
-        self,
-        kind: type[BaseException] | None,
-        error: BaseException | None,
-        trace: TracebackType | None,
-    ) -> None:
-        self.close()
 
 
 def fingerprints(navigator: Navigator, mission: Mission, source: Path | None) -> dict[str, str]:

@@ -6,12 +6,11 @@ import sys
 from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
 from pathlib import Path
-from types import TracebackType
-from typing import Self
 
 import numpy as np
 from numpy.typing import NDArray
 
+from argo_env.closing import Closing
 from argo_env.site.shapes import Vector
 
 
@@ -44,23 +43,12 @@ SUN: Vector = (0.55, -0.75, 1.25)
 """direction towards the light of all pictures"""
 
 
-class Connection:
+class Connection(Closing):
     """A world of bodies in PyBullet. Holds a connection; close it, or use it as a context."""
 
     def __init__(self, gui: bool = False) -> None:
         with quiet():
             self._client: int = pybullet.connect(pybullet.GUI if gui else pybullet.DIRECT)
-
-    def __enter__(self) -> Self:
-        return self
-
-    def __exit__(
-        self,
-        kind: type[BaseException] | None,
-        error: BaseException | None,
-        trace: TracebackType | None,
-    ) -> None:
-        self.close()
 
     def close(self) -> None:
         """Ends the connection; the object is of no use afterwards."""

@@ -1,13 +1,12 @@
 """The site that Drive-v0 drives on: its world, the robot's body in it, and the ways there."""
 
 from dataclasses import replace
-from types import TracebackType
-from typing import Self
 
 import numpy as np
 from numpy.typing import NDArray
 
 from argo_compiler.errors import ArgoError
+from argo_env.closing import Closing
 from argo_env.envs.guide import Guide
 from argo_env.envs.sites import navigator_of
 from argo_env.events.kinds import AnyFault, changed_site, settle
@@ -25,7 +24,7 @@ DYSFUNCTION = "drive_dysfunction"
 _PICTURE = (640, 360)  # px
 
 
-class DriveSite:
+class DriveSite(Closing):
     """Holds two PyBullet connections, and a third one once it has drawn; close it."""
 
     def __init__(self, scenario: str, faults: tuple[AnyFault, ...] = ()) -> None:
@@ -56,17 +55,6 @@ class DriveSite:
         self.body = TrackedBody(self.world, self.robot)
         self._scene: Scene | None = None
         self._camera: ChaseCamera | None = None
-
-    def __enter__(self) -> Self:
-        return self
-
-    def __exit__(
-        self,
-        kind: type[BaseException] | None,
-        error: BaseException | None,
-        trace: TracebackType | None,
-    ) -> None:
-        self.close()
 
     def close(self) -> None:
         """Ends the connections."""

@@ -15,7 +15,7 @@ class RunSettings(Model):
     """name of the drive"""
     sensor: str = "ideal"
     """name of the sensor that reads checkpoints"""
-    seed: int = 0
+    seed: int = Field(default=0, ge=0)
     """of all that is drawn"""
     values: dict[int, float] = Field(default_factory=dict)
     """what checkpoints show, by number, where it is not drawn"""

@@ -242,6 +242,8 @@ def main() -> None:
     parser.add_argument("--workers", type=int, default=min(2, os.cpu_count() or 1))
     parser.add_argument("--fit", action="store_true", help="write the calibration anew")
     arguments = parser.parse_args()
+    if arguments.seed is not None and arguments.seed < 0:
+        parser.error(f"argument --seed: it has to be 0 or more, not {arguments.seed}")
     first = arguments.seed
     if first is None:
         first = FIRST_FITTED_SEED if arguments.fit else FIRST_SEED

@@ -184,6 +184,8 @@ def main() -> None:
     parser.add_argument("--seed", type=int, default=0, help="of the first mission")
     parser.add_argument("--drive", choices=DRIVES, default="kinematic")
     given = parser.parse_args()
+    if given.seed < 0:
+        parser.error(f"argument --seed: it has to be 0 or more, not {given.seed}")
     navigator = Navigator(load_site(given.site), load_robot())
     navigator.prepare()
     todo: list[Callable[[], None]] = []

@@ -255,6 +255,8 @@ def main() -> None:
     parser.add_argument("--jobs", type=int, default=2)
     parser.add_argument("--out", type=Path, help="a file for all trials, a line of JSON each")
     options = parser.parse_args()
+    if options.seed < 0:
+        parser.error(f"argument --seed: it has to be 0 or more, not {options.seed}")
     trials = []
     with options.out.open("w", encoding="utf-8") if options.out else nullcontext() as file:
         for trial in run_trials(options.seed, options.trials, options.jobs):

@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 
 from argo_compiler.errors import ArgoError
 from argo_compiler.il import EventKind
+from argo_env.envs.drawing.inspection import draw_inspection
 from argo_env.envs.episode import (
     Parts,
     check_begun,
@@ -21,8 +22,7 @@ from argo_env.envs.episode import (
 from argo_env.envs.inspection_options import MOST_FAULTS, InspectOptions, draw_faults
 from argo_env.envs.inspection_run import Deed, Inspection, travel_times
 from argo_env.envs.observations import Observation, dict_space
-from argo_env.envs.options import check_positive, read_options
-from argo_env.envs.plan_pictures import Marker, draw_plan
+from argo_env.envs.options import check_positive, check_whole, read_options
 from argo_env.envs.rendering import Rendering, check_render_mode
 from argo_env.envs.sites import navigator_of
 from argo_env.events.kinds import AnyFault
@@ -144,8 +144,8 @@ class InspectEnv(Rendering, gym.Env[Observation, np.int64]):
         self._scenario, self._drive, self._limit = scenario, drive, time_limit
         self._default_faults = faults
         site = navigator_of(scenario).site
-        self._slots = len(site.checkpoints) if checkpoints is None else checkpoints
-        self._docks = len(site.docks) if docks is None else docks
+        self._slots = self._room("checkpoints", checkpoints, len(site.checkpoints), site.name)
+        self._docks = self._room("docks", docks, len(site.docks), site.name)
         places = self._slots + self._docks
         share, one = spaces.Box(0.0, 1.0, (places,)), spaces.Box(0.0, 1.0, (1,))
         parts: dict[str, spaces.Space[Any]] = {
@@ -189,10 +189,9 @@ class InspectEnv(Rendering, gym.Env[Observation, np.int64]):
             self._run.close()
         self._run = Inspection(self._navigator, settings, site.docks[docks[start]], self._limit)
         self._read = np.zeros(self._slots, np.bool_)
+        self._abnormal = np.zeros(self._slots, np.bool_)
         self._failed = np.zeros(self._slots + self._docks, np.int64)
         self._actions: list[int] = []
-        pose = self._run.pose
-        self._way = [(pose.x, pose.y, float(site.floor_at(pose.z)))]
         self._over = False
         observation = self._observe()
         self._show()
@@ -215,8 +214,6 @@ class InspectEnv(Rendering, gym.Env[Observation, np.int64]):
             "dead": DEAD if run.dead and not docked else 0.0,
         }
         self._actions.append(place)
-        pose = run.pose
-        self._way.append((pose.x, pose.y, float(self._navigator.site.floor_at(pose.z))))
         terminated = docked or run.dead
         info: dict[str, Any] = {
             "terms": terms,
@@ -305,6 +302,14 @@ class InspectEnv(Rendering, gym.Env[Observation, np.int64]):
         self._asked = np.zeros(self._slots, np.bool_)
         self._asked[: len(site.checkpoints)] = [c.floor in asked for c in site.checkpoints]
 
+    def _room(self, name: str, wanted: int | None, there: int, site: str) -> int:
+        """How many places of a kind there is room for: all of the site's unless more are wanted."""
+        if wanted is None:
+            return there
+        why = f", as site {site} has {there} {name}; leave it out to have room for just these"
+        check_whole(self._title, there, why, **{name: wanted})
+        return int(wanted)
+
     def _faults(self, rng: np.random.Generator) -> tuple[AnyFault, ...]:
         given = self._options.faults
         if isinstance(given, tuple):
@@ -319,6 +324,7 @@ class InspectEnv(Rendering, gym.Env[Observation, np.int64]):
             deed = run.read(site.checkpoints[place].id)
             if deed.reading:
                 self._read[place] = True
+                self._abnormal[place] = not deed.reading.normal
         else:
             dock = site.docks[sorted(site.docks)[place - self._slots]]
             deed = run.drive(dock)
@@ -368,19 +374,23 @@ class InspectEnv(Rendering, gym.Env[Observation, np.int64]):
         return travel
 
     def _picture(self) -> NDArray[np.uint8]:
-        """The site's floors with what was read."""
-        run, site = self._running, self._navigator.site
-        markers = []
-        for k, c in enumerate(site.checkpoints):
-            state = "done" if self._read[k] else "open" if self._mask[k] else "closed"
-            markers.append(Marker((c.position[0], c.position[1], c.floor), str(c.id), 11.0, state))
-        for k, number in enumerate(sorted(site.docks)):
-            pose = site.docks[number]
-            name = f"dock {number}" + (" (end)" if k == self._end else "")
-            markers.append(Marker((pose.x, pose.y, site.floor_at(pose.z)), name, 5.0, "dock"))
-        noticed = ", ".join(dict.fromkeys(kind.value for kind in run.noticed)) or "nothing"
-        headline = (
+        """The site's floors with what was read and the way driven."""
+        run = self._running
+        last = self._actions[-1] if self._actions else None
+        return draw_inspection(
+            self._navigator,
+            run,
+            [self._state_of(k) for k in range(len(self._navigator.site.checkpoints))],
+            last,
+            self._end,
             f"{run.now:.0f} s of {self._limit:.0f} s    battery {run.charge:.0%}    "
-            f"read {self._read.sum()} of {self._asked.sum()}    noticed: {noticed}"
+            f"read {self._read.sum()} of {self._asked.sum()}",
         )
-        return draw_plan(markers, self._way, headline, len(site.spec.floors))
+
+    def _state_of(self, slot: int) -> str:
+        """What a picture shows of a checkpoint."""
+        if self._read[slot]:
+            return "abnormal" if self._abnormal[slot] else "done"
+        if not self._asked[slot]:
+            return "outside"
+        return "open" if self._mask[slot] else "closed"

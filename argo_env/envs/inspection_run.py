@@ -22,6 +22,7 @@ from argo_env.session import outfit
 from argo_env.settings import RunSettings
 
 FULL = 0.999  # charge from where on the battery counts as full
+_TRAIL = 0.15  # m between poses that are kept
 _NEAR = 1.0  # m from a dock or view within which the robot is taken to be there
 
 
@@ -49,8 +50,10 @@ class Inspection:
         self._odometry = Odometry(navigator.robot, self._rig.battery, navigator.site)
         self._perception = Perception(self._rig.watches, navigator.site, self._rig.drive.time_step)
         self._noticed: list[EventKind] = []
+        self._trail: list[tuple[float, BodyPose]] = []
         here = navigator.snap(start)
         self._rig.drive.place(BodyPose(here.x, here.y, here.z, here.yaw))
+        self._mark()
         if self._rig.schedule:
             self._rig.schedule.advance(0.0)
 
@@ -81,6 +84,11 @@ class Inspection:
     @property
     def pose(self) -> BodyPose:
         return self._rig.drive.pose
+
+    @property
+    def trail(self) -> tuple[tuple[float, BodyPose], ...]:
+        """Times (s) and poses, so near to one another that they show the way; the last is now."""
+        return (*self._trail, (self.now, self.pose))
 
     @property
     def navigator(self) -> Navigator:
@@ -131,6 +139,15 @@ class Inspection:
         failure = end.reason if isinstance(end, ActionFailed) else None
         return Deed(action.reading(self.now), failure, tuple(found), contacts)
 
+    def _mark(self) -> None:
+        """Keeps the pose if the robot is far enough from the last one kept."""
+        pose = self.pose
+        if self._trail:
+            last = self._trail[-1][1]
+            if math.dist((pose.x, pose.y, pose.z), (last.x, last.y, last.z)) < _TRAIL:
+                return
+        self._trail.append((self.now, pose))
+
     def _advance(self, action: ActionUnderWay | None) -> tuple[object, tuple[Anomaly, ...]]:
         """One step of simulated time; the end of the action, if that is it, and what was found."""
         self._steps += 1
@@ -143,6 +160,7 @@ class Inspection:
             self._odometry.moved(before, rig.drive.pose, rig.world.touches(), now)
         measuring = action is not None and action.measuring
         self._odometry.spend(before, rig.drive.pose, rig.drive.time_step, measuring)
+        self._mark()
         noticed = self._perception.look(self._steps, now, rig.drive.pose)
         self._noticed += [anomaly.kind for anomaly in noticed]
         if closed := [b for anomaly in noticed if (b := blockage(anomaly))]:

@@ -5,6 +5,7 @@ from collections.abc import Iterator, Mapping
 from types import UnionType
 from typing import Any, TypeVar, Union, get_args, get_origin
 
+import numpy as np
 from pydantic import ValidationError
 from pydantic_core import ErrorDetails
 
@@ -36,6 +37,17 @@ def check_positive(env: str, **arguments: float) -> None:
     for name, value in arguments.items():
         if not (math.isfinite(value) and value > 0):
             raise ArgoError(f"{env}: `{name}` is {value:g}, and has to be finite and more than 0")
+
+
+def check_whole(env: str, low: int, why: str = "", **arguments: Any) -> None:
+    """Raises ArgoError for the first argument that is no whole number from `low` on; `why` says
+    more about the least value."""
+    for name, value in arguments.items():
+        whole = isinstance(value, int | np.integer) and not isinstance(value, bool)
+        if not (whole and value >= low):
+            raise ArgoError(
+                f"{env}: `{name}` is {value!r}, and has to be a whole number of at least {low}{why}"
+            )
 
 
 def _said(model: type[Model], error: ErrorDetails, data: Any) -> str:

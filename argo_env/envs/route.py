@@ -8,6 +8,7 @@ import numpy as np
 from gymnasium import spaces
 from numpy.typing import NDArray
 
+from argo_env.envs.drawing.route import draw_route
 from argo_env.envs.episode import (
     Parts,
     check_begun,
@@ -17,7 +18,6 @@ from argo_env.envs.episode import (
     read_choice,
 )
 from argo_env.envs.observations import Observation
-from argo_env.envs.plan_pictures import draw_route
 from argo_env.envs.rendering import Rendering, check_render_mode
 from argo_env.envs.route_batch import RouteVectorEnv
 from argo_env.envs.route_episodes import (
@@ -95,7 +95,8 @@ budget; 1 also where it is longer |
     - `floor`: number, or list of numbers: other floors' checkpoints can't be reached.
     - `faults`: `closed`, how many checkpoints can't be reached; `battery`, the share of the budget
       that a worn battery leaves.
-    - `instance`: the number of the instance, in place of a drawn one.
+    - `instance`: the number of the instance, of `TRAINING` or `TEST`, in place of a drawn one; not
+      with `scenario` or `test`.
     - `test`: true draws from `TEST`.
 
     `get_state()` gives what `set_state(state)` goes on from, the generator included.
@@ -151,8 +152,9 @@ budget; 1 also where it is longer |
         self._missing = self.instance.missing.copy()
         self._prizes = self.instance.prizes.astype(np.float32)
         self._over = False
+        observation = self._observe()
         self._show()
-        return self._observe(), {"instance": self._number}
+        return observation, {"instance": self._number}
 
     def step(self, action: np.int64 | int) -> tuple[Observation, float, bool, bool, dict[str, Any]]:
         check_under_way(self._over, self._title)
@@ -169,9 +171,10 @@ budget; 1 also where it is longer |
         self._place = node
         self._route.append(node)
         self._over = node == DOCK
+        observation = self._observe()
         self._show()
         info = {"terms": {"prize": prize}, "time": self._time(), "illegal": illegal}
-        return self._observe(), prize, node == DOCK, False, info
+        return observation, prize, node == DOCK, False, info
 
     def action_masks(self) -> NDArray[np.bool_]:
         """Which actions are legal now, shape (n + 1,)."""
@@ -233,4 +236,12 @@ budget; 1 also where it is longer |
     def _picture(self) -> NDArray[np.uint8]:
         """The route so far."""
         check_begun(self._over, self._title)
-        return draw_route(self.instance, self._route, self._time())
+        return draw_route(
+            self._episodes.source,
+            self._episodes.options.floors,
+            self.instance,
+            (self.instance.start, *self._route),
+            [node for node in self._route if node != DOCK],
+            self._mask,
+            self._time(),
+        )

@@ -12,9 +12,10 @@ from gymnasium.vector.utils import batch_space
 from numpy.typing import NDArray
 
 from argo_compiler.errors import ArgoError
+from argo_env.envs.drawing.route import draw_route
 from argo_env.envs.episode import no_state
 from argo_env.envs.observations import Observation
-from argo_env.envs.plan_pictures import draw_route
+from argo_env.envs.options import check_whole
 from argo_env.envs.rendering import check_render_mode
 from argo_env.envs.route_episodes import (
     FPS,
@@ -24,7 +25,7 @@ from argo_env.envs.route_episodes import (
     observation_space,
     read_route_options,
 )
-from argo_env.envs.route_instance import DOCK
+from argo_env.envs.route_instance import DOCK, VISITED
 from argo_env.envs.route_sources import RouteSource
 
 _NAME = "argo/Route-v0"
@@ -56,8 +57,9 @@ class RouteVectorEnv(VectorEnv[Observation, NDArray[np.int64], NDArray[Any]]):
         source: RouteSource | None = None,
         render_mode: str | None = None,
     ) -> None:
-        """Raises ArgoError if there is no such scenario or render mode."""
+        """Raises ArgoError if there is no such scenario or render mode, or no route."""
         check_render_mode(render_mode, self.metadata["render_modes"])
+        check_whole(_NAME, 1, num_envs=num_envs)
         self.num_envs = num_envs
         self.render_mode = render_mode
         self._full = full
@@ -153,11 +155,20 @@ class RouteVectorEnv(VectorEnv[Observation, NDArray[np.int64], NDArray[Any]]):
         """A picture of each route's present state, without the way that led there."""
         if self.render_mode is None:
             return None
-        _ = self._legal
-        numbers = self._episodes.pool.numbers[self._chosen]
+        legal = self._legal
+        pool, made = self._episodes.pool, self._episodes
         return tuple(
-            draw_route(self._episodes.instance(int(number)), [int(place)], float(time))
-            for number, place, time in zip(numbers, self._place, self._time, strict=True)
+            draw_route(
+                made.source,
+                made.options.floors,
+                made.instance(int(pool.numbers[self._chosen[k]])),
+                [int(self._place[k])],
+                # So many can't be waited for: it was visited.
+                np.flatnonzero(self._missing[k] >= VISITED // 2).tolist(),
+                legal[k],
+                float(self._time[k]),
+            )
+            for k in range(self.num_envs)
         )
 
     def get_state(self) -> dict[str, Any]:

@@ -14,7 +14,7 @@ from pydantic import Field
 from argo_compiler.errors import ArgoError
 from argo_compiler.model import Model
 from argo_env.envs.observations import Observation, dict_space
-from argo_env.envs.options import check_positive, read_options
+from argo_env.envs.options import check_positive, check_whole, read_options
 from argo_env.envs.route_instance import DOCK, RouteInstance
 from argo_env.envs.route_sources import (
     TEST,
@@ -27,6 +27,7 @@ from argo_env.envs.route_sources import (
 )
 
 FPS = 4  # of films
+_NAME = "argo/Route-v0"
 _KEPT = 256  # instances that a single environment keeps
 _WORD = (1 << 64) - 1
 Words = NDArray[np.uint64]
@@ -79,10 +80,9 @@ class Episodes:
         self, checkpoints: int, scenario: str, budget: float, source: RouteSource | None
     ) -> None:
         """Raises ArgoError if there is no such scenario."""
-        if source is None and checkpoints < 1:
-            raise ArgoError(f"a route needs checkpoints, not {checkpoints}")
         if source is None:
-            check_positive("argo/Route-v0", budget=budget)
+            check_whole(_NAME, 1, checkpoints=checkpoints)
+            check_positive(_NAME, budget=budget)
         self._own = source
         self._scenario = scenario
         self._budget = budget
@@ -141,16 +141,46 @@ def read_route_options(
     given: Mapping[str, Any], episodes: Episodes, count: int | None = None
 ) -> RouteOptions:
     """The options, checked, for one environment or for a batch of `count`; else ArgoError."""
-    options = read_options(RouteOptions, given, "argo/Route-v0")
-    if isinstance(options.instance, tuple) and len(options.instance) != count:
-        wanted = "one number" if count is None else f"one number, or one for each of {count}"
-        raise ArgoError(f"option `instance` of argo/Route-v0 is {wanted}")
-    numbers = options.instance if isinstance(options.instance, tuple) else (options.instance or 0,)
-    if min(numbers) < 0:
-        raise ArgoError(f"there is no instance {min(numbers)}; numbers begin at 0")
+    options = read_options(RouteOptions, given, _NAME)
+    if options.instance is not None:
+        _check_instance(options, count)
+    most = episodes.size - 1
+    if options.faults.closed > most:
+        raise ArgoError(
+            f"option `faults.closed` of {_NAME} is {options.faults.closed}, and has to be 0 to "
+            f"{most}: a route has {most} checkpoints; close fewer, or make the environment with "
+            "more `checkpoints`"
+        )
     source = episodes.source_of(options)
     check_floors(source, options.scenario or "", options.floors)
     return options
+
+
+def _check_instance(options: RouteOptions, count: int | None) -> None:
+    """Raises ArgoError if there are no such instances, or other options choose instances too."""
+    given = options.instance
+    numbers = given if isinstance(given, tuple) else (given,)
+    if isinstance(given, tuple) and len(given) != count:
+        wanted = "one number" if count is None else f"one number, or one for each of {count}"
+        raise ArgoError(f"option `instance` of {_NAME} is {wanted}, not {len(given)} numbers")
+    for number in numbers:
+        if number not in TRAINING and number not in TEST:
+            raise ArgoError(
+                f"option `instance` of {_NAME}: there is no instance {number}, only "
+                f"{TRAINING[0]} to {TRAINING[-1]} (training) and {TEST[0]} to {TEST[-1]} (test); "
+                "leave `instance` out to have one drawn"
+            )
+    if options.test:
+        raise ArgoError(
+            f"options `instance` and `test` of {_NAME}: `instance` says which it is, and `test` "
+            f"draws one of {TEST[0]} to {TEST[-1]}; give one of the two"
+        )
+    if options.scenario is not None:
+        raise ArgoError(
+            f"options `instance` and `scenario` of {_NAME}: `instance` is one of the instances of "
+            "the scenario that the environment was made with; give one of the two, or make the "
+            f"environment with scenario={options.scenario!r}"
+        )
 
 
 @overload

@@ -15,7 +15,8 @@ TICK = 1 / 64
 """s. Times are whole ticks, and below 2^18 s: so their sums are exact in single precision, in
 whatever order they are made, and the environment, its batch and `evaluate` agree to the bit."""
 _LONGEST = 2.0**18  # s
-_VISITED = 1000  # more than the checkpoints that one can wait for
+VISITED = 1000
+"""more than the checkpoints that one can wait for"""
 
 
 @dataclass(frozen=True)
@@ -75,7 +76,7 @@ class RouteInstance:
         """What the visit of a node (row) takes from `missing`: one for each node that it must come
         before, and so much from itself that it is not free again."""
         effect = self.before.astype(np.int16)
-        np.fill_diagonal(effect, -_VISITED)
+        np.fill_diagonal(effect, -VISITED)
         return effect
 
     @cached_property

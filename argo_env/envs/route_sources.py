@@ -19,6 +19,8 @@ TRAINING = range(4096)
 """the numbers of the instances that episodes draw from"""
 TEST = range(1_000_000, 1_000_100)
 """the numbers of the instances that are kept for tests: never drawn unless asked for"""
+WIDTH, DEPTH = 30.0, 20.0
+"""m, of the floors of sites that do not exist"""
 _PRECEDENCE = 0.2  # share of checkpoints that another one must come before
 
 
@@ -74,7 +76,11 @@ class RandomRoutes:
         rng = generator(number, "random route", self.checkpoints, self.floors)
         n = self.checkpoints + 2
         places = np.column_stack(
-            [rng.uniform(0, 30, n), rng.uniform(0, 20, n), rng.integers(1, self.floors + 1, n)]
+            [
+                rng.uniform(0, WIDTH, n),
+                rng.uniform(0, DEPTH, n),
+                rng.integers(1, self.floors + 1, n),
+            ]
         )
         # The dock, and the start in another place; both on the ground.
         places[[0, n - 1], 2] = 1

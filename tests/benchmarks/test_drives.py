@@ -11,6 +11,7 @@ from argo_env.navigation import Navigator
 from argo_env.robot.calibration import Calibration, Pace
 from argo_env.robot.drive import DriveStatus
 from argo_env.robot.fitting import errors, fit
+from argo_env.robot.pose import BodyPose
 from argo_env.robot.route import RouteDrive
 from argo_env.robot.spec import load_robot
 from argo_env.robot.timetable import Timetable
@@ -85,6 +86,11 @@ class Stuck(Telling):
         return DriveStatus.FAILED if self._steps > 100 else DriveStatus.MOVING
 
 
+def standing(drive, pose):
+    drive.place(BodyPose(pose.x, pose.y, pose.z, pose.yaw))
+    return drive
+
+
 PACES = Calibration(
     ahead=Pace(share=0.9, lost=1.0),
     reverse=Pace(share=0.8),
@@ -102,7 +108,7 @@ def test_times_of_motions_add_up_and_give_the_paces_again(navigator):
             x, y, z, _ = navigator.turning_places(floor)[5 * a].tolist()
             above = Pose(x=x, y=y, z=z, yaw=1.0)
             for path in (navigator.plan(docks[a], above), navigator.plan(above, docks[b])):
-                found = drive_along(Telling(robot, 0.02), path)
+                found = drive_along(standing(Telling(robot, 0.02), path.start), path)
                 assert [d.motions for d in found] == [(m,) for m in path.motions]
                 seconds = sum(d.seconds for d in found)
                 assert seconds == pytest.approx(path.duration(robot), abs=0.02 + 1e-6)
@@ -119,4 +125,4 @@ def test_times_of_motions_add_up_and_give_the_paces_again(navigator):
 def test_a_way_that_fails_has_no_times(navigator):
     path = navigator.plan(*(navigator.site.docks[n] for n in (1, 2)))
     with pytest.raises(RuntimeError, match="stuck"):
-        drive_along(Stuck(navigator.robot), path)
+        drive_along(standing(Stuck(navigator.robot), path.start), path)

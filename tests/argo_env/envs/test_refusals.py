@@ -92,7 +92,16 @@ def test_drive_goes_on_after_refused_options(yard_file):
         (InspectEnv, {"time_limit": math.inf}, "time_limit"),
         (InspectEnv, {"faults": -1}, "0 to 8"),
         (InspectEnv, {"faults": 9}, "0 to 8"),
+        (
+            InspectEnv,
+            {"checkpoints": -1},
+            "`checkpoints` is -1, .* at least 20, as site umad has 20",
+        ),
+        (InspectEnv, {"checkpoints": 19}, "`checkpoints` is 19, .* at least 20"),
+        (InspectEnv, {"checkpoints": 20.5}, "`checkpoints` is 20.5, .* whole number"),
+        (InspectEnv, {"docks": 1}, "`docks` is 1, .* at least 2"),
         (RouteEnv, {"budget": math.nan}, "budget"),
+        (RouteEnv, {"checkpoints": 0}, "`checkpoints` is 0, .* at least 1"),
     ],
 )
 def test_bad_arguments_are_refused(kind, arguments, words):

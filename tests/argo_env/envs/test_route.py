@@ -14,6 +14,7 @@ from argo_env.envs.route_sources import TEST, TRAINING, RandomRoutes, RouteFault
 from tests.conftest import examples
 
 ID = "argo/Route-v0"
+NUMBERS = st.sampled_from(TRAINING) | st.sampled_from(TEST)
 
 
 def make_batch(count, **arguments):
@@ -31,7 +32,7 @@ def equal(a, b):
 
 
 @settings(max_examples=examples(60), deadline=None)
-@given(st.integers(0, 5000), st.integers(1, 25), st.integers(0, 2**32), st.booleans())
+@given(NUMBERS, st.integers(1, 25), st.integers(0, 2**32), st.booleans())
 def test_return_is_the_evaluators_score(number, checkpoints, seed, legal):
     source = RandomRoutes(checkpoints)
     env = RouteEnv(source=source)
@@ -56,7 +57,7 @@ def test_return_is_the_evaluators_score(number, checkpoints, seed, legal):
 
 
 @settings(max_examples=examples(30), deadline=None)
-@given(st.integers(0, 5000), st.integers(0, 2**32))
+@given(NUMBERS, st.integers(0, 2**32))
 def test_mask_is_what_the_evaluator_allows(number, seed):
     env = RouteEnv(checkpoints=12)
     rng = np.random.default_rng(seed)
@@ -159,13 +160,43 @@ def test_faults_close_checkpoints_and_shorten_the_time():
         ({"faults": {"battery": 0}}, ("faults.battery",)),
         ({"instance": -1}, ("instance",)),
         ({"instance": [1, 2]}, ("instance", "one number")),
+        ({"instance": 4096}, ("`instance`", "4096", "0 to 4095", "1000000 to 1000099", "leave")),
+        ({"instance": 1_000_100}, ("`instance`", "1000100", "0 to 4095", "1000000 to 1000099")),
+        ({"instance": 3, "test": True}, ("`instance` and `test`", "give one")),
+        ({"instance": 3, "scenario": "random"}, ("`instance` and `scenario`", "scenario='random'")),
+        ({"faults": {"closed": 999}}, ("`faults.closed`", "999", "0 to 20", "`checkpoints`")),
     ],
 )
 def test_bad_options_are_refused(options, words):
+    env = RouteEnv()
+    first, _ = env.reset(seed=3)
     with pytest.raises(ArgoError) as error:
-        RouteEnv().reset(options=options)
+        env.reset(options=options)
     for word in words:
         assert word in str(error.value)
+    assert equal(env.reset(seed=3)[0], first)
+
+
+def test_options_at_the_bounds_are_taken():
+    env = RouteEnv(checkpoints=4)
+    for number in (0, 4095, 1_000_000, 1_000_099):
+        assert env.reset(options={"instance": number, "test": False})[1]["instance"] == number
+    observation, _ = env.reset(options={"faults": {"closed": 4}})
+    assert observation["mask"].tolist() == [1, 0, 0, 0, 0]
+
+
+@pytest.mark.parametrize("options", [{"instance": [3, 4096]}, {"instance": [3, 4], "test": True}])
+def test_bad_options_of_a_batch_are_refused(options):
+    batch = make_batch(2)
+    with pytest.raises(ArgoError, match="instance"):
+        batch.reset(options=options)
+    assert batch.reset(options={"instance": [3, 4]})[1]["instance"].tolist() == [3, 4]
+
+
+@pytest.mark.parametrize("count", [0, -1, 1.5, True, None])
+def test_a_batch_has_one_route_at_least(count):
+    with pytest.raises(ArgoError, match=f"`num_envs` is {count}, .* whole number of at least 1"):
+        make_batch(count)
 
 
 def test_bad_instances_are_refused():
@@ -191,12 +222,3 @@ def test_bad_instances_are_refused():
     ):
         with pytest.raises(ArgoError):
             make(**changed)
-
-
-def test_picture_changes_with_the_route():
-    env = RouteEnv(render_mode="rgb_array")
-    env.reset(seed=0)
-    before = env.render()
-    env.step(int(np.flatnonzero(env.action_masks())[-1]))
-    assert before.shape == env.render().shape == (540, 960, 3)
-    assert (before != env.render()).any()

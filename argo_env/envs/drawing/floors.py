@@ -1,0 +1,87 @@
+"""Floors as they are drawn behind routes: the site's own, or those of sites that do not exist."""
+
+from collections.abc import Iterable, Sequence
+from dataclasses import dataclass
+from functools import lru_cache
+
+from argo_env.navigation import Navigator
+from argo_env.report.outline import DRAWING_ORDER, Point, on_floor, outline
+from argo_env.site import Site
+from argo_env.site.shapes import Role
+
+Rectangle = tuple[float, float, float, float]
+"""x0, y0, x1, y1 in m"""
+
+_GROUND = 1.2  # m of bare ground that is shown around what stands on it
+_EDGE = 0.4  # m
+
+
+@dataclass(frozen=True)
+class FloorPlan:
+    """What is on a floor, seen from above."""
+
+    number: int
+    bounds: Rectangle
+    shapes: tuple[tuple[Role, tuple[tuple[Point, ...], ...]], ...]
+    """outlines in m, what lies below first"""
+
+
+@lru_cache(maxsize=8)
+def plans_of(navigator: Navigator) -> tuple[FloorPlan, ...]:
+    """The floors of a navigator's site, found once."""
+    return tuple(_floor(navigator.site, floor.number) for floor in navigator.site.spec.floors)
+
+
+@lru_cache(maxsize=8)
+def aisles(width: float, depth: float, floors: int) -> tuple[FloorPlan, ...]:
+    """Floors of one open deck each, from (0, 0) on, with stairs all along the side x = 0."""
+    deck = _box((-0.6, -0.6, width + 0.6, depth + 0.6))
+    treads = tuple(_box((-2.1 + 0.3 * k, -0.6, -1.8 + 0.3 * k, depth + 0.6)) for k in range(5))
+    shapes = ((Role.DECK, (deck,)), (Role.STAIR, treads))
+    bounds = (-2.5, -1.0, width + 1.0, depth + 1.0)
+    return tuple(FloorPlan(number, bounds, shapes) for number in range(1, floors + 1))
+
+
+def open_floors(points: Sequence[Point], numbers: Iterable[int]) -> tuple[FloorPlan, ...]:
+    """Floors of which nothing is known but the points that are on one of them."""
+    low = [min(p[axis] for p in points) for axis in (0, 1)]
+    high = [max(p[axis] for p in points) for axis in (0, 1)]
+    margin = 0.08 * max(high[0] - low[0], high[1] - low[1], 1.0)
+    bounds = (low[0] - margin, low[1] - margin, high[0] + margin, high[1] + margin)
+    return tuple(FloorPlan(number, bounds, ()) for number in numbers)
+
+
+def _floor(site: Site, number: int) -> FloorPlan:
+    z = next(f.z for f in site.spec.floors if f.number == number)
+    found: dict[Role, list[tuple[Point, ...]]] = {role: [] for role in DRAWING_ORDER}
+    for element in site.elements:
+        solids = on_floor(element, z, site.spec.storey)
+        found[element.role] += [tuple(outline(solid, (0, 1))) for solid in solids]
+    ground = [p for shape in found[Role.GROUND] for p in shape]
+    above = [
+        p
+        for role, parts in found.items()
+        if role is not Role.GROUND
+        for part in parts
+        for p in part
+    ]
+    if ground:
+        bounds = _common(_around(above or ground, _GROUND), _around(ground, 0.0))
+    else:
+        bounds = _around(above, _EDGE)
+    shapes = tuple((role, tuple(shapes)) for role, shapes in found.items() if shapes)
+    return FloorPlan(number, bounds, shapes)
+
+
+def _around(points: Sequence[Point], margin: float) -> Rectangle:
+    xs, ys = [p[0] for p in points], [p[1] for p in points]
+    return min(xs) - margin, min(ys) - margin, max(xs) + margin, max(ys) + margin
+
+
+def _common(a: Rectangle, b: Rectangle) -> Rectangle:
+    return max(a[0], b[0]), max(a[1], b[1]), min(a[2], b[2]), min(a[3], b[3])
+
+
+def _box(rect: Rectangle) -> tuple[Point, ...]:
+    x0, y0, x1, y1 = rect
+    return (x0, y0), (x1, y0), (x1, y1), (x0, y1)

@@ -1,0 +1,132 @@
+"""Routes as pictures: where the way leads depends on where the instances come from."""
+
+from collections.abc import Callable, Collection, Sequence
+from itertools import pairwise
+
+import numpy as np
+from numpy.typing import NDArray
+
+from argo_compiler.model import Pose
+from argo_env.envs.drawing.floors import FloorPlan, aisles, open_floors
+from argo_env.envs.drawing.inspection import site_sheet
+from argo_env.envs.drawing.plan import Marker, Scene, Station, draw_scene
+from argo_env.envs.drawing.sheet import Sheet, make_sheet
+from argo_env.envs.drawing.way import Moment
+from argo_env.envs.route_instance import DOCK, RouteInstance
+from argo_env.envs.route_sources import DEPTH, WIDTH, RandomRoutes, RouteSource, SiteRoutes
+from argo_env.envs.sites import navigator_of
+from argo_env.navigation import Navigator
+
+Place = tuple[float, float, int]
+"""x, y (m) and floor"""
+
+_STEP = 0.25  # m between the places of a way on a site
+_LEGEND = {
+    "open": "legal now (size: prize)",
+    "waiting": "too early or too far",
+    "done": "visited",
+    "closed": "can't be reached",
+    "outside": "not asked for",
+}
+
+
+def draw_route(
+    source: RouteSource,
+    floors: Collection[int],
+    instance: RouteInstance,
+    route: Sequence[int],
+    visited: Collection[int],
+    legal: NDArray[np.bool_],
+    time: float,
+) -> NDArray[np.uint8]:
+    """The `route` so far: the rows of the instance in their order, the last one where the robot is.
+    Of `visited` checkpoints the way need not be known. With `floors`, only the checkpoints on these
+    count. A checkpoint's disc is as large as its prize is high."""
+    places: list[Place] = [(x, y, round(floor)) for x, y, floor in instance.places.tolist()]
+    start = instance.start
+    markers = []
+    for node in range(1, instance.size):
+        x, y, floor = places[node]
+        there = bool(np.isfinite(instance.arrival[start, node]))
+        if not floor:  # an empty slot is nowhere
+            continue
+        state = "closed" if not there else "open" if legal[node] else "waiting"
+        state = "outside" if floors and floor not in floors else state
+        state = "done" if node in visited else state
+        radius = 7.5 + 5.5 * float(instance.prizes[node])
+        markers.append(Marker(x, y, floor, str(node), state, radius, node == route[-1]))
+    together = places[DOCK] == places[start]
+    stations = [Station(*places[DOCK], "start, dock" if together else "dock")]
+    if not together:
+        stations.append(Station(*places[start], "start"))
+    way, heading = [Moment(0.0, *places[route[0]])], None
+    leg = _legs(source)
+    for a, b in pairwise(route):
+        t, took = way[-1].t, float(instance.arrival[a, b])
+        part, heading = leg(places[a], places[b])
+        way += [Moment(t + took * k / max(len(part) - 1, 1), *p) for k, p in enumerate(part)]
+    asked = {marker.floor for marker in markers if marker.state != "outside"}
+    used = asked | {station.floor for station in stations} | {moment.floor for moment in way}
+    sheet = _sheet(source, places, min(used), max(used), tuple(sorted(floors)))
+    shown = [marker for marker in markers if marker.floor in sheet.panels]
+    prize = sum(float(instance.prizes[node]) for node in visited)
+    wanted = sum(marker.state not in {"closed", "outside"} for marker in markers)
+    headline = f"{time:.0f} s of {instance.budget:.0f} s    prize {prize:.2f}    visited "
+    headline += f"{len(visited)} of {wanted}"
+    legend = {state: _LEGEND[state] for state in _LEGEND if state != "outside" or floors}
+    return draw_scene(sheet, Scene(headline, shown, stations, way, heading, legend))
+
+
+def _sheet(
+    source: RouteSource, places: Sequence[Place], low: int, high: int, asked: tuple[int, ...]
+) -> Sheet:
+    """The floors from `low` to `high`; if some are asked for, the others are pale."""
+    numbers = range(low, high + 1)
+    if isinstance(source, SiteRoutes):
+        return site_sheet(navigator_of(source.scenario), low, high, asked or tuple(numbers))
+    plans: tuple[FloorPlan, ...]
+    if isinstance(source, RandomRoutes):
+        plans = aisles(WIDTH, DEPTH, high)[low - 1 :]
+    else:
+        plans = open_floors([place[:2] for place in places if place[2]], numbers)
+    return make_sheet(plans, [n for n in numbers if asked and n not in asked])
+
+
+Leg = Callable[[Place, Place], tuple[list[Place], float | None]]
+"""the way from place to place, and the heading at its end (rad) if it is known"""
+
+
+def _legs(source: RouteSource) -> Leg:
+    if isinstance(source, SiteRoutes):
+        return _site_legs(navigator_of(source.scenario))
+    return _aisle_leg if isinstance(source, RandomRoutes) else lambda a, b: ([a, b], None)
+
+
+def _aisle_leg(a: Place, b: Place) -> tuple[list[Place], float | None]:
+    """As the travel times of random routes count: along aisles, and by the stairs at x = 0."""
+    if a[2] == b[2]:
+        return [a, (b[0], a[1], a[2]), b], None
+    return [a, (0.0, a[1], a[2]), (0.0, b[1], a[2]), (0.0, b[1], b[2]), b], None
+
+
+def _site_legs(navigator: Navigator) -> Leg:
+    """The paths that the robot's planner finds."""
+    site = navigator.site
+    ids = {(c.position[0], c.position[1], c.floor): c.id for c in site.checkpoints}
+
+    def pose(place: Place) -> Pose:
+        if place in ids:
+            return navigator.viewing_pose(ids[place])
+        return navigator.snap(site.docks[min(site.docks)])
+
+    def leg(a: Place, b: Place) -> tuple[list[Place], float | None]:
+        path = navigator.plan(pose(a), pose(b))
+        way: list[Place] = []
+        for motion in path.motions:
+            count = max(1, round(motion.length / _STEP))
+            for k in range(count + 1):
+                p = motion.at(k / count)
+                way.append((p.x, p.y, site.floor_at(p.z)))
+        return way or [a], path.end.yaw
+
+    return leg

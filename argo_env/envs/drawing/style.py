@@ -1,0 +1,93 @@
+"""How the things on a plan look."""
+
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+from PIL import ImageDraw
+
+from argo_env.envs.drawing.sheet import FINER, PAPER, Pixel, font
+
+Ink = str | tuple[int, int, int]
+
+ROBOT = (29, 78, 216)
+FOOTPRINT = (1.0, 0.6)
+"""m, length and width of the robot"""
+STAIRS = (15.0, 8.0)
+"""px from the middle of the mark of stairs to its sides, and to its top and bottom"""
+
+
+@dataclass(frozen=True)
+class Style:
+    """The colours of a checkpoint's disc."""
+
+    fill: str
+    rim: str
+    text: str
+    struck: bool = False
+    """whether a line goes through it"""
+
+
+STYLES = {
+    "open": Style("#fbbf24", "#92400e", "#1c2733"),
+    "waiting": Style("#ffffff", "#b45309", "#1c2733"),
+    "done": Style("#15803d", "#0b4a23", "#ffffff"),
+    "abnormal": Style("#c81e1e", "#6f0f0f", "#ffffff"),
+    "closed": Style("#cbd2d9", "#64707c", "#3c4854", struck=True),
+    "outside": Style("#f8f9fa", "#b4bdc6", "#97a2ad"),
+}
+"""By the state of the checkpoint. They differ in lightness too, for prints without colour."""
+
+
+def paint_disc(
+    draw: ImageDraw.ImageDraw, place: Pixel, radius: float, state: str, name: str
+) -> None:
+    """The disc of a checkpoint with its number; `radius` in px of the picture."""
+    (x, y), r, style = place, radius * FINER, STYLES[state]
+    draw.ellipse((x - r, y - r, x + r, y + r), style.fill, style.rim, round(1.5 * FINER))
+    if style.struck:
+        half = 0.7 * r
+        draw.line((x - half, y + half, x + half, y - half), "#98a2ac", round(1.5 * FINER))
+    size = min(13.0, 1.25 * radius) * min(1.0, 2.4 / max(len(name), 1))
+    draw.text((x, y), name, style.text, font(size), "mm")
+
+
+def paint_ring(draw: ImageDraw.ImageDraw, place: Pixel, radius: float) -> None:
+    """A ring of that inner radius (px of the picture), in the robot's colour."""
+    for wider, ink in ((5.0, PAPER), (4.5, ROBOT), (1.5, PAPER)):
+        disc(draw, place, (radius + wider) * FINER, ink)
+
+
+def paint_robot(draw: ImageDraw.ImageDraw, place: Pixel, length: float, heading: float) -> None:
+    """The robot's footprint with its front; `length` in px of the finer picture."""
+    half = length / 2
+    wide = half * FOOTPRINT[1] / FOOTPRINT[0]
+    body = ((-half, -wide), (half, -wide), (half, wide), (-half, wide))
+    nose = ((0.1 * half, -0.6 * wide), (0.75 * half, 0.0), (0.1 * half, 0.6 * wide))
+    rim = 1.0 + 1.5 * FINER / wide
+    draw.polygon(turned(body, place, -heading, rim), fill=PAPER)
+    draw.polygon(turned(body, place, -heading), fill=ROBOT)
+    draw.polygon(turned(nose, place, -heading), fill=PAPER)
+
+
+def paint_stairs(draw: ImageDraw.ImageDraw, place: Pixel, floor: int, up: bool, ink: Ink) -> None:
+    """The mark of stairs to a floor above or below."""
+    x, y = place
+    wide, high = STAIRS[0] * FINER, STAIRS[1] * FINER
+    draw.rounded_rectangle((x - wide, y - high, x + wide, y + high), high, fill=ink)
+    rise = -4.5 * FINER if up else 4.5 * FINER
+    arrow = [(x - 11 * FINER, y - rise), (x - 1 * FINER, y - rise), (x - 6 * FINER, y + rise)]
+    draw.polygon(arrow, fill=PAPER)
+    draw.text((x + 6.5 * FINER, y), str(floor), fill=PAPER, font=font(12), anchor="mm")
+
+
+def disc(draw: ImageDraw.ImageDraw, place: Pixel, r: float, ink: Ink) -> None:
+    """A disc; `r` in px of the finer picture."""
+    x, y = place
+    draw.ellipse((x - r, y - r, x + r, y + r), fill=ink)
+
+
+def turned(shape: Sequence[Pixel], place: Pixel, turn: float, scale: float = 1.0) -> list[Pixel]:
+    """The shape about (0, 0) turned by `turn` (rad, clockwise in the picture), at a place."""
+    cos, sin = scale * math.cos(turn), scale * math.sin(turn)
+    return [(place[0] + cos * x - sin * y, place[1] + sin * x + cos * y) for x, y in shape]

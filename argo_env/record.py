@@ -126,7 +126,8 @@ class Anomaly(Model):
     source: str
     """the watch that found it"""
     place: Vector | None = None
-    """m, where it is; None where the signal does not tell"""
+    """m, where it is, or where the robot noticed it if the signal tells no more (gas, connection);
+    None where neither says anything"""
     floor: int | None = None
     """the floor of `place`"""
     confidence: float = 1.0
@@ -214,3 +215,8 @@ class RunRecord(Model):
     """what really went wrong, with all that the seed drew; the robot was told nothing of it"""
     resumed: tuple[float, ...] = ()
     """s, when the run went on from its journal after its process had died"""
+
+    @property
+    def missed_faults(self) -> tuple[AnyFault, ...]:
+        """The faults that did not happen: the run ended before they would have begun."""
+        return tuple(fault for fault in self.faults if fault.begins > self.result.duration)

@@ -39,6 +39,9 @@ class RunDisplay:
             )
         else:
             text = f"{news.t!r} s: found: {news.kind.replace('_', ' ')}: {news.detail}"
+            if news.place is not None:
+                x, y, z = news.place
+                text += f", on floor {news.floor} at ({x:.2f}, {y:.2f}, {z:.2f})"
         self._progress.console.print(escape(text), soft_wrap=True, highlight=False)
 
     def __enter__(self) -> Self:

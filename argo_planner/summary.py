@@ -4,7 +4,10 @@ from rich.console import Console
 from rich.markup import escape
 from rich.table import Table
 
-from argo_env.record import RunRecord
+from argo_env.record import Interruption, RunRecord
+
+MOMENT = 0.5
+"""s, up to which standing still is no waiting"""
 
 
 def show_record(record: RunRecord, console: Console) -> None:
@@ -32,6 +35,12 @@ def show_record(record: RunRecord, console: Console) -> None:
         console.print(
             f"  {mishap.trouble} at {clock(mishap.t)} on floor {mishap.floor}, at "
             f"({x:.2f}, {y:.2f}, {z:.2f}): {escape(mishap.detail)}",
+            style="yellow",
+        )
+    for fault in record.missed_faults:
+        console.print(
+            f"  fault {fault.kind.replace('_', ' ')} did not happen: begins at {fault.begins:g} s, "
+            f"the mission ended at {round(result.duration, 1):g} s",
             style="yellow",
         )
     style, word = ("bold green", "Success") if result.success else ("bold red", "No success")
@@ -65,7 +74,7 @@ def _readings(record: RunRecord) -> Table:
 
 
 def _tasks(record: RunRecord) -> Table:
-    """One row for each task, repeated executions taken together."""
+    """One row for each task, repeated executions taken together; then what the robot waited for."""
     table = Table(title="Tasks", title_justify="left")
     table.add_column("task")
     for name in ("times", "first at", "time", "distance", "climbed"):
@@ -84,4 +93,41 @@ def _tasks(record: RunRecord) -> Table:
             f"{sum(t.climbed for t in runs):.1f} m",
             escape(", ".join(outcomes) + (f" ({'; '.join(reasons)})" if reasons else "")),
         )
+    for what, waits in _waiting(record).items():
+        goes_on = waits[-1][1] >= record.result.duration
+        table.add_row(
+            escape(f"waits for {what}"),
+            str(len(waits)),
+            clock(waits[0][0]),
+            clock(sum(end - start for start, end in waits)),
+            "",
+            "",
+            "still waiting at the end" if goes_on else "over",
+        )
     return table
+
+
+def _waiting(record: RunRecord) -> dict[str, list[tuple[float, float]]]:
+    """When (s) the robot stood still in pauses and reactions, by what it waited for and why."""
+    found: dict[str, list[tuple[float, float]]] = {}
+    until = {reaction.event: reaction.until for reaction in record.mission.reactions}
+    before: Interruption | None = None
+    for each in record.interruptions:
+        runs = [t.end for t in record.tasks if t.start < each.end and t.end > each.start]
+        since = max([each.start, *runs])
+        # A run that is stopped as soon as nothing more can come has waited no time.
+        if each.end - since >= MOMENT or (record.result.outcome is None and each is _last(record)):
+            awaited = until.get(each.event) if each.event else None
+            cause = each.cause
+            if each.event is None and before and before.event and before.end == each.start:
+                cause = before.cause  # which has ended in this pause
+            words = f"{awaited.replace('_', ' ') if awaited else 'a person'} ({cause})"
+            found.setdefault(words, []).append((since, each.end))
+        before = each
+    return found
+
+
+def _last(record: RunRecord) -> Interruption | None:
+    """The interruption that went on when the run was stopped."""
+    last = record.interruptions[-1]
+    return last if last.end >= record.result.duration else None

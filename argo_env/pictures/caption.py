@@ -1,10 +1,13 @@
-"""The caption of a frame: the time, the task, the floor and the last reading."""
+"""The caption of a frame: the time, the task, the floor and the last reading; in the end the
+verdict."""
 
 from PIL import Image, ImageDraw, ImageFont
 
 from argo_env.record import Reading, RunRecord
 
 HEIGHT = 0.105  # of the frame
+LINES = 3  # of the verdict, at most
+_Font = ImageFont.FreeTypeFont
 _BAR = (20, 28, 38, 205)
 _BRIGHT, _DIM = (255, 255, 255, 255), (178, 190, 204, 255)
 _NORMAL, _ABNORMAL = (110, 226, 160, 255), (255, 128, 120, 255)
@@ -35,6 +38,49 @@ def add_caption(frame: Image.Image, record: RunRecord, t: float, floor: int) -> 
     result = frame.copy()
     result.paste(bar, (0, height - bar.height), bar)
     return result
+
+
+def add_verdict(frame: Image.Image, record: RunRecord) -> Image.Image:
+    """The frame, RGB, with a bar over its caption that says how the mission has ended."""
+    width, height = frame.size
+    success = record.result.success
+    word, ink = ("Success", _NORMAL) if success else ("Not successful", _ABNORMAL)
+    size = height * HEIGHT * 0.40
+    font = ImageFont.load_default(size)
+    gap, pitch = size * 0.8, size * 1.35
+    draw = ImageDraw.Draw(frame)
+    indent = draw.textlength(f"{word}:  ", font=font)
+    lines = _lines(record.result.verdict, draw, font, width - 2 * gap - indent)
+    bar = Image.new("RGBA", (width, round(pitch * len(lines) + 2 * gap - (pitch - size))), _BAR)
+    draw = ImageDraw.Draw(bar)
+    draw.text((gap, gap + size / 2), f"{word}:", fill=ink, font=font, anchor="lm")
+    for k, line in enumerate(lines):
+        place = (gap + indent, gap + size / 2 + k * pitch)
+        draw.text(place, line, fill=_BRIGHT, font=font, anchor="lm")
+    result = frame.copy()
+    result.paste(bar, (0, height - round(height * HEIGHT) - bar.height), bar)
+    return result
+
+
+def _lines(
+    text: str, draw: ImageDraw.ImageDraw, font: ImageFont.ImageFont | _Font, room: float
+) -> list[str]:
+    """The text in lines of at most `room` px; what there is no room for is cut off."""
+    lines = [""]
+    for word in text.split():
+        longer = f"{lines[-1]} {word}".strip()
+        if draw.textlength(longer, font=font) <= room or not lines[-1]:
+            lines[-1] = longer
+        else:
+            lines.append(word)
+    if len(lines) > LINES:
+        lines = [*lines[: LINES - 1], f"{lines[LINES - 1]} …"]
+    for k, line in enumerate(lines):
+        shown = line
+        while draw.textlength(shown, font=font) > room and len(shown) > 2:
+            shown = f"{shown[:-2].rstrip()}…"
+        lines[k] = shown
+    return lines
 
 
 _Text = tuple[str, tuple[int, int, int, int]]

@@ -9,7 +9,7 @@ import numpy as np
 from PIL import Image
 
 from argo_compiler.errors import ArgoError
-from argo_env.pictures.caption import add_caption
+from argo_env.pictures.caption import add_caption, add_verdict
 from argo_env.pictures.chase import ChaseCamera
 from argo_env.pictures.codec import find_ffmpeg, make_palette, write_gif, write_mp4
 from argo_env.pictures.light import compose, depth_shading
@@ -23,6 +23,8 @@ MP4_SIZE, MP4_FPS = (640, 400), 12
 GIF_SIZE, GIF_FPS = (480, 300), 6  # a GIF is many times larger than an .mp4 of the same frames
 _DECKS = 2  # the robot's floor and the one below it are seen from above
 _PALETTE_SAMPLES = 6
+VERDICT_TIME = 2.0
+"""s, for which the film stands still in the end and shows the verdict"""
 
 Progress = Callable[[float], None]
 """Told the share that is done, from 0 to 1."""
@@ -53,7 +55,8 @@ def write_film(
     size: tuple[int, int] | None = None,
     progress: Progress | None = None,
 ) -> None:
-    """Writes a film of the run, `speed` times as fast as it was, as .mp4 or .gif.
+    """Writes a film of the run, `speed` times as fast as it was and with the verdict in the end,
+    as .mp4 or .gif.
 
     Without `fps` (frames a second) and `size` (px, even), an .mp4 has 12 and 640 by 400, a .gif 6
     and 480 by 300. A GIF shows each frame for a whole number of hundredths of a second. Equal
@@ -73,12 +76,13 @@ def write_film(
     motion = Motion(record, robot)
     count = math.ceil(motion.end / (speed * frame_time) - 1e-9) + 1
     times = [min(k * speed * frame_time, motion.end) for k in range(count)]
+    times += [motion.end] * (round(VERDICT_TIME / frame_time) - 1)
     part = file.with_name(f".{file.stem}.part{file.suffix.lower()}")
     try:
         with Scene(site, robot) as scene:
             frames = _frames(record, motion, scene, times, (width, height), frame_time, progress)
             if is_gif:
-                picks = np.linspace(0, count - 1, _PALETTE_SAMPLES).round().astype(int)
+                picks = np.linspace(0, len(times) - 1, _PALETTE_SAMPLES).round().astype(int)
                 spread = [times[k] for k in dict.fromkeys(picks.tolist())]
                 samples = _frames(record, motion, scene, spread, (width, height), math.inf, None)
                 write_gif(frames, part, make_palette(list(samples)), frame_time)
@@ -110,6 +114,7 @@ def _frames(
         scene.place_robot(pose, motion.joints(t))
         view = scene.look(camera.follow(pose))
         brightness = depth_shading(view, size[1] / 50, 0.45)
-        yield add_caption(Image.fromarray(compose(view, brightness)), record, t, floor)
+        frame = add_caption(Image.fromarray(compose(view, brightness)), record, t, floor)
+        yield add_verdict(frame, record) if t >= motion.end else frame
         if progress:
             progress(number / len(times))

@@ -1,10 +1,7 @@
 """A recording read back: what a report is made from, or what is left of a run cut short."""
 
-import struct
 from collections import Counter
-from collections.abc import Iterator
 from dataclasses import dataclass
-from io import BytesIO
 from pathlib import Path
 from typing import TYPE_CHECKING, NoReturn
 
@@ -13,6 +10,7 @@ from pydantic import ValidationError
 from argo_compiler.errors import ArgoError
 from argo_env.record import Reading, RunRecord, TaskRun
 from argo_env.recording.files import MAGIC, VERSION, require_libraries
+from argo_env.recording.sections import Content, data_section, is_sound_end, unreadable
 from argo_env.site import Site, make_site
 from argo_env.site.spec import SiteSpec
 
@@ -32,8 +30,8 @@ class Recording:
     site: Site
     record: RunRecord | None
     """None: the run did not come to its end"""
-    whole: bool
-    """whether the file has its end; else its process was killed, or the rest was lost"""
+    flaw: str | None
+    """what is wrong with the file's end, in words; None: it is as it was written"""
     until: float
     """s of simulated time that it reaches to"""
     messages: dict[str, int]
@@ -54,20 +52,21 @@ class Recording:
     @property
     def loss(self) -> str:
         """What is missing of a run without a record, in words."""
-        if self.whole:
+        if self.flaw is None:
             return f"the run failed after {self.until:g} s"
-        return f"the recording breaks off after {self.until:g} s, as if its process had been killed"
+        return f"the recording {self.flaw}"
 
 
 def read_recording(path: Path) -> Recording:
-    """Reads a recording, also one that breaks off.
+    """Reads a recording, also one that breaks off or has a damaged end: its `flaw` says so.
 
-    Raises ArgoError if it can't be read, is damaged, is no .mcap file or none of Argo's.
+    What it returns has the checksums that it was written with. Raises ArgoError if the file can't
+    be read, is damaged before its end, is no .mcap file or none of Argo's.
     """
     require_libraries()
     content = _content(path)
     parts = _Parts(path)
-    whole = _read(path, content, parts)
+    flaw = _read(path, content, parts)
     if parts.facts is None:
         _refuse(path, f"is no recording of Argo's: {_HINT}")
     if parts.facts.get("version") != VERSION:
@@ -85,7 +84,7 @@ def read_recording(path: Path) -> Recording:
             parts.facts,
             make_site(SiteSpec.model_validate_json(parts.attachments["site.json"])),
             None if record is None else RunRecord.model_validate_json(record),
-            whole,
+            flaw,
             parts.until / 1e9,
             dict(parts.messages),
             tuple(Reading.model_validate_json(text) for text in parts.readings),
@@ -111,13 +110,17 @@ class _Parts:
         self._topics: dict[int, str] = {}
 
     def add(self, record: "McapRecord") -> None:
-        from mcap.records import Attachment, Channel, Message, Metadata
+        from mcap.exceptions import McapError
+        from mcap.records import Attachment, Channel, DataEnd, Message, Metadata
 
         match record:
             case Metadata() if record.name == "argo":
                 self.facts = record.metadata
             case Attachment():
                 self.attachments[record.name] = record.data
+            case DataEnd() if self.facts and record.data_section_crc == 0:
+                # Which would say that there is none; Argo always writes it.
+                raise McapError("the checksum of its data is missing")
             case Channel():
                 self._topics[record.id] = record.topic
             case Message():
@@ -130,40 +133,27 @@ class _Parts:
                     self.tasks.append(record.data)
 
 
-def _read(path: Path, content: bytes, parts: _Parts) -> bool:
-    """Reads as far as there is anything; whether the file has its end."""
+def _read(path: Path, content: bytes, parts: _Parts) -> str | None:
+    """Reads as far as there is anything; what is wrong with the file's end, if anything is."""
+    from mcap.exceptions import EndOfFile, RecordLengthLimitExceeded
+
     if not content:
         _refuse(path, f"is empty: {_HINT}")
     if not MAGIC.startswith(content[: len(MAGIC)]):
         _refuse(path, f"is no .mcap file: {_HINT}")
-    whole = len(content) > len(MAGIC) and content.endswith(MAGIC)
+    stream = Content(content)
     try:
-        for record in _records(content):
+        for record in data_section(stream):
             parts.add(record)
-    # What the libraries raise for bytes that make no sense; of a file that breaks off, those are
-    # the last ones.
-    except _unreadable() as error:
-        if whole:
-            _refuse(
-                path,
-                f"is damaged after {parts.until / 1e9:g} s ({error or type(error).__name__}): "
-                "take it from a copy",
-            )
-    return whole
-
-
-def _records(content: bytes) -> "Iterator[McapRecord]":
-    from mcap.stream_reader import StreamReader
-
-    limit = len(content)  # a longer part can't be in it
-    return StreamReader(BytesIO(content), validate_crcs=True, record_size_limit=limit).records
-
-
-def _unreadable() -> tuple[type[Exception], ...]:
-    from mcap.exceptions import McapError
-    from zstandard import ZstdError
-
-    return McapError, ZstdError, struct.error, ValueError, OverflowError, MemoryError
+    except unreadable() as error:
+        until, why = f"after {parts.until / 1e9:g} s", f"({error or type(error).__name__})"
+        if len(content) > len(MAGIC) and content.endswith(MAGIC):
+            _refuse(path, f"is damaged {until} {why}: take it from a copy")
+        # A part that reaches beyond the end of the file is the last one of a file that breaks off.
+        if isinstance(error, EndOfFile | RecordLengthLimitExceeded):
+            return f"breaks off {until}, as if its process had been killed"
+        return f"is damaged {until} {why}, and has no end"
+    return None if is_sound_end(content, stream.tell()) else "has a missing or damaged index"
 
 
 def _content(path: Path) -> bytes:

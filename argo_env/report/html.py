@@ -28,6 +28,7 @@ def page(record: RunRecord, site: Site) -> str:
     return _template().render(
         record=record,
         site=site,
+        missed=record.missed_faults,
         failed=[t for t in record.tasks if t.outcome == "failed"],
         readings=[(reading, markup(_bar(reading))) for reading in record.readings],
         timeline=markup(timeline(record)) if record.tasks else None,

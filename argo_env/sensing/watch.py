@@ -17,7 +17,8 @@ class Finding:
     detail: str
     """one phrase for the report, such as `gas, 840 ppm, near pump P-301`"""
     place: Vector | None = None
-    """m, where the robot believes it is; None where the signal does not tell"""
+    """m, where the robot believes it is, or where it noticed what it knows no place of; None where
+    neither says anything"""
     confidence: float = 1.0
     """0 to 1"""
 

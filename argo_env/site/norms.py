@@ -1,10 +1,12 @@
 """What a site should keep to: ISO 14122-3 for its stairs, the competition's rules for checkpoints.
 
-A site that does not is still a site; `argo sites` says where it differs.
+A site that does not is still a site; `argo sites` says where it differs. Stairs that end above or
+below the next floor are no matter of norms: such a site is wrong.
 """
 
 import math
 from collections.abc import Iterator
+from itertools import pairwise
 
 from argo_env.site.spec import FloorSpec, Rect, SiteSpec, TowerSpec
 
@@ -16,18 +18,32 @@ LANDING = 0.8  # m, at least
 HEIGHT = (0.2, 2.0)  # m of a checkpoint above its deck (thesis 1.2)
 BESIDE = 0.5  # m that a checkpoint may be beside the walkway (thesis 1.2)
 _TOLERANCE = 1e-3  # m
+_LEDGE = 5e-3  # m, up to which the end of a flight is level with the floor
 
 
 def breaches(spec: SiteSpec) -> list[str]:
     """What is not as the norm and the rules ask, in the order of the description."""
-    found = [line for tower in spec.towers for line in _stairs(tower, spec)]
+    found = [line for tower in spec.towers for line in _stairs(tower)]
     return [*found, *(line for floor in spec.floors for line in _checkpoints(floor))]
 
 
-def _stairs(tower: TowerSpec, spec: SiteSpec) -> Iterator[str]:
-    risen = sum(flight.risers * flight.rise for flight in tower.flights)
-    if abs(risen - spec.storey) > 5 * _TOLERANCE:
-        yield f"{tower.name}: its flights rise {risen:.3f} m, a storey is {spec.storey:.3f} m"
+def false_ends(spec: SiteSpec) -> list[str]:
+    """The stair towers that do not end at the next floor, each where it first does not."""
+    found = []
+    for tower in spec.towers:
+        risen = sum(flight.risers * flight.rise for flight in tower.flights)
+        for below, above in pairwise(spec.floors):
+            wanted = above.z - below.z
+            if abs(risen - wanted) > _LEDGE:
+                found.append(
+                    f"{tower.name}: its flights rise {risen:.3f} m, and floor {above.number} lies "
+                    f"{wanted:.3f} m above floor {below.number}"
+                )
+                break
+    return found
+
+
+def _stairs(tower: TowerSpec) -> Iterator[str]:
     for flight in tower.flights:
         pitch = math.degrees(math.atan2(flight.rise, flight.going))
         measures = (

@@ -40,8 +40,12 @@ def replay(
     if report:
         make_folder(report)
     console = Console(stderr=True, highlight=False)
-    if not found.whole:
-        console.print("The recording's index is missing; all that a report is made from is there.")
+    if found.flaw:
+        console.print(
+            f"[bold yellow]Warning[/]: {escape(str(recording))} {escape(found.flaw)}; the record "
+            "of the run is in it, unharmed",
+            soft_wrap=True,
+        )
     count = sum(found.messages.values())
     took = f"Reading {count} messages took {time.monotonic() - begun:.1f} s."
     conclude(record, Navigator(found.site, load_robot(record.robot)), took, report, render)

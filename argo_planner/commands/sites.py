@@ -1,5 +1,6 @@
 """`argo sites`: which sites there are, and whether one can be driven."""
 
+import shlex
 from pathlib import Path
 from typing import Annotated
 
@@ -9,9 +10,11 @@ from argo_compiler.errors import ArgoError
 from argo_env.navigation import Navigator
 from argo_env.navigation.checking import unseen_checkpoints, unserved_floors
 from argo_env.site import load_site, site_names
-from argo_env.site.norms import breaches
+from argo_env.site.family import PREFIX, is_family
+from argo_env.site.norms import breaches, false_ends
+from argo_env.site.spec import SiteSpec
 from argo_env.site.writing import to_yaml
-from argo_planner.loading import load_navigator, write_text
+from argo_planner.loading import keep_input, load_navigator, write_text
 
 
 def show_sites(
@@ -33,9 +36,15 @@ def show_sites(
             count = sum(len(floor.checkpoints) for floor in spec.floors)
             print(f"{name}: {spec.title}, floors: {len(spec.floors)}, checkpoints: {count}")
         return
+    if output:
+        keep_input(Path(site), output)
+        _check_name(output, is_family(site))
     navigator = load_navigator(site)
     if output:
-        write_text(output, to_yaml(navigator.site.spec))
+        spec = _renamed(navigator.site.spec, output)
+        write_text(output, to_yaml(spec))
+        use = f"argo check MISSION --site {shlex.quote(str(output))}"
+        print(f"{output}: written, site `{spec.name}`; use it with `{use}`")
     navigator.prepare()  # says what is wrong with its docking stations
     for breach in breaches(navigator.site.spec):
         print(f"{site}: note: {breach}")
@@ -47,12 +56,33 @@ def show_sites(
     print(f"{site}: every floor and every checkpoint can be reached from every dock, and back")
 
 
+def _check_name(output: Path, named_after: bool) -> None:
+    """Raises ArgoError if no site is found in a file of that name, or none by the name that a site
+    which is `named_after` its file gets."""
+    if output.suffix not in {".yaml", ".yml"}:
+        raise ArgoError(f"{output}: a site is found in a file that ends in .yaml; name it so")
+    if is_family(str(output)) or is_family(output.stem):
+        raise ArgoError(f"{output}: {PREFIX}… is no file to Argo but a site; choose another name")
+    if named_after and output.stem in site_names():
+        raise ArgoError(
+            f"{output}: the site would be called {output.stem}, as the one that Argo ships; choose "
+            "another name"
+        )
+
+
+def _renamed(spec: SiteSpec, output: Path) -> SiteSpec:
+    """The description, a generated one named after its file: the name that it has stands for the
+    site that is drawn, and this one is there to be changed."""
+    return spec.model_copy(update={"name": output.stem}) if is_family(spec.name) else spec
+
+
 def _faults(navigator: Navigator) -> list[str]:
+    ends = false_ends(navigator.site.spec)
     floors = [
         f"floor {number} can't be reached and patrolled; give its corners 1.4 m by 1.4 m to turn in"
         for number in unserved_floors(navigator)
     ]
-    return floors + [
+    return [*ends, *floors] + [
         f"checkpoint {id} ({navigator.site.checkpoint(id).name}) can't be read from anywhere that"
         " the robot can reach; move or turn it"
         for id in unseen_checkpoints(navigator)

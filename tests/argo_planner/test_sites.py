@@ -1,5 +1,8 @@
 """`argo sites`, and the small test site that is shipped."""
 
+import re
+import shlex
+
 import pytest
 import yaml
 from typer.testing import CliRunner
@@ -38,6 +41,63 @@ def test_a_site_that_can_be_driven_and_is_written_out(tmp_path):
     assert result.exit_code == 0
     assert "note" not in result.output
     assert load_site(str(file)) == load_site("darmstadt")
+    assert f"{file}: written, site `darmstadt`" in result.output
+
+
+DRAWN = "generated:floors=1,size=12x12,checkpoints=2,seed=1"
+
+
+def test_a_generated_site_is_written_under_the_name_of_its_file(tmp_path):
+    file = tmp_path / "my site.yaml"
+    result = argo("sites", DRAWN, "-o", file)
+    assert result.exit_code == 0
+    (use,) = re.findall(r"`(argo check .*)`", result.output)
+    written, drawn = load_site(str(file)), load_site(DRAWN)
+    assert written.name == "my site"
+    assert written.elements == drawn.elements
+    assert written.checkpoints == drawn.checkpoints
+    script = tmp_path / "mission.txt"
+    script.write_text("Mission Protocol: one\n1. Set the starting point in starting area 1.\n"
+                      "2. Check checkpoint #1.\n", encoding="utf-8")  # fmt: skip
+    checked = argo(*[script if a == "MISSION" else a for a in shlex.split(use)[1:]])
+    assert checked.exit_code == 0, checked.output
+
+
+@pytest.mark.parametrize(
+    ("name", "says"),
+    [
+        ("site.txt", "a site is found in a file that ends in .yaml"),
+        ("site", "a site is found in a file that ends in .yaml"),
+        ("umad.yaml", "would be called umad"),
+        ("generated:floors=2.yaml", "is no file to Argo"),
+    ],
+)
+def test_where_no_site_would_be_found_again(tmp_path, name, says):
+    result = argo("sites", DRAWN, "-o", tmp_path / name)
+    assert result.exit_code != 0
+    assert says in str(result.exception)
+    assert not (tmp_path / name).exists()
+
+
+def test_a_site_is_not_written_over_itself(tmp_path, hall_yaml):
+    file = tmp_path / "site.yaml"
+    file.write_text("# a person's\n" + yaml.safe_dump(hall_yaml), encoding="utf-8")
+    before = file.read_bytes()
+    assert "is the input as well" in str(argo("sites", file, "-o", file).exception)
+    assert file.read_bytes() == before
+
+
+def test_stairs_that_do_not_end_at_the_next_floor(tmp_path, hall_yaml):
+    """Also where the robot would get over the step."""
+    (flight,) = hall_yaml["towers"][0]["flights"]
+    flight["rise"] -= 0.05 / flight["risers"]
+    file = tmp_path / "site.yaml"
+    file.write_text(yaml.safe_dump(hall_yaml), encoding="utf-8")
+    result = argo("sites", file)
+    assert result.exit_code == 2
+    (error,) = [line for line in result.output.splitlines() if "its flights rise" in line]
+    assert ": error: " in error
+    assert "and floor 2 lies 2.500 m above floor 1" in error
 
 
 def test_a_site_that_can_not_be_driven(tmp_path, hall_yaml):

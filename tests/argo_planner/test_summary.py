@@ -7,8 +7,10 @@ from rich.console import Console
 
 from argo_compiler.catalog import CheckpointKind, Interval
 from argo_compiler.hfsm import lower
-from argo_compiler.il import Action, Mission, Task
-from argo_env.record import Contact, Reading, Result, RunRecord, TaskRun
+from argo_compiler.il import Action, Afterwards, EventKind, Mission, Reaction, Response, Task
+from argo_env.events.machine import ConnectionLoss
+from argo_env.events.process import GasLeakFault
+from argo_env.record import Contact, Interruption, Reading, Result, RunRecord, TaskRun
 from argo_planner.summary import clock, show_record
 
 
@@ -79,6 +81,72 @@ def test_repeated_tasks_are_taken_together(record: RunRecord) -> None:
         "1:00",
         "12.0 m",
         "2.5 m",
+    ]
+
+
+GAS = Reaction(
+    event=EventKind.GAS_LEAK, response=Response.PAUSE, until=EventKind.ALL_CLEAR, priority=1
+)
+ALARM = Reaction(
+    event=EventKind.PLATFORM_ALARM, response=Response.RETURN, afterwards=Afterwards.WAIT
+)
+
+
+def waits(record: RunRecord, *interruptions: tuple[float, float, EventKind | None]) -> list[str]:
+    """The rows of what was waited for: for what, how often, since when, how long, how it ended."""
+    changed = record.model_copy(
+        update={
+            "mission": record.mission.model_copy(update={"reactions": (GAS, ALARM)}),
+            "interruptions": tuple(
+                Interruption(start=start, end=end, event=event)
+                for start, end, event in interruptions
+            ),
+        }
+    )
+    rows = [[c.strip() for c in row.split("│")[1:-1]] for row in shown(changed).splitlines()]
+    return [" | ".join(filter(None, row)) for row in rows if row and row[0].startswith("waits")]
+
+
+def test_what_a_reaction_waited_for_is_said(record: RunRecord) -> None:
+    # The tasks run from 0 to 30 s and from 40 to 70 s.
+    assert waits(record, (70.0, 95.0, EventKind.GAS_LEAK), (200.0, 230.0, EventKind.GAS_LEAK)) == [
+        "waits for all clear (reaction to gas leak) | 2 | 1:10 | 0:55 | over"
+    ]
+    # Of a reaction, what its drive took is no waiting.
+    assert waits(record, (35.0, 75.0, EventKind.GAS_LEAK)) == [
+        "waits for all clear (reaction to gas leak) | 1 | 1:10 | 0:05 | over"
+    ]
+    assert waits(record, (39.0, 70.0, EventKind.GAS_LEAK)) == []
+    assert waits(record, (100.0, 110.0, None)) == [
+        "waits for a person (paused) | 1 | 1:40 | 0:10 | over"
+    ]
+
+
+def test_what_it_still_waits_for_in_the_end_is_said(record: RunRecord) -> None:
+    """A run is stopped at once when nothing more can come."""
+    alarm = (600.0, 700.0, EventKind.PLATFORM_ALARM), (700.0, 700.0, None)
+    assert waits(record, alarm[0]) == [
+        "waits for a person (reaction to platform alarm) | 1 | 10:00 | 1:40"
+        " | still waiting at the end"
+    ]
+    drive = TaskRun(
+        task="react to platform_alarm", action=Action.WAYPOINT, start=600.0, end=700.0,
+        outcome="done", distance=1.0, climbed=0.0,
+    )  # fmt: skip
+    drove = record.model_copy(update={"tasks": (*record.tasks, drive)})
+    assert waits(drove, *alarm) == [
+        "waits for a person (reaction to platform alarm) | 1 | 11:40 | 0:00"
+        " | still waiting at the end"
+    ]
+
+
+def test_faults_that_did_not_happen_are_said(record: RunRecord) -> None:
+    faults = (GasLeakFault(at=700.0), ConnectionLoss(at=700.1), GasLeakFault(at=5000.0))
+    text = shown(record.model_copy(update={"faults": faults}))
+    said = [line.strip() for line in text.splitlines() if "did not happen" in line]
+    assert said == [
+        "fault connection loss did not happen: begins at 700.1 s, the mission ended at 700 s",
+        "fault gas leak did not happen: begins at 5000 s, the mission ended at 700 s",
     ]
 
 

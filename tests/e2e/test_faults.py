@@ -1,6 +1,7 @@
 """Faults on the command line: told as they are found, kept in the journal, shown in the report."""
 
 import json
+import re
 
 import pytest
 import yaml
@@ -14,6 +15,8 @@ faults:
   - {kind: brick, floor: 1, place: [3.0, 2.0], yaw: 0}
   - {kind: abnormal_value, checkpoint: 3, value: 8.0, at: 5}
   - {kind: connection_loss, at: 4, until: 12}
+  - {kind: gas_leak, at: 5, place: [3.0, 3.0, 0.8], rate: 0.03}
+  - {kind: platform_alarm, at: 4000}
 """
 
 
@@ -34,10 +37,15 @@ def test_found_told_kept_and_shown(argo, folder):
     shown = ran.stdout + ran.stderr
     for kind in ("positive obstacle", "connection lost", "connection restored"):
         assert f"s: found: {kind}: " in shown
-    assert "4 findings" in ran.stdout
+    assert re.search(r"s: found: gas leak: .*, on floor 1 at \(\d\.\d\d, \d\.\d\d, 0\.02\)", shown)
+    assert "5 findings" in ran.stdout
+    assert "platform alarm did not happen: begins at 4000 s, the mission ended at" in ran.stdout
     record = RunRecord.model_validate(json.loads((folder / "out" / "report.json").read_text()))
-    assert len(record.anomalies) == 4
-    assert [f.kind for f in record.faults] == ["brick", "abnormal_value", "connection_loss"]
+    assert len(record.anomalies) == 5
+    assert all(a.place and a.floor == 1 for a in record.anomalies)
+    assert [f.kind for f in record.faults] == [
+        "brick", "abnormal_value", "connection_loss", "gas_leak", "platform_alarm",
+    ]  # fmt: skip
     page = (folder / "out" / "report.html").read_text(encoding="utf-8")
     assert "What was found" in page
     assert "the base station answers" in page

@@ -62,6 +62,16 @@ def test_replay_shows_and_makes_again_what_the_run_did(argo, folder: Path) -> No
     assert results(made.stdout) == results(first.stdout)
     assert same_files(folder / "report", elsewhere / "report")
     assert (folder / "film.gif").read_bytes() == (elsewhere / "film.gif").read_bytes()
+    # A damaged end is said, and changes nothing of what is shown.
+    content = (elsewhere / "run.mcap").read_bytes()
+    (elsewhere / "run.mcap").write_bytes(content[:-40] + b"damaged" + content[-33:])
+    noticed = argo("replay", "run.mcap", cwd=elsewhere)
+    assert (noticed.returncode, results(noticed.stdout)) == (0, results(first.stdout))
+    assert "Warning: run.mcap has a missing or damaged index; the record" in noticed.stderr
+    (elsewhere / "run.mcap").write_bytes(content[: len(content) // 2] + b"?" + content)
+    refused = argo("replay", "run.mcap", cwd=elsewhere)
+    assert refused.returncode == 2
+    assert "run.mcap: is damaged after" in refused.stderr
 
 
 def test_a_run_that_is_killed_can_be_replayed_up_to_there(argo, folder: Path) -> None:
@@ -83,7 +93,7 @@ def test_a_run_that_is_killed_can_be_replayed_up_to_there(argo, folder: Path) ->
             told += "shows" in line
         process.kill()
     found = read_recording(folder / "killed.mcap")
-    assert (found.whole, found.record) == (False, None)
+    assert (found.flaw is None, found.record) == (False, None)
     # One reading takes about ten seconds of simulated time, after which all is on disk.
     assert len(found.readings) >= 3
     shown = argo("replay", "killed.mcap", cwd=folder)

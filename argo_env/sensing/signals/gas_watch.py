@@ -10,6 +10,7 @@ from argo_env.robot.pose import BodyPose
 from argo_env.sensing.signals.gas_sensors import GasSensor, UltrasonicMicrophone
 from argo_env.sensing.signals.site_map import SiteMap
 from argo_env.sensing.watch import Finding, Told
+from argo_env.site.shapes import Vector
 
 GAS_ON, GAS_OFF = 40.0, 20.0
 """ppm from which there is gas, and under which there is none; noise and drift have a standard
@@ -106,7 +107,7 @@ class GasWatch:
         self._leaks.append(self._here)
         near = self._map.nearest_equipment((pose.x, pose.y, pose.z + 0.5))
         signs = [f"gas, {ppm:.0f} ppm"] * smelt + [f"a hiss, {level:.0f} dB at 40 kHz"] * heard
-        return (Finding(EventKind.GAS_LEAK, f"{' and '.join(signs)}, near {near}"),)
+        return (Finding(EventKind.GAS_LEAK, f"{' and '.join(signs)}, near {near}", _place(pose)),)
 
     def _all_clear(self, now: float, pose: BodyPose) -> tuple[Finding, ...]:
         here = [leak for leak in self._leaks if _apart(pose, leak.worst) <= NEAR]
@@ -117,7 +118,13 @@ class GasWatch:
         if now - self._quiet_since < CLEAR_TIME:
             return ()
         self._leaks = [leak for leak in self._leaks if leak not in here]
-        return (Finding(EventKind.ALL_CLEAR, "there is no gas any more where it was"),)
+        detail = "there is no gas any more where it was"
+        return (Finding(EventKind.ALL_CLEAR, detail, _place(pose)),)
+
+
+def _place(pose: BodyPose) -> Vector:
+    """Where it was noticed: the signals do not tell from where they come."""
+    return pose.x, pose.y, pose.z
 
 
 def _near(leak: _Leak, pose: BodyPose) -> bool:

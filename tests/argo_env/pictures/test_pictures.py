@@ -151,13 +151,35 @@ def test_a_gif_has_a_frame_for_each_time(record, umad, robot, tmp_path):
         )  # fmt: skip
     with Image.open(tmp_path / "a.gif") as image:
         assert (image.format, image.size) == ("GIF", (120, 80))
-        assert image.n_frames == 9  # 20 s at 10 times and 4 frames a second, and the last
+        # 20 s at 10 times and 4 frames a second, and the last for 2 s.
+        assert image.n_frames == 8 + 8
         assert image.info["duration"] == 250
         image.seek(8)
         image.load()
-    assert done[8] == done[-1] == 1.0
+    assert done[15] == done[-1] == 1.0
     assert (tmp_path / "a.gif").read_bytes() == (tmp_path / "b.gif").read_bytes()
     assert sorted(p.name for p in tmp_path.iterdir()) == ["a.gif", "b.gif"]
+
+
+def test_the_last_frames_show_the_verdict(record, umad, robot, tmp_path):
+    failed = record.result.model_copy(
+        update={"success": False, "verdict": "the robot is not docked; " + "failed: a task, " * 99}
+    )
+    frames = []
+    for name, made in (("a.gif", record), ("b.gif", record.model_copy(update={"result": failed}))):
+        write_film(made, umad, robot, tmp_path / name, speed=10, fps=4, size=(240, 160))
+        with Image.open(tmp_path / name) as image:
+            shown = []
+            for k in (7, 8, 15):
+                image.seek(k)
+                shown.append(np.asarray(image.convert("RGB")).astype(int))
+            frames.append(shown)
+    for k, verdict in enumerate((False, True, True)):
+        differs = (np.abs(frames[0][k] - frames[1][k]).sum(axis=2) > 90).mean(axis=1)
+        # Between the picture above it and the caption below.
+        assert (differs[90:140].max() > 0.05) == verdict
+        assert differs[:60].max() < 0.05
+        assert differs[145:].max() < 0.05
 
 
 def test_an_mp4_has_a_frame_for_each_time(record, umad, robot, tmp_path):
@@ -168,7 +190,7 @@ def test_an_mp4_has_a_frame_for_each_time(record, umad, robot, tmp_path):
     assert content[4:8] == b"ftyp"
     assert b"avc1" in content
     assert content.index(b"moov") < content.index(b"mdat")  # plays while it loads
-    assert imageio_ffmpeg.count_frames_and_secs(str(file))[0] == 9
+    assert imageio_ffmpeg.count_frames_and_secs(str(file))[0] == 8 + 8
 
 
 @pytest.mark.parametrize("wrong", [{"speed": 0.0}, {"speed": math.nan}, {"size": (121, 80)}])

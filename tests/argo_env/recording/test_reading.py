@@ -26,7 +26,7 @@ def test_the_report_can_be_made_again(recorded, yard_navigator, tmp_path: Path) 
     found = recorded.found
     assert found.record == recorded.record
     assert found.site == yard_navigator.site
-    assert (found.whole, found.facts["seed"]) == (True, "3")
+    assert (found.flaw, found.facts["seed"]) == (None, "3")
     write_report(recorded.record, yard_navigator.site, tmp_path / "of the run")
     write_report(found.record, found.site, tmp_path / "again")
     for name in ("report.html", "report.json"):
@@ -83,7 +83,7 @@ def test_a_file_that_breaks_off_is_read_up_to_there(recorded, tmp_path_factory, 
     if found is None:
         assert share < 0.5, "the first part of the run has been read by then"
         return
-    assert not found.whole
+    assert found.flaw
     assert found.record in (None, recorded.record)
     for name in ("readings", "tasks"):
         rest, all_ = getattr(found, name), getattr(recorded.record, name)
@@ -112,7 +112,35 @@ def test_a_damaged_file_is_refused_or_read_as_it_was(recorded, tmp_path_factory,
     damaged = tmp_path_factory.mktemp("damaged") / "damaged.mcap"
     damaged.write_bytes(content)
     found = _read_or_refused(damaged)
-    assert found is None or found.record in (None, recorded.record)
+    assert found is None or (found.flaw and found.record in (None, recorded.record))
+
+
+def test_no_damage_to_the_end_goes_unnoticed(recorded, tmp_path: Path) -> None:
+    """In the index, the footer and the mark after it: changed, lost, blank, and something added."""
+    file, whole = tmp_path / "damaged.mcap", recorded.content
+    contents = [whole + b"\0", whole + whole]
+    for k in (1, 8, 9, 12, 13, 20, 29, 37, 38, 60, 290):
+        contents += [whole[:-k], whole[:-k] + bytes(k)]
+        contents.append(whole[:-k] + bytes([whole[-k] ^ 1]) + whole[len(whole) - k + 1 :])
+    for content in contents:
+        file.write_bytes(content)
+        found = read_recording(file)
+        assert found.flaw == "has a missing or damaged index"
+        assert found.record == recorded.record
+
+
+def test_a_damaged_record_is_none(recorded, tmp_path: Path) -> None:
+    """Also where the file has no end, by the checksum of which that would be seen."""
+    file, whole = tmp_path / "damaged.mcap", recorded.content
+    place = whole.rindex(b'"verdict"')
+    damaged = whole[:place] + b'"verDict"' + whole[place + 9 :]
+    file.write_bytes(damaged)
+    with pytest.raises(ArgoError, match=r"is damaged after .* \(the checksum of record.json"):
+        read_recording(file)
+    file.write_bytes(damaged[:-9])
+    found = read_recording(file)
+    assert found.record is None
+    assert "record.json is wrong" in found.loss
 
 
 def _read_or_refused(path: Path):
@@ -183,7 +211,7 @@ def test_a_run_that_fails_leaves_what_was_recorded(yard_navigator, tmp_path: Pat
     with pytest.raises(RuntimeError, match="plug"), recording_to(file) as recorder:
         simulate(PLAN, yard_navigator, settings=SETTINGS, recorder=recorder, observe=fail)
     found = read_recording(file)
-    assert (found.whole, found.record) == (True, None)
+    assert (found.flaw, found.record) == (None, None)
     assert found.until == pytest.approx(30.1)
     with pytest.raises(ArgoError, match=r"the run failed after 30\.1 s"):
         found.require_record()

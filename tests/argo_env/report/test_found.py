@@ -6,6 +6,7 @@ from xml.etree import ElementTree
 import pytest
 
 from argo_compiler.il import EventKind
+from argo_env.events.process import GasLeakFault, PlatformAlarm
 from argo_env.record import Anomaly
 from argo_env.report.charge import charge_curve
 from argo_env.report.html import page
@@ -53,6 +54,27 @@ def test_each_finding_has_a_row_and_a_number_where_it_was(simple, site):
     assert re.findall(r'class="middle">(\d+)</text></g>', timeline)[-2:] == ["1", "3"]
     plan = section(text, "path")
     assert len(re.findall(r'<g class="found">', plan)) == 1
+
+
+def test_faults_that_did_not_happen(simple, site):
+    assert "did not happen" not in page(simple, site)
+    faults = (GasLeakFault(at=1.0), GasLeakFault(at=500.0), PlatformAlarm(at=900.0))
+    text = page(simple.model_copy(update={"faults": faults}), site)
+    assert "gas leak, gas leak (did not happen), platform alarm (did not happen)" in text
+    told = re.findall(r'<p class="note missed">(.*?)</p>', section(text, "anomalies"))
+    assert told == [
+        "Fault gas leak did not happen: begins at 500 s, the mission ended at 18 s",
+        "Fault platform alarm did not happen: begins at 900 s, the mission ended at 18 s",
+    ]
+
+
+def test_what_is_said_of_reading_the_mission_holds_for_any_source(simple, site):
+    assert "1 finding in what the mission was read from" in section(page(simple, site), "warnings")
+    # As of a script that is right, a mission's .json or a bag: the record does not tell which.
+    text = section(page(simple.model_copy(update={"diagnostics": ()}), site), "warnings")
+    assert "taken as it was written" in text
+    assert "script" not in text.lower()
+    assert "import" not in text.lower()
 
 
 def test_no_curve_without_a_battery(simple):

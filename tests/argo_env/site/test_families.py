@@ -12,7 +12,7 @@ from argo_env.navigation.generated import generate
 from argo_env.site import load_site, make_site
 from argo_env.site.families import draw_site
 from argo_env.site.family import TEST_SEEDS, Family, Stairs, parse_family
-from argo_env.site.norms import breaches
+from argo_env.site.norms import breaches, false_ends
 from argo_env.site.reading import read_spec
 from argo_env.site.writing import to_yaml
 from tests.conftest import examples
@@ -41,7 +41,7 @@ small_families = st.builds(
 @given(family=families)
 def test_a_draw_keeps_the_norms_and_has_what_was_asked_for(family):
     spec, slots = draw_site(family)
-    assert breaches(spec) == []
+    assert breaches(spec) == false_ends(spec) == []
     assert len(spec.floors) == family.floors
     ids = [c.id for floor in spec.floors for c in floor.checkpoints]
     assert ids == list(range(1, family.checkpoints + 1)) == list(slots)
@@ -63,7 +63,7 @@ def test_every_place_is_reached_from_every_dock_and_back(family, robot, tmp_path
     file = tmp_path_factory.mktemp("generated") / "site.yaml"
     file.write_text(to_yaml(site.spec), encoding="utf-8")
     assert read_spec(file) == site.spec
-    assert breaches(site.spec) == []
+    assert breaches(site.spec) == false_ends(site.spec) == []
     for dock in site.docks.values():
         for floor in site.spec.floors:
             # In the north-west corner of every floor.

@@ -23,18 +23,14 @@ from argo_compiler.il import (
     Action,
     Condition,
     ConditionType,
-    Group,
     Mission,
     OnFailure,
-    Stop,
     Task,
     Transition,
 )
-from argo_compiler.model import Pose
+from tests.mission_parts import HERE, OBJECTS, groups_over, transitions
 
-OBJECTS = ("1", "2", "3")
 STEPS = 80
-DOCK = Pose(x=0, y=0, z=0)
 
 
 @st.composite
@@ -54,27 +50,15 @@ def conditions(draw, objects=OBJECTS):
 def tasks_named(draw, name, names, index, object_id):
     # Conditions on what was just measured are what plans are made of.
     objects = OBJECTS if object_id is None else (object_id, object_id, *OBJECTS)
-    ways = [
-        Transition(target=draw(st.sampled_from(names)), conditions=tuple(held))
-        for held in draw(
-            st.lists(st.lists(conditions(objects), min_size=1, max_size=2), max_size=3)
-        )
-    ]
-    onward = draw(st.sampled_from(["next", "next", "next", "any", "end"]))
-    if onward != "end":
-        following = names[index + 1] if index + 1 < len(names) else None
-        target = draw(st.sampled_from(names)) if onward == "any" else following
-        if target is not None:
-            ways.insert(draw(st.integers(0, len(ways))), Transition(target=target))
     return Task(
         name=name,
         action=Action.WAYPOINT if object_id is None else Action.MEASURE,
         object_id=object_id,
-        pose=DOCK if object_id is None else None,
+        pose=HERE if object_id is None else None,
         velocity=draw(st.sampled_from([None, None, 2])),
         retries=draw(st.sampled_from([0, 0, 1])),
         on_failure=draw(st.sampled_from([OnFailure.CONTINUE, OnFailure.CONTINUE, *OnFailure])),
-        transitions=tuple(ways),
+        transitions=draw(transitions(names, index, lambda: conditions(objects))),
     )
 
 
@@ -90,36 +74,10 @@ def missions(draw, least=1, most=8):
         tasks.insert(0, Task(name="S", action=Action.START, velocity=2, transitions=ways))
     return Mission(
         tasks=tuple(tasks),
-        groups=tuple(draw(groups_over(names))),
-        dock=DOCK,
+        groups=draw(groups_over(names, interruptions=False)),
+        dock=HERE,
         max_duration=draw(st.sampled_from([None, 30])),
     )
-
-
-@st.composite
-def groups_over(draw, names):
-    """Ranges that lie in each other or apart, named by their nesting."""
-    ends = st.integers(0, len(names) - 1)
-    kept = []
-    for a, b in draw(st.lists(st.tuples(ends, ends), max_size=4)):
-        first, last = min(a, b), max(a, b)
-        if not any(f < first <= e < last or first < f <= last < e for f, e in kept):
-            kept.append((first, last))
-    paths = []
-    for i, (first, last) in enumerate(sorted(kept, key=lambda r: (r[0], -r[1]))):
-        while paths and paths[-1][1] < first:
-            paths.pop()
-        name = f"{paths[-1][0]}/{i}" if paths else str(i)
-        paths.append((name, last))
-        kept[i] = Group(
-            name=name,
-            start=names[first],
-            end=names[last],
-            max_repeat_count=draw(st.integers(0, 3)),
-            max_repeat_duration=draw(st.sampled_from([0, 0, 0, 1, 3, 8, 13])),
-            stop=draw(st.sampled_from(Stop)),
-        )
-    return kept
 
 
 @st.composite
@@ -127,7 +85,7 @@ def catalogs(draw):
     return Catalog(
         site="made up",
         checkpoints=tuple(checkpoint(int(o), *draw(ranges())) for o in OBJECTS),
-        areas=(Area(number=1, dock=DOCK),),
+        areas=(Area(number=1, dock=HERE),),
         floors=(),
     )
 

@@ -8,35 +8,15 @@ from hypothesis import strategies as st
 from argo_compiler.il import (
     Action,
     Afterwards,
-    Condition,
-    ConditionType,
     EventKind,
-    Group,
     Mission,
-    OnFailure,
     Reaction,
     Response,
     Stop,
     Task,
     Transition,
 )
-from argo_compiler.model import Pose
-
-OBJECTS = ("1", "2", "3")
-HERE = Pose(x=0, y=0, z=0)
-
-
-@st.composite
-def conditions(draw):
-    low = draw(st.integers(0, 4))
-    return Condition(
-        type=draw(st.sampled_from(ConditionType)),
-        object_id=draw(st.sampled_from(OBJECTS)),
-        param1=low,
-        param2=draw(st.integers(low + 1, 6)),
-        inclusive=draw(st.booleans()),
-        max_age=draw(st.one_of(st.none(), st.integers(1, 6))),
-    )
+from tests.mission_parts import HERE, groups_over, starts, task_names, tasks_named
 
 
 @st.composite
@@ -45,69 +25,10 @@ def missions(draw, failures=True):
 
     With `failures`, tasks have retries and policies.
     """
-    size = draw(st.integers(1, 9))
-    kinds = draw(st.lists(st.booleans(), min_size=size, max_size=size))
-    names = [f"{'M' if measures else 'W'}{i}" for i, measures in enumerate(kinds)]
-    tasks = [draw(_tasks_named(name, names, i, failures)) for i, name in enumerate(names)]
-    if draw(st.booleans()):
-        ways = draw(st.lists(st.sampled_from(names), max_size=1))
-        start = tuple(Transition(target=way) for way in ways)
-        tasks.insert(0, Task(name="S", action=Action.START, transitions=start))
-    return Mission(tasks=tuple(tasks), groups=tuple(draw(_groups_over(names))), dock=HERE)
-
-
-@st.composite
-def _tasks_named(draw, name, names, index, failures):
-    ways = [
-        Transition(target=draw(st.sampled_from(names)), conditions=tuple(held))
-        for held in draw(st.lists(st.lists(conditions(), min_size=1, max_size=2), max_size=2))
-    ]
-    onward = draw(st.sampled_from(["next", "next", "next", "any", "end"]))
-    if onward != "end":
-        following = names[index + 1] if index + 1 < len(names) else None
-        target = draw(st.sampled_from(names)) if onward == "any" else following
-        if target is not None:
-            ways.insert(draw(st.integers(0, len(ways))), Transition(target=target))
-    measures = name.startswith("M")
-    policies = [OnFailure.CONTINUE, OnFailure.CONTINUE, *OnFailure]
-    return Task(
-        name=name,
-        action=Action.MEASURE if measures else Action.WAYPOINT,
-        object_id=draw(st.sampled_from(OBJECTS)) if measures else None,
-        pose=None if measures else HERE,
-        retries=draw(st.sampled_from([0, 0, 1, 2])) if failures else 0,
-        on_failure=draw(st.sampled_from(policies)) if failures else OnFailure.CONTINUE,
-        transitions=tuple(ways),
-    )
-
-
-@st.composite
-def _groups_over(draw, names):
-    """Ranges that lie in each other or apart, named by their nesting."""
-    ends = st.integers(0, len(names) - 1)
-    kept = []
-    for a, b in draw(st.lists(st.tuples(ends, ends), max_size=5)):
-        first, last = min(a, b), max(a, b)
-        if not any(f < first <= e < last or first < f <= last < e for f, e in kept):
-            kept.append((first, last))
-    around, groups = [], []
-    for i, (first, last) in enumerate(sorted(kept, key=lambda r: (r[0], -r[1]))):
-        while around and around[-1][1] < first:
-            around.pop()
-        name = f"{around[-1][0]}/{i}" if around else str(i)
-        around.append((name, last))
-        groups.append(
-            Group(
-                name=name,
-                start=names[first],
-                end=names[last],
-                max_repeat_count=draw(st.integers(0, 3)),
-                max_repeat_duration=draw(st.sampled_from([0, 0, 1, 2, 3, 5, 8, 13])),
-                count_interruptions=draw(st.booleans()),
-                stop=draw(st.sampled_from(Stop)),
-            )
-        )
-    return draw(st.permutations(groups))
+    names = draw(task_names())
+    tasks = [draw(tasks_named(name, names, i, failures)) for i, name in enumerate(names)]
+    groups = draw(groups_over(names))
+    return Mission(tasks=(*draw(starts(names)), *tasks), groups=groups, dock=HERE)
 
 
 @st.composite
@@ -218,17 +139,15 @@ def structured_missions(draw, timeouts=True):
 
     Without `timeouts`, no group is left by the clock in the middle of an action.
     """
-    size = draw(st.integers(1, 9))
-    kinds = draw(st.lists(st.booleans(), min_size=size, max_size=size))
-    names = [f"{'M' if measures else 'W'}{i}" for i, measures in enumerate(kinds)]
+    names = draw(task_names())
     tasks = []
     for i, name in enumerate(names):
-        made = draw(_tasks_named(name, names, i, True))
+        made = draw(tasks_named(name, names, i))
         ahead = tuple(t for t in made.transitions if names.index(t.target) > i)
         tasks.append(made.model_copy(update={"transitions": ahead}))
     groups = [
         group if timeouts else group.model_copy(update={"stop": Stop.SOFT})
-        for group in draw(_groups_over(names))
+        for group in draw(groups_over(names))
     ]
     start = Task(
         name="S",

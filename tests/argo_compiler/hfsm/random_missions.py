@@ -4,24 +4,15 @@ from hypothesis import strategies as st
 
 from argo_compiler.hfsm import Cancel, Occurred, Pause, Resume
 from argo_compiler.il import (
-    Action,
     Afterwards,
-    Condition,
-    ConditionType,
     EventKind,
     Group,
     Mission,
-    OnFailure,
     Reaction,
     Response,
-    Stop,
-    Task,
-    Transition,
 )
-from argo_compiler.model import Pose
+from tests.mission_parts import HERE, groups_over, starts, task_names, tasks_named
 
-OBJECTS = ("1", "2", "3")
-HERE = Pose(x=0, y=0, z=0)
 EVENTS = (
     EventKind.GAS_LEAK,
     EventKind.LOW_BATTERY,
@@ -31,94 +22,17 @@ EVENTS = (
 
 
 @st.composite
-def conditions(draw):
-    low = draw(st.integers(0, 4))
-    return Condition(
-        type=draw(st.sampled_from(ConditionType)),
-        object_id=draw(st.sampled_from(OBJECTS)),
-        param1=low,
-        param2=draw(st.integers(low + 1, 6)),
-        inclusive=draw(st.booleans()),
-        max_age=draw(st.one_of(st.none(), st.integers(1, 6))),
-    )
-
-
-@st.composite
 def missions(draw, events=True):
     """Missions of up to nine tasks; without `events` nothing interrupts them but a person."""
-    size = draw(st.integers(1, 9))
-    kinds = draw(st.lists(st.booleans(), min_size=size, max_size=size))
-    names = [f"{'M' if measures else 'W'}{i}" for i, measures in enumerate(kinds)]
+    names = draw(task_names())
     tasks = [draw(tasks_named(name, names, i)) for i, name in enumerate(names)]
-    if draw(st.booleans()):
-        ways = draw(st.lists(st.sampled_from(names), max_size=1))
-        start = Task(
-            name="S",
-            action=Action.START,
-            transitions=tuple(Transition(target=way) for way in ways),
-        )
-        tasks.insert(0, start)
     return Mission(
-        tasks=tuple(tasks),
-        groups=tuple(draw(groups_over(names, interruptions=events))),
+        tasks=(*draw(starts(names)), *tasks),
+        groups=draw(groups_over(names, interruptions=events)),
         reactions=tuple(draw(reactions())) if events else (),
         max_duration=draw(st.sampled_from([None, None, 3, 10, 30])) if events else None,
         dock=HERE,
     )
-
-
-@st.composite
-def tasks_named(draw, name, names, index):
-    ways = [
-        Transition(target=draw(st.sampled_from(names)), conditions=tuple(held))
-        for held in draw(st.lists(st.lists(conditions(), min_size=1, max_size=2), max_size=2))
-    ]
-    onward = draw(st.sampled_from(["next", "next", "next", "any", "end"]))
-    if onward != "end":
-        following = names[index + 1] if index + 1 < len(names) else None
-        target = draw(st.sampled_from(names)) if onward == "any" else following
-        if target is not None:
-            ways.insert(draw(st.integers(0, len(ways))), Transition(target=target))
-    return Task(
-        name=name,
-        action=Action.MEASURE if name.startswith("M") else Action.WAYPOINT,
-        object_id=draw(st.sampled_from(OBJECTS)) if name.startswith("M") else None,
-        pose=None if name.startswith("M") else HERE,
-        retries=draw(st.sampled_from([0, 0, 1, 2])),
-        on_failure=draw(st.sampled_from([OnFailure.CONTINUE, OnFailure.CONTINUE, *OnFailure])),
-        transitions=tuple(ways),
-    )
-
-
-@st.composite
-def groups_over(draw, names, interruptions=True):
-    """Ranges that lie in each other or apart, named by their nesting."""
-    ends = st.integers(0, len(names) - 1)
-    kept = []
-    for a, b in draw(st.lists(st.tuples(ends, ends), max_size=5)):
-        first, last = min(a, b), max(a, b)
-        crosses = any(f < first <= e < last or first < f <= last < e for f, e in kept)
-        if not crosses:
-            kept.append((first, last))
-    paths = []
-    groups = []
-    for i, (first, last) in enumerate(sorted(kept, key=lambda r: (r[0], -r[1]))):
-        while paths and paths[-1][1] < first:
-            paths.pop()
-        name = f"{paths[-1][0]}/{i}" if paths else str(i)
-        paths.append((name, last))
-        groups.append(
-            Group(
-                name=name,
-                start=names[first],
-                end=names[last],
-                max_repeat_count=draw(st.integers(0, 3)),
-                max_repeat_duration=draw(st.sampled_from([0, 0, 1, 2, 3, 5, 8, 13])),
-                count_interruptions=interruptions and draw(st.booleans()),
-                stop=draw(st.sampled_from(Stop)),
-            )
-        )
-    return draw(st.permutations(groups))
 
 
 @st.composite

@@ -1,0 +1,109 @@
+"""Random parts of missions: conditions, tasks with ways in all directions, groups in groups."""
+
+from hypothesis import strategies as st
+
+from argo_compiler.il import (
+    Action,
+    Condition,
+    ConditionType,
+    Group,
+    OnFailure,
+    Stop,
+    Task,
+    Transition,
+)
+from argo_compiler.model import Pose
+
+OBJECTS = ("1", "2", "3")
+HERE = Pose(x=0, y=0, z=0)
+
+
+@st.composite
+def task_names(draw, least=1, most=9):
+    """M and a number for tasks that measure, W and a number for waypoints."""
+    kinds = draw(st.lists(st.booleans(), min_size=least, max_size=most))
+    return [f"{'M' if measures else 'W'}{i}" for i, measures in enumerate(kinds)]
+
+
+@st.composite
+def conditions(draw):
+    low = draw(st.integers(0, 4))
+    return Condition(
+        type=draw(st.sampled_from(ConditionType)),
+        object_id=draw(st.sampled_from(OBJECTS)),
+        param1=low,
+        param2=draw(st.integers(low + 1, 6)),
+        inclusive=draw(st.booleans()),
+        max_age=draw(st.one_of(st.none(), st.integers(1, 6))),
+    )
+
+
+@st.composite
+def transitions(draw, names, index, held=conditions):
+    """Ways from the task of that index to any other, each with conditions that `held` draws, and
+    mostly one without to the task that follows."""
+    ways = [
+        Transition(target=draw(st.sampled_from(names)), conditions=tuple(both))
+        for both in draw(st.lists(st.lists(held(), min_size=1, max_size=2), max_size=3))
+    ]
+    onward = draw(st.sampled_from(["next", "next", "next", "any", "end"]))
+    if onward != "end":
+        following = names[index + 1] if index + 1 < len(names) else None
+        target = draw(st.sampled_from(names)) if onward == "any" else following
+        if target is not None:
+            ways.insert(draw(st.integers(0, len(ways))), Transition(target=target))
+    return tuple(ways)
+
+
+@st.composite
+def tasks_named(draw, name, names, index, failures=True):
+    """With `failures`, tasks have retries and policies."""
+    measures = name.startswith("M")
+    policies = [OnFailure.CONTINUE, OnFailure.CONTINUE, *OnFailure]
+    return Task(
+        name=name,
+        action=Action.MEASURE if measures else Action.WAYPOINT,
+        object_id=draw(st.sampled_from(OBJECTS)) if measures else None,
+        pose=None if measures else HERE,
+        retries=draw(st.sampled_from([0, 0, 1, 2])) if failures else 0,
+        on_failure=draw(st.sampled_from(policies)) if failures else OnFailure.CONTINUE,
+        transitions=draw(transitions(names, index)),
+    )
+
+
+@st.composite
+def starts(draw, names):
+    """A START with a way to any task or none, or no START at all; a list."""
+    if not draw(st.booleans()):
+        return []
+    ways = tuple(Transition(target=w) for w in draw(st.lists(st.sampled_from(names), max_size=1)))
+    return [Task(name="S", action=Action.START, transitions=ways)]
+
+
+@st.composite
+def groups_over(draw, names, interruptions=True):
+    """Ranges that lie in each other or apart, named by their nesting."""
+    ends = st.integers(0, len(names) - 1)
+    kept = []
+    for a, b in draw(st.lists(st.tuples(ends, ends), max_size=5)):
+        first, last = min(a, b), max(a, b)
+        if not any(f < first <= e < last or first < f <= last < e for f, e in kept):
+            kept.append((first, last))
+    around, groups = [], []
+    for i, (first, last) in enumerate(sorted(kept, key=lambda r: (r[0], -r[1]))):
+        while around and around[-1][1] < first:
+            around.pop()
+        name = f"{around[-1][0]}/{i}" if around else str(i)
+        around.append((name, last))
+        groups.append(
+            Group(
+                name=name,
+                start=names[first],
+                end=names[last],
+                max_repeat_count=draw(st.integers(0, 3)),
+                max_repeat_duration=draw(st.sampled_from([0, 0, 1, 2, 3, 5, 8, 13])),
+                count_interruptions=interruptions and draw(st.booleans()),
+                stop=draw(st.sampled_from(Stop)),
+            )
+        )
+    return tuple(draw(st.permutations(groups)))

@@ -1,6 +1,7 @@
 """What drawings of a machine have in common: ids, nesting, and what stands on the arrows."""
 
 from collections.abc import Iterator
+from dataclasses import dataclass, replace
 
 from argo_compiler.hfsm import Composite, Hfsm, Leaf, Transition, TransitionKind
 from argo_compiler.hfsm.conditions import words
@@ -22,6 +23,19 @@ _AFTERWARDS = {
 }
 
 
+@dataclass(frozen=True)
+class Arrow:
+    """A transition as it is drawn."""
+
+    source: str
+    """id of a leaf, a choice, or a group that is left when its time is out"""
+    target: str | None
+    """id; None: the mission's end"""
+    label: str
+    leaves: Composite | None = None
+    """the group that is the source, if one is"""
+
+
 class Drawing:
     """A machine with ids by position: `t0` is the first leaf, `g1` the first group."""
 
@@ -36,22 +50,48 @@ class Drawing:
         """The id of what is decided when a round of the group ends: `r1` for `g1`."""
         return self.ids[id].replace("g", "r")
 
-    def nested(self) -> Iterator[Leaf | Composite | None]:
-        """All leaves and groups in order; None closes a group.
+    def end(self, id: str) -> str | None:
+        """The id of what a transition leads to; None for the mission's end."""
+        return None if id == DONE else self.ids[id]
+
+    def nested(self) -> Iterator[tuple[int, Leaf | Composite | None]]:
+        """All leaves and groups in order, and how many groups they lie in; None closes a group.
 
         Not recursive, as groups may be nested to any depth.
         """
+        depth = 0
         pending: list[str | None] = list(reversed(self.hfsm.mission.children))
         while pending:
             id = pending.pop()
             if id is None:
-                yield None
+                depth -= 1
+                yield depth, None
             elif leaf := self.leaves.get(id):
-                yield leaf
+                yield depth, leaf
             elif id != DONE:
                 group = self.composites[id]
-                yield group
+                yield depth, group
+                depth += 1
                 pending += [None, *reversed(group.children)]
+
+    def arrows(self) -> Iterator[Arrow]:
+        """All transitions: those of the leaves, then those of the groups."""
+        for leaf in self.hfsm.leaves:
+            ways = (*leaf.transitions, *((leaf.failure,) if leaf.failure else ()))
+            yield from (self._arrow(self.ids[leaf.id], way) for way in ways)
+        for group in self.hfsm.composites[1:]:
+            for way in group.transitions:
+                yield self._arrow(self.choice(group.id), way, group)
+            if group.timeout:
+                arrow = self._arrow(self.ids[group.id], group.timeout, group)
+                yield replace(arrow, leaves=group)
+
+    def _arrow(self, source: str, way: Transition, group: Composite | None = None) -> Arrow:
+        if way.completes is not None:
+            target: str | None = self.choice(way.completes)
+        else:
+            target = self.end(way.target or DONE)
+        return Arrow(source, target, transition_words(way, group))
 
     def first_leaf(self, group: Composite) -> str:
         """The id of a leaf that lies in the group."""

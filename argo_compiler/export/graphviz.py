@@ -1,9 +1,8 @@
 """Graphviz: the machine as a DOT graph, with a cluster for each group."""
 
-from argo_compiler.export.diagram import Drawing, reaction_words, transition_words
+from argo_compiler.export.diagram import Arrow, Drawing, reaction_words
 from argo_compiler.export.xml import printable
-from argo_compiler.hfsm import Composite, Hfsm, Leaf, Transition
-from argo_compiler.hfsm.model import DONE
+from argo_compiler.hfsm import Hfsm, Leaf
 
 
 def to_dot(hfsm: Hfsm) -> str:
@@ -26,12 +25,10 @@ def _lines(hfsm: Hfsm) -> list[str]:
         '  start [shape=point, width=0.15, label=""];',
         '  done [shape=doublecircle, width=0.15, label=""];',
     ]
-    depth = 1
-    for item in drawing.nested():
-        indent = "  " * min(depth, 20)
+    for depth, item in drawing.nested():
+        indent = "  " * min(1 + depth, 20)
         if item is None:
-            depth -= 1
-            lines.append("  " * min(depth, 20) + "}")
+            lines.append(f"{indent}}}")
         elif isinstance(item, Leaf):
             lines.append(f"{indent}{drawing.ids[item.id]} [label={_quoted(item.task.name)}];")
         else:
@@ -39,52 +36,24 @@ def _lines(hfsm: Hfsm) -> list[str]:
             lines.append(f'{indent}{drawing.choice(item.id)} [shape=diamond, label=""];')
             lines.append(f"{indent}subgraph cluster_{drawing.ids[item.id]} {{")
             lines.append(f"{indent}  label={_quoted(item.name)};")
-            depth += 1
     if hfsm.reactions:
         lines += ["  subgraph cluster_reactions {", '    label="Reactions"; style=dashed;']
         for i, state in enumerate(hfsm.reactions, 1):
             lines.append(f"    e{i} [shape=note, label={_quoted(reaction_words(state.reaction))}];")
         lines.append("  }")
-    lines.append(f"  start -> {_target(drawing, hfsm.mission.initial)};")
-    lines += (f"  {edge}" for edge in _edges(drawing))
+    lines.append(f"  start -> {drawing.end(hfsm.mission.initial) or 'done'};")
+    lines += (f"  {_edge(drawing, arrow)}" for arrow in drawing.arrows())
     return [*lines, "}"]
 
 
-def _edges(drawing: Drawing) -> list[str]:
-    edges: list[str] = []
-    for leaf in drawing.hfsm.leaves:
-        source = drawing.ids[leaf.id]
-        edges += (_edge(drawing, source, t) for t in leaf.transitions)
-        if leaf.failure:
-            edges.append(_edge(drawing, source, leaf.failure))
-    for group in drawing.hfsm.composites[1:]:
-        edges += (_edge(drawing, drawing.choice(group.id), t, group) for t in group.transitions)
-        if group.timeout:
-            # From the group's border, which only clusters have, so from some task inside.
-            inside = drawing.ids[drawing.first_leaf(group)]
-            border = f"ltail=cluster_{drawing.ids[group.id]}"
-            edges.append(_edge(drawing, inside, group.timeout, group, border))
-    return edges
-
-
-def _edge(
-    drawing: Drawing,
-    source: str,
-    transition: Transition,
-    group: Composite | None = None,
-    tail: str = "",
-) -> str:
-    if transition.completes is not None:
-        target = drawing.choice(transition.completes)
-    else:
-        target = _target(drawing, transition.target or DONE)
-    label = transition_words(transition, group)
-    attributes = [part for part in (f"label={_quoted(label)}" if label else "", tail) if part]
-    return f"{source} -> {target}" + (f" [{', '.join(attributes)}]" if attributes else "") + ";"
-
-
-def _target(drawing: Drawing, id: str) -> str:
-    return "done" if id == DONE else drawing.ids[id]
+def _edge(drawing: Drawing, arrow: Arrow) -> str:
+    source, attributes = arrow.source, [f"label={_quoted(arrow.label)}"] if arrow.label else []
+    if arrow.leaves:
+        # From the group's border, which only clusters have, so from some task inside.
+        source = drawing.ids[drawing.first_leaf(arrow.leaves)]
+        attributes.append(f"ltail=cluster_{arrow.source}")
+    told = f" [{', '.join(attributes)}]" if attributes else ""
+    return f"{source} -> {arrow.target or 'done'}{told};"
 
 
 def _quoted(text: str) -> str:

@@ -7,7 +7,8 @@
 
 Peers that are not installed are named as such. A step is a transition: the steps in which a batch
 begins episodes anew are not counted. What is timed is `step` of the
-environment without wrappers, with random legal actions that are drawn outside the timing. Each
+environment without wrappers, called from Python, with random legal actions that are drawn outside
+the timing; Jumanji's compiled loops include the drawing. Each
 figure is the best of some windows of time, since other work on the machine only ever slows.
 """
 
@@ -141,6 +142,41 @@ def jumanji_batch(name: str, count: int) -> Stepper:
             state, timestep = reset(key if one else jax.random.split(key, count))
 
 
+def jumanji_rollout(name: str) -> Stepper:
+    """One Jumanji environment with random legal actions in a loop that is compiled as a whole: what
+    a policy in JAX may have, without a call from Python for each step. An episode that has ended
+    begins anew."""
+    import jax
+    import jax.numpy as jnp
+    import jumanji
+
+    env, length = jumanji.make(name), 1000
+
+    def move(carry, key):
+        state, timestep = carry
+        drawing, beginning = jax.random.split(key)
+        mask = timestep.observation.action_mask
+        action = jnp.argmax(jax.random.uniform(drawing, mask.shape) * mask).astype(jnp.int32)
+        following = jax.lax.cond(
+            timestep.last(), lambda: env.reset(beginning), lambda: env.step(state, action)
+        )
+        return following, ~timestep.last()
+
+    @jax.jit
+    def roll(carry, key):
+        carry, moved = jax.lax.scan(move, carry, jax.random.split(key, length))
+        return carry, moved.sum()
+
+    key = jax.random.PRNGKey(0)
+    carry = env.reset(key)
+    jax.block_until_ready(roll(carry, key))
+    while True:
+        key, drawn = jax.random.split(key)
+        begun = time.perf_counter()
+        carry, moved = jax.block_until_ready(roll(carry, drawn))
+        yield int(moved), time.perf_counter() - begun
+
+
 def report(name: str, stepper: Callable[[], Stepper], needs: str | None = None) -> None:
     """Prints one figure, or that the peer is not installed."""
     if needs is not None:
@@ -166,6 +202,10 @@ def route() -> None:
             report(
                 f"Jumanji {name}", lambda n=name, count=count: jumanji_batch(n, count), "jumanji"
             )
+            if count == 1:
+                report(
+                    f"Jumanji {name}, a compiled loop", lambda n=name: jumanji_rollout(n), "jumanji"
+                )
 
 
 def peers() -> None:

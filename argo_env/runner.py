@@ -17,13 +17,13 @@ from argo_compiler.hfsm import (
 )
 from argo_compiler.il import Mission, Task
 from argo_compiler.model import Pose
-from argo_env.action import ActionEnd, ActionUnderWay, Rig
+from argo_env.action import RETREAT, ActionEnd, ActionUnderWay, Rig
 from argo_env.given import GivenEvents
 from argo_env.interruptions import InterruptionWatch
 from argo_env.journal import Journal
 from argo_env.log import Entry, LoggedEvent, RunLog
 from argo_env.navigation import Path
-from argo_env.navigation.retreat import driven
+from argo_env.navigation.retreat import driven, recent
 from argo_env.odometry import Odometry
 from argo_env.perceiving import Perception, abnormal_reading, blockage
 from argo_env.record import Anomaly, Reading, RunRecord, TaskRun
@@ -37,7 +37,6 @@ from argo_env.velocity import WayVelocity
 
 SAMPLE_PERIOD = 0.5  # s between recorded places of the robot
 TIME_LIMIT = 4 * 3600.0  # s of simulated time after which a run is stopped
-_STRIDES = 20  # recorded places that tell which way the robot came, before its process died
 SETTLING = 120.0  # s that a robot which stands still waits for what faults may lead to
 
 Observer = Callable[[float, Task | None], None]
@@ -114,8 +113,9 @@ class MissionRunner:
             self._odometry.restore(last)
             told = [(a, e.body_pose) for e in self._journal.entries for a in e.found]
             self._perception.remember(told, self._now)
-            if seen := self._log.path[-_STRIDES:]:
-                self._came = driven([Pose(x=s.x, y=s.y, z=s.z, yaw=s.yaw) for s in seen])
+            if path := self._log.path:
+                seen = (Pose(x=s.x, y=s.y, z=s.z, yaw=s.yaw) for s in reversed(path))
+                self._came = driven(recent(seen, 2 * RETREAT))
         if last is None or not last.ended:
             resumed = last is not None and not self._executor.finished
             self._recorder = recorder

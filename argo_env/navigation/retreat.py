@@ -1,7 +1,7 @@
 """The way back along which the robot came, where it can't turn any more."""
 
 import math
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 from dataclasses import replace
 
 import numpy as np
@@ -14,6 +14,19 @@ _SPACING = 0.05  # m or rad between the places of a way that are compared with t
 _RADIAN = 0.3  # m that a radian counts as in this
 _STRIDE = 0.05  # m between places that are enough to tell where a way led
 _STEEP = 0.2  # m of height in a metre, from which on it is a stair
+
+
+def recent(places: Iterable[Pose], length: float) -> list[Pose]:
+    """Of places where the robot was seen, the last one first, those of the last `length` m (a
+    little more, or all that there are), the last one last."""
+    found: list[Pose] = []
+    for place in places:
+        if found:
+            length -= math.dist((place.x, place.y), (found[-1].x, found[-1].y))
+        found.append(place)
+        if length <= 0:
+            break
+    return found[::-1]
 
 
 def driven(places: Sequence[Pose]) -> Path:

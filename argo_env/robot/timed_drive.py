@@ -65,8 +65,9 @@ class TimedDrive(ABC):
         return DriveStatus.ARRIVED
 
     def _from_here(self, path: Path) -> Path:
-        """The path, with the way to its start if that is beside the robot: paths begin where the
-        navigator's lattice has a state, some centimetres from a robot that was stopped."""
+        """The path, with a straight shift to its start if that is beside the robot: paths begin
+        where the navigator's lattice has a state, some centimetres from a robot that was stopped,
+        and at most the navigator's SNAP_DISTANCE. No tracked robot could shift sideways."""
         start, pose = path.start, self._pose
         if math.dist((start.x, start.y), (pose.x, pose.y)) < _SAME_PLACE:
             return path

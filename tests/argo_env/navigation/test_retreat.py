@@ -10,7 +10,7 @@ from hypothesis import strategies as st
 from argo_compiler.model import Pose
 from argo_env.navigation import Path
 from argo_env.navigation.path import wrap
-from argo_env.navigation.retreat import driven, way_back
+from argo_env.navigation.retreat import driven, recent, way_back
 from tests.conftest import examples
 from tests.yard import yard
 
@@ -77,6 +77,16 @@ def test_stairs_are_gone_back_as_they_were_come():
     down = way_back(driven(flight), flight[-1], 1.0)
     assert all(m.on_stairs and m.gear < 0 and not m.turn for m in down.motions)
     assert down.length == pytest.approx(1.0, abs=0.01)
+
+
+@pytest.mark.parametrize("waited", [0, 500])
+def test_waiting_does_not_make_one_forget_the_way(path, waited):
+    places = [m.at(k / 20) for m in path.motions for k in range(21)]
+    last = [places[-1]] * waited
+    seen = recent(reversed([*places, *last]), 2.0)
+    assert len(seen) < waited + 60
+    assert way_back(driven(seen), places[-1], 1.0).length == pytest.approx(1.0, abs=0.02)
+    assert recent(reversed(places), 1000.0) == places
 
 
 def test_a_robot_that_stood_still_came_from_nowhere():

@@ -79,9 +79,10 @@ class ActionUnderWay:
         self.measurement: Measurement | None = None
         self.path: Path | None = None
         """the way there, once it is planned"""
+        self.came = came
+        """the path that the robot came by, back along which it goes where it is cornered"""
         self._velocity = velocity
         self._rig = rig
-        self._came = came
         self._retreated = False
         self._views = 0  # that have been gone to
         self._left = 0.0  # s of the measurement, or until the arm is stowed
@@ -182,7 +183,7 @@ class ActionUnderWay:
 
     def _set_off(self) -> ActionEnd | None:
         navigator, drive = self._rig.navigator, self._rig.drive
-        may_retreat = self._came is not None and bool(navigator.blockages) and not self._retreated
+        may_retreat = self.came is not None and bool(navigator.blockages) and not self._retreated
         try:
             if may_retreat and not _is_free(navigator, drive.pose):
                 return self._go_back()
@@ -196,16 +197,16 @@ class ActionUnderWay:
             return ActionFailed(self.task.name, str(error))
         except ArgoError as error:
             return ActionFailed(self.task.name, str(error))
-        self.path = self._came = path
+        self.path = self.came = path
         drive.begin(path, self._velocity)
         self._phase = self._drive
         return self._drive()
 
     def _go_back(self) -> ActionEnd | None:
         """Sets off back the way that the robot came, to plan from there."""
-        assert self._came is not None
+        assert self.came is not None
         self._retreated = True
-        back = way_back(self._came, _standing(self._rig.drive.pose), RETREAT)
+        back = way_back(self.came, _standing(self._rig.drive.pose), RETREAT)
         self._rig.drive.begin(back, self._velocity)
         self._phase = self._retreat
         return None
@@ -262,7 +263,7 @@ class ActionUnderWay:
             except UnreachableError:
                 continue
             self._rig.world.move_arm(navigator.robot.arm_stowed)
-            self.path = self._came = path
+            self.path = self.came = path
             self._rig.drive.begin(path, self._velocity)
             self._phase = self._drive
             return None

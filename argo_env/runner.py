@@ -116,6 +116,8 @@ class MissionRunner:
             if path := self._log.path:
                 seen = (Pose(x=s.x, y=s.y, z=s.z, yaw=s.yaw) for s in reversed(path))
                 self._came = driven(recent(seen, 2 * RETREAT))
+                if self._action:
+                    self._action.came = self._came
         if last is None or not last.ended:
             resumed = last is not None and not self._executor.finished
             self._recorder = recorder

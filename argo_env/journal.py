@@ -26,6 +26,7 @@ from argo_env.closing import Closing
 from argo_env.log import Entry
 from argo_env.navigation import Navigator
 from argo_env.settings import RunSettings
+from argo_env.yaml_messages import message_of
 
 VERSION = 2
 """of the journal's format"""
@@ -229,8 +230,9 @@ def _model(cls: type[ModelT], data: dict[str, object], path: Path, number: int) 
     try:
         return cls.model_validate({k: v for k, v in data.items() if k != "n"})
     except ValidationError as error:
-        place = ".".join(str(part) for part in error.errors()[0]["loc"])
-        _refuse(path, f"line {number + 1}, {place}: {error.errors()[0]['msg']}")
+        fault = error.errors(include_url=False)[0]
+        place = ".".join(str(part) for part in fault["loc"])
+        _refuse(path, f"line {number + 1}, {place}: {message_of(fault, fault['loc'])}")
 
 
 def _line(number: int, model: Model) -> bytes:

@@ -62,14 +62,15 @@ class Perception:
         return False
 
     def _anomaly(self, watch: Watch, finding: Finding, now: float) -> Anomaly:
-        place = finding.place
+        at = finding.place or finding.noticed_from
         return Anomaly(
             t=now,
             kind=finding.kind,
             detail=finding.detail,
             source=watch.name,
-            place=None if place is None else _rounded(place),
-            floor=None if place is None else self._site.floor_at(place[2]),
+            place=None if finding.place is None else _rounded(finding.place),
+            noticed_from=None if finding.noticed_from is None else _rounded(finding.noticed_from),
+            floor=None if at is None else self._site.floor_at(at[2]),
             confidence=round(finding.confidence, DIGITS),
             extent=finding.blockage.rect if isinstance(finding, ObstacleFinding) else None,
         )

@@ -16,6 +16,7 @@ from argo_env.site.spec import Rect
 
 DIGITS = 4
 """of recorded lengths and angles: below what the geometry means"""
+_OVER = frozenset({EventKind.ALL_CLEAR, EventKind.BATTERY_CHARGED, EventKind.CONNECTION_RESTORED})
 
 
 class PathSample(Model):
@@ -126,14 +127,21 @@ class Anomaly(Model):
     source: str
     """the watch that found it"""
     place: Vector | None = None
-    """m, where it is, or where the robot noticed it if the signal tells no more (gas, connection);
-    None where neither says anything"""
+    """m, where it is; None where the signal tells no place"""
+    noticed_from: Vector | None = None
+    """m, where the robot was when it noticed what has no place, if that says anything about it, as
+    of gas and connection"""
     floor: int | None = None
-    """the floor of `place`"""
+    """the floor of `place` or `noticed_from`"""
     confidence: float = 1.0
     """0 to 1"""
     extent: Rect | None = None
     """m, [x0, y0, x1, y1]: what an obstacle closes of the surface"""
+
+    @property
+    def over(self) -> bool:
+        """Whether it tells that something is over."""
+        return self.kind in _OVER
 
 
 class Interruption(Model):
@@ -189,7 +197,7 @@ class Result(Model):
 class RunRecord(Model):
     """A whole run."""
 
-    version: int = 3
+    version: int = 4
     """of this format"""
     mission: Mission
     hfsm: Hfsm
@@ -217,6 +225,18 @@ class RunRecord(Model):
     """s, when the run went on from its journal after its process had died"""
 
     @property
+    def findings(self) -> tuple[Anomaly, ...]:
+        """What was found, without what tells that it is over."""
+        return tuple(anomaly for anomaly in self.anomalies if not anomaly.over)
+
+    @property
     def missed_faults(self) -> tuple[AnyFault, ...]:
         """The faults that did not happen: the run ended before they would have begun."""
         return tuple(fault for fault in self.faults if fault.begins > self.result.duration)
+
+    def why_missed(self, fault: AnyFault) -> str:
+        """Says of one of these why it did not happen."""
+        return (
+            f"fault {fault.kind.replace('_', ' ')} did not happen: begins at {fault.begins:g} s, "
+            f"the mission ended at {round(self.result.duration, 1):g} s"
+        )

@@ -71,6 +71,15 @@ def read_yaml(
     return found
 
 
+def placed(path: Path, code: str, found: Mapping[JsonPath, str]) -> DiagnosticError:
+    """What was found wrong, with all of the file known, at these places of a YAML file that has
+    been read."""
+    text = path.read_text(encoding="utf-8") if path.is_file() else ""  # a pipe is read only once
+    tree, _, _ = _compose(text)
+    flaws = [_Flaw(said, None, format_path(at), _place(tree, at)) for at, said in found.items()]
+    return _error(path, text, [_diagnostic(code, flaw) for flaw in flaws])
+
+
 def _compose(text: str) -> tuple[yaml.Node | None, list[_Flaw], Any]:
     """The tree of a YAML text, which knows the places, its duplicate keys, and the data in it."""
     try:

@@ -15,6 +15,7 @@ from argo_env.navigation import Navigator
 from argo_env.pictures import write_film, write_overview
 from argo_env.record import Anomaly, Reading, RunRecord
 from argo_env.report import write_report
+from argo_env.words import where
 from argo_planner.summary import show_record
 
 
@@ -40,8 +41,9 @@ class RunDisplay:
         else:
             text = f"{news.t!r} s: found: {news.kind.replace('_', ' ')}: {news.detail}"
             if news.place is not None:
-                x, y, z = news.place
-                text += f", on floor {news.floor} at ({x:.2f}, {y:.2f}, {z:.2f})"
+                text += f", on {where(news.floor, news.place)}"
+            elif news.noticed_from is not None:
+                text += f", noticed from {where(news.floor, news.noticed_from)}"
         self._progress.console.print(escape(text), soft_wrap=True, highlight=False)
 
     def __enter__(self) -> Self:
@@ -68,7 +70,7 @@ def conclude(
     console = Console()
     real = changed_site(navigator.site, record.faults)
     show_record(record, console)
-    console.print(took)
+    console.print(took, soft_wrap=True)
     if report:
         page = write_report(record, navigator.site, report)
         write_overview(record, real, navigator.robot, report / "site.png")

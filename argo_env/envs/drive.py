@@ -11,11 +11,12 @@ from numpy.typing import NDArray
 
 from argo_compiler.errors import ArgoError
 from argo_env.envs import lidar
+from argo_env.envs.drawing.drive import draw_drive
 from argo_env.envs.drive_site import DriveSite
-from argo_env.envs.drive_sites import DriveOptions, DriveSites
+from argo_env.envs.drive_sites import NEAREST, DriveOptions, DriveSites
 from argo_env.envs.episode import Parts, check_begun, check_state, check_under_way, no_state
 from argo_env.envs.observations import Observation, dict_space
-from argo_env.envs.options import check_positive, read_options
+from argo_env.envs.options import LONGEST, check_positive, check_scenario, read_options
 from argo_env.envs.rendering import Rendering, check_render_mode
 from argo_env.navigation.path import wrap
 from argo_env.robot.pose import BodyPose
@@ -33,7 +34,6 @@ REACHED = 0.3  # m from the goal
 TIPPED = math.radians(60.0)
 PROGRESS, GOAL, TIPPING, CONTACT, TIME = 0.1, 10.0, -10.0, -0.05, -0.01
 """rewards: see the description of the environment"""
-_NEAREST = 5.0  # s that a start is away from its goal at least
 _FAR = (20.0, 20.0, 10.0)  # m that are 1 in the observation of the goal
 _LONG = 300.0  # s, likewise
 _STATE: Parts = {
@@ -97,8 +97,8 @@ class DriveEnv(Rendering, gym.Env[Observation, NDArray[np.float32]]):
 
     ## Arguments
     - `scenario` ("umad"): name or file of a site, or `generated:floors=3,seed=7`, or several.
-    - `max_way` (120): s at planning speeds that the goal is away at most; more than about 60 leads
-      to other floors.
+    - `max_way` (120): s at planning speeds that the goal is away at most, 5 or more; more than
+      about 60 leads to other floors.
     - `time_limit` (300): s.
     - `waypoint` (True): whether the observation has `way`.
 
@@ -134,7 +134,14 @@ class DriveEnv(Rendering, gym.Env[Observation, NDArray[np.float32]]):
     ) -> None:
         """Raises ArgoError if there is no such scenario or render mode."""
         check_render_mode(render_mode, self.metadata["render_modes"])
-        check_positive(self._title, time_limit=time_limit, max_way=max_way)
+        names = tuple(scenario) if isinstance(scenario, tuple | list) else (scenario,)
+        for name in names:
+            check_scenario(self._title, name)
+        check_positive(self._title, LONGEST, time_limit=time_limit, max_way=max_way)
+        if max_way < NEAREST:
+            raise ArgoError(
+                f"{self._title}: `max_way` is {max_way:g}, and has to be at least {NEAREST:g} (s)"
+            )
         self.render_mode = render_mode
         self._max_way = max_way
         self._limit = round(time_limit / PERIOD)
@@ -149,7 +156,7 @@ class DriveEnv(Rendering, gym.Env[Observation, NDArray[np.float32]]):
             parts["way"] = spaces.Box(-1.0, 1.0, (5,))
         self.observation_space = dict_space(parts)
         self.action_space = spaces.Box(-1.0, 1.0, (3,), np.float32)
-        self._sites = DriveSites((scenario,) if isinstance(scenario, str) else tuple(scenario))
+        self._sites = DriveSites(names)
         self._site = self._sites.make(self._sites.names[0])
         self._over: bool | None = None
 
@@ -172,7 +179,7 @@ class DriveEnv(Rendering, gym.Env[Observation, NDArray[np.float32]]):
         x, y, z = goals[int(rng.integers(len(goals)))].tolist()
         goal = (x, y, z)
         most = chosen.max_way or self._max_way
-        starts = guide.starts(goal, floors, _NEAREST, most)
+        starts = guide.starts(goal, floors, NEAREST, most)
         x, y, z = starts[int(rng.integers(len(starts)))].tolist()
         self._begin(name, (x, y, z, float(rng.uniform(-math.pi, math.pi))), goal)
         observation = self._observe()
@@ -347,6 +354,9 @@ class DriveEnv(Rendering, gym.Env[Observation, NDArray[np.float32]]):
         return cos * dx + sin * dy, cos * dy - sin * dx, z - pose.z
 
     def _picture(self) -> NDArray[np.uint8]:
-        """The robot from behind."""
+        """The robot from behind, the goal and how far it is."""
         check_begun(self._over, self._title)
-        return self._site.picture(self._pose, math.degrees(self._site.body.flipper))
+        pose, goal, site = self._pose, self._goal, self._site
+        view, camera = site.look(pose, math.degrees(site.body.flipper))
+        floors = site.site.floor_at(pose.z), site.site.floor_at(goal[2])
+        return draw_drive(view, camera, goal, self._time, floors, self._togo)

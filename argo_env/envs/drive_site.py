@@ -2,9 +2,6 @@
 
 from dataclasses import replace
 
-import numpy as np
-from numpy.typing import NDArray
-
 from argo_compiler.errors import ArgoError
 from argo_env.closing import Closing
 from argo_env.envs.guide import Guide
@@ -12,8 +9,9 @@ from argo_env.envs.sites import navigator_of
 from argo_env.events.kinds import AnyFault, changed_site, settle
 from argo_env.events.machine import DriveDysfunction
 from argo_env.navigation import Navigator
+from argo_env.pictures.camera import Camera
 from argo_env.pictures.chase import ChaseCamera
-from argo_env.pictures.scene import Scene
+from argo_env.pictures.scene import Scene, View
 from argo_env.robot.pose import BodyPose
 from argo_env.robot.tracked.body import TrackedBody
 from argo_env.world import World
@@ -73,8 +71,8 @@ class DriveSite(Closing):
         ]
         return min(shares, default=1.0)
 
-    def picture(self, pose: BodyPose, flipper: float) -> NDArray[np.uint8]:
-        """The robot from behind, shape (360, 640, 3); `flipper` in degrees."""
+    def look(self, pose: BodyPose, flipper: float) -> tuple[View, Camera]:
+        """The robot from behind, 640 × 360 px, and the camera; `flipper` in degrees."""
         if self._scene is None:
             self._scene = Scene(self._real, self.robot)
             self._camera = None
@@ -83,7 +81,8 @@ class DriveSite(Closing):
         self._scene.show_floors(self.site.floor_at(pose.z))
         joints = {f"{side}_flipper_joint": flipper for side in ("left", "right")}
         self._scene.place_robot(pose, self.robot.arm_stowed | joints)
-        return self._scene.look(self._camera.follow(pose)).colours
+        camera = self._camera.follow(pose)
+        return self._scene.look(camera), camera
 
     def forget_view(self) -> None:
         """The next picture is taken from where the robot is seen best, whatever came before."""

@@ -1,12 +1,15 @@
 """The sites that Drive-v0 is asked to drive on, kept ready."""
 
-from pydantic import Field
+from pydantic import Field, StrictInt
 
 from argo_compiler.errors import ArgoError
 from argo_compiler.model import Model
 from argo_env.envs.drive_site import DriveSite
+from argo_env.envs.options import LONGEST, check_floors
 from argo_env.events.kinds import AnyFault
 
+NEAREST = 5.0
+"""s that a start is away from its goal at least"""
 _KEPT = 4  # sites that are kept ready
 _NO_SITE = "argo/Drive-v0 needs a `scenario`: the name of a site, or of several"
 
@@ -15,9 +18,9 @@ class DriveOptions(Model):
     """What `reset(options=...)` of Drive-v0 may say."""
 
     scenario: str | tuple[str, ...] | None = None
-    floor: int | tuple[int, ...] = ()
+    floor: StrictInt | tuple[StrictInt, ...] = ()
     faults: tuple[AnyFault, ...] = ()
-    max_way: float | None = Field(default=None, gt=0)
+    max_way: float | None = Field(default=None, ge=NEAREST, le=LONGEST, strict=True)
 
     @property
     def floors(self) -> tuple[int, ...]:
@@ -57,10 +60,7 @@ class DriveSites:
                 if site is None:
                     site = made.pop(name, None) or DriveSite(name, options.faults)
                     _keep(made, name, site)
-                for floor in options.floors:
-                    if floor not in site.guide.floors:
-                        known = ", ".join(map(str, site.guide.floors))
-                        raise ArgoError(f"site {name} has the floors {known}, not {floor}")
+                check_floors(name, site.guide.floors, options.floors)
         except ArgoError:
             for site in made.values():
                 site.close()

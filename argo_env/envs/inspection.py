@@ -22,7 +22,14 @@ from argo_env.envs.episode import (
 from argo_env.envs.inspection_options import MOST_FAULTS, InspectOptions, draw_faults
 from argo_env.envs.inspection_run import Deed, Inspection, travel_times
 from argo_env.envs.observations import Observation, dict_space
-from argo_env.envs.options import check_positive, check_whole, read_options
+from argo_env.envs.options import (
+    LONGEST,
+    check_floors,
+    check_positive,
+    check_scenario,
+    check_whole,
+    read_options,
+)
 from argo_env.envs.rendering import Rendering, check_render_mode
 from argo_env.envs.sites import navigator_of
 from argo_env.events.kinds import AnyFault
@@ -34,6 +41,7 @@ READING, ABNORMAL, FINDING, CONTACT, DOCKED, DEAD = 10.0, 10.0, 5.0, -1.0, 20.0,
 """points: see the description of the environment"""
 _TRIES = 2  # readings of a checkpoint that may fail before it is given up
 _PATIENCE = 10.0  # s that an illegal action costs, and a stay in a dock takes at least
+_MOST_PLACES = 1000  # of a kind that there may be room for
 _FPS = 2
 _EVENTS = tuple(EventKind)
 _STATE: Parts = {"begun": dict, "options": dict, "actions": (tuple, list), "generator": dict}
@@ -137,9 +145,9 @@ class InspectEnv(Rendering, gym.Env[Observation, np.int64]):
         check_render_mode(render_mode, self.metadata["render_modes"])
         if drive not in DRIVES:
             raise ArgoError(f"no drive `{drive}`; there are: {', '.join(DRIVES)}")
-        check_positive(self._title, time_limit=time_limit)
-        if not (isinstance(faults, int | np.integer) and 0 <= faults <= MOST_FAULTS):
-            raise ArgoError(f"{self._title}: `faults` is {faults!r}, not 0 to {MOST_FAULTS}")
+        check_scenario(self._title, scenario)
+        check_positive(self._title, LONGEST, time_limit=time_limit)
+        check_whole(self._title, 0, MOST_FAULTS, faults=faults)
         self.render_mode = render_mode
         self._scenario, self._drive, self._limit = scenario, drive, time_limit
         self._default_faults = faults
@@ -282,7 +290,8 @@ class InspectEnv(Rendering, gym.Env[Observation, np.int64]):
     def _prepare(self, options: InspectOptions) -> None:
         """Takes the options on, and makes the site ready that they ask for; ArgoError if it does
         not fit, and then nothing has changed."""
-        navigator = navigator_of(options.scenario or self._scenario)
+        scenario = options.scenario or self._scenario
+        navigator = navigator_of(scenario)
         site = navigator.site
         if len(site.checkpoints) > self._slots or len(site.docks) > self._docks:
             raise ArgoError(
@@ -291,9 +300,7 @@ class InspectEnv(Rendering, gym.Env[Observation, np.int64]):
                 "environment with larger `checkpoints` and `docks`"
             )
         floors = [floor.number for floor in site.spec.floors]
-        for floor in options.floors:
-            if floor not in floors:
-                raise ArgoError(f"site {site.name} has the floors 1 to {max(floors)}, not {floor}")
+        check_floors(scenario, floors, options.floors)
         if isinstance(options.faults, tuple):
             check_settings(RunSettings(drive=self._drive, faults=options.faults), site)
         asked = options.floors or floors
@@ -307,7 +314,7 @@ class InspectEnv(Rendering, gym.Env[Observation, np.int64]):
         if wanted is None:
             return there
         why = f", as site {site} has {there} {name}; leave it out to have room for just these"
-        check_whole(self._title, there, why, **{name: wanted})
+        check_whole(self._title, there, max(there, _MOST_PLACES), why, **{name: wanted})
         return int(wanted)
 
     def _faults(self, rng: np.random.Generator) -> tuple[AnyFault, ...]:
@@ -378,7 +385,7 @@ class InspectEnv(Rendering, gym.Env[Observation, np.int64]):
         run = self._running
         last = self._actions[-1] if self._actions else None
         return draw_inspection(
-            self._navigator,
+            self._options.scenario or self._scenario,
             run,
             [self._state_of(k) for k in range(len(self._navigator.site.checkpoints))],
             last,

@@ -3,7 +3,7 @@
 from typing import Annotated, cast
 
 import numpy as np
-from pydantic import Field
+from pydantic import Field, StrictInt
 
 from argo_compiler.errors import ArgoError
 from argo_compiler.model import Model
@@ -13,15 +13,16 @@ from argo_env.robot.route import RouteDrive
 from argo_env.site import Site
 
 MOST_FAULTS = 8
+_Count = Annotated[int, Field(ge=0, le=MOST_FAULTS, strict=True)]
 
 
 class InspectOptions(Model):
     """What `reset(options=...)` of Inspect-v0 may say."""
 
     scenario: str | None = None
-    floor: int | tuple[int, ...] = ()
-    faults: Annotated[int, Field(ge=0, le=MOST_FAULTS)] | tuple[AnyFault, ...] | None = None
-    seed: int | None = Field(default=None, ge=0)
+    floor: StrictInt | tuple[StrictInt, ...] = ()
+    faults: _Count | tuple[AnyFault, ...] | None = None
+    seed: int | None = Field(default=None, ge=0, strict=True)
 
     @property
     def floors(self) -> tuple[int, ...]:

@@ -1,9 +1,10 @@
 """One inspection under way: what missions are carried out with, driven action by action."""
 
 import math
+import weakref
 from contextlib import ExitStack
 from dataclasses import dataclass, replace
-from functools import lru_cache
+from weakref import WeakKeyDictionary
 
 import numpy as np
 from numpy.typing import NDArray
@@ -174,7 +175,7 @@ class TravelTimes:
     """What the ways between docks and checkpoints of a site take. Holds what it has worked out."""
 
     def __init__(self, navigator: Navigator) -> None:
-        self._navigator = navigator
+        self._navigator = weakref.ref(navigator)
         site = navigator.site
         docks = [site.docks[number] for number in sorted(site.docks)]
         self._places = [*docks, *(_view(navigator, c.id) for c in site.checkpoints)]
@@ -187,7 +188,7 @@ class TravelTimes:
     def row(self, pose: BodyPose, navigator: Navigator) -> NDArray[np.float64]:
         """Estimated s from a pose to the docks and then to the checkpoints, in the order of their
         numbers, infinite where there is no way: as the site is known to `navigator`."""
-        if navigator is self._navigator:
+        if navigator is self._navigator():
             apart = [
                 np.inf
                 if place is None
@@ -221,7 +222,11 @@ def _free(navigator: Navigator, pose: Pose) -> bool:
     return True
 
 
-@lru_cache(maxsize=8)
+_found: WeakKeyDictionary[Navigator, TravelTimes] = WeakKeyDictionary()
+
+
 def travel_times(navigator: Navigator) -> TravelTimes:
-    """The travel times of a navigator's site, found once."""
-    return TravelTimes(navigator)
+    """The travel times of a navigator's site, found once and kept as long as the navigator."""
+    if navigator not in _found:
+        _found[navigator] = TravelTimes(navigator)
+    return _found[navigator]

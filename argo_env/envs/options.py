@@ -1,7 +1,6 @@
 """What `reset(options=...)` and a constructor's arguments have in common: they are checked."""
 
-import math
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator, Mapping, Sequence
 from types import UnionType
 from typing import Any, TypeVar, Union, get_args, get_origin
 
@@ -17,13 +16,17 @@ from argo_env.yaml_messages import message_of, path_in_data
 
 Options = TypeVar("Options", bound=Model)
 
+LONGEST = 100_000.0
+"""s that an episode may take"""
+
 
 def read_options(model: type[Options], given: Any, env: str) -> Options:
-    """The options as data; ArgoError that names what is wrong, and what there is."""
+    """The options as data; ArgoError that names what is wrong, and what there is. NumPy's numbers
+    and arrays are as good as plain ones."""
     known = f"there are: {', '.join(model.model_fields)}"
     if not isinstance(given, Mapping):
         raise ArgoError(f"options of {env} are a dictionary, not {given!r}; {known}")
-    data = dict(given)
+    data = {name: _plain(value) for name, value in given.items()}
     try:
         return model.model_validate(data)
     except ValidationError as error:
@@ -32,22 +35,51 @@ def read_options(model: type[Options], given: Any, env: str) -> Options:
         raise ArgoError(f"options of {env}: {wrong}; {known}") from None
 
 
-def check_positive(env: str, **arguments: float) -> None:
-    """Raises ArgoError for the first argument that is no finite number above 0."""
+def check_scenario(env: str, scenario: Any) -> None:
+    """Raises ArgoError if it can't be the name of a site."""
+    if not isinstance(scenario, str):
+        raise ArgoError(f"{env}: `scenario` is {scenario!r}, and has to be the name of a site")
+
+
+def check_floors(scenario: str, known: Sequence[int], floors: Sequence[int]) -> None:
+    """Raises ArgoError for the first of the floors that is not among the known ones."""
+    for floor in floors:
+        if floor not in known:
+            last, row = known[-1], list(known) == list(range(known[0], known[-1] + 1))
+            said = f"{known[0]} to {last}" if row else ", ".join(map(str, known))
+            there = f"the floors {said}" if len(known) > 1 else f"floor {last} only"
+            raise ArgoError(f"scenario {scenario} has {there}, not {floor}")
+
+
+def check_positive(env: str, most: float, **arguments: Any) -> None:
+    """Raises ArgoError for the first argument that is no number above 0 and up to `most`."""
     for name, value in arguments.items():
-        if not (math.isfinite(value) and value > 0):
-            raise ArgoError(f"{env}: `{name}` is {value:g}, and has to be finite and more than 0")
+        number = isinstance(value, int | float | np.integer | np.floating)
+        if isinstance(value, bool) or not (number and 0 < value <= most):
+            raise ArgoError(
+                f"{env}: `{name}` is {value!r}, and has to be a number of more than 0, and at most "
+                f"{most:.0f}"
+            )
 
 
-def check_whole(env: str, low: int, why: str = "", **arguments: Any) -> None:
-    """Raises ArgoError for the first argument that is no whole number from `low` on; `why` says
-    more about the least value."""
+def check_whole(env: str, low: int, high: int, why: str = "", **arguments: Any) -> None:
+    """Raises ArgoError for the first argument that is no whole number from `low` to `high`; `why`
+    says more about the least value."""
     for name, value in arguments.items():
         whole = isinstance(value, int | np.integer) and not isinstance(value, bool)
         if not (whole and value >= low):
             raise ArgoError(
                 f"{env}: `{name}` is {value!r}, and has to be a whole number of at least {low}{why}"
             )
+        if value > high:
+            raise ArgoError(f"{env}: `{name}` is {value!r}, and has to be at most {high}")
+
+
+def _plain(value: Any) -> Any:
+    """The value without NumPy's types."""
+    if isinstance(value, np.ndarray | np.generic):
+        return value.tolist()
+    return [_plain(part) for part in value] if isinstance(value, list | tuple) else value
 
 
 def _said(model: type[Model], error: ErrorDetails, data: Any) -> str:

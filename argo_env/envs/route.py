@@ -83,7 +83,7 @@ budget; 1 also where it is longer |
     instances of `TEST` (numbers 1,000,000 to 1,000,099) are never drawn in training.
 
     ## Arguments
-    - `checkpoints` (20): n.
+    - `checkpoints` (20): n, at most 500; where a site has fewer, the rest can't be reached.
     - `scenario` ("random"): `random`, or a site: its name, its file, or
       `generated:floors=3,seed=7`.
     - `budget` (1200): s.
@@ -93,8 +93,8 @@ budget; 1 also where it is longer |
     `reset(options=...)`, which hold until others are given (`{}`: none):
     - `scenario`: as above, for the following episodes.
     - `floor`: number, or list of numbers: other floors' checkpoints can't be reached.
-    - `faults`: `closed`, how many checkpoints can't be reached; `battery`, the share of the budget
-      that a worn battery leaves.
+    - `faults`: `closed`, how many of the checkpoints that exist can't be reached; `battery`, the
+      share of the budget that a worn battery leaves.
     - `instance`: the number of the instance, of `TRAINING` or `TEST`, in place of a drawn one; not
       with `scenario` or `test`.
     - `test`: true draws from `TEST`.

@@ -29,6 +29,7 @@ from argo_env.envs.route_instance import DOCK, VISITED
 from argo_env.envs.route_sources import RouteSource
 
 _NAME = "argo/Route-v0"
+_MOST = 1_000_000  # routes
 
 
 class RouteVectorEnv(VectorEnv[Observation, NDArray[np.int64], NDArray[Any]]):
@@ -59,8 +60,8 @@ class RouteVectorEnv(VectorEnv[Observation, NDArray[np.int64], NDArray[Any]]):
     ) -> None:
         """Raises ArgoError if there is no such scenario or render mode, or no route."""
         check_render_mode(render_mode, self.metadata["render_modes"])
-        check_whole(_NAME, 1, num_envs=num_envs)
-        self.num_envs = num_envs
+        check_whole(_NAME, 1, _MOST, num_envs=num_envs)
+        self.num_envs = num_envs = int(num_envs)
         self.render_mode = render_mode
         self._full = full
         self._episodes = Episodes(checkpoints, scenario, budget, source)
@@ -155,16 +156,15 @@ class RouteVectorEnv(VectorEnv[Observation, NDArray[np.int64], NDArray[Any]]):
         """A picture of each route's present state, without the way that led there."""
         if self.render_mode is None:
             return None
-        legal = self._legal
-        pool, made = self._episodes.pool, self._episodes
+        legal, episodes = self._legal, self._episodes
+        numbers = episodes.pool.numbers[self._chosen]
         return tuple(
             draw_route(
-                made.source,
-                made.options.floors,
-                made.instance(int(pool.numbers[self._chosen[k]])),
+                episodes.source,
+                episodes.options.floors,
+                episodes.instance(int(numbers[k])),
                 [int(self._place[k])],
-                # So many can't be waited for: it was visited.
-                np.flatnonzero(self._missing[k] >= VISITED // 2).tolist(),
+                (np.flatnonzero(self._missing[k, 1:] == VISITED) + 1).tolist(),
                 legal[k],
                 float(self._time[k]),
             )

@@ -9,13 +9,20 @@ from typing import Any, overload
 import numpy as np
 from gymnasium import spaces
 from numpy.typing import NDArray
-from pydantic import Field
+from pydantic import StrictBool, StrictInt
 
 from argo_compiler.errors import ArgoError
 from argo_compiler.model import Model
 from argo_env.envs.observations import Observation, dict_space
-from argo_env.envs.options import check_positive, check_whole, read_options
-from argo_env.envs.route_instance import DOCK, RouteInstance
+from argo_env.envs.options import (
+    LONGEST,
+    check_floors,
+    check_positive,
+    check_scenario,
+    check_whole,
+    read_options,
+)
+from argo_env.envs.route_instance import DOCK, MOST_CHECKPOINTS, RouteInstance
 from argo_env.envs.route_sources import (
     TEST,
     TRAINING,
@@ -23,7 +30,7 @@ from argo_env.envs.route_sources import (
     RouteFaults,
     RouteSource,
     SiteRoutes,
-    check_floors,
+    existing,
 )
 
 FPS = 4  # of films
@@ -37,10 +44,10 @@ class RouteOptions(Model):
     """What `reset(options=...)` of Route-v0 may say."""
 
     scenario: str | None = None
-    floor: int | tuple[int, ...] = ()
+    floor: StrictInt | tuple[StrictInt, ...] = ()
     faults: RouteFaults = RouteFaults()
-    instance: int | tuple[int, ...] | None = Field(default=None)
-    test: bool = False
+    instance: StrictInt | tuple[StrictInt, ...] | None = None
+    test: StrictBool = False
 
     @property
     def floors(self) -> tuple[int, ...]:
@@ -81,12 +88,13 @@ class Episodes:
     ) -> None:
         """Raises ArgoError if there is no such scenario."""
         if source is None:
-            check_whole(_NAME, 1, checkpoints=checkpoints)
-            check_positive(_NAME, budget=budget)
+            check_scenario(_NAME, scenario)
+            check_whole(_NAME, 1, MOST_CHECKPOINTS, checkpoints=checkpoints)
+            check_positive(_NAME, LONGEST, budget=budget)
         self._own = source
         self._scenario = scenario
         self._budget = budget
-        self._checkpoints = source.checkpoints if source else checkpoints
+        self._checkpoints = source.checkpoints if source else int(checkpoints)
         self.size = self._checkpoints + 1
         self.choose(RouteOptions())
 
@@ -97,11 +105,17 @@ class Episodes:
         self.instance = lru_cache(maxsize=_KEPT)(self._draw)
         self._pool: Pool | None = None
 
+    def scenario_of(self, options: RouteOptions) -> str:
+        """What messages call the scenario that the options ask for."""
+        if options.scenario is None and self._own is not None:
+            return "of the `source`"
+        return options.scenario or self._scenario
+
     def source_of(self, options: RouteOptions) -> RouteSource:
         """The source that the options ask for."""
         if options.scenario is None and self._own is not None:
             return self._own
-        scenario = options.scenario or self._scenario
+        scenario = self.scenario_of(options)
         if scenario == "random":
             return RandomRoutes(self._checkpoints, budget=self._budget)
         return _site_routes(self._checkpoints, scenario, self._budget)
@@ -144,15 +158,16 @@ def read_route_options(
     options = read_options(RouteOptions, given, _NAME)
     if options.instance is not None:
         _check_instance(options, count)
-    most = episodes.size - 1
-    if options.faults.closed > most:
+    source, scenario = episodes.source_of(options), episodes.scenario_of(options)
+    check_floors(scenario, range(1, source.floors + 1), options.floors)
+    there, slots = existing(source), episodes.size - 1
+    if options.faults.closed > there:
+        of = f"scenario {scenario}" if there < slots else "a route"
+        more = "" if there < slots else ", or make the environment with more `checkpoints`"
         raise ArgoError(
             f"option `faults.closed` of {_NAME} is {options.faults.closed}, and has to be 0 to "
-            f"{most}: a route has {most} checkpoints; close fewer, or make the environment with "
-            "more `checkpoints`"
+            f"{there}: {of} has {there} checkpoints; close fewer{more}"
         )
-    source = episodes.source_of(options)
-    check_floors(source, options.scenario or "", options.floors)
     return options
 
 

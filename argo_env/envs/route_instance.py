@@ -15,8 +15,9 @@ TICK = 1 / 64
 """s. Times are whole ticks, and below 2^18 s: so their sums are exact in single precision, in
 whatever order they are made, and the environment, its batch and `evaluate` agree to the bit."""
 _LONGEST = 2.0**18  # s
-VISITED = 1000
-"""more than the checkpoints that one can wait for"""
+MOST_CHECKPOINTS = 500
+VISITED = MOST_CHECKPOINTS + 1
+"""what a visited checkpoint waits for: more than there are"""
 
 
 @dataclass(frozen=True)
@@ -106,8 +107,8 @@ def make_instance(
     """An instance from travel times (s), shape (n + 2, n + 1) as in `RouteInstance`, and the time
     that the visit of each node takes (s), shape (n + 1,). Times are rounded up to whole ticks.
 
-    Raises ArgoError if shapes don't fit, a prize is not from 0 to 1, a time is negative or the
-    dock can't be reached in time.
+    Raises ArgoError if shapes don't fit, there are too many checkpoints, a prize is not from 0 to
+    1, a time is negative or the dock can't be reached in time.
     """
     n = len(prizes)
     if times.shape != (n + 1, n) or service.shape != (n,) or places.shape != (n + 1, 3):
@@ -115,6 +116,8 @@ def make_instance(
             f"a route instance with {n - 1} checkpoints needs times of shape {(n + 1, n)}, "
             f"not {times.shape}, {n} service times and {n + 1} places"
         )
+    if n - 1 > MOST_CHECKPOINTS:
+        raise ArgoError(f"a route has at most {MOST_CHECKPOINTS} checkpoints, not {n - 1}")
     if prizes.min() < 0.0 or prizes.max() > 1.0 or prizes[DOCK] != 0.0:
         raise ArgoError("prizes are from 0 to 1, and 0 at the dock")
     if times.min() < 0.0 or service.min() < 0.0:

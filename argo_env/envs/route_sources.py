@@ -9,7 +9,6 @@ import numpy as np
 from numpy.typing import NDArray
 from pydantic import Field
 
-from argo_compiler.errors import ArgoError
 from argo_compiler.model import Model
 from argo_env.envs.route_instance import RouteInstance, make_instance
 from argo_env.envs.sites import navigator_of
@@ -27,9 +26,9 @@ _PRECEDENCE = 0.2  # share of checkpoints that another one must come before
 class RouteFaults(Model):
     """Faults that are known before the robot sets off."""
 
-    closed: int = Field(default=0, ge=0)
-    """checkpoints, drawn with the instance, that can't be reached"""
-    battery: float = Field(default=1.0, gt=0.0, le=1.0)
+    closed: int = Field(default=0, ge=0, strict=True)
+    """of the checkpoints that exist, drawn with the instance: so many can't be reached"""
+    battery: float = Field(default=1.0, gt=0.0, le=1.0, strict=True)
     """share of the budget that a worn battery leaves"""
 
 
@@ -41,7 +40,7 @@ class RouteSource(Protocol):
 
     @property
     def checkpoints(self) -> int:
-        """How many."""
+        """How many, those included that a site does not have."""
         ...
 
     @property
@@ -112,6 +111,11 @@ class SiteRoutes:
     def floors(self) -> int:
         return _matrix(self.scenario).floors
 
+    @property
+    def existing(self) -> int:
+        """How many of the checkpoints the site has."""
+        return min(self.checkpoints, len(_matrix(self.scenario).places) - 1)
+
     def draw(
         self, number: int, floors: Sequence[int] = (), faults: RouteFaults = NO_FAULTS
     ) -> RouteInstance:
@@ -172,6 +176,7 @@ def _finished(
     later = np.flatnonzero(rng.random(count) < _PRECEDENCE)
     pairs = [(int(order[rng.integers(k)]), int(order[k])) for k in later if k > 0]
     drawn = rng.permutation(count) + 1
+    drawn = drawn[places[drawn, 2] > 0]  # those that exist: an empty slot is on no floor
     times = times.copy()
     times[:, drawn[: faults.closed]] = np.inf
     if floors:
@@ -182,8 +187,6 @@ def _finished(
     return make_instance(times, service, prizes, pairs, budget * faults.battery, places)
 
 
-def check_floors(source: RouteSource, scenario: str, floors: Sequence[int]) -> None:
-    """Raises ArgoError for a floor that the source's sites don't have."""
-    for floor in floors:
-        if not 1 <= floor <= source.floors:
-            raise ArgoError(f"scenario {scenario} has the floors 1 to {source.floors}, not {floor}")
+def existing(source: RouteSource) -> int:
+    """How many of a source's checkpoints exist: a site may have fewer than there are slots for."""
+    return source.existing if isinstance(source, SiteRoutes) else source.checkpoints

@@ -77,15 +77,27 @@ def settle(faults: Sequence[AnyFault], site: Site, seed: int) -> tuple[AnyFault,
 
     Raises ArgoError, with the place in the list, for what the site does not have.
     """
-    settled: list[AnyFault] = []
+    return tuple(_settled(fault, number, site, seed) for number, fault in enumerate(faults))
+
+
+def misfits(faults: Sequence[AnyFault], site: Site, seed: int) -> dict[int, str]:
+    """What the site does not have of each fault, by its number in the list."""
+    found = {}
     for number, fault in enumerate(faults):
-        own = seed if fault.seed is None else fault.seed
         try:
-            rng = generator(own, "fault", fault.kind, number if fault.seed is None else 0)
-            settled.append(fault.settled(site, rng))
+            _settled(fault, number, site, seed)
         except ArgoError as error:
-            raise ArgoError(f"faults[{number}] ({fault.kind}): {error}") from None
-    return tuple(settled)
+            found[number] = str(error)
+    return found
+
+
+def _settled(fault: AnyFault, number: int, site: Site, seed: int) -> AnyFault:
+    own = seed if fault.seed is None else fault.seed
+    try:
+        rng = generator(own, "fault", fault.kind, number if fault.seed is None else 0)
+        return fault.settled(site, rng)
+    except ArgoError as error:
+        raise ArgoError(f"faults[{number}] ({fault.kind}): {error}") from None
 
 
 def changed_site(site: Site, faults: Sequence[AnyFault]) -> Site:

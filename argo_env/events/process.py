@@ -137,11 +137,13 @@ def _check_place(site: Site, place: Vector | None) -> None:
     x0, y0, x1, y1 = site.spec.ground
     top, bottom = max(f.z for f in site.spec.floors), site.spec.ground_z
     x, y, z = place
-    beside = max(x0 - x, x - x1, y0 - y, y - y1)
-    if beside > _BESIDE or z > top + _ABOVE or z < bottom - _BELOW:
+    low = (x0 - _BESIDE, y0 - _BESIDE, bottom - _BELOW)
+    high = (x1 + _BESIDE, y1 + _BESIDE, top + _ABOVE)
+    if not all(a <= v <= b for a, v, b in zip(low, place, high, strict=True)):
         raise ArgoError(
-            f"there is no equipment at ({x:g}, {y:g}, {z:g}): site {site.name} lies between "
-            f"({x0:g}, {y0:g}) and ({x1:g}, {y1:g}), and its highest floor at {top:g} m"
+            f"there is no equipment at ({x:g}, {y:g}, {z:g}): a place on site {site.name} lies "
+            f"between ({low[0]:g}, {low[1]:g}, {low[2]:g}) and "
+            f"({high[0]:g}, {high[1]:g}, {high[2]:g})"
         )
 
 

@@ -1,9 +1,12 @@
 """Reads faults from a YAML file, with errors that say where it is wrong."""
 
+from collections.abc import Sequence
 from pathlib import Path
 
-from argo_env.events.kinds import AnyFault, FaultFile
-from argo_env.yaml_file import read_yaml
+from argo_compiler.json_places import JsonPath
+from argo_env.events.kinds import AnyFault, FaultFile, misfits
+from argo_env.site import Site
+from argo_env.yaml_file import placed, read_yaml
 
 
 def read_faults(path: Path) -> tuple[AnyFault, ...]:
@@ -23,3 +26,11 @@ def read_faults(path: Path) -> tuple[AnyFault, ...]:
             "until": "a fault of this kind is there from the start, and stays: remove it",
         },
     ).faults
+
+
+def require_fit(faults: Sequence[AnyFault], path: Path, site: Site, seed: int) -> None:
+    """Raises DiagnosticError, with the lines, if the site does not have what these faults, read
+    from that file, are about. `seed` is the run's."""
+    if found := misfits(faults, site, seed):
+        places: dict[JsonPath, str] = {("faults", k): said for k, said in found.items()}
+        raise placed(path, "faults.not-on-site", places)

@@ -4,6 +4,7 @@ They are there from the run's start: they change the site's solids before the wo
 rays, contacts, pictures and dynamics all meet the same thing.
 """
 
+import cmath
 import math
 from dataclasses import replace
 from typing import Annotated, ClassVar, Literal, Self
@@ -23,7 +24,11 @@ BARRIER = (0.06, 1.0)  # m, thickness and height of what blocks stairs
 _BARRIER_DISTANCE = 0.25  # m from the nosing to the barrier
 _FROM_RIM = 0.35  # m that a drawn place is away from the rim of its walkway, where there is room
 _TOUCHING = 1e-6  # m
-_Length = Annotated[float, Field(gt=0)]
+_DRAWS = 100  # places that are drawn until one is free
+_ROOM = 0.65  # m about the middle of a docked robot that it needs to turn
+_STATION = 0.6  # m before the middle of a docked robot, where its station stands
+_SAME_LEVEL = 1.0  # m between a floor and the ground under which a dock is in the way
+_Length = Annotated[float, Field(gt=0, le=1.5)]  # m; what is larger does not get onto a walkway
 
 
 class Brick(Fault):
@@ -36,19 +41,47 @@ class Brick(Fault):
     place: Point | None = None
     """m, x and y of its middle; needs `floor`"""
     size: tuple[_Length, _Length, _Length] = (0.3, 0.2, 0.2)
-    """m, along its own axes"""
+    """m, along its own axes, at most 1.5"""
     yaw: float | None = None
     """deg"""
 
     def settled(self, site: Site, rng: np.random.Generator) -> Self:
-        floor, place = _place(site, rng, self.floor, self.place, lowest=1)
-        if not any(_holds(r, place) for r in floor.walkways.values()):
-            raise ArgoError(f"there is no walkway at ({place[0]:g}, {place[1]:g}) of floor "
-                            f"{floor.number}")  # fmt: skip
-        yaw = round(float(rng.uniform(-90.0, 90.0)), 1)
-        return self._with(
-            floor=floor.number, place=place, yaw=yaw if self.yaw is None else self.yaw
+        for _ in range(1 if self.place else _DRAWS):
+            floor, place = _place(site, rng, self.floor, self.place, lowest=1)
+            if not any(_holds(r, place) for r in floor.walkways.values()):
+                raise ArgoError(f"there is no walkway at ({place[0]:g}, {place[1]:g}) of floor "
+                                f"{floor.number}")  # fmt: skip
+            yaw = round(float(rng.uniform(-90.0, 90.0)), 1)
+            settled = self._with(
+                floor=floor.number, place=place, yaw=yaw if self.yaw is None else self.yaw
+            )
+            area = settled._over_dock(site, floor)
+            if area is None:
+                return settled
+        raise ArgoError(
+            f"a brick at ({place[0]:g}, {place[1]:g}) of floor {floor.number} lies over the dock "
+            f"of starting area {area}, where the robot has to stand: give another `place`, or a "
+            "smaller `size`"
         )
+
+    def _over_dock(self, site: Site, floor: FloorSpec) -> int | None:
+        """The starting area whose dock it lies over, if there is one."""
+        assert self.place is not None
+        assert self.yaw is not None
+        if abs(floor.z - site.spec.ground_z) > _SAME_LEVEL:
+            return None
+        turn = cmath.rect(1.0, -math.radians(self.yaw))
+        half_length, half_width = self.size[0] / 2, self.size[1] / 2
+        for area, dock in site.docks.items():
+            for ahead in (0.0, _STATION):
+                at = complex(dock.x, dock.y) + cmath.rect(ahead, dock.yaw) - complex(*self.place)
+                own = at * turn  # in the axes of the brick
+                away = math.hypot(
+                    max(abs(own.real) - half_length, 0.0), max(abs(own.imag) - half_width, 0.0)
+                )
+                if away < _ROOM:
+                    return area
+        return None
 
     def changed(self, site: Site) -> tuple[Element, ...]:
         assert self.floor is not None

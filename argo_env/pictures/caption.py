@@ -1,29 +1,39 @@
 """The caption of a frame: the time, the task, the floor and the last reading; in the end the
 verdict."""
 
+import math
+from collections.abc import Sequence
+
 from PIL import Image, ImageDraw, ImageFont
 
 from argo_env.record import Reading, RunRecord
+from argo_env.words import clock
 
 HEIGHT = 0.105  # of the frame
 LINES = 3  # of the verdict, at most
+Text = tuple[str, tuple[int, int, int, int]]
+"""words and their colour"""
 _Font = ImageFont.FreeTypeFont
 _BAR = (20, 28, 38, 205)
-_BRIGHT, _DIM = (255, 255, 255, 255), (178, 190, 204, 255)
+BRIGHT, DIM = (255, 255, 255, 255), (178, 190, 204, 255)
 _NORMAL, _ABNORMAL = (110, 226, 160, 255), (255, 128, 120, 255)
 
 
 def add_caption(frame: Image.Image, record: RunRecord, t: float, floor: int) -> Image.Image:
     """The frame, RGB, with a bar at its bottom that says what happens at the time t (s)."""
+    return add_bar(frame, *_texts(record, t, floor))
+
+
+def add_bar(frame: Image.Image, left: Sequence[Text], right: Sequence[Text]) -> Image.Image:
+    """The frame, RGB, with a bar at its bottom and words at the left and at the right of it."""
     width, height = frame.size
     bar = Image.new("RGBA", (width, round(height * HEIGHT)), _BAR)
     draw = ImageDraw.Draw(bar)
     size = bar.height * 0.40
     while True:
         font = ImageFont.load_default(size)
-        left, right = _texts(record, t, floor)
         gap = size * 0.8
-        total = sum(draw.textlength(text, font=font) + gap for text, _ in left + right)
+        total = sum(draw.textlength(text, font=font) + gap for text, _ in (*left, *right))
         if total + gap <= width or size <= 7:
             break
         size *= 0.94
@@ -56,7 +66,7 @@ def add_verdict(frame: Image.Image, record: RunRecord) -> Image.Image:
     draw.text((gap, gap + size / 2), f"{word}:", fill=ink, font=font, anchor="lm")
     for k, line in enumerate(lines):
         place = (gap + indent, gap + size / 2 + k * pitch)
-        draw.text(place, line, fill=_BRIGHT, font=font, anchor="lm")
+        draw.text(place, line, fill=BRIGHT, font=font, anchor="lm")
     result = frame.copy()
     result.paste(bar, (0, height - round(height * HEIGHT) - bar.height), bar)
     return result
@@ -83,25 +93,17 @@ def _lines(
     return lines
 
 
-_Text = tuple[str, tuple[int, int, int, int]]
-
-
-def _texts(record: RunRecord, t: float, floor: int) -> tuple[list[_Text], list[_Text]]:
+def _texts(record: RunRecord, t: float, floor: int) -> tuple[list[Text], list[Text]]:
     """What stands at the left and at the right of the bar."""
     under_way = [run.task for run in record.tasks if run.start <= t < run.end]
     task = under_way[-1] if under_way else ("ended" if t > 0 else "setting off")
-    left = [(clock(t), _BRIGHT), (task, _BRIGHT), (f"floor {floor}", _DIM)]
+    left = [(clock(math.floor(t)), BRIGHT), (task, BRIGHT), (f"floor {floor}", DIM)]
     taken = [reading for reading in record.readings if reading.t <= t]
     return left, (_verdict(taken[-1]) if taken else [])
 
 
-def _verdict(reading: Reading) -> list[_Text]:
+def _verdict(reading: Reading) -> list[Text]:
     value = f"{reading.name}: {reading.value:g} {reading.unit}"
     if reading.normal:
-        return [(value, _BRIGHT), ("nominal", _NORMAL)]
-    return [(value, _BRIGHT), ("not nominal", _ABNORMAL)]
-
-
-def clock(t: float) -> str:
-    """A time (s) as minutes and seconds, such as 03:07."""
-    return f"{int(t) // 60:02d}:{int(t) % 60:02d}"
+        return [(value, BRIGHT), ("nominal", _NORMAL)]
+    return [(value, BRIGHT), ("not nominal", _ABNORMAL)]

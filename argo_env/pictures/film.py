@@ -3,6 +3,7 @@
 import math
 import os
 from collections.abc import Callable, Iterator
+from itertools import groupby
 from pathlib import Path
 
 import numpy as np
@@ -106,15 +107,20 @@ def _frames(
     frame_time: float,
     progress: Progress | None,
 ) -> Iterator[Image.Image]:
-    """The frames at the times (s), one after the other."""
+    """The frames at the times (s), one after the other; of equal times, the same one again."""
     camera = ChaseCamera(scene, size, frame_time)
-    for number, t in enumerate(times, start=1):
+    done = 0
+    for t, same in groupby(times):
         pose, floor = motion.pose(t), motion.floor(t)
         scene.show_floors(floor, _DECKS)
         scene.place_robot(pose, motion.joints(t))
         view = scene.look(camera.follow(pose))
         brightness = depth_shading(view, size[1] / 50, 0.45)
         frame = add_caption(Image.fromarray(compose(view, brightness)), record, t, floor)
-        yield add_verdict(frame, record) if t >= motion.end else frame
-        if progress:
-            progress(number / len(times))
+        if t >= motion.end:
+            frame = add_verdict(frame, record)
+        for _ in same:
+            yield frame
+            done += 1
+            if progress:
+                progress(done / len(times))

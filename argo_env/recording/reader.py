@@ -8,11 +8,13 @@ from typing import TYPE_CHECKING, NoReturn
 from pydantic import ValidationError
 
 from argo_compiler.errors import ArgoError
+from argo_compiler.json_places import format_path
 from argo_env.record import Reading, RunRecord, TaskRun
 from argo_env.recording.files import MAGIC, VERSION, require_libraries
-from argo_env.recording.sections import Content, data_section, is_sound_end, unreadable
+from argo_env.recording.sections import Content, data_section, is_sound_end, trailing, unreadable
 from argo_env.site import Site, make_site
 from argo_env.site.spec import SiteSpec
+from argo_env.yaml_messages import message_of
 
 if TYPE_CHECKING:  # what the extra brings
     from mcap.records import McapRecord
@@ -91,8 +93,9 @@ def read_recording(path: Path) -> Recording:
             tuple(TaskRun.model_validate_json(text) for text in parts.tasks),
         )
     except ValidationError as error:
-        place = ".".join(str(part) for part in error.errors()[0]["loc"])
-        _refuse(path, f"does not fit this Argo: {place}: {error.errors()[0]['msg']}")
+        fault = error.errors(include_url=False)[0]
+        place, said = format_path(fault["loc"]), message_of(fault, fault["loc"])
+        _refuse(path, f"does not fit this Argo: {place}: {said}")
 
 
 class _Parts:
@@ -110,17 +113,13 @@ class _Parts:
         self._topics: dict[int, str] = {}
 
     def add(self, record: "McapRecord") -> None:
-        from mcap.exceptions import McapError
-        from mcap.records import Attachment, Channel, DataEnd, Message, Metadata
+        from mcap.records import Attachment, Channel, Message, Metadata
 
         match record:
             case Metadata() if record.name == "argo":
                 self.facts = record.metadata
             case Attachment():
                 self.attachments[record.name] = record.data
-            case DataEnd() if self.facts and record.data_section_crc == 0:
-                # Which would say that there is none; Argo always writes it.
-                raise McapError("the checksum of its data is missing")
             case Channel():
                 self._topics[record.id] = record.topic
             case Message():
@@ -146,14 +145,19 @@ def _read(path: Path, content: bytes, parts: _Parts) -> str | None:
         for record in data_section(stream):
             parts.add(record)
     except unreadable() as error:
-        until, why = f"after {parts.until / 1e9:g} s", f"({error or type(error).__name__})"
+        until, why = f"after {parts.until / 1e9:g} s", f"({str(error) or type(error).__name__})"
         if len(content) > len(MAGIC) and content.endswith(MAGIC):
             _refuse(path, f"is damaged {until} {why}: take it from a copy")
         # A part that reaches beyond the end of the file is the last one of a file that breaks off.
         if isinstance(error, EndOfFile | RecordLengthLimitExceeded):
             return f"breaks off {until}, as if its process had been killed"
         return f"is damaged {until} {why}, and has no end"
-    return None if is_sound_end(content, stream.tell()) else "has a missing or damaged index"
+    if is_sound_end(content, stream.tell()):
+        return None
+    extra = trailing(content, stream.tell())
+    if extra is None:
+        return "has a missing or damaged index"
+    return f"goes on for {extra} byte{'s' if extra > 1 else ''} after its end"
 
 
 def _content(path: Path) -> bytes:

@@ -59,25 +59,29 @@ def checkpoint_scene(
 
 
 def finding_scene(found: Sequence[Anomaly], t: float) -> SceneUpdate:
-    """All that was found and has a place: a ball with a few words, and what is closed by it."""
+    """All that was found and has a place: a ball with a few words, and what is closed by it. Of
+    what was only noticed from somewhere, the words stand there alone."""
     return SceneUpdate(
         entities=[
-            _finding(f"finding {number}", anomaly, anomaly.place, t)
+            _finding(f"finding {number}", anomaly, at, t)
             for number, anomaly in enumerate(found, start=1)
-            if anomaly.place is not None
+            if (at := anomaly.place or anomaly.noticed_from) is not None
         ]
     )
 
 
 def _finding(id: str, anomaly: Anomaly, place: Vector, t: float) -> SceneEntity:
     level: Quaternion = (0.0, 0.0, 0.0, 1.0)
+    text = f"{anomaly.kind.replace('_', ' ')}: {anomaly.detail}"
     looks = [Look("sphere", (_BALL, _BALL, _BALL), place, level, _ABNORMAL)]
+    if anomaly.place is None:
+        text, looks = f"noticed from here: {text}", []
     if anomaly.extent is not None:
         x0, y0, x1, y1 = anomaly.extent
         middle = ((x0 + x1) / 2, (y0 + y1) / 2, place[2])
         looks.append(Look("box", (x1 - x0, y1 - y0, _CLOSED), middle, level, _SEEN_THROUGH))
     entity = _entity(id, WORLD, looks, t)
-    entity.texts.append(_label(place, f"{anomaly.kind.replace('_', ' ')}: {anomaly.detail}"))
+    entity.texts.append(_label(place, text))
     return entity
 
 

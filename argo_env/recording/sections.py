@@ -39,13 +39,17 @@ def data_section(content: Content) -> "Iterator[McapRecord]":
     Raises what `unreadable` names where they make no sense.
     """
     from mcap.exceptions import McapError
-    from mcap.records import Attachment, Chunk, DataEnd, Footer
+    from mcap.records import Attachment, Chunk, DataEnd, Footer, Metadata
     from mcap.stream_reader import StreamReader, breakup_chunk
 
     limit = len(content.getbuffer())  # a longer part can't be in it
     reader = StreamReader(content, emit_chunks=True, validate_crcs=True, record_size_limit=limit)
+    argos = False
     for record in reader.records:
         match record:
+            case Metadata() if record.name == "argo":
+                argos = True
+                yield record
             case Chunk():
                 yield from breakup_chunk(record, validate_crc=True)
             case Attachment():
@@ -53,6 +57,9 @@ def data_section(content: Content) -> "Iterator[McapRecord]":
                     raise McapError(f"the checksum of {record.name} is wrong")
                 yield record
             case DataEnd():
+                if argos and record.data_section_crc == 0:
+                    # 0 says that there is none (MCAP specification); Argo always writes it.
+                    raise McapError("the checksum of its data is missing")
                 yield record
                 return
             case Footer():
@@ -69,6 +76,17 @@ def is_sound_end(content: bytes, start: int) -> bool:
     opcode, _, index, _, checksum = _FOOTER.unpack_from(content, at)
     summed = content[start : -len(MAGIC) - 4]
     return bool(opcode == _FOOTER_OPCODE and index == start and zlib.crc32(summed) == checksum)
+
+
+def trailing(content: bytes, start: int) -> int | None:
+    """How many bytes follow after a sound end, where the index begins at `start`; None if no sound
+    end is in it."""
+    at = start
+    while (at := content.find(MAGIC, at)) >= 0:
+        at += len(MAGIC)
+        if is_sound_end(content[:at], start):
+            return len(content) - at
+    return None
 
 
 def unreadable() -> tuple[type[Exception], ...]:

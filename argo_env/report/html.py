@@ -6,17 +6,21 @@ from pathlib import Path
 from jinja2 import Environment, StrictUndefined, Template
 
 from argo_compiler.export import to_mermaid
+from argo_compiler.il import Action, Mission
+from argo_compiler.reserved import RETURN_TASK
 from argo_env.record import Reading, RunRecord
 from argo_env.report.charge import charge_curve
 from argo_env.report.elevation import elevation
 from argo_env.report.machine import drawable, machine
 from argo_env.report.plan import floor_plan, visited_floors
-from argo_env.report.rounds import blocks
+from argo_env.report.rounds import blocks, with_waits
 from argo_env.report.svg import Node, clean, drawing, markup, node
-from argo_env.report.timeline import clock, timeline
+from argo_env.report.timeline import timeline
 from argo_env.report.track import colour
+from argo_env.report.waiting import waits
 from argo_env.site import Site
 from argo_env.site.site import SCALES
+from argo_env.words import clock, where
 
 BAR = 130.0  # px, width of the bar of a reading
 
@@ -24,6 +28,7 @@ BAR = 130.0  # px, width of the bar of a reading
 def page(record: RunRecord, site: Site) -> str:
     """The whole report as one HTML page that needs no other file."""
     floors = visited_floors(record)
+    found = blocks(record.hfsm, record.tasks)
     others = [str(f.number) for f in site.spec.floors if f.number not in floors]
     return _template().render(
         record=record,
@@ -37,7 +42,8 @@ def page(record: RunRecord, site: Site) -> str:
         unvisited=others,
         elevation=markup(elevation(site, record)) if record.path else None,
         ramp=", ".join(colour(i / 6) for i in range(7)),
-        blocks=blocks(record.hfsm, record.tasks),
+        blocks=list(zip(found, with_waits(found, waits(record)), strict=True)),
+        docking=_docking(record.mission),
         machine=markup(machine(record.hfsm)) if drawable(record.hfsm) else None,
         mermaid=to_mermaid(record.hfsm),
     )
@@ -53,8 +59,21 @@ def _template() -> Template:
         finalize=lambda value: clean(value) if type(value) is str else value,
     )
     environment.filters["clock"] = clock
+    environment.globals["where"] = where
     text = Path(__file__).with_name("report.html.j2").read_text(encoding="utf-8")
     return environment.from_string(text)
+
+
+def _docking(mission: Mission) -> frozenset[str]:
+    """The names of the tasks that are ways into the docking station."""
+    return frozenset(
+        [RETURN_TASK]
+        + [
+            task.name
+            for task in mission.tasks
+            if task.action is Action.WAYPOINT and task.pose and task.pose == mission.dock
+        ]
+    )
 
 
 def _bar(reading: Reading) -> Node:

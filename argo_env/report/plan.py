@@ -13,6 +13,7 @@ from argo_env.report.track import arrows, flag, stretches, track
 from argo_env.site import Site, SiteCheckpoint
 
 SCALE = 46.0  # px for 1 m
+_ASIDE = 2.0 / SCALE  # m to the right of the way, so that the way back is seen beside it
 _ARROWS_UP_TO = 120.0
 """m of path on a floor; on longer ones heads would hide the lines"""
 
@@ -35,9 +36,11 @@ def floor_plan(site: Site, record: RunRecord, number: int) -> Node:
     marks = [_checkpoint(canvas, c, measured) for c in site.checkpoints if c.floor == number]
     contacts = [_cross(canvas, c.x, c.y) for c in record.contacts if site.floor_at(c.z) == number]
     found = [
-        found_mark(*canvas.at(a.place[0], a.place[1]), k)
+        found_mark(*canvas.at(at[0], at[1]), k, "found" if a.place else "noticed")
         for k, a in enumerate(record.anomalies, start=1)
-        if a.place is not None and a.floor == number and a.kind is not EventKind.ABNORMAL_READING
+        if (at := a.place or a.noticed_from) is not None
+        and a.floor == number
+        and a.kind is not EventKind.ABNORMAL_READING
     ]
     return drawing(
         canvas.width,
@@ -56,11 +59,12 @@ def floor_plan(site: Site, record: RunRecord, number: int) -> Node:
 
 
 def _path(canvas: Canvas, parts: list[list[PathSample]], record: RunRecord) -> list[Node]:
-    drawn = track(parts, lambda s: (s.x, s.y), canvas.at, record.path[-1].t if record.path else 0.0)
+    end = record.path[-1].t if record.path else 0.0
+    drawn = track(parts, lambda s: (s.x, s.y), canvas.at, end, _ASIDE)
     length = sum(math.dist((a.x, a.y), (b.x, b.y)) for part in parts for a, b in pairwise(part))
     if length <= _ARROWS_UP_TO:
         for part in parts:
-            drawn += arrows(part, canvas.at, 1.6)
+            drawn += arrows(part, canvas.at, 1.6, _ASIDE)
     return drawn + _flags(canvas, parts, record)
 
 

@@ -1,13 +1,15 @@
 """The runs of tasks in blocks: each visit to a group with its rounds, and what lies between."""
 
+import math
 from collections.abc import Sequence
 from dataclasses import dataclass
-from itertools import groupby
+from itertools import groupby, pairwise
 
 from argo_compiler.hfsm import Composite, Hfsm
 from argo_compiler.hfsm.model import task_id
 from argo_compiler.reserved import RESERVED_NAMES
 from argo_env.record import TaskRun
+from argo_env.report.waiting import Wait
 
 
 @dataclass(frozen=True)
@@ -65,6 +67,23 @@ def blocks(hfsm: Hfsm, runs: Sequence[TaskRun]) -> tuple[Block, ...]:
         ends = [*begins[1:], len(visit)]
         rounds = tuple(visit[i:j] for i, j in zip(begins, ends, strict=True))
         result.append(Block(group.name, rounds))
+    return tuple(result)
+
+
+def with_waits(
+    found: Sequence[Block], waits: Sequence[Wait]
+) -> tuple[tuple[tuple[TaskRun | Wait, ...], ...], ...]:
+    """For each block its rounds, with the waits in them: all by the times of their beginnings."""
+    begins = [part[0].start for block in found for part in block.rounds]
+    spans = pairwise([-math.inf, *begins[1:], math.inf])
+    result = []
+    for block in found:
+        rounds = []
+        for part, (since, until) in zip(block.rounds, spans, strict=False):
+            inside = [wait for wait in waits if since <= wait.start < until]
+            rows: list[TaskRun | Wait] = [*part, *inside]
+            rounds.append(tuple(sorted(rows, key=lambda row: row.start)))
+        result.append(tuple(rounds))
     return tuple(result)
 
 

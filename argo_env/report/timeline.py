@@ -6,6 +6,7 @@ from argo_compiler.il import Action
 from argo_env.record import RunRecord, TaskRun
 from argo_env.report.rounds import blocks
 from argo_env.report.svg import Node, drawing, node, shorten
+from argo_env.words import clock
 
 WIDTH = 1160.0  # px
 LABELS = 210.0  # px for the names of the tasks
@@ -13,12 +14,6 @@ ROW = 24.0  # px
 HEAD = 46.0  # px above the first row, for the rounds
 
 _STEPS = (1, 2, 5, 10, 15, 30, 60, 120, 300, 600, 900, 1800, 3600)
-
-
-def clock(seconds: float) -> str:
-    """The time as minutes and seconds, `mm:ss`."""
-    whole = round(seconds)
-    return f"{whole // 60:02d}:{whole % 60:02d}"
 
 
 def timeline(record: RunRecord) -> Node:
@@ -113,18 +108,19 @@ def _anomalies(record: RunRecord, px: float, bottom: float) -> list[Node]:
         line.append(node("title", text=f"{number} {what}: {anomaly.detail}, {clock(anomaly.t)}"))
         marks.append(line)
         if x > free_from:
-            marks.append(found_mark(x, HEAD - 8, number))
+            marks.append(found_mark(x, HEAD - 8, number, "found"))
             free_from = x + 16
     return marks
 
 
-def found_mark(x: float, y: float, number: int) -> Node:
-    """A diamond about a place in px with the number of a finding."""
+def found_mark(x: float, y: float, number: int, class_: str) -> Node:
+    """A diamond about a place in px with the number of a finding: `found`, or `noticed` from there
+    only."""
     return node(
         "g",
         node("path", d=f"M{x:.1f},{y - 9:.1f}l9,9l-9,9l-9,-9z"),
         node("text", x=x, y=y + 3.5, text=f"{number}", class_="middle"),
-        class_="found",
+        class_=class_,
     )
 
 

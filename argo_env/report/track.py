@@ -5,12 +5,14 @@ from collections.abc import Callable, Sequence
 from itertools import groupby, pairwise
 
 import numpy as np
+from numpy.typing import NDArray
 
 from argo_env.record import PathSample
 from argo_env.report.outline import Point
 from argo_env.report.svg import Node, node, number, polyline, simplify
 
 TOLERANCE = 0.02  # m that the drawn path may be away from the samples
+_AROUND = 0.1  # m of way before and after a point that tell its direction
 SHADES = 24
 """colours from the beginning to the end of the mission"""
 
@@ -39,18 +41,21 @@ def track(
     plane: Callable[[PathSample], Point],
     at: Callable[[float, float], Point],
     end: float,
+    aside: float = 0.0,
 ) -> list[Node]:
     """The parts as lines: `plane` gives the two coordinates (m) of a sample, `at` the px of them.
 
-    `end` (s) is the time that has the last colour.
+    `end` (s) is the time that has the last colour, and `aside` is by how much (m) the lines lie to
+    the right of the way.
     """
     lines = []
     for samples in parts:
         shades = [min(int(SHADES * s.t / end), SHADES - 1) if end else 0 for s in samples]
+        way = beside(np.array([plane(s) for s in samples]), aside)
         cuts = [i for i in range(1, len(samples)) if shades[i] != shades[i - 1]]
         for first, last in pairwise([0, *cuts, len(samples)]):
             # Each line reaches the first sample of the next one, so that there is no gap.
-            points = np.array([plane(s) for s in samples[first : last + 1]])
+            points = way[first : last + 1]
             kept = points[simplify(points, TOLERANCE)]
             if len(kept) > 1:
                 stroke = colour(shades[first] / (SHADES - 1))
@@ -59,12 +64,41 @@ def track(
     return lines
 
 
+def beside(points: NDArray[np.float64], aside: float) -> NDArray[np.float64]:
+    """The points of a way in plan, of the shape (n, 2), moved by `aside` (m) to its right: so the
+    ways out and back do not lie on each other."""
+    steps = np.hypot(*np.diff(points, axis=0).T)
+    gone = np.concatenate([[0.0], steps.cumsum()])
+    if not aside or gone[-1] == 0.0:
+        return points
+    distinct = np.concatenate([[True], steps > 0.0])  # np.interp needs ascending places
+
+    def along(by: float) -> NDArray[np.float64]:
+        return np.column_stack(
+            [np.interp(gone + by, gone[distinct], axis[distinct]) for axis in points.T]
+        )
+
+    ahead = along(_AROUND) - along(-_AROUND)
+    length = np.hypot(*ahead.T)
+    # Where it turns back, it goes on to the right of how it came.
+    turning = length < _AROUND / 10
+    ahead[turning] = (points - along(-_AROUND))[turning]
+    length = np.maximum(np.hypot(*ahead.T), 1e-9)
+    right = np.column_stack([ahead[:, 1], -ahead[:, 0]]) / length[:, None]
+    return np.asarray(points + aside * right)
+
+
 def arrows(
-    samples: Sequence[PathSample], at: Callable[[float, float], Point], spacing: float
+    samples: Sequence[PathSample],
+    at: Callable[[float, float], Point],
+    spacing: float,
+    aside: float = 0.0,
 ) -> list[Node]:
-    """Small heads that point along the way in plan, one every `spacing` m."""
+    """Small heads that point along the way in plan, one every `spacing` m, and `aside` (m) to its
+    right."""
     heads, since = [], spacing / 2
-    for a, b in pairwise(samples):
+    way = beside(np.array([(s.x, s.y) for s in samples]), aside).tolist()
+    for k, (a, b) in enumerate(pairwise(samples), start=1):
         step = math.hypot(b.x - a.x, b.y - a.y)
         since += step
         if since < spacing or step < 0.02:
@@ -72,7 +106,8 @@ def arrows(
         since = 0.0
         (ax, ay), (bx, by) = at(a.x, a.y), at(b.x, b.y)
         turn = math.degrees(math.atan2(by - ay, bx - ax))
-        place = f"translate({number(bx)},{number(by)}) rotate({turn:.0f})"
+        px, py = at(*way[k])
+        place = f"translate({number(px)},{number(py)}) rotate({turn:.0f})"
         heads.append(node("path", d="M-5,-4L3,0L-5,4z", transform=place, class_="heading"))
     return heads
 

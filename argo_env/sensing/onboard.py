@@ -72,16 +72,18 @@ class ConnectionWatch:
         self._missed = self._limit if lost else 0
 
     def look(self, now: float, pose: BodyPose) -> tuple[Finding, ...]:  # noqa: ARG002
-        place = (pose.x, pose.y, pose.z)
+        here = (pose.x, pose.y, pose.z)
         if not self._network.connected(pose):
             self._missed += 1
             if self._missed == self._limit:
                 silent = self._limit * self.period
-                return (Finding(EventKind.CONNECTION_LOST, f"no answer for {silent:g} s", place),)
+                detail = f"no answer for {silent:g} s"
+                return (Finding(EventKind.CONNECTION_LOST, detail, noticed_from=here),)
             return ()
         lost, self._missed = self._missed >= self._limit, 0
         if lost:
-            return (Finding(EventKind.CONNECTION_RESTORED, "the base station answers", place),)
+            detail = "the base station answers"
+            return (Finding(EventKind.CONNECTION_RESTORED, detail, noticed_from=here),)
         return ()
 
 
@@ -147,7 +149,8 @@ class DriveWatch:
             return ()
         self._told = True
         detail = f"the drive makes {share:.0%} of the planned speed"
-        return (Finding(EventKind.DYSFUNCTION, detail, (pose.x, pose.y, pose.z)),)
+        here = (pose.x, pose.y, pose.z)
+        return (Finding(EventKind.DYSFUNCTION, detail, noticed_from=here),)
 
     def _nearest(self, pose: BodyPose) -> int:
         """Where on the plan the robot is: at most twice as far on as time would have it."""

@@ -17,10 +17,11 @@ class Finding:
     detail: str
     """one phrase for the report, such as `gas, 840 ppm, near pump P-301`"""
     place: Vector | None = None
-    """m, where the robot believes it is, or where it noticed what it knows no place of; None where
-    neither says anything"""
+    """m, where the robot believes it is; None where the signal tells no place"""
     confidence: float = 1.0
     """0 to 1"""
+    noticed_from: Vector | None = None
+    """m, where the robot was, if that says anything about what it knows no place of"""
 
 
 class Watch(Protocol):

@@ -8,6 +8,7 @@ from pydantic import Field, ValidationError, field_validator
 
 from argo_compiler.errors import ArgoError
 from argo_compiler.model import Model
+from argo_env.yaml_messages import message_of
 
 PREFIX = "generated:"
 TEST_SEEDS = 1_000_000
@@ -46,7 +47,7 @@ class Family(Model):
     def _buildable(cls, size: tuple[int, int]) -> tuple[int, int]:
         least, most = _SIZE
         if not all(least <= edge <= most for edge in size):
-            raise ValueError(f"both edges must be {least} to {most} m")
+            raise ValueError(f"both edges of `size` have to be {least} to {most} m")
         return size
 
     @property
@@ -88,8 +89,7 @@ def parse_family(text: str) -> Family:
         return Family.model_validate(given)
     except ValidationError as error:
         fault = error.errors(include_url=False)[0]
-        message = fault["msg"].removeprefix("Value error, ")
-        raise _error(text, f"{fault['loc'][0]}: {message}") from None
+        raise _error(text, message_of(fault, fault["loc"])) from None
 
 
 def _size(text: str) -> tuple[int, int]:

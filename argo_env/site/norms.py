@@ -8,7 +8,7 @@ import math
 from collections.abc import Iterator
 from itertools import pairwise
 
-from argo_env.site.spec import FloorSpec, Rect, SiteSpec, TowerSpec
+from argo_env.site.spec import LEDGE, FloorSpec, Rect, SiteSpec, TowerSpec
 
 PITCH = (20.0, 45.0)  # deg, of a flight
 GOING = (0.21, 0.31)  # m
@@ -18,7 +18,6 @@ LANDING = 0.8  # m, at least
 HEIGHT = (0.2, 2.0)  # m of a checkpoint above its deck (thesis 1.2)
 BESIDE = 0.5  # m that a checkpoint may be beside the walkway (thesis 1.2)
 _TOLERANCE = 1e-3  # m
-_LEDGE = 5e-3  # m, up to which the end of a flight is level with the floor
 
 
 def breaches(spec: SiteSpec) -> list[str]:
@@ -34,7 +33,7 @@ def false_ends(spec: SiteSpec) -> list[str]:
         risen = sum(flight.risers * flight.rise for flight in tower.flights)
         for below, above in pairwise(spec.floors):
             wanted = above.z - below.z
-            if abs(risen - wanted) > _LEDGE:
+            if abs(risen - wanted) > LEDGE:
                 found.append(
                     f"{tower.name}: its flights rise {risen:.3f} m, and floor {above.number} lies "
                     f"{wanted:.3f} m above floor {below.number}"

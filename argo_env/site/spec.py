@@ -26,6 +26,7 @@ def _ordered(rect: tuple[float, float, float, float]) -> tuple[float, float, flo
 Rect = Annotated[tuple[float, float, float, float], AfterValidator(_ordered)]
 
 
+LEDGE = 5e-3  # m, up to which two heights are level for a robot
 MAX_GROUND = 200.0  # m along an edge; navigation keeps a grid of 0.1 m over it
 
 
@@ -156,6 +157,20 @@ class SiteSpec(Model):
         for index, floor in enumerate(self.floors, start=1):
             if floor.number != index:
                 raise ValueError(f"floors must be numbered 1, 2, …; the {index}. is {floor.number}")
+        for below, above in pairwise(self.floors):
+            if abs(above.z - below.z - self.storey) > LEDGE:
+                raise PydanticCustomError(
+                    "storey",
+                    "it is {storey} m, and floor {above} lies {apart} m above floor {below}: give "
+                    "it the height from floor to floor, which is the same everywhere",
+                    {
+                        "storey": f"{self.storey:g}",
+                        "above": above.number,
+                        "apart": f"{above.z - below.z:g}",
+                        "below": below.number,
+                        "path": ("storey",),
+                    },
+                )
         x0, y0, x1, y1 = self.ground
         if max(x1 - x0, y1 - y0) > MAX_GROUND:
             raise ValueError(f"the ground is larger than {MAX_GROUND:.0f} m by {MAX_GROUND:.0f} m")

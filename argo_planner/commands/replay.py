@@ -12,9 +12,9 @@ from argo_env.navigation import Navigator
 from argo_env.pictures import check_film
 from argo_env.recording.reader import Recording, read_recording
 from argo_env.robot.spec import load_robot
+from argo_env.words import clock
 from argo_planner.loading import make_folder
 from argo_planner.running import conclude
-from argo_planner.summary import clock
 
 
 def replay(
@@ -57,9 +57,14 @@ def _show_rest(recording: Recording) -> None:
     for reading in recording.readings:
         console.print(
             f"{clock(reading.t)} {escape(reading.name)} (#{reading.checkpoint}) shows "
-            f"{reading.value:.2f} {reading.unit}"
+            f"{reading.value:.2f} {reading.unit}",
+            soft_wrap=True,
         )
     ended = ", ".join(f"{run.task} ({run.outcome})" for run in recording.tasks[-3:]) or "none"
-    console.print(f"{len(recording.tasks)} tasks have ended, the last: {escape(ended)}.")
+    console.print(
+        f"{len(recording.tasks)} tasks have ended, the last: {escape(ended)}.", soft_wrap=True
+    )
     loss = escape(recording.loss)
-    console.print(f"[bold red]No success[/]: {loss}; there is no record of the run's end.")
+    console.print(
+        f"[bold red]No success[/]: {loss}; there is no record of the run's end.", soft_wrap=True
+    )

@@ -11,7 +11,7 @@ import typer
 from argo_compiler.errors import ArgoError
 from argo_compiler.hfsm import Cancel, Event, Occurred, Pause, Resume, lower
 from argo_compiler.il import EventKind
-from argo_env.events.reading import read_faults
+from argo_env.events.reading import read_faults, require_fit
 from argo_env.journal import JournalPlace, require_free
 from argo_env.pictures import check_film
 from argo_env.recording.files import check_recording, recording_to
@@ -105,6 +105,8 @@ def run(
         require_free(journal)
     started = time.monotonic()
     navigator = load_navigator(site)
+    if faults:
+        require_fit(settings.faults, faults, navigator.site, seed)
     check_settings(settings, navigator.site)  # before it is long
     mission, diagnostics = load_mission(source, navigator, start_area, end_area)
     lower(mission, source_name=str(source))

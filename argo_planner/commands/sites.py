@@ -12,7 +12,6 @@ from argo_env.navigation.checking import unseen_checkpoints, unserved_floors
 from argo_env.site import load_site, site_names
 from argo_env.site.family import PREFIX, is_family
 from argo_env.site.norms import breaches, false_ends
-from argo_env.site.spec import SiteSpec
 from argo_env.site.writing import to_yaml
 from argo_planner.loading import keep_input, load_navigator, write_text
 
@@ -38,10 +37,11 @@ def show_sites(
         return
     if output:
         keep_input(Path(site), output)
-        _check_name(output, is_family(site))
+        _check_name(output)
     navigator = load_navigator(site)
     if output:
-        spec = _renamed(navigator.site.spec, output)
+        # The name that it has stands for another site, and this one is there to be changed.
+        spec = navigator.site.spec.model_copy(update={"name": output.stem})
         write_text(output, to_yaml(spec))
         use = f"argo check MISSION --site {shlex.quote(str(output))}"
         print(f"{output}: written, site `{spec.name}`; use it with `{use}`")
@@ -56,33 +56,30 @@ def show_sites(
     print(f"{site}: every floor and every checkpoint can be reached from every dock, and back")
 
 
-def _check_name(output: Path, named_after: bool) -> None:
-    """Raises ArgoError if no site is found in a file of that name, or none by the name that a site
-    which is `named_after` its file gets."""
+def _check_name(output: Path) -> None:
+    """Raises ArgoError if no site is found in a file of that name, or another one is by the name
+    that it gets."""
     if output.suffix not in {".yaml", ".yml"}:
-        raise ArgoError(f"{output}: a site is found in a file that ends in .yaml; name it so")
+        raise ArgoError(
+            f"{output}: a site is found in a file that ends in .yaml or .yml; name it so"
+        )
     if is_family(str(output)) or is_family(output.stem):
         raise ArgoError(f"{output}: {PREFIX}… is no file to Argo but a site; choose another name")
-    if named_after and output.stem in site_names():
+    if output.stem in site_names():
         raise ArgoError(
             f"{output}: the site would be called {output.stem}, as the one that Argo ships; choose "
             "another name"
         )
 
 
-def _renamed(spec: SiteSpec, output: Path) -> SiteSpec:
-    """The description, a generated one named after its file: the name that it has stands for the
-    site that is drawn, and this one is there to be changed."""
-    return spec.model_copy(update={"name": output.stem}) if is_family(spec.name) else spec
-
-
 def _faults(navigator: Navigator) -> list[str]:
-    ends = false_ends(navigator.site.spec)
+    if ends := false_ends(navigator.site.spec):
+        return ends  # what can't be reached for that is found again once they are mended
     floors = [
         f"floor {number} can't be reached and patrolled; give its corners 1.4 m by 1.4 m to turn in"
         for number in unserved_floors(navigator)
     ]
-    return [*ends, *floors] + [
+    return floors + [
         f"checkpoint {id} ({navigator.site.checkpoint(id).name}) can't be read from anywhere that"
         " the robot can reach; move or turn it"
         for id in unseen_checkpoints(navigator)

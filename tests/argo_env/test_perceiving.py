@@ -93,6 +93,16 @@ class TestLooking:
         assert record.result.success
         assert [s.t for s in record.trace if "gas, 300 ppm" in s.cause] == [4.0]
 
+    def test_what_has_no_place_tells_from_where_it_was_noticed(self, navigator):
+        leak = Finding(EventKind.GAS_LEAK, "gas, 300 ppm", noticed_from=(2.0, 2.0, 0.5))
+        record = run(navigator, mission(waypoint("A", 3.05, 2.05)), Scripted((4.0, leak)))
+        (anomaly,) = record.anomalies
+        assert (anomaly.place, anomaly.noticed_from, anomaly.floor) == (None, (2.0, 2.0, 0.5), 1)
+        # Records of before know no `noticed_from`.
+        old = anomaly.model_dump(mode="json")
+        del old["noticed_from"]
+        assert Anomaly.model_validate(old).noticed_from is None
+
     def test_a_reaction_answers_and_its_end_is_sensed_too(self, navigator):
         shelter = Reaction(
             event=EventKind.GAS_LEAK, response=Response.RETURN, until=EventKind.ALL_CLEAR,

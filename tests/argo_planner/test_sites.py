@@ -40,8 +40,13 @@ def test_a_site_that_can_be_driven_and_is_written_out(tmp_path):
     result = argo("sites", "darmstadt", "-o", file)
     assert result.exit_code == 0
     assert "note" not in result.output
-    assert load_site(str(file)) == load_site("darmstadt")
-    assert f"{file}: written, site `darmstadt`" in result.output
+    written, shipped = load_site(str(file)), load_site("darmstadt")
+    assert written.name == "copy"
+    assert written.spec == shipped.spec.model_copy(update={"name": "copy"})
+    assert written.elements == shipped.elements
+    assert f"{file}: written, site `copy`" in result.output
+    taken = argo("sites", "umad", "-o", tmp_path / "darmstadt.yaml")
+    assert "would be called darmstadt, as the one that Argo ships" in str(taken.exception)
 
 
 DRAWN = "generated:floors=1,size=12x12,checkpoints=2,seed=1"
@@ -66,8 +71,8 @@ def test_a_generated_site_is_written_under_the_name_of_its_file(tmp_path):
 @pytest.mark.parametrize(
     ("name", "says"),
     [
-        ("site.txt", "a site is found in a file that ends in .yaml"),
-        ("site", "a site is found in a file that ends in .yaml"),
+        ("site.txt", "ends in .yaml or .yml; name it so"),
+        ("site", "ends in .yaml or .yml; name it so"),
         ("umad.yaml", "would be called umad"),
         ("generated:floors=2.yaml", "is no file to Argo"),
     ],
@@ -98,6 +103,29 @@ def test_stairs_that_do_not_end_at_the_next_floor(tmp_path, hall_yaml):
     (error,) = [line for line in result.output.splitlines() if "its flights rise" in line]
     assert ": error: " in error
     assert "and floor 2 lies 2.500 m above floor 1" in error
+    flight["rise"] *= 2  # no robot gets up there, for that reason alone
+    file.write_text(yaml.safe_dump(hall_yaml), encoding="utf-8")
+    result = argo("sites", file)
+    assert result.exit_code == 2
+    (error,) = [line for line in result.output.splitlines() if ": error: " in line]
+    assert "its flights rise" in error
+
+
+@pytest.mark.parametrize(
+    "change", [lambda site: site.update(storey=9), lambda site: site["floors"][1].update(z=2.4)]
+)
+def test_a_storey_that_is_not_the_height_from_floor_to_floor(tmp_path, hall_yaml, change):
+    change(hall_yaml)
+    file = tmp_path / "site.yaml"
+    file.write_text(yaml.safe_dump(hall_yaml, sort_keys=False), encoding="utf-8")
+    line = 1 + [*hall_yaml].index("storey")
+    result = argo("sites", file)
+    assert result.exit_code != 0
+    message = str(result.exception)
+    assert (
+        f"{file}:{line}:9: error: storey: it is {hall_yaml['storey']:g} m, and floor 2" in message
+    )
+    assert "give it the height from floor to floor" in message
 
 
 def test_a_site_that_can_not_be_driven(tmp_path, hall_yaml):

@@ -11,7 +11,8 @@ from argo_compiler.il import Action, Afterwards, EventKind, Mission, Reaction, R
 from argo_env.events.machine import ConnectionLoss
 from argo_env.events.process import GasLeakFault
 from argo_env.record import Contact, Interruption, Reading, Result, RunRecord, TaskRun
-from argo_planner.summary import clock, show_record
+from argo_env.words import clock
+from argo_planner.summary import show_record
 
 
 def shown(record: RunRecord) -> str:
@@ -77,8 +78,8 @@ def test_repeated_tasks_are_taken_together(record: RunRecord) -> None:
     (row,) = [line for line in shown(record).splitlines() if line.startswith("│ [bold]M")]
     assert [cell.strip() for cell in row.split("│")[2:7]] == [
         "2",
-        "0:00",
-        "1:00",
+        "00:00",
+        "01:00",
         "12.0 m",
         "2.5 m",
     ]
@@ -110,23 +111,35 @@ def waits(record: RunRecord, *interruptions: tuple[float, float, EventKind | Non
 def test_what_a_reaction_waited_for_is_said(record: RunRecord) -> None:
     # The tasks run from 0 to 30 s and from 40 to 70 s.
     assert waits(record, (70.0, 95.0, EventKind.GAS_LEAK), (200.0, 230.0, EventKind.GAS_LEAK)) == [
-        "waits for all clear (reaction to gas leak) | 2 | 1:10 | 0:55 | over"
+        "waits for all clear (reaction to gas leak) | 2 | 01:10 | 00:55 | over"
     ]
     # Of a reaction, what its drive took is no waiting.
     assert waits(record, (35.0, 75.0, EventKind.GAS_LEAK)) == [
-        "waits for all clear (reaction to gas leak) | 1 | 1:10 | 0:05 | over"
+        "waits for all clear (reaction to gas leak) | 1 | 01:10 | 00:05 | over"
     ]
     assert waits(record, (39.0, 70.0, EventKind.GAS_LEAK)) == []
     assert waits(record, (100.0, 110.0, None)) == [
-        "waits for a person (paused) | 1 | 1:40 | 0:10 | over"
+        "waits for a person (paused) | 1 | 01:40 | 00:10 | over"
     ]
+
+
+def test_tasks_and_waits_stand_in_the_order_in_which_they_began(record: RunRecord) -> None:
+    dock = record.tasks[0].model_copy(update={"task": "DOCK", "start": 300.0, "end": 330.0})
+    pause = Interruption(start=100.0, end=110.0)
+    changed = record.model_copy(update={"tasks": (*record.tasks, dock), "interruptions": (pause,)})
+    lines = shown(changed).splitlines()
+    (waits,), (docks,) = (
+        [n for n, line in enumerate(lines) if line.startswith(f"│ {name}")]
+        for name in ("waits", "DOCK")
+    )
+    assert waits == docks - 1
 
 
 def test_what_it_still_waits_for_in_the_end_is_said(record: RunRecord) -> None:
     """A run is stopped at once when nothing more can come."""
     alarm = (600.0, 700.0, EventKind.PLATFORM_ALARM), (700.0, 700.0, None)
     assert waits(record, alarm[0]) == [
-        "waits for a person (reaction to platform alarm) | 1 | 10:00 | 1:40"
+        "waits for a person (reaction to platform alarm) | 1 | 10:00 | 01:40"
         " | still waiting at the end"
     ]
     drive = TaskRun(
@@ -135,7 +148,7 @@ def test_what_it_still_waits_for_in_the_end_is_said(record: RunRecord) -> None:
     )  # fmt: skip
     drove = record.model_copy(update={"tasks": (*record.tasks, drive)})
     assert waits(drove, *alarm) == [
-        "waits for a person (reaction to platform alarm) | 1 | 11:40 | 0:00"
+        "waits for a person (reaction to platform alarm) | 1 | 11:40 | 00:00"
         " | still waiting at the end"
     ]
 
@@ -155,7 +168,7 @@ def test_names_are_not_taken_for_markup(record: RunRecord) -> None:
 
 
 @pytest.mark.parametrize(
-    ("seconds", "text"), [(0.0, "0:00"), (59.6, "1:00"), (299.4, "4:59"), (3600.0, "60:00")]
+    ("seconds", "text"), [(0.0, "00:00"), (59.6, "01:00"), (299.4, "04:59"), (3600.0, "60:00")]
 )
 def test_clock(seconds: float, text: str) -> None:
     assert clock(seconds) == text

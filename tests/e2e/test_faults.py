@@ -37,12 +37,13 @@ def test_found_told_kept_and_shown(argo, folder):
     shown = ran.stdout + ran.stderr
     for kind in ("positive obstacle", "connection lost", "connection restored"):
         assert f"s: found: {kind}: " in shown
-    assert re.search(r"s: found: gas leak: .*, on floor 1 at \(\d\.\d\d, \d\.\d\d, 0\.02\)", shown)
-    assert "5 findings" in ran.stdout
+    noticed = r"s: found: gas leak: .*, noticed from floor 1 at \(\d\.\d\d, \d\.\d\d, 0\.02\)"
+    assert re.search(noticed, shown)
+    assert "4 findings" in ran.stdout
     assert "platform alarm did not happen: begins at 4000 s, the mission ended at" in ran.stdout
     record = RunRecord.model_validate(json.loads((folder / "out" / "report.json").read_text()))
     assert len(record.anomalies) == 5
-    assert all(a.place and a.floor == 1 for a in record.anomalies)
+    assert all((a.place or a.noticed_from) and a.floor == 1 for a in record.anomalies)
     assert [f.kind for f in record.faults] == [
         "brick", "abnormal_value", "connection_loss", "gas_leak", "platform_alarm",
     ]  # fmt: skip

@@ -4,13 +4,14 @@ from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 from functools import lru_cache
 
-from argo_env.navigation import Navigator
 from argo_env.report.outline import DRAWING_ORDER, Point, on_floor, outline
 from argo_env.site import Site
 from argo_env.site.shapes import Role
 
 Rectangle = tuple[float, float, float, float]
 """x0, y0, x1, y1 in m"""
+Shapes = tuple[tuple[Role, tuple[tuple[Point, ...], ...]], ...]
+"""outlines in m, what lies below first"""
 
 _GROUND = 1.2  # m of bare ground that is shown around what stands on it
 _EDGE = 0.4  # m
@@ -22,14 +23,21 @@ class FloorPlan:
 
     number: int
     bounds: Rectangle
-    shapes: tuple[tuple[Role, tuple[tuple[Point, ...], ...]], ...]
-    """outlines in m, what lies below first"""
+    shapes: Shapes
 
 
-@lru_cache(maxsize=8)
-def plans_of(navigator: Navigator) -> tuple[FloorPlan, ...]:
-    """The floors of a navigator's site, found once."""
-    return tuple(_floor(navigator.site, floor.number) for floor in navigator.site.spec.floors)
+def plans_of(site: Site) -> tuple[FloorPlan, ...]:
+    """The floors of a site. All upper ones have the same bounds, so that what stands above one
+    another is in the same place of each; the lowest one has more where there is ground around."""
+    shapes = {floor.number: _shapes(site, floor.number) for floor in site.spec.floors}
+    edges = {number: _bounds(parts) for number, parts in shapes.items()}
+    lowest = min(shapes)
+    whole = _union(edges.values())
+    upper = _union(edge for number, edge in edges.items() if number != lowest or len(edges) == 1)
+    return tuple(
+        FloorPlan(number, whole if number == lowest else upper, parts)
+        for number, parts in shapes.items()
+    )
 
 
 @lru_cache(maxsize=8)
@@ -51,31 +59,32 @@ def open_floors(points: Sequence[Point], numbers: Iterable[int]) -> tuple[FloorP
     return tuple(FloorPlan(number, bounds, ()) for number in numbers)
 
 
-def _floor(site: Site, number: int) -> FloorPlan:
+def _shapes(site: Site, number: int) -> Shapes:
     z = next(f.z for f in site.spec.floors if f.number == number)
     found: dict[Role, list[tuple[Point, ...]]] = {role: [] for role in DRAWING_ORDER}
     for element in site.elements:
         solids = on_floor(element, z, site.spec.storey)
         found[element.role] += [tuple(outline(solid, (0, 1))) for solid in solids]
-    ground = [p for shape in found[Role.GROUND] for p in shape]
-    above = [
-        p
-        for role, parts in found.items()
-        if role is not Role.GROUND
-        for part in parts
-        for p in part
-    ]
+    return tuple((role, tuple(shapes)) for role, shapes in found.items() if shapes)
+
+
+def _bounds(shapes: Shapes) -> Rectangle:
+    """What is shown of a floor: what stands there, with some ground around it if there is any."""
+    ground = [p for role, parts in shapes if role is Role.GROUND for part in parts for p in part]
+    above = [p for role, parts in shapes if role is not Role.GROUND for part in parts for p in part]
     if ground:
-        bounds = _common(_around(above or ground, _GROUND), _around(ground, 0.0))
-    else:
-        bounds = _around(above, _EDGE)
-    shapes = tuple((role, tuple(shapes)) for role, shapes in found.items() if shapes)
-    return FloorPlan(number, bounds, shapes)
+        return _common(_around(above or ground, _GROUND), _around(ground, 0.0))
+    return _around(above, _EDGE)
 
 
 def _around(points: Sequence[Point], margin: float) -> Rectangle:
     xs, ys = [p[0] for p in points], [p[1] for p in points]
     return min(xs) - margin, min(ys) - margin, max(xs) + margin, max(ys) + margin
+
+
+def _union(rectangles: Iterable[Rectangle]) -> Rectangle:
+    x0, y0, x1, y1 = zip(*rectangles, strict=True)
+    return min(x0), min(y0), max(x1), max(y1)
 
 
 def _common(a: Rectangle, b: Rectangle) -> Rectangle:

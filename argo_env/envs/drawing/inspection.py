@@ -1,17 +1,14 @@
 """Inspections as pictures."""
 
 from collections.abc import Sequence
-from functools import lru_cache
 
 import numpy as np
 from numpy.typing import NDArray
 
-from argo_env.envs.drawing.floors import plans_of
-from argo_env.envs.drawing.plan import Marker, Scene, Station, draw_scene
-from argo_env.envs.drawing.sheet import Sheet, make_sheet
+from argo_env.envs.drawing.plan import Marker, PlanDrawing, Station, draw_plan
+from argo_env.envs.drawing.sites import site_sheet
 from argo_env.envs.drawing.way import Moment
 from argo_env.envs.inspection_run import Inspection
-from argo_env.navigation import Navigator
 
 _LEGEND = {
     "open": "to be read",
@@ -23,7 +20,7 @@ _LEGEND = {
 
 
 def draw_inspection(
-    navigator: Navigator,
+    scenario: str,
     run: Inspection,
     states: Sequence[str],
     chosen: int | None,
@@ -32,7 +29,7 @@ def draw_inspection(
 ) -> NDArray[np.uint8]:
     """The run so far: the state of each checkpoint, in the order of their numbers; the place that
     was `chosen` last, and the place in the order of the docks of the one where it has to `end`."""
-    site = navigator.site
+    site = run.navigator.site
     way = [Moment(t, p.x, p.y, site.floor_at(p.z)) for t, p in run.trail]
     asked = {c.floor for c, s in zip(site.checkpoints, states, strict=True) if s != "outside"}
     markers = [
@@ -45,17 +42,11 @@ def draw_inspection(
         name = f"dock {number}, end" if k == end else f"dock {number}"
         stations.append(Station(pose.x, pose.y, site.floor_at(pose.z), name))
     used = asked | {s.floor for s in stations} | {spot.floor for spot in way}
-    sheet = site_sheet(navigator, min(used), max(used), tuple(sorted(asked)))
+    sheet = site_sheet(scenario, min(used), max(used), tuple(sorted(asked)))
     shown = [marker for marker in markers if marker.floor in sheet.panels]
     noticed = ", ".join(dict.fromkeys(kind.value.replace("_", " ") for kind in run.noticed))
     headline += f"    noticed: {noticed or 'nothing'}"
-    kinds = {marker.state for marker in shown} | set(_LEGEND) - {"outside"}
-    legend = {state: meaning for state, meaning in _LEGEND.items() if state in kinds}
-    return draw_scene(sheet, Scene(headline, shown, stations, way, run.pose.yaw, legend))
-
-
-@lru_cache(maxsize=8)
-def site_sheet(navigator: Navigator, low: int, high: int, asked: tuple[int, ...]) -> Sheet:
-    """The floors of a site from `low` to `high`; those that are not asked for are pale."""
-    plans = [plan for plan in plans_of(navigator) if low <= plan.number <= high]
-    return make_sheet(plans, [p.number for p in plans if p.number not in asked])
+    footprint, heading = run.navigator.robot.footprint, run.pose.yaw
+    return draw_plan(
+        sheet, PlanDrawing(headline, shown, stations, way, heading, footprint, _LEGEND)
+    )

@@ -1,19 +1,46 @@
 """The headline of a picture, and the legend and scales below it."""
 
 from collections.abc import Mapping
+from dataclasses import dataclass
 
 from PIL import ImageDraw
 
 from argo_env.envs.drawing.sheet import FINER, FOOT, HEAD, INK, SIZE, SOFT, Sheet, font
-from argo_env.envs.drawing.style import STAIRS, paint_disc, paint_ring, paint_robot, paint_stairs
+from argo_env.envs.drawing.style import (
+    POINT,
+    STAIRS,
+    paint_disc,
+    paint_point,
+    paint_ring,
+    paint_robot,
+    paint_stairs,
+)
 from argo_env.report.svg import shorten
 from argo_env.report.track import colour
+from argo_env.robot.spec import Footprint
 
+_ROBOT = 18.0 * FINER  # px long
 _LEFT = 16.0 * FINER
 _BAR = 90.0 * FINER  # px long, of times
 _BARS = (1, 2, 5, 10, 20, 50)
 """m"""
 _LONGEST = 110.0 * FINER  # px of the bar of lengths
+
+
+@dataclass(frozen=True)
+class Shown:
+    """What there is in a picture that has to be explained."""
+
+    states: Mapping[str, str]
+    """of checkpoints, and what they mean"""
+    chosen: bool
+    """whether one was chosen last"""
+    footprint: Footprint | None
+    """of the robot; None: it is a point"""
+    stairs: bool
+    """whether any were taken"""
+    end: float | None
+    """s, the time of the end of the way; None: there is no way"""
 
 
 def draw_headline(draw: ImageDraw.ImageDraw, text: str) -> None:
@@ -24,23 +51,27 @@ def draw_headline(draw: ImageDraw.ImageDraw, text: str) -> None:
     draw.text((_LEFT, HEAD * FINER / 2), text, fill=INK, font=face, anchor="lm")
 
 
-def draw_legend(
-    draw: ImageDraw.ImageDraw, sheet: Sheet, states: Mapping[str, str], end: float
-) -> None:
-    """What the states and marks mean, and the scales of time (s, up to `end`) and length."""
+def draw_legend(draw: ImageDraw.ImageDraw, sheet: Sheet, shown: Shown) -> None:
+    """What the states and marks mean, and the scales of time and length."""
     x, y = _LEFT, (SIZE[1] - FOOT / 2) * FINER
-    for state, meaning in states.items():
+    for state, meaning in shown.states.items():
         paint_disc(draw, (x + 7 * FINER, y), 7.0, state, "")
         x = _word(draw, meaning, x + 19 * FINER, y)
-    paint_ring(draw, (x + 7 * FINER, y), 4.0)
-    x = _word(draw, "chosen last", x + 20 * FINER, y)
-    paint_robot(draw, (x + 9 * FINER, y), 18 * FINER, 0.0)
+    if shown.chosen:
+        paint_ring(draw, (x + 7 * FINER, y), 4.0)
+        x = _word(draw, "chosen last", x + 20 * FINER, y)
+    if shown.footprint:
+        length = shown.footprint.front + shown.footprint.rear
+        paint_robot(draw, (x + 9 * FINER, y), shown.footprint, _ROBOT / length, 0.0)
+    else:
+        paint_point(draw, (x + POINT * FINER, y))
     x = _word(draw, "robot", x + 22 * FINER, y)
-    paint_stairs(draw, (x + STAIRS[0] * FINER, y), 2, True, colour(0.5))
-    _word(draw, "stairs taken", x + (2 * STAIRS[0] + 4) * FINER, y)
+    if shown.stairs:
+        paint_stairs(draw, (x + STAIRS[0] * FINER, y), 2, True, colour(0.5))
+        _word(draw, "stairs taken", x + (2 * STAIRS[0] + 4) * FINER, y)
     right = _length(draw, sheet, SIZE[0] * FINER - _LEFT, y) - 22 * FINER
-    if end > 0:
-        _times(draw, right, y, end)
+    if shown.end is not None:
+        _times(draw, right, y, shown.end)
 
 
 def _word(draw: ImageDraw.ImageDraw, text: str, x: float, y: float) -> float:

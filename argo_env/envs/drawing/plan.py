@@ -7,18 +7,20 @@ import numpy as np
 from numpy.typing import NDArray
 from PIL import ImageDraw
 
-from argo_env.envs.drawing.legend import draw_headline, draw_legend
+from argo_env.envs.drawing.legend import Shown, draw_headline, draw_legend
 from argo_env.envs.drawing.sheet import FINER, INK, PAPER, Pixel, Sheet, font
 from argo_env.envs.drawing.spots import Spots
 from argo_env.envs.drawing.style import (
-    FOOTPRINT,
+    POINT,
     STYLES,
     disc,
     paint_disc,
+    paint_point,
     paint_ring,
     paint_robot,
 )
 from argo_env.envs.drawing.way import Moment, draw_crossings, draw_lines, lines
+from argo_env.robot.spec import Footprint
 
 _SHORTEST = 17.0  # px that the robot is long at least
 _STATION = 7.0  # px from the middle of a station's mark to its sides
@@ -50,7 +52,7 @@ class Station:
 
 
 @dataclass(frozen=True)
-class Scene:
+class PlanDrawing:
     """What a picture shows."""
 
     headline: str
@@ -58,43 +60,56 @@ class Scene:
     stations: Sequence[Station]
     way: Sequence[Moment]
     """to where the robot is now"""
-    heading: float | None
-    """rad, of the robot; None: it is a point"""
+    heading: float
+    """rad, of the robot"""
+    footprint: Footprint | None
+    """of the robot; None: it is a point"""
     legend: Mapping[str, str]
     """what the states of markers mean"""
 
 
-def draw_scene(sheet: Sheet, scene: Scene) -> NDArray[np.uint8]:
+def draw_plan(sheet: Sheet, plan: PlanDrawing) -> NDArray[np.uint8]:
     """The picture, shape (720, 1280, 3)."""
     image = sheet.image.copy()
     draw = ImageDraw.Draw(image)
     spots = Spots(sheet)
-    stations = [sheet.at(s.x, s.y, s.floor) for s in scene.stations]
+    stations = [sheet.at(s.x, s.y, s.floor) for s in plan.stations]
     for place in stations:
         spots.take(place, (_STATION + 1.0) * FINER, (_STATION + 1.0) * FINER)
-    now, length = scene.way[-1], max(FOOTPRINT[0] * sheet.scale, _SHORTEST * FINER)
+    now, scale, reach = plan.way[-1], sheet.scale, POINT * FINER
     robot = sheet.at(now.x, now.y, now.floor)
-    if scene.heading is not None:
-        spots.take(robot, length / 2, length / 2)
-    discs = [_place_disc(sheet, spots, marker) for marker in scene.markers]
-    way = lines(sheet, scene.way)
+    if plan.footprint:
+        front, rear = plan.footprint.front, plan.footprint.rear
+        scale = max(scale, _SHORTEST * FINER / (front + rear))
+        reach = max(front, rear) * scale
+    spots.take(robot, reach, reach)
+    discs = [_place_disc(sheet, spots, marker) for marker in plan.markers]
+    way = lines(sheet, plan.way)
     for line in way:
         spots.pass_by(line.points)
     draw_lines(draw, way)
-    if scene.heading is None:
-        paint_ring(draw, robot, _STATION)
     for x, y in stations:
         r = _STATION * FINER
         draw.rectangle((x - r, y - r, x + r, y + r), fill=INK, outline=PAPER, width=FINER)
-    if scene.heading is not None:
-        paint_robot(draw, robot, length, scene.heading)
-    draw_crossings(draw, sheet, spots, scene.way)
-    for marker, place in zip(scene.markers, discs, strict=True):
-        _draw_marker(draw, sheet, marker, place)
-    for station, place in zip(scene.stations, stations, strict=True):
+    for marker, place in zip(plan.markers, discs, strict=True):
+        _draw_pointer(draw, sheet, marker, place)
+    if plan.footprint:
+        paint_robot(draw, robot, plan.footprint, scale, plan.heading)
+    else:
+        paint_point(draw, robot)
+    stairs = draw_crossings(draw, sheet, spots, plan.way)
+    for marker, place in zip(plan.markers, discs, strict=True):
+        if marker.chosen:
+            paint_ring(draw, place, marker.radius)
+        paint_disc(draw, place, marker.radius, marker.state, marker.name)
+    for station, place in zip(plan.stations, stations, strict=True):
         _draw_name(draw, spots, station, place)
-    draw_headline(draw, scene.headline)
-    draw_legend(draw, sheet, scene.legend, scene.way[-1].t)
+    draw_headline(draw, plan.headline)
+    there = {marker.state for marker in plan.markers}
+    states = {state: meaning for state, meaning in plan.legend.items() if state in there}
+    chosen = any(marker.chosen for marker in plan.markers)
+    end = now.t if way else None
+    draw_legend(draw, sheet, Shown(states, chosen, plan.footprint, stairs, end))
     return np.asarray(image.reduce(FINER), dtype=np.uint8)
 
 
@@ -104,15 +119,13 @@ def _place_disc(sheet: Sheet, spots: Spots, marker: Marker) -> Pixel:
     return spots.nearest(sheet.at(marker.x, marker.y, marker.floor), size, size, marker.floor)
 
 
-def _draw_marker(draw: ImageDraw.ImageDraw, sheet: Sheet, marker: Marker, place: Pixel) -> None:
+def _draw_pointer(draw: ImageDraw.ImageDraw, sheet: Sheet, marker: Marker, place: Pixel) -> None:
+    """A line from a disc that is beside its checkpoint to where that is."""
     true = sheet.at(marker.x, marker.y, marker.floor)
     if place != true:
         ink = STYLES[marker.state].rim
         draw.line([true, place], fill=ink, width=2 * FINER)
         disc(draw, true, 3.0 * FINER, ink)
-    if marker.chosen:
-        paint_ring(draw, place, marker.radius)
-    paint_disc(draw, place, marker.radius, marker.state, marker.name)
 
 
 def _draw_name(draw: ImageDraw.ImageDraw, spots: Spots, station: Station, place: Pixel) -> None:

@@ -1,21 +1,23 @@
 """Routes as pictures: where the way leads depends on where the instances come from."""
 
-from collections.abc import Callable, Collection, Sequence
+from collections.abc import Collection, Sequence
 from itertools import pairwise
+from typing import Protocol
 
 import numpy as np
 from numpy.typing import NDArray
 
 from argo_compiler.model import Pose
 from argo_env.envs.drawing.floors import FloorPlan, aisles, open_floors
-from argo_env.envs.drawing.inspection import site_sheet
-from argo_env.envs.drawing.plan import Marker, Scene, Station, draw_scene
+from argo_env.envs.drawing.plan import Marker, PlanDrawing, Station, draw_plan
 from argo_env.envs.drawing.sheet import Sheet, make_sheet
+from argo_env.envs.drawing.sites import site_sheet
 from argo_env.envs.drawing.way import Moment
 from argo_env.envs.route_instance import DOCK, RouteInstance
 from argo_env.envs.route_sources import DEPTH, WIDTH, RandomRoutes, RouteSource, SiteRoutes
 from argo_env.envs.sites import navigator_of
 from argo_env.navigation import Navigator
+from argo_env.robot.spec import Footprint
 
 Place = tuple[float, float, int]
 """x, y (m) and floor"""
@@ -59,11 +61,12 @@ def draw_route(
     stations = [Station(*places[DOCK], "start, dock" if together else "dock")]
     if not together:
         stations.append(Station(*places[start], "start"))
-    way, heading = [Moment(0.0, *places[route[0]])], None
-    leg = _legs(source)
+    legs = _legs_of(source)
+    first, heading = legs.stand(places[route[0]])
+    way = [Moment(0.0, *first)]
     for a, b in pairwise(route):
         t, took = way[-1].t, float(instance.arrival[a, b])
-        part, heading = leg(places[a], places[b])
+        part, heading = legs.go(places[a], places[b])
         way += [Moment(t + took * k / max(len(part) - 1, 1), *p) for k, p in enumerate(part)]
     asked = {marker.floor for marker in markers if marker.state != "outside"}
     used = asked | {station.floor for station in stations} | {moment.floor for moment in way}
@@ -73,8 +76,9 @@ def draw_route(
     wanted = sum(marker.state not in {"closed", "outside"} for marker in markers)
     headline = f"{time:.0f} s of {instance.budget:.0f} s    prize {prize:.2f}    visited "
     headline += f"{len(visited)} of {wanted}"
-    legend = {state: _LEGEND[state] for state in _LEGEND if state != "outside" or floors}
-    return draw_scene(sheet, Scene(headline, shown, stations, way, heading, legend))
+    return draw_plan(
+        sheet, PlanDrawing(headline, shown, stations, way, heading, legs.footprint, _LEGEND)
+    )
 
 
 def _sheet(
@@ -83,7 +87,7 @@ def _sheet(
     """The floors from `low` to `high`; if some are asked for, the others are pale."""
     numbers = range(low, high + 1)
     if isinstance(source, SiteRoutes):
-        return site_sheet(navigator_of(source.scenario), low, high, asked or tuple(numbers))
+        return site_sheet(source.scenario, low, high, asked or tuple(numbers))
     plans: tuple[FloorPlan, ...]
     if isinstance(source, RandomRoutes):
         plans = aisles(WIDTH, DEPTH, high)[low - 1 :]
@@ -92,41 +96,73 @@ def _sheet(
     return make_sheet(plans, [n for n in numbers if asked and n not in asked])
 
 
-Leg = Callable[[Place, Place], tuple[list[Place], float | None]]
-"""the way from place to place, and the heading at its end (rad) if it is known"""
+class _Legs(Protocol):
+    """The ways from place to place."""
+
+    footprint: Footprint | None
+    """of the robot; None: it is a point"""
+
+    def stand(self, place: Place) -> tuple[Place, float]:
+        """Where the robot stands when it is at a place, and its heading (rad)."""
+        ...
+
+    def go(self, a: Place, b: Place) -> tuple[list[Place], float]:
+        """The way, and the heading at its end."""
+        ...
 
 
-def _legs(source: RouteSource) -> Leg:
-    if isinstance(source, SiteRoutes):
-        return _site_legs(navigator_of(source.scenario))
-    return _aisle_leg if isinstance(source, RandomRoutes) else lambda a, b: ([a, b], None)
+class _StraightLegs:
+    """From place to place, as of their site nothing is known."""
+
+    footprint: Footprint | None = None
+
+    def stand(self, place: Place) -> tuple[Place, float]:
+        return place, 0.0
+
+    def go(self, a: Place, b: Place) -> tuple[list[Place], float]:
+        return [a, b], 0.0
 
 
-def _aisle_leg(a: Place, b: Place) -> tuple[list[Place], float | None]:
+class _AisleLegs(_StraightLegs):
     """As the travel times of random routes count: along aisles, and by the stairs at x = 0."""
-    if a[2] == b[2]:
-        return [a, (b[0], a[1], a[2]), b], None
-    return [a, (0.0, a[1], a[2]), (0.0, b[1], a[2]), (0.0, b[1], b[2]), b], None
+
+    def go(self, a: Place, b: Place) -> tuple[list[Place], float]:
+        if a[2] == b[2]:
+            return [a, (b[0], a[1], a[2]), b], 0.0
+        return [a, (0.0, a[1], a[2]), (0.0, b[1], a[2]), (0.0, b[1], b[2]), b], 0.0
 
 
-def _site_legs(navigator: Navigator) -> Leg:
-    """The paths that the robot's planner finds."""
-    site = navigator.site
-    ids = {(c.position[0], c.position[1], c.floor): c.id for c in site.checkpoints}
+class _SiteLegs:
+    """The paths that the robot's planner finds on a site."""
 
-    def pose(place: Place) -> Pose:
-        if place in ids:
-            return navigator.viewing_pose(ids[place])
-        return navigator.snap(site.docks[min(site.docks)])
+    footprint: Footprint | None
 
-    def leg(a: Place, b: Place) -> tuple[list[Place], float | None]:
-        path = navigator.plan(pose(a), pose(b))
+    def __init__(self, navigator: Navigator) -> None:
+        self._navigator, self._site = navigator, navigator.site
+        self.footprint = navigator.robot.footprint
+        self._ids = {(c.position[0], c.position[1], c.floor): c.id for c in self._site.checkpoints}
+
+    def stand(self, place: Place) -> tuple[Place, float]:
+        pose = self._pose(place)
+        return (pose.x, pose.y, place[2]), pose.yaw
+
+    def go(self, a: Place, b: Place) -> tuple[list[Place], float]:
+        path = self._navigator.plan(self._pose(a), self._pose(b))
         way: list[Place] = []
         for motion in path.motions:
             count = max(1, round(motion.length / _STEP))
             for k in range(count + 1):
                 p = motion.at(k / count)
-                way.append((p.x, p.y, site.floor_at(p.z)))
+                way.append((p.x, p.y, self._site.floor_at(p.z)))
         return way or [a], path.end.yaw
 
-    return leg
+    def _pose(self, place: Place) -> Pose:
+        if place in self._ids:
+            return self._navigator.viewing_pose(self._ids[place])
+        return self._navigator.snap(self._site.docks[min(self._site.docks)])
+
+
+def _legs_of(source: RouteSource) -> _Legs:
+    if isinstance(source, SiteRoutes):
+        return _SiteLegs(navigator_of(source.scenario))
+    return _AisleLegs() if isinstance(source, RandomRoutes) else _StraightLegs()

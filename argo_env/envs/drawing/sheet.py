@@ -90,10 +90,14 @@ def make_sheet(plans: Sequence[FloorPlan], dim: Sequence[int] = ()) -> Sheet:
     return Sheet(panels, scale, image)
 
 
-@lru_cache(maxsize=64)
 def font(size: float) -> Font:
     """The font of pictures, for a height in px of the picture."""
-    return ImageFont.load_default(size * FINER)
+    return _font(round(size * FINER))
+
+
+@lru_cache(maxsize=64)
+def _font(size: int) -> Font:
+    return ImageFont.load_default(size)
 
 
 @dataclass(frozen=True)

@@ -7,12 +7,13 @@ from dataclasses import dataclass
 from PIL import ImageDraw
 
 from argo_env.envs.drawing.sheet import FINER, PAPER, Pixel, font
+from argo_env.robot.spec import Footprint
 
 Ink = str | tuple[int, int, int]
 
 ROBOT = (29, 78, 216)
-FOOTPRINT = (1.0, 0.6)
-"""m, length and width of the robot"""
+POINT = 8.0
+"""px from the middle of the sign of a robot that is a point to its corners"""
 STAIRS = (15.0, 8.0)
 """px from the middle of the mark of stairs to its sides, and to its top and bottom"""
 
@@ -53,21 +54,29 @@ def paint_disc(
 
 
 def paint_ring(draw: ImageDraw.ImageDraw, place: Pixel, radius: float) -> None:
-    """A ring of that inner radius (px of the picture), in the robot's colour."""
+    """The ring about a checkpoint that was chosen; `radius` of its disc in px of the picture."""
     for wider, ink in ((5.0, PAPER), (4.5, ROBOT), (1.5, PAPER)):
         disc(draw, place, (radius + wider) * FINER, ink)
 
 
-def paint_robot(draw: ImageDraw.ImageDraw, place: Pixel, length: float, heading: float) -> None:
-    """The robot's footprint with its front; `length` in px of the finer picture."""
-    half = length / 2
-    wide = half * FOOTPRINT[1] / FOOTPRINT[0]
-    body = ((-half, -wide), (half, -wide), (half, wide), (-half, wide))
-    nose = ((0.1 * half, -0.6 * wide), (0.75 * half, 0.0), (0.1 * half, 0.6 * wide))
-    rim = 1.0 + 1.5 * FINER / wide
-    draw.polygon(turned(body, place, -heading, rim), fill=PAPER)
-    draw.polygon(turned(body, place, -heading), fill=ROBOT)
+def paint_robot(
+    draw: ImageDraw.ImageDraw, place: Pixel, footprint: Footprint, scale: float, heading: float
+) -> None:
+    """The robot's footprint with its front; `scale` in px of the finer picture for 1 m."""
+    front, rear, wide = (scale * v for v in (footprint.front, footprint.rear, footprint.half_width))
+    for rim, ink in ((1.5 * FINER, PAPER), (0.0, ROBOT)):
+        x0, x1, y = -rear - rim, front + rim, wide + rim
+        body = ((x0, -y), (x1, -y), (x1, y), (x0, y))
+        draw.polygon(turned(body, place, -heading), fill=ink)
+    nose = ((0.1 * front, -0.6 * wide), (0.75 * front, 0.0), (0.1 * front, 0.6 * wide))
     draw.polygon(turned(nose, place, -heading), fill=PAPER)
+
+
+def paint_point(draw: ImageDraw.ImageDraw, place: Pixel) -> None:
+    """The sign of a robot that is a point: a diamond."""
+    for share, ink in ((1.3, PAPER), (1.0, ROBOT), (0.4, PAPER)):
+        r = share * POINT * FINER
+        draw.polygon(turned(((-r, 0.0), (0.0, -r), (r, 0.0), (0.0, r)), place, 0.0), fill=ink)
 
 
 def paint_stairs(draw: ImageDraw.ImageDraw, place: Pixel, floor: int, up: bool, ink: Ink) -> None:

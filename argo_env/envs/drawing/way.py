@@ -88,19 +88,23 @@ def draw_lines(draw: ImageDraw.ImageDraw, way: Sequence[Line]) -> None:
 
 def draw_crossings(
     draw: ImageDraw.ImageDraw, sheet: Sheet, spots: Spots, way: Sequence[Moment]
-) -> None:
-    """A mark where stairs were taken, with the floor that they connect to."""
-    marked: list[tuple[Moment, int]] = []
+) -> bool:
+    """A mark where stairs were taken, with the floor that they connect to; whether any were."""
+    marked: list[tuple[Moment, int, str]] = []
     for here, other, ink in _crossings(way):
-        if any(_same(here, other, *one) for one in marked):
-            continue
-        marked.append((here, other))
+        if not any(_same(here, other, one, to) for one, to, _ in marked):
+            marked.append((here, other, ink))
+    places = []
+    for here, _, ink in marked:
         true = sheet.at(here.x, here.y, here.floor)
         place = spots.beside(true, STAIRS[0] * FINER, STAIRS[1] * FINER, here.floor)
+        places.append(place)
         draw.line([true, place], fill=ink, width=round(1.5 * FINER))
         disc(draw, true, 4.0 * FINER, PAPER)
         disc(draw, true, 3.0 * FINER, ink)
+    for (here, other, ink), place in zip(marked, places, strict=True):
         paint_stairs(draw, place, other, other > here.floor, ink)
+    return bool(marked)
 
 
 def _crossings(way: Sequence[Moment]) -> Iterator[tuple[Moment, int, str]]:

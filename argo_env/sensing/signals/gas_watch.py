@@ -107,7 +107,8 @@ class GasWatch:
         self._leaks.append(self._here)
         near = self._map.nearest_equipment((pose.x, pose.y, pose.z + 0.5))
         signs = [f"gas, {ppm:.0f} ppm"] * smelt + [f"a hiss, {level:.0f} dB at 40 kHz"] * heard
-        return (Finding(EventKind.GAS_LEAK, f"{' and '.join(signs)}, near {near}", _place(pose)),)
+        detail = f"{' and '.join(signs)}, near {near}"
+        return (Finding(EventKind.GAS_LEAK, detail, noticed_from=_place(pose)),)
 
     def _all_clear(self, now: float, pose: BodyPose) -> tuple[Finding, ...]:
         here = [leak for leak in self._leaks if _apart(pose, leak.worst) <= NEAR]
@@ -119,7 +120,7 @@ class GasWatch:
             return ()
         self._leaks = [leak for leak in self._leaks if leak not in here]
         detail = "there is no gas any more where it was"
-        return (Finding(EventKind.ALL_CLEAR, detail, _place(pose)),)
+        return (Finding(EventKind.ALL_CLEAR, detail, noticed_from=_place(pose)),)
 
 
 def _place(pose: BodyPose) -> Vector:

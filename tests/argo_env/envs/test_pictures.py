@@ -1,22 +1,27 @@
 """Pictures of routes and inspections: what is in them, and that they change nothing."""
 
+from dataclasses import replace
 from itertools import pairwise
 
 import numpy as np
 import pytest
 from hypothesis import example, given, settings
 from hypothesis import strategies as st
-from PIL import ImageColor
+from PIL import ImageColor, ImageDraw
 
+from argo_env.envs.drawing.drive import GOAL
 from argo_env.envs.drawing.floors import aisles, open_floors, plans_of
-from argo_env.envs.drawing.plan import Marker, Scene, Station, draw_scene
+from argo_env.envs.drawing.plan import Marker, PlanDrawing, Station, draw_plan
 from argo_env.envs.drawing.sheet import FINER, FOOT, HEAD, SIZE, make_sheet
 from argo_env.envs.drawing.spots import Spots
-from argo_env.envs.drawing.style import ROBOT, STYLES
-from argo_env.envs.drawing.way import Moment, lines
+from argo_env.envs.drawing.style import POINT, ROBOT, STYLES
+from argo_env.envs.drawing.way import Moment, draw_lines, lines
+from argo_env.envs.drive import DriveEnv
 from argo_env.envs.inspection import InspectEnv
 from argo_env.envs.route import RouteEnv, RouteVectorEnv
 from argo_env.envs.route_instance import make_instance
+from argo_env.report.track import colour
+from argo_env.robot.spec import Footprint
 from argo_env.site.shapes import Role
 from tests.argo_env.envs import rollouts
 from tests.conftest import examples
@@ -40,16 +45,23 @@ def differs(one, other):
     return bool((one != other).any())
 
 
-def scene(**changed):
+def draw(sheet, **changed):
+    """A picture of a plan with little on it, but for what is changed."""
     parts = {
         "headline": "10 s",
         "markers": [],
         "stations": [],
         "way": [Moment(0.0, 15.0, 15.0, 1)],
-        "heading": None,
+        "heading": 0.0,
+        "footprint": None,
         "legend": {},
     }
-    return Scene(**(parts | changed))
+    return draw_plan(sheet, PlanDrawing(**(parts | changed)))
+
+
+def legend_of(picture):
+    """The part of a picture that explains what is in it, less the scale of lengths."""
+    return picture[-FOOT:, : SIZE[0] - 200]
 
 
 @settings(max_examples=examples(60), deadline=None)
@@ -95,7 +107,7 @@ def test_discs_do_not_cover_one_another(points):
 
 
 def test_plans_show_the_site(navigator):
-    plans = plans_of(navigator)
+    plans = plans_of(navigator.site)
     assert [plan.number for plan in plans] == [f.number for f in navigator.site.spec.floors]
     for plan in plans:
         roles = {role for role, _ in plan.shapes}
@@ -112,32 +124,104 @@ def test_plans_show_the_site(navigator):
         assert y0 + 0.5 <= pose.y <= y1 - 0.5
 
 
+def test_upper_floors_have_one_frame(navigator):
+    site = navigator.site
+    # With less on its upper three floors: as they are, all reach equally far.
+    height = site.spec.floors[3].z - 0.5
+    places = [(e, e.solids[0].center) for e in site.elements]
+    less = tuple(e for e, (x, _, z) in places if z < height or 3.0 < x < 11.0)
+    plans = plans_of(replace(site, elements=less))
+    assert len({plan.bounds for plan in plans[1:]}) == 1
+    lowest, upper = plans[0].bounds, plans[1].bounds
+    # The ground is larger, and reaches as far as all that is above it.
+    assert all(a < b for a, b in zip(lowest[:2], upper[:2], strict=True))
+    assert all(a > b for a, b in zip(lowest[2:], upper[2:], strict=True))
+    for plan in plans[1:]:
+        points = [p for role, shapes in plan.shapes for shape in shapes for p in shape]
+        assert all(upper[0] <= x <= upper[2] and upper[1] <= y <= upper[3] for x, y in points)
+
+
 def test_states_look_different():
     sheet = make_sheet(aisles(30.0, 20.0, 2))
     pictures = {
-        state: near(
-            draw_scene(sheet, scene(markers=[Marker(5.0, 5.0, 2, "7", state)])), sheet, 5, 5, 2
-        )
+        state: near(draw(sheet, markers=[Marker(5.0, 5.0, 2, "7", state)]), sheet, 5, 5, 2)
         for state in STYLES
     }
     for state, part in pictures.items():
         assert has(part, STYLES[state].fill)
         assert all(differs(part, other) for name, other in pictures.items() if name != state)
-    chosen = scene(markers=[Marker(5.0, 5.0, 2, "7", "open", chosen=True)])
-    assert has(near(draw_scene(sheet, chosen), sheet, 5, 5, 2, 18), ROBOT)
-    other = scene(markers=[Marker(5.0, 5.0, 2, "8", "open")])
-    assert differs(near(draw_scene(sheet, other), sheet, 5, 5, 2), pictures["open"])
+    chosen = draw(sheet, markers=[Marker(5.0, 5.0, 2, "7", "open", chosen=True)])
+    assert has(near(chosen, sheet, 5, 5, 2, 18), ROBOT)
+    other = draw(sheet, markers=[Marker(5.0, 5.0, 2, "8", "open")])
+    assert differs(near(other, sheet, 5, 5, 2), pictures["open"])
 
 
-def test_the_name_of_a_dock_is_not_covered():
+def test_the_legend_has_what_is_in_the_picture(navigator):
+    sheet = make_sheet(aisles(30.0, 20.0, 2))
+    meanings = {"open": "to be read", "done": "read"}
+    one = Marker(5.0, 5.0, 2, "7", "open")
+    way = [Moment(0.0, 15.0, 15.0, 1), Moment(10.0, 20.0, 15.0, 1)]
+    plain = legend_of(draw(sheet, legend=meanings))
+    assert not any(has(plain, STYLES[state].fill) for state in meanings)
+    parts = {
+        "a checkpoint": {"markers": [one]},
+        "another state": {"markers": [one, Marker(9.0, 5.0, 2, "8", "done")]},
+        "the one chosen last": {"markers": [replace(one, chosen=True)]},
+        "a footprint": {"footprint": navigator.robot.footprint},
+        "a way": {"way": [*way, Moment(20.0, 20.0, 5.0, 1)]},
+        "a way over stairs": {"way": [*way, Moment(20.0, 20.0, 15.0, 2)]},
+    }
+    drawn = {name: legend_of(draw(sheet, legend=meanings, **part)) for name, part in parts.items()}
+    for name, part in drawn.items():
+        assert differs(part, plain)
+        assert all(differs(part, other) for also, other in drawn.items() if also != name)
+    assert has(drawn["another state"], STYLES["done"].fill)
+    assert not has(drawn["a checkpoint"], STYLES["done"].fill)
+
+
+def test_no_line_crosses_a_disc():
+    """Discs that have to make room are joined to their places below all the others."""
+    sheet = make_sheet(aisles(30.0, 20.0, 1))
+    crowd = [Marker(15.0, 10.0, 1, "", "open") for _ in range(12)]
+    picture = draw(sheet, markers=crowd, way=[Moment(0.0, 1.0, 1.0, 1)])
+    spots = Spots(sheet)
+    spots.take(sheet.at(1.0, 1.0, 1), POINT * FINER, POINT * FINER)
+    half = (crowd[0].radius + 1.0) * FINER
+    for marker in crowd:
+        x, y = spots.nearest(sheet.at(marker.x, marker.y, 1), half, half, 1)
+        column, row = round(x / FINER), round(y / FINER)
+        disc = picture[row - 5 : row + 6, column - 5 : column + 6]
+        assert not has(disc, STYLES["open"].rim)
+
+
+def test_the_footprint_is_drawn_to_scale():
+    sheet = make_sheet(aisles(30.0, 20.0, 1))
+    way = [Moment(0.0, 15.0, 10.0, 1)]
+    robot = Footprint(front=1.0, rear=2.0, half_width=0.5)
+    picture = draw(sheet, footprint=robot, way=way)
+    rows, columns = np.nonzero((picture[HEAD:-FOOT] == ROBOT).all(axis=-1))
+    x, y = (v / FINER for v in sheet.at(15.0, 10.0, 1))
+    scale = sheet.scale / FINER
+    assert columns.max() - x == pytest.approx(1.0 * scale, abs=2.0)
+    assert x - columns.min() == pytest.approx(2.0 * scale, abs=2.0)
+    assert rows.max() + HEAD - y == pytest.approx(0.5 * scale, abs=2.0)
+
+
+def test_the_name_of_a_dock_is_not_covered(navigator):
     """By the robot, the way or the checkpoints: it is there as a whole, in every such picture."""
     sheet = make_sheet(aisles(30.0, 20.0, 1))
     dock = Station(15.0, 10.0, 1, "dock")
     crowd = [Marker(15.0 + dx, 10.0 + dy, 1, "9", "open") for dx in (-1, 1, 2) for dy in (-1, 0, 1)]
     way = [Moment(0.0, 15.0, 10.0, 1), Moment(5.0, 25.0, 10.0, 1), Moment(10.0, 15.0, 10.0, 1)]
-    alone = draw_scene(sheet, scene(stations=[dock], headline=""))
-    full = draw_scene(
-        sheet, scene(stations=[dock], headline="", markers=crowd, way=way, heading=1.0)
+    alone = draw(sheet, stations=[dock], headline="")
+    full = draw(
+        sheet,
+        stations=[dock],
+        headline="",
+        markers=crowd,
+        way=way,
+        heading=1.0,
+        footprint=navigator.robot.footprint,
     )
     plate = near(alone, sheet, 15.0, 10.0, 1, 40)[:, 49:88]  # at the right of its mark
     rows, columns = np.nonzero((plate == 255).all(axis=-1))
@@ -154,8 +238,12 @@ def test_the_name_of_a_dock_is_not_covered():
 
 def test_the_way_is_drawn_between_floors():
     sheet = make_sheet(aisles(30.0, 20.0, 2))
-    stay = [Moment(0.0, 20.0, 10.0, 1), Moment(50.0, 5.0, 10.0, 1)]
-    climb = [*stay, Moment(60.0, 5.0, 4.0, 2), Moment(90.0, 25.0, 4.0, 2)]
+    climb = [
+        Moment(0.0, 20.0, 10.0, 1),
+        Moment(50.0, 5.0, 10.0, 1),
+        Moment(60.0, 5.0, 4.0, 2),
+        Moment(90.0, 25.0, 4.0, 2),
+    ]
     drawn = lines(sheet, climb)
     assert len(drawn) == 2  # no line from floor to floor
     for line, number in zip(drawn, (1, 2), strict=True):
@@ -163,11 +251,18 @@ def test_the_way_is_drawn_between_floors():
         assert (line.points[:, 0] >= panel.left).all()
         assert (line.points[:, 0] <= panel.left + panel.width).all()
         assert all(a <= b for a, b in pairwise(line.shades))
-    before, after = (draw_scene(sheet, scene(way=way)) for way in (stay, climb))
-    # A mark at the upper end and at the lower one, with a sign in white.
-    for floor, y in ((1, 10.0), (2, 4.0)):
-        part = near(after, sheet, 5.0, y, floor, 30)
-        assert differs(part, near(before, sheet, 5.0, y, floor, 30))
+    # A mark at the lower end and at the upper one: about each, more is in the colour of its time
+    # than the line, which is drawn the same with the stairs' marks left out.
+    picture, bare = draw(sheet, way=climb), sheet.image.copy()
+    draw_lines(ImageDraw.Draw(bare), drawn)
+    bare = np.asarray(bare.reduce(FINER))
+    for moment in climb[1:3]:
+        ink = ImageColor.getrgb(colour(moment.t / 90.0))
+        there, without = (
+            (near(p, sheet, moment.x, moment.y, moment.floor, 45) == ink).all(axis=-1).sum()
+            for p in (picture, bare)
+        )
+        assert there > without + 100
 
 
 @pytest.fixture(scope="module")
@@ -182,26 +277,35 @@ def test_an_inspection_is_drawn_as_it_is(inspect, navigator):
     before = inspect.render()
     assert before.shape == SHAPE
     assert before.dtype == np.uint8
-    sheet = make_sheet(plans_of(navigator))
+    sheet = make_sheet(plans_of(navigator.site))
     c = navigator.site.checkpoints[5]
     place = (c.position[0], c.position[1], c.floor)
     assert has(near(before, sheet, *place), STYLES["open"].fill)
     inspect.step(5)
     after = inspect.render()
     assert not differs(after, inspect.render())
-    part = near(after, sheet, *place, 24)
-    assert has(part, STYLES["done"].fill)
-    assert has(part, ROBOT)  # the ring of the checkpoint that was chosen last
+    assert has(near(after, sheet, *place, 24), STYLES["done"].fill)
+    # Nothing but the ring of the one chosen last, and what the legend says of it, is new if it is
+    # taken to be chosen.
+    inspect._actions[-1] = 20
+    part, other = (near(p, sheet, *place, 24) for p in (after, inspect.render()))
+    ring = (part == ROBOT).all(axis=-1) & (part != other).any(axis=-1)
+    assert ring.sum() > 50
 
 
-def test_an_inspection_shows_the_chosen_floors(inspect):
+def test_an_inspection_shows_the_chosen_floors(inspect, navigator):
     pictures = []
-    for options in ({}, {"floor": 1}, {"floor": [1, 2]}, {"floor": 2}):
+    for options, count in (({}, 6), ({"floor": 1}, 1), ({"floor": [1, 2]}, 2), ({"floor": 2}, 2)):
         inspect.reset(seed=2, options=options)
         pictures.append(inspect.render())
+        # Each floor that is shown has its frame; fewer floors are drawn larger.
+        sheet = make_sheet(plans_of(navigator.site)[:count])
+        for panel in sheet.panels.values():
+            for row in (panel.top, panel.top + panel.height):
+                line = pictures[-1][row // FINER, panel.left // FINER + 2 :][: panel.width // 4]
+                assert (line == line[0]).all()
+                assert line[0].max() < 240
     assert all(differs(a, b) for a, b in pairwise(pictures))
-    # Fewer floors are drawn larger: what is below the first row is empty paper.
-    assert (pictures[1][HEAD:, -20:] == 255).mean() > 0.8
     inspect.reset(seed=2, options={})
 
 
@@ -298,6 +402,42 @@ def test_a_batch_draws_each_route():
     assert one.shape == other.shape == SHAPE
     assert differs(one, other)
     assert has(one, STYLES["done"].fill)
+
+
+def test_a_batch_counts_what_was_visited():
+    """Also of a route that has ended, where the robot is in the dock."""
+    batch = RouteVectorEnv(1, checkpoints=5, render_mode="rgb_array")
+    single = RouteEnv(checkpoints=5, render_mode="rgb_array")
+    observation, _ = batch.reset(seed=1)
+    single.reset(seed=1)
+    for node in (int(np.flatnonzero(observation["mask"][0])[-1]), 0):
+        batch.step(np.array([node]))
+        single.step(node)
+    assert not differs(batch.render()[0][:HEAD], single.render()[:HEAD])
+
+
+def test_a_drive_is_drawn_with_its_goal(yard_file):
+    env = DriveEnv(yard_file, render_mode="rgb_array")
+    env.reset(seed=1)
+    state, pose = env.get_state(), env.pose
+    # Ahead of the robot, where the camera behind it looks.
+    goals = [
+        (pose.x + far * np.cos(pose.yaw), pose.y + far * np.sin(pose.yaw), pose.z)
+        for far in (1.5, -30.0)
+    ]
+    ahead, behind = (
+        (env.set_state(state | {"goal": goal}), env.render())[1][:-38] for goal in goals
+    )
+    assert ahead.shape == (322, 640, 3)
+    assert (ahead == GOAL).all(axis=-1).sum() > 50
+    assert not (behind == GOAL).all(axis=-1).any()
+    # All else is the same.
+    assert np.ptp(np.nonzero((ahead != behind).any(axis=-1))[1]) < 100
+    env.set_state(state)
+    first = env.render()
+    env.step(np.zeros(3))
+    assert differs(first[-38:], env.render()[-38:])  # the caption goes on
+    env.close()
 
 
 def test_a_window_shows_the_state_after_the_step(monkeypatch):

@@ -1,6 +1,8 @@
 """What environments refuse, and that they can be used afterwards."""
 
+import gc
 import math
+import weakref
 
 import gymnasium as gym
 import numpy as np
@@ -13,7 +15,6 @@ from argo_env.envs import ENVIRONMENTS
 from argo_env.envs.drive import DriveEnv
 from argo_env.envs.inspection import InspectEnv
 from argo_env.envs.inspection_options import draw_faults
-from argo_env.envs.inspection_run import travel_times
 from argo_env.envs.route import RouteEnv, RouteVectorEnv
 from argo_env.envs.sites import navigator_of
 from argo_env.events.kinds import settle
@@ -53,14 +54,19 @@ def test_faults_that_are_drawn_fit_the_site():
 def test_observations_do_not_depend_on_what_the_process_has_kept(yard_file):
     heard = []
     for forget in (False, True):
-        env = InspectEnv(yard_file, faults=0)
+        env = InspectEnv(yard_file, faults=0, render_mode="rgb_array")
         observation, _ = env.reset(seed=1)
+        env.render()
+        kept = weakref.ref(navigator_of(yard_file))
         if forget:  # as when other environments have been on many other sites
             navigator_of.cache_clear()
-            travel_times.cache_clear()
         heard.append(rollouts.digest(rollouts.rollout(env, 1, 3, observation)))
         env.close()
     assert heard[0] == heard[1]
+    # Neither pictures nor travel times keep the site's navigator, which is large.
+    del env
+    gc.collect()
+    assert kept() is None
 
 
 def test_drive_goes_on_after_refused_options(yard_file):
@@ -90,8 +96,19 @@ def test_drive_goes_on_after_refused_options(yard_file):
         (DriveEnv, {"max_way": 0.0}, "max_way"),
         (InspectEnv, {"time_limit": math.nan}, "time_limit"),
         (InspectEnv, {"time_limit": math.inf}, "time_limit"),
-        (InspectEnv, {"faults": -1}, "0 to 8"),
-        (InspectEnv, {"faults": 9}, "0 to 8"),
+        (DriveEnv, {"max_way": 4.9}, "`max_way` is 4.9, .* at least 5"),
+        (DriveEnv, {"max_way": True}, "`max_way` is True, .* a number"),
+        (DriveEnv, {"scenario": 3}, "`scenario` is 3, .* name"),
+        (DriveEnv, {"scenario": ["umad", None]}, "`scenario` is None, .* name"),
+        (InspectEnv, {"scenario": None}, "`scenario` is None, .* name"),
+        (InspectEnv, {"time_limit": "long"}, "`time_limit` is 'long', .* a number"),
+        (InspectEnv, {"time_limit": True}, "`time_limit` is True, .* a number"),
+        (InspectEnv, {"time_limit": 1e9}, "at most 100000"),
+        (InspectEnv, {"faults": -1}, "whole number of at least 0"),
+        (InspectEnv, {"faults": 9}, "at most 8"),
+        (InspectEnv, {"faults": True}, "whole number"),
+        (InspectEnv, {"checkpoints": 10**6}, "`checkpoints` is 1000000, .* at most 1000"),
+        (InspectEnv, {"docks": 10**5}, "`docks` is 100000, .* at most 1000"),
         (
             InspectEnv,
             {"checkpoints": -1},
@@ -101,7 +118,13 @@ def test_drive_goes_on_after_refused_options(yard_file):
         (InspectEnv, {"checkpoints": 20.5}, "`checkpoints` is 20.5, .* whole number"),
         (InspectEnv, {"docks": 1}, "`docks` is 1, .* at least 2"),
         (RouteEnv, {"budget": math.nan}, "budget"),
+        (RouteEnv, {"budget": "x"}, "`budget` is 'x', .* a number"),
+        (RouteEnv, {"budget": None}, "`budget` is None, .* a number"),
+        (RouteEnv, {"budget": 1e6}, "`budget` is 1000000.0, .* at most 100000"),
+        (RouteEnv, {"scenario": 3}, "`scenario` is 3, .* name"),
         (RouteEnv, {"checkpoints": 0}, "`checkpoints` is 0, .* at least 1"),
+        (RouteEnv, {"checkpoints": 10**6}, "`checkpoints` is 1000000, .* at most 500"),
+        (RouteVectorEnv, {"num_envs": 10**9}, "`num_envs` is 1000000000, .* at most"),
     ],
 )
 def test_bad_arguments_are_refused(kind, arguments, words):
@@ -190,6 +213,10 @@ def test_what_is_no_state_is_refused(env, id):
         ({"faults": [{}, 3]}, "faults"),
         ({"floor": "first"}, "`floor` has to be a whole number, or a list"),
         ({"floor": [1, "a"]}, r"`floor\[1\]`: .* a whole number;"),
+        ({"floor": "1"}, "`floor` has to be a whole number, or a list"),
+        ({"floor": True}, "`floor` has to be a whole number, or a list"),
+        ({"floor": [True]}, r"`floor\[0\]`: .* a whole number;"),
+        ({"floor": 1.0}, "`floor` has to be a whole number, or a list"),
     ],
 )
 def test_wrong_options_are_told_in_plain_words(env, options, words):
@@ -213,3 +240,43 @@ def test_of_wrong_faults_the_one_mistake_is_told(yard_file, faults, words):
     env = InspectEnv(yard_file)
     with pytest.raises(ArgoError, match=words):
         env.reset(options={"faults": faults})
+
+
+@pytest.mark.parametrize(
+    ("kind", "options", "words"),
+    [
+        (RouteEnv, {"instance": True}, "`instance` has to be a whole number"),
+        (RouteEnv, {"test": "yes"}, "`test` has to be true or false"),
+        (RouteEnv, {"faults": {"closed": "2"}}, "`closed` has to be a whole number"),
+        (RouteEnv, {"faults": {"battery": "0.5"}}, "`battery` has to be a number"),
+        (InspectEnv, {"seed": "3"}, "`seed` has to be a whole number"),
+        (InspectEnv, {"faults": True}, "`faults` has to be a whole number, or a list"),
+        (DriveEnv, {"max_way": "60"}, "`max_way` has to be a number"),
+        (DriveEnv, {"max_way": 3.0}, "`max_way` has to be at least 5"),
+    ],
+)
+def test_options_are_of_their_types(kind, options, words, yard_file):
+    env = kind() if kind is RouteEnv else kind(yard_file)
+    with pytest.raises(ArgoError, match=words):
+        env.reset(options=options)
+    env.close()
+
+
+def test_numbers_of_numpy_are_numbers(env):
+    plain = env.reset(seed=1, options={"floor": [1]})[0]
+    for floor in (np.int64(1), np.array([1]), [np.int32(1)], (1,)):
+        again = env.reset(seed=1, options={"floor": floor})[0]
+        assert rollouts.digest(again) == rollouts.digest(plain)
+    ones = (
+        RouteEnv(budget=budget, checkpoints=count)
+        for budget, count in ((900.0, 5), (np.float32(900), np.int64(5)), (900, np.uint8(5)))
+    )
+    assert len({rollouts.digest(one.reset(seed=1)) for one in ones}) == 1
+    RouteVectorEnv(np.int64(2), np.int32(5)).reset(seed=1)
+
+
+def test_floors_that_are_not_there_are_told_alike(env, id, yard_file):
+    name, floors = ("random", "the floors 1 to 6") if "Route" in id else (yard_file, "floor 1 only")
+    with pytest.raises(ArgoError) as error:
+        env.reset(options={"floor": 9})
+    assert str(error.value) == f"scenario {name} has {floors}, not 9"

@@ -10,7 +10,7 @@ from hypothesis import strategies as st
 from argo_compiler.errors import ArgoError
 from argo_env.envs.route import RouteEnv
 from argo_env.envs.route_instance import DOCK, evaluate, make_instance
-from argo_env.envs.route_sources import TEST, TRAINING, RandomRoutes, RouteFaults
+from argo_env.envs.route_sources import TEST, TRAINING, RandomRoutes, RouteFaults, SiteRoutes
 from tests.conftest import examples
 
 ID = "argo/Route-v0"
@@ -151,6 +151,27 @@ def test_faults_close_checkpoints_and_shorten_the_time():
     assert hurt.budget == plain.budget / 2
 
 
+@pytest.mark.parametrize("checkpoints", [3, 20])
+def test_faults_close_checkpoints_that_exist(checkpoints):
+    """The site has 6: of more slots the rest are empty."""
+    source = SiteRoutes(checkpoints, "darmstadt", 3000.0)
+    there = min(6, checkpoints)
+    drawn = set()
+    for number in range(20):
+        for closed in range(there + 1):
+            instance = source.draw(number, (), RouteFaults(closed=closed))
+            reached = np.isfinite(instance.arrival[-1, 1:])
+            assert reached.sum() == there - closed
+            assert not reached[there:].any()
+            drawn.add(tuple(np.flatnonzero(reached)))
+    assert len(drawn) > there + 1  # not always the same ones
+    env = RouteEnv(scenario="darmstadt", checkpoints=checkpoints)
+    env.reset(seed=1, options={"faults": {"closed": there}})
+    assert env.action_masks()[1:].sum() == 0
+    with pytest.raises(ArgoError, match=f"0 to {there}: .* has {there} checkpoints"):
+        env.reset(options={"faults": {"closed": there + 1}})
+
+
 @pytest.mark.parametrize(
     ("options", "words"),
     [
@@ -219,6 +240,12 @@ def test_bad_instances_are_refused():
         {"prizes": np.array([0.0, 2.0, 1.0])},
         {"pairs": [(1, 1)]},
         {"budget": 0.5},
+        {
+            "times": np.ones((602, 601)),
+            "service": np.zeros(601),
+            "prizes": np.zeros(601),
+            "places": np.zeros((602, 3)),
+        },
     ):
         with pytest.raises(ArgoError):
             make(**changed)

@@ -15,11 +15,14 @@ from argo_compiler.errors import ArgoError
 from argo_compiler.schemas.generate import schema_of
 from argo_env import resources
 from argo_env.events.kinds import KINDS, FaultFile, changed_site, settle
-from argo_env.events.reading import read_faults
+from argo_env.events.reading import read_faults, require_fit
 from argo_env.settings import RunSettings
+from argo_env.site import make_site
 from argo_env.site.shapes import Box, Role
+from argo_env.site.spec import SiteSpec
 from argo_env.world import World
 from tests.conftest import examples
+from tests.yard import SITE
 
 SCENARIOS = sorted((resources.scenarios() / "umad" / "faults").glob("*.yaml"))
 
@@ -66,6 +69,7 @@ class TestFiles:
             ("faults:\n  - kind: gas_leak\n    place: [1, 2]\n", 3, "`place[2]` is missing"),
             ("faults:\n  - kind: hot_spot\n    radius: 3\n", 3, "`radius` has to be at most 1"),
             ("faults:\n  - kind: brick\n    size: [0.1, 0, 1]\n", 3, "has to be more than 0"),
+            ("faults:\n  - kind: brick\n    size: [0.2, 50, 1]\n", 3, "has to be at most 1.5"),
             ("faults:\n  - kind: brick\n    at: 3\n", 3, "is there from the start"),
         ],
     )
@@ -118,7 +122,7 @@ class TestFiles:
             ({"kind": "connection_loss", "floor": 7}, "no floor 7"),
             ({"kind": "gas_leak", "place": [99, 0, 1]}, "no equipment at (99, 0, 1)"),
             ({"kind": "gas_leak", "place": [0, 0, -9]}, "no equipment at"),
-            ({"kind": "hot_spot", "place": [0, 0, 30]}, "its highest floor at 12.5 m"),
+            ({"kind": "hot_spot", "place": [0, 0, 30]}, "and (23, 20, 22.5)"),
         ],
     )
     def test_what_the_site_does_not_have(self, umad, data, says):
@@ -126,6 +130,34 @@ class TestFiles:
         with pytest.raises(ArgoError, match=r"^faults\[1\] \(" + data["kind"]) as caught:
             settle(faults_of(brick, data), umad, 1)
         assert says in str(caught.value)
+
+    def test_what_the_site_does_not_have_is_told_with_the_line(self, tmp_path, umad):
+        text = "faults:\n  - kind: brick\n    floor: 9\n  - kind: brick\n\n"
+        path = written(tmp_path, text + "  - {kind: brick, floor: 8}\n")
+        with pytest.raises(DiagnosticError) as caught:
+            require_fit(read_faults(path), path, umad, 1)
+        assert f"{path}:2:5: error: faults[0] (brick): site umad has no floor 9" in str(
+            caught.value
+        )
+        assert [d.span.line for d in caught.value.diagnostics] == [2, 6]
+        path.write_text("faults: [{kind: brick}]", encoding="utf-8")
+        require_fit(read_faults(path), path, umad, 1)
+
+    def test_no_brick_lies_over_a_dock(self):
+        """In the yard the robot is docked on the slab."""
+        site = make_site(SiteSpec.model_validate(SITE))
+        dock = site.docks[1]
+        for away, size, fits in ((0.0, 0.1, False), (0.9, 1.5, False), (2.3, 1.5, True)):
+            brick = {"kind": "brick", "floor": 1, "place": [dock.x + away, dock.y + away],
+                     "size": [size, 0.2, 0.2], "yaw": 45.0}  # fmt: skip
+            if fits:
+                settle(faults_of(brick), site, 0)
+            else:
+                with pytest.raises(ArgoError, match="over the dock of starting area 1"):
+                    settle(faults_of(brick), site, 0)
+        for seed in range(100):  # and none is drawn there
+            (drawn,) = settle(faults_of({"kind": "brick"}), site, seed)
+            assert math.dist(drawn.place, (dock.x, dock.y)) > 0.65
 
 
 class TestDrawing:

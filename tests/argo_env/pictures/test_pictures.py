@@ -174,6 +174,7 @@ def test_the_last_frames_show_the_verdict(record, umad, robot, tmp_path):
                 image.seek(k)
                 shown.append(np.asarray(image.convert("RGB")).astype(int))
             frames.append(shown)
+    assert all((ended == last).all() for _, ended, last in frames), "it stands still"
     for k, verdict in enumerate((False, True, True)):
         differs = (np.abs(frames[0][k] - frames[1][k]).sum(axis=2) > 90).mean(axis=1)
         # Between the picture above it and the caption below.

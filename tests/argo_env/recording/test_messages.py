@@ -10,6 +10,9 @@ import pytest
 from mcap.reader import make_reader
 from mcap_protobuf.decoder import DecoderFactory
 
+from argo_compiler.il import EventKind
+from argo_env.record import Anomaly
+from argo_env.recording.scene import finding_scene
 from argo_env.site.shapes import Box
 from argo_env.site.urdf import COLOURS
 
@@ -229,6 +232,18 @@ def test_findings_are_marked_where_they_are(said, recorded) -> None:
         ball = entity.spheres[0].pose.position
         assert (ball.x, ball.y, ball.z) == pytest.approx(anomaly.place)
         assert anomaly.detail in entity.texts[0].text
+
+
+def test_what_has_no_place_has_words_only_from_where_it_was_noticed() -> None:
+    leak = Anomaly(
+        t=3.0, kind=EventKind.GAS_LEAK, detail="a hiss", source="gas", noticed_from=(1.0, 2.0, 0.0),
+        floor=1,
+    )  # fmt: skip
+    nowhere = Anomaly(t=4.0, kind=EventKind.LOW_BATTERY, detail="24 V", source="battery")
+    (entity,) = finding_scene([leak, nowhere], 5.0).entities
+    assert not entity.spheres
+    assert entity.texts[0].text == "noticed from here: gas leak: a hiss"
+    assert (entity.texts[0].pose.position.x, entity.texts[0].pose.position.y) == (1.0, 2.0)
 
 
 def test_battery_is_that_of_the_path(said, recorded) -> None:

@@ -116,9 +116,9 @@ def test_a_damaged_file_is_refused_or_read_as_it_was(recorded, tmp_path_factory,
 
 
 def test_no_damage_to_the_end_goes_unnoticed(recorded, tmp_path: Path) -> None:
-    """In the index, the footer and the mark after it: changed, lost, blank, and something added."""
+    """In the index, the footer and the mark after it: changed, lost and blank."""
     file, whole = tmp_path / "damaged.mcap", recorded.content
-    contents = [whole + b"\0", whole + whole]
+    contents = []
     for k in (1, 8, 9, 12, 13, 20, 29, 37, 38, 60, 290):
         contents += [whole[:-k], whole[:-k] + bytes(k)]
         contents.append(whole[:-k] + bytes([whole[-k] ^ 1]) + whole[len(whole) - k + 1 :])
@@ -127,6 +127,23 @@ def test_no_damage_to_the_end_goes_unnoticed(recorded, tmp_path: Path) -> None:
         found = read_recording(file)
         assert found.flaw == "has a missing or damaged index"
         assert found.record == recorded.record
+
+
+def test_what_follows_after_the_end_is_told_as_that(recorded, tmp_path: Path) -> None:
+    file, whole = tmp_path / "longer.mcap", recorded.content
+    for more, said in ((b"\0", "1 byte"), (b"\r\n", "2 bytes"), (whole, f"{len(whole)} bytes")):
+        file.write_bytes(whole + more)
+        found = read_recording(file)
+        assert found.flaw == f"goes on for {said} after its end"
+        assert found.record == recorded.record
+
+
+def test_a_part_cut_out_of_the_middle_is_told_with_a_reason(recorded, tmp_path: Path) -> None:
+    file, whole = tmp_path / "spliced.mcap", recorded.content
+    for share in (0.3, 0.5, 0.7):
+        file.write_bytes(whole[: int(share * len(whole))] + whole[-8:])
+        with pytest.raises(ArgoError, match=r"is damaged after [\d.]+ s \(\w.*\): take it"):
+            read_recording(file)
 
 
 def test_a_damaged_record_is_none(recorded, tmp_path: Path) -> None:

@@ -3,13 +3,16 @@
 import re
 from xml.etree import ElementTree
 
+import numpy as np
 import pytest
 
-from argo_compiler.il import EventKind
+from argo_compiler.il import Action, EventKind, Mission, Task, Transition
+from argo_compiler.model import Pose
 from argo_env.events.process import GasLeakFault, PlatformAlarm
-from argo_env.record import Anomaly
+from argo_env.record import Anomaly, Interruption
 from argo_env.report.charge import charge_curve
 from argo_env.report.html import page
+from argo_env.report.track import beside
 
 
 def anomaly(t, kind=EventKind.GAS_LEAK, place=None, floor=None):
@@ -56,6 +59,32 @@ def test_each_finding_has_a_row_and_a_number_where_it_was(simple, site):
     assert len(re.findall(r'<g class="found">', plan)) == 1
 
 
+def test_what_tells_no_place_is_not_drawn_as_if_it_were_there(simple, site):
+    at = simple.path[0]
+    leak = Anomaly(
+        t=1.0, kind=EventKind.GAS_LEAK, detail="a hiss", source="gas",
+        noticed_from=(at.x, at.y, at.z), floor=at.floor,
+    )  # fmt: skip
+    text = page(simple.model_copy(update={"anomalies": (leak,)}), site)
+    said = f"noticed from floor {at.floor} at ({at.x:.2f}, {at.y:.2f}, {at.z:.2f})"
+    assert f"<td>{said}</td>" in section(text, "anomalies")
+    path = section(text, "path")
+    assert 'class="found"' not in path
+    assert path.count('<g class="noticed">') == 1
+    assert "◇" in path
+    assert "◇" not in page(simple, site)
+
+
+def test_what_is_over_is_no_finding_that_counts(simple, site):
+    def tiles(*kinds):
+        found = tuple(anomaly(k + 1.0, kind) for k, kind in enumerate(kinds))
+        text = page(simple.model_copy(update={"anomalies": found}), site)
+        return re.findall(r'<div class="tile (\w+)"><b>(\d+)</b><span>findings?</span>', text)
+
+    assert tiles(EventKind.GAS_LEAK, EventKind.ALL_CLEAR) == [("bad", "1")]
+    assert tiles(EventKind.ALL_CLEAR) == [("good", "0")]
+
+
 def test_faults_that_did_not_happen(simple, site):
     assert "did not happen" not in page(simple, site)
     faults = (GasLeakFault(at=1.0), GasLeakFault(at=500.0), PlatformAlarm(at=900.0))
@@ -69,7 +98,9 @@ def test_faults_that_did_not_happen(simple, site):
 
 
 def test_what_is_said_of_reading_the_mission_holds_for_any_source(simple, site):
-    assert "1 finding in what the mission was read from" in section(page(simple, site), "warnings")
+    assert "1 remark about what the mission was read from" in section(
+        page(simple, site), "warnings"
+    )
     # As of a script that is right, a mission's .json or a bag: the record does not tell which.
     text = section(page(simple.model_copy(update={"diagnostics": ()}), site), "warnings")
     assert "taken as it was written" in text
@@ -95,3 +126,43 @@ def test_the_curve_stays_in_its_frame_and_tells_both_ends(simple, site, charges)
     assert points[0][1] == pytest.approx(108 - 0.96 * first, abs=0.1)
     assert points[-1][1] == pytest.approx(108 - 0.96 * last, abs=0.1)
     assert ElementTree.tostring(curve, encoding="unicode") in page(record, site)
+
+
+def test_the_ways_out_and_back_lie_beside_each_other():
+    out = np.column_stack([np.linspace(0.0, 4.0, 81), np.zeros(81)])
+    way = beside(np.vstack([out, out[::-1]]), 0.05)
+    inner = (way[:, 0] > 0.2) & (way[:, 0] < 3.8)
+    there, back = way[:81][inner[:81]], way[81:][inner[81:]]
+    assert there[:, 1] == pytest.approx(-0.05)  # to the right of east lies the south
+    assert back[:, 1] == pytest.approx(0.05)
+    assert np.hypot(*(way - np.vstack([out, out[::-1]])).T) == pytest.approx(0.05)
+    still = np.zeros((3, 2))
+    assert (beside(still, 0.05) == still).all()
+
+
+def test_waits_stand_between_the_runs_by_their_time(simple, site):
+    pause = Interruption(start=8.0, end=14.0)  # the runs begin at 0, 6 and 12 s
+    stood = simple.tasks[1].model_copy(update={"end": 9.0})
+    record = simple.model_copy(
+        update={
+            "interruptions": (pause,),
+            "tasks": (simple.tasks[0], stood, simple.tasks[2].model_copy(update={"start": 14.0})),
+        }
+    )
+    table = section(page(record, site), "tasks")
+    first = re.findall(r'<tr class="\w+"><td>(.*?)</td>', table)
+    assert first == ["1", "8", "waits for a person (paused)", "6"]
+
+
+def test_a_way_into_the_station_is_called_so(make, site):
+    dock = Pose(x=0.0, y=0.0, z=0.0, yaw=0.0)
+    tasks = (
+        Task(
+            name="there", action=Action.WAYPOINT, pose=Pose(x=1.0, y=0.0, z=0.0, yaw=0.0),
+            transitions=(Transition(target="DOCK"),),
+        ),
+        Task(name="DOCK", action=Action.WAYPOINT, pose=dock),
+    )  # fmt: skip
+    text = page(make(Mission(tasks=tasks, dock=dock), ["there", "DOCK"]), site)
+    rows = re.findall(r'<tr class="done"><td>(\w+)</td><td>(\w+)</td>', section(text, "tasks"))
+    assert rows == [("there", "WAYPOINT"), ("DOCK", "DOCK")]

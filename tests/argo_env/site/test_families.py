@@ -140,6 +140,7 @@ def test_wrong_parameters_get_one_clear_message(text):
     message = str(caught.value)
     assert text.split("=", maxsplit=1)[0].split(",")[0] in message
     assert "floors=1..12" in message
+    assert "Input should" not in message
     assert "\n" not in message
 
 

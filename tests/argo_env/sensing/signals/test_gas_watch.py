@@ -41,7 +41,8 @@ def test_a_leak_is_told_once_and_is_over_when_it_is_closed(site, world, site_map
     assert [finding.kind for finding in first] == [EventKind.GAS_LEAK]
     assert "near pipe 1" in first[0].detail
     here = STANDING[0][1]
-    assert first[0].place == (here.x, here.y, here.z), "where it was noticed"
+    assert first[0].noticed_from == (here.x, here.y, here.z)
+    assert first[0].place is None, "the signals do not tell from where they come"
     around.remove(on_pipe(), 120.0)
     then = [f for t, p in STANDING[120:300] for f in eye.look(t, p)]
     assert [finding.kind for finding in then] == [EventKind.ALL_CLEAR]

@@ -1,0 +1,46 @@
+"""What the robot waited for: the parts of pauses and reactions in which it stood still."""
+
+from dataclasses import dataclass
+
+from argo_env.record import Interruption, RunRecord
+
+MOMENT = 0.5
+"""s, up to which standing still is no waiting"""
+
+
+@dataclass(frozen=True)
+class Wait:
+    """The robot stood still from `start` to `end` (s)."""
+
+    what: str
+    """it waited for, and why"""
+    start: float
+    end: float
+    over: bool
+    """whether it ended before the run did"""
+
+
+def waits(record: RunRecord) -> tuple[Wait, ...]:
+    """When the robot stood still in pauses and reactions, in the order of time."""
+    found = []
+    until = {reaction.event: reaction.until for reaction in record.mission.reactions}
+    before: Interruption | None = None
+    for each in record.interruptions:
+        runs = [t.end for t in record.tasks if t.start < each.end and t.end > each.start]
+        since = max([each.start, *runs])
+        # A run that is stopped as soon as nothing more can come has waited no time.
+        if each.end - since >= MOMENT or (record.result.outcome is None and each is _last(record)):
+            awaited = until.get(each.event) if each.event else None
+            cause = each.cause
+            if each.event is None and before and before.event and before.end == each.start:
+                cause = before.cause  # which has ended in this pause
+            what = f"{awaited.replace('_', ' ') if awaited else 'a person'} ({cause})"
+            found.append(Wait(what, since, each.end, each.end < record.result.duration))
+        before = each
+    return tuple(found)
+
+
+def _last(record: RunRecord) -> Interruption | None:
+    """The interruption that went on when the run was stopped."""
+    last = record.interruptions[-1]
+    return last if last.end >= record.result.duration else None

@@ -1,7 +1,6 @@
 """What a person sees of a run: its progress and readings while it goes on, then its results."""
 
 from pathlib import Path
-from types import TracebackType
 from typing import Self
 
 import typer
@@ -10,6 +9,7 @@ from rich.markup import escape
 from rich.progress import BarColumn, Progress, TextColumn, TimeElapsedColumn
 
 from argo_compiler.il import Task
+from argo_env.closing import Closing
 from argo_env.events.kinds import changed_site
 from argo_env.navigation import Navigator
 from argo_env.pictures import write_film, write_overview
@@ -19,7 +19,7 @@ from argo_env.words import where
 from argo_planner.summary import show_record
 
 
-class RunDisplay:
+class RunDisplay(Closing):
     """The progress on standard error. Holds the bar; use it as a context."""
 
     def __init__(self, total: float | None) -> None:
@@ -50,12 +50,8 @@ class RunDisplay:
         self._progress.start()
         return self
 
-    def __exit__(
-        self,
-        kind: type[BaseException] | None,
-        error: BaseException | None,
-        trace: TracebackType | None,
-    ) -> None:
+    def close(self) -> None:
+        """Ends the display; what it has shown stays."""
         self._progress.stop()
 
 

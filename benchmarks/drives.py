@@ -46,6 +46,7 @@ from argo_env.settings import RunSettings
 from argo_env.site import load_site
 from argo_env.starting import start_pose
 from argo_env.world import World
+from benchmarks.options import seed_number
 
 CHEAP = ("route", "kinematic")
 FIRST_SEED = 0
@@ -238,12 +239,10 @@ def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("--site", default="umad")
     parser.add_argument("--missions", type=int, default=24)
-    parser.add_argument("--seed", type=int, help="of the first mission; the others follow")
+    parser.add_argument("--seed", type=seed_number, help="of the first mission; the others follow")
     parser.add_argument("--workers", type=int, default=min(2, os.cpu_count() or 1))
     parser.add_argument("--fit", action="store_true", help="write the calibration anew")
     arguments = parser.parse_args()
-    if arguments.seed is not None and arguments.seed < 0:
-        parser.error(f"argument --seed: it has to be 0 or more, not {arguments.seed}")
     first = arguments.seed
     if first is None:
         first = FIRST_FITTED_SEED if arguments.fit else FIRST_SEED

@@ -37,6 +37,7 @@ from argo_env.seeding import generator
 from argo_env.session import DRIVES, simulate
 from argo_env.settings import RunSettings, logged
 from argo_env.site import load_site
+from benchmarks.options import seed_number
 
 OPERATOR = 300.0  # s, when a person lets a mission go on that waits for one
 
@@ -181,11 +182,9 @@ def main() -> None:
     parser.add_argument("--scenarios", type=int, metavar="SEEDS", nargs="?", const=3)
     parser.add_argument("--bricks", type=int, metavar="N", help="missions with one in the way")
     parser.add_argument("--site", default="umad")
-    parser.add_argument("--seed", type=int, default=0, help="of the first mission")
+    parser.add_argument("--seed", type=seed_number, default=0, help="of the first mission")
     parser.add_argument("--drive", choices=DRIVES, default="kinematic")
     given = parser.parse_args()
-    if given.seed < 0:
-        parser.error(f"argument --seed: it has to be 0 or more, not {given.seed}")
     navigator = Navigator(load_site(given.site), load_robot())
     navigator.prepare()
     todo: list[Callable[[], None]] = []

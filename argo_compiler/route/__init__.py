@@ -11,16 +11,21 @@ from argo_compiler.route.problem import (
     RouteProblem,
     Visit,
 )
+from argo_compiler.route.suggest import suggest_route
+from argo_compiler.route.suggestion import Point, RouteSuggestion
 
 __all__ = [
     "NEVER",
     "Battery",
     "Evaluation",
     "Objective",
+    "Point",
     "Precedence",
     "Round",
     "Route",
     "RouteProblem",
+    "RouteSuggestion",
     "Visit",
     "evaluate",
+    "suggest_route",
 ]

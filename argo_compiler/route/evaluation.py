@@ -162,8 +162,8 @@ class _Walk:
             begun = state.time
             state = self._one_round(state, number, order)
             rounds += 1
-            if rounds > 1 and state.time == begun:
-                return state  # rounds without any time would never fill a duration
+            if one.duration and rounds > 1 and state.time == begun:
+                return state  # rounds that take no time would never fill it
             if one.duration and not one.soft and state.time - entered > one.duration:
                 return _State(entered + one.duration, state.used, frozenset(one.members))
         return state

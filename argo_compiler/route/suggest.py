@@ -1,6 +1,13 @@
 """One call for all route problems."""
 
+import time
+
+from argo_compiler.route.circuit import solve_circuit
+from argo_compiler.route.modes import Step
+from argo_compiler.route.network import network
 from argo_compiler.route.problem import RouteProblem
+from argo_compiler.route.progress import Search
+from argo_compiler.route.pruning import prune
 from argo_compiler.route.suggestion import RouteSuggestion
 
 
@@ -11,4 +18,30 @@ def suggest_route(
 
     Raises ArgoError if the time limit is not positive.
     """
-    raise NotImplementedError
+    begun = time.perf_counter()
+
+    def order_of(step: Step) -> tuple[Step, ...]:
+        return tuple(step.parts)
+
+    net = network(problem, order_of)
+    search = Search(
+        time.perf_counter, begun + time_limit, seed, workers, int(net.prize.sum()), begun=begun
+    )
+    pruned = prune(net)
+    best = solve_circuit(net, pruned, search)
+    route = None if best.path is None else net.route(best.path, dict(best.charges))
+    made = set(() if route is None else route.order)
+    dropped = tuple(v for v in range(problem.size) if v not in made)
+    return RouteSuggestion(
+        route,
+        best.prize,
+        best.prize_bound,
+        best.cost,
+        best.bound,
+        best.proven,
+        dropped if route else (),
+        (),
+        "CP-SAT",
+        tuple(search.reasons),
+        tuple(search.history),
+    )

@@ -1,0 +1,57 @@
+"""What a solver gives back to the portfolio."""
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+
+from argo_compiler.route.evaluation import evaluate
+from argo_compiler.route.network import Network
+
+
+@dataclass(frozen=True)
+class Found:
+    """A path of nodes, and what is known of all paths."""
+
+    path: tuple[int, ...] | None
+    """None: none was found"""
+    prize: int
+    cost: int
+    prize_bound: int
+    """no path wins more"""
+    bound: int
+    """no path that wins `prize_bound` costs less"""
+    proven: bool
+    """whether the path is a best one, or there is none"""
+    charges: Mapping[int, int] = field(default_factory=dict)
+    """the charger by the position in the path before which it is used"""
+
+    def better_than(self, other: "Found | None") -> bool:
+        """Whether its path wins more, or as much at less cost."""
+        if self.path is None:
+            return False
+        return (
+            other is None
+            or other.path is None
+            or ((-self.prize, self.cost) < (-other.prize, other.cost))
+        )
+
+
+def found(
+    network: Network,
+    path: tuple[int, ...],
+    charges: Mapping[int, int],
+    prize_bound: int,
+    bound: int,
+) -> Found:
+    """The path with what it is worth. Raises AssertionError if it breaks a rule: no solver may."""
+    route = network.route(path, dict(charges))
+    worth = evaluate(network.problem, route)
+    assert worth.feasible, (route, worth.violations)
+    cost = worth.cost(network.objective)
+    prize = worth.prize
+    proven = network.exact and prize >= prize_bound and cost <= bound
+    return Found(path, prize, cost, max(prize_bound, prize), min(bound, cost), proven, charges)
+
+
+def none_found(network: Network, *, proven: bool, bound: int = 0) -> Found:
+    """No path; `proven`: there is none."""
+    return Found(None, 0, 0, int(network.prize.sum()), bound, proven)

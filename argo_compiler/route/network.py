@@ -1,0 +1,193 @@
+"""A route problem as the solvers see it: steps with modes as the nodes of one network."""
+
+from collections.abc import Callable, Iterable
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+from numpy.typing import NDArray
+
+from argo_compiler.route.modes import Mode, Step, Vector, energies, modes, steps
+from argo_compiler.route.problem import NEVER, Objective, Route, RouteProblem
+
+
+@dataclass(frozen=True, eq=False)
+class Network:
+    """m nodes, each a mode of one of s steps. A route makes each step at most once, by one of its
+    modes. Row m of a matrix is the start, column m the end."""
+
+    problem: RouteProblem
+    nodes: tuple[Mode, ...]
+    step: NDArray[np.int64]
+    """of each node, shape (m,)"""
+    time: NDArray[np.int64]
+    """from the end of row to the beginning of column, shape (m + 1, m + 1)"""
+    service: NDArray[np.int64]
+    """from a node's beginning to its end, shape (m,); that of a round is part of `time`"""
+    energy: NDArray[np.int64] | None
+    """from the end of row to the end of column, shape (m + 1, m + 1); None: without a battery"""
+    chargers: tuple["Station", ...]
+    prize: NDArray[np.int64]
+    """of each step, shape (s,)"""
+    mandatory: NDArray[np.bool_]
+    earliest: NDArray[np.int64]
+    """of each step; 0: at once"""
+    latest: NDArray[np.int64]
+    """of each step; NEVER: whenever"""
+    needs: NDArray[np.bool_]
+    """shape (s, s): row must have been made before column can be"""
+    before: NDArray[np.bool_]
+    """shape (s, s): row can't be made any more after column"""
+    limit: int
+    """when the robot must be at the end; NEVER: whenever"""
+    exact: bool
+    """whether the modes of large rounds are all that may be the best"""
+
+    @property
+    def size(self) -> int:
+        """The number of nodes, which is the row of the start and the column of the end."""
+        return len(self.nodes)
+
+    @cached_property
+    def windowed(self) -> bool:
+        """Whether a step has a time window, so that there may be waiting."""
+        return bool((self.earliest > 0).any() or (self.latest < NEVER).any())
+
+    @property
+    def objective(self) -> Objective:
+        return self.problem.objective
+
+    @property
+    def selective(self) -> bool:
+        return not bool(self.mandatory.all())
+
+    def nodes_of(self, step: int) -> list[int]:
+        return np.flatnonzero(self.step == step).tolist()
+
+    def route(self, path: Iterable[int], charges: dict[int, int] | None = None) -> Route:
+        """The route that makes these nodes. `charges`: the charger by the position in the path."""
+        order: list[int] = []
+        places: dict[int, int] = {}
+        path = list(path)
+        for position, node in enumerate(path):
+            if charges and position in charges:
+                places[len(order)] = charges[position]
+            order += self.nodes[node].order
+        if charges and len(path) in charges:
+            places[len(order)] = charges[len(path)]
+        return Route(tuple(order), places)
+
+
+@dataclass(frozen=True, eq=False)
+class Station:
+    """A charger: the ways there from the end of each node, and from there to its beginning; the
+    last entry is that of the start, and of the end."""
+
+    to: Vector
+    to_energy: Vector
+    out: Vector
+    out_energy: Vector
+
+
+def network(problem: RouteProblem, order_of: Callable[[Step], tuple[Step, ...]]) -> Network:
+    """The network of a problem. `order_of`: see `argo_compiler.route.modes.modes`."""
+    found = steps(problem)
+    exact, nodes, step_of = True, [], []
+    for number, step in enumerate(found):
+        some, all_of_them = modes(problem, step, order_of)
+        exact &= all_of_them
+        nodes += some
+        step_of += [number] * len(some)
+    n, m = problem.size, len(nodes)
+    single = [step.round is None for step in found]
+    visits = [problem.visits[min(step.visits)] for step in found]
+    service = np.array([visits[s].service if single[s] else 0 for s in step_of], dtype=np.int64)
+    places = [mode.exit for mode in nodes] + [(n,)]
+    time = _matrix(places, [mode.time for mode in nodes], problem.travel[:, problem.end])
+    time[:, :m] = np.where(time[:, :m] >= NEVER, NEVER, time[:, :m] - service)
+    energy = None
+    if problem.battery is not None:
+        matrix = energies(problem)
+        energy = _matrix(places, [mode.energy for mode in nodes], matrix[:, problem.end])
+    needs, before, mandatory = _orders(problem, found)
+    return Network(
+        problem,
+        tuple(nodes),
+        np.array(step_of, dtype=np.int64),
+        time,
+        service,
+        energy,
+        tuple(_station(problem, nodes, places, service, k) for k in range(len(problem.chargers))),
+        np.array([sum(problem.visits[v].prize for v in s.visits) for s in found], dtype=np.int64),
+        mandatory,
+        np.array([visits[s].earliest if one else 0 for s, one in enumerate(single)], np.int64),
+        np.array([_latest(visits[s].latest) if one else NEVER for s, one in enumerate(single)]),
+        needs,
+        before,
+        NEVER if problem.max_duration is None else problem.max_duration,
+        exact,
+    )
+
+
+def _latest(latest: int | None) -> int:
+    return NEVER if latest is None else latest
+
+
+def _matrix(
+    places: list[tuple[int, ...]], entered: list[Vector], home: Vector
+) -> NDArray[np.int64]:
+    """The worst times from where each node ends to each node and to the end."""
+    columns = np.stack([*entered, home], axis=1)
+    return np.stack([columns[list(there)].max(axis=0) for there in places])
+
+
+def _station(
+    problem: RouteProblem,
+    nodes: list[Mode],
+    places: list[tuple[int, ...]],
+    service: Vector,
+    number: int,
+) -> Station:
+    row, energy = problem.charger(number), energies(problem)
+    out = np.array([mode.time[row] for mode in nodes] + [problem.travel[row, problem.end]])
+    out[:-1] = np.where(out[:-1] >= NEVER, NEVER, out[:-1] - service)
+    return Station(
+        np.array([problem.travel[list(there), row].max() for there in places]),
+        np.array([energy[list(there), row].max() for there in places]),
+        out,
+        np.array([mode.energy[row] for mode in nodes] + [energy[row, problem.end]]),
+    )
+
+
+def _orders(
+    problem: RouteProblem, found: list[Step]
+) -> tuple[NDArray[np.bool_], NDArray[np.bool_], NDArray[np.bool_]]:
+    """Which steps need which, which rule out which, and which must be made."""
+    home = {visit: k for k, step in enumerate(found) for visit in step.visits}
+    count = len(found)
+    mandatory = np.array(
+        [any(problem.visits[v].mandatory for v in step.visits) for step in found], dtype=np.bool_
+    )
+    needs = np.zeros((count, count), np.bool_)
+    before = np.zeros((count, count), np.bool_)
+    for precedence in problem.precedences:
+        there = [home[visit] for visit in precedence.sequence]
+        for k, later in enumerate(there):
+            for earlier in there[:k]:
+                if earlier != later or _twice(found[later], precedence.sequence):
+                    before[earlier, later] = True
+                    needs[earlier, later] |= precedence.needed
+    # What a mandatory step needs is mandatory; what is mandatory and comes before is needed.
+    while True:
+        wanted = needs | (before & mandatory[:, None])
+        wanted |= (wanted.astype(np.int64) @ wanted.astype(np.int64)) > 0
+        must = mandatory | (wanted & mandatory[None, :]).any(axis=1)
+        if (wanted == needs).all() and (must == mandatory).all():
+            return needs, before | needs, mandatory
+        needs, mandatory = wanted, must
+
+
+def _twice(step: Step, sequence: tuple[int, ...]) -> bool:
+    """Whether a sequence wants a visit of the step to be made before itself."""
+    there = [visit for visit in sequence if visit in step.visits]
+    return len(set(there)) < len(there)

@@ -1,0 +1,142 @@
+"""Which steps and arcs no route can have: what the solvers need not look at."""
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from argo_compiler.route.network import Network
+from argo_compiler.route.problem import NEVER
+
+
+@dataclass(frozen=True, eq=False)
+class Pruned:
+    """What is left of a network."""
+
+    arcs: NDArray[np.bool_]
+    """shape (m + 1, m + 1): whether column may come right after row"""
+    steps: NDArray[np.bool_]
+    """whether a step may be made"""
+    earliest: NDArray[np.int64]
+    """when each node may begin at the soonest, shape (m,)"""
+    latest: NDArray[np.int64]
+    """when it must begin at the latest"""
+    possible: bool
+    """false: there is no route"""
+
+
+def prune(network: Network) -> Pruned:
+    """What is left when ways, precedence, windows and the limit are looked at arc by arc."""
+    m, step = network.size, network.step
+    best = shortest(network)
+    arcs = best < NEVER
+    np.fill_diagonal(arcs, False)
+    arcs[:m, :m] &= step[:, None] != step[None, :]
+    steps = _possible_steps(network)
+    alive = steps[step]
+    # Right after `row`, `column` must not be one that rules it out, nor one that some step between
+    # them is needed for.
+    rules_out = network.before.T[np.ix_(step, step)]
+    between = (network.needs.astype(np.int64) @ network.needs.astype(np.int64)) > 0
+    arcs[:m, :m] &= ~rules_out & ~between[np.ix_(step, step)]
+    needed = network.needs.any(axis=0)
+    arcs[m, :m] &= ~needed[step]
+    last = (network.needs & network.mandatory[None, :]).any(axis=1)
+    arcs[:m, m] &= ~last[step]
+    earliest, latest = _windows(network, best)
+    alive &= earliest <= latest
+    arcs[:m, :] &= alive[:, None]
+    arcs[:, :m] &= alive[None, :]
+    begun = np.append(earliest + network.service, 0)
+    arcs[:, :m] &= begun[:, None] + best[:, :m] <= latest[None, :]
+    arcs[:m, m] &= begun[:m] + best[:m, m] <= network.limit
+    reachable = np.zeros(len(steps), np.bool_)
+    reachable[step[arcs[:, :m].any(axis=0) & arcs[:m, :].any(axis=1)]] = True
+    steps &= reachable
+    arcs[:m, :] &= steps[step][:, None]
+    arcs[:, :m] &= steps[step][None, :]
+    possible = bool(steps[network.mandatory].all())
+    return Pruned(arcs, steps, earliest, latest, possible)
+
+
+def shortest(network: Network) -> NDArray[np.int64]:
+    """The times of the arcs, or by a charger where that is shorter than straight, without the time
+    of charging itself: no way from row to column takes less."""
+    best = network.time.copy()
+    battery = network.problem.battery
+    for station in network.chargers:
+        assert battery is not None
+        by_it = station.to[:, None] + battery.overhead + station.out[None, :]
+        best = np.minimum(best, np.where(by_it >= NEVER, NEVER, by_it))
+    return best
+
+
+def horizon(network: Network) -> int:
+    """A time when every route that does not wait longer than it must is at the end."""
+    arcs = shortest(network)
+    arcs = np.where(arcs >= NEVER, 0, arcs)
+    longest = int(np.append(network.service, 0).sum() + arcs.max(axis=0).sum())
+    battery = network.problem.battery
+    if battery is not None:
+        ways = [int(np.where(s.to >= NEVER, 0, s.to).max()) for s in network.chargers]
+        outs = [int(np.where(s.out >= NEVER, 0, s.out).max()) for s in network.chargers]
+        charge = battery.capacity + battery.overhead + max(ways, default=0) + max(outs, default=0)
+        longest += charge * (len(network.prize) + 1)
+    direct = int(network.time[:, :].max(initial=0, where=network.time < NEVER))
+    longest += direct * (len(network.prize) + 1)
+    return min(network.limit, int(network.earliest.max(initial=0)) + longest)
+
+
+def _possible_steps(network: Network) -> NDArray[np.bool_]:
+    """Without the steps that would have to come before themselves, or need one that must."""
+    # Of a circle of steps that are needed for each other, closed over, each needs itself.
+    impossible = np.asarray(np.diagonal(network.before) | np.diagonal(network.needs))
+    impossible |= (network.needs & impossible[:, None]).any(axis=0)
+    return np.asarray(~impossible)
+
+
+def _windows(
+    network: Network, best: NDArray[np.int64]
+) -> tuple[NDArray[np.int64], NDArray[np.int64]]:
+    """When each node may begin: no sooner than on the shortest way from the start, and no later
+    than leaves time to get to the end. Ways need not keep the triangle inequality, so these are
+    shortest paths, with services."""
+    m = network.size
+    graph = best.astype(np.float64)
+    graph[:m, :] += network.service[:, None]
+    graph[best >= NEVER] = np.inf
+    # In the node m start and end are one; no path has a reason to go through it.
+    ahead = _bellman(graph[m, :m], graph[:m, :m])
+    back = _bellman(graph[:m, m], graph[:m, :m].T)
+    soonest = np.where(np.isfinite(ahead), ahead, NEVER).astype(np.int64)
+    left = np.where(np.isfinite(back), back, NEVER).astype(np.int64)
+    earliest = np.maximum(network.earliest[network.step], soonest)
+    limit = network.limit
+    home = (
+        np.where(left >= NEVER, -1, limit - left)
+        if limit < NEVER
+        else np.where(left >= NEVER, -1, NEVER)
+    )
+    return earliest, np.minimum(network.latest[network.step], home)
+
+
+def paths(network: Network) -> NDArray[np.int64]:
+    """The least time from the end of one node to the beginning of another, by whatever nodes,
+    shape (m, m)."""
+    m = network.size
+    least = shortest(network)[:m, :m]
+    for through in range(m):
+        by_it = least[:, through, None] + network.service[through] + least[None, through, :]
+        np.minimum(least, by_it, out=least)
+    return np.minimum(least, NEVER)
+
+
+def _bellman(first: NDArray[np.float64], onward: NDArray[np.float64]) -> NDArray[np.float64]:
+    """The lengths of the shortest paths, from the lengths of their first arcs and of the others."""
+    length = first.copy()
+    for _ in range(len(length)):
+        shorter = np.minimum(length, (length[:, None] + onward).min(axis=0, initial=np.inf))
+        if (shorter == length).all():
+            break
+        length = shorter
+    return length

@@ -1,0 +1,107 @@
+"""Random route problems with any mix of constraints, many of them just feasible or just not."""
+
+import numpy as np
+
+from argo_compiler.route import (
+    NEVER,
+    Battery,
+    Objective,
+    Precedence,
+    Round,
+    RouteProblem,
+    Visit,
+)
+
+
+def random_problem(rng: np.random.Generator, most: int = 8) -> RouteProblem:
+    """A problem of at most `most` visits; fewer with a battery, whose charges multiply routes."""
+    charged = rng.random() < 0.25
+    n = int(rng.integers(0 if rng.random() < 0.05 else 1, (min(most, 5) if charged else most) + 1))
+    c = int(rng.integers(0, 3)) if charged else 0
+    places = rng.uniform(0, 100, (n + 1 + c, 2))
+    way = np.abs(places[:, None] - places).sum(axis=2)
+    uphill = rng.uniform(0.5, 2.0) * np.maximum(places[None, :, 1] - places[:, None, 1], 0.0)
+    travel = np.rint(way + uphill).astype(np.int64)
+    if rng.random() < 0.2:
+        travel[:n, n] = 0  # ends anywhere
+    if rng.random() < 0.2:
+        travel[rng.random(travel.shape) < 0.1] = NEVER
+    selective, windowed = rng.random() < 0.4, rng.random() < 0.3
+    rounds = _rounds(rng, n) if rng.random() < 0.35 else ()
+    inside = {member for one in rounds for member in one.members}
+    horizon = 60 * (n + 1)
+    visits = []
+    for k in range(n):
+        earliest, latest = 0, None
+        if windowed and k not in inside and rng.random() < 0.5:
+            earliest = int(rng.integers(0, horizon))
+            latest = earliest + int(rng.integers(0, horizon))
+            if rng.random() < 0.3:
+                earliest = 0
+        optional = selective and rng.random() < 0.7
+        visits.append(
+            Visit(
+                f"checkpoint {k}",
+                int(rng.integers(0, 20)),
+                not optional,
+                int(rng.integers(0, 5)),
+                earliest,
+                latest,
+            )
+        )
+    battery = None
+    if charged:
+        energy = np.minimum(travel + rng.integers(0, 30, travel.shape), NEVER)
+        energy[travel == NEVER] = 0
+        battery = Battery(
+            energy,
+            int(rng.integers(60, 200)) + 20 * n,
+            int(rng.integers(0, 60)),
+            int(rng.integers(0, 10)),
+        )
+    limit = int(rng.uniform(0.4, 1.2) * horizon) if selective or rng.random() < 0.4 else None
+    return RouteProblem(
+        tuple(visits),
+        travel,
+        _precedences(rng, n) if rng.random() < 0.5 else (),
+        rounds,
+        limit,
+        battery,
+        tuple(f"dock {k}" for k in range(c)),
+        list(Objective)[int(rng.choice(3, p=[0.6, 0.3, 0.1]))],
+    )
+
+
+def _precedences(rng: np.random.Generator, n: int) -> tuple[Precedence, ...]:
+    found = []
+    for _ in range(int(rng.integers(1, 4))):
+        size = int(rng.integers(2, max(3, n + 1)))
+        if n < 2:
+            break
+        sequence = rng.permutation(n)[:size]
+        if rng.random() < 0.7:
+            sequence = np.sort(sequence)
+        words = " before ".join(f"checkpoint {k}" for k in sequence)
+        found.append(
+            Precedence(tuple(int(k) for k in sequence), words, bool(rng.random() < 0.4))
+        )
+    return tuple(found)
+
+
+def _rounds(rng: np.random.Generator, n: int) -> tuple[Round, ...]:
+    found, left = [], [int(k) for k in rng.permutation(n)]
+    while left and rng.random() < 0.7:
+        size = int(rng.integers(1, min(4, len(left)) + 1))
+        members, left = left[:size], left[size:]
+        found.append(_round(rng, f"round {len(found)}", tuple(members)))
+        if size > 1 and rng.random() < 0.4:
+            inner = tuple(members[: int(rng.integers(1, size + 1))])
+            found.append(_round(rng, f"round {len(found)}", inner))
+    return tuple(found)
+
+
+def _round(rng: np.random.Generator, name: str, members: tuple[int, ...]) -> Round:
+    kind = rng.random()
+    repeat = int(rng.integers(1, 4)) if kind < 0.7 else 0
+    duration = int(rng.integers(1, 500)) if kind > 0.5 else 0
+    return Round(name, members, repeat, duration, bool(rng.random() < 0.5))

@@ -21,6 +21,10 @@ class Pruned:
     """when each node may begin at the soonest, shape (m,)"""
     latest: NDArray[np.int64]
     """when it must begin at the latest"""
+    needs: NDArray[np.bool_]
+    """`Network.needs` and what the windows add to it"""
+    before: NDArray[np.bool_]
+    """`Network.before` and what the windows add to it"""
     possible: bool
     """false: there is no route"""
 
@@ -29,34 +33,54 @@ def prune(network: Network) -> Pruned:
     """What is left when ways, precedence, windows and the limit are looked at arc by arc."""
     m, step = network.size, network.step
     best = shortest(network)
+    earliest, latest = _windows(network, best)
+    needs, before = _orders(network, earliest, latest)
+    steps = _possible_steps(needs, before)
+    alive = steps[step] & (earliest <= latest)
     arcs = best < NEVER
     np.fill_diagonal(arcs, False)
     arcs[:m, :m] &= step[:, None] != step[None, :]
-    steps = _possible_steps(network)
-    alive = steps[step]
     # Right after `row`, `column` must not be one that rules it out, nor one that some step between
     # them is needed for.
-    rules_out = network.before.T[np.ix_(step, step)]
-    between = (network.needs.astype(np.int64) @ network.needs.astype(np.int64)) > 0
-    arcs[:m, :m] &= ~rules_out & ~between[np.ix_(step, step)]
-    needed = network.needs.any(axis=0)
-    arcs[m, :m] &= ~needed[step]
-    last = (network.needs & network.mandatory[None, :]).any(axis=1)
-    arcs[:m, m] &= ~last[step]
-    earliest, latest = _windows(network, best)
-    alive &= earliest <= latest
-    arcs[:m, :] &= alive[:, None]
-    arcs[:, :m] &= alive[None, :]
+    between = (needs.astype(np.int64) @ needs.astype(np.int64)) > 0
+    arcs[:m, :m] &= ~(before.T | between)[np.ix_(step, step)]
+    arcs[m, :m] &= ~needs.any(axis=0)[step]
+    arcs[:m, m] &= ~(needs & network.mandatory[None, :]).any(axis=1)[step]
     begun = np.append(earliest + network.service, 0)
     arcs[:, :m] &= begun[:, None] + best[:, :m] <= latest[None, :]
     arcs[:m, m] &= begun[:m] + best[:m, m] <= network.limit
+    arcs[:m, :] &= alive[:, None]
+    arcs[:, :m] &= alive[None, :]
     reachable = np.zeros(len(steps), np.bool_)
     reachable[step[arcs[:, :m].any(axis=0) & arcs[:m, :].any(axis=1)]] = True
-    steps &= reachable
+    steps = steps & reachable
     arcs[:m, :] &= steps[step][:, None]
     arcs[:, :m] &= steps[step][None, :]
     possible = bool(steps[network.mandatory].all())
-    return Pruned(arcs, steps, earliest, latest, possible)
+    return Pruned(arcs, steps, earliest, latest, needs, before, possible)
+
+
+def _orders(
+    network: Network, earliest: NDArray[np.int64], latest: NDArray[np.int64]
+) -> tuple[NDArray[np.bool_], NDArray[np.bool_]]:
+    """The order between steps, and what follows from windows: if `column` can't be begun any more
+    when `row` has been made at its soonest, it comes before it."""
+    if not network.windowed and network.limit >= NEVER:
+        return network.needs, network.before
+    m, count = network.size, len(network.prize)
+    apart = paths(network)
+    late = earliest[:, None] + network.service[:, None] + apart > latest[None, :]
+    too_late = np.ones((count, count), np.bool_)
+    for i in range(m):
+        np.logical_and.at(too_late, (network.step[i], network.step), late[i])
+    np.fill_diagonal(too_late, False)
+    before = network.before | too_late.T
+    needs = network.needs | (too_late.T & network.mandatory[:, None])
+    while True:
+        wider = needs | ((needs.astype(np.int64) @ needs.astype(np.int64)) > 0)
+        if (wider == needs).all():
+            return needs, before | needs
+        needs = wider
 
 
 def shortest(network: Network) -> NDArray[np.int64]:
@@ -87,11 +111,11 @@ def horizon(network: Network) -> int:
     return min(network.limit, int(network.earliest.max(initial=0)) + longest)
 
 
-def _possible_steps(network: Network) -> NDArray[np.bool_]:
+def _possible_steps(needs: NDArray[np.bool_], before: NDArray[np.bool_]) -> NDArray[np.bool_]:
     """Without the steps that would have to come before themselves, or need one that must."""
     # Of a circle of steps that are needed for each other, closed over, each needs itself.
-    impossible = np.asarray(np.diagonal(network.before) | np.diagonal(network.needs))
-    impossible |= (network.needs & impossible[:, None]).any(axis=0)
+    impossible = np.asarray(np.diagonal(before) | np.diagonal(needs))
+    impossible |= (needs & impossible[:, None]).any(axis=0)
     return np.asarray(~impossible)
 
 

@@ -1,0 +1,226 @@
+"""From a mission to its route problem."""
+
+from collections.abc import Iterator
+from dataclasses import dataclass, replace
+
+import numpy as np
+from numpy.typing import NDArray
+
+from argo_compiler.analysis.limits import time_words
+from argo_compiler.errors import ArgoError
+from argo_compiler.il import Mission, Order
+from argo_compiler.route.branches import Branches
+from argo_compiler.route.problem import NEVER, Battery, Round, Route, RouteProblem, Visit
+from argo_compiler.route.requirements import Requirements
+from argo_compiler.route.rules import must_be_last, round_notes, rules, speed_notes
+from argo_compiler.route.spine import Circuit, Stop, Unit, find_spine, stops_of
+from argo_compiler.route.visits import Visits
+from argo_compiler.route.ways import Ways, require_ways
+
+_NOTHING = Requirements()
+_ROUNDING = 1e-6  # of a unit, left by sums of floats
+
+
+@dataclass(frozen=True, eq=False)
+class MissionRoute:
+    """A mission, and the problem of its order. The visits of the problem are those of `visits`."""
+
+    mission: Mission
+    visits: Visits
+    problem: RouteProblem
+    written: Route
+    """the order in which the mission is written"""
+    reasons: tuple[str, ...]
+    """what stays as it is written, and how it is reckoned"""
+
+
+def route_problem(
+    mission: Mission, ways: Ways, requirements: Requirements = _NOTHING
+) -> MissionRoute:
+    """The problem of the best order of a mission's tasks: what `docs/routes.md` says may change.
+
+    Actions succeed at once, and no event occurs.
+
+    Raises:
+        DiagnosticError: `check` finds errors in the mission.
+        ArgoError: its order can't be changed, or a requirement names something that it does not
+            have.
+    """
+    spine = find_spine(mission)
+    require_ways(ways, mission)
+    visits = Visits(spine)
+    precise = mission.order is Order.PRECISE or requirements.keep_order
+    times, energies = _costs(visits, ways, _likely(visits, requirements))
+    limit = _limit(mission, requirements)
+    problem = RouteProblem(
+        visits=tuple(_visits(visits, ways, requirements)),
+        travel=_travel(visits, times, ways),
+        precedences=rules(visits, precise, requirements),
+        rounds=tuple(_rounds(visits, ways)),
+        max_duration=None if limit is None else ways.down(limit[0]),
+        unit=ways.unit,
+        words={} if limit is None else {"max_duration": limit[1]},
+    )
+    reasons = [*spine.reasons, *speed_notes(visits), *round_notes(visits)]
+    if ways.battery is not None and ways.charging > 0.0:
+        most = _most_energy(visits, visits.spine.units, times, energies, ways)
+        if most > ways.battery:
+            problem = _with_battery(problem, ways, energies)
+            reasons.append(f"the battery gives {ways.battery:g} Wh, which may not be enough")
+    return MissionRoute(
+        mission, visits, problem, Route(tuple(range(len(visits.stops)))), tuple(reasons)
+    )
+
+
+def _limit(mission: Mission, requirements: Requirements) -> tuple[float, str] | None:
+    """The longest duration (s), and how it is said."""
+    limits = []
+    if mission.max_duration is not None:
+        words = f"maximum duration {time_words(mission.max_duration)}"
+        limits.append((mission.max_duration, words))
+    if requirements.budget is not None:
+        limits.append((requirements.budget, f"budget {time_words(requirements.budget)}"))
+    return min(limits, default=None)
+
+
+def _likely(visits: Visits, requirements: Requirements) -> dict[tuple[int, int], float]:
+    """How likely conditional ways are, by leaves."""
+    flow = visits.spine.flow
+    number = {leaf.name: i for i, leaf in enumerate(flow.leaves)}
+    likely: dict[tuple[int, int], float] = {}
+    for one in requirements.likelihoods:
+        leaf, target = number.get(one.task), number.get(one.target)
+        if leaf is None or target not in {t for _, t in flow.leaves[leaf].conditional}:
+            raise ArgoError(
+                f"no condition of a task '{one.task}' leads to '{one.target}': name a task and "
+                "where one of its conditions leads to"
+            )
+        assert target is not None
+        likely[leaf, target] = one.probability
+    for leaf in {leaf for leaf, _ in likely}:
+        total = sum(p for (from_, _), p in likely.items() if from_ == leaf)
+        if total > 1.0 + _ROUNDING:
+            raise ArgoError(
+                f"the ways on from '{flow.leaves[leaf].name}' are {total:g} likely together: "
+                "at most 1 is possible"
+            )
+    return likely
+
+
+def _costs(
+    visits: Visits, ways: Ways, likely: dict[tuple[int, int], float]
+) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+    """Times (units) and energies (Wh) of the problem's rows and columns, what is done at the column
+    included. inf: there is no way."""
+    tasks, end = len(ways.tasks), visits.spine.end
+    nowhere = np.zeros((len(ways.time), 1))  # to end where the robot is, and with nothing to do
+    time, energy = np.hstack([ways.time, nowhere]), np.hstack([ways.energy, nowhere])
+    branches = Branches(visits.spine, time, energy, ways.unit, likely)
+    times = [branches.time(stop) for stop in visits.stops] + list(time[tasks:])
+    energies = [branches.energy(stop) for stop in visits.stops] + list(energy[tasks:])
+    for row, stop in zip(times, visits.stops, strict=False):
+        if np.isneginf(row).any():
+            name = visits.spine.name(stop.entry)
+            raise ArgoError(
+                f"how long it takes from '{name}' to what follows can't be reckoned: only the time "
+                "of a group around it ends it"
+            )
+    chargers = range(tasks, tasks + len(ways.chargers))
+    columns = [stop.entry for stop in visits.stops]
+    columns += [len(time[0]) - 1 if end is None else end, *chargers]
+    return np.array(times)[:, columns], np.array(energies)[:, columns]
+
+
+def _travel(visits: Visits, times: NDArray[np.float64], ways: Ways) -> NDArray[np.int64]:
+    """The times as the problem has them: whole units, without what is done at the column."""
+    found = np.isfinite(times)
+    whole = np.ceil(np.where(found, times, 0.0) - _ROUNDING).astype(np.int64)
+    for k, stop in enumerate(visits.stops):
+        whole[:, k] -= _service(stop, ways)
+    return np.where(found, np.maximum(whole, 0), NEVER)
+
+
+def _service(stop: Stop, ways: Ways) -> int:
+    return int(ways.work[stop.entry])
+
+
+def _visits(visits: Visits, ways: Ways, requirements: Requirements) -> Iterator[Visit]:
+    everything = range(len(visits.stops))
+    prizes = {} if requirements.budget is None else dict.fromkeys(everything, 1)
+    for one in requirements.optional:
+        found = visits.whole(visits.find(one.what))
+        prizes.update(dict.fromkeys(found, 0))
+        prizes[found[0]] = one.priority
+    mandatory = {k for what in requirements.mandatory for k in visits.whole(visits.find(what))}
+    last = must_be_last(visits)
+    if last is not None:
+        mandatory |= set(visits.whole([last]))
+    windows: dict[int, tuple[int, int | None]] = {}
+    for window in requirements.windows:
+        for k in visits.find(window.what):
+            latest = None if window.latest is None else ways.down(window.latest)
+            windows[k] = ways.up(window.earliest), latest
+    for k in everything:
+        earliest, latest = windows.get(k, (0, None))
+        optional = k in prizes and k not in mandatory
+        yield Visit(
+            visits.names[k],
+            service=_service(visits.stops[k], ways),
+            mandatory=not optional,
+            prize=prizes.get(k, 0) if optional else 0,
+            earliest=earliest,
+            latest=latest,
+        )
+
+
+def _rounds(visits: Visits, ways: Ways) -> Iterator[Round]:
+    for circuit, members in visits.circuits:
+        group = visits.spine.flow.groups[circuit.group]
+        yield Round(
+            f"group '{group.name}'",
+            members,
+            repeat=group.count,
+            duration=ways.up(group.duration),
+            soft=not group.hard,
+        )
+
+
+def _most_energy(
+    visits: Visits,
+    units: tuple[Unit, ...],
+    times: NDArray[np.float64],
+    energies: NDArray[np.float64],
+    ways: Ways,
+) -> float:
+    """Wh that no order of the units needs more than, the way to the end included."""
+    n = len(visits.stops)
+    worst = np.where(np.isfinite(energies), energies, 0.0).max(axis=0, initial=0.0)
+
+    def most(units: tuple[Unit, ...]) -> float:
+        total = 0.0
+        for unit in units:
+            if not isinstance(unit, Circuit):
+                total += worst[visits.of_leaf[unit.entry]]
+                continue
+            group = visits.spine.flow.groups[unit.group]
+            members = [visits.of_leaf[stop.entry] for stop in stops_of(unit.inside)]
+            shortest = max(times[:, members].min(axis=0).sum(), 1.0)
+            allowed = 1 + np.ceil(group.duration / ways.unit / shortest)
+            rounds = min(group.count or np.inf, allowed if group.duration else np.inf)
+            total += rounds * most(unit.inside)
+        return float(total)
+
+    return most(units) + float(worst[n])
+
+
+def _with_battery(problem: RouteProblem, ways: Ways, energies: NDArray[np.float64]) -> RouteProblem:
+    assert ways.battery is not None
+    found = np.isfinite(energies)
+    used = np.ceil(ways.units_of_energy(np.where(found, energies, 0.0)) - _ROUNDING)
+    capacity = ways.units_of_energy(np.array(ways.battery))
+    return replace(
+        problem,
+        battery=Battery(used.astype(np.int64), int(capacity)),
+        chargers=ways.chargers,
+        words={**problem.words, "battery": f"battery of {ways.battery:g} Wh"},
+    )

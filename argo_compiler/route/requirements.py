@@ -1,0 +1,90 @@
+"""What is asked of an order beyond what a mission can say."""
+
+import re
+from typing import Annotated
+
+from pydantic import BeforeValidator, Field, model_validator
+
+from argo_compiler.errors import ArgoError
+from argo_compiler.model import Model
+
+_PART = re.compile(r"\s*(\d+(?:\.\d+)?)\s*(h|hours?|min|minutes?|'|s|seconds?)?(?![^\W\d])")
+_SECONDS = {"h": 3600.0, "m": 60.0, "'": 60.0, "s": 1.0}
+
+
+def parse_seconds(text: str) -> float:
+    """Seconds of `20 min`, `1 h 30 min`, `90 s` or `90`. Raises ArgoError if it is no duration."""
+    total, at = 0.0, 0
+    scale = 2 * _SECONDS["h"]
+    text = text.strip()
+    while at < len(text):
+        part = _PART.match(text, at)
+        factor = _SECONDS[(part.group(2) or "s")[0]] if part else scale
+        if part is None or factor >= scale:  # larger units come first, each once
+            raise ArgoError(f"`{text}` is no duration: write `20 min`, `1 h 30 min` or `90 s`")
+        total, at, scale = total + float(part.group(1)) * factor, part.end(), factor
+    if not text:
+        raise ArgoError("a duration is missing: write `20 min`, `1 h 30 min` or `90 s`")
+    return total
+
+
+def _seconds(value: object) -> object:
+    if not isinstance(value, str):
+        return value
+    try:
+        return parse_seconds(value)
+    except ArgoError as error:
+        raise ValueError(str(error)) from None
+
+
+Seconds = Annotated[float, BeforeValidator(_seconds), Field(ge=0.0)]
+What = Annotated[int, Field(strict=True, ge=1)] | Annotated[str, Field(min_length=1)]
+"""The number of a checkpoint, or the name of a task or group."""
+
+
+class Priority(Model):
+    """Something that may be left out."""
+
+    what: What
+    priority: int = Field(default=1, ge=1, le=1_000_000)
+    """what it is worth: as much as possible is won in sum. A group's counts once"""
+
+
+class Window(Model):
+    """When something has to begin, counted from the mission's start."""
+
+    what: What
+    earliest: Seconds = 0.0
+    latest: Seconds | None = None
+
+    @model_validator(mode="after")
+    def _ordered(self) -> "Window":
+        if self.latest is not None and self.latest < self.earliest:
+            raise ValueError(f"latest {self.latest:g} s is before earliest {self.earliest:g} s")
+        return self
+
+
+class Likelihood(Model):
+    """How likely it is that a task goes on to another one by its conditions."""
+
+    task: str
+    target: str
+    probability: float = Field(ge=0.0, le=1.0)
+
+
+class Requirements(Model):
+    """What an order has to keep to beside its mission."""
+
+    budget: Seconds | None = Field(default=None, gt=0.0)
+    """s in which the mission has to be over. With it, all that is not `mandatory` may be left out,
+    with priority 1 where `optional` does not say another"""
+    keep_order: bool = False
+    """whether nothing changes places, even if the mission allows any order"""
+    mandatory: tuple[What, ...] = ()
+    optional: tuple[Priority, ...] = ()
+    before: tuple[Annotated[tuple[What, ...], Field(min_length=2)], ...] = ()
+    """sequences in which each comes before the next"""
+    windows: tuple[Window, ...] = ()
+    likelihoods: tuple[Likelihood, ...] = ()
+    """where all conditional ways of a task have one, its ways are reckoned on average, not in the
+    worst case"""

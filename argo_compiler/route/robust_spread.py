@@ -1,0 +1,46 @@
+"""How travel times spread around those of a route problem."""
+
+from pydantic import Field
+
+from argo_compiler.model import Model
+
+
+class TravelSpread(Model):
+    """What is random about a mission. All parts are independent of each other.
+
+    A way takes nominal time x common factor x factor of its own, and sometimes a delay. Factors are
+    log-normal with mean 1. The energy for a way grows by the same two factors.
+    """
+
+    common: float = Field(0.0, ge=0, le=1)
+    """standard deviation of the factor of the whole mission: grip, the battery's voltage"""
+    way: float = Field(0.0, ge=0, le=1)
+    """standard deviation of the factor of each way, drawn anew each time that it is driven"""
+    delay_chance: float = Field(0.0, ge=0, le=1)
+    """of each way to be held up, by something that stands in it"""
+    delay: float = Field(0.0, ge=0)
+    """mean of a delay, s; delays are exponential"""
+    repeat_chance: float = Field(0.0, ge=0, le=1)
+    """that what is done at a place takes its service time twice: a reading that is repeated"""
+    source: str = ""
+    """where the figures come from"""
+
+
+SIMULATED = TravelSpread(
+    common=0.001,
+    way=0.007,
+    source=(
+        "the simulator with the tracked drive and no faults: missions on UMAD take 0.05 % more or "
+        "less than planned in the median and 0.22 % at most (docs/drives.md), single motions of "
+        "5.6 s on average 0.2 s (urdf/robot/tracker.calibration.yaml), and a way has some 30"
+    ),
+)
+
+CAUTIOUS = TravelSpread(
+    common=0.05,
+    way=0.1,
+    delay_chance=0.03,
+    delay=45.0,
+    repeat_chance=0.05,
+    source="an assumption for a real site with people on it, not a measurement",
+)

@@ -114,7 +114,7 @@ class _Model:
 
     # The circuit
 
-    def _circuit(self) -> list[cp_model.LiteralT]:
+    def _circuit(self) -> list[Any]:
         """Arcs and self-loops; gives for each step whether it is made."""
         network, pruned, model = self._network, self._pruned, self.model
         m = network.size
@@ -133,7 +133,7 @@ class _Model:
                         overhead = network.problem.battery.overhead
                         self._add_arc(i, j, charger, way + overhead + service[j])
         circuit += [(i, j, literal) for i, j, _, literal in self._arcs]
-        made: list[cp_model.LiteralT] = []
+        made: list[Any] = []
         for s, mandatory in enumerate(network.mandatory.tolist()):
             nodes = network.nodes_of(s)
             left_out = [model.new_bool_var("") for _ in nodes]
@@ -257,7 +257,7 @@ class _Model:
             model.add(levels[count] == whole).only_enforce_if(self._empty)
         for s, made in enumerate(self._made):
             if not network.mandatory[s]:
-                model.add(levels[s] == 0).only_enforce_if(made.negated())  # type: ignore[union-attr]
+                model.add(levels[s] == 0).only_enforce_if(made.negated())
         return levels
 
     def _clocks(self, used: Sequence[Any]) -> list[cp_model.IntVar]:

@@ -63,8 +63,11 @@ class _Walk:
 
     def evaluation(self) -> Evaluation:
         problem, order = self._problem, self._route.order
-        self._check_selection()
+        prize = sum(problem.visits[visit].prize for visit in set(order))
         self._check_precedences()
+        if not self._check_selection():
+            nowhere = (NEVER,) * len(order)
+            return Evaluation(prize, NEVER, 0, nowhere, tuple(self._violations))
         used = 0 if problem.battery is None else problem.battery.used
         state = _State(0, used, frozenset([problem.size]))
         position = 0
@@ -84,12 +87,12 @@ class _Walk:
             self._violations.append(f"it takes {duration}, longer than {problem.max_duration}")
         if set(self._route.charges) - set(range(len(order) + 1)):
             self._violations.append("it charges outside of the order")
-        prize = sum(problem.visits[visit].prize for visit in set(order))
         arrivals = tuple(self._arrivals.get(visit, NEVER) for visit in order)
         return Evaluation(prize, duration, self._waiting, arrivals, tuple(self._violations))
 
-    def _check_selection(self) -> None:
-        order = self._route.order
+    def _check_selection(self) -> bool:
+        """Whether there is a way to follow: no round is torn, and no visit made twice."""
+        order, whole = self._route.order, len(set(self._route.order)) == len(self._route.order)
         if len(set(order)) < len(order):
             self._violations.append("a visit is made twice")
         for number, visit in enumerate(self._problem.visits):
@@ -101,6 +104,8 @@ class _Walk:
                 len(made) != len(one.members) or made[-1] - made[0] + 1 != len(one.members)
             ):
                 self._violations.append(f"{one.name} is not made as one")
+                whole = False
+        return whole
 
     def _check_precedences(self) -> None:
         position = {visit: k for k, visit in enumerate(self._route.order)}

@@ -13,19 +13,32 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from argo_compiler.route.completion import INF, Sets, all_sets, to_come
+from argo_compiler.route.completion import Sets, all_sets, sets_towards, to_come
 from argo_compiler.route.found import Found, found, none_found
+from argo_compiler.route.modes import plus
 from argo_compiler.route.network import Network
 from argo_compiler.route.problem import NEVER, Objective
 from argo_compiler.route.progress import Search
 from argo_compiler.route.pruning import Pruned, shortest
-from argo_compiler.route.subsets import MOST_STEPS, rules
+from argo_compiler.route.subsets import (
+    INF,
+    MOST_STEPS,
+    arcs_of,
+    ends,
+    must,
+    prizes,
+    rules,
+    soonest,
+)
 
 Vector = NDArray[np.int64]
 
 WIDTHS = (300, 3_000, 30_000, 300_000, 2_000_000)
 """labels in a layer, from one beam to the next"""
 _DIRECT = -1
+_FIRST_GOALS = 64
+_MOST_OPTIONAL = 22
+"""steps where something may be left out: then tables of all their subsets are made"""
 
 
 def applies(network: Network) -> bool:
@@ -40,27 +53,140 @@ def solve_labels(
     """The best path that the beams find until the deadline, and its bounds."""
     if not pruned.possible:
         return none_found(network, proven=True)
-    space = _Space(network, pruned)
-    best, prize_bound, bound = start, int(network.prize[pruned.steps].sum()), 0
+    if network.selective:
+        return _by_prize(network, pruned, search, start)
+    allowed = rules(network, pruned)
+    nodes = [network.nodes_of(s)[0] for s in range(len(network.prize)) if network.nodes_of(s)]
+    space = _Space(network, pruned, all_sets(allowed, nodes, must(network), len(network.prize)))
+    prize, bound, best = int(network.prize.sum()), 0, start
     for width in WIDTHS:
         beam = space.beam(width, best, search)
-        if beam.path is not None:
-            one = found(network, beam.path, beam.charges, prize_bound, 0)
-            if one.better_than(best):
-                best = one
-                search.route(one.prize, one.cost)
+        best = _better(network, search, beam, best)
         if beam.complete:
             if best is None or best.path is None:
                 return none_found(network, proven=True)
-            return found(network, best.path, best.charges, best.prize, best.cost)
+            return found(network, best.path, best.charges, prize, best.cost)
         bound = max(bound, beam.bound)
-        if not network.selective:
-            search.known(bound=bound)
+        search.known(bound=bound)
         if search.left() <= 0.0:
             break
     if best is None or best.path is None:
         return none_found(network, proven=False, bound=bound)
-    return found(network, best.path, best.charges, prize_bound, bound)
+    return found(network, best.path, best.charges, prize, bound)
+
+
+def _by_prize(network: Network, pruned: Pruned, search: Search, start: Found | None) -> Found:
+    """The sets that could be made in time without windows and battery, from those of the highest
+    prize down, so many at once: which of them can be made, and then at which least cost."""
+    goals, worth = _goals(network, pruned)
+    most, best, first, size = int(worth.max(initial=-1)), start, 0, _FIRST_GOALS
+    while first < len(goals):
+        search.known(prize_bound=most)
+        # All of one prize stay together.
+        lowest = worth[min(first + size, len(goals)) - 1]
+        after = int(np.searchsorted(-worth, -lowest, side="right"))
+        some, complete = goals[first:after], False
+        for width in WIDTHS:
+            # Once one is found, only what is worth more is of interest.
+            if best is not None and best.path is not None:
+                some = some[prizes(network, some) > best.prize]
+            if not len(some):
+                complete = True
+                break
+            space = _Space(network, pruned, sets_towards(some, len(network.prize)))
+            beam = space.beam(width, None, search)
+            best, complete = _better(network, search, beam, best), beam.complete
+            if complete or search.left() <= 0.0:
+                break
+        if best is not None and best.path is not None and complete:
+            return _cheapest(network, pruned, search, best, goals[worth == best.prize])
+        if not complete:
+            break
+        first, size = after, size * 4
+        most = int(worth[after]) if after < len(goals) else -1
+    if best is None or best.path is None:
+        return none_found(network, proven=most < 0)
+    return found(network, best.path, best.charges, max(most, best.prize), 0)
+
+
+def _cheapest(
+    network: Network, pruned: Pruned, search: Search, best: Found, goals: Vector
+) -> Found:
+    """The cheapest path to any of the goals, which are all of those with the best prize."""
+    search.known(prize_bound=best.prize)
+    if network.objective is Objective.PRIZE:
+        return found(network, best.path or (), best.charges, best.prize, 0)
+    space, bound = _Space(network, pruned, sets_towards(goals, len(network.prize))), 0
+    for width in WIDTHS:
+        beam = space.beam(width, best, search)
+        best = _better(network, search, beam, best) or best
+        bound = best.cost if beam.complete else max(bound, beam.bound)
+        if beam.complete or search.left() <= 0.0:
+            break
+    return found(network, best.path or (), best.charges, best.prize, bound)
+
+
+def _better(network: Network, search: Search, beam: "_Beam", best: Found | None) -> Found | None:
+    """The better of a beam's path and the best so far."""
+    if beam.path is None:
+        return best
+    one = found(network, beam.path, beam.charges, int(network.prize.sum()), 0)
+    if not one.better_than(best):
+        return best
+    search.route(one.prize, one.cost)
+    return one
+
+
+def _goals(network: Network, pruned: Pruned) -> tuple[Vector, Vector]:
+    """The sets that may be all that is made, and their prizes, which fall: what can't be made in
+    time is not among them, the time for charging what is used at least included."""
+    latest = np.minimum(pruned.latest, INF - 1)
+    earliest = network.earliest[network.step]
+    limit = min(network.limit, int(INF) - 1)
+    goals, end = _soonest_ends(network, pruned, shortest(network), earliest, latest)
+    all_of = must(network)
+    goals = goals[((goals & all_of) == all_of) & (end <= limit)]
+    battery = network.problem.battery
+    if battery is not None and network.limit < INF:
+        spared = battery.capacity - battery.used
+        late = np.full(len(earliest), min(limit + spared, int(INF) - 1), np.int64)
+        whole, end = _soonest_ends(
+            network, pruned, _times_and_energies(network), np.zeros_like(earliest), late
+        )
+        goals = np.intersect1d(goals, whole[end - spared <= limit], assume_unique=True)
+    goals = np.sort(goals)
+    worth = prizes(network, goals)
+    order = np.argsort(-worth, kind="stable")
+    return goals[order], worth[order]
+
+
+def _soonest_ends(
+    network: Network,
+    pruned: Pruned,
+    times: NDArray[np.int64],
+    earliest: Vector,
+    latest: Vector,
+) -> tuple[Vector, Vector]:
+    """All sets that can be made, and their soonest ends, for these times of arcs."""
+    arcs, m = arcs_of(network, pruned, times), network.size
+    masks, soonest_ends = [np.zeros(1, np.int64)], [arcs[m:, m].astype(np.int64)]
+    for layer in soonest(network, rules(network, pruned), arcs, earliest, latest):
+        masks.append(layer.masks)
+        soonest_ends.append(ends(network, arcs, layer))
+    return np.concatenate(masks), np.concatenate(soonest_ends)
+
+
+def _times_and_energies(network: Network) -> NDArray[np.int64]:
+    """The least time and energy together that each arc takes, straight or by a charger."""
+    battery = network.problem.battery
+    assert battery is not None
+    assert network.energy is not None
+    both = plus(network.time, network.energy)
+    for station in network.chargers:
+        way = plus(station.to, station.to_energy)[:, None]
+        onward = plus(station.out, station.out_energy)[None, :]
+        both = np.minimum(both, plus(way + onward, battery.overhead))
+    return both
 
 
 @dataclass(frozen=True, eq=False)
@@ -90,72 +216,62 @@ class _Labels:
 
 
 class _Space:
-    """What all beams of a network share."""
+    """The sets that a search may go through, which all of its beams share."""
 
-    def __init__(self, network: Network, pruned: Pruned) -> None:
-        self._network, self._pruned = network, pruned
+    def __init__(self, network: Network, pruned: Pruned, sets: Sets) -> None:
+        self._network, self._pruned, self._sets = network, pruned, sets
         self._rules = rules(network, pruned)
-        steps = range(len(network.prize))
-        nodes = [network.nodes_of(s)[0] for s in steps if network.nodes_of(s)]
-        self._sets: Sets = all_sets(self._rules, nodes)
         self._battery = network.problem.battery
         self._travels = self._battery is None  # the other measure: travel, else energy
-        self._guides = [] if network.selective else self._make_guides()
-        must = np.flatnonzero(network.mandatory).astype(np.int64)
-        self._must = np.int64((np.int64(1) << must).sum())
+        self._guides = self._make_guides()
+        layers = zip(sets.layers, sets.last, strict=True)
+        worth = np.concatenate([prizes(network, layer[last]) for layer, last in layers])
+        self._level = bool((worth == worth[:1]).all())
+        """whether all sets that the route may end with are worth the same: then cost counts"""
 
-    def _make_guides(self) -> list[list[NDArray[np.int32]]]:
-        """What is still to come at least: in time, and in time and energy together."""
+    def _make_guides(self) -> list[NDArray[np.int32]]:
+        """What is still to come at least, by layer: in time, and in time and energy together."""
         network, pruned = self._network, self._pruned
         service = np.append(network.service, 0)
-        time = np.minimum(shortest(network) + service[None, :], INF).astype(np.int32)
-        time[~pruned.arcs] = INF
-        if not len(network.prize):
-            time = np.minimum(network.time, INF).astype(np.int32)
-        guides = [to_come(network, self._rules, self._sets, time)]
+        kinds = [arcs_of(network, pruned, shortest(network) + service[None, :])]
         if self._battery is not None and network.chargers:
-            assert network.energy is not None
-            both = network.time + network.energy
-            for station in network.chargers:
-                way = station.to[:, None] + station.out[None, :] + self._battery.overhead
-                both = np.minimum(
-                    both, way + station.to_energy[:, None] + station.out_energy[None, :]
-                )
-            both = np.minimum(both + service[None, :], INF).astype(np.int32)
-            both[~pruned.arcs] = INF
-            guides.append(to_come(network, self._rules, self._sets, both))
-        return guides
+            both = _times_and_energies(network) + service[None, :]
+            kinds.append(arcs_of(network, pruned, both))
+        return to_come(network, self._rules, self._sets, np.stack(kinds))
 
     def beam(self, width: int, best: Found | None, search: Search) -> _Beam:
         """The best path of a search that keeps the `width` most promising labels of a layer."""
-        network = self._network
         upper = None if best is None or best.path is None else (best.prize, best.cost)
         layers = [self._start()]
-        complete, bound = True, None
+        lost: int | None = None  # the least cost of the labels that were dropped
         end: tuple[tuple[int, int], int, int, int] | None = None
         for number in range(len(self._sets.layers)):
             labels = layers[number]
             one = self._best_end(number, labels)
             if one is not None and (end is None or one[0] > end[0]):
                 end = one
-                if upper is None or (one[0][0], -one[0][1]) > (upper[0], -upper[1]):
+                if upper is None or one[0] > (upper[0], -upper[1]):
                     upper = one[0][0], -one[0][1]
             if number + 1 == len(self._sets.layers):
                 break
-            labels, least = self._next(number, labels, upper)
-            if len(labels.set) > width or search.left() <= 0.0:
+            following = self._next(number, labels, upper, search)
+            if following is None:  # the time is over
+                lost = 0
+                break
+            labels, least = following
+            if len(labels.set) > width:
                 keep = np.sort(np.argsort(least, kind="stable")[:width])
-                complete = False
-                lost = np.delete(least, keep).min(initial=NEVER)
-                bound = lost if bound is None else min(bound, lost)
+                dropped = int(np.delete(least, keep).min())
+                lost = dropped if lost is None else min(lost, dropped)
                 labels = labels.take(keep)
             layers.append(labels)
         known = NEVER if upper is None else upper[1]
-        least_cost = 0 if network.selective else int(min(known, bound or known))
+        bound = min(known, NEVER if lost is None else lost)
+        bound = 0 if bound >= NEVER or not self._level else bound
         if end is None:
-            return _Beam(None, {}, complete, least_cost if bound is not None else 0)
+            return _Beam(None, {}, lost is None, bound)
         path, charges = self._path(layers, *end[1:])
-        return _Beam(path, charges, complete, least_cost)
+        return _Beam(path, charges, lost is None, bound)
 
     def _start(self) -> _Labels:
         used = 0 if self._battery is None else self._battery.used
@@ -192,15 +308,17 @@ class _Space:
         return rows[there], time[there], other[there], chargers
 
     def _next(
-        self, number: int, labels: _Labels, upper: tuple[int, int] | None
-    ) -> tuple[_Labels, Vector]:
+        self, number: int, labels: _Labels, upper: tuple[int, int] | None, search: Search
+    ) -> tuple[_Labels, Vector] | None:
         """The labels of the next layer that may lead to a better path, and the least that a path
-        of each can cost."""
+        of each can cost; None if the time is over before."""
         network, pruned = self._network, self._pruned
-        masks, after = self._sets.layers[number], self._sets.layers[number + 1]
+        masks = self._sets.layers[number]
         parts: list[_Labels] = []
         of_label = masks[labels.set]
         for node in range(network.size):
+            if search.left() <= 0.0:
+                return None
             rows = self._rules.rows(of_label, node)
             rows = rows[pruned.arcs[labels.last[rows], node]]
             earliest = int(network.earliest[network.step[node]])
@@ -208,11 +326,12 @@ class _Space:
                 begin = np.maximum(time, earliest)
                 fits = begin <= pruned.latest[node]
                 origin = origin[fits]
-                sets = np.searchsorted(after, of_label[origin] | self._rules.bit[node])
-                ends = begin[fits] + network.service[node]
+                wanted = of_label[origin] | self._rules.bit[node]
+                sets, there = self._sets.find(number + 1, wanted)
+                time = begin[fits] + network.service[node]
                 one = _Labels(
-                    sets, np.full(len(origin), node), ends, other[fits], origin, charger[fits]
-                )
+                    sets, np.full(len(origin), node), time, other[fits], origin, charger[fits]
+                ).take(there)
                 keep = self._promising(number + 1, one, upper)
                 parts.append(one.take(keep))
         fields = ("set", "last", "time", "other", "parent", "charger")
@@ -220,54 +339,31 @@ class _Space:
         kept = joined.take(_undominated(joined, network.size))
         return kept, self._least(number + 1, kept)
 
-    def _least(self, number: int, labels: _Labels) -> Vector:
-        """The least cost of a path of each label; with something optional, how much it lacks."""
-        if self._network.selective:
-            made = self._prizes(self._sets.layers[number])[labels.set]
-            rate = int(self._network.prize.sum()) / max(1, int(self._network.service.sum()) + 1)
-            return np.asarray(labels.time * rate - made, np.int64)
-        guides = [guide[number][labels.set, labels.last] for guide in self._guides]
-        if self._travels:
-            return np.asarray(self._cost(labels) + guides[0], np.int64)
-        least = labels.time + guides[0]
-        if len(guides) > 1:
+    def _ends(self, number: int, labels: _Labels) -> Vector:
+        """The soonest time at the end that a path of each label can have."""
+        guide = self._guides[number][:, labels.set, labels.last]
+        end = labels.time + guide[0]
+        if len(guide) > 1:
             assert self._battery is not None
-            charged = labels.time + labels.other + guides[1] - self._battery.capacity
-            least = np.maximum(least, charged)
-        return np.asarray(least, np.int64)
+            charged = labels.time + labels.other + guide[1] - self._battery.capacity
+            end = np.maximum(end, charged)
+        return np.asarray(end, np.int64)
 
-    def _cost(self, labels: _Labels) -> Vector:
-        """What the objective makes small, so far."""
-        travel = self._network.objective is Objective.TRAVEL and self._travels
-        return labels.other if travel else labels.time
+    def _least(self, number: int, labels: _Labels) -> Vector:
+        """The least cost of a path of each label."""
+        if self._travels and self._network.objective is Objective.TRAVEL:
+            return np.asarray(labels.other + self._guides[number][0, labels.set, labels.last])
+        return self._ends(number, labels)
 
     def _promising(
         self, number: int, labels: _Labels, upper: tuple[int, int] | None
     ) -> NDArray[np.bool_]:
         """Whether labels may lead to a path that is better than the best known one."""
-        if self._network.selective:
-            if upper is None:
-                return np.ones(len(labels.set), np.bool_)
-            masks = self._sets.layers[number]
-            most = (self._prizes(masks) + self._prizes_to_come(masks))[labels.set]
-            home = shortest(self._network)[labels.last, self._network.size]
-            return (most > upper[0]) | ((most == upper[0]) & (self._cost(labels) + home < upper[1]))
-        least = self._least(number, labels)
-        return least < (int(INF) if upper is None else min(upper[1], int(INF)))
-
-    def _prizes(self, masks: Vector) -> Vector:
-        total = np.zeros(len(masks), np.int64)
-        for s, prize in enumerate(self._network.prize.tolist()):
-            total += ((masks >> s) & 1) * prize
-        return total
-
-    def _prizes_to_come(self, masks: Vector) -> Vector:
-        """The prizes of all that has not been made and could be."""
-        possible = np.where(self._pruned.steps, self._network.prize, 0)
-        total = np.zeros(len(masks), np.int64)
-        for s, prize in enumerate(possible.tolist()):
-            total += (((masks >> s) & 1) ^ 1) * prize
-        return total
+        last = min(self._network.limit, int(INF) - 1)
+        promising = self._ends(number, labels) <= last
+        if upper is not None and self._level:
+            promising &= self._least(number, labels) < upper[1]
+        return promising
 
     def _best_end(
         self, number: int, labels: _Labels
@@ -275,19 +371,19 @@ class _Space:
         """Prize and cost (negative), layer, label and charger of the best path that ends here."""
         network = self._network
         masks = self._sets.layers[number][labels.set]
-        rows = np.flatnonzero((masks & self._must) == self._must)
+        rows = np.flatnonzero(self._sets.last[number][labels.set])
         best = None
         for origin, time, other, charger in self._legs(labels, rows, network.size):
             fits = time <= network.limit
             if not fits.any():
                 continue
-            prizes = self._prizes(masks[origin[fits]])
+            won = prizes(network, masks[origin[fits]])
             travel = network.objective is Objective.TRAVEL and self._travels
             costs = (other if travel else time)[fits]
             if network.objective is Objective.PRIZE:
                 costs = np.zeros_like(costs)
-            k = int(np.lexsort((costs, -prizes))[0])
-            worth = int(prizes[k]), -int(costs[k])
+            k = int(np.lexsort((costs, -won))[0])
+            worth = int(won[k]), -int(costs[k])
             if best is None or worth > best[0]:
                 best = worth, number, int(origin[fits][k]), int(charger[fits][k])
         return best
@@ -320,4 +416,4 @@ def _undominated(labels: _Labels, nodes: int) -> NDArray[np.int64]:
     smallest = np.minimum.accumulate(shifted)
     first = np.diff(group, prepend=-1) != 0
     better = np.append(True, shifted[1:] < smallest[:-1])
-    return order[first | better]
+    return np.asarray(order[first | better])

@@ -1,7 +1,7 @@
 """From a mission to its route problem."""
 
 from collections.abc import Iterator
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
@@ -13,7 +13,7 @@ from argo_compiler.route.branches import Branches
 from argo_compiler.route.problem import NEVER, Battery, Round, Route, RouteProblem, Visit
 from argo_compiler.route.requirements import Requirements
 from argo_compiler.route.rules import must_be_last, round_notes, rules, speed_notes
-from argo_compiler.route.spine import Circuit, Stop, Unit, find_spine, stops_of
+from argo_compiler.route.spine import Stop, Unit, find_spine, stops_of
 from argo_compiler.route.visits import Visits
 from argo_compiler.route.ways import Ways, require_ways
 
@@ -51,22 +51,27 @@ def route_problem(
     visits = Visits(spine)
     precise = mission.order is Order.PRECISE or requirements.keep_order
     times, energies = _costs(visits, ways, _likely(visits, requirements))
+    battery = _battery(visits, ways, times, energies)
     limit = _limit(mission, requirements)
+    words = {} if limit is None else {"max_duration": limit[1]}
+    reasons = [*spine.reasons, *speed_notes(visits), *round_notes(visits)]
+    if battery is None:  # and no use for chargers
+        places = len(visits.stops) + 1
+        times = times[:places, :places]
+    else:
+        words["battery"] = f"battery of {ways.battery:g} Wh"
+        reasons.append(f"the battery gives {ways.battery:g} Wh, which may not be enough")
     problem = RouteProblem(
         visits=tuple(_visits(visits, ways, requirements)),
         travel=_travel(visits, times, ways),
         precedences=rules(visits, precise, requirements),
         rounds=tuple(_rounds(visits, ways)),
         max_duration=None if limit is None else ways.down(limit[0]),
+        battery=battery,
+        chargers=() if battery is None else ways.chargers,
         unit=ways.unit,
-        words={} if limit is None else {"max_duration": limit[1]},
+        words=words,
     )
-    reasons = [*spine.reasons, *speed_notes(visits), *round_notes(visits)]
-    if ways.battery is not None and ways.charging > 0.0:
-        most = _most_energy(visits, visits.spine.units, times, energies, ways)
-        if most > ways.battery:
-            problem = _with_battery(problem, ways, energies)
-            reasons.append(f"the battery gives {ways.battery:g} Wh, which may not be enough")
     return MissionRoute(
         mission, visits, problem, Route(tuple(range(len(visits.stops)))), tuple(reasons)
     )
@@ -185,42 +190,38 @@ def _rounds(visits: Visits, ways: Ways) -> Iterator[Round]:
         )
 
 
+def _battery(
+    visits: Visits, ways: Ways, times: NDArray[np.float64], energies: NDArray[np.float64]
+) -> Battery | None:
+    """The battery, if there is an order in which it does not last to the end for sure."""
+    if ways.battery is None or ways.charging <= 0.0:
+        return None
+    if _most_energy(visits, ways, times, energies) <= ways.battery:
+        return None
+    used = np.where(np.isfinite(energies), energies, 0.0)
+    used = np.ceil(ways.units_of_energy(used) - _ROUNDING).astype(np.int64)
+    return Battery(used, int(ways.units_of_energy(np.array(ways.battery))))
+
+
 def _most_energy(
-    visits: Visits,
-    units: tuple[Unit, ...],
-    times: NDArray[np.float64],
-    energies: NDArray[np.float64],
-    ways: Ways,
+    visits: Visits, ways: Ways, times: NDArray[np.float64], energies: NDArray[np.float64]
 ) -> float:
-    """Wh that no order of the units needs more than, the way to the end included."""
+    """Wh that no order needs more than, the way to the end included."""
     n = len(visits.stops)
     worst = np.where(np.isfinite(energies), energies, 0.0).max(axis=0, initial=0.0)
 
     def most(units: tuple[Unit, ...]) -> float:
         total = 0.0
         for unit in units:
-            if not isinstance(unit, Circuit):
+            if isinstance(unit, Stop):
                 total += worst[visits.of_leaf[unit.entry]]
                 continue
             group = visits.spine.flow.groups[unit.group]
             members = [visits.of_leaf[stop.entry] for stop in stops_of(unit.inside)]
             shortest = max(times[:, members].min(axis=0).sum(), 1.0)
-            allowed = 1 + np.ceil(group.duration / ways.unit / shortest)
-            rounds = min(group.count or np.inf, allowed if group.duration else np.inf)
+            lasting = 1 + np.ceil(group.duration / ways.unit / shortest)
+            rounds = min(group.count or np.inf, lasting if group.duration else np.inf)
             total += rounds * most(unit.inside)
         return float(total)
 
-    return most(units) + float(worst[n])
-
-
-def _with_battery(problem: RouteProblem, ways: Ways, energies: NDArray[np.float64]) -> RouteProblem:
-    assert ways.battery is not None
-    found = np.isfinite(energies)
-    used = np.ceil(ways.units_of_energy(np.where(found, energies, 0.0)) - _ROUNDING)
-    capacity = ways.units_of_energy(np.array(ways.battery))
-    return replace(
-        problem,
-        battery=Battery(used.astype(np.int64), int(capacity)),
-        chargers=ways.chargers,
-        words={**problem.words, "battery": f"battery of {ways.battery:g} Wh"},
-    )
+    return most(visits.spine.units) + float(worst[n])

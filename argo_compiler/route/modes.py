@@ -102,12 +102,9 @@ class _Pass:
 
 def _visit(problem: RouteProblem, visit: int) -> Mode:
     time = plus(problem.travel[:, visit], problem.visits[visit].service)
-    return Mode(time, energies(problem)[:, visit], (visit,), (visit,))
-
-
-def energies(problem: RouteProblem) -> Vector:
-    """The energy matrix, zeros without a battery."""
-    return np.zeros_like(problem.travel) if problem.battery is None else problem.battery.energy
+    battery = problem.battery
+    energy = np.zeros_like(time) if battery is None else battery.energy[:, visit]
+    return Mode(time, energy, (visit,), (visit,))
 
 
 def plus(times: Vector, more: int | Vector) -> Vector:

@@ -7,7 +7,7 @@ from functools import cached_property
 import numpy as np
 from numpy.typing import NDArray
 
-from argo_compiler.route.modes import Mode, Step, Vector, energies, modes, steps
+from argo_compiler.route.modes import Mode, Step, Vector, modes, steps
 from argo_compiler.route.problem import NEVER, Objective, Route, RouteProblem
 
 
@@ -107,8 +107,8 @@ def network(problem: RouteProblem, order_of: Callable[[Step], tuple[Step, ...]])
     time[:, :m] = np.where(time[:, :m] >= NEVER, NEVER, time[:, :m] - service)
     energy = None
     if problem.battery is not None:
-        matrix = energies(problem)
-        energy = _matrix(places, [mode.energy for mode in nodes], matrix[:, problem.end])
+        home = problem.battery.energy[:, problem.end]
+        energy = _matrix(places, [mode.energy for mode in nodes], home)
     needs, before, mandatory = _orders(problem, found)
     return Network(
         problem,
@@ -148,7 +148,8 @@ def _station(
     service: Vector,
     number: int,
 ) -> Station:
-    row, energy = problem.charger(number), energies(problem)
+    assert problem.battery is not None
+    row, energy = problem.charger(number), problem.battery.energy
     out = np.array([mode.time[row] for mode in nodes] + [problem.travel[row, problem.end]])
     out[:-1] = np.where(out[:-1] >= NEVER, NEVER, out[:-1] - service)
     return Station(
@@ -180,11 +181,19 @@ def _orders(
     # What a mandatory step needs is mandatory; what is mandatory and comes before is needed.
     while True:
         wanted = needs | (before & mandatory[:, None])
-        wanted |= (wanted.astype(np.int64) @ wanted.astype(np.int64)) > 0
+        wanted |= compose(wanted, wanted)
         must = mandatory | (wanted & mandatory[None, :]).any(axis=1)
         if (wanted == needs).all() and (must == mandatory).all():
             return needs, before | needs, mandatory
         needs, mandatory = wanted, must
+
+
+def compose(first: NDArray[np.bool_], then: NDArray[np.bool_]) -> NDArray[np.bool_]:
+    """The composition of two relations: row to column by way of something between."""
+    if not (first.any() and then.any()):
+        return np.zeros_like(first)
+    # As numbers with a fraction, for which there are fast products.
+    return np.asarray(first.astype(np.float32) @ then.astype(np.float32) > 0.0)
 
 
 def _twice(step: Step, sequence: tuple[int, ...]) -> bool:

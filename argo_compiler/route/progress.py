@@ -24,6 +24,12 @@ class Search:
     _prize: int | None = None
     _cost: int | None = None
 
+    def alone(self) -> "Search":
+        """A search with the same time, for another thread."""
+        return Search(
+            self.clock, self.deadline, self.seed, 1, self.prize_bound, self.bound, self.begun
+        )
+
     def left(self) -> float:
         """s until the deadline, at least 0."""
         return max(0.0, self.deadline - self.clock())

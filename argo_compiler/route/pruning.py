@@ -5,7 +5,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from argo_compiler.route.network import Network
+from argo_compiler.route.network import Network, compose
 from argo_compiler.route.problem import NEVER
 
 
@@ -34,16 +34,17 @@ def prune(network: Network) -> Pruned:
     m, step = network.size, network.step
     best = shortest(network)
     earliest, latest = _windows(network, best)
+    arcs: NDArray[np.bool_] = best < NEVER
     needs, before = _orders(network, earliest, latest)
-    steps = _possible_steps(needs, before)
+    steps: NDArray[np.bool_] = _possible_steps(needs, before)
     alive = steps[step] & (earliest <= latest)
-    arcs = best < NEVER
     np.fill_diagonal(arcs, False)
     arcs[:m, :m] &= step[:, None] != step[None, :]
     # Right after `row`, `column` must not be one that rules it out, nor one that some step between
     # them is needed for.
-    between = (needs.astype(np.int64) @ needs.astype(np.int64)) > 0
-    arcs[:m, :m] &= ~(before.T | between)[np.ix_(step, step)]
+    between = compose(needs, needs)
+    apart: NDArray[np.bool_] = np.logical_or(before.T, between)
+    arcs[:m, :m] &= ~apart[np.ix_(step, step)]
     arcs[m, :m] &= ~needs.any(axis=0)[step]
     arcs[:m, m] &= ~(needs & network.mandatory[None, :]).any(axis=1)[step]
     begun = np.append(earliest + network.service, 0)
@@ -51,9 +52,9 @@ def prune(network: Network) -> Pruned:
     arcs[:m, m] &= begun[:m] + best[:m, m] <= network.limit
     arcs[:m, :] &= alive[:, None]
     arcs[:, :m] &= alive[None, :]
-    reachable = np.zeros(len(steps), np.bool_)
+    reachable: NDArray[np.bool_] = np.zeros(len(steps), np.bool_)
     reachable[step[arcs[:, :m].any(axis=0) & arcs[:m, :].any(axis=1)]] = True
-    steps = steps & reachable
+    steps &= reachable
     arcs[:m, :] &= steps[step][:, None]
     arcs[:, :m] &= steps[step][None, :]
     possible = bool(steps[network.mandatory].all())
@@ -77,7 +78,7 @@ def _orders(
     before = network.before | too_late.T
     needs = network.needs | (too_late.T & network.mandatory[:, None])
     while True:
-        wider = needs | ((needs.astype(np.int64) @ needs.astype(np.int64)) > 0)
+        wider = needs | compose(needs, needs)
         if (wider == needs).all():
             return needs, before | needs
         needs = wider
@@ -114,9 +115,10 @@ def horizon(network: Network) -> int:
 def _possible_steps(needs: NDArray[np.bool_], before: NDArray[np.bool_]) -> NDArray[np.bool_]:
     """Without the steps that would have to come before themselves, or need one that must."""
     # Of a circle of steps that are needed for each other, closed over, each needs itself.
-    impossible = np.asarray(np.diagonal(before) | np.diagonal(needs))
-    impossible |= (needs & impossible[:, None]).any(axis=0)
-    return np.asarray(~impossible)
+    impossible = np.diagonal(before | needs)
+    impossible = impossible | (needs & impossible[:, None]).any(axis=0)
+    possible: NDArray[np.bool_] = ~impossible
+    return possible
 
 
 def _windows(

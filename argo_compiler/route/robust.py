@@ -23,7 +23,7 @@ from argo_compiler.route.robust_spread import TravelSpread
 from argo_compiler.route.suggest import suggest_route
 from argo_compiler.route.suggestion import RouteSuggestion
 
-SEARCHED = 500
+SEARCHED = 2000
 """samples on which routes are compared in the search"""
 JUDGED = 10_000
 """samples, others than those, on which the result is judged"""
@@ -118,7 +118,8 @@ _Key = tuple[float, int, float, float]
 def _key(problem: RouteProblem, route: Route, found: Completion, confidence: float) -> _Key:
     """What makes a route better than another, the greater first."""
     sure = min(found.probability, confidence)
-    return (sure, _prize(problem, route), found.probability, -found.duration)
+    prize = _prize(problem, route) if found.probability > 0.0 else 0
+    return (sure, prize, found.probability, -found.duration)
 
 
 class _Search:

@@ -210,11 +210,12 @@ class _Finder:
         for leaf in child_of:
             if leaf != self.end:
                 self._add_edges(level, group, leaf)
-        for number, child in enumerate(children):
-            inner = -1 - child
-            if inner >= 0 and flow.groups[inner].may_end:
-                last = flow.groups[inner].last
-                self._add_edge(level, group, number, last, flow.groups[inner].onward, True, inner)
+        for inner, within in enumerate(flow.groups):
+            # Groups come before those that lie in them.
+            if inner > group and within.may_end and within.last in child_of:
+                direct = inner if within.parent == group else None
+                number = child_of[within.last]
+                self._add_edge(level, group, number, within.last, within.onward, True, direct)
         level.edges = self._without_early_ends(level)
         ends = leading_to(level.successors(level.edges), [level.sink])
         if group != NOWHERE and not all(ends):
@@ -267,6 +268,8 @@ class _Finder:
                 self.gates.add((leaf, target))
         elif group != NOWHERE and target == flow.round_end(group):
             level.edges.append(_Edge(number, level.sink, leaf, None, tail))
+        elif flow.group_of_round_end(target) is not None:
+            pass  # that of a group around, which has its own way on
         elif target in self.apart:
             self.gates.add((leaf, target))
         else:
@@ -296,6 +299,11 @@ class _Finder:
                 self.gates.add((edge.leaf, edge.entry))
         if level.child_of[self.flow.initial] in out:
             level.broken = "it does not always come to its docking station"
+        for leaf in self.apart:
+            for conditions, _ in self.flow.leaves[leaf].conditional:
+                if any(condition.max_age is not None for condition in conditions):
+                    name = self.flow.leaves[leaf].name
+                    level.broken = f"'{name}', with which it may end early, asks how old a value is"
         level.edges = [e for e in level.edges if e.source not in out and e.target not in out]
 
     # ---- the units of a level

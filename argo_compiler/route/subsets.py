@@ -15,14 +15,15 @@ from scipy.sparse.csgraph import connected_components
 
 from argo_compiler.route.found import Found, found, none_found
 from argo_compiler.route.network import Network
-from argo_compiler.route.problem import NEVER, Objective
+from argo_compiler.route.problem import Objective
 from argo_compiler.route.pruning import Pruned, shortest
 
 Masks = NDArray[np.int64]
 
 MOST_STEPS = 62
 """that fit a mask"""
-_INF = np.int32(1 << 29)
+INF = np.int32(1 << 29)
+"""more than any time"""
 
 
 @dataclass(frozen=True, eq=False)
@@ -90,31 +91,38 @@ def solve_subsets(network: Network, pruned: Pruned) -> Found:
     """A best path, or the proof that there is none."""
     if not pruned.possible:
         return none_found(network, proven=True)
-    layers = list(_layers(network, pruned))
+    arcs = arcs_of(network, pruned, shortest(network))
+    latest = np.minimum(pruned.latest, INF - 1)
+    earliest = network.earliest[network.step]
+    layers = list(soonest(network, rules(network, pruned), arcs, earliest, latest))
     best = _best_end(network, layers)
     if best is None:
         return none_found(network, proven=True)
-    prize, end, number, row, node = best
-    path = _path(network, layers, number, row, node)
-    bound = end if network.objective is Objective.DURATION else 0
-    made = found(network, path, {}, prize, bound)
-    if network.objective is Objective.TRAVEL:
-        made = found(network, path, {}, prize, made.cost)
-    return made
+    prize, _, number, row, node = best
+    path = _path(network, arcs, layers, number, row, node)
+    made = found(network, path, {}, prize, 0)
+    return found(network, path, {}, prize, made.cost)
 
 
-def _arcs(network: Network, pruned: Pruned) -> NDArray[np.int32]:
-    arcs = np.minimum(shortest(network), _INF).astype(np.int32)
-    arcs[~pruned.arcs] = _INF
+def arcs_of(network: Network, pruned: Pruned, times: NDArray[np.int64]) -> NDArray[np.int32]:
+    """The arcs that are left, INF for the others; to the end from everywhere."""
+    arcs = np.minimum(times, INF).astype(np.int32)
+    allowed = pruned.arcs.copy()
+    allowed[network.size, network.size] = True
+    arcs[~allowed] = INF
     return arcs
 
 
-def _layers(network: Network, pruned: Pruned) -> Iterator[Layer]:
-    """The layers from that of the first steps on."""
-    m, allowed = network.size, rules(network, pruned)
-    arcs = _arcs(network, pruned)
-    latest = np.minimum(pruned.latest, _INF - 1)
-    earliest, service = network.earliest[network.step], network.service
+def soonest(
+    network: Network,
+    allowed: Rules,
+    arcs: NDArray[np.int32],
+    earliest: Masks,
+    latest: Masks,
+) -> Iterator[Layer]:
+    """The layers from that of the first steps on, for arcs between nodes that begin when they may
+    (`earliest`, `latest`, shape (m,))."""
+    m = network.size
     masks, times = np.zeros(1, np.int64), np.zeros((1, 1), np.int32)
     onward = arcs[m:, :]  # from the start; afterwards from all nodes
     while True:
@@ -125,67 +133,86 @@ def _layers(network: Network, pruned: Pruned) -> Iterator[Layer]:
             begin = np.maximum(arrival, earliest[node])
             in_time = begin <= latest[node]
             parts.append(masks[rows[in_time]] | allowed.bit[node])
-            ends.append(begin[in_time] + service[node])
+            ends.append(begin[in_time] + network.service[node])
         masks, place = np.unique(np.concatenate([*parts, masks[:0]]), return_inverse=True)
         if not len(masks):
             return
-        times = np.full((len(masks), m), _INF, np.int32)
+        times = np.full((len(masks), m), INF, np.int32)
         first = 0
         for node, end in enumerate(ends):
             times[place[first : first + len(end)], node] = end
             first += len(end)
-        keep = _in_time(network, pruned, masks, times)
+        keep = _in_time(network, latest, masks, times)
         masks, times = masks[keep], times[keep]
         yield Layer(masks, times)
         onward = arcs[:m, :]
 
 
+def ends(network: Network, arcs: NDArray[np.int32], layer: Layer) -> Masks:
+    """The soonest time at the end for each set of a layer."""
+    home = arcs[: network.size, network.size]
+    return np.asarray((layer.times + home).min(axis=1), np.int64)
+
+
 def _in_time(
-    network: Network, pruned: Pruned, masks: Masks, times: NDArray[np.int32]
+    network: Network, latest: Masks, masks: Masks, times: NDArray[np.int32]
 ) -> NDArray[np.bool_]:
     """Whether each mandatory step that is still to be made can begin in time."""
-    soonest = times.min(axis=1)
+    at = times.min(axis=1)
     keep = np.ones(len(masks), np.bool_)
     for s in np.flatnonzero(network.mandatory).tolist():
-        latest = max(int(pruned.latest[node]) for node in network.nodes_of(s))
-        if latest < NEVER:
-            keep &= ((masks >> s) & 1 == 1) | (soonest <= latest)
+        last = max(int(latest[node]) for node in network.nodes_of(s))
+        if last < INF - 1:
+            keep &= ((masks >> s) & 1 == 1) | (at <= last)
     return keep
+
+
+def prizes(network: Network, masks: Masks) -> Masks:
+    """What the steps of each set are worth."""
+    total = np.zeros(len(masks), np.int64)
+    for s, prize in enumerate(network.prize.tolist()):
+        total += ((masks >> s) & 1) * prize
+    return total
+
+
+def must(network: Network) -> np.int64:
+    """The mask of the steps that must be made."""
+    steps = np.flatnonzero(network.mandatory).astype(np.int64)
+    return np.int64((np.int64(1) << steps).sum())
 
 
 def _best_end(network: Network, layers: list[Layer]) -> tuple[int, int, int, int, int] | None:
     """The prize, end, layer, row and last node of the best path; layer -1: straight to the end."""
-    m = network.size
-    home = np.minimum(shortest(network)[:, m], _INF).astype(np.int32)
-    must = int((np.int64(1) << np.flatnonzero(network.mandatory).astype(np.int64)).sum())
-    best = None
-    if not must and home[m] <= min(network.limit, int(_INF) - 1):
-        best = (0, -int(home[m]), -1, 0, 0)
+    m, all_of = network.size, must(network)
+    home = np.minimum(shortest(network)[:, m], INF).astype(np.int32)
+    limit = min(network.limit, int(INF) - 1)
+    best = (0, -int(home[m]), -1, 0, 0) if not all_of and home[m] <= limit else None
     for number, layer in enumerate(layers):
-        ends = layer.times + home[:m]
-        nodes = ends.argmin(axis=1)
-        end = ends[np.arange(len(ends)), nodes].astype(np.int64)
-        whole = ((layer.masks & must) == must) & (end <= min(network.limit, int(_INF) - 1))
-        rows = np.flatnonzero(whole)
+        whole = layer.times + home[:m]
+        nodes = whole.argmin(axis=1)
+        end = whole[np.arange(len(whole)), nodes].astype(np.int64)
+        rows = np.flatnonzero(((layer.masks & all_of) == all_of) & (end <= limit))
         if not len(rows):
             continue
-        prizes = np.zeros(len(rows), np.int64)
-        for s, prize in enumerate(network.prize.tolist()):
-            prizes += ((layer.masks[rows] >> s) & 1) * prize
-        pick = int(np.lexsort((end[rows], -prizes))[0])
+        won = prizes(network, layer.masks[rows])
+        pick = int(np.lexsort((end[rows], -won))[0])
         row = int(rows[pick])
-        one = (int(prizes[pick]), -int(end[row]), number, row, int(nodes[row]))
+        one = (int(won[pick]), -int(end[row]), number, row, int(nodes[row]))
         best = one if best is None else max(best, one, key=lambda found: found[:2])
     return None if best is None else (best[0], -best[1], *best[2:])
 
 
 def _path(
-    network: Network, layers: list[Layer], number: int, row: int, node: int
+    network: Network,
+    arcs: NDArray[np.int32],
+    layers: list[Layer],
+    number: int,
+    row: int,
+    node: int,
 ) -> tuple[int, ...]:
     """The nodes of the path that ends there, back from its end."""
     if number < 0:
         return ()
-    arcs = np.minimum(shortest(network), _INF).astype(np.int32)
     path = [node]
     mask = int(layers[number].masks[row])
     while number > 0:

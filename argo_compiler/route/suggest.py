@@ -1,45 +1,52 @@
 """One call for all route problems."""
 
 import time
+from dataclasses import replace
 
-from argo_compiler.route import labels
-from argo_compiler.route.circuit import solve_circuit
+import numpy as np
+
+from argo_compiler.errors import ArgoError
+from argo_compiler.route.assignment import assignment_bound
+from argo_compiler.route.clash import find_clash
+from argo_compiler.route.found import Found, none_found
 from argo_compiler.route.modes import Step
-from argo_compiler.route.network import network
-from argo_compiler.route.problem import RouteProblem
+from argo_compiler.route.network import Network, network
+from argo_compiler.route.portfolio import solve
+from argo_compiler.route.problem import Objective, RouteProblem
 from argo_compiler.route.progress import Search
 from argo_compiler.route.pruning import prune
-from argo_compiler.route.subsets import applies, count_sets, solve_subsets
 from argo_compiler.route.suggestion import RouteSuggestion
+
+_CHECK = 2.0
+"""s for one check of whether some requirements can be met together"""
 
 
 def suggest_route(
     problem: RouteProblem, time_limit: float = 5.0, seed: int = 0, workers: int = 1
 ) -> RouteSuggestion:
-    """The best route that is found within the time limit (s), and what is known of it.
+    """The best route that is found within the time limit (s), and what is known of it. Where there
+    is none, the clash is looked for after that time as well.
 
-    Raises ArgoError if the time limit is not positive.
+    What is proven does not depend on the seed; the route may, where others are as good or the time
+    is over. Raises ArgoError if the time limit or the number of workers is not positive.
     """
-    begun = time.perf_counter()
-
-    def order_of(step: Step) -> tuple[Step, ...]:
-        return tuple(step.parts)
-
-    net = network(problem, order_of)
-    search = Search(
-        time.perf_counter, begun + time_limit, seed, workers, int(net.prize.sum()), begun=begun
-    )
-    pruned = prune(net)
-    few = count_sets(net, pruned, 1_500_000) <= 1_500_000
-    if few and applies(net):
-        best = solve_subsets(net, pruned)
-    elif few and labels.applies(net):
-        best = labels.solve_labels(net, pruned, search)
-    else:
-        best = solve_circuit(net, pruned, search)
+    if not time_limit > 0.0 or workers < 1:
+        raise ArgoError(
+            f"a route needs time and a worker to be looked for, not {time_limit:g} s and {workers}"
+        )
+    net, search, best, method = _solved(problem, time_limit, seed, workers)
+    clash: tuple[str, ...] = ()
+    if best.path is None and best.proven:
+        found = find_clash(problem, lambda part: _possible(part, seed))
+        if found is not None:
+            clash = found.words
+            search.say(
+                "fewer requirements than these can always be met"
+                if found.smallest
+                else "without any one of these requirements, the others can be met"
+            )
     route = None if best.path is None else net.route(best.path, dict(best.charges))
-    made = set(() if route is None else route.order)
-    dropped = tuple(v for v in range(problem.size) if v not in made)
+    made = set() if route is None else set(route.order)
     return RouteSuggestion(
         route,
         best.prize,
@@ -47,9 +54,77 @@ def suggest_route(
         best.cost,
         best.bound,
         best.proven,
-        dropped if route else (),
-        (),
-        "CP-SAT",
+        () if route is None else tuple(v for v in range(problem.size) if v not in made),
+        clash,
+        method,
         tuple(search.reasons),
         tuple(search.history),
     )
+
+
+def _solved(
+    problem: RouteProblem, time_limit: float, seed: int, workers: int
+) -> tuple[Network, Search, Found, str]:
+    begun = time.perf_counter()
+    most = sum(visit.prize for visit in problem.visits)
+    deadline = begun + time_limit
+    search = Search(time.perf_counter, deadline, seed, workers, most, begun=begun)
+
+    def order_of(step: Step) -> tuple[Step, ...]:
+        return _cycle(problem, step, time_limit / 4, seed)
+
+    net = network(problem, order_of)
+    if not net.exact:
+        search.say("a round has too many members to weigh all of their orders")
+    pruned = prune(net)
+    bound = assignment_bound(net, pruned)
+    if bound is None:
+        search.say("some step can't be made at all, or not in an order that is asked for")
+        return net, search, none_found(net, proven=True), "pruning"
+    if net.objective is not Objective.PRIZE:
+        search.known(bound=bound)
+    best, method = solve(net, pruned, search)
+    return net, search, best, method
+
+
+def _cycle(problem: RouteProblem, step: Step, time_limit: float, seed: int) -> tuple[Step, ...]:
+    """The shortest cyclic order of a large round's parts, as a route problem of its own that begins
+    and ends at the first part that may be the first."""
+    members = sorted(step.visits)
+    inner = [r for r in problem.rounds if set(r.members) < step.visits]
+    later = {
+        visit
+        for p in problem.precedences
+        for k, visit in enumerate(p.sequence)
+        if visit in step.visits and any(v in step.visits for v in p.sequence[:k])
+    }
+    inside = {visit for r in inner for visit in r.members}
+    first = next((v for v in members if v not in later | inside), None)
+    if first is None:
+        return tuple(step.parts)
+    rest = [v for v in members if v != first]
+    rows = [*rest, first]
+    place = {visit: k for k, visit in enumerate(rest)}
+    cycle = RouteProblem(
+        tuple(replace(problem.visits[v], mandatory=True) for v in rest),
+        np.ascontiguousarray(problem.travel[np.ix_(rows, rows)]),
+        tuple(
+            replace(p, sequence=tuple(place[v] for v in p.sequence if v in place))
+            for p in problem.precedences
+        ),
+        tuple(replace(r, members=tuple(place[v] for v in r.members)) for r in inner),
+        unit=problem.unit,
+    )
+    order = suggest_route(cycle, time_limit, seed).order
+    visits = [first, *(rest[k] for k in order)]
+    if len(visits) < len(members):
+        return tuple(step.parts)
+    return tuple(sorted(step.parts, key=lambda part: min(visits.index(v) for v in part.visits)))
+
+
+def _possible(problem: RouteProblem, seed: int) -> bool | None:
+    """Whether a problem has a route; None: that was not found out."""
+    *_, best, _ = _solved(problem, _CHECK, seed, 1)
+    if best.path is not None:
+        return True
+    return False if best.proven else None

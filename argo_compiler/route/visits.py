@@ -75,7 +75,7 @@ class Visits:
     def measuring(self, object_id: str) -> list[int]:
         """The visits that measure a checkpoint, in the order in which they are written."""
         leaves = self._measuring.get(object_id, ())
-        return list(dict.fromkeys(self.of_leaf[i] for i in leaves if i in self.of_leaf))
+        return sorted({self.of_leaf[i] for i in leaves if i in self.of_leaf})
 
     def find(self, what: What) -> list[int]:
         """The visits that a requirement means. Raises ArgoError if there are none."""

@@ -1,0 +1,216 @@
+"""Why there is no route: requirements of the mission that can't all be met.
+
+A smallest set of them is found by hitting sets (A. Ignatiev et al., CP 2015): whatever can't all be
+met has something in common with each set of requirements that it helps to give up. As long as a
+smallest set with that property can be met, it is filled up to a largest one that can be, and what
+is left out of that is one more set to hit.
+"""
+
+from collections.abc import Callable
+from dataclasses import dataclass, replace
+from itertools import chain
+
+import numpy as np
+from ortools.sat.python import cp_model
+
+from argo_compiler.route.problem import RouteProblem
+
+Kept = frozenset[int]
+
+
+@dataclass(frozen=True)
+class Requirement:
+    """Something that a problem asks for and that could be given up."""
+
+    words: str
+    kind: str
+    number: int = 0
+
+
+@dataclass(frozen=True)
+class Clash:
+    """Requirements that can't all be met, though each part of them can."""
+
+    words: tuple[str, ...]
+    smallest: bool
+    """whether there is none of fewer"""
+
+
+def requirements(problem: RouteProblem) -> list[Requirement]:
+    """All that the problem asks for."""
+    found = [
+        Requirement(precedence.words, "precedence", number)
+        for number, precedence in enumerate(problem.precedences)
+    ]
+    for number, visit in enumerate(problem.visits):
+        if visit.mandatory:
+            found.append(Requirement(f"{visit.name} is visited", "visit", number))
+        if visit.latest is not None:
+            words = f"{visit.name} by {_clock(visit.latest * problem.unit)}"
+            if visit.earliest:
+                begin, end = (
+                    _clock(time * problem.unit) for time in (visit.earliest, visit.latest)
+                )
+                words = f"{visit.name} between {begin} and {end}"
+            found.append(Requirement(words, "window", number))
+    if problem.max_duration is not None:
+        words = f"within {_clock(problem.max_duration * problem.unit)}"
+        found.append(Requirement(problem.words.get("max_duration", words), "limit"))
+    if problem.battery is not None:
+        words = problem.words.get("battery", "with what the battery holds")
+        found.append(Requirement(words, "battery"))
+    found += [
+        Requirement(f"{one.name} is made as one", "round", number)
+        for number, one in enumerate(problem.rounds)
+    ]
+    return found
+
+
+def _clock(seconds: float) -> str:
+    minutes, rest = divmod(round(seconds), 60)
+    return f"{minutes}:{rest:02d}"
+
+
+def reduced(problem: RouteProblem, wanted: list[Requirement]) -> RouteProblem:
+    """The problem that asks for these requirements only. What need not be visited is left away, if
+    nothing needs it."""
+    kinds: dict[str, set[int]] = {}
+    for requirement in wanted:
+        kinds.setdefault(requirement.kind, set()).add(requirement.number)
+    precedences = [problem.precedences[k] for k in sorted(kinds.get("precedence", set()))]
+    rounds = [problem.rounds[k] for k in sorted(kinds.get("round", set()))]
+    must = set(kinds.get("visit", set()))
+    while True:
+        more = {
+            visit
+            for precedence in precedences
+            if precedence.needed
+            for k, later in enumerate(precedence.sequence)
+            if later in must
+            for visit in precedence.sequence[:k]
+        }
+        more |= set(chain.from_iterable(r.members for r in rounds if must & set(r.members)))
+        if more <= must:
+            break
+        must |= more
+    kept = sorted(must)
+    place = {visit: k for k, visit in enumerate(kept)}
+    visits = []
+    for number in kept:
+        visit = replace(problem.visits[number], mandatory=True, prize=0)
+        if number not in kinds.get("window", set()):
+            visit = replace(visit, latest=None)
+        visits.append(visit)
+    n = problem.size
+    rows = [*kept, n]
+    battery = problem.battery if "battery" in kinds else None
+    if battery is not None:
+        rows += [problem.charger(k) for k in range(len(problem.chargers))]
+        battery = replace(battery, energy=battery.energy[np.ix_(rows, rows)])
+    return RouteProblem(
+        tuple(visits),
+        problem.travel[np.ix_(rows, rows)],
+        tuple(
+            replace(p, sequence=tuple(place[v] for v in p.sequence if v in place))
+            for p in precedences
+        ),
+        tuple(
+            replace(r, members=tuple(place[v] for v in r.members))
+            for r in rounds
+            if set(r.members) <= must
+        ),
+        problem.max_duration if "limit" in kinds else None,
+        battery,
+        problem.chargers if battery is not None else (),
+        unit=problem.unit,
+    )
+
+
+def find_clash(
+    problem: RouteProblem,
+    possible: Callable[[RouteProblem], bool | None],
+    most_checks: int = 300,
+) -> Clash | None:
+    """A smallest set of requirements that can't all be met, or, after `most_checks` calls of
+    `possible`, one of which each part can. `possible` says whether a problem has a route, None if
+    that is not known. None: no such set was found."""
+    return _Finder(problem, possible, most_checks).clash()
+
+
+class _Finder:
+    """Looks for a clash. Has state: what is known of sets of requirements."""
+
+    def __init__(
+        self,
+        problem: RouteProblem,
+        possible: Callable[[RouteProblem], bool | None],
+        most_checks: int,
+    ) -> None:
+        self._problem, self._possible, self._most = problem, possible, most_checks
+        self._all = requirements(problem)
+        self._checks = 0
+        self._met: list[Kept] = []
+        self._clashing: list[Kept] = []
+        self._unknown = False
+
+    def clash(self) -> Clash | None:
+        everything = frozenset(range(len(self._all)))
+        if not self._clashes(everything):
+            return None
+        small = self._spared(everything)
+        to_hit: list[Kept] = []
+        while self._checks < self._most and not self._unknown:
+            smallest = _hitting_set(to_hit, len(self._all))
+            if len(smallest) >= len(small):
+                return self._told(small, smallest=True)
+            if self._clashes(smallest):
+                return self._told(smallest, smallest=True)
+            to_hit.append(everything - self._filled(smallest))
+        return self._told(small, smallest=False)
+
+    def _told(self, clash: Kept, *, smallest: bool) -> Clash:
+        return Clash(tuple(self._all[k].words for k in sorted(clash)), smallest)
+
+    def _clashes(self, kept: Kept) -> bool:
+        """Whether it is known that they can't all be met."""
+        if any(kept <= met for met in self._met):
+            return False
+        if any(clash <= kept for clash in self._clashing):
+            return True
+        self._checks += 1
+        answer = self._possible(reduced(self._problem, [self._all[k] for k in sorted(kept)]))
+        self._unknown |= answer is None
+        if answer is False:
+            self._clashing.append(kept)
+        else:
+            self._met.append(kept)
+        return answer is False
+
+    def _spared(self, clash: Kept) -> Kept:
+        """A part of a clash of which nothing more can be spared."""
+        for part in sorted(clash):
+            if part in clash and self._clashes(clash - {part}):
+                clash = clash - {part}
+        return clash
+
+    def _filled(self, met: Kept) -> Kept:
+        """A largest set around one that can be met."""
+        for part in range(len(self._all)):
+            if part not in met and not self._clashes(met | {part}):
+                met = met | {part}
+            if self._checks >= 2 * self._most:
+                break
+        return met
+
+
+def _hitting_set(sets: list[Kept], count: int) -> Kept:
+    """A smallest set that has something in common with each of these."""
+    model = cp_model.CpModel()
+    picked = [model.new_bool_var("") for _ in range(count)]
+    for one in sets:
+        model.add_bool_or([picked[k] for k in sorted(one)])
+    model.minimize(sum(picked))
+    solver = cp_model.CpSolver()
+    solver.parameters.num_workers = 1
+    solver.solve(model)
+    return frozenset(k for k in range(count) if solver.boolean_value(picked[k]))

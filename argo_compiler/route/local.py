@@ -1,0 +1,191 @@
+"""Routes for any problem: built step by step, then improved by ruin and recreate.
+
+Some steps near each other are taken out of the route and put back where they cost least (P. Shaw,
+CP 1998; G. Schrimpf et al., Journal of Computational Physics 159, 2000). Steps that were left out
+are tried as well. A route that is a little worse is taken now and then, less and less often.
+"""
+
+from collections.abc import Callable
+
+import numpy as np
+from numpy.typing import NDArray
+
+from argo_compiler.route.along import Follower, Stand
+from argo_compiler.route.found import Found, found
+from argo_compiler.route.network import Network
+from argo_compiler.route.problem import NEVER
+from argo_compiler.route.progress import Search
+from argo_compiler.route.pruning import Pruned, horizon, shortest
+
+Path = tuple[int, ...]
+Vector = NDArray[np.int64]
+Worth = tuple[int, int]
+"""prize and cost (negative): the greater, the better"""
+_RUINED = 8
+"""steps that are taken out at most"""
+
+
+class LocalSearch:
+    """Builds and improves routes of one network. Has state: its generator."""
+
+    def __init__(self, network: Network, pruned: Pruned, seed: int) -> None:
+        self._network, self._pruned = network, pruned
+        self._follower = Follower(network)
+        self._rng = np.random.default_rng(seed)
+        self._near = shortest(network)
+        self._step = network.step.tolist()
+        self._needs = [set(np.flatnonzero(column).tolist()) for column in pruned.needs.T]
+        self._after = [set(np.flatnonzero(row).tolist()) for row in pruned.before]
+        self._before = [set(np.flatnonzero(column).tolist()) for column in pruned.before.T]
+        self._must = np.flatnonzero(network.mandatory).tolist()
+
+    def first(self, over: Callable[[], bool]) -> Path | None:
+        """A route that makes all that must be made, if one of some simple rules leads to one."""
+        network, m = self._network, self._network.size
+        onward = self._near[:, :m] + network.service
+        latest = np.minimum(self._pruned.latest, horizon(network))
+        earliest = network.earliest[network.step]
+        rules: list[Callable[[int, int], Vector]] = [
+            lambda at, _: onward[at],
+            lambda at, now: np.maximum(now + onward[at], earliest),
+            lambda at, now: np.maximum(now + onward[at], earliest) + latest // 4,
+            lambda _at, _now: latest,
+        ]
+        for rule in rules:
+            path = self._built(rule)
+            if path is not None:
+                return path
+            if over():
+                return None
+        return None
+
+    def _built(self, rule: Callable[[int, int], Vector]) -> Path | None:
+        """Always on to the best node by the rule from which the end can be reached; the steps that
+        must be made first, and what they need."""
+        network, follower, m = self._network, self._follower, self._network.size
+        path: list[int] = []
+        left = network.mandatory.copy()
+        missing = self._pruned.needs.sum(axis=0)
+        closed = np.zeros(len(left), np.int64)
+        stands, at = follower.start(), m
+        while left.any():
+            ready = (left & (missing == 0) & (closed == 0))[network.step] & self._pruned.arcs[
+                at, :m
+            ]
+            nodes = np.flatnonzero(ready)
+            cost = rule(at, stands[0].time)[nodes]
+            for node in nodes[np.argsort(cost, kind="stable")].tolist():
+                following = follower.go(stands, at, node, len(path))
+                if following and self._goes_on(following, node, len(path) + 1):
+                    break
+            else:
+                return None
+            stands, at, s = following, node, self._step[node]
+            path.append(node)
+            left[s] = False
+            missing = missing - self._pruned.needs[s]
+            closed = closed + self._pruned.before[:, s]
+        return tuple(path) if follower.follow(tuple(path)) is not None else None
+
+    def _goes_on(self, stands: list[Stand], node: int, position: int) -> bool:
+        """Whether the end or a charger is within what the battery still has."""
+        return bool(self._follower.go(stands, node, self._network.size, position))
+
+    def improve(self, path: Path, search: Search, until: float, rounds: int = 1 << 60) -> Found:
+        """The best route found until then (on the search's clock), from the one given."""
+        best = at = path
+        best_worth = at_worth = self._worth(path) or (0, -NEVER)
+        search.route(best_worth[0], -best_worth[1])
+        begun = search.clock()
+        if not path and not self._network.selective:
+            rounds = 0
+        for k in range(rounds):
+            now = search.clock()
+            if now >= until:
+                break
+            there = self._recreated(self._ruined(at))
+            worth = None if there is None else self._worth(there)
+            if there is None or worth is None:
+                continue
+            if worth > best_worth:
+                best, best_worth = there, worth
+                search.route(worth[0], -worth[1])
+            warm = max(0.0, 1.0 - (now - begun) / max(until - begun, 1e-9))
+            worse = (at_worth[1] - worth[1]) / max(1, -best_worth[1])
+            if worth > at_worth or (
+                worth[0] >= at_worth[0] and worse < 0.02 * warm * self._rng.random()
+            ):
+                at, at_worth = there, worth
+            elif k % 200 == 199:
+                at, at_worth = best, best_worth
+        stand = self._follower.follow(best)
+        assert stand is not None
+        network = self._network
+        return found(network, best, dict(stand.charges), int(network.prize.sum()), 0)
+
+    def _worth(self, path: Path) -> Worth | None:
+        stand = self._follower.follow(path)
+        if stand is None:
+            return None
+        prize = sum(int(self._network.prize[self._step[node]]) for node in path)
+        return prize, -self._follower.cost(stand)
+
+    def _ruined(self, path: Path) -> tuple[list[int], list[int]]:
+        """A path without some nodes near each other, and the steps that may be put back."""
+        m, rng = self._network.size, self._rng
+        left_out = sorted(
+            s
+            for s in range(len(self._network.prize))
+            if self._pruned.steps[s] and s not in {self._step[node] for node in path}
+        )
+        if not path:
+            return [], [int(s) for s in rng.permutation(left_out)]
+        count = int(rng.integers(1, min(_RUINED, len(path)) + 1))
+        centre = path[int(rng.integers(len(path)))]
+        near = np.minimum(self._near[centre, :m], self._near[:m, centre])
+        order = sorted(path, key=lambda node: (node != centre, near[node] * rng.random()))
+        out = set(order[:count])
+        # What needs a step that is taken out is taken out as well.
+        steps = {self._step[node] for node in out}
+        out |= {node for node in path if self._needs[self._step[node]] & steps}
+        rest = [node for node in path if node not in out]
+        back = [self._step[node] for node in out] + left_out
+        return rest, [int(s) for s in rng.permutation(back)]
+
+    def _recreated(self, ruin: tuple[list[int], list[int]]) -> Path | None:
+        """The steps put back, one after the other, where each costs least."""
+        path, back = ruin
+        must = set(self._must)
+        for s in sorted(back, key=lambda s: (len(self._needs[s]), s not in must)):
+            made = {self._step[node] for node in path}
+            placed = None
+            if self._needs[s] <= made:
+                placed = self._placed(path, s)
+            if placed is not None:
+                path = placed
+            elif s in must:
+                return None
+        return tuple(path)
+
+    def _placed(self, path: list[int], s: int) -> list[int] | None:
+        """The path with a step at one of the cheapest places that can be followed."""
+        steps = [self._step[node] for node in path]
+        low = max((k + 1 for k, t in enumerate(steps) if t in self._before[s]), default=0)
+        high = min((k for k, t in enumerate(steps) if t in self._after[s]), default=len(path))
+        if low > high:
+            return None
+        m, near = self._network.size, self._near
+        around = np.array([m, *path, m])
+        before, after = around[low : high + 1], around[low + 1 : high + 2]
+        places: list[tuple[float, int, int]] = []
+        for node in self._network.nodes_of(s):
+            more = near[before, node] + near[node, after] - near[before, after]
+            blink = more * self._rng.uniform(1.0, 1.05, len(more))
+            places += [(float(cost), low + k, node) for k, cost in enumerate(blink)]
+        plain = self._network.problem.battery is None and not self._network.windowed
+        tries = 1 if plain and self._network.limit >= NEVER else 6
+        for _, position, node in sorted(places)[:tries]:
+            longer = [*path[:position], node, *path[position:]]
+            if self._follower.follow(tuple(longer)) is not None:
+                return longer
+        return None

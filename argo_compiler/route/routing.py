@@ -1,0 +1,155 @@
+"""Large problems: OR-Tools' routing library, whose guided local search keeps improving a route.
+
+Travel times are registered as a matrix: a callback for each arc takes 1.5 to 5 times as long. Order
+is a constraint on positions, for which the library finds no first route by itself: it is given one.
+"""
+
+from collections.abc import Callable
+
+import numpy as np
+from ortools.constraint_solver import pywrapcp, routing_enums_pb2
+
+from argo_compiler.route.along import Follower
+from argo_compiler.route.found import Found, found
+from argo_compiler.route.network import Network, compose
+from argo_compiler.route.problem import NEVER, Objective
+from argo_compiler.route.progress import Search
+from argo_compiler.route.pruning import Pruned, horizon
+
+_NO_WAY = 1 << 32
+"""cost of an arc that there is not"""
+
+
+def applies(network: Network) -> bool:
+    """Whether the library can state the problem: it knows no charging on the way."""
+    return network.problem.battery is None and network.size > 1
+
+
+def solve_routing(
+    network: Network, pruned: Pruned, search: Search, until: float, start: Found | None
+) -> Found | None:
+    """The best route that is found until then (on the search's clock); None: none is."""
+    seconds = until - search.clock()
+    if seconds <= 0.0:
+        return start
+    model = _Model(network, pruned)
+    follower = Follower(network)
+    best = [start]
+
+    def note() -> None:
+        path = model.path()
+        stand = follower.follow(path)
+        steps = {int(network.step[node]) for node in path}
+        if stand is None or not all(s in steps for s in np.flatnonzero(network.mandatory).tolist()):
+            return
+        one = found(network, path, {}, int(network.prize.sum()), 0)
+        if one.better_than(best[0]):
+            best[0] = one
+            search.route(one.prize, one.cost)
+
+    model.solve(seconds, None if start is None else start.path, note)
+    return best[0]
+
+
+class _Model:
+    """The library's model of a network. Has state, as the library's has."""
+
+    def __init__(self, network: Network, pruned: Pruned) -> None:
+        self._network, self._pruned = network, pruned
+        m = network.size
+        self._manager = pywrapcp.RoutingIndexManager(m + 1, 1, m)
+        self._routing = pywrapcp.RoutingModel(self._manager)
+        time = np.where(pruned.arcs & (network.time < NEVER), network.time, _NO_WAY)
+        if network.time[m, m] < NEVER:
+            time[m, m] = network.time[m, m]
+        service = np.append(network.service, 0)
+        passing = time + service[:, None]
+        transit = self._routing.RegisterTransitMatrix(passing.tolist())
+        waits = network.windowed and network.objective is Objective.DURATION
+        self._clock(transit, spanned=waits)
+        if not waits and network.objective is not Objective.PRIZE:
+            self._routing.SetArcCostEvaluatorOfAllVehicles(transit)
+        self._orders()
+        self._choices(int(passing[passing < _NO_WAY].max(initial=1)) * (m + 2))
+
+    def _clock(self, transit: int, *, spanned: bool) -> None:
+        network, routing = self._network, self._routing
+        last = horizon(network)
+        if not network.windowed and network.limit >= NEVER:
+            return
+        routing.AddDimension(transit, last if network.windowed else 0, last, True, "time")
+        clock = routing.GetDimensionOrDie("time")
+        for node in range(network.size):
+            first = min(int(self._pruned.earliest[node]), last)
+            latest = max(first, min(int(self._pruned.latest[node]), last))
+            clock.CumulVar(self._manager.NodeToIndex(node)).SetRange(first, latest)
+        if spanned:
+            clock.SetSpanCostCoefficientForAllVehicles(1)
+
+    def _orders(self) -> None:
+        """Positions in the order; a node that is left out is bound by nothing."""
+        before = self._pruned.before
+        if not before.any():
+            return
+        routing, network = self._routing, self._network
+        routing.AddConstantDimension(1, network.size + 2, True, "position")
+        position = routing.GetDimensionOrDie("position")
+        # Those that follow from others are left out: they would only slow it down.
+        redundant = compose(before, before)
+        for i, j in np.argwhere(before & ~redundant).tolist():
+            for first in network.nodes_of(i):
+                for then in network.nodes_of(j):
+                    a, b = (self._manager.NodeToIndex(node) for node in (first, then))
+                    earlier, later = position.CumulVar(a), position.CumulVar(b)
+                    routing.solver().Add(earlier < later)
+                    if self._pruned.needs[i, j] and not network.mandatory[i]:
+                        routing.solver().Add(routing.ActiveVar(b) <= routing.ActiveVar(a))
+
+    def _choices(self, most: int) -> None:
+        """What may be left out, at the price of its prize; and, where windows make first routes
+        hard to find, all the rest at a price that is never worth it."""
+        network = self._network
+        weight = 1 if network.objective is Objective.PRIZE else most + 1
+        worst = weight * (int(network.prize.sum()) + 1) + most
+        for s, mandatory in enumerate(network.mandatory.tolist()):
+            nodes = [self._manager.NodeToIndex(node) for node in network.nodes_of(s)]
+            if not nodes:
+                continue
+            if not mandatory:
+                self._routing.AddDisjunction(nodes, int(network.prize[s]) * weight)
+            elif network.windowed or len(nodes) > 1 or network.limit < NEVER:
+                self._routing.AddDisjunction(nodes, worst)
+
+    def solve(
+        self, seconds: float, start: tuple[int, ...] | None, note: Callable[[], None]
+    ) -> None:
+        """Searches; `note` is called at each route that it finds."""
+        parameters = pywrapcp.DefaultRoutingSearchParameters()
+        kinds = routing_enums_pb2
+        parameters.local_search_metaheuristic = kinds.LocalSearchMetaheuristic.GUIDED_LOCAL_SEARCH
+        parameters.first_solution_strategy = kinds.FirstSolutionStrategy.SAVINGS
+        if self._network.windowed or self._network.selective or self._pruned.before.any():
+            parameters.first_solution_strategy = (
+                kinds.FirstSolutionStrategy.PARALLEL_CHEAPEST_INSERTION
+            )
+        parameters.time_limit.FromMilliseconds(max(1, int(1000 * seconds)))
+        routing = self._routing
+        routing.AddAtSolutionCallback(note)
+        if start is None:
+            routing.SolveWithParameters(parameters)
+            return
+        routing.CloseModelWithParameters(parameters)
+        first = routing.ReadAssignmentFromRoutes([list(start)], True)
+        if first is None:
+            routing.SolveWithParameters(parameters)
+        else:
+            routing.SolveFromAssignmentWithParameters(first, parameters)
+
+    def path(self) -> tuple[int, ...]:
+        """The nodes of the route that is being looked at."""
+        routing, path = self._routing, []
+        index = routing.NextVar(routing.Start(0)).Value()
+        while not routing.IsEnd(index):
+            path.append(self._manager.IndexToNode(index))
+            index = routing.NextVar(index).Value()
+        return tuple(path)

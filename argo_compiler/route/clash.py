@@ -129,47 +129,80 @@ def reduced(problem: RouteProblem, wanted: list[Requirement]) -> RouteProblem:
 def find_clash(
     problem: RouteProblem,
     possible: Callable[[RouteProblem], bool | None],
-    most_checks: int = 300,
+    most_checks: int = 200,
 ) -> Clash | None:
-    """A smallest set of requirements that can't all be met, or, after `most_checks` calls of
-    `possible`, one of which each part can. `possible` says whether a problem has a route, None if
-    that is not known. None: no such set was found."""
-    return _Finder(problem, possible, most_checks).clash()
+    """As few requirements as possible that can't all be met with all that must be visited, and as
+    few of those visits as possible. `possible` says whether a problem has a route, None if that is
+    not known; it is called about twice `most_checks` times at most, after which there may be
+    smaller clashes than the one found. None: none was found."""
+    asked = requirements(problem)
+    visits = [one for one in asked if one.kind == "visit"]
+    rest = [one for one in asked if one.kind != "visit"]
+    finder = _Finder(rest, lambda some: possible(reduced(problem, visits + some)), most_checks)
+    clash = finder.clash()
+    if clash is None:
+        return None
+    some, smallest = clash
+    finder = _Finder(visits, lambda more: possible(reduced(problem, more + some)), most_checks)
+    clash = finder.clash()
+    if clash is None:
+        return None
+    needed, fewest = clash
+    named = {visit for one in some for visit in _named(problem, one)}
+    words = [
+        one.words for one in [*needed, *some] if one.kind != "visit" or one.number not in named
+    ]
+    return Clash(tuple(words), smallest and fewest)
+
+
+def _named(problem: RouteProblem, requirement: Requirement) -> tuple[int, ...]:
+    """The visits that a requirement is about."""
+    match requirement.kind:
+        case "precedence":
+            return problem.precedences[requirement.number].sequence
+        case "round":
+            return problem.rounds[requirement.number].members
+        case "window":
+            return (requirement.number,)
+        case _:
+            return ()
 
 
 class _Finder:
-    """Looks for a clash. Has state: what is known of sets of requirements."""
+    """Looks for a smallest part of some requirements that can't be met. Has state: what is known of
+    their parts."""
 
     def __init__(
         self,
-        problem: RouteProblem,
-        possible: Callable[[RouteProblem], bool | None],
+        asked: list[Requirement],
+        possible: Callable[[list[Requirement]], bool | None],
         most_checks: int,
     ) -> None:
-        self._problem, self._possible, self._most = problem, possible, most_checks
-        self._all = requirements(problem)
+        self._asked, self._possible, self._most = asked, possible, most_checks
         self._checks = 0
         self._met: list[Kept] = []
         self._clashing: list[Kept] = []
         self._unknown = False
 
-    def clash(self) -> Clash | None:
-        everything = frozenset(range(len(self._all)))
+    def clash(self) -> tuple[list[Requirement], bool] | None:
+        """The part, and whether there is no smaller one; None: all can be met, or it is not
+        known."""
+        everything = frozenset(range(len(self._asked)))
         if not self._clashes(everything):
             return None
         small = self._spared(everything)
         to_hit: list[Kept] = []
         while self._checks < self._most and not self._unknown:
-            smallest = _hitting_set(to_hit, len(self._all))
+            smallest = _hitting_set(to_hit, len(self._asked))
             if len(smallest) >= len(small):
-                return self._told(small, smallest=True)
+                return self._told(small), True
             if self._clashes(smallest):
-                return self._told(smallest, smallest=True)
+                return self._told(smallest), True
             to_hit.append(everything - self._filled(smallest))
-        return self._told(small, smallest=False)
+        return self._told(small), False
 
-    def _told(self, clash: Kept, *, smallest: bool) -> Clash:
-        return Clash(tuple(self._all[k].words for k in sorted(clash)), smallest)
+    def _told(self, clash: Kept) -> list[Requirement]:
+        return [self._asked[k] for k in sorted(clash)]
 
     def _clashes(self, kept: Kept) -> bool:
         """Whether it is known that they can't all be met."""
@@ -178,7 +211,7 @@ class _Finder:
         if any(clash <= kept for clash in self._clashing):
             return True
         self._checks += 1
-        answer = self._possible(reduced(self._problem, [self._all[k] for k in sorted(kept)]))
+        answer = self._possible(self._told(kept))
         self._unknown |= answer is None
         if answer is False:
             self._clashing.append(kept)
@@ -194,12 +227,10 @@ class _Finder:
         return clash
 
     def _filled(self, met: Kept) -> Kept:
-        """A largest set around one that can be met."""
-        for part in range(len(self._all)):
-            if part not in met and not self._clashes(met | {part}):
+        """A largest part around one that can be met."""
+        for part in range(len(self._asked)):
+            if part not in met and self._checks < self._most and not self._clashes(met | {part}):
                 met = met | {part}
-            if self._checks >= 2 * self._most:
-                break
         return met
 
 

@@ -7,12 +7,13 @@ known from the problem without windows and battery. Narrow beams, wider from one
 routes; one that had to drop nothing for its width proves the best.
 """
 
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
 
+from argo_compiler.route.along import Follower
 from argo_compiler.route.completion import Sets, all_sets, sets_towards, to_come
 from argo_compiler.route.found import Found, found, none_found
 from argo_compiler.route.modes import plus
@@ -23,12 +24,15 @@ from argo_compiler.route.pruning import Pruned, shortest
 from argo_compiler.route.subsets import (
     INF,
     MOST_STEPS,
+    Layer,
     arcs_of,
+    best_path,
     ends,
     must,
     prizes,
     rules,
     soonest,
+    soonest_layers,
 )
 
 Vector = NDArray[np.int64]
@@ -53,8 +57,22 @@ def solve_labels(
     """The best path that the beams find until the deadline, and its bounds."""
     if not pruned.possible:
         return none_found(network, proven=True)
+    layers = soonest_layers(network, pruned)
+    soon = best_path(network, layers, pruned)
+    if soon is None:
+        return none_found(network, proven=True)
+    # If the battery lasts for the best route without a battery, that is it.
+    follower = Follower(network)
+    stand = follower.follow(soon.path)
+    if stand is not None:
+        one = found(network, soon.path, dict(stand.charges), int(network.prize.sum()), 0)
+        search.route(one.prize, one.cost)
+        if stand.time == soon.end and network.objective is not Objective.TRAVEL:
+            return found(network, soon.path, dict(stand.charges), soon.prize, one.cost)
+        start = one if one.better_than(start) else start
     if network.selective:
-        return _by_prize(network, pruned, search, start)
+        return _by_prize(network, pruned, search, layers, start)
+    del layers
     allowed = rules(network, pruned)
     nodes = [network.nodes_of(s)[0] for s in range(len(network.prize)) if network.nodes_of(s)]
     space = _Space(network, pruned, all_sets(allowed, nodes, must(network), len(network.prize)))
@@ -75,10 +93,16 @@ def solve_labels(
     return found(network, best.path, best.charges, prize, bound)
 
 
-def _by_prize(network: Network, pruned: Pruned, search: Search, start: Found | None) -> Found:
+def _by_prize(
+    network: Network,
+    pruned: Pruned,
+    search: Search,
+    layers: list[Layer],
+    start: Found | None,
+) -> Found:
     """The sets that could be made in time without windows and battery, from those of the highest
     prize down, so many at once: which of them can be made, and then at which least cost."""
-    goals, worth = _goals(network, pruned)
+    goals, worth = _goals(network, pruned, layers)
     most, best, first, size = int(worth.max(initial=-1)), start, 0, _FIRST_GOALS
     while first < len(goals):
         search.known(prize_bound=most)
@@ -137,22 +161,21 @@ def _better(network: Network, search: Search, beam: "_Beam", best: Found | None)
     return one
 
 
-def _goals(network: Network, pruned: Pruned) -> tuple[Vector, Vector]:
+def _goals(network: Network, pruned: Pruned, layers: list[Layer]) -> tuple[Vector, Vector]:
     """The sets that may be all that is made, and their prizes, which fall: what can't be made in
     time is not among them, the time for charging what is used at least included."""
-    latest = np.minimum(pruned.latest, INF - 1)
-    earliest = network.earliest[network.step]
-    limit = min(network.limit, int(INF) - 1)
-    goals, end = _soonest_ends(network, pruned, shortest(network), earliest, latest)
+    limit, m = min(network.limit, int(INF) - 1), network.size
+    arcs = arcs_of(network, pruned, shortest(network))
+    goals, end = _soonest_ends(network, arcs, layers)
     all_of = must(network)
     goals = goals[((goals & all_of) == all_of) & (end <= limit)]
     battery = network.problem.battery
     if battery is not None and network.limit < INF:
         spared = battery.capacity - battery.used
-        late = np.full(len(earliest), min(limit + spared, int(INF) - 1), np.int64)
-        whole, end = _soonest_ends(
-            network, pruned, _times_and_energies(network), np.zeros_like(earliest), late
-        )
+        arcs = arcs_of(network, pruned, _times_and_energies(network))
+        late = np.full(m, min(limit + spared, int(INF) - 1), np.int64)
+        charged = soonest(network, rules(network, pruned), arcs, np.zeros(m, np.int64), late)
+        whole, end = _soonest_ends(network, arcs, charged)
         goals = np.intersect1d(goals, whole[end - spared <= limit], assume_unique=True)
     goals = np.sort(goals)
     worth = prizes(network, goals)
@@ -161,19 +184,15 @@ def _goals(network: Network, pruned: Pruned) -> tuple[Vector, Vector]:
 
 
 def _soonest_ends(
-    network: Network,
-    pruned: Pruned,
-    times: NDArray[np.int64],
-    earliest: Vector,
-    latest: Vector,
+    network: Network, arcs: NDArray[np.int32], layers: Iterable[Layer]
 ) -> tuple[Vector, Vector]:
-    """All sets that can be made, and their soonest ends, for these times of arcs."""
-    arcs, m = arcs_of(network, pruned, times), network.size
-    masks, soonest_ends = [np.zeros(1, np.int64)], [arcs[m:, m].astype(np.int64)]
-    for layer in soonest(network, rules(network, pruned), arcs, earliest, latest):
+    """All sets that can be made, and their soonest ends."""
+    m = network.size
+    masks, at_end = [np.zeros(1, np.int64)], [arcs[m:, m].astype(np.int64)]
+    for layer in layers:
         masks.append(layer.masks)
-        soonest_ends.append(ends(network, arcs, layer))
-    return np.concatenate(masks), np.concatenate(soonest_ends)
+        at_end.append(ends(network, arcs, layer))
+    return np.concatenate(masks), np.concatenate(at_end)
 
 
 def _times_and_energies(network: Network) -> NDArray[np.int64]:

@@ -13,7 +13,7 @@ from argo_compiler.route.branches import Branches
 from argo_compiler.route.problem import NEVER, Battery, Round, Route, RouteProblem, Visit
 from argo_compiler.route.requirements import Requirements
 from argo_compiler.route.rules import must_be_last, round_notes, rules, speed_notes
-from argo_compiler.route.spine import Stop, Unit, find_spine, stops_of
+from argo_compiler.route.spine import Stop, Unit, find_spine
 from argo_compiler.route.visits import Visits
 from argo_compiler.route.ways import Ways, require_ways
 
@@ -208,7 +208,10 @@ def _most_energy(
 ) -> float:
     """Wh that no order needs more than, the way to the end included."""
     n = len(visits.stops)
-    worst = np.where(np.isfinite(energies), energies, 0.0).max(axis=0, initial=0.0)
+    there = np.isfinite(energies) & (times > 0.0)
+    worst = np.where(there, energies, 0.0).max(axis=0, initial=0.0)
+    longest = np.where(there, times, 0.0).max(axis=0, initial=0.0)
+    power = float((energies[there] / times[there]).max(initial=0.0))  # Wh a unit
 
     def most(units: tuple[Unit, ...]) -> float:
         total = 0.0
@@ -217,11 +220,11 @@ def _most_energy(
                 total += worst[visits.of_leaf[unit.entry]]
                 continue
             group = visits.spine.flow.groups[unit.group]
-            members = [visits.of_leaf[stop.entry] for stop in stops_of(unit.inside)]
-            shortest = max(times[:, members].min(axis=0).sum(), 1.0)
-            lasting = 1 + np.ceil(group.duration / ways.unit / shortest)
-            rounds = min(group.count or np.inf, lasting if group.duration else np.inf)
-            total += rounds * most(unit.inside)
+            all_rounds = (group.count or np.inf) * most(unit.inside)
+            if group.duration:  # and the round that has begun by then
+                round_ = float(longest[visits.numbers(unit.inside)].sum())
+                all_rounds = min(all_rounds, power * (group.duration / ways.unit + round_))
+            total += all_rounds
         return float(total)
 
     return most(visits.spine.units) + float(worst[n])

@@ -44,9 +44,9 @@ def prune(network: Network) -> Pruned:
     # them is needed for.
     between = compose(needs, needs)
     apart: NDArray[np.bool_] = np.logical_or(before.T, between)
-    arcs[:m, :m] &= ~apart[np.ix_(step, step)]
-    arcs[m, :m] &= ~needs.any(axis=0)[step]
-    arcs[:m, m] &= ~(needs & network.mandatory[None, :]).any(axis=1)[step]
+    arcs[:m, :m] &= ~apart[step][:, step]
+    arcs[m, :m] &= (needs.sum(axis=0) == 0)[step]
+    arcs[:m, m] &= ((needs & network.mandatory).sum(axis=1) == 0)[step]
     begun = np.append(earliest + network.service, 0)
     arcs[:, :m] &= begun[:, None] + best[:, :m] <= latest[None, :]
     arcs[:m, m] &= begun[:m] + best[:m, m] <= network.limit

@@ -84,7 +84,7 @@ def suggest_robust_route(
         share = (end - time.monotonic()) / 2.0 / (len(varied) - k)
         if share <= 0.0:
             break
-        found = suggest_route(variation, share, seed)
+        found = suggest_route(variation, share, seed, explain=False)
         if found.route is not None:
             search.consider(found.route)
     search.improve(lambda: time.monotonic() < end)

@@ -91,17 +91,38 @@ def solve_subsets(network: Network, pruned: Pruned) -> Found:
     """A best path, or the proof that there is none."""
     if not pruned.possible:
         return none_found(network, proven=True)
+    best = best_path(network, soonest_layers(network, pruned), pruned)
+    if best is None:
+        return none_found(network, proven=True)
+    made = found(network, best.path, {}, best.prize, 0)
+    return found(network, best.path, {}, best.prize, made.cost)
+
+
+@dataclass(frozen=True)
+class BestPath:
+    """A path that wins the most, and among those is the soonest at the end."""
+
+    path: tuple[int, ...]
+    prize: int
+    end: int
+
+
+def soonest_layers(network: Network, pruned: Pruned) -> list[Layer]:
+    """The layers of a network whose battery is never empty."""
     arcs = arcs_of(network, pruned, shortest(network))
     latest = np.minimum(pruned.latest, INF - 1)
     earliest = network.earliest[network.step]
-    layers = list(soonest(network, rules(network, pruned), arcs, earliest, latest))
+    return list(soonest(network, rules(network, pruned), arcs, earliest, latest))
+
+
+def best_path(network: Network, layers: list[Layer], pruned: Pruned) -> BestPath | None:
+    """The best path that the layers hold; None: there is none."""
     best = _best_end(network, layers)
     if best is None:
-        return none_found(network, proven=True)
-    prize, _, number, row, node = best
-    path = _path(network, arcs, layers, number, row, node)
-    made = found(network, path, {}, prize, 0)
-    return found(network, path, {}, prize, made.cost)
+        return None
+    prize, end, number, row, node = best
+    arcs = arcs_of(network, pruned, shortest(network))
+    return BestPath(_path(network, arcs, layers, number, row, node), prize, end)
 
 
 def arcs_of(network: Network, pruned: Pruned, times: NDArray[np.int64]) -> NDArray[np.int32]:

@@ -9,6 +9,7 @@ from argo_compiler.errors import ArgoError
 from argo_compiler.route.assignment import assignment_bound
 from argo_compiler.route.clash import find_clash
 from argo_compiler.route.found import Found, none_found
+from argo_compiler.route.local import LocalSearch
 from argo_compiler.route.modes import Step
 from argo_compiler.route.network import Network, network
 from argo_compiler.route.portfolio import solve
@@ -22,10 +23,14 @@ _CHECK = 2.0
 
 
 def suggest_route(
-    problem: RouteProblem, time_limit: float = 5.0, seed: int = 0, workers: int = 1
+    problem: RouteProblem,
+    time_limit: float = 5.0,
+    seed: int = 0,
+    workers: int = 1,
+    explain: bool = True,
 ) -> RouteSuggestion:
     """The best route that is found within the time limit (s), and what is known of it. Where there
-    is none, the clash is looked for after that time as well.
+    is none, the clash is looked for after that time as well, unless nothing is to be explained.
 
     What is proven does not depend on the seed; the route may, where others are as good or the time
     is over. Raises ArgoError if the time limit or the number of workers is not positive.
@@ -36,7 +41,7 @@ def suggest_route(
         )
     net, search, best, method = _solved(problem, time_limit, seed, workers)
     clash: tuple[str, ...] = ()
-    if best.path is None and best.proven:
+    if explain and best.path is None and best.proven:
         found = find_clash(problem, lambda part: _possible(part, seed))
         if found is not None:
             clash = found.words
@@ -124,7 +129,15 @@ def _cycle(problem: RouteProblem, step: Step, time_limit: float, seed: int) -> t
 
 def _possible(problem: RouteProblem, seed: int) -> bool | None:
     """Whether a problem has a route; None: that was not found out."""
-    *_, best, _ = _solved(problem, _CHECK, seed, 1)
+    begun = time.perf_counter()
+    search = Search(time.perf_counter, begun + _CHECK, seed, 1, 0, begun=begun)
+    net = network(problem, lambda step: tuple(step.parts))
+    pruned = prune(net)
+    if assignment_bound(net, pruned) is None:
+        return False if net.exact else None
+    if LocalSearch(net, pruned, seed).first(lambda: False) is not None:
+        return True
+    best, _ = solve(net, pruned, search)
     if best.path is not None:
         return True
-    return False if best.proven else None
+    return False if best.proven and net.exact else None

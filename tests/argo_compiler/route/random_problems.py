@@ -25,11 +25,11 @@ def random_problem(rng: np.random.Generator, most: int = 8) -> RouteProblem:
     if rng.random() < 0.2:
         travel[:n, n] = 0  # ends anywhere
     if rng.random() < 0.2:
-        travel[rng.random(travel.shape) < 0.1] = NEVER
+        travel[rng.random(travel.shape) < 0.05] = NEVER
     selective, windowed = rng.random() < 0.4, rng.random() < 0.3
     rounds = _rounds(rng, n) if rng.random() < 0.35 else ()
     inside = {member for one in rounds for member in one.members}
-    horizon = 60 * (n + 1)
+    horizon = 110 * (n + 1)
     visits = []
     for k in range(n):
         earliest, latest = 0, None
@@ -55,7 +55,7 @@ def random_problem(rng: np.random.Generator, most: int = 8) -> RouteProblem:
         energy[travel == NEVER] = 0
         battery = Battery(
             energy,
-            int(rng.integers(60, 200)) + 20 * n,
+            int(rng.integers(150, 300)) + 30 * n,
             int(rng.integers(0, 60)),
             int(rng.integers(0, 10)),
         )
@@ -79,7 +79,7 @@ def _precedences(rng: np.random.Generator, n: int) -> tuple[Precedence, ...]:
         if n < 2:
             break
         sequence = rng.permutation(n)[:size]
-        if rng.random() < 0.7:
+        if rng.random() < 0.85:
             sequence = np.sort(sequence)
         words = " before ".join(f"checkpoint {k}" for k in sequence)
         found.append(

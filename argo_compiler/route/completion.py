@@ -9,8 +9,9 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from argo_compiler.route.masks import MOST_BITS, Bits, Masks
 from argo_compiler.route.network import Network
-from argo_compiler.route.subsets import INF, Masks, Rules
+from argo_compiler.route.subsets import INF, may_end
 
 _DENSE = 22
 """steps up to which a table has the place of each set"""
@@ -32,28 +33,26 @@ class Sets:
             place = self.places[wanted].astype(np.int64)
             return place, place >= 0
         among = self.layers[number]
+        if not len(among):
+            return np.zeros(len(wanted), np.int64), np.zeros(len(wanted), np.bool_)
         place = np.minimum(np.searchsorted(among, wanted), len(among) - 1)
         return place, among[place] == wanted
 
 
-def _sets(layers: list[Masks], last: list[NDArray[np.bool_]], steps: int) -> Sets:
+def _sets(layers: list[Masks], last: list[NDArray[np.bool_]], bits: int) -> Sets:
     places = None
-    if steps <= _DENSE:
-        places = np.full(1 << steps, -1, np.int32)
+    if bits <= _DENSE:
+        places = np.full(1 << bits, -1, np.int32)
         for layer in layers:
             places[layer] = np.arange(len(layer), dtype=np.int32)
     return Sets(tuple(layers), tuple(last), places)
 
 
-def all_sets(rules: Rules, nodes: list[int], must: np.int64, steps: int) -> Sets:
-    """All sets that the order allows. `nodes`: one of each step; `must`: what the last one has."""
-    masks = np.zeros(1, np.int64)
-    layers = []
-    while len(masks):
-        layers.append(masks)
-        following = [masks[rules.rows(masks, node)] | rules.bit[node] for node in nodes]
-        masks = np.unique(np.concatenate([*following, masks[:0]]))
-    return _sets(layers, [(layer & must) == must for layer in layers], steps)
+def sets_of(network: Network, bits: Bits, layers: list[Masks]) -> Sets:
+    """These sets of 0, 1 and so on steps."""
+    last = [may_end(network, bits, size, masks) for size, masks in enumerate(layers)]
+    # With bits that are shared, equal masks may stand for sets of different sizes.
+    return _sets(layers, last, MOST_BITS if bits.shared else len(network.prize))
 
 
 def sets_towards(goals: Masks, steps: int) -> Sets:
@@ -72,7 +71,7 @@ def sets_towards(goals: Masks, steps: int) -> Sets:
 
 
 def to_come(
-    network: Network, rules: Rules, sets: Sets, arcs: NDArray[np.int32]
+    network: Network, bits: Bits, sets: Sets, arcs: NDArray[np.int32]
 ) -> list[NDArray[np.int32]]:
     """For each layer the least sum of arcs with which a set that may be the last is reached, and
     the end. `arcs`: some kinds of them, shape (kinds, m + 1, m + 1); shape of the result (kinds,
@@ -84,10 +83,10 @@ def to_come(
         least = np.full((kinds, len(masks), m + 1), INF, np.int32)
         least[:, sets.last[number]] = arcs[:, None, :, m]
         if found:
-            following = found[-1]
+            following, rules = found[-1], bits.layer(number)
             for node in range(m):
                 rows = rules.rows(masks, node)
-                place, there = sets.find(number + 1, masks[rows] | rules.bit[node])
+                place, there = sets.find(number + 1, rules.after(masks[rows], node))
                 rows, place = rows[there], place[there]
                 for kind in range(kinds):
                     onward = arcs[kind, None, :, node] + following[kind, place, node, None]

@@ -14,8 +14,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from argo_compiler.route.along import Follower
-from argo_compiler.route.completion import Sets, all_sets, sets_towards, to_come
+from argo_compiler.route.completion import Sets, sets_of, sets_towards, to_come
 from argo_compiler.route.found import Found, found, none_found
+from argo_compiler.route.masks import Bits
 from argo_compiler.route.modes import plus
 from argo_compiler.route.network import Network
 from argo_compiler.route.problem import NEVER, Objective
@@ -23,16 +24,13 @@ from argo_compiler.route.progress import Search
 from argo_compiler.route.pruning import Pruned, shortest
 from argo_compiler.route.subsets import (
     INF,
-    MOST_STEPS,
     Layer,
     arcs_of,
     best_path,
     ends,
-    must,
+    may_end,
     prizes,
-    rules,
     soonest,
-    soonest_layers,
 )
 
 Vector = NDArray[np.int64]
@@ -48,16 +46,14 @@ _MOST_OPTIONAL = 22
 def applies(network: Network) -> bool:
     """Whether two measures are enough."""
     waits = network.objective is Objective.TRAVEL and network.windowed
-    return len(network.prize) <= MOST_STEPS and not (waits and network.problem.battery is not None)
+    few = not network.selective or len(network.prize) <= _MOST_OPTIONAL
+    return few and not (waits and network.problem.battery is not None)
 
 
-def solve_labels(
-    network: Network, pruned: Pruned, search: Search, start: Found | None = None
-) -> Found:
-    """The best path that the beams find until the deadline, and its bounds."""
-    if not pruned.possible:
-        return none_found(network, proven=True)
-    layers = soonest_layers(network, pruned)
+def solve_labels(network: Network, pruned: Pruned, search: Search, layers: list[Layer]) -> Found:
+    """The best path that the beams find until the deadline, and its bounds. `layers`: those of the
+    network without a battery."""
+    start: Found | None = None
     soon = best_path(network, layers, pruned)
     if soon is None:
         return none_found(network, proven=True)
@@ -69,13 +65,13 @@ def solve_labels(
         search.route(one.prize, one.cost)
         if stand.time == soon.end and network.objective is not Objective.TRAVEL:
             return found(network, soon.path, dict(stand.charges), soon.prize, one.cost)
-        start = one if one.better_than(start) else start
+        start = one
     if network.selective:
         return _by_prize(network, pruned, search, layers, start)
+    bits = Bits(network, pruned)
+    sets = [np.zeros(1, np.int64), *(layer.masks for layer in layers)]
     del layers
-    allowed = rules(network, pruned)
-    nodes = [network.nodes_of(s)[0] for s in range(len(network.prize)) if network.nodes_of(s)]
-    space = _Space(network, pruned, all_sets(allowed, nodes, must(network), len(network.prize)))
+    space = _Space(network, pruned, bits, sets_of(network, bits, sets))
     prize, bound, best = int(network.prize.sum()), 0, start
     for width in WIDTHS:
         beam = space.beam(width, best, search)
@@ -117,7 +113,9 @@ def _by_prize(
             if not len(some):
                 complete = True
                 break
-            space = _Space(network, pruned, sets_towards(some, len(network.prize)))
+            space = _Space(
+                network, pruned, Bits(network, pruned), sets_towards(some, len(network.prize))
+            )
             beam = space.beam(width, None, search)
             best, complete = _better(network, search, beam, best), beam.complete
             if complete or search.left() <= 0.0:
@@ -140,7 +138,10 @@ def _cheapest(
     search.known(prize_bound=best.prize)
     if network.objective is Objective.PRIZE:
         return found(network, best.path or (), best.charges, best.prize, 0)
-    space, bound = _Space(network, pruned, sets_towards(goals, len(network.prize))), 0
+    space, bound = (
+        _Space(network, pruned, Bits(network, pruned), sets_towards(goals, len(network.prize))),
+        0,
+    )
     for width in WIDTHS:
         beam = space.beam(width, best, search)
         best = _better(network, search, beam, best) or best
@@ -167,14 +168,14 @@ def _goals(network: Network, pruned: Pruned, layers: list[Layer]) -> tuple[Vecto
     limit, m = min(network.limit, int(INF) - 1), network.size
     arcs = arcs_of(network, pruned, shortest(network))
     goals, end = _soonest_ends(network, arcs, layers)
-    all_of = must(network)
-    goals = goals[((goals & all_of) == all_of) & (end <= limit)]
+    may = may_end(network, Bits(network, pruned), 0, goals)
+    goals = goals[may & (end <= limit)]
     battery = network.problem.battery
     if battery is not None and network.limit < INF:
         spared = battery.capacity - battery.used
         arcs = arcs_of(network, pruned, _times_and_energies(network))
         late = np.full(m, min(limit + spared, int(INF) - 1), np.int64)
-        charged = soonest(network, rules(network, pruned), arcs, np.zeros(m, np.int64), late)
+        charged = soonest(network, Bits(network, pruned), arcs, np.zeros(m, np.int64), late)
         whole, end = _soonest_ends(network, arcs, charged)
         goals = np.intersect1d(goals, whole[end - spared <= limit], assume_unique=True)
     goals = np.sort(goals)
@@ -237,9 +238,9 @@ class _Labels:
 class _Space:
     """The sets that a search may go through, which all of its beams share."""
 
-    def __init__(self, network: Network, pruned: Pruned, sets: Sets) -> None:
-        self._network, self._pruned, self._sets = network, pruned, sets
-        self._rules = rules(network, pruned)
+    def __init__(self, network: Network, pruned: Pruned, bits: Bits, sets: Sets) -> None:
+        self._network, self._pruned = network, pruned
+        self._bits, self._sets = bits, sets
         self._battery = network.problem.battery
         self._travels = self._battery is None  # the other measure: travel, else energy
         self._guides = self._make_guides()
@@ -256,7 +257,7 @@ class _Space:
         if self._battery is not None and network.chargers:
             both = _times_and_energies(network) + service[None, :]
             kinds.append(arcs_of(network, pruned, both))
-        return to_come(network, self._rules, self._sets, np.stack(kinds))
+        return to_come(network, self._bits, self._sets, np.stack(kinds))
 
     def beam(self, width: int, best: Found | None, search: Search) -> _Beam:
         """The best path of a search that keeps the `width` most promising labels of a layer."""
@@ -332,20 +333,20 @@ class _Space:
         """The labels of the next layer that may lead to a better path, and the least that a path
         of each can cost; None if the time is over before."""
         network, pruned = self._network, self._pruned
-        masks = self._sets.layers[number]
+        masks, rules = self._sets.layers[number], self._bits.layer(number)
         parts: list[_Labels] = []
         of_label = masks[labels.set]
         for node in range(network.size):
             if search.left() <= 0.0:
                 return None
-            rows = self._rules.rows(of_label, node)
+            rows = rules.rows(of_label, node)
             rows = rows[pruned.arcs[labels.last[rows], node]]
             earliest = int(network.earliest[network.step[node]])
             for origin, time, other, charger in self._legs(labels, rows, node):
                 begin = np.maximum(time, earliest)
                 fits = begin <= pruned.latest[node]
                 origin = origin[fits]
-                wanted = of_label[origin] | self._rules.bit[node]
+                wanted = rules.after(of_label[origin], node)
                 sets, there = self._sets.find(number + 1, wanted)
                 time = begin[fits] + network.service[node]
                 one = _Labels(

@@ -6,6 +6,7 @@ from argo_compiler.route import labels, routing, subsets
 from argo_compiler.route.circuit import solve_circuit
 from argo_compiler.route.found import Found, found, none_found
 from argo_compiler.route.local import LocalSearch
+from argo_compiler.route.masks import Bits
 from argo_compiler.route.network import Network
 from argo_compiler.route.problem import Objective
 from argo_compiler.route.progress import Search
@@ -31,18 +32,31 @@ def solve(network: Network, pruned: Pruned, search: Search) -> tuple[Found, str]
     if plain and sets > _FEW_SETS:
         search.say(f"{steps} steps in any order: CP-SAT proves those fastest")
         return _searched(network, pruned, search)
-    if sets <= most:
-        count = f"the order of {steps} steps allows {sets} sets of them"
-        if subsets.applies(network):
-            search.say(f"{count}: all are gone through")
-            best = subsets.solve_subsets(network, pruned)
-            if best.path is not None:
-                search.route(best.prize, best.cost)
-            return best, "dynamic programming over sets"
-        if labels.applies(network):
-            search.say(f"{count}: gone through with time and {_second(network)}")
-            return labels.solve_labels(network, pruned, search), "dynamic programming with labels"
+    # Windows may leave much fewer sets than the order does.
+    if (sets <= most or network.windowed) and Bits(network, pruned).fits:
+        layers = subsets.soonest_layers(network, pruned, most)
+        if layers is not None:
+            return _all_sets(network, pruned, search, layers)
     search.say(f"{steps} steps allow more than {most} sets, or have too much to reckon with")
+    return _searched(network, pruned, search)
+
+
+def _all_sets(
+    network: Network, pruned: Pruned, search: Search, layers: list[subsets.Layer]
+) -> tuple[Found, str]:
+    """Dynamic programming over the sets of the layers."""
+    count = 1 + sum(len(layer.masks) for layer in layers)
+    reason = f"order and time allow {count} sets of {int(pruned.steps.sum())} steps"
+    if subsets.applies(network):
+        search.say(f"{reason}: all are gone through")
+        best = subsets.solve_subsets(network, pruned, layers)
+        if best.path is not None:
+            search.route(best.prize, best.cost)
+        return best, "dynamic programming over sets"
+    if labels.applies(network):
+        search.say(f"{reason}: gone through with time and {_second(network)}")
+        best = labels.solve_labels(network, pruned, search, layers)
+        return best, "dynamic programming with labels"
     return _searched(network, pruned, search)
 
 

@@ -36,6 +36,8 @@ def _require_possible(planned: MissionRoute, route: Route) -> None:
             f"this order charges at {place} when the robot {after}, and no task of a mission does "
             "that: make two missions of it, or let the mission react to low_battery"
         )
+    if not route.order and planned.visits.spine.end is None:
+        raise ArgoError("this order leaves out every task: allow more time")
     worth = evaluate(problem, route)
     if worth.waiting:
         raise ArgoError(

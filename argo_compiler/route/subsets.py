@@ -14,14 +14,11 @@ from numpy.typing import NDArray
 from scipy.sparse.csgraph import connected_components
 
 from argo_compiler.route.found import Found, found, none_found
+from argo_compiler.route.masks import Bits, Masks
 from argo_compiler.route.network import Network
 from argo_compiler.route.problem import Objective
 from argo_compiler.route.pruning import Pruned, shortest
 
-Masks = NDArray[np.int64]
-
-MOST_STEPS = 62
-"""that fit a mask"""
 INF = np.int32(1 << 29)
 """more than any time"""
 
@@ -32,66 +29,48 @@ class Layer:
 
     masks: Masks
     times: NDArray[np.int32]
-
-
-@dataclass(frozen=True, eq=False)
-class Rules:
-    """When a node may come next, as masks of steps; one entry for each node."""
-
-    bit: Masks
-    needs: Masks
-    ruled_out_by: Masks
-
-    def rows(self, masks: Masks, node: int) -> NDArray[np.int64]:
-        """The rows of the sets after which the node may come."""
-        needs = self.needs[node]
-        taken = self.bit[node] | self.ruled_out_by[node]
-        return np.flatnonzero(((masks & needs) == needs) & ((masks & taken) == 0))
-
-
-def rules(network: Network, pruned: Pruned) -> Rules:
-    """The rules of a network's nodes. A step that can't be made needs itself."""
-    bits = np.int64(1) << np.arange(len(network.prize), dtype=np.int64)
-    needs = np.array([int(bits[column].sum()) for column in pruned.needs.T], np.int64)
-    ruled = np.array([int(bits[row].sum()) for row in pruned.before], np.int64)
-    needs[~pruned.steps] |= bits[~pruned.steps]
-    step = network.step
-    return Rules(bits[step], needs[step], ruled[step])
+    origin: NDArray[np.int32]
+    """the row of the set of k - 1 steps that each was reached from, shape of `times`"""
 
 
 def count_sets(network: Network, pruned: Pruned, most: int) -> int:
-    """How many sets of steps the order allows, up to a little more than `most`: the product over
-    the parts of the order that have nothing to do with each other."""
-    if len(network.prize) > MOST_STEPS:
+    """How many sets of steps the order allows, up to a little more than `most`."""
+    bits = Bits(network, pruned)
+    if not bits.fits:
         return most + 1
-    allowed = rules(network, pruned)
     first_node = {int(step): node for node, step in reversed(list(enumerate(network.step)))}
-    _, part = connected_components(pruned.needs, directed=False)
+    if bits.shared:
+        return _count(bits, list(first_node.values()), most)
+    # The product over the parts of the order that have nothing to do with each other.
     total = 1
+    _, part = connected_components(pruned.needs, directed=False)
     for number in range(int(part.max(initial=-1)) + 1):
         nodes = [first_node[s] for s in np.flatnonzero(part == number).tolist() if s in first_node]
-        masks, sets = np.zeros(1, np.int64), 1
-        while len(masks) and total * sets <= most:
-            following = [masks[allowed.rows(masks, node)] | allowed.bit[node] for node in nodes]
-            masks = np.unique(np.concatenate([*following, masks[:0]]))
-            sets += len(masks)
-        total *= sets
+        total *= _count(bits, nodes, most // total)
         if total > most:
             break
+    return total
+
+
+def _count(bits: Bits, nodes: list[int], most: int) -> int:
+    masks, total, size = np.zeros(1, np.int64), 1, 0
+    while len(masks) and total <= most:
+        rules = bits.layer(size)
+        following = [rules.after(masks[rules.rows(masks, node)], node) for node in nodes]
+        masks = np.unique(np.concatenate([*following, masks[:0]]))
+        total, size = total + len(masks), size + 1
     return total
 
 
 def applies(network: Network) -> bool:
     """Whether the soonest is always the best: the waiting of windows must count."""
     waits = network.objective is Objective.TRAVEL and network.windowed
-    return not waits and network.problem.battery is None and len(network.prize) <= MOST_STEPS
+    return not waits and network.problem.battery is None
 
 
-def solve_subsets(network: Network, pruned: Pruned) -> Found:
+def solve_subsets(network: Network, pruned: Pruned, layers: list[Layer]) -> Found:
     """A best path, or the proof that there is none."""
-    if not pruned.possible:
-        return none_found(network, proven=True)
-    best = best_path(network, soonest_layers(network, pruned), pruned)
+    best = best_path(network, layers, pruned)
     if best is None:
         return none_found(network, proven=True)
     made = found(network, best.path, {}, best.prize, 0)
@@ -107,17 +86,24 @@ class BestPath:
     end: int
 
 
-def soonest_layers(network: Network, pruned: Pruned) -> list[Layer]:
-    """The layers of a network whose battery is never empty."""
+def soonest_layers(network: Network, pruned: Pruned, most: int) -> list[Layer] | None:
+    """The layers of a network whose battery is never empty; None if they have more than `most`
+    sets."""
     arcs = arcs_of(network, pruned, shortest(network))
     latest = np.minimum(pruned.latest, INF - 1)
     earliest = network.earliest[network.step]
-    return list(soonest(network, rules(network, pruned), arcs, earliest, latest))
+    layers, total = [], 0
+    for layer in soonest(network, Bits(network, pruned), arcs, earliest, latest):
+        total += len(layer.masks)
+        if total > most:
+            return None
+        layers.append(layer)
+    return layers
 
 
 def best_path(network: Network, layers: list[Layer], pruned: Pruned) -> BestPath | None:
     """The best path that the layers hold; None: there is none."""
-    best = _best_end(network, layers)
+    best = _best_end(network, Bits(network, pruned), layers)
     if best is None:
         return None
     prize, end, number, row, node = best
@@ -136,36 +122,41 @@ def arcs_of(network: Network, pruned: Pruned, times: NDArray[np.int64]) -> NDArr
 
 def soonest(
     network: Network,
-    allowed: Rules,
+    bits: Bits,
     arcs: NDArray[np.int32],
     earliest: Masks,
     latest: Masks,
 ) -> Iterator[Layer]:
     """The layers from that of the first steps on, for arcs between nodes that begin when they may
     (`earliest`, `latest`, shape (m,))."""
-    m = network.size
+    m, size = network.size, 0
     masks, times = np.zeros(1, np.int64), np.zeros((1, 1), np.int32)
     onward = arcs[m:, :]  # from the start; afterwards from all nodes
     while True:
-        parts, ends = [], []
+        rules = bits.layer(size)
+        origins, parts, ends = [], [], []
         for node in range(m):
-            rows = allowed.rows(masks, node)
+            rows = rules.rows(masks, node)
             arrival = (times[rows] + onward[None, :, node]).min(axis=1)
             begin = np.maximum(arrival, earliest[node])
             in_time = begin <= latest[node]
-            parts.append(masks[rows[in_time]] | allowed.bit[node])
+            origins.append(rows[in_time])
+            parts.append(rules.after(masks[rows[in_time]], node))
             ends.append(begin[in_time] + network.service[node])
         masks, place = np.unique(np.concatenate([*parts, masks[:0]]), return_inverse=True)
         if not len(masks):
             return
+        size += 1
         times = np.full((len(masks), m), INF, np.int32)
+        origin = np.full((len(masks), m), -1, np.int32)
         first = 0
         for node, end in enumerate(ends):
-            times[place[first : first + len(end)], node] = end
+            there = place[first : first + len(end)]
+            times[there, node], origin[there, node] = end, origins[node]
             first += len(end)
-        keep = _in_time(network, latest, masks, times)
-        masks, times = masks[keep], times[keep]
-        yield Layer(masks, times)
+        keep = _in_time(network, bits, latest, size, masks, times)
+        masks, times, origin = masks[keep], times[keep], origin[keep]
+        yield Layer(masks, times, origin)
         onward = arcs[:m, :]
 
 
@@ -176,43 +167,57 @@ def ends(network: Network, arcs: NDArray[np.int32], layer: Layer) -> Masks:
 
 
 def _in_time(
-    network: Network, latest: Masks, masks: Masks, times: NDArray[np.int32]
+    network: Network,
+    bits: Bits,
+    latest: Masks,
+    size: int,
+    masks: Masks,
+    times: NDArray[np.int32],
 ) -> NDArray[np.bool_]:
     """Whether each mandatory step that is still to be made can begin in time."""
     at = times.min(axis=1)
     keep = np.ones(len(masks), np.bool_)
-    for s in np.flatnonzero(network.mandatory).tolist():
+    doubt, sure = bits.in_doubt(size), bits.surely(size)
+    for s in np.flatnonzero(network.mandatory & ~sure).tolist():
         last = max(int(latest[node]) for node in network.nodes_of(s))
         if last < INF - 1:
-            keep &= ((masks >> s) & 1 == 1) | (at <= last)
+            made = (masks & bits.bit(s) != 0) if doubt[s] else np.zeros(len(masks), np.bool_)
+            keep &= made | (at <= last)
     return keep
 
 
 def prizes(network: Network, masks: Masks) -> Masks:
-    """What the steps of each set are worth."""
+    """What the steps of each set are worth; everything where nothing may be left out."""
+    if not network.selective:
+        return np.full(len(masks), network.prize.sum())
     total = np.zeros(len(masks), np.int64)
     for s, prize in enumerate(network.prize.tolist()):
         total += ((masks >> s) & 1) * prize
     return total
 
 
-def must(network: Network) -> np.int64:
-    """The mask of the steps that must be made."""
-    steps = np.flatnonzero(network.mandatory).astype(np.int64)
-    return np.int64((np.int64(1) << steps).sum())
+def may_end(network: Network, bits: Bits, size: int, masks: Masks) -> NDArray[np.bool_]:
+    """Whether sets of that size have all that must be made."""
+    if not network.selective:
+        return np.full(len(masks), size == len(network.prize))
+    all_of = bits.mask(network.mandatory)
+    return np.asarray((masks & all_of) == all_of)
 
 
-def _best_end(network: Network, layers: list[Layer]) -> tuple[int, int, int, int, int] | None:
+def _best_end(
+    network: Network, bits: Bits, layers: list[Layer]
+) -> tuple[int, int, int, int, int] | None:
     """The prize, end, layer, row and last node of the best path; layer -1: straight to the end."""
-    m, all_of = network.size, must(network)
+    m = network.size
     home = np.minimum(shortest(network)[:, m], INF).astype(np.int32)
     limit = min(network.limit, int(INF) - 1)
-    best = (0, -int(home[m]), -1, 0, 0) if not all_of and home[m] <= limit else None
+    none = may_end(network, bits, 0, np.zeros(1, np.int64)).all()
+    best = (0, -int(home[m]), -1, 0, 0) if none and home[m] <= limit else None
     for number, layer in enumerate(layers):
         whole = layer.times + home[:m]
         nodes = whole.argmin(axis=1)
         end = whole[np.arange(len(whole)), nodes].astype(np.int64)
-        rows = np.flatnonzero(((layer.masks & all_of) == all_of) & (end <= limit))
+        rows = np.flatnonzero(may_end(network, bits, number + 1, layer.masks) & (end <= limit))
         if not len(rows):
             continue
         won = prizes(network, layer.masks[rows])
@@ -235,11 +240,10 @@ def _path(
     if number < 0:
         return ()
     path = [node]
-    mask = int(layers[number].masks[row])
     while number > 0:
-        number, mask = number - 1, mask & ~(1 << int(network.step[node]))
-        layer = layers[number]
-        times = layer.times[int(np.searchsorted(layer.masks, mask))]
+        row = int(layers[number].origin[row, node])
+        number -= 1
+        times = layers[number].times[row]
         node = int((times + arcs[: network.size, node]).argmin())
         path.append(node)
     return tuple(reversed(path))

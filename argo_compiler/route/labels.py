@@ -14,8 +14,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from argo_compiler.route.along import Follower
-from argo_compiler.route.completion import Sets, sets_of, sets_towards, to_come
+from argo_compiler.route.completion import Sets, sets_of, sets_towards
 from argo_compiler.route.found import Found, found, none_found
+from argo_compiler.route.guides import Guide, PriceGuide, TableGuide
 from argo_compiler.route.masks import Bits
 from argo_compiler.route.modes import plus
 from argo_compiler.route.network import Network
@@ -37,6 +38,8 @@ Vector = NDArray[np.int64]
 
 WIDTHS = (300, 3_000, 30_000, 300_000, 2_000_000)
 """labels in a layer, from one beam to the next"""
+_NARROWER = (1_000, 10_000, 100_000, 500_000)
+"""the same where sets are not kept apart from labels"""
 _DIRECT = -1
 _FIRST_GOALS = 64
 _MOST_OPTIONAL = 22
@@ -71,9 +74,47 @@ def solve_labels(network: Network, pruned: Pruned, search: Search, layers: list[
     bits = Bits(network, pruned)
     sets = [np.zeros(1, np.int64), *(layer.masks for layer in layers)]
     del layers
-    space = _Space(network, pruned, bits, sets_of(network, bits, sets))
+    space = _with_tables(network, pruned, sets_of(network, bits, sets))
+    return _widening(network, space, search, WIDTHS, start)
+
+
+def search_labels(network: Network, pruned: Pruned, search: Search, start: Found | None) -> Found:
+    """The best path that the beams find until the deadline, and its bounds, with as many sets as
+    there may be. For networks in which nothing may be left out, and whose steps `Bits` fit."""
+    bits = Bits(network, pruned)
+    kinds = _kinds(network)
+    space = _Space(network, pruned, bits, PriceGuide(network, pruned, bits, kinds), level=True)
+    return _widening(network, space, search, _NARROWER, start)
+
+
+def _kinds(network: Network) -> list[Vector]:
+    """The costs of arcs that bounds are made from: time, and time and energy together."""
+    service = np.append(network.service, 0)[None, :]
+    kinds = [plus(shortest(network), service)]
+    if network.problem.battery is not None and network.chargers:
+        kinds.append(plus(_times_and_energies(network), service))
+    return kinds
+
+
+def _with_tables(network: Network, pruned: Pruned, sets: Sets) -> "_Space":
+    bits = Bits(network, pruned)
+    kinds = np.stack([arcs_of(network, pruned, kind) for kind in _kinds(network)])
+    guide = TableGuide(network, bits, sets, kinds)
+    layers = zip(sets.layers, sets.last, strict=True)
+    worth = np.concatenate([prizes(network, layer[last]) for layer, last in layers])
+    return _Space(network, pruned, bits, guide, level=bool((worth == worth[:1]).all()))
+
+
+def _widening(
+    network: Network,
+    space: "_Space",
+    search: Search,
+    widths: tuple[int, ...],
+    start: Found | None,
+) -> Found:
+    """Beams, each wider than the one before, until one drops nothing or the time is over."""
     prize, bound, best = int(network.prize.sum()), 0, start
-    for width in WIDTHS:
+    for width in widths:
         beam = space.beam(width, best, search)
         best = _better(network, search, beam, best)
         if beam.complete:
@@ -113,9 +154,7 @@ def _by_prize(
             if not len(some):
                 complete = True
                 break
-            space = _Space(
-                network, pruned, Bits(network, pruned), sets_towards(some, len(network.prize))
-            )
+            space = _with_tables(network, pruned, sets_towards(some, len(network.prize)))
             beam = space.beam(width, None, search)
             best, complete = _better(network, search, beam, best), beam.complete
             if complete or search.left() <= 0.0:
@@ -138,17 +177,9 @@ def _cheapest(
     search.known(prize_bound=best.prize)
     if network.objective is Objective.PRIZE:
         return found(network, best.path or (), best.charges, best.prize, 0)
-    space, bound = (
-        _Space(network, pruned, Bits(network, pruned), sets_towards(goals, len(network.prize))),
-        0,
-    )
-    for width in WIDTHS:
-        beam = space.beam(width, best, search)
-        best = _better(network, search, beam, best) or best
-        bound = best.cost if beam.complete else max(bound, beam.bound)
-        if beam.complete or search.left() <= 0.0:
-            break
-    return found(network, best.path or (), best.charges, best.prize, bound)
+    space = _with_tables(network, pruned, sets_towards(goals, len(network.prize)))
+    cheapest = _widening(network, space, search, WIDTHS, best)
+    return found(network, cheapest.path or (), cheapest.charges, best.prize, cheapest.bound)
 
 
 def _better(network: Network, search: Search, beam: "_Beam", best: Found | None) -> Found | None:
@@ -221,9 +252,9 @@ class _Beam:
 
 @dataclass(frozen=True, eq=False)
 class _Labels:
-    """Those of one layer. `set`: the row of their set in the layer's list of sets."""
+    """Those of one layer: where the robot may be after so many steps."""
 
-    set: Vector
+    mask: Vector
     last: Vector
     time: Vector
     other: Vector
@@ -231,33 +262,22 @@ class _Labels:
     charger: Vector
 
     def take(self, rows: NDArray[np.int64] | NDArray[np.bool_]) -> "_Labels":
-        parts = (self.set, self.last, self.time, self.other, self.parent, self.charger)
+        parts = (self.mask, self.last, self.time, self.other, self.parent, self.charger)
         return _Labels(*(part[rows] for part in parts))
 
 
 class _Space:
-    """The sets that a search may go through, which all of its beams share."""
+    """What all beams that have the same guide share."""
 
-    def __init__(self, network: Network, pruned: Pruned, bits: Bits, sets: Sets) -> None:
+    def __init__(
+        self, network: Network, pruned: Pruned, bits: Bits, guide: Guide, *, level: bool
+    ) -> None:
+        """`level`: whether all routes that there are win the same: then cost counts."""
         self._network, self._pruned = network, pruned
-        self._bits, self._sets = bits, sets
+        self._bits, self._guide, self._level = bits, guide, level
         self._battery = network.problem.battery
-        self._travels = self._battery is None  # the other measure: travel, else energy
-        self._guides = self._make_guides()
-        layers = zip(sets.layers, sets.last, strict=True)
-        worth = np.concatenate([prizes(network, layer[last]) for layer, last in layers])
-        self._level = bool((worth == worth[:1]).all())
-        """whether all sets that the route may end with are worth the same: then cost counts"""
-
-    def _make_guides(self) -> list[NDArray[np.int32]]:
-        """What is still to come at least, by layer: in time, and in time and energy together."""
-        network, pruned = self._network, self._pruned
-        service = np.append(network.service, 0)
-        kinds = [arcs_of(network, pruned, shortest(network) + service[None, :])]
-        if self._battery is not None and network.chargers:
-            both = _times_and_energies(network) + service[None, :]
-            kinds.append(arcs_of(network, pruned, both))
-        return to_come(network, self._bits, self._sets, np.stack(kinds))
+        # The other measure: energy, or travel where that is not the time as well.
+        self._travels = network.windowed and network.objective is Objective.TRAVEL
 
     def beam(self, width: int, best: Found | None, search: Search) -> _Beam:
         """The best path of a search that keeps the `width` most promising labels of a layer."""
@@ -265,21 +285,23 @@ class _Space:
         layers = [self._start()]
         lost: int | None = None  # the least cost of the labels that were dropped
         end: tuple[tuple[int, int], int, int, int] | None = None
-        for number in range(len(self._sets.layers)):
+        for number in range(len(self._network.prize) + 1):
             labels = layers[number]
+            if not len(labels.mask):
+                break
             one = self._best_end(number, labels)
             if one is not None and (end is None or one[0] > end[0]):
                 end = one
                 if upper is None or one[0] > (upper[0], -upper[1]):
                     upper = one[0][0], -one[0][1]
-            if number + 1 == len(self._sets.layers):
+            if number == len(self._network.prize):
                 break
             following = self._next(number, labels, upper, search)
             if following is None:  # the time is over
                 lost = 0
                 break
             labels, least = following
-            if len(labels.set) > width:
+            if len(labels.mask) > width:
                 keep = np.sort(np.argsort(least, kind="stable")[:width])
                 dropped = int(np.delete(least, keep).min())
                 lost = dropped if lost is None else min(lost, dropped)
@@ -306,8 +328,8 @@ class _Space:
         way = network.time[last, node]
         if battery is None:
             service = int(network.service[node]) if node < network.size else 0
-            there = way < NEVER
-            yield self._leg(rows, time + way, other + way + service, there, _DIRECT)
+            more = way + service if self._travels else 0
+            yield self._leg(rows, time + way, other + more, way < NEVER, _DIRECT)
             return
         assert network.energy is not None
         used = other + network.energy[last, node]
@@ -333,35 +355,35 @@ class _Space:
         """The labels of the next layer that may lead to a better path, and the least that a path
         of each can cost; None if the time is over before."""
         network, pruned = self._network, self._pruned
-        masks, rules = self._sets.layers[number], self._bits.layer(number)
-        parts: list[_Labels] = []
-        of_label = masks[labels.set]
+        rules = self._bits.layer(number)
+        parts = [labels.take(np.zeros(0, np.int64))]
         for node in range(network.size):
             if search.left() <= 0.0:
                 return None
-            rows = rules.rows(of_label, node)
+            rows = rules.rows(labels.mask, node)
             rows = rows[pruned.arcs[labels.last[rows], node]]
             earliest = int(network.earliest[network.step[node]])
             for origin, time, other, charger in self._legs(labels, rows, node):
                 begin = np.maximum(time, earliest)
                 fits = begin <= pruned.latest[node]
                 origin = origin[fits]
-                wanted = rules.after(of_label[origin], node)
-                sets, there = self._sets.find(number + 1, wanted)
+                masks = rules.after(labels.mask[origin], node)
                 time = begin[fits] + network.service[node]
                 one = _Labels(
-                    sets, np.full(len(origin), node), time, other[fits], origin, charger[fits]
-                ).take(there)
-                keep = self._promising(number + 1, one, upper)
-                parts.append(one.take(keep))
-        fields = ("set", "last", "time", "other", "parent", "charger")
+                    masks, np.full(len(origin), node), time, other[fits], origin, charger[fits]
+                ).take(self._guide.within(number + 1, masks))
+                if len(one.mask):
+                    parts.append(one.take(self._promising(number + 1, one, upper)))
+        fields = ("mask", "last", "time", "other", "parent", "charger")
         joined = _Labels(*(np.concatenate([getattr(p, f) for p in parts]) for f in fields))
-        kept = joined.take(_undominated(joined, network.size))
+        if not len(joined.mask):
+            return joined, joined.time
+        kept = joined.take(_undominated(joined))
         return kept, self._least(number + 1, kept)
 
     def _ends(self, number: int, labels: _Labels) -> Vector:
         """The soonest time at the end that a path of each label can have."""
-        guide = self._guides[number][:, labels.set, labels.last]
+        guide = self._guide.to_come(number, labels.mask, labels.last)
         end = labels.time + guide[0]
         if len(guide) > 1:
             assert self._battery is not None
@@ -371,8 +393,9 @@ class _Space:
 
     def _least(self, number: int, labels: _Labels) -> Vector:
         """The least cost of a path of each label."""
-        if self._travels and self._network.objective is Objective.TRAVEL:
-            return np.asarray(labels.other + self._guides[number][0, labels.set, labels.last])
+        if self._travels:
+            to_come = self._guide.to_come(number, labels.mask, labels.last)
+            return np.asarray(labels.other + to_come[0])
         return self._ends(number, labels)
 
     def _promising(
@@ -390,16 +413,15 @@ class _Space:
     ) -> tuple[tuple[int, int], int, int, int] | None:
         """Prize and cost (negative), layer, label and charger of the best path that ends here."""
         network = self._network
-        masks = self._sets.layers[number][labels.set]
-        rows = np.flatnonzero(self._sets.last[number][labels.set])
+        masks = labels.mask
+        rows = np.flatnonzero(self._guide.may_end(number, masks))
         best = None
         for origin, time, other, charger in self._legs(labels, rows, network.size):
             fits = time <= network.limit
             if not fits.any():
                 continue
             won = prizes(network, masks[origin[fits]])
-            travel = network.objective is Objective.TRAVEL and self._travels
-            costs = (other if travel else time)[fits]
+            costs = (other if self._travels else time)[fits]
             if network.objective is Objective.PRIZE:
                 costs = np.zeros_like(costs)
             k = int(np.lexsort((costs, -won))[0])
@@ -422,14 +444,15 @@ class _Space:
         return tuple(reversed(path)), charges
 
 
-def _undominated(labels: _Labels, nodes: int) -> NDArray[np.int64]:
+def _undominated(labels: _Labels) -> NDArray[np.int64]:
     """The rows of the labels than which none with the same set and last node is as good in both
     measures, in the order of sets, nodes and times."""
-    if not len(labels.set):
+    if not len(labels.mask):
         return np.zeros(0, np.int64)
-    key = labels.set * nodes + labels.last
-    order = np.lexsort((labels.other, labels.time, key))
-    group = np.cumsum(np.diff(key[order], prepend=key[order[0]]) != 0)
+    order = np.lexsort((labels.other, labels.time, labels.last, labels.mask))
+    mask, last = labels.mask[order], labels.last[order]
+    changes = (np.diff(mask, prepend=mask[0]) != 0) | (np.diff(last, prepend=last[0]) != 0)
+    group = np.cumsum(changes)
     # Shifted down from group to group, the smallest so far is that of the group.
     span = int(labels.other.max()) + 1
     shifted = labels.other[order] - group * span

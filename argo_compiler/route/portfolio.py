@@ -83,6 +83,16 @@ def _searched(network: Network, pruned: Pruned, search: Search) -> tuple[Found, 
         if best is None:
             return none_found(network, proven=False, bound=search.bound), method
         return _closed(network, search, best), method
+    ordered = network.windowed or pruned.before.any() or network.problem.battery is not None
+    if ordered and not network.selective and Bits(network, pruned).fits:
+        search.say("beams of labels with prices for what is still to come")
+        with search.part(0.5):
+            some = labels.search_labels(network, pruned, search, best)
+        if some.proven:
+            return some, "dynamic programming with prices"
+        if some.better_than(best):
+            best, method = some, "beams of labels"
+        search.known(bound=some.bound)
     if search.workers > 1 and many:
         exact, beside = _side_by_side(network, pruned, search, best)
     else:

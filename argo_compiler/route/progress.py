@@ -1,6 +1,7 @@
 """The course of a search: what was known when."""
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
 from dataclasses import dataclass, field
 
 from argo_compiler.route.suggestion import Point
@@ -29,6 +30,16 @@ class Search:
         return Search(
             self.clock, self.deadline, self.seed, 1, self.prize_bound, self.bound, self.begun
         )
+
+    @contextmanager
+    def part(self, share: float) -> Iterator[None]:
+        """Within it, there is only a share of the time that is left."""
+        deadline = self.deadline
+        self.deadline = self.clock() + share * self.left()
+        try:
+            yield
+        finally:
+            self.deadline = deadline
 
     def left(self) -> float:
         """s until the deadline, at least 0."""

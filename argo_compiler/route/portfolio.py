@@ -19,6 +19,8 @@ _FEW_SETS = 30_000
 """with which dynamic programming takes no time worth speaking of"""
 _MOST_ARCS = 80_000
 """of a model for CP-SAT"""
+_ALONE = 120
+"""steps in any order up to which CP-SAT needs no help"""
 _MANY_STEPS = 24
 """from which on routing's local search is worth its start-up"""
 
@@ -28,8 +30,7 @@ def solve(network: Network, pruned: Pruned, search: Search) -> tuple[Found, str]
     steps = int(pruned.steps.sum())
     most = min(_MOST_SETS, _MOST_WORK // max(1, network.size))
     sets = subsets.count_sets(network, pruned, most)
-    plain = not (network.windowed or pruned.before.any() or network.problem.battery is not None)
-    if plain and sets > _FEW_SETS:
+    if not _ordered(network, pruned) and sets > _FEW_SETS:
         search.say(f"{steps} steps in any order: CP-SAT proves those fastest")
         return _searched(network, pruned, search)
     # Windows may leave much fewer sets than the order does.
@@ -65,52 +66,86 @@ def _second(network: Network) -> str:
 
 
 def _searched(network: Network, pruned: Pruned, search: Search) -> tuple[Found, str]:
-    """Local search for a start, then CP-SAT, with more local search beside it if there is a second
-    worker; for what is too large for CP-SAT, local search alone."""
+    """A first route, better ones by what fits the network, and CP-SAT; local search for the rest of
+    the time."""
     best, method = _first(network, pruned, search)
-    large = int(pruned.arcs.sum()) > _MOST_ARCS
-    many = len(network.prize) >= _MANY_STEPS and routing.applies(network)
-    if many:
-        share = 1.0 if large else 0.06
-        search.say("routing's guided local search improves the first route")
-        better = routing.solve_routing(
-            network, pruned, search, search.clock() + share * search.left(), best
-        )
+    if int(pruned.arcs.sum()) > _MOST_ARCS:
+        search.say(f"{len(network.prize)} steps are too many for CP-SAT: guided local search")
+        return _improved(network, pruned, search, best, method)
+    plain = not _ordered(network, pruned)
+    if not plain:
+        best, method = _prepared(network, pruned, search, best, method)
+        if best is not None and best.proven:
+            return best, method
+    beside_it = _ordered(network, pruned) or len(network.prize) > _ALONE
+    if search.workers > 1 and beside_it and _routed(network):
+        search.say("CP-SAT, and guided local search beside it")
+        exact, beside = _side_by_side(network, pruned, search, best, hinted=not plain)
+    else:
+        exact = solve_circuit(network, pruned, search, best, hinted=not plain)
+        beside = best
+    if exact.better_than(best) or best is None:
+        best, method = exact, "CP-SAT"
+    if beside is not None and beside.better_than(best):
+        best, method = beside, "guided local search"
+    if best.path is None or exact.proven:
+        return exact, "CP-SAT"
+    best = _bounded(network, search, best, exact)
+    if not best.proven and search.left() > 0.05:
+        local = LocalSearch(network, pruned, search.seed)
+        more = local.improve(best.path or (), search, search.deadline)
+        if more.better_than(best):
+            best, method = _bounded(network, search, more, exact), "local search"
+    return best, method
+
+
+def _ordered(network: Network, pruned: Pruned) -> bool:
+    """Whether the steps can't come in any order."""
+    return bool(network.windowed or pruned.before.any() or network.problem.battery is not None)
+
+
+def _routed(network: Network) -> bool:
+    """Whether routing's local search is of use, and worth its start-up."""
+    return len(network.prize) >= _MANY_STEPS and routing.applies(network)
+
+
+def _prepared(
+    network: Network, pruned: Pruned, search: Search, best: Found | None, method: str
+) -> tuple[Found | None, str]:
+    """A good route for CP-SAT to begin with, where order and windows make that hard for it."""
+    if _routed(network):
+        search.say("guided local search improves the first route")
+        until = search.clock() + 0.06 * search.left()
+        better = routing.solve_routing(network, pruned, search, until, best)
         if better is not None and better.better_than(best):
             best, method = better, "guided local search"
-    if large:
-        search.say(f"{len(network.prize)} steps are too many for CP-SAT")
-        if best is None:
-            return none_found(network, proven=False, bound=search.bound), method
-        return _closed(network, search, best), method
-    ordered = network.windowed or pruned.before.any() or network.problem.battery is not None
-    if ordered and not network.selective and Bits(network, pruned).fits:
-        search.say("beams of labels with prices for what is still to come")
-        with search.part(0.5):
+    if not network.selective and Bits(network, pruned).fits:
+        search.say("beams of labels, with prices for what is still to come")
+        with search.part(0.3):
             some = labels.search_labels(network, pruned, search, best)
-        if some.proven:
-            return some, "dynamic programming with prices"
-        if some.better_than(best):
-            best, method = some, "beams of labels"
         search.known(bound=some.bound)
-    if search.workers > 1 and many:
-        exact, beside = _side_by_side(network, pruned, search, best)
-    else:
-        exact, beside = solve_circuit(network, pruned, search, best), None
-    if beside is not None and beside.better_than(exact):
-        prize_bound, bound = exact.prize_bound, exact.bound
-        better = found(network, beside.path or (), beside.charges, prize_bound, bound)
-        return _closed(network, search, better), "guided local search"
-    if exact.better_than(best) or exact.proven or exact.path is None:
-        method = "CP-SAT" if exact.better_than(best) or best is None else method
-    if exact.path is not None and not exact.proven and search.left() > 0.05:
-        more = LocalSearch(network, pruned, search.seed).improve(
-            exact.path, search, search.deadline
-        )
-        if more.better_than(exact):
-            exact = found(network, more.path or (), more.charges, exact.prize_bound, exact.bound)
-            method = "local search"
-    return _closed(network, search, exact), method
+        if some.proven or some.better_than(best):
+            best, method = some, "beams of labels"
+    return best, method
+
+
+def _improved(
+    network: Network, pruned: Pruned, search: Search, best: Found | None, method: str
+) -> tuple[Found, str]:
+    """Local search until the deadline."""
+    if routing.applies(network):
+        # From nothing, the library finds a better first route than by the nearest.
+        start = best if _ordered(network, pruned) or network.selective else None
+        better = routing.solve_routing(network, pruned, search, search.deadline, start)
+        if better is not None and better.better_than(best):
+            best, method = better, "guided local search"
+    if best is None:
+        return none_found(network, proven=False, bound=search.bound), method
+    left = LocalSearch(network, pruned, search.seed)
+    more = left.improve(best.path or (), search, search.deadline)
+    if more.better_than(best):
+        best, method = more, "local search"
+    return _bounded(network, search, best, none_found(network, proven=False)), method
 
 
 def _first(network: Network, pruned: Pruned, search: Search) -> tuple[Found | None, str]:
@@ -124,24 +159,27 @@ def _first(network: Network, pruned: Pruned, search: Search) -> tuple[Found | No
     return local.improve(path, search, until), "local search"
 
 
-def _closed(network: Network, search: Search, best: Found) -> Found:
-    """With the bounds that the search knows from elsewhere."""
-    if best.path is None or network.selective or network.objective is Objective.PRIZE:
-        return best
-    bound = max(best.bound, min(search.bound, best.cost))
-    return found(network, best.path, best.charges, best.prize_bound, bound)
+def _bounded(network: Network, search: Search, best: Found, exact: Found) -> Found:
+    """A path with all bounds that are known."""
+    bound = exact.bound
+    if not network.selective and network.objective is not Objective.PRIZE:
+        bound = max(bound, min(search.bound, best.cost))
+    return found(network, best.path or (), best.charges, exact.prize_bound, bound)
 
 
 def _side_by_side(
-    network: Network, pruned: Pruned, search: Search, best: Found | None
+    network: Network, pruned: Pruned, search: Search, best: Found | None, *, hinted: bool
 ) -> tuple[Found, Found | None]:
-    """CP-SAT with one worker less, and guided local search at the same time."""
+    """CP-SAT with one worker, and guided local search at the same time."""
     results: list[Found] = []
     failures: list[BaseException] = []
 
     def prove() -> None:
         try:
-            results.append(solve_circuit(network, pruned, search.alone(), best))
+            alone = search.alone()
+            results.append(
+                solve_circuit(network, pruned, alone, best, hinted=hinted, watched=False)
+            )
         except BaseException as error:
             failures.append(error)
 

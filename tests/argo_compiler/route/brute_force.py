@@ -1,4 +1,4 @@
-"""The best route by trying all of them, by the definition of what a route costs and nothing else."""
+"""The best route by trying all of them, by what a route costs by definition and nothing else."""
 
 from itertools import permutations
 
@@ -82,9 +82,7 @@ class _Search:
         problem, walk = self._problem, self._walk
         self._end(order, charges)
         if not problem.selective and self.best is not None:
-            passed = state.time - (
-                0 if problem.objective is Objective.DURATION else walk._waiting
-            )
+            passed = state.time - (0 if problem.objective is Objective.DURATION else walk._waiting)
             if passed >= self.best[1]:
                 return
         made = set(order)

@@ -82,9 +82,7 @@ def _precedences(rng: np.random.Generator, n: int) -> tuple[Precedence, ...]:
         if rng.random() < 0.85:
             sequence = np.sort(sequence)
         words = " before ".join(f"checkpoint {k}" for k in sequence)
-        found.append(
-            Precedence(tuple(int(k) for k in sequence), words, bool(rng.random() < 0.4))
-        )
+        found.append(Precedence(tuple(int(k) for k in sequence), words, bool(rng.random() < 0.4)))
     return tuple(found)
 
 

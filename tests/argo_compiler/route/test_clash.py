@@ -1,0 +1,102 @@
+"""Why there is no route: the requirements that clash, in the mission's words."""
+
+from itertools import combinations
+
+import numpy as np
+import pytest
+
+from argo_compiler.route import NEVER, Precedence, Round, RouteProblem, Visit, suggest_route
+from argo_compiler.route.clash import reduced, requirements
+from tests.argo_compiler.route.brute_force import brute_force
+from tests.argo_compiler.route.random_problems import random_problem
+
+
+def hall(count: int, **more) -> RouteProblem:  # type: ignore[no-untyped-def]
+    """Checkpoints 1, 2, … ten units of time from each other and from the docks."""
+    visits = more.pop("visits", tuple(Visit(f"checkpoint {k + 1}", 5) for k in range(count)))
+    travel = more.pop("travel", np.full((count + 1, count + 1), 10, np.int64))
+    return RouteProblem(visits, travel, **more)
+
+
+def test_an_order_against_another() -> None:
+    problem = hall(
+        9,
+        precedences=(
+            Precedence((0, 3), "checkpoint 1 before checkpoint 4"),
+            Precedence((3, 7), "precise order 4, 8"),
+            Precedence((7, 3), "checkpoint 8 before checkpoint 4"),
+        ),
+    )
+    made = suggest_route(problem)
+    assert made.proven
+    assert made.route is None
+    assert made.clash == ("precise order 4, 8", "checkpoint 8 before checkpoint 4")
+
+
+def test_the_shortest_of_several_circles() -> None:
+    around = [(0, 1), (1, 2), (2, 3), (3, 0), (2, 0)]
+    problem = hall(
+        5, precedences=tuple(Precedence(pair, f"{pair[0]} before {pair[1]}") for pair in around)
+    )
+    assert suggest_route(problem).clash == ("0 before 1", "1 before 2", "2 before 0")
+
+
+def test_too_little_time_names_as_few_visits_as_do_not_fit() -> None:
+    problem = hall(6, max_duration=50, unit=60.0)
+    # Three visits take 55 units, two 40.
+    made = suggest_route(problem)
+    assert len(made.clash) == 4
+    assert made.clash[-1] == "within 50:00"
+    assert all(words.endswith("is visited") for words in made.clash[:3])
+    assert "fewer requirements" in made.reasons[-1]
+
+
+def test_windows_against_an_order_and_not_the_rest() -> None:
+    visits = (
+        Visit("checkpoint 1", 5, latest=20),
+        Visit("checkpoint 2", 5, earliest=300, latest=400),
+        Visit("checkpoint 3", 5, latest=500),
+    )
+    problem = hall(
+        3, visits=visits, precedences=(Precedence((1, 0), "checkpoint 2 before checkpoint 1"),)
+    )
+    assert suggest_route(problem).clash == (
+        "checkpoint 2 before checkpoint 1",
+        "checkpoint 1 by 0:20",
+    )
+
+
+def test_a_checkpoint_without_a_way() -> None:
+    travel = np.full((4, 4), 10, np.int64)
+    travel[:, 1] = NEVER
+    assert suggest_route(hall(3, travel=travel)).clash == ("checkpoint 2 is visited",)
+
+
+def test_a_round_that_something_must_come_into() -> None:
+    problem = hall(
+        3,
+        rounds=(Round("round of floor 2", (0, 1), repeat=2),),
+        precedences=(Precedence((0, 2, 1), "precise order 1, 3, 2"),),
+    )
+    assert suggest_route(problem).clash == (
+        "precise order 1, 3, 2",
+        "round of floor 2 is made as one",
+    )
+
+
+@pytest.mark.parametrize("seed", range(0, 90, 3))
+def test_a_clash_can_not_be_met_and_each_part_of_it_can(seed: int) -> None:
+    problem = random_problem(np.random.default_rng(seed), 4)
+    if brute_force(problem) is not None:
+        return
+    made = suggest_route(problem)
+    assert made.clash
+    asked = requirements(problem)
+    rest = [one for one in asked if one.kind != "visit"]
+    visits = [one for one in asked if one.kind == "visit"]
+    some = [one for one in rest if one.words in made.clash]
+    assert brute_force(reduced(problem, visits + some)) is None
+    # No smaller number of requirements clashes with all the visits.
+    for fewer in combinations(rest, max(0, len(some) - 1)):
+        if len(some):
+            assert brute_force(reduced(problem, [*visits, *fewer])) is not None

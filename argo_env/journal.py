@@ -25,6 +25,7 @@ from argo_compiler.model import Model
 from argo_env.closing import Closing
 from argo_env.log import Entry
 from argo_env.navigation import Navigator
+from argo_env.record import Reordering
 from argo_env.settings import RunSettings
 from argo_env.yaml_messages import message_of
 
@@ -50,6 +51,7 @@ class Header(Model):
     settings: RunSettings
     mission: Mission
     diagnostics: tuple[Diagnostic, ...]
+    reordering: Reordering | None = None
 
 
 @dataclass(frozen=True)

@@ -173,6 +173,23 @@ class TraceStep(Model):
     """in words"""
 
 
+class Reordering(Model):
+    """The order in which the tasks were done, as it was suggested before the run."""
+
+    written: tuple[str, ...]
+    """the names of the tasks that may change places, as the mission was written"""
+    order: tuple[str, ...]
+    """the same in the order suggested, without what is left out"""
+    written_duration: float
+    """s, predicted for the order that was written"""
+    duration: float
+    """s, predicted for the order suggested"""
+    bound: float
+    """s, less than which no order takes that does as much"""
+    proven: bool
+    """whether no other order is better"""
+
+
 class Result(Model):
     """How the mission ended."""
 
@@ -223,6 +240,8 @@ class RunRecord(Model):
     """what really went wrong, with all that the seed drew; the robot was told nothing of it"""
     resumed: tuple[float, ...] = ()
     """s, when the run went on from its journal after its process had died"""
+    reordering: Reordering | None = None
+    """None: the tasks were done in the order in which the mission was written"""
 
     @property
     def findings(self) -> tuple[Anomaly, ...]:

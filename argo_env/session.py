@@ -17,7 +17,7 @@ from argo_env.events.stage import Stage
 from argo_env.journal import Header, Journal, JournalPlace, create_journal, fingerprints
 from argo_env.navigation import Navigator
 from argo_env.paper_world import AnyWorld, PaperWorld
-from argo_env.record import RunRecord
+from argo_env.record import Reordering, RunRecord
 from argo_env.recording.recorder import Recorder
 from argo_env.robot.battery import Battery
 from argo_env.robot.drive import Drive
@@ -77,13 +77,15 @@ def simulate(
     pace: float | None = None,
     journal: JournalPlace | None = None,
     recorder: Recorder | None = None,
+    reordering: Reordering | None = None,
 ) -> RunRecord:
     """Runs the mission on the navigator's site and returns its record.
 
     The settings' seed draws the checkpoints' true values, unless the settings give them. With
     `pace` a second of wall time shows at most that many seconds of simulated time. With `journal`
-    the run can be resumed after its process has died. A `recorder` is told all that happens. Equal
-    arguments give equal records.
+    the run can be resumed after its process has died. A `recorder` is told all that happens. The
+    `reordering`, if the mission is in another order than it was written, goes into the record.
+    Equal arguments give equal records.
 
     Raises:
         ArgoError: the mission makes no sense on this site, there is no such drive or sensor, or the
@@ -94,8 +96,9 @@ def simulate(
     observe = _paced(observe, pace)
     if journal is None:
         return _run(
-            mission, settings, diagnostics, navigator, None, observe, announce, gui, recorder
-        )
+            mission, settings, diagnostics, navigator, None, observe, announce, gui, recorder,
+            reordering=reordering,
+        )  # fmt: skip
     source = journal.source.resolve() if journal.source else None
     header = Header(
         site=journal.site,
@@ -104,11 +107,13 @@ def simulate(
         settings=settings,
         mission=mission,
         diagnostics=diagnostics,
+        reordering=reordering,
     )
     with create_journal(journal.path, header) as book:
         return _run(
-            mission, settings, diagnostics, navigator, book, observe, announce, gui, recorder
-        )
+            mission, settings, diagnostics, navigator, book, observe, announce, gui, recorder,
+            reordering=reordering,
+        )  # fmt: skip
 
 
 def resume(
@@ -135,7 +140,7 @@ def resume(
     header = journal.header
     return _run(
         header.mission, header.settings, header.diagnostics, navigator, journal,
-        _paced(observe, pace), announce, gui, recorder, events,
+        _paced(observe, pace), announce, gui, recorder, events, header.reordering,
     )  # fmt: skip
 
 
@@ -171,15 +176,17 @@ def _run(
     gui: bool,
     recorder: Recorder | None,
     events: LoggedEvents = (),
+    reordering: Reordering | None = None,
 ) -> RunRecord:
     with ExitStack() as stack:
         rig = outfit(settings, navigator, gui, stack)
         runner = MissionRunner(mission, rig, settings, diagnostics, journal)
-        if recorder is None:
-            return runner.run(observe, announce, events=events)
-        recorder.begin(rig, mission, settings)
+        if recorder:
+            recorder.begin(rig, mission, settings)
         record = runner.run(observe, announce, recorder, events)
-        recorder.finish(record)
+        record = record.model_copy(update={"reordering": reordering})
+        if recorder:
+            recorder.finish(record)
         return record
 
 

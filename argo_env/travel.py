@@ -21,7 +21,7 @@ class SiteTravel:
     def __init__(self, navigator: Navigator, time_step: float = 0.1) -> None:
         self._navigator = navigator
         self._robot = navigator.robot
-        self._time_step = time_step
+        self.time_step = time_step
         self._ways: dict[tuple[Pose, str | Pose | None], Path | NoWay] = {}
         self._legs: dict[tuple[Pose, str | Pose | None, float | None], Leg | NoWay] = {}
 
@@ -33,7 +33,7 @@ class SiteTravel:
     @property
     def clean_up(self) -> float:
         """s, to stow the arm."""
-        return self._stepped(self._robot.sensor.stowing_time) + self._time_step
+        return self._stepped(self._robot.sensor.stowing_time) + self.time_step
 
     def start(self, mission: Mission) -> Pose:
         """Where the robot is put: the pose of START, or the dock of the starting area.
@@ -42,6 +42,18 @@ class SiteTravel:
         """
         return self._navigator.snap(start_pose(mission, self._navigator.site.docks))
 
+    def work(self, task: Task) -> float:
+        """s of a task's action that the robot takes even if it is there already."""
+        measures = task.action is Action.MEASURE
+        return self._stepped(self._robot.sensor.measuring_time) if measures else 0.0
+
+    def way(self, origin: Pose, task: Task) -> Path:
+        """The way to the task's place. Raises ArgoError if there is none."""
+        way = self._way(origin, task.object_id if task.action is Action.MEASURE else task.pose)
+        if isinstance(way, NoWay):
+            raise ArgoError(f"the robot can't carry out task '{task.name}': {way.reason}")
+        return way
+
     def leg(self, origin: Standing, task: Task, velocity: float | None) -> Leg | NoWay:
         """The way to the task's place at `velocity` (m/s), and its action."""
         assert isinstance(origin, Pose)
@@ -49,8 +61,8 @@ class SiteTravel:
         key = origin, place, velocity
         if key not in self._legs:
             way = self._way(origin, place)
-            measures = task.action is Action.MEASURE
-            self._legs[key] = way if isinstance(way, NoWay) else self._leg(way, velocity, measures)
+            work = self.work(task)
+            self._legs[key] = way if isinstance(way, NoWay) else self._leg(way, velocity, work)
         return self._legs[key]
 
     def _way(self, origin: Pose, place: str | Pose | None) -> Path | NoWay:
@@ -68,11 +80,10 @@ class SiteTravel:
         checkpoint = self._navigator.site.measured_by(place)
         return self._navigator.plan_to_view(origin, checkpoint.id)
 
-    def _leg(self, way: Path, velocity: float | None, measures: bool) -> Leg:
+    def _leg(self, way: Path, velocity: float | None, work: float) -> Leg:
         robot, power = self._robot, self._robot.power
-        drive = max(self._time_step, self._stepped(way.duration(robot, velocity)))
+        drive = max(self.time_step, self._stepped(way.duration(robot, velocity)))
         energy = sum(m.duration(robot, velocity) * self._watts(m) for m in way.motions) / 3600
-        work = self._stepped(robot.sensor.measuring_time) if measures else 0.0
         work_energy = work * power.measuring / 3600
         return Leg(drive + work, energy + work_energy, way.end, work, work_energy)
 
@@ -85,4 +96,4 @@ class SiteTravel:
         }.get(motion.kind, power.driving)
 
     def _stepped(self, seconds: float) -> float:
-        return steps(seconds, self._time_step) * self._time_step
+        return steps(seconds, self.time_step) * self.time_step

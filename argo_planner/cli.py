@@ -15,6 +15,7 @@ from argo_planner.commands.format import format_mission
 from argo_planner.commands.import_script import import_script
 from argo_planner.commands.replay import replay
 from argo_planner.commands.resume import resume_run
+from argo_planner.commands.route import suggest_order
 from argo_planner.commands.run import run
 from argo_planner.commands.schema import show_schema
 from argo_planner.commands.sites import show_sites
@@ -33,6 +34,7 @@ app.command("check")(check_mission)
 app.command("compile")(compile_mission)
 app.command("format")(format_mission)
 app.command("export")(export_mission)
+app.command("route")(suggest_order)
 app.command("run")(run)
 app.command("resume")(resume_run)
 app.command("replay")(replay)

@@ -16,6 +16,10 @@ SiteOption = Annotated[
     str,
     typer.Option("--site", help="a site's name, a path to its .yaml, or generated:floors=3,seed=7"),
 ]
+Optimise = Annotated[
+    bool,
+    typer.Option("--optimise", help="put the tasks in the best order first; see `argo route`"),
+]
 StartArea = Annotated[
     int | None, typer.Option("--start-area", help="the starting area, where the script leaves it")
 ]

@@ -8,8 +8,7 @@ import argparse
 import time
 from collections import Counter
 from collections.abc import Sequence
-from dataclasses import dataclass, replace
-from pathlib import Path
+from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
@@ -23,8 +22,10 @@ from argo_compiler.route import (
     RouteProblem,
     RouteSuggestion,
     Visit,
+    evaluate,
     suggest_route,
 )
+from benchmarks.options import seed_number
 
 UNIT = 0.1  # s
 SITES = ("umad", "generated:floors=3,seed=7", "generated:floors=5,seed=1")
@@ -161,3 +162,97 @@ def any_order(rng: np.random.Generator, n: int, *, budget: int | None = None) ->
     return RouteProblem(
         visits, whole[np.ix_(rows, columns)], max_duration=budget, objective=objective, unit=UNIT
     )
+
+
+@dataclass(frozen=True)
+class Row:
+    """What one problem took."""
+
+    seconds: float
+    mixture: str
+    size: int
+    suggestion: RouteSuggestion
+
+
+def timed(problem: RouteProblem, time_limit: float) -> Row:
+    """The suggestion for a problem, without the search for a clash."""
+    begun = time.perf_counter()
+    made = suggest_route(problem, time_limit, explain=False)
+    return Row(time.perf_counter() - begun, mixture(problem), problem.size, made)
+
+
+def summary(rows: Sequence[Row]) -> str:
+    """How many were proven, and how fast."""
+    seconds = [row.seconds for row in rows]
+    proven = sum(row.suggestion.proven for row in rows)
+    without = sum(row.suggestion.proven and row.suggestion.route is None for row in rows)
+    half, most, worst = np.percentile(seconds, [50, 99, 100])
+    return (
+        f"{proven} of {len(rows)} proven ({without} have no route); "
+        f"median {half:.3f} s, 99 % {most:.2f} s, worst {worst:.2f} s"
+    )
+
+
+def missions(count: int, seed: int, time_limit: float) -> None:
+    """Prints how fast random missions on sites are proven."""
+    sites = [site_matrix(name) for name in SITES]
+    rows = []
+    for number in range(count):
+        rng = np.random.default_rng([seed, number])
+        rows.append(timed(mission(rng, sites[number % len(sites)]), time_limit))
+    print(f"missions of 2 to 20 checkpoints, any mix of constraints: {summary(rows)}")
+    for name in ("optional", "precedence", "windows", "rounds", "battery"):
+        print(f"  with {name:<10} {summary([row for row in rows if name[0] in row.mixture])}")
+    methods = Counter(row.suggestion.method for row in rows)
+    print("  " + ", ".join(f"{method} {n}" for method, n in methods.most_common()))
+
+
+def large(seed: int, count: int) -> None:
+    """Prints how fast 80 checkpoints in any order, and 40 with a budget, are proven."""
+    rng = np.random.default_rng(seed)
+    rows = [timed(any_order(rng, 80), 60.0) for _ in range(count)]
+    print(f"80 checkpoints in any order: {summary(rows)}")
+    rows = [timed(any_order(rng, 40, budget=12_000), 120.0) for _ in range(count)]
+    print(f"40 checkpoints, 20 minutes: {summary(rows)}")
+
+
+def beside_pyvrp(seed: int, time_limit: float) -> None:
+    """Prints what 1,000 checkpoints in any order come to, and what PyVRP makes of them."""
+    from benchmarks import peer_pyvrp
+
+    problem = any_order(np.random.default_rng(seed), 1000)
+    quick = suggest_route(problem, 2.0, seed)
+    first = quick.history[0]
+    ours = suggest_route(problem, time_limit, seed)
+    print(f"1,000 checkpoints: a first route after {first.time:.2f} s")
+    print(f"  after 2 s {quick.cost * UNIT:.0f} s")
+    print(
+        f"  after {time_limit:g} s {ours.cost * UNIT:.0f} s with a certified gap of {ours.gap:.1%}"
+    )
+    route = peer_pyvrp.search(problem, time_limit, seed)
+    if route is None:
+        print("  PyVRP found none")
+        return
+    theirs = evaluate(problem, route).duration
+    print(f"  PyVRP {theirs * UNIT:.0f} s in the same time: ours is {ours.cost / theirs:.3f} of it")
+
+
+def main() -> None:
+    """Runs what was asked for, or all."""
+    parser = argparse.ArgumentParser(description=__doc__)
+    parser.add_argument("--missions", type=int, default=1000, help="random missions on sites")
+    parser.add_argument("--large", type=int, default=11, help="problems of 80 and of 40")
+    parser.add_argument("--peer", type=float, default=30.0, help="s beside PyVRP; 0: not")
+    parser.add_argument("--time-limit", type=float, default=20.0, help="s for a mission")
+    parser.add_argument("--seed", type=seed_number, default=1)
+    given = parser.parse_args()
+    if given.missions:
+        missions(given.missions, given.seed, given.time_limit)
+    if given.large:
+        large(given.seed, given.large)
+    if given.peer:
+        beside_pyvrp(given.seed, given.peer)
+
+
+if __name__ == "__main__":
+    main()

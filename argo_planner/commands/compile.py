@@ -10,7 +10,8 @@ from rich.markup import escape
 from argo_compiler.export import to_mermaid
 from argo_compiler.hfsm import lower
 from argo_planner.loading import keep_input, load_mission, load_navigator, write_text
-from argo_planner.options import EndArea, SiteOption, Source, StartArea
+from argo_planner.options import EndArea, Optimise, SiteOption, Source, StartArea
+from argo_planner.routing import optimised
 
 
 def compile_mission(
@@ -20,12 +21,16 @@ def compile_mission(
         Path | None, typer.Option("--mermaid", help="a Mermaid diagram to write as well")
     ] = None,
     site: SiteOption = "umad",
+    optimise: Optimise = False,
     start_area: StartArea = None,
     end_area: EndArea = None,
 ) -> None:
     """Lower a mission to its state machine and write it as JSON."""
     keep_input(source, output)
-    mission, _ = load_mission(source, load_navigator(site), start_area, end_area)
+    navigator = load_navigator(site)
+    mission, _ = load_mission(source, navigator, start_area, end_area)
+    if optimise:
+        mission, _ = optimised(source, mission, navigator)
     machine = lower(mission, source_name=str(source))
     write_text(output, machine.model_dump_json(indent=2) + "\n")
     if mermaid:

@@ -18,7 +18,8 @@ from argo_env.recording.files import check_recording, recording_to
 from argo_env.session import DRIVES, SENSORS, check_settings, simulate
 from argo_env.settings import RunSettings, logged
 from argo_planner.loading import keep_input, load_mission, load_navigator, make_folder
-from argo_planner.options import EndArea, SiteOption, Source, StartArea
+from argo_planner.options import EndArea, Optimise, SiteOption, Source, StartArea
+from argo_planner.routing import optimised
 from argo_planner.running import RunDisplay, conclude
 
 DEFAULT_PACE = 5.0
@@ -41,6 +42,7 @@ def run(
     sensor: Annotated[
         str, typer.Option(help=f"what reads the checkpoints: {', '.join(SENSORS)}")
     ] = "ideal",
+    optimise: Optimise = False,
     start_area: StartArea = None,
     end_area: EndArea = None,
     value: Annotated[
@@ -109,6 +111,9 @@ def run(
         require_fit(settings.faults, faults, navigator.site, seed)
     check_settings(settings, navigator.site)  # before it is long
     mission, diagnostics = load_mission(source, navigator, start_area, end_area)
+    reordering = None
+    if optimise:
+        mission, reordering = optimised(source, mission, navigator)
     lower(mission, source_name=str(source))
     navigator.prepare()
     loaded = time.monotonic()
@@ -125,6 +130,7 @@ def run(
             pace=(pace or DEFAULT_PACE) if gui else None,
             journal=JournalPlace(journal, site_reference(site), source) if journal else None,
             recorder=stack.enter_context(recording_to(recording, source)) if recording else None,
+            reordering=reordering,
         )
     ended = time.monotonic()
     took = (

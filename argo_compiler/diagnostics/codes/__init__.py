@@ -13,6 +13,7 @@ from argo_compiler.diagnostics.codes.handover import HANDOVER
 from argo_compiler.diagnostics.codes.il import IL
 from argo_compiler.diagnostics.codes.isar import ISAR
 from argo_compiler.diagnostics.codes.ros import ROS
+from argo_compiler.diagnostics.codes.route import ROUTE
 from argo_compiler.diagnostics.codes.script import SCRIPT
 from argo_compiler.diagnostics.codes.site import SITE
 
@@ -27,6 +28,7 @@ CODES: dict[str, Code] = {
     **SITE,
     **FAULTS,
     **HANDOVER,
+    **ROUTE,
 }
 """by the code's name"""
 

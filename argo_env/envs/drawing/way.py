@@ -48,9 +48,11 @@ class Line:
 
 
 def lines(sheet: Sheet, way: Sequence[Moment]) -> list[Line]:
-    """The way as it is drawn."""
+    """The way as it is drawn, on the floors that the sheet has."""
     made = []
-    for _, stretch in groupby(way, key=lambda moment: moment.floor):
+    for floor, stretch in groupby(way, key=lambda moment: moment.floor):
+        if floor not in sheet.panels:
+            continue
         moments = list(stretch)
         points = np.array([sheet.at(m.x, m.y, m.floor) for m in moments])
         times = np.array([m.t for m in moments])
@@ -86,13 +88,22 @@ def draw_lines(draw: ImageDraw.ImageDraw, way: Sequence[Line]) -> None:
             draw.polygon(turned(_HEAD, (x, y), turn, FINER), fill=_ink(line.shades[k]))
 
 
+def draw_thin(draw: ImageDraw.ImageDraw, way: Sequence[Line], ink: tuple[int, int, int]) -> None:
+    """The lines thin and in one colour, for what is only compared with."""
+    for line in way:
+        _stroke(draw, line.points, round(1.2 * FINER), ink)
+
+
 def draw_crossings(
     draw: ImageDraw.ImageDraw, sheet: Sheet, spots: Spots, way: Sequence[Moment]
 ) -> bool:
-    """A mark where stairs were taken, with the floor that they connect to; whether any were."""
+    """A mark where stairs were taken, with the floor that they connect to; whether any were, on the
+    floors that the sheet has."""
     marked: list[tuple[Moment, int, str]] = []
     for here, other, ink in _crossings(way):
-        if not any(_same(here, other, one, to) for one, to, _ in marked):
+        if here.floor in sheet.panels and not any(
+            _same(here, other, one, to) for one, to, _ in marked
+        ):
             marked.append((here, other, ink))
     places = []
     for here, _, ink in marked:

@@ -14,6 +14,7 @@ from argo_compiler.errors import ArgoError
 from argo_compiler.route import NEVER, Objective, Route, evaluate
 from argo_compiler.route.files import Kind, read_known_route, read_route_problem
 from argo_compiler.route.files.text import MAX_NODES
+from argo_compiler.route.suggest import suggest_route
 from tests.conftest import examples
 
 DISTANCES = st.integers(2, 7).flatmap(
@@ -303,3 +304,16 @@ def test_all_published_problems_are_read(originals):
     assert {path.suffix for path in paths} == {*endings}
     for path in paths:
         assert read_route_problem(path).kind == endings[path.suffix]
+
+
+@pytest.mark.parametrize(
+    ("file", "value"),
+    [("atsp/br17.atsp", 39), ("sop/ESC12.sop", 1675), ("tsptw/rbg010a.tw", 671),
+     ("tsptw/rbg017.tw", 893), ("tsptw/rbg019c.tw", 4536)],
+)  # fmt: skip
+def test_small_published_problems_are_solved_to_their_known_values(originals, file, value):
+    named = read_route_problem(originals / file)
+    found = suggest_route(named.problem, 30.0)  # they take less than 1 s on a quiet machine
+    assert found.proven
+    assert named.value(found.prize, found.cost) == named.value(found.prize_bound, found.bound)
+    assert named.value(found.prize, found.cost) == value

@@ -1,0 +1,219 @@
+"""A suggested order as pictures: a plan of each floor with the way as written and as suggested."""
+
+from collections.abc import Iterator, Sequence
+from pathlib import Path as FilePath
+
+import numpy as np
+from numpy.typing import NDArray
+from PIL import Image, ImageDraw
+
+from argo_compiler.errors import ArgoError
+from argo_compiler.il import Action, Task
+from argo_compiler.model import Pose
+from argo_compiler.route.evaluation import evaluate
+from argo_compiler.route.mission import MissionRoute
+from argo_compiler.route.problem import Route
+from argo_env.envs.drawing.floors import plans_of
+from argo_env.envs.drawing.legend import draw_headline
+from argo_env.envs.drawing.sheet import FINER, FOOT, INK, PAPER, SIZE, SOFT, Sheet, font, make_sheet
+from argo_env.envs.drawing.spots import Spots
+from argo_env.envs.drawing.style import disc, paint_disc
+from argo_env.envs.drawing.way import Moment, draw_crossings, draw_lines, draw_thin, lines
+from argo_env.navigation import Navigator
+from argo_env.report.track import colour
+from argo_env.site import Site
+from argo_env.travel import SiteTravel
+from argo_env.words import clock
+
+_STEP = 0.1  # m between the points of a drawn way
+_RADIUS = 11.0  # px
+_STATION = 7.0  # px from the middle of a station's mark to its sides
+_BAR = 120.0 * FINER  # px
+_LEFT = 16.0 * FINER
+_OLD = (120, 132, 145)
+
+
+def write_route(
+    planned: MissionRoute,
+    route: Route,
+    navigator: Navigator,
+    travel: SiteTravel,
+    folder: FilePath,
+) -> list[FilePath]:
+    """Writes `floor-<number>.png` into the folder for each floor that a way or a task touches, and
+    returns the paths. Rounds are drawn once, and what is done only in some cases is left out.
+
+    Raises ArgoError if a file can't be written.
+    """
+    site = navigator.site
+    seconds = [
+        evaluate(planned.problem, r).duration * planned.problem.unit
+        for r in (planned.written, route)
+    ]
+    headline = f"{clock(seconds[0])} as written, {clock(seconds[1])} as suggested"
+    if planned.mission.designation:
+        headline = f"{planned.mission.designation}: {headline}"
+    old = _way(planned, planned.written, navigator, travel)
+    new = _way(planned, route, navigator, travel)
+    floors = {moment.floor for moment in (*old, *new)}
+    written = []
+    for plan in plans_of(site):
+        if plan.number not in floors:
+            continue
+        image = _draw(
+            make_sheet([plan]), plan.number, planned, route, old, new, travel, site, headline
+        )
+        path = folder / f"floor-{plan.number}.png"
+        try:
+            Image.fromarray(image).save(path)
+        except OSError as error:
+            raise ArgoError(
+                f"{path}: the picture can't be written: {error.strerror}; choose another place"
+            ) from error
+        written.append(path)
+    return written
+
+
+def _way(
+    planned: MissionRoute, route: Route, navigator: Navigator, travel: SiteTravel
+) -> list[Moment]:
+    """Where the robot is when, from its start to the mission's end."""
+    here = travel.start(planned.mission)
+    site, robot = navigator.site, navigator.robot
+    moments = [Moment(0.0, here.x, here.y, site.floor_at(here.z))]
+    for task in _tasks(planned, route):
+        path = travel.way(here, task)
+        t = moments[-1].t
+        for motion in path.motions:
+            takes = motion.duration(robot)
+            count = max(1, round(motion.length / _STEP))
+            for k in range(1, count + 1):
+                p = motion.at(k / count)
+                moments.append(Moment(t + takes * k / count, p.x, p.y, site.floor_at(p.z)))
+            t += takes
+        here = path.end
+        moments.append(Moment(t + travel.work(task), here.x, here.y, site.floor_at(here.z)))
+    return moments
+
+
+def _tasks(planned: MissionRoute, route: Route) -> Iterator[Task]:
+    """The tasks that are always done, with the way into the docking station at the end."""
+    visits = planned.visits
+    for visit in route.order:
+        yield visits.task(visits.stops[visit].entry)
+    if visits.spine.end is not None:
+        yield visits.task(visits.spine.end)
+
+
+def _draw(
+    sheet: Sheet,
+    floor: int,
+    planned: MissionRoute,
+    route: Route,
+    old: Sequence[Moment],
+    new: Sequence[Moment],
+    travel: SiteTravel,
+    site: Site,
+    headline: str,
+) -> NDArray[np.uint8]:
+    """One floor, shape (720, 1280, 3)."""
+    image = sheet.image.copy()
+    draw = ImageDraw.Draw(image)
+    spots = Spots(sheet)
+    stations = _stations(planned, travel, site)
+    for x, y, there, _ in stations:
+        if there == floor:
+            size = (_STATION + 1.0) * FINER
+            spots.take(sheet.at(x, y, floor), size, size)
+    size = (_RADIUS + 1.0) * FINER
+    marks = []
+    for visit in range(planned.problem.size):
+        x, y, there = _place(planned, visit, site)
+        if there == floor:
+            true = sheet.at(x, y, floor)
+            marks.append((visit, true, spots.nearest(true, size, size, floor)))
+    thin, bold = lines(sheet, old), lines(sheet, new)
+    draw_thin(draw, thin, _OLD)
+    for line in bold:
+        spots.pass_by(line.points)
+    draw_lines(draw, bold)
+    position = {visit: k + 1 for k, visit in enumerate(route.order)}
+    for x, y, there, _ in stations:
+        if there == floor:
+            px, py = sheet.at(x, y, floor)
+            r = _STATION * FINER
+            draw.rectangle((px - r, py - r, px + r, py + r), fill=INK, outline=PAPER, width=FINER)
+    for visit, true, place in marks:
+        if place != true:
+            draw.line([true, place], fill=INK, width=2 * FINER)
+            disc(draw, true, 3.0 * FINER, INK)
+        state = "open" if visit in position else "closed"
+        paint_disc(draw, place, _RADIUS, state, str(position.get(visit, "")))
+    for visit, _, place in marks:
+        _plate(draw, spots, place, planned.visits.names[visit], floor)
+    for x, y, there, name in stations:
+        if there == floor:
+            _plate(draw, spots, sheet.at(x, y, floor), name, floor)
+    draw_crossings(draw, sheet, spots, new)
+    draw_headline(draw, headline)
+    _draw_legend(draw, bool(thin), bool(bold), len(position) < planned.problem.size)
+    return np.asarray(image.reduce(FINER), dtype=np.uint8)
+
+
+def _stations(
+    planned: MissionRoute, travel: SiteTravel, site: Site
+) -> list[tuple[float, float, int, str]]:
+    """Where the mission starts and ends: x, y (m), floor and name."""
+    start = travel.start(planned.mission)
+    end = planned.visits.spine.end
+    dock = None if end is None else planned.visits.task(end).pose
+    first = (start.x, start.y, site.floor_at(start.z))
+    if dock is None:
+        return [(*first, "start")]
+    if np.hypot(dock.x - start.x, dock.y - start.y) < 0.5 and abs(dock.z - start.z) < 0.5:
+        return [(*first, "start, end")]
+    return [(*first, "start"), (dock.x, dock.y, site.floor_at(dock.z), "end")]
+
+
+def _place(planned: MissionRoute, visit: int, site: Site) -> tuple[float, float, int]:
+    """Where a visit's task is: x, y (m) and floor."""
+    task = planned.visits.task(planned.visits.stops[visit].entry)
+    if task.action is Action.MEASURE:
+        checkpoint = site.measured_by(task.object_id)
+        return checkpoint.position[0], checkpoint.position[1], checkpoint.floor
+    pose = task.pose or Pose(x=0.0, y=0.0, z=0.0)
+    return pose.x, pose.y, site.floor_at(pose.z)
+
+
+def _plate(
+    draw: ImageDraw.ImageDraw, spots: Spots, place: tuple[float, float], text: str, floor: int
+) -> None:
+    """A name on a plate where it covers nothing."""
+    face = font(11)
+    wide, high = draw.textlength(text, font=face) / 2 + 4.0 * FINER, 8.0 * FINER
+    x, y = spots.beside(place, wide, high, floor)
+    box = (x - wide, y - high, x + wide, y + high)
+    draw.rounded_rectangle(box, 3 * FINER, fill=PAPER, outline=SOFT, width=FINER)
+    draw.text((x, y), text, fill=INK, font=face, anchor="mm")
+
+
+def _draw_legend(draw: ImageDraw.ImageDraw, old: bool, new: bool, dropped: bool) -> None:
+    """What lines and discs mean."""
+    y, face, x = (SIZE[1] - FOOT / 2) * FINER, font(12), _LEFT
+
+    def word(text: str, x: float) -> float:
+        draw.text((x, y), text, fill=SOFT, font=face, anchor="lm")
+        return x + draw.textlength(text, font=face) + 16 * FINER
+
+    if new:
+        for k in range(round(_BAR / 2)):
+            draw.line((x + k, y - 3 * FINER, x + k, y + 3 * FINER), fill=colour(2 * k / _BAR))
+        x = word("way as suggested, from its start to its end", x + _BAR / 2 + 6 * FINER)
+    if old:
+        draw.line((x, y, x + 30 * FINER, y), fill=_OLD, width=round(1.5 * FINER))
+        x = word("as written", x + 36 * FINER)
+    paint_disc(draw, (x + 8 * FINER, y), 8.0, "open", "3")
+    x = word("place in the order", x + 21 * FINER)
+    if dropped:
+        paint_disc(draw, (x + 8 * FINER, y), 8.0, "closed", "")
+        word("left out", x + 21 * FINER)

@@ -1,0 +1,127 @@
+"""`argo route`: the best order of a mission's tasks, with its proof."""
+
+from enum import StrEnum
+from pathlib import Path
+from typing import Annotated
+
+import typer
+from rich.console import Console
+
+from argo_compiler.errors import ArgoError
+from argo_compiler.files import write_mission
+from argo_compiler.route.requirements import Requirements, What, parse_seconds
+from argo_compiler.route.robust_spread import CAUTIOUS, SIMULATED
+from argo_env.pictures.route import write_route
+from argo_planner.loading import keep_input, load_mission, load_navigator, make_folder
+from argo_planner.options import EndArea, SiteOption, Source, StartArea
+from argo_planner.routing import (
+    TIME_LIMIT,
+    read_requirements,
+    show,
+    show_risk,
+    suggest,
+    suggest_robust,
+    why_none,
+)
+
+
+class Spread(StrEnum):
+    """How much travel times spread."""
+
+    SIMULATED = "simulated"
+    """as the simulator's do"""
+    CAUTIOUS = "cautious"
+    """as they might on a real site; an assumption"""
+
+
+SPREADS = {Spread.SIMULATED: SIMULATED, Spread.CAUTIOUS: CAUTIOUS}
+
+
+def suggest_order(
+    source: Source,
+    site: SiteOption = "umad",
+    budget: Annotated[
+        str | None,
+        typer.Option(
+            metavar="TIME",
+            help="such as 20min: what does not fit into this time is left out",
+        ),
+    ] = None,
+    keep_order: Annotated[
+        bool, typer.Option("--keep-order", help="leave out what does not fit, but move nothing")
+    ] = False,
+    before: Annotated[
+        list[str] | None,
+        typer.Option(metavar="A,B", help='what comes before what, such as "8, 4"'),
+    ] = None,
+    requirements: Annotated[
+        Path | None,
+        typer.Option(metavar="FILE.yaml", help="what else is asked for; see docs/routes.md"),
+    ] = None,
+    time_limit: Annotated[
+        float, typer.Option(help="s that the search may take", min=0.01)
+    ] = TIME_LIMIT,
+    seed: Annotated[int, typer.Option(help="of the search", min=0)] = 0,
+    risk: Annotated[
+        Spread | None,
+        typer.Option(help="say how probable it is to be in time, with times that spread so"),
+    ] = None,
+    robust: Annotated[
+        bool, typer.Option("--robust", help="take the order that is most probably in time instead")
+    ] = False,
+    output: Annotated[
+        Path | None, typer.Option("-o", "--output", help="the mission's .json to write")
+    ] = None,
+    pictures: Annotated[
+        Path | None, typer.Option(metavar="DIR", help="folder for a picture of each floor")
+    ] = None,
+    start_area: StartArea = None,
+    end_area: EndArea = None,
+) -> None:
+    """Suggest the best order of a mission's tasks; exits with status 2 if there is none."""
+    if output:
+        keep_input(source, output)
+    wanted = read_requirements(requirements) if requirements else Requirements()
+    wanted = with_options(wanted, budget, keep_order, before or [])
+    if pictures:
+        make_folder(pictures)
+    navigator = load_navigator(site)
+    mission, _ = load_mission(source, navigator, start_area, end_area)
+    found = suggest(source, mission, navigator, wanted, time_limit, seed)
+    console = Console(highlight=False)
+    spread = SPREADS[risk or Spread.CAUTIOUS]
+    if found.suggestion.route is None:
+        console.print(f"{source}: {why_none(found)}", soft_wrap=True, markup=False)
+        raise typer.Exit(2)
+    if robust:
+        found = suggest_robust(found, spread, time_limit, seed)
+    show(found, console)
+    if robust or risk:
+        show_risk(found, spread, seed, console)
+    if output:
+        write_mission(found.mission, output)
+        console.print(f"Mission: {output}", soft_wrap=True, markup=False)
+    if pictures:
+        for path in write_route(found.planned, found.route, navigator, found.travel, pictures):
+            console.print(f"Picture: {path}", soft_wrap=True, markup=False)
+
+
+def with_options(
+    requirements: Requirements, budget: str | None, keep_order: bool, before: list[str]
+) -> Requirements:
+    """The requirements with those that options ask for; ArgoError where they make no sense."""
+    found: dict[str, object] = {"keep_order": keep_order or requirements.keep_order}
+    if budget is not None:
+        seconds = parse_seconds(budget)
+        if seconds <= 0.0:
+            raise ArgoError(f"--budget {budget}: give a time above 0, such as 20min")
+        found["budget"] = seconds
+    found["before"] = (*requirements.before, *map(_sequence, before))
+    return requirements.model_copy(update=found)
+
+
+def _sequence(option: str) -> tuple[What, ...]:
+    parts = [part.strip().removeprefix("#") for part in option.split(",")]
+    if len(parts) < 2 or not all(parts):
+        raise ArgoError(f'--before {option}: name at least two, such as --before "8, 4"')
+    return tuple(int(part) if part.isdecimal() else part for part in parts)

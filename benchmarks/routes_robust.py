@@ -1,0 +1,110 @@
+"""What is gained by sure routes instead of short ones: `python -m benchmarks.routes_robust`.
+
+First on random problems of six visits, where all orders can be tried, then on all checkpoints of
+UMAD: with readings that may be left out for some maximum durations, and with none left out for some
+shares of what the shortest route takes. Times spread as in `CAUTIOUS`.
+"""
+
+from collections.abc import Iterator
+from dataclasses import replace
+from itertools import permutations
+
+import numpy as np
+
+from argo_compiler.route import Route, RouteProblem, Visit, evaluate
+from argo_compiler.route.robust import RobustSuggestion, suggest_robust_route
+from argo_compiler.route.robust_sampling import Draws, completion
+from argo_compiler.route.robust_spread import CAUTIOUS
+from argo_compiler.route.suggest import suggest_route
+from argo_env.navigation import Navigator
+from argo_env.robot.spec import load_robot
+from argo_env.seeding import generator
+from argo_env.site import load_site
+
+PROBLEMS = 20
+VISITS = 6
+READING = 10.0
+"""s that a reading takes"""
+UNIT = 0.1
+TIME_LIMIT = 30.0
+JUDGED = 10_000
+
+
+def small_problems() -> Iterator[RouteProblem]:
+    """Random ones, every second with some time windows, that leave 12 % more time than the shortest
+    route takes."""
+    for seed in range(PROBLEMS):
+        rng = generator(seed, "robust routes")
+        at = rng.uniform(0, 300, (VISITS + 1, 2))
+        up = np.maximum(at[None, :, 1] - at[:, None, 1], 0.0)
+        travel = np.rint(np.abs(at[:, None] - at).sum(axis=2) + 0.7 * up).astype(np.int64)
+        visits = [Visit(f"{k}", 20) for k in range(VISITS)]
+        problem = RouteProblem(tuple(visits), travel)
+        usual = suggest_route(problem, 5.0)
+        assert usual.route is not None
+        if seed % 2:
+            arrivals = evaluate(problem, usual.route).arrivals
+            for visit, arrival in zip(usual.order, arrivals, strict=True):
+                if rng.random() < 0.5:
+                    visits[visit] = replace(visits[visit], latest=int(1.1 * arrival) + 60)
+        yield replace(problem, visits=tuple(visits), max_duration=int(1.12 * usual.cost))
+
+
+def compare_with_all_orders() -> None:
+    """Prints how much surer the routes are than the usual ones, and how much less sure than the
+    surest order."""
+    gained, missed = [], []
+    for seed, problem in enumerate(small_problems()):
+        found = suggest_robust_route(problem, CAUTIOUS, TIME_LIMIT, seed, confidence=1.0)
+        draws = Draws(CAUTIOUS, JUDGED, generator(seed, "all orders"))
+        assert found.nominal.route is not None
+        usual, sure = (
+            completion(problem, route, draws).probability
+            for route in (found.nominal.route, found.route)
+        )
+        every = [completion(problem, Route(o), draws) for o in permutations(range(VISITS))]
+        gained.append(sure - usual)
+        missed.append(max(one.probability for one in every) - sure)
+    print(f"{PROBLEMS} problems of {VISITS} visits that all have to be made, in percentage points:")
+    for what, values in (("surer than the usual route", gained), ("below the surest", missed)):
+        mean, most = 100 * float(np.mean(values)), 100 * max(values)
+        print(f"  {what}: {mean:.2f} on average, {most:.2f} at most")
+
+
+def umad() -> RouteProblem:
+    """All checkpoints of UMAD in any order, from dock 1 back to it."""
+    navigator = Navigator(load_site("umad"), load_robot())
+    ids = [checkpoint.id for checkpoint in navigator.site.checkpoints]
+    times = navigator.travel_times([*ids, navigator.site.docks[1]])
+    visits = tuple(Visit(f"checkpoint {id}", round(READING / UNIT)) for id in ids)
+    return RouteProblem(visits, np.rint(times / UNIT).astype(np.int64), unit=UNIT)
+
+
+def _said(found: RobustSuggestion) -> str:
+    usual = len(found.nominal.order)
+    return (
+        f"usual {usual} readings, completed by {100 * found.nominal_completion.probability:.1f} %; "
+        f"sure {len(found.route.order)}, by {100 * found.completion.probability:.1f} % "
+        f"({found.tried} routes compared)"
+    )
+
+
+def main() -> None:
+    """Prints all of it."""
+    compare_with_all_orders()
+    problem = umad()
+    optional = tuple(replace(visit, mandatory=False, prize=1) for visit in problem.visits)
+    print(f"UMAD, {problem.size} checkpoints, {READING:g} s each:")
+    for minutes in (10, 15, 20):
+        limited = replace(problem, visits=optional, max_duration=round(minutes * 60 / UNIT))
+        found = suggest_robust_route(limited, CAUTIOUS, TIME_LIMIT)
+        print(f"  {minutes} min: {_said(found)}", flush=True)
+    shortest = suggest_route(problem, TIME_LIMIT).cost
+    for share in (1.02, 1.05, 1.1, 1.2):
+        limited = replace(problem, max_duration=int(share * shortest))
+        found = suggest_robust_route(limited, CAUTIOUS, TIME_LIMIT, confidence=1.0)
+        print(f"  {share:g} times the shortest, nothing left out: {_said(found)}", flush=True)
+
+
+if __name__ == "__main__":
+    main()

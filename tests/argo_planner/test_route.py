@@ -1,0 +1,145 @@
+"""`argo route`, and missions that are put in order before they are compiled or run."""
+
+import json
+
+import pytest
+from PIL import Image
+from typer.testing import CliRunner
+
+from argo_compiler.files import read_mission, write_mission
+from argo_compiler.hfsm import Hfsm
+from argo_compiler.il import Order
+from argo_compiler.model import Pose
+from argo_env.record import RunRecord
+from argo_planner.cli import app
+from tests.yard import measure, mission, waypoint, yard
+
+DOCK = Pose(x=1.05, y=1.05, z=0.02)
+
+
+@pytest.fixture(scope="module")
+def built():
+    return yard()
+
+
+@pytest.fixture
+def argo(built, monkeypatch):
+    """Runs `argo` in this process, on the yard."""
+    for command in ("route", "compile", "run"):
+        monkeypatch.setattr(f"argo_planner.commands.{command}.load_navigator", lambda _: built)
+    monkeypatch.setenv("COLUMNS", "120")
+
+    def call(*arguments):
+        result = CliRunner().invoke(app, [*map(str, arguments)])
+        result.text = (
+            result.output if result.exception is None else (result.output + str(result.exception))
+        )
+        return result
+
+    return call
+
+
+@pytest.fixture
+def source(tmp_path):
+    """A mission that goes to and fro."""
+    far, near = waypoint("far", 5.5, 2.5), waypoint("near", 2.2, 1.05)
+    written = mission(
+        measure(2), near, measure(3), measure(1), far,
+        waypoint("DOCK", 1.05, 1.05), order=Order.ANY, dock=DOCK, designation="to and fro",
+    )  # fmt: skip
+    path = tmp_path / "mission.json"
+    write_mission(written, path)
+    return path
+
+
+def order_in(path):
+    return [task.name for task in read_mission(path).tasks]
+
+
+def test_the_suggestion_is_shown_drawn_and_written(argo, source, tmp_path):
+    written, pictures = tmp_path / "new.json", tmp_path / "pictures"
+    result = argo("route", source, "-o", written, "--pictures", pictures, "--before", "3, 1")
+    assert result.exit_code == 0, result.text
+    assert "Proven: no order is better" in result.text
+    assert "Kept: checkpoint 3 before checkpoint 1" in result.text
+    order = order_in(written)
+    assert sorted(order) == sorted(order_in(source))
+    assert (order[0], order[-1]) == ("START", "DOCK")
+    assert order.index("MEASURE 3") < order.index("MEASURE 1")
+    assert order != order_in(source)
+    with Image.open(pictures / "floor-1.png") as picture:
+        assert picture.size == (1280, 720)
+
+
+def test_what_does_not_fit_into_a_budget_is_left_out(argo, source, tmp_path):
+    wanted = tmp_path / "wanted.yaml"
+    wanted.write_text("mandatory: [2]\noptional:\n- {what: far, priority: 3}\n")
+    result = argo(
+        "route", source, "--budget", "1 min", "--requirements", wanted,
+        "-o", tmp_path / "new.json", "--risk", "simulated",
+    )  # fmt: skip
+    assert result.exit_code == 0, result.text
+    assert "within the budget 1 min; left out:" in result.text
+    assert "Suggested: within all limits with" in result.text
+    assert "MEASURE 2" in order_in(tmp_path / "new.json")
+    assert len(order_in(tmp_path / "new.json")) < len(order_in(source))
+
+
+def test_a_robust_order_is_in_time_more_often(argo, source):
+    result = argo("route", source, "--budget", "70 s", "--robust", "--time-limit", 1)
+    assert result.exit_code == 0, result.text
+    assert "robust: the best of" in result.text
+    refused = argo("route", source, "--robust")
+    assert "nothing limits this mission's time" in refused.text
+
+
+def test_requirements_that_can_not_all_be_met_are_an_error(argo, source):
+    result = argo("route", source, "--before", "3, 1", "--before", "1,3")
+    assert result.exit_code == 2
+    assert "no order meets all" in result.text
+
+
+@pytest.mark.parametrize(
+    ("options", "said"),
+    [
+        (["--before", "3"], "name at least two"),
+        (["--before", "3, 17"], "no checkpoint 17"),
+        (["--budget", "soon"], "no duration"),
+        (["--budget", "0 s"], "above 0"),
+        (["--requirements", "missing.yaml"], "can't be read"),
+    ],
+)
+def test_options_that_make_no_sense_are_refused(argo, source, options, said):
+    assert said in argo("route", source, *options).text
+
+
+def test_a_file_of_requirements_says_where_it_is_wrong(argo, source, tmp_path):
+    wanted = tmp_path / "wanted.yaml"
+    wanted.write_text("mandatory: [2]\nbudgets: 5 min\n")
+    text = argo("route", source, "--requirements", wanted).text
+    assert "wanted.yaml:2:1" in text
+    assert "[route.wrong-field]" in text
+
+
+def test_a_mission_is_never_written_over(argo, source):
+    assert "is the input as well" in argo("route", source, "-o", source).text
+
+
+def test_a_mission_is_compiled_in_its_best_order(argo, source, tmp_path):
+    result = argo("compile", source, "-o", tmp_path / "machine.json", "--optimise")
+    assert result.exit_code == 0, result.text
+    machine = Hfsm.model_validate_json((tmp_path / "machine.json").read_text())
+    order = [leaf.task.name for leaf in machine.leaves]
+    assert f"Order: {', '.join(order[:-1])}\n" in result.text
+
+
+def test_a_run_in_its_best_order_says_so_in_its_report(argo, source, tmp_path, monkeypatch):
+    monkeypatch.setattr("argo_planner.running.write_overview", lambda *_: None)  # takes long
+    report = tmp_path / "report"
+    result = argo("run", source, "--optimise", "--drive", "route", "--report", report)
+    assert "Predicted:" in result.text
+    record = RunRecord.model_validate(json.loads((report / "report.json").read_text()))
+    assert record.reordering.proven
+    assert record.reordering.order == tuple(run.task for run in record.tasks[:-1])
+    assert record.result.duration == pytest.approx(record.reordering.duration, rel=0.1)
+    assert "As suggested" in (report / "report.html").read_text()

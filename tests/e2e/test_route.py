@@ -1,0 +1,15 @@
+"""`argo route` as a user runs it, on the competition's site."""
+
+from pathlib import Path
+
+from argo_compiler.check import check
+from argo_compiler.files import read_mission
+
+
+def test_a_sheet_in_any_order_is_put_in_order(argo, missions: Path, tmp_path: Path) -> None:
+    sheet = (missions / "any_order.txt").read_text(encoding="utf-8").splitlines()
+    (tmp_path / "sheet.txt").write_text("\n".join(sheet[:10]) + "\n", encoding="utf-8")
+    result = argo("route", "sheet.txt", "--budget", "20min", "-o", "new.json", cwd=tmp_path)
+    assert result.returncode == 0, result.stderr
+    assert "Proven: no order is better" in result.stdout
+    assert not check(read_mission(tmp_path / "new.json"))

@@ -3,7 +3,6 @@
 PYTHON ?= python3.11
 BIN := .venv/bin
 INSTALL := $(BIN)/python -m pip install --quiet --disable-pip-version-check --constraint constraints.txt
-PACKAGES := argo_compiler argo_env argo_planner
 
 .PHONY: demo test lint format generated clean
 

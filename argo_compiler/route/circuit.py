@@ -26,11 +26,11 @@ def solve_circuit(
     start: Found | None = None,
     *,
     hinted: bool = True,
-    watched: bool = True,
+    running: list[cp_model.CpSolver] | None = None,
 ) -> Found:
     """The best path that CP-SAT finds until the deadline, and its bounds. `start`: a path that it
     need not do worse than; `hinted`: it also begins there, which helps if the path is good.
-    `watched`: each path that it finds is noted at once, for which it needs Python's lock."""
+    `running`: where solvers are put, for others to stop."""
     if not pruned.possible:
         return none_found(network, proven=True)
     best, prize_bound = start, int(network.prize[pruned.steps].sum())
@@ -38,7 +38,7 @@ def solve_circuit(
     if network.selective:
         model = _Model(network, pruned)
         model.maximise_prize(start)
-        status, solver = _solve(model, search, start if hinted else None, watched, prizes=True)
+        status, solver = _solve(model, search, start if hinted else None, running, prizes=True)
         if status == cp_model.INFEASIBLE:
             return none_found(network, proven=True)
         if status in (cp_model.OPTIMAL, cp_model.FEASIBLE):
@@ -56,7 +56,7 @@ def solve_circuit(
         total = best.prize
     model = _Model(network, pruned)
     model.minimise_cost(total, best)
-    status, solver = _solve(model, search, best if hinted else None, watched, prizes=False)
+    status, solver = _solve(model, search, best if hinted else None, running, prizes=False)
     if status == cp_model.INFEASIBLE:
         assert best is None or best.path is None
         return none_found(network, proven=True)
@@ -75,16 +75,23 @@ def solve_circuit(
 
 
 def _solve(
-    model: "_Model", search: Search, start: Found | None, watched: bool, *, prizes: bool
+    model: "_Model",
+    search: Search,
+    start: Found | None,
+    running: list[cp_model.CpSolver] | None,
+    *,
+    prizes: bool,
 ) -> tuple[int, cp_model.CpSolver]:
     solver = cp_model.CpSolver()
     solver.parameters.max_time_in_seconds = max(search.left(), 0.01)
-    solver.parameters.num_workers = search.workers
+    solver.parameters.num_workers = 1
     solver.parameters.linearization_level = 2
     solver.parameters.random_seed = search.seed % (1 << 31)
     if start is not None and start.path is not None:
         model.hint(start)
-    status = solver.solve(model.model, _Watch(model, search, prizes) if watched else None)
+    if running is not None:
+        running.append(solver)
+    status = solver.solve(model.model, _Watch(model, search, prizes))
     return int(status), solver
 
 

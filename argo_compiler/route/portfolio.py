@@ -1,6 +1,7 @@
 """Which solver for which network: picked by structure, and said why."""
 
 import threading
+from typing import Any
 
 from argo_compiler.route import labels, routing, subsets
 from argo_compiler.route.circuit import solve_circuit
@@ -19,8 +20,6 @@ _FEW_SETS = 30_000
 """with which dynamic programming takes no time worth speaking of"""
 _MOST_ARCS = 80_000
 """of a model for CP-SAT"""
-_ALONE = 120
-"""steps in any order up to which CP-SAT needs no help"""
 _MANY_STEPS = 24
 """from which on routing's local search is worth its start-up"""
 
@@ -72,22 +71,19 @@ def _searched(network: Network, pruned: Pruned, search: Search) -> tuple[Found, 
     if int(pruned.arcs.sum()) > _MOST_ARCS:
         search.say(f"{len(network.prize)} steps are too many for CP-SAT: guided local search")
         return _improved(network, pruned, search, best, method)
-    plain = not _ordered(network, pruned)
-    if not plain:
-        best, method = _prepared(network, pruned, search, best, method)
+    if not _ordered(network, pruned):
+        exact = solve_circuit(network, pruned, search, best, hinted=False)
+    elif search.workers > 1:
+        search.say("CP-SAT from nothing, and beside it from the best route of other searches")
+        best, method, exact = _raced(network, pruned, search, best, method)
+    else:
+        with search.part(0.4):
+            best, method = _prepared(network, pruned, search, best, method)
         if best is not None and best.proven:
             return best, method
-    beside_it = _ordered(network, pruned) or len(network.prize) > _ALONE
-    if search.workers > 1 and beside_it and _routed(network):
-        search.say("CP-SAT, and guided local search beside it")
-        exact, beside = _side_by_side(network, pruned, search, best, hinted=not plain)
-    else:
-        exact = solve_circuit(network, pruned, search, best, hinted=not plain)
-        beside = best
+        exact = solve_circuit(network, pruned, search, best)
     if exact.better_than(best) or best is None:
         best, method = exact, "CP-SAT"
-    if beside is not None and beside.better_than(best):
-        best, method = beside, "guided local search"
     if best.path is None or exact.proven:
         return exact, "CP-SAT"
     best = _bounded(network, search, best, exact)
@@ -115,14 +111,13 @@ def _prepared(
     """A good route for CP-SAT to begin with, where order and windows make that hard for it."""
     if _routed(network):
         search.say("guided local search improves the first route")
-        until = search.clock() + 0.06 * search.left()
+        until = search.clock() + 0.15 * search.left()
         better = routing.solve_routing(network, pruned, search, until, best)
         if better is not None and better.better_than(best):
             best, method = better, "guided local search"
     if not network.selective and Bits(network, pruned).fits:
         search.say("beams of labels, with prices for what is still to come")
-        with search.part(0.3):
-            some = labels.search_labels(network, pruned, search, best)
+        some = labels.search_labels(network, pruned, search, best)
         search.known(bound=some.bound)
         if some.proven or some.better_than(best):
             best, method = some, "beams of labels"
@@ -167,36 +162,58 @@ def _bounded(network: Network, search: Search, best: Found, exact: Found) -> Fou
     return found(network, best.path or (), best.charges, exact.prize_bound, bound)
 
 
-def _side_by_side(
-    network: Network, pruned: Pruned, search: Search, best: Found | None, *, hinted: bool
-) -> tuple[Found, Found | None]:
-    """CP-SAT with one worker, and guided local search at the same time."""
+def _raced(
+    network: Network, pruned: Pruned, search: Search, best: Found | None, method: str
+) -> tuple[Found | None, str, Found]:
+    """CP-SAT from nothing on one core; on another local search and beams, and then CP-SAT from what
+    they found. The first that proves something ends the other."""
+    running: list[Any] = []
     results: list[Found] = []
     failures: list[BaseException] = []
+    whole = search.deadline
 
     def prove() -> None:
         try:
             alone = search.alone()
-            results.append(
-                solve_circuit(network, pruned, alone, best, hinted=hinted, watched=False)
-            )
+            results.append(solve_circuit(network, pruned, alone, running=running))
         except BaseException as error:
             failures.append(error)
+        else:
+            if results[0].proven:
+                search.deadline = search.clock()
+                for solver in running:
+                    solver.stop_search()
 
     thread = threading.Thread(target=prove)
     thread.start()
-    beside, span = best, 0.5
-    # The library can't be stopped from outside: it is run for longer and longer spans.
-    while thread.is_alive() and search.left() > 0.0:
-        until = min(search.deadline, search.clock() + span)
-        beside = routing.solve_routing(network, pruned, search, until, beside)
-        span = min(2 * span, 4.0)
-        thread.join(0.01)
+    half = search.clock() + 0.5 * search.left()
+    search.deadline = min(search.deadline, half)
+    best, method = _prepared(network, pruned, search, best, method)
+    exact = best if best is not None and best.proven else None
+    if exact is None and not (results and results[0].proven):
+        search.deadline = whole
+        exact = solve_circuit(network, pruned, search, best, running=running)
+    if exact is not None and exact.proven:
+        for solver in running:
+            solver.stop_search()
     thread.join()
+    search.deadline = whole
     if failures:
         raise failures[0]
-    (exact,) = results
-    if exact.path is not None:
-        search.route(exact.prize, exact.cost)
-    search.known(exact.prize_bound, exact.bound)
-    return exact, beside
+    (other,) = results
+    return best, method, _both(network, search, exact, other)
+
+
+def _both(network: Network, search: Search, one: Found | None, other: Found) -> Found:
+    """The better path of two searches, with the better bounds of both."""
+    if one is None or other.proven:
+        return other
+    if one.proven:
+        return one
+    best = other if other.better_than(one) else one
+    if best.path is None:
+        return none_found(network, proven=False, bound=max(one.bound, other.bound))
+    search.route(best.prize, best.cost)
+    prize_bound = min(one.prize_bound, other.prize_bound)
+    search.known(prize_bound, max(one.bound, other.bound))
+    return found(network, best.path, best.charges, prize_bound, max(one.bound, other.bound))

@@ -27,7 +27,7 @@ from argo_env.envs.route_episodes import (
     observation_space,
     read_route_options,
 )
-from argo_env.envs.route_instance import DOCK
+from argo_env.envs.route_instance import DOCK, evaluate
 from argo_env.envs.route_sources import RouteSource
 
 __all__ = ["RouteEnv", "RouteVectorEnv"]
@@ -42,7 +42,8 @@ class RouteEnv(Rendering, gym.Env[Observation, np.int64]):
     """## Description
     A robot has some minutes to visit checkpoints of different worth and to be docked again. Some
     checkpoints must be visited before others. This is the orienteering problem with precedence;
-    only travel times count, nothing is simulated between two visits.
+    only travel times count, nothing is simulated between two visits. With `noise`, readings fail
+    and stairs are found blocked on the way.
 
     ## Observation Space
     A `Dict`; n is the number of checkpoints, and node 0 the dock. All are `float32` from 0 to 1
@@ -69,18 +70,29 @@ budget; 1 also where it is longer |
 
     ## Rewards
     The prize of the checkpoint, 0 for the dock. The return is `evaluate(instance, route).prize`, to
-    the bit. `info["terms"]` has the terms of the reward.
+    the bit. `info["terms"]` has the terms of the reward. With noise there is one more, `late`: a
+    robot that is docked after the budget is over gives back all that it has won, so that the return
+    is exactly 0. This can only happen where stairs were found blocked after it had set off to its
+    last checkpoint; `info["late"]` says so.
 
     ## Starting State
     At the start, nothing visited, the whole budget left. The instance is drawn from the 4,096 of
     `TRAINING`, by a hash of the seed and of the number of the episode since it was given.
 
     ## Episode End
-    Terminated when the robot is docked. Never truncated: there are at most n + 1 steps.
+    Terminated when the robot is docked. Never truncated: there are at most n + 1 steps, and one for
+    each reading that fails.
 
     ## Randomisation
     Travel times, prizes, precedence and the checkpoints' places differ between instances. The
     instances of `TEST` (numbers 1,000,000 to 1,000,099) are never drawn in training.
+
+    With noise the instance also says what the robot does not know yet, so that an episode follows
+    from its instance and its actions. A visit whose reading fails takes its time and gives nothing:
+    the checkpoint is still open, those after it are still to wait, and `info["failed"]` is true. At
+    a moment of the instance stairs are found blocked, from 10 % to 90 % of the budget: what the
+    robot does from then on has the travel times of another way, which observations show at once. A
+    drive that began before that is not changed.
 
     ## Arguments
     - `checkpoints` (20): n, at most 500; where a site has fewer, the rest can't be reached.
@@ -88,7 +100,11 @@ budget; 1 also where it is longer |
       `generated:floors=3,seed=7`.
     - `budget` (1200): s.
     - `full` (False): whether the observation has the whole instance.
-    - `source` (None): a `RouteSource` that makes instances, in place of the three above but `full`.
+    - `source` (None): a `RouteSource` that makes instances, in place of `checkpoints`, `scenario`,
+      `budget` and `noise`.
+    - `noise` (None): `{"failing": 0.2, "blocked": 1}`: the probability that a visit gives no
+      reading, at most 0.9, and how many stairs between two floors are blocked, at most 5, as long
+      as there is a way round. Random routes have stairs at both ends of their floors then.
 
     `reset(options=...)`, which hold until others are given (`{}`: none):
     - `scenario`: as above, for the following episodes.
@@ -118,13 +134,14 @@ budget; 1 also where it is longer |
         budget: float = 1200.0,
         full: bool = False,
         source: RouteSource | None = None,
+        noise: Mapping[str, Any] | None = None,
         render_mode: str | None = None,
     ) -> None:
-        """Raises ArgoError if there is no such scenario or render mode."""
+        """Raises ArgoError if there is no such scenario, noise or render mode."""
         check_render_mode(render_mode, self.metadata["render_modes"])
         self.render_mode = render_mode
         self._full = full
-        self._episodes = Episodes(checkpoints, scenario, budget, source)
+        self._episodes = Episodes(checkpoints, scenario, budget, source, noise)
         self.action_space = spaces.Discrete(self._episodes.size)
         self.observation_space = observation_space(self._episodes.size, full)
         self._key: int | None = None
@@ -146,11 +163,14 @@ budget; 1 also where it is longer |
             self._episode += 1
         numbers = self._episodes.numbers
         self._number = numbers[episode_number(self._key, self._episode) % len(numbers)]
-        self.instance = self._episodes.instance(self._number)
+        self.instance = self._known = self._episodes.instance(self._number)
         self._place, self._route = self.instance.start, []
         self._left = self.instance.left
         self._missing = self.instance.missing.copy()
         self._prizes = self.instance.prizes.astype(np.float32)
+        hidden = self.instance.hidden
+        self._failing = [] if hidden is None else hidden.failing.tolist()
+        self._won = 0.0
         self._over = False
         observation = self._observe()
         self._show()
@@ -164,17 +184,30 @@ budget; 1 also where it is longer |
         if illegal:
             node = DOCK
         if self._place != DOCK:
-            self._left = self._left - instance.arrival[self._place, node : node + 1]
-        prize = instance.prizes.item(node)
-        self._missing -= instance.effect[node]
-        self._prizes[node] = 0.0
+            self._left = self._left - self._known.arrival[self._place, node : node + 1]
+        failed = instance.hidden is not None and self._failing[node] > 0
+        prize = 0.0 if failed else instance.prizes.item(node)
+        if failed:
+            self._failing[node] -= 1
+        else:
+            self._missing -= instance.effect[node]
+            self._prizes[node] = 0.0
         self._place = node
         self._route.append(node)
         self._over = node == DOCK
+        terms: dict[str, float] = {"prize": prize}
+        info: dict[str, Any] = {"terms": terms, "time": self._time(), "illegal": illegal}
+        reward = prize
+        if instance.hidden is not None:
+            self._known = instance.at(info["time"])
+            late = self._over and info["time"] > instance.budget
+            self._won += prize
+            terms["late"] = 0.0 - self._won if late else 0.0
+            reward += terms["late"]
+            info |= {"late": late, "failed": failed}
         observation = self._observe()
         self._show()
-        info = {"terms": {"prize": prize}, "time": self._time(), "illegal": illegal}
-        return observation, prize, node == DOCK, False, info
+        return observation, reward, self._over, False, info
 
     def action_masks(self) -> NDArray[np.bool_]:
         """Which actions are legal now, shape (n + 1,)."""
@@ -211,17 +244,20 @@ budget; 1 also where it is longer |
         return observation
 
     def _observe(self) -> Observation:
-        instance, place = self.instance, self._place
+        instance, place = self._known, self._place
         # Arrays, also for single numbers: with those NumPy takes twice as long.
         mask = np.less_equal(instance.needs[place], self._left)
         mask &= np.equal(self._missing, _NOTHING)
         mask[DOCK] = True
         self._mask = mask
+        left = self._left
+        if self.instance.hidden is not None:  # one that is docked too late has no time left
+            left = np.maximum(left, np.float32(0.0))
         observation: Observation = {
             "travel": instance.travels[place].copy(),
             "home": instance.home.copy(),
             "prize": self._prizes.copy(),
-            "left": self._left / instance.left,
+            "left": left / instance.left,
             "mask": mask.view(np.int8).copy(),
         }
         if self._full:
@@ -241,7 +277,7 @@ budget; 1 also where it is longer |
             self._episodes.options.floors,
             self.instance,
             (self.instance.start, *self._route),
-            [node for node in self._route if node != DOCK],
+            evaluate(self.instance, self._route).visited,
             self._mask,
             self._time(),
         )

@@ -56,15 +56,16 @@ class RouteVectorEnv(VectorEnv[Observation, NDArray[np.int64], NDArray[Any]]):
         budget: float = 1200.0,
         full: bool = False,
         source: RouteSource | None = None,
+        noise: Mapping[str, Any] | None = None,
         render_mode: str | None = None,
     ) -> None:
-        """Raises ArgoError if there is no such scenario or render mode, or no route."""
+        """Raises ArgoError if there is no such scenario, noise or render mode, or no route."""
         check_render_mode(render_mode, self.metadata["render_modes"])
         check_whole(_NAME, 1, _MOST, num_envs=num_envs)
         self.num_envs = num_envs = int(num_envs)
         self.render_mode = render_mode
         self._full = full
-        self._episodes = Episodes(checkpoints, scenario, budget, source)
+        self._episodes = Episodes(checkpoints, scenario, budget, source, noise)
         n = self._episodes.size
         self.single_action_space = spaces.Discrete(n)
         self.single_observation_space = observation_space(n, full)
@@ -75,11 +76,14 @@ class RouteVectorEnv(VectorEnv[Observation, NDArray[np.int64], NDArray[Any]]):
         self._seeded = np.zeros(num_envs, np.bool_)
         self._episode = np.zeros(num_envs, np.uint64)
         self._chosen = np.zeros(num_envs, np.int64)
+        self._known = np.zeros(num_envs, np.int64)
         self._place = np.zeros(num_envs, np.int64)
         self._time = np.zeros(num_envs, np.float32)
         self._ended = np.zeros(num_envs, np.bool_)
         self._missing = np.zeros((num_envs, n), np.int16)
         self._prizes = np.zeros((num_envs, n), np.float32)
+        self._failing = np.zeros((num_envs, n), np.int16)
+        self._won = np.zeros(num_envs, np.float64)
         self._mask: NDArray[np.bool_] | None = None
 
     def reset(
@@ -125,17 +129,32 @@ class RouteVectorEnv(VectorEnv[Observation, NDArray[np.int64], NDArray[Any]]):
         anew = self._ended.nonzero()[0]
         rewards = pool.prizes[self._chosen, nodes]
         size = self._missing.shape[1]
-        self._time += pool.arrival[self._chosen * (size + 1) + self._place, nodes]
-        self._missing -= pool.effect.take(self._chosen * size + nodes, axis=0)
-        self._prizes[rows, nodes] = 0.0
+        self._time += pool.arrival[self._known * (size + 1) + self._place, nodes]
+        effect = pool.effect.take(self._chosen * size + nodes, axis=0)
+        if pool.noisy:
+            failed = self._fail(nodes, rewards, effect)
+        else:
+            self._prizes[rows, nodes] = 0.0
+        self._missing -= effect
         self._place = nodes
         self._ended = nodes == DOCK
+        terms = {"prize": rewards.copy(), "_prize": going}
+        info: dict[str, Any] = {}
+        if pool.noisy:
+            late = self._ended & (self._time > pool.budget[self._chosen])
+            lost = np.where(late & going, 0.0 - self._won, 0.0)
+            rewards += lost
+            terms |= {"late": lost, "_late": going}
+            info = {"late": late & going, "_late": going, "failed": failed, "_failed": going}
+            since = pool.since[self._chosen]
+            passed = (self._time[:, None] >= since).sum(axis=1)
+            self._known = self._chosen * pool.stages + passed
         if anew.size:
             self._episode[anew] += np.uint64(1)
             self._begin(anew)
             rewards[anew], illegal[anew] = 0.0, False
-        info = {
-            "terms": {"prize": rewards.copy(), "_prize": going},
+        info |= {
+            "terms": terms,
             "_terms": going.copy(),
             "time": self._time.astype(np.float64),
             "_time": going.copy(),
@@ -219,42 +238,62 @@ class RouteVectorEnv(VectorEnv[Observation, NDArray[np.int64], NDArray[Any]]):
             for name in _STATE
         )
 
+    def _fail(
+        self, nodes: NDArray[np.int64], prizes: NDArray[np.float64], effect: NDArray[np.int16]
+    ) -> NDArray[np.bool_]:
+        """Which visits fail; takes their prizes and their effect from the arrays given, and keeps
+        what the others win."""
+        rows = self._all
+        failed = self._failing[rows, nodes] > 0
+        self._failing[rows, nodes] -= failed
+        prizes[failed], effect[failed] = 0.0, 0
+        self._prizes[rows, nodes] *= failed
+        self._won += prizes
+        return failed
+
     def _begin(self, rows: NDArray[np.int64]) -> None:
         """New instances for these routes."""
         pool = self._episodes.pool
         drawn = episode_number(self._keys[rows], self._episode[rows])
         chosen = pool.choose(rows, drawn)
         self._chosen[rows] = chosen
+        self._known[rows] = chosen * pool.stages
         self._missing[rows] = pool.missing[chosen]
         self._prizes[rows] = pool.prizes[chosen]
         self._place[rows] = self._missing.shape[1]
         self._time[rows] = 0.0
         self._ended[rows] = False
+        if pool.noisy:
+            self._failing[rows] = pool.failing[chosen]
+            self._won[rows] = 0.0
 
     def _observe(self) -> Observation:
         pool, chosen, place = self._episodes.pool, self._chosen, self._place
-        row = chosen * (self._missing.shape[1] + 1) + place
+        row = self._known * (self._missing.shape[1] + 1) + place
         budget = pool.budget[chosen, None]
         left = budget - self._time[:, None]
         mask = pool.need.take(row, axis=0) <= left
         mask &= self._missing == 0
         mask[:, DOCK] = True
         self._mask = mask
+        if pool.noisy:  # one that is docked too late has no time left
+            np.maximum(left, np.float32(0.0), out=left)
         observation: Observation = {
             "travel": pool.travel.take(row, axis=0),
-            "home": pool.home.take(chosen, axis=0),
+            "home": pool.home.take(self._known, axis=0),
             "prize": self._prizes.copy(),
             "left": left / budget,
             "mask": mask.astype(np.int8),
         }
         if self._full:
             shape = (-1, self._missing.shape[1] + 1, self._missing.shape[1])
-            observation["matrix"] = pool.travel.reshape(shape)[chosen]
+            observation["matrix"] = pool.travel.reshape(shape)[self._known]
             observation["before"] = pool.before[chosen]
             observation["place"] = place.copy()
         return observation
 
 
 _STATE = (
-    "_keys", "_seeded", "_episode", "_chosen", "_place", "_time", "_ended", "_missing", "_prizes",
+    "_keys", "_seeded", "_episode", "_chosen", "_known", "_place", "_time", "_ended", "_missing",
+    "_prizes", "_failing", "_won",
 )  # fmt: skip

@@ -1,7 +1,7 @@
 """What single routes and batches share: the observation space, and which instance an episode has:
 options, a hash of seed and episode, and instances in arrays."""
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from functools import lru_cache
 from typing import Any, overload
@@ -23,6 +23,7 @@ from argo_env.envs.options import (
     read_options,
 )
 from argo_env.envs.route_instance import DOCK, MOST_CHECKPOINTS, RouteInstance
+from argo_env.envs.route_noise import NO_NOISE, RouteNoise
 from argo_env.envs.route_sources import (
     TEST,
     TRAINING,
@@ -61,17 +62,26 @@ class Pool:
     numbers: NDArray[np.int64]
     each: bool
     """whether row k belongs to environment k, in place of being drawn"""
+    stages: int
+    """how many states of knowledge an instance has at most: one more than stairs are blocked"""
     arrival: NDArray[np.float32]
-    """this and the next two with the rows of all instances one below the other"""
+    """this and the next two with the rows of all instances one below the other, each instance as
+    often as there are stages"""
     need: NDArray[np.float32]
     travel: NDArray[np.float32]
+    home: NDArray[np.float32]
+    """likewise, one row for each stage of an instance"""
     before: NDArray[np.int8]
     effect: NDArray[np.int16]
     """shape (m * (n + 1), n + 1): what the visit of a node takes from `missing`"""
     missing: NDArray[np.int16]
     prizes: NDArray[np.float64]
-    home: NDArray[np.float32]
     budget: NDArray[np.float32]
+    noisy: bool
+    """whether the instances have something hidden, which is:"""
+    failing: NDArray[np.int16]
+    since: NDArray[np.float32]
+    """s, when each but the first stage begins, shape (m, stages - 1)"""
 
     def choose(self, rows: NDArray[np.int64], drawn: Words) -> NDArray[np.int64]:
         """The row of the pool for each environment."""
@@ -84,13 +94,24 @@ class Episodes:
     """Gives the instances that the options ask for. Holds the options and what it has made."""
 
     def __init__(
-        self, checkpoints: int, scenario: str, budget: float, source: RouteSource | None
+        self,
+        checkpoints: int,
+        scenario: str,
+        budget: float,
+        source: RouteSource | None,
+        noise: Mapping[str, Any] | None = None,
     ) -> None:
-        """Raises ArgoError if there is no such scenario."""
+        """Raises ArgoError if there is no such scenario or noise."""
+        self._noise = NO_NOISE if noise is None else read_options(RouteNoise, noise, _NAME)
         if source is None:
             check_scenario(_NAME, scenario)
             check_whole(_NAME, 1, MOST_CHECKPOINTS, checkpoints=checkpoints)
             check_positive(_NAME, LONGEST, budget=budget)
+        elif noise is not None:
+            raise ArgoError(
+                f"{_NAME}: `noise` and `source`: a source makes its instances with the noise that "
+                "it was made with; give one of the two"
+            )
         self._own = source
         self._scenario = scenario
         self._budget = budget
@@ -117,8 +138,8 @@ class Episodes:
             return self._own
         scenario = self.scenario_of(options)
         if scenario == "random":
-            return RandomRoutes(self._checkpoints, budget=self._budget)
-        return _site_routes(self._checkpoints, scenario, self._budget)
+            return RandomRoutes(self._checkpoints, budget=self._budget, noise=self._noise)
+        return _site_routes(self._checkpoints, scenario, self._budget, self._noise)
 
     @property
     def numbers(self) -> range | tuple[int, ...]:
@@ -132,19 +153,7 @@ class Episodes:
         """All instances that episodes draw from, made when they are asked for."""
         if self._pool is None:
             made = [self._draw(number) for number in self.numbers]
-            self._pool = Pool(
-                numbers=np.array(self.numbers, dtype=np.int64),
-                each=isinstance(self.options.instance, tuple),
-                arrival=np.concatenate([_resting(m) for m in made]),
-                need=np.concatenate([m.need for m in made]),
-                travel=np.concatenate([m.travel for m in made]),
-                before=np.stack([m.before for m in made]).astype(np.int8),
-                effect=np.concatenate([m.effect for m in made]),
-                missing=np.stack([m.before.sum(axis=0, dtype=np.int16) for m in made]),
-                prizes=np.stack([m.prizes for m in made]),
-                home=np.stack([m.home for m in made]),
-                budget=np.array([m.budget for m in made], dtype=np.float32),
-            )
+            self._pool = _pool(made, self.numbers, isinstance(self.options.instance, tuple))
         return self._pool
 
     def _draw(self, number: int) -> RouteInstance:
@@ -217,6 +226,36 @@ def episode_number(key: Any, episode: Any) -> Any:
     return z ^ (z >> np.uint64(31))
 
 
+def _pool(made: Sequence[RouteInstance], numbers: Sequence[int], each: bool) -> Pool:
+    """The instances with these numbers in arrays."""
+    changes = [m.hidden.changes if m.hidden else () for m in made]
+    stages = 1 + max(map(len, changes))
+    since = np.full((len(made), stages - 1), np.inf, np.float32)
+    known = []
+    for row, (instance, found) in enumerate(zip(made, changes, strict=True)):
+        since[row, : len(found)] = [change.since for change in found]
+        known += [instance, *(change.known for change in found)]
+        known += [known[-1]] * (stages - 1 - len(found))
+    nothing = np.zeros(made[0].size, np.int16)
+    return Pool(
+        numbers=np.array(numbers, dtype=np.int64),
+        each=each,
+        stages=stages,
+        arrival=np.concatenate([_resting(k) for k in known]),
+        need=np.concatenate([k.need for k in known]),
+        travel=np.concatenate([k.travel for k in known]),
+        home=np.stack([k.home for k in known]),
+        before=np.stack([m.before for m in made]).astype(np.int8),
+        effect=np.concatenate([m.effect for m in made]),
+        missing=np.stack([m.before.sum(axis=0, dtype=np.int16) for m in made]),
+        prizes=np.stack([m.prizes for m in made]),
+        budget=np.array([m.budget for m in made], dtype=np.float32),
+        noisy=any(m.hidden is not None for m in made),
+        failing=np.stack([m.hidden.failing if m.hidden else nothing for m in made]),
+        since=since,
+    )
+
+
 def _resting(instance: RouteInstance) -> NDArray[np.float32]:
     """`arrival`, with no time passing for a robot that is docked already."""
     arrival = instance.arrival.copy()
@@ -225,9 +264,9 @@ def _resting(instance: RouteInstance) -> NDArray[np.float32]:
 
 
 @lru_cache(maxsize=16)
-def _site_routes(checkpoints: int, scenario: str, budget: float) -> SiteRoutes:
-    source = SiteRoutes(checkpoints, scenario, budget)
-    _ = source.floors  # so that a scenario that does not exist is told of here
+def _site_routes(checkpoints: int, scenario: str, budget: float, noise: RouteNoise) -> SiteRoutes:
+    source = SiteRoutes(checkpoints, scenario, budget, noise)
+    source.check()
     return source
 
 

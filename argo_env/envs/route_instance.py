@@ -1,7 +1,8 @@
-"""A route instance: travel times, prizes, precedence and a budget; and what a route is worth."""
+"""A route instance: travel times, prizes, precedence and a budget, what of that the robot finds out
+on its way only; and what a route is worth."""
 
 from collections.abc import Iterable, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 
 import numpy as np
@@ -35,6 +36,8 @@ class RouteInstance:
     """s in which the robot has to be docked"""
     places: NDArray[np.float64]
     """x, y (m) and floor, for pictures, shape (n + 2, 3)"""
+    hidden: "Hidden | None" = None
+    """what the robot does not know when it sets off; None: it knows all"""
 
     @property
     def size(self) -> int:
@@ -95,6 +98,68 @@ class RouteInstance:
         """The budget as an array of one number."""
         return np.array([self.budget], dtype=np.float32)
 
+    def at(self, time: float) -> "RouteInstance":
+        """The instance as the robot knows it that long (s) after it set off."""
+        changes = self._changes_until(time)
+        return changes[-1].known if changes else self
+
+    def blocked_at(self, time: float) -> "tuple[Stair, ...]":
+        """The stairs that the robot knows to be blocked by that time (s)."""
+        changes = self._changes_until(time)
+        return changes[-1].blocked if changes else ()
+
+    def _changes_until(self, time: float) -> "list[Change]":
+        changes = self.hidden.changes if self.hidden else ()
+        return [change for change in changes if change.since <= time]
+
+
+Stair = tuple[int, int]
+"""which of the ways up, and the number of the floor below"""
+
+
+@dataclass(frozen=True)
+class Change:
+    """Stairs that are found blocked while the robot is on its way."""
+
+    since: float
+    """s after it set off; a drive that began before that takes as long as it would have"""
+    known: RouteInstance
+    """the instance with the travel times from then on, and nothing hidden"""
+    blocked: tuple[Stair, ...]
+    """all that are blocked by then"""
+
+
+@dataclass(frozen=True)
+class Hidden:
+    """What the robot finds out on its way only. All of it is drawn beforehand: what happens in an
+    episode follows from its instance and its actions."""
+
+    failing: NDArray[np.int16]
+    """how many visits of each node give no reading, and so no prize, before one does, shape
+    (n + 1,): the time is spent, and the checkpoint is as if it had not been visited"""
+    changes: tuple[Change, ...] = ()
+    """in the order of time"""
+
+
+def with_hidden(
+    instance: RouteInstance,
+    failing: NDArray[np.int16],
+    blocked: Iterable[tuple[float, NDArray[np.float64], tuple[Stair, ...]]],
+    service: NDArray[np.float64],
+) -> RouteInstance:
+    """The instance with something that the robot does not know: which visits fail, and from when
+    (s) on travel times are others, in the order of time; times and service as `make_instance`
+    takes them."""
+    changes = []
+    for since, times, stairs in blocked:
+        arrival = _arrival(times, service)
+        # A robot that is late is so by less than this: sums of times stay exact.
+        arrival[arrival >= _LONGEST - instance.budget] = np.inf
+        arrival.setflags(write=False)
+        since = float(np.floor(since / TICK) * TICK)
+        changes.append(Change(since, replace(instance, arrival=arrival), stairs))
+    return replace(instance, hidden=Hidden(failing, tuple(changes)))
+
 
 def make_instance(
     times: NDArray[np.float64],
@@ -124,9 +189,7 @@ def make_instance(
         raise ArgoError("a travel or service time is negative")
     if not 0.0 < budget < _LONGEST:
         raise ArgoError(f"a budget is more than 0 and less than {_LONGEST:.0f} s, not {budget:g}")
-    arrival = np.ceil((times + service) / TICK) * TICK
-    arrival[arrival >= _LONGEST] = np.inf
-    arrival[DOCK] = np.inf
+    arrival = _arrival(times, service)
     budget = float(np.floor(budget / TICK) * TICK)
     if arrival[n, DOCK] > budget:
         raise ArgoError(f"the way from the start to the dock takes longer than {budget:g} s")
@@ -135,12 +198,18 @@ def make_instance(
         before[first, then] = True
     if np.diagonal(before).any():
         raise ArgoError("a checkpoint is to be visited before itself")
-    instance = RouteInstance(
-        arrival.astype(np.float32), prizes.astype(np.float64), before, budget, places
-    )
+    instance = RouteInstance(arrival, prizes.astype(np.float64), before, budget, places)
     for array in (instance.arrival, instance.prizes, before, places):
         array.setflags(write=False)
     return instance
+
+
+def _arrival(times: NDArray[np.float64], service: NDArray[np.float64]) -> NDArray[np.float32]:
+    """See `RouteInstance.arrival`."""
+    arrival = np.ceil((times + service) / TICK) * TICK
+    arrival[arrival >= _LONGEST] = np.inf
+    arrival[DOCK] = np.inf
+    return arrival.astype(np.float32)
 
 
 @dataclass(frozen=True)
@@ -148,32 +217,54 @@ class Score:
     """What a route is worth."""
 
     prize: float
+    """0 if the robot is docked too late"""
     time: float
     """s until the robot is docked"""
     visited: tuple[int, ...]
+    """the checkpoints that were read"""
     illegal: int | None
     """the first node of the route that was not allowed, and not driven to"""
+    late: bool = False
+    """whether the robot is docked after the budget is over: only blocked stairs can do that"""
 
 
 def evaluate(instance: RouteInstance, route: Sequence[int]) -> Score:
     """What the route, nodes in order, is worth. The robot goes to the dock at its end, and already
-    where it would break a rule: visit a node again or before its time, or be docked too late.
+    where it would break a rule: visit a node again or before its time, or be docked too late by
+    what it knows when it sets off there.
+
+    A visit that fails takes its time and counts for nothing. Stairs that are found blocked on the
+    way to a checkpoint may make the way back too long: a route that is docked too late is worth 0.
 
     Written for reading, and on purpose without anything that the environment uses.
     """
     place, time, prize = instance.start, 0.0, 0.0
     visited: list[int] = []
+    tries = [0] * instance.size
     illegal = None
     for node in route:
         if node == DOCK:
             break
-        arrived = time + float(instance.arrival[place, node])
-        docked = arrived + float(instance.arrival[node, DOCK])
+        times = _times_at(instance, time)
+        arrived = time + float(times[place, node])
+        docked = arrived + float(times[node, DOCK])
         first = [k for k in range(instance.size) if instance.before[k, node]]
         if node in visited or docked > instance.budget or any(k not in visited for k in first):
             illegal = int(node)
             break
         place, time = node, arrived
-        prize += float(instance.prizes[node])
-        visited.append(int(node))
-    return Score(prize, time + float(instance.arrival[place, DOCK]), tuple(visited), illegal)
+        tries[node] += 1
+        if instance.hidden is None or tries[node] > instance.hidden.failing[node]:
+            prize += float(instance.prizes[node])
+            visited.append(int(node))
+    docked = time + float(_times_at(instance, time)[place, DOCK])
+    late = docked > instance.budget
+    return Score(0.0 if late else prize, docked, tuple(visited), illegal, late)
+
+
+def _times_at(instance: RouteInstance, time: float) -> NDArray[np.float32]:
+    """The travel times for a robot that sets off at that time."""
+    if instance.hidden is None:
+        return instance.arrival
+    known = [change for change in instance.hidden.changes if change.since <= time]
+    return known[-1].known.arrival if known else instance.arrival

@@ -1,26 +1,28 @@
 """Where route instances come from: random sites, and the travel times of a real one."""
 
-from collections.abc import Sequence
-from dataclasses import dataclass
-from functools import lru_cache
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, field
+from functools import partial
 from typing import Protocol
 
 import numpy as np
 from numpy.typing import NDArray
 from pydantic import Field
 
+from argo_compiler.errors import ArgoError
 from argo_compiler.model import Model
-from argo_env.envs.route_instance import RouteInstance, make_instance
-from argo_env.envs.sites import navigator_of
+from argo_env.envs.route_aisles import DEPTH, WIDTH, aisle_times, stairs_of
+from argo_env.envs.route_instance import RouteInstance, Stair, make_instance, with_hidden
+from argo_env.envs.route_noise import NO_NOISE, RouteNoise, draw_blocked, draw_failing
+from argo_env.envs.route_site_times import SiteTimes, site_times, stairs_of_site, times_without
 from argo_env.seeding import generator
 
 TRAINING = range(4096)
 """the numbers of the instances that episodes draw from"""
 TEST = range(1_000_000, 1_000_100)
 """the numbers of the instances that are kept for tests: never drawn unless asked for"""
-WIDTH, DEPTH = 30.0, 20.0
-"""m, of the floors of sites that do not exist"""
-_PRECEDENCE = 0.2  # share of checkpoints that another one must come before
+PRECEDENCE = 0.2
+"""share of checkpoints that another one must come before"""
 
 
 class RouteFaults(Model):
@@ -58,7 +60,8 @@ class RouteSource(Protocol):
 
 @dataclass(frozen=True)
 class RandomRoutes:
-    """Sites that do not exist: checkpoints anywhere on floors with aisles, stairs at one end.
+    """Sites that do not exist: checkpoints anywhere on floors with aisles, stairs at one end; at
+    both ends where stairs may be found blocked.
 
     Way along the aisles, 0.4 m/s (see `urdf/robot/tracker.yaml`); stairs take longer up than down.
     """
@@ -67,6 +70,13 @@ class RandomRoutes:
     floors: int = 6
     budget: float = 1200.0
     """s"""
+    noise: RouteNoise = NO_NOISE
+    precedence: float = PRECEDENCE
+
+    @property
+    def ends(self) -> int:
+        """At how many ends of the floors there are stairs."""
+        return 2 if self.noise.blocked else 1
 
     def draw(
         self, number: int, floors: Sequence[int] = (), faults: RouteFaults = NO_FAULTS
@@ -83,15 +93,17 @@ class RandomRoutes:
         )
         # The dock, and the start in another place; both on the ground.
         places[[0, n - 1], 2] = 1
-        x, y, floor = places.T
-        level = np.abs(x[:, None] - x) + np.abs(y[:, None] - y)
-        # By the stairs at x = 0: in from both sides, and up or down between.
-        stairs = x[:, None] + x + np.abs(y[:, None] - y)
-        rise = floor - floor[:, None]
-        way = np.where(rise == 0, level, stairs) / 0.4
-        times = way + np.where(rise > 0, 33.0 * rise, -16.0 * rise)
         service = np.concatenate([[0.0], rng.uniform(5.0, 15.0, self.checkpoints)])
-        return _finished(times[:, :-1], service, self.budget, places, rng, floors, faults)
+        asked = _Asked(self.budget, self.noise, self.precedence, floors, faults)
+        return _finished(
+            partial(aisle_times, places, self.floors, self.ends),
+            stairs_of(self.floors, self.ends),
+            service,
+            places,
+            asked,
+            rng,
+            generator(number, "route noise", self.checkpoints, self.floors),
+        )
 
 
 @dataclass(frozen=True)
@@ -106,85 +118,125 @@ class SiteRoutes:
     scenario: str
     budget: float = 1200.0
     """s"""
+    noise: RouteNoise = NO_NOISE
+    precedence: float = PRECEDENCE
+    kept: SiteTimes | None = field(default=None, compare=False)
+    """the site's travel times, where they are kept; None: they are found out"""
 
     @property
     def floors(self) -> int:
-        return _matrix(self.scenario).floors
+        return self._site.floors
 
     @property
     def existing(self) -> int:
         """How many of the checkpoints the site has."""
-        return min(self.checkpoints, len(_matrix(self.scenario).places) - 1)
+        return min(self.checkpoints, len(self._site.places) - 1)
+
+    @property
+    def _site(self) -> SiteTimes:
+        return self.kept or site_times(self.scenario)
+
+    def check(self) -> None:
+        """Raises ArgoError if there is no such site, or stairs are to be found blocked where there
+        is no other way."""
+        name, _ = self.scenario, self.floors
+        if self.noise.blocked and not any(
+            times_without(name, (stair,)) is not None for stair in stairs_of_site(name)
+        ):
+            raise ArgoError(
+                f"scenario {name} has no stairs that can be blocked: there is no other way; take a "
+                "site with two stair towers, or noise without `blocked`"
+            )
 
     def draw(
         self, number: int, floors: Sequence[int] = (), faults: RouteFaults = NO_FAULTS
     ) -> RouteInstance:
         """See RouteSource."""
-        site = _matrix(self.scenario)
-        rng = generator(number, "site route", self.checkpoints, self.scenario)
+        site = self._site
+        purpose = (self.checkpoints, self.scenario)
+        rng = generator(number, "site route", *purpose)
         there = len(site.places) - 1
         chosen = rng.permutation(there)[: self.checkpoints] + 1
         n = self.checkpoints + 2
         nodes = np.concatenate([[0], np.sort(chosen), [0]])
         slots = np.concatenate([np.arange(len(nodes) - 1), [n - 1]])
-        times = np.full((n, n), np.inf)
-        times[np.ix_(slots, slots)] = site.times[np.ix_(nodes, nodes)]
         places = np.zeros((n, 3))
         places[slots] = site.places[nodes]
         service = np.full(n - 1, site.measuring_time)
         service[0] = 0.0
-        return _finished(times[:, :-1], service, self.budget, places, rng, floors, faults)
+
+        def times(blocked: tuple[Stair, ...] = ()) -> NDArray[np.float64] | None:
+            found = times_without(self.scenario, blocked) if blocked else site.times
+            if found is None:
+                return None
+            spread = np.full((n, n), np.inf)
+            # A way round is never shorter, but for the rounding of what is rather avoided.
+            longer = np.maximum(found, site.times)
+            spread[np.ix_(slots, slots)] = longer[np.ix_(nodes, nodes)]
+            return spread
+
+        stairs = stairs_of_site(self.scenario) if self.noise.blocked else ()
+        asked = _Asked(self.budget, self.noise, self.precedence, floors, faults)
+        noise = generator(number, "route noise", *purpose)
+        return _finished(times, stairs, service, places, asked, rng, noise)
 
 
 @dataclass(frozen=True)
-class _Matrix:
-    times: NDArray[np.float64]
-    """s, the dock first"""
-    places: NDArray[np.float64]
-    """x, y (m) and floor"""
-    floors: int
-    measuring_time: float
+class _Asked:
+    """What an instance is to be like, wherever it is."""
 
-
-@lru_cache(maxsize=8)
-def _matrix(scenario: str) -> _Matrix:
-    """The travel times between the first dock and all checkpoints of a site."""
-    navigator = navigator_of(scenario)
-    site = navigator.site
-    number = min(site.docks)
-    dock = navigator.snap(site.docks[number])
-    times = navigator.travel_times([dock, *(c.id for c in site.checkpoints)])
-    places = [(dock.x, dock.y, site.floor_at(dock.z))]
-    places += [(c.position[0], c.position[1], c.floor) for c in site.checkpoints]
-    measuring = navigator.robot.sensor.measuring_time
-    return _Matrix(times, np.array(places), len(site.spec.floors), measuring)
+    budget: float
+    noise: RouteNoise
+    precedence: float
+    floors: Sequence[int]
+    faults: RouteFaults
 
 
 def _finished(
-    times: NDArray[np.float64],
+    times_without: Callable[[tuple[Stair, ...]], NDArray[np.float64] | None],
+    stairs: Sequence[Stair],
     service: NDArray[np.float64],
-    budget: float,
     places: NDArray[np.float64],
+    asked: _Asked,
     rng: np.random.Generator,
-    floors: Sequence[int],
-    faults: RouteFaults,
+    noise: np.random.Generator,
 ) -> RouteInstance:
-    """The instance, its prizes and precedence drawn, and what can't be reached closed."""
+    """The instance, its prizes, precedence and noise drawn, and what can't be reached closed.
+
+    `times_without` says the travel times (s) between all places without some of the stairs, None
+    where these are indispensable.
+    """
     count = len(service) - 1
     prizes = np.concatenate([[0.0], rng.integers(1, 101, count) / 100])
     order = rng.permutation(count) + 1
-    later = np.flatnonzero(rng.random(count) < _PRECEDENCE)
+    later = np.flatnonzero(rng.random(count) < asked.precedence)
     pairs = [(int(order[rng.integers(k)]), int(order[k])) for k in later if k > 0]
     drawn = rng.permutation(count) + 1
     drawn = drawn[places[drawn, 2] > 0]  # those that exist: an empty slot is on no floor
-    times = times.copy()
-    times[:, drawn[: faults.closed]] = np.inf
-    if floors:
-        elsewhere = np.flatnonzero(~np.isin(places[1:-1, 2], floors)) + 1
-        times[:, elsewhere] = np.inf
+    closed = drawn[: asked.faults.closed]
+    if asked.floors:
+        elsewhere = np.flatnonzero(~np.isin(places[1:-1, 2], asked.floors)) + 1
+        closed = np.concatenate([closed, elsewhere])
+
+    def reachable(blocked: tuple[Stair, ...]) -> NDArray[np.float64] | None:
+        found = times_without(blocked)
+        if found is None:
+            return None
+        found = found[:, :-1].copy()
+        found[:, closed] = np.inf
+        return found
+
+    times = reachable(())
+    assert times is not None
     # What waits for a checkpoint that nobody gets to would wait for ever.
     pairs = [(first, then) for first, then in pairs if np.isfinite(times[-1, first])]
-    return make_instance(times, service, prizes, pairs, budget * faults.battery, places)
+    budget = asked.budget * asked.faults.battery
+    instance = make_instance(times, service, prizes, pairs, budget, places)
+    if asked.noise == NO_NOISE:
+        return instance
+    failing = draw_failing(asked.noise, count, noise)
+    blocked = draw_blocked(asked.noise, instance.budget, stairs, reachable, noise)
+    return with_hidden(instance, failing, blocked, service)
 
 
 def existing(source: RouteSource) -> int:

@@ -41,12 +41,15 @@ def plans_of(site: Site) -> tuple[FloorPlan, ...]:
 
 
 @lru_cache(maxsize=8)
-def aisles(width: float, depth: float, floors: int) -> tuple[FloorPlan, ...]:
-    """Floors of one open deck each, from (0, 0) on, with stairs all along the side x = 0."""
+def aisles(width: float, depth: float, floors: int, ends: int = 1) -> tuple[FloorPlan, ...]:
+    """Floors of one open deck each, from (0, 0) on, with stairs all along the side x = 0, and along
+    x = width where there are stairs at two ends."""
     deck = _box((-0.6, -0.6, width + 0.6, depth + 0.6))
-    treads = tuple(_box((-2.1 + 0.3 * k, -0.6, -1.8 + 0.3 * k, depth + 0.6)) for k in range(5))
+    edges = [-2.1 + 0.3 * k for k in range(5)]
+    edges += [width + 0.6 + 0.3 * k for k in range(5) if ends > 1]
+    treads = tuple(_box((x, -0.6, x + 0.3, depth + 0.6)) for x in edges)
     shapes = ((Role.DECK, (deck,)), (Role.STAIR, treads))
-    bounds = (-2.5, -1.0, width + 1.0, depth + 1.0)
+    bounds = (-2.5, -1.0, width + (2.5 if ends > 1 else 1.0), depth + 1.0)
     return tuple(FloorPlan(number, bounds, shapes) for number in range(1, floors + 1))
 
 

@@ -2,27 +2,20 @@
 
 from collections.abc import Collection, Sequence
 from itertools import pairwise
-from typing import Protocol
 
 import numpy as np
 from numpy.typing import NDArray
 
-from argo_compiler.model import Pose
 from argo_env.envs.drawing.floors import FloorPlan, aisles, open_floors
+from argo_env.envs.drawing.legs import Place, legs_of
 from argo_env.envs.drawing.plan import Marker, PlanDrawing, Station, draw_plan
 from argo_env.envs.drawing.sheet import Sheet, make_sheet
 from argo_env.envs.drawing.sites import site_sheet
 from argo_env.envs.drawing.way import Moment
+from argo_env.envs.route_aisles import DEPTH, WIDTH
 from argo_env.envs.route_instance import DOCK, RouteInstance
-from argo_env.envs.route_sources import DEPTH, WIDTH, RandomRoutes, RouteSource, SiteRoutes
-from argo_env.envs.sites import navigator_of
-from argo_env.navigation import Navigator
-from argo_env.robot.spec import Footprint
+from argo_env.envs.route_sources import RandomRoutes, RouteSource, SiteRoutes
 
-Place = tuple[float, float, int]
-"""x, y (m) and floor"""
-
-_STEP = 0.25  # m between the places of a way on a site
 _LEGEND = {
     "open": "legal now (size: prize)",
     "waiting": "too early or too far",
@@ -61,12 +54,13 @@ def draw_route(
     stations = [Station(*places[DOCK], "start, dock" if together else "dock")]
     if not together:
         stations.append(Station(*places[start], "start"))
-    legs = _legs_of(source)
+    legs = legs_of(source)
     first, heading = legs.stand(places[route[0]])
     way = [Moment(0.0, *first)]
     for a, b in pairwise(route):
-        t, took = way[-1].t, float(instance.arrival[a, b])
-        part, heading = legs.go(places[a], places[b])
+        t = way[-1].t
+        took = float(instance.at(t).arrival[a, b])
+        part, heading = legs.go(places[a], places[b], instance.blocked_at(t))
         way += [Moment(t + took * k / max(len(part) - 1, 1), *p) for k, p in enumerate(part)]
     asked = {marker.floor for marker in markers if marker.state != "outside"}
     used = asked | {station.floor for station in stations} | {moment.floor for moment in way}
@@ -90,79 +84,7 @@ def _sheet(
         return site_sheet(source.scenario, low, high, asked or tuple(numbers))
     plans: tuple[FloorPlan, ...]
     if isinstance(source, RandomRoutes):
-        plans = aisles(WIDTH, DEPTH, high)[low - 1 :]
+        plans = aisles(WIDTH, DEPTH, high, source.ends)[low - 1 :]
     else:
         plans = open_floors([place[:2] for place in places if place[2]], numbers)
     return make_sheet(plans, [n for n in numbers if asked and n not in asked])
-
-
-class _Legs(Protocol):
-    """The ways from place to place."""
-
-    footprint: Footprint | None
-    """of the robot; None: it is a point"""
-
-    def stand(self, place: Place) -> tuple[Place, float]:
-        """Where the robot stands when it is at a place, and its heading (rad)."""
-        ...
-
-    def go(self, a: Place, b: Place) -> tuple[list[Place], float]:
-        """The way, and the heading at its end."""
-        ...
-
-
-class _StraightLegs:
-    """From place to place, as of their site nothing is known."""
-
-    footprint: Footprint | None = None
-
-    def stand(self, place: Place) -> tuple[Place, float]:
-        return place, 0.0
-
-    def go(self, a: Place, b: Place) -> tuple[list[Place], float]:
-        return [a, b], 0.0
-
-
-class _AisleLegs(_StraightLegs):
-    """As the travel times of random routes count: along aisles, and by the stairs at x = 0."""
-
-    def go(self, a: Place, b: Place) -> tuple[list[Place], float]:
-        if a[2] == b[2]:
-            return [a, (b[0], a[1], a[2]), b], 0.0
-        return [a, (0.0, a[1], a[2]), (0.0, b[1], a[2]), (0.0, b[1], b[2]), b], 0.0
-
-
-class _SiteLegs:
-    """The paths that the robot's planner finds on a site."""
-
-    footprint: Footprint | None
-
-    def __init__(self, navigator: Navigator) -> None:
-        self._navigator, self._site = navigator, navigator.site
-        self.footprint = navigator.robot.footprint
-        self._ids = {(c.position[0], c.position[1], c.floor): c.id for c in self._site.checkpoints}
-
-    def stand(self, place: Place) -> tuple[Place, float]:
-        pose = self._pose(place)
-        return (pose.x, pose.y, place[2]), pose.yaw
-
-    def go(self, a: Place, b: Place) -> tuple[list[Place], float]:
-        path = self._navigator.plan(self._pose(a), self._pose(b))
-        way: list[Place] = []
-        for motion in path.motions:
-            count = max(1, round(motion.length / _STEP))
-            for k in range(count + 1):
-                p = motion.at(k / count)
-                way.append((p.x, p.y, self._site.floor_at(p.z)))
-        return way or [a], path.end.yaw
-
-    def _pose(self, place: Place) -> Pose:
-        if place in self._ids:
-            return self._navigator.viewing_pose(self._ids[place])
-        return self._navigator.snap(self._site.docks[min(self._site.docks)])
-
-
-def _legs_of(source: RouteSource) -> _Legs:
-    if isinstance(source, SiteRoutes):
-        return _SiteLegs(navigator_of(source.scenario))
-    return _AisleLegs() if isinstance(source, RandomRoutes) else _StraightLegs()

@@ -1,0 +1,83 @@
+"""Travel times between the first dock and all checkpoints of a real site, also without some of its
+stairs."""
+
+import math
+from dataclasses import dataclass
+from functools import lru_cache
+
+import numpy as np
+from numpy.typing import NDArray
+
+from argo_env.envs.route_instance import Stair
+from argo_env.envs.sites import navigator_of
+from argo_env.navigation import Navigator, UnreachableError
+from argo_env.navigation.blockage import Blockage
+from argo_env.site.stairs import run
+
+
+@dataclass(frozen=True)
+class SiteTimes:
+    """What instances on a site are made from."""
+
+    times: NDArray[np.float64]
+    """s, the dock first"""
+    places: NDArray[np.float64]
+    """x, y (m) and floor"""
+    floors: int
+    measuring_time: float
+    """s"""
+
+
+@lru_cache(maxsize=8)
+def site_times(scenario: str) -> SiteTimes:
+    """The travel times of the site of that name. Raises ArgoError if there is none."""
+    navigator = navigator_of(scenario)
+    site = navigator.site
+    number = min(site.docks)
+    dock = navigator.snap(site.docks[number])
+    times = navigator.travel_times([dock, *(c.id for c in site.checkpoints)])
+    places = [(dock.x, dock.y, site.floor_at(dock.z))]
+    places += [(c.position[0], c.position[1], c.floor) for c in site.checkpoints]
+    measuring = navigator.robot.sensor.measuring_time
+    return SiteTimes(times, np.array(places), len(site.spec.floors), measuring)
+
+
+@lru_cache(maxsize=8)
+def stairs_of_site(scenario: str) -> tuple[Stair, ...]:
+    """The stairs of a site's towers, numbered from 0."""
+    spec = navigator_of(scenario).site.spec
+    return tuple(
+        (tower, floor.number) for tower in range(len(spec.towers)) for floor in spec.floors[:-1]
+    )
+
+
+@lru_cache(maxsize=64)
+def times_without(scenario: str, blocked: tuple[Stair, ...]) -> NDArray[np.float64] | None:
+    """`SiteTimes.times` with some stairs blocked in their middle; None if there is no other way."""
+    navigator = navigator_of(scenario)
+    site = navigator.site
+    places = [navigator.snap(site.docks[min(site.docks)])]
+    places += [navigator.viewing_pose(c.id) for c in site.checkpoints]
+    try:
+        times = navigator_without(navigator, blocked).travel_times(places)
+    except UnreachableError:
+        return None
+    return times if np.isfinite(times).all() else None
+
+
+def navigator_without(navigator: Navigator, blocked: tuple[Stair, ...]) -> Navigator:
+    """The navigator that avoids these stairs."""
+    spec = navigator.site.spec
+    base = {floor.number: floor.z for floor in spec.floors}
+    blockages = []
+    for tower, floor in blocked:
+        flight = min(spec.towers[tower].flights, key=lambda f: f.foot[2])
+        x, y, z = flight.foot
+        along, half = run(flight) / 2, flight.width / 4
+        x += along * math.cos(math.radians(flight.yaw))
+        y += along * math.sin(math.radians(flight.yaw))
+        z += base[floor] + flight.risers * flight.rise / 2
+        rect = (x - half, y - half, x + half, y + half)
+        name = spec.towers[tower].name
+        blockages.append(Blockage(rect, z, f"the {name} is blocked above floor {floor}"))
+    return navigator.avoiding(blockages)

@@ -1,0 +1,77 @@
+"""What outcomes of policies on the same instances say."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from baselines.episodes import Outcome
+from baselines.families import InstanceSet
+from baselines.intervals import Bootstrap, Interval
+from baselines.references import Reference
+
+
+@dataclass(frozen=True)
+class Row:
+    """A policy on a test set."""
+
+    policy: str
+    prize: Interval
+    gap: Interval
+    """share of the best routes' prize that it did not win"""
+    behind: Interval
+    """by how much its prize is below that of the policy with the highest mean"""
+    time: Interval
+    """s until the robot is docked"""
+    feasible: Interval
+    """share of the routes"""
+    thinking: Interval
+    """s for a decision, preparation included"""
+
+
+@dataclass(frozen=True)
+class Comparison:
+    """Policies on the first instances of a test set."""
+
+    test_set: str
+    checksum: str
+    """of those instances"""
+    instances: int
+    proven: int
+    """for how many of them the best route is proven to be that"""
+    rows: tuple[Row, ...]
+    outcomes: dict[str, tuple[Outcome, ...]]
+    """by policy"""
+    best: tuple[Reference, ...]
+
+
+def compare(
+    tests: InstanceSet,
+    outcomes: dict[str, tuple[Outcome, ...]],
+    best: Sequence[Reference],
+    seed: int,
+) -> Comparison:
+    """The figures of policies on the same instances of a test set, whose best routes are given."""
+    count = len(best)
+    bootstrap = Bootstrap(count, seed)
+    prizes = {name: np.array([o.prize for o in found]) for name, found in outcomes.items()}
+    highest = max(prizes.values(), key=lambda values: float(values.mean()))
+    optimum = np.array([reference.prize for reference in best])
+    rows = []
+    for name, found in outcomes.items():
+        decisions = np.array([o.decisions for o in found], dtype=float)
+        rows.append(
+            Row(
+                name,
+                bootstrap.mean(prizes[name]),
+                bootstrap.ratio(optimum - prizes[name], optimum),
+                bootstrap.mean(highest - prizes[name]),
+                bootstrap.mean(np.array([o.time for o in found])),
+                bootstrap.mean(np.array([o.feasible for o in found], dtype=float)),
+                bootstrap.ratio(np.array([o.seconds for o in found]), decisions),
+            )
+        )
+    proven = sum(reference.proven for reference in best)
+    return Comparison(
+        tests.name, tests.checksum(count), count, proven, tuple(rows), outcomes, tuple(best)
+    )

@@ -1,0 +1,177 @@
+"""Policies compared on fixed test sets: prize, gap to the optimum, feasible share and time.
+
+    python -m baselines.evaluate                                   # all policies on random-20-v1
+    python -m baselines.evaluate --family noisy-20-v1 umad-20-v1 --policy learned portfolio-resolved
+    python -m baselines.evaluate --policy my_module:MyPolicy --instances 10 --out out/mine
+
+Intervals are 95 % intervals of a bootstrap over instances, paired between policies. The gap is by
+how much the mean prize is below that of the best routes (see `python -m baselines.references`).
+"""
+
+import argparse
+import csv
+import json
+import sys
+from collections.abc import Sequence
+from dataclasses import asdict
+from pathlib import Path
+
+from rich.console import Console
+from rich.table import Table
+
+from argo_compiler.errors import ArgoError
+from baselines.comparison import Comparison, compare
+from baselines.episodes import play
+from baselines.families import TEST_SETS, find_set
+from baselines.intervals import Interval
+from baselines.policy import POLICIES, make_policy
+from baselines.references import references
+
+_DEFAULT = "random-20-v1"
+_WIDTH = 150  # characters of a table that goes to a file
+
+
+COLUMNS = ("policy", "prize", "gap %", "behind the best", "docked after s", "feasible %", "ms/act")
+
+
+def title(comparison: Comparison) -> str:
+    """What is compared."""
+    return (
+        f"{comparison.test_set}: {comparison.instances} instances, the best route proven for "
+        f"{comparison.proven}"
+    )
+
+
+def lines(comparison: Comparison) -> list[tuple[str, ...]]:
+    """What is printed of each policy, the best first."""
+    return [
+        (
+            row.policy,
+            _said(row.prize, 1, 2),
+            _said(row.gap, 100, 2),
+            _said(row.behind, 1, 2),
+            _said(row.time, 1, 0),
+            _said(row.feasible, 100, 0),
+            _said(row.thinking, 1000, 2),
+        )
+        for row in sorted(comparison.rows, key=lambda row: -row.prize.value)
+    ]
+
+
+def _said(interval: Interval, scale: float, digits: int) -> str:
+    numbers = (interval.value, interval.low, interval.high)
+    value, low, high = (f"{round(scale * n, digits) + 0.0:.{digits}f}" for n in numbers)
+    return value if low == high else f"{value} [{low}, {high}]"
+
+
+def table(comparison: Comparison) -> Table:
+    """The comparison as it is printed."""
+    caption = "in brackets: 95 % intervals, bootstrap over instances, paired"
+    made = Table(title=title(comparison), caption=caption)
+    for name in COLUMNS:
+        made.add_column(name, justify="left" if name == "policy" else "right")
+    for line in lines(comparison):
+        made.add_row(*line)
+    return made
+
+
+def markdown(comparison: Comparison) -> str:
+    """The same as a table in Markdown."""
+    rows = [COLUMNS, ("---",) * len(COLUMNS), *lines(comparison)]
+    text = "".join(f"| {' | '.join(row)} |\n" for row in rows)
+    return f"{title(comparison)}\n\n{text}"
+
+
+def write(comparisons: Sequence[Comparison], folder: Path) -> None:
+    """Writes `results.json` with everything, `results.csv` with a line for each route, and
+    `results.md` with what is printed."""
+    folder.mkdir(parents=True, exist_ok=True)
+    data = [asdict(comparison) for comparison in comparisons]
+    (folder / "results.json").write_text(json.dumps(data, indent=1) + "\n", encoding="utf-8")
+    text = "\n".join(markdown(comparison) for comparison in comparisons)
+    (folder / "results.md").write_text(text, encoding="utf-8")
+    routes = [
+        {
+            "test_set": comparison.test_set,
+            "policy": name,
+            "best": best.prize,
+            "bound": best.bound,
+            **asdict(outcome),
+            "route": " ".join(map(str, outcome.route)),
+        }
+        for comparison in comparisons
+        for name, outcomes in comparison.outcomes.items()
+        for outcome, best in zip(outcomes, comparison.best, strict=True)
+    ]
+    with (folder / "results.csv").open("w", newline="", encoding="utf-8") as file:
+        writer = csv.DictWriter(file, list(routes[0]))
+        writer.writeheader()
+        writer.writerows(routes)
+
+
+def main(arguments: Sequence[str] | None = None) -> int:
+    """The exit status: 2 if something that was asked for is not there."""
+    parser = argparse.ArgumentParser(
+        prog="python -m baselines.evaluate",
+        description=__doc__,
+        formatter_class=argparse.RawDescriptionHelpFormatter,
+    )
+    parser.add_argument(
+        "--family",
+        nargs="+",
+        default=[_DEFAULT],
+        metavar="NAME",
+        help=f"test sets, of {', '.join(TEST_SETS)}; default {_DEFAULT}",
+    )
+    parser.add_argument(
+        "--policy",
+        nargs="+",
+        default=list(POLICIES),
+        metavar="NAME",
+        help=f"of {', '.join(POLICIES)}, or module:class; default all",
+    )
+    parser.add_argument(
+        "--instances",
+        type=int,
+        default=100,
+        metavar="N",
+        help="the first ones of each test set; default all 100",
+    )
+    parser.add_argument("--seed", type=int, default=0, help="of policies and bootstrap; default 0")
+    parser.add_argument("--out", type=Path, metavar="DIR",
+                        help="write results.json, results.csv and results.md here")  # fmt: skip
+    given = parser.parse_args(arguments)
+    try:
+        _evaluate(given)
+    except ArgoError as error:
+        print(f"error: {error}", file=sys.stderr)
+        return 2
+    return 0
+
+
+def _evaluate(given: argparse.Namespace) -> None:
+    sets = [find_set(name) for name in dict.fromkeys(given.family)]
+    most = min(len(tests.numbers) for tests in sets)
+    if not 1 <= given.instances <= most:
+        raise ArgoError(f"--instances is {given.instances}, and has to be 1 to {most}")
+    if given.seed < 0:
+        raise ArgoError(f"--seed is {given.seed}, and has to be at least 0")
+    best = {tests.name: references(tests.name)[: given.instances] for tests in sets}
+    policies = {name: make_policy(name) for name in dict.fromkeys(given.policy)}
+    console, notes = Console(), Console(stderr=True)
+    if not console.is_terminal:
+        console = Console(width=_WIDTH)
+    comparisons = []
+    for tests in sets:
+        outcomes = {}
+        for name, policy in policies.items():
+            notes.print(f"{tests.name}: {name} …", highlight=False)
+            outcomes[name] = tuple(play(policy, tests, given.instances, given.seed))
+        comparisons.append(compare(tests, outcomes, best[tests.name], given.seed))
+        console.print(table(comparisons[-1]))
+        if given.out is not None:
+            write(comparisons, given.out)
+
+
+if __name__ == "__main__":
+    sys.exit(main())

@@ -1,0 +1,1 @@
+"""Simple rules to visit checkpoints by: what everything else has to beat."""

@@ -1,0 +1,56 @@
+"""How good the network is while it trains, on instances that it does not train on."""
+
+from collections.abc import Sequence
+
+import numpy as np
+import torch
+from numpy.typing import NDArray
+
+from argo_env.envs.route_batch import RouteVectorEnv
+from argo_env.envs.route_instance import DOCK
+from baselines.learned.network import RouteNetwork
+from baselines.learned.sources import TrainingRoutes
+
+_FIRST = 990_000  # number of an instance; training does not get there
+
+
+class Validation:
+    """The mean prize on random routes with 20 and 40 checkpoints, and on a mixture with 40."""
+
+    def __init__(self, sites: Sequence[str], instances: int) -> None:
+        self._batches = {
+            name: RouteVectorEnv(
+                instances,
+                source=TrainingRoutes(count, sites=sites, plain=plain, offset=_FIRST),
+                full=True,
+            )
+            for name, count, plain in [
+                ("random-20", 20, 1.0), ("random-40", 40, 1.0), ("mixed-40", 40, 0.0)
+            ]
+        }  # fmt: skip
+
+    def __call__(self, network: RouteNetwork) -> dict[str, float]:
+        """By the name of the set."""
+        return {
+            name: float(greedy_prizes(network, batch, range(batch.num_envs)).mean())
+            for name, batch in self._batches.items()
+        }
+
+
+def greedy_prizes(
+    network: RouteNetwork, batch: RouteVectorEnv, numbers: Sequence[int]
+) -> NDArray[np.float64]:
+    """The prize on each of these instances, one for each route of the batch, when the node with
+    the highest score is taken each time."""
+    observation, _ = batch.reset(options={"instance": tuple(numbers)})
+    total = np.zeros(batch.num_envs)
+    over = np.zeros(batch.num_envs, np.bool_)
+    while not over.all():
+        tensors = {name: torch.from_numpy(array) for name, array in observation.items()}
+        with torch.no_grad():
+            scores = network(tensors)[0].numpy()
+        best = np.where(observation["mask"] == 1, scores, -np.inf).argmax(axis=1)
+        observation, rewards, ended, _, _ = batch.step(np.where(over, DOCK, best))
+        total += np.where(over, 0.0, rewards)
+        over |= ended
+    return total

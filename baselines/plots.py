@@ -1,0 +1,175 @@
+"""Plots of the arena.
+
+python -m baselines.plots gaps out/arena/results.json --out out/plots
+python -m baselines.plots tour --family umad-20-v1 --policy insertion --instance 1000000 --out …
+python -m baselines.plots convergence --family random-40-v1 --instance 1000000 --out out/plots
+"""
+
+import argparse
+import json
+import sys
+from collections.abc import Sequence
+from pathlib import Path
+from typing import Any
+
+import matplotlib.pyplot as plt
+import numpy as np
+from PIL import Image
+
+from argo_compiler.errors import ArgoError
+from argo_compiler.route import RouteProblem, suggest_route
+from argo_env.envs.route import RouteEnv
+from baselines.families import InstanceSet, TurnTaking, find_set
+from baselines.policy import Policy, make_policy
+from baselines.problem import HUNDREDTH, hindsight
+
+_FOUND, _BOUND = "#1f5f99", "#b45309"
+
+
+def plot_gaps(results: Path, folder: Path) -> list[Path]:
+    """A box plot for each test set in a `results.json`: by what share of the best route's prize
+    each policy is below it, instance by instance. Raises ArgoError if it is no such file."""
+    try:
+        comparisons = json.loads(results.read_text(encoding="utf-8"))
+        gaps = {one["test_set"]: _gaps(one) for one in comparisons}
+    except (OSError, ValueError, KeyError, TypeError) as error:
+        raise ArgoError(
+            f"{results} has no results of `python -m baselines.evaluate --out DIR` ({error})"
+        ) from None
+    return [_box_plot(name, found, folder / f"gaps-{name}.png") for name, found in gaps.items()]
+
+
+def _gaps(comparison: dict[str, Any]) -> dict[str, list[float]]:
+    """Of each policy, in %, the best on average first; instances without a prize are left out."""
+    best = [reference["prize"] for reference in comparison["best"]]
+    found = {
+        policy: [100 * (1 - o["prize"] / b) for o, b in zip(outcomes, best, strict=True) if b > 0]
+        for policy, outcomes in comparison["outcomes"].items()
+    }
+    return dict(sorted(found.items(), key=lambda item: float(np.mean(item[1]))))
+
+
+def _box_plot(name: str, gaps: dict[str, list[float]], picture: Path) -> Path:
+    figure, axes = plt.subplots(figsize=(8, 0.8 + 0.45 * len(gaps)), layout="constrained")
+    axes.boxplot(
+        list(gaps.values()),
+        orientation="horizontal",
+        tick_labels=list(gaps),
+        showmeans=True,
+        widths=0.6,
+        medianprops={"color": _BOUND},
+        meanprops={"marker": "D", "markerfacecolor": _FOUND, "markeredgecolor": _FOUND,
+                   "markersize": 4},
+        flierprops={"marker": ".", "markersize": 4, "markeredgecolor": "#64707c"},
+    )  # fmt: skip
+    axes.invert_yaxis()
+    axes.axvline(0.0, color="#64707c", linewidth=0.8)
+    axes.set_xlabel("below the best route, % of its prize (line: median, diamond: mean)")
+    axes.set_title(f"{name}, {len(next(iter(gaps.values())))} instances", fontsize=10)
+    axes.grid(axis="x", alpha=0.3)
+    return _saved(figure, picture)
+
+
+def plot_convergence(name: str, problem: RouteProblem, time_limit: float, picture: Path) -> Path:
+    """The prize of the best route so far and what no route can exceed, over the time of search."""
+    suggestion = suggest_route(problem, time_limit)
+    history = suggestion.history
+    if not history:
+        raise ArgoError(f"{name}: the optimiser says nothing of its search, there is no history")
+    first, last = max(history[0].time, 1e-3), max(history[-1].time, 1e-3)
+    everything = sum(visit.prize for visit in problem.visits)
+    bounds = [(first / 2, everything), *((point.time, point.prize_bound) for point in history)]
+    bounds.append((last, suggestion.prize_bound))
+    prizes = [(point.time, point.prize) for point in history if point.prize]
+    prizes.append((last, suggestion.prize))
+    figure, axes = plt.subplots(figsize=(7, 4), layout="constrained")
+    for points, colour, marker, label in (
+        (bounds, _BOUND, "", "no route wins more"),
+        (prizes, _FOUND, ".", "best route so far"),
+    ):
+        times = [max(time, 1e-3) for time, _ in points]
+        values = [HUNDREDTH * value for _, value in points]
+        axes.step(times, values, where="post", color=colour, marker=marker, label=label)
+    axes.set_xscale("log")
+    axes.set_xlabel("s since the search began")
+    axes.set_ylabel("prize")
+    proof = "proven" if suggestion.proven else "not proven"
+    title = f"{name}\n{suggestion.method}, {proof} after {history[-1].time:.2g} s"
+    axes.set_title(title, fontsize=10)
+    axes.grid(alpha=0.3)
+    axes.legend()
+    return _saved(figure, picture)
+
+
+def draw_tour(tests: InstanceSet, policy: Policy, number: int, picture: Path) -> Path:
+    """The route of a policy on the plans of the floors."""
+    source = tests.family.source
+    if isinstance(source, TurnTaking):
+        source = source.of(number)
+    env = RouteEnv(source=source, full=True, render_mode="rgb_array")
+    observation, _ = env.reset(options={"instance": number})
+    policy.begin(observation, env.instance.budget, 0)
+    over = False
+    while not over:
+        observation, _, over, _, _ = env.step(policy.act(observation))
+    image = env.render()
+    picture.parent.mkdir(parents=True, exist_ok=True)
+    Image.fromarray(np.asarray(image)).save(picture)
+    return picture
+
+
+def _saved(figure: Any, picture: Path) -> Path:
+    picture.parent.mkdir(parents=True, exist_ok=True)
+    figure.savefig(picture, dpi=110)
+    plt.close(figure)
+    return picture
+
+
+def main(arguments: Sequence[str] | None = None) -> int:
+    """The exit status: 2 if there is nothing to draw."""
+    parser = argparse.ArgumentParser(
+        prog="python -m baselines.plots",
+        description=__doc__,
+        formatter_class=argparse.RawDescriptionHelpFormatter,
+    )
+    kinds = parser.add_subparsers(dest="kind", required=True)
+    gaps = kinds.add_parser("gaps", help="box plots of gaps")
+    gaps.add_argument("results", type=Path, metavar="RESULTS.json")
+    tour = kinds.add_parser("tour", help="a policy's route on the floors")
+    tour.add_argument("--policy", default="portfolio", metavar="NAME")
+    convergence = kinds.add_parser("convergence", help="best prize and bound over time")
+    convergence.add_argument("--time-limit", type=float, default=20.0, metavar="S")
+    for kind in (tour, convergence):
+        kind.add_argument("--family", default="random-20-v1", metavar="NAME")
+        kind.add_argument("--instance", type=int, default=1_000_000, metavar="NUMBER")
+    for kind in (gaps, tour, convergence):
+        kind.add_argument("--out", type=Path, default=Path("out/plots"), metavar="DIR")
+    given = parser.parse_args(arguments)
+    try:
+        for picture in _draw(given):
+            print(picture)
+    except ArgoError as error:
+        print(f"error: {error}", file=sys.stderr)
+        return 2
+    return 0
+
+
+def _draw(given: argparse.Namespace) -> list[Path]:
+    if given.kind == "gaps":
+        return plot_gaps(given.results, given.out)
+    tests, number = find_set(given.family), given.instance
+    if number not in tests.numbers:
+        raise ArgoError(
+            f"test set {tests.name} has the instances {tests.numbers[0]} to {tests.numbers[-1]}, "
+            f"not {number}"
+        )
+    if given.kind == "tour":
+        picture = given.out / f"tour-{tests.name}-{number}-{given.policy.replace(':', '-')}.png"
+        return [draw_tour(tests, make_policy(given.policy), number, picture)]
+    problem = hindsight(tests.family.source.draw(number)).problem
+    picture = given.out / f"convergence-{tests.name}-{number}.png"
+    return [plot_convergence(f"{tests.name}, {number}", problem, given.time_limit, picture)]
+
+
+if __name__ == "__main__":
+    sys.exit(main())

@@ -1,0 +1,89 @@
+"""The learned policies with the weights that ship."""
+
+from collections.abc import Callable
+from typing import Any
+
+import numpy as np
+import pytest
+
+torch = pytest.importorskip("torch")
+
+from argo_env.envs.route import RouteEnv  # noqa: E402
+from argo_env.envs.route_sources import TEST  # noqa: E402
+from baselines.learned.agent import WEIGHTS, LearnedPolicy, SampledPolicy, Scorer  # noqa: E402
+
+torch.set_num_threads(1)
+
+
+@pytest.fixture(scope="module")
+def scorer() -> Scorer:
+    return Scorer()
+
+
+def play(env: RouteEnv, number: int, policy: Any, seed: int = 0) -> tuple[float, list[int]]:
+    """The return and the route; no step may be illegal."""
+    observation, _ = env.reset(seed=number, options={"instance": number})
+    policy.begin(observation, 1200.0, seed)
+    total, route, over = 0.0, [], False
+    while not over:
+        route.append(policy.act(observation))
+        observation, reward, over, _, info = env.step(route[-1])
+        assert not info["illegal"]
+        total += reward
+    return total, route
+
+
+class Nearest:
+    """The nearest checkpoint that is legal."""
+
+    def begin(self, observation: Any, budget: float, seed: int) -> None:
+        pass
+
+    def act(self, observation: Any) -> int:
+        legal = np.flatnonzero(observation["mask"][1:]) + 1
+        return int(legal[observation["travel"][legal].argmin()]) if len(legal) else 0
+
+
+def test_they_are_better_than_the_nearest_neighbour(scorer: Scorer) -> None:
+    env = RouteEnv(full=True)
+    prizes = {
+        name: np.array([play(env, number, policy)[0] for number in TEST[:6]])
+        for name, policy in [
+            ("nearest", Nearest()),
+            ("learned", LearnedPolicy(scorer)),
+            ("sampled", SampledPolicy(scorer, 8)),
+        ]
+    }
+    assert prizes["learned"].mean() > 1.05 * prizes["nearest"].mean()
+    # One of the ways that it thinks of is that of the highest scores.
+    assert (prizes["sampled"] >= prizes["learned"] - 1e-6).all()
+
+
+@pytest.mark.parametrize("make", [LearnedPolicy, lambda scorer: SampledPolicy(scorer, 4)])
+@pytest.mark.parametrize("checkpoints", [1, 5, 40])
+def test_any_number_of_checkpoints_and_legal_steps_only(
+    scorer: Scorer, make: Callable[[Scorer], Any], checkpoints: int
+) -> None:
+    env = RouteEnv(checkpoints, budget=300.0 + 30.0 * checkpoints, full=True)
+    assert play(env, TEST[0], make(scorer))[1][-1] == 0
+
+
+def test_readings_that_fail_and_stairs_that_are_blocked_are_lived_with(scorer: Scorer) -> None:
+    env = RouteEnv(12, full=True, noise={"failing": 0.3, "blocked": 2})
+    for number in TEST[:2]:
+        for policy in (LearnedPolicy(scorer), SampledPolicy(scorer, 4)):
+            _, route = play(env, number, policy)
+            assert route[-1] == 0
+
+
+def test_equal_seeds_give_equal_routes(scorer: Scorer) -> None:
+    env = RouteEnv(40, full=True)
+    first, again, other = (
+        play(env, TEST[1], SampledPolicy(scorer, 4), seed)[1] for seed in (1, 1, 2)
+    )
+    assert first == again
+    assert first != other
+
+
+def test_the_weights_that_ship_are_small() -> None:
+    assert WEIGHTS.stat().st_size < 300_000

@@ -1,0 +1,59 @@
+"""The look ahead of the network, against driving the same rules in the environment."""
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+torch = pytest.importorskip("torch")
+
+from argo_env.envs.route import RouteEnv  # noqa: E402
+from argo_env.envs.route_sources import RandomRoutes  # noqa: E402
+from baselines.learned.outlook import POWERS, look_ahead  # noqa: E402
+from tests.conftest import examples  # noqa: E402
+
+
+@given(st.integers(0, 4000), st.integers(1, 12), st.integers(0, 3))
+@settings(deadline=None, max_examples=examples(10))
+def test_it_is_what_the_rules_bring(number: int, size: int, moves: int) -> None:
+    env = RouteEnv(source=RandomRoutes(size, budget=800.0, precedence=0.4), full=True)
+    observation, _ = env.reset(options={"instance": number})
+    for _ in range(moves):
+        legal = np.flatnonzero(observation["mask"][1:]) + 1
+        if len(legal):
+            observation = env.step(legal[0])[0]
+    state = env.get_state()
+    left = observation["left"][0]
+    tensors = {name: torch.from_numpy(np.asarray(a)[None]) for name, a in observation.items()}
+    legal = tensors["mask"].bool()
+    legal[:, 0] = False
+    won, spare = look_ahead(
+        legal,
+        tensors["prize"] > 0,
+        tensors["prize"],
+        tensors["travel"] / left,
+        tensors["home"] / left,
+        tensors["matrix"][:, : size + 1] / left,
+        tensors["before"].float(),
+    )
+    for node in range(size + 1):
+        for rule, power in enumerate(POWERS):
+            expected = (0.0, 0.0)
+            if legal[0, node]:
+                env.set_state(state)
+                expected = drive(env, node, power, left)
+            assert won[0, node, rule].item() == pytest.approx(expected[0], abs=1e-4)
+            assert spare[0, node, rule].item() == pytest.approx(expected[1], abs=1e-3)
+
+
+def drive(env: RouteEnv, node: int, power: float, left: float) -> tuple[float, float]:
+    """The prize, and the share of the time left that remains before the way home."""
+    total = 0.0
+    while True:
+        seen, prize, _, _, _ = env.step(node)
+        total += prize
+        legal = np.flatnonzero(seen["mask"][1:]) + 1
+        if not len(legal):
+            return total, float(seen["left"][0] / left)
+        pull = seen["prize"][legal] ** power / (seen["travel"][legal] / left + 0.01)
+        node = int(legal[pull.argmax()])

@@ -1,0 +1,155 @@
+"""Policies: all that are registered keep to the rules on all kinds of instances."""
+
+import numpy as np
+import pytest
+
+from argo_compiler.errors import ArgoError
+from argo_compiler.route import suggest_route
+from argo_env.envs.route_instance import evaluate
+from argo_env.envs.route_noise import RouteNoise
+from baselines import portfolio
+from baselines.episodes import play
+from baselines.families import TEST_SETS, Family, InstanceSet
+from baselines.heuristics.given_order import GivenOrder
+from baselines.policy import POLICIES, Policy, make_policy
+from baselines.problem import hindsight
+
+NUMBERS = range(1_000_000, 1_000_100)
+KINDS = {
+    "plain": Family(9, budget=600.0),
+    "ordered": Family(9, budget=600.0, precedence=0.9),
+    "noisy": Family(9, budget=600.0, noise=RouteNoise(failing=0.4, blocked=3)),
+    "umad": Family(9, ("umad",)),
+    "tight": Family(3, budget=200.0),
+}
+
+
+def gains(policy, kind, count):
+    """The prizes of a policy on the first instances of a kind, and the best possible ones."""
+    tests = InstanceSet(kind, KINDS[kind], NUMBERS)
+    best = [
+        suggest_route(hindsight(tests.family.source.draw(number)).problem).prize / 100
+        for number in NUMBERS[:count]
+    ]
+    return [outcome.prize for outcome in play(policy, tests, count)], best
+
+
+@pytest.mark.parametrize("kind", KINDS)
+@pytest.mark.parametrize("name", POLICIES)
+def test_policies_keep_to_the_rules(name, kind):
+    policy = make_policy(name)
+    assert policy.name == name
+    tests = InstanceSet(kind, KINDS[kind], NUMBERS)
+    count = 3
+    outcomes = list(play(policy, tests, count, seed=1))
+    for outcome in outcomes:
+        instance = tests.family.source.draw(outcome.instance)
+        score = evaluate(instance, outcome.route)
+        assert score.illegal is None
+        assert (score.prize, score.time) == (outcome.prize, outcome.time)
+        assert outcome.feasible == (not score.late)
+        assert outcome.feasible or kind == "noisy"
+        assert outcome.decisions == len(outcome.route)
+        # No loitering: it stays out as long as there is something to win by what it knows.
+        assert score.prize > 0 or kind in {"tight", "noisy"}
+
+
+@pytest.mark.parametrize("name", POLICIES)
+def test_policies_are_never_better_than_the_best(name):
+    for kind in ("plain", "noisy"):
+        prizes, best = gains(make_policy(name), kind, 3)
+        assert all(prize <= most + 1e-9 for prize, most in zip(prizes, best, strict=True))
+
+
+def test_the_portfolio_is_the_best():
+    for name in ("portfolio", "portfolio-resolved"):
+        prizes, best = gains(make_policy(name), "ordered", 8)
+        assert prizes == pytest.approx(best)
+
+
+def test_solving_again_helps_where_plans_break():
+    once, again = (sum(gains(make_policy(n), "noisy", 12)[0]) for n in POLICIES if "portf" in n)
+    assert again > once
+
+
+def test_solving_again_happens_only_when_something_is_new(monkeypatch):
+    solved = []
+
+    def count(*arguments):
+        solved.append(arguments)
+        return suggest_route(*arguments)
+
+    monkeypatch.setattr(portfolio, "suggest_route", count)
+    for kind, again in (("plain", False), ("noisy", True)):
+        solved.clear()
+        list(play(make_policy("portfolio-resolved"), InstanceSet(kind, KINDS[kind], NUMBERS), 4))
+        assert (len(solved) > 4) == again
+
+
+def test_simple_rules_choose_what_they_say():
+    observation = {
+        "mask": np.array([1, 0, 1, 1], np.int8),
+        "travel": np.array([0.1, 0.0, 0.2, 0.3], np.float32),
+        "prize": np.array([0.0, 0.9, 0.1, 0.8], np.float32),
+    }
+    chosen = {
+        name: make_policy(name).act(observation)
+        for name in ("given-order", "nearest-neighbour", "prize-over-time")
+    }
+    assert chosen == {"given-order": 2, "nearest-neighbour": 2, "prize-over-time": 3}
+    nothing = observation | {"mask": np.array([1, 0, 0, 0], np.int8)}
+    assert {make_policy(name).act(nothing) for name in chosen} == {0}
+
+
+def test_insertion_is_better_than_simple_rules():
+    tests = TEST_SETS["random-20-v1"]
+    mean = {
+        name: np.mean([o.prize for o in play(make_policy(name), tests, 30)])
+        for name in ("given-order", "nearest-neighbour", "prize-over-time", "insertion")
+    }
+    assert sorted(mean, key=mean.get) == list(mean)
+
+
+class Stubborn(Policy):
+    """Always goes to the same checkpoint, legal or not."""
+
+    name = "stubborn"
+
+    def act(self, observation):  # noqa: ARG002
+        return 1
+
+
+def test_an_illegal_action_is_not_feasible():
+    outcomes = list(play(Stubborn(), InstanceSet("plain", KINDS["plain"], NUMBERS), 5))
+    assert not any(outcome.feasible for outcome in outcomes)
+
+
+def test_an_action_that_is_no_node_is_told_with_the_policys_name():
+    class Lost(Stubborn):
+        name = "lost"
+
+        def act(self, observation):
+            return len(observation["mask"])
+
+    with pytest.raises(ArgoError, match=r"policy lost, instance 1000000: .* 0 to 9"):
+        list(play(Lost(), InstanceSet("plain", KINDS["plain"], NUMBERS), 1))
+
+
+def test_a_policy_of_ones_own(monkeypatch):
+    monkeypatch.setitem(POLICIES, "mine", Stubborn)
+    assert make_policy("mine").name == "stubborn"
+    made = make_policy("baselines.heuristics.given_order:GivenOrder")
+    assert isinstance(made, GivenOrder)
+
+
+@pytest.mark.parametrize(
+    ("name", "words"),
+    [
+        ("greedy", "no policy `greedy`; there are: given-order, .*module:class"),
+        ("nowhere:Policy", "nowhere"),
+        ("baselines.policy:Nothing", "Nothing"),
+    ],
+)
+def test_a_policy_that_is_not_there_is_refused(name, words):
+    with pytest.raises(ArgoError, match=words):
+        make_policy(name)

@@ -21,6 +21,8 @@ Path = tuple[int, ...]
 Vector = NDArray[np.int64]
 Worth = tuple[int, int]
 """prize and cost (negative): the greater, the better"""
+_ROUNDS = 10
+"""that are made however little time there is"""
 _RUINED = 8
 """steps that are taken out at most"""
 
@@ -101,7 +103,7 @@ class LocalSearch:
             rounds = 0
         for k in range(rounds):
             now = search.clock()
-            if now >= until:
+            if now >= until and k >= _ROUNDS:
                 break
             there = self._recreated(self._ruined(at))
             worth = None if there is None else self._worth(there)

@@ -5,8 +5,9 @@ rest of the route it is one step with some modes: an order of its members, the t
 all of its rounds take from each place that it may be entered from, and where it ends.
 """
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable
 from dataclasses import dataclass, field
+from typing import Protocol
 
 import numpy as np
 from numpy.typing import NDArray
@@ -17,19 +18,37 @@ Vector = NDArray[np.int64]
 
 MOST_MEMBERS = 9
 """of a round, those inside others counted as one, up to which all orders are weighed"""
+MOST_TIMED = 6
+"""the same where a round inside lasts for a time"""
 
 
 @dataclass(frozen=True, eq=False)
 class Mode:
-    """One way to make a visit or a round."""
+    """One way to make a visit or a round, where it ends in one way."""
 
-    time: Vector
-    """from the end of what was done at each place (visits, start, chargers) to its end"""
-    energy: Vector
-    """likewise"""
+    first: int
+    """the visit that it begins with"""
     exit: tuple[int, ...]
     """the visits where the robot may then be; it is reckoned with the worst"""
     order: tuple[int, ...]
+    service: int = 0
+    """of a single visit"""
+    entries: Vector | None = None
+    """of a round: the times of drives to `first`, sorted; None: a single visit"""
+    time: Vector | None = None
+    """after a drive of each of these times, until the end, the drive included; NEVER: it does not
+    end in this way then"""
+    energy: Vector | None = None
+    """likewise, the drive's own not included"""
+
+    def enter(self, drive: Vector, energy: Vector) -> tuple[Vector, Vector]:
+        """Time and energy until the end after drives to `first` that take so much."""
+        if self.entries is None or self.time is None or self.energy is None:
+            return plus(drive, self.service), energy
+        place = np.minimum(np.searchsorted(self.entries, drive), len(self.entries) - 1)
+        known = self.entries[place] == drive
+        time = np.where(known, self.time[place], NEVER)
+        return time, plus(energy, self.energy[place])
 
 
 @dataclass
@@ -59,58 +78,168 @@ def modes(
 ) -> tuple[list[Mode], bool]:
     """The ways to make a step that may be the best, and whether they are all of those.
 
-    A round of more than MOST_MEMBERS parts is made in the cyclic order that `order_of` gives.
+    A round of more than MOST_MEMBERS parts, or of more than MOST_TIMED with a duration among them,
+    is made in the cyclic order that `order_of` gives.
     """
     if step.round is None:
         (visit,) = step.visits
-        return [_visit(problem, visit)], True
-    exact, choices = True, []
-    for part in step.parts:
-        some, all_of_them = modes(problem, part, order_of)
-        choices.append(some)
-        exact &= all_of_them
-    waits = _waits(problem, step.parts)
-    if len(step.parts) <= MOST_MEMBERS:
-        passes = _all_passes(choices, waits)
-    else:
-        exact = False
-        order = [step.parts.index(part) for part in order_of(step)]
-        passes = _rotations(choices, waits, order)
-    if step.round.duration:
-        shortest = min((p.again for p in passes), default=0)
-        passes = [p for p in passes if p.again == shortest]
-    found = [mode for one in passes for mode in _repeated(step, one)]
-    return _not_dominated(found), exact
-
-
-def enter(mode: Mode, places: Sequence[int]) -> int:
-    """The time that a mode takes from the worst of the places."""
-    return int(mode.time[list(places)].max())
-
-
-@dataclass(frozen=True, eq=False)
-class _Pass:
-    """One round: entered from anywhere, and again from where it ends."""
-
-    time: Vector
-    energy: Vector
-    again: int
-    again_energy: int
-    exit: tuple[int, ...]
-    order: tuple[int, ...]
-
-
-def _visit(problem: RouteProblem, visit: int) -> Mode:
-    time = plus(problem.travel[:, visit], problem.visits[visit].service)
-    battery = problem.battery
-    energy = np.zeros_like(time) if battery is None else battery.energy[:, visit]
-    return Mode(time, energy, (visit,), (visit,))
+        return [Mode(visit, (visit,), (visit,), problem.visits[visit].service)], True
+    ways, exact = _ways(problem, step, order_of)
+    return [mode for way in ways for mode in _modes(problem, way)], exact
 
 
 def plus(times: Vector, more: int | Vector) -> Vector:
     """A sum of times that is NEVER where a part is."""
     total: Vector = np.minimum(times + more, NEVER)
     return total
+
+
+class Way(Protocol):
+    """How a visit or a round is made, its order decided."""
+
+    @property
+    def first(self) -> int:
+        """The visit that it begins with."""
+        ...
+
+    @property
+    def order(self) -> tuple[int, ...]:
+        """Its visits in the first round."""
+        ...
+
+    def run(self, drive: int, energy: int) -> "Outcome":
+        """What it takes after a drive to `first` of that time and energy."""
+        ...
+
+
+@dataclass(frozen=True)
+class Outcome:
+    """What a way takes, the drive to it included, and where the robot may then be."""
+
+    time: int
+    energy: int
+    exit: tuple[int, ...]
+
+
+@dataclass(frozen=True)
+class _Single:
+    first: int
+    service: int
+
+    @property
+    def order(self) -> tuple[int, ...]:
+        return (self.first,)
+
+    def run(self, drive: int, energy: int) -> Outcome:
+        return Outcome(min(drive + self.service, NEVER), energy, (self.first,))
+
+
+@dataclass(frozen=True, eq=False)
+class _Rounds:
+    """A round with its parts in an order."""
+
+    problem: RouteProblem
+    round: Round
+    parts: tuple[Way, ...]
+
+    @property
+    def first(self) -> int:
+        return self.parts[0].first
+
+    @property
+    def order(self) -> tuple[int, ...]:
+        return tuple(visit for part in self.parts for visit in part.order)
+
+    def once(self, drive: int, energy: int) -> Outcome:
+        """A single round."""
+        done = self.parts[0].run(drive, energy)
+        for part in self.parts[1:]:
+            done = _onward(self.problem, done, part)
+        return done
+
+    def again(self) -> int:
+        """The time of a round that follows another."""
+        begun = Outcome(0, 0, (self.first,))
+        once = _onward(self.problem, begun, self.parts[0])
+        for part in self.parts[1:]:
+            once = _onward(self.problem, once, part)
+        return self._next(Outcome(0, 0, once.exit)).time
+
+    def _next(self, done: Outcome) -> Outcome:
+        for part in self.parts:
+            done = _onward(self.problem, done, part)
+        return done
+
+    def run(self, drive: int, energy: int) -> Outcome:
+        asked = self.round
+        done, count = self.once(drive, energy), 1
+        while done.time < NEVER and (not asked.repeat or count < asked.repeat):
+            if asked.duration and done.time >= asked.duration:
+                break
+            following = self._next(done)
+            count += 1
+            same = following.exit == done.exit
+            step, used = following.time - done.time, following.energy - done.energy
+            done = following
+            if asked.duration and step == 0:
+                break  # rounds that take no time would never fill it
+            if same:  # all that follow are like this one
+                more = asked.repeat - count if asked.repeat else NEVER
+                if asked.duration:
+                    more = min(more, -(-max(0, asked.duration - done.time) // step))
+                done = Outcome(
+                    min(done.time + more * step, NEVER),
+                    min(done.energy + more * used, NEVER),
+                    done.exit,
+                )
+                break
+        if asked.duration and not asked.soft and asked.duration < done.time < NEVER:
+            return Outcome(asked.duration, done.energy, tuple(sorted(self.order)))
+        return done
+
+
+def _onward(problem: RouteProblem, done: Outcome, way: Way) -> Outcome:
+    """A way after what was done, from the worst of the places where the robot may be."""
+    places = list(done.exit)
+    drive = int(problem.travel[places, way.first].max())
+    energy = 0
+    if problem.battery is not None:
+        energy = int(problem.battery.energy[places, way.first].max())
+    after = way.run(drive, energy)
+    time = NEVER if drive >= NEVER else min(done.time + after.time, NEVER)
+    return Outcome(time, min(done.energy + after.energy, NEVER), after.exit)
+
+
+def _ways(
+    problem: RouteProblem, step: Step, order_of: Callable[[Step], tuple[Step, ...]]
+) -> tuple[list[Way], bool]:
+    """The ways to make a step among which the best is, and whether that is so."""
+    if step.round is None:
+        (visit,) = step.visits
+        return [_Single(visit, problem.visits[visit].service)], True
+    exact, choices = True, []
+    for part in step.parts:
+        some, all_of_them = _ways(problem, part, order_of)
+        choices.append(some)
+        exact &= all_of_them
+    waits = _waits(problem, step.parts)
+    timed = any(_timed(part) for part in step.parts)
+    if len(step.parts) <= (MOST_TIMED if timed else MOST_MEMBERS):
+        orders = _all_orders(choices, waits) if timed else _best_orders(problem, choices, waits)
+    else:
+        exact = False
+        orders = _rotations(choices, waits, [step.parts.index(part) for part in order_of(step)])
+    found = [_Rounds(problem, step.round, order) for order in orders]
+    if step.round.duration:
+        times = [way.again() for way in found]
+        found = [w for w, time in zip(found, times, strict=True) if time == min(times)]
+    return list(found), exact
+
+
+def _timed(step: Step) -> bool:
+    """Whether there is a duration in it: then to be there sooner may take longer in the end."""
+    inside = any(_timed(part) for part in step.parts)
+    return inside or (step.round is not None and step.round.duration > 0)
 
 
 def _waits(problem: RouteProblem, parts: list[Step]) -> list[int]:
@@ -126,64 +255,64 @@ def _waits(problem: RouteProblem, parts: list[Step]) -> list[int]:
     return waits
 
 
-@dataclass(frozen=True)
-class _Label:
-    time: int
-    energy: int
-    last: Mode
-    order: tuple[int, ...]
-
-
-def _all_passes(choices: list[list[Mode]], waits: list[int]) -> list[_Pass]:
-    """Dynamic programming over the parts done, from each first mode, with the labels of time and
-    energy of which neither is the smaller."""
-    found = []
-    every = (1 << len(choices)) - 1
-    for k, first in _free(choices, waits, 0):
-        layer = {(1 << k, id(first)): [_Label(0, 0, first, first.order)]}
-        for _ in range(len(choices) - 1):
-            following: dict[tuple[int, int], list[_Label]] = {}
-            for (done, _), labels in layer.items():
-                for part, mode in _free(choices, waits, done):
-                    key = (done | 1 << part, id(mode))
-                    for label in labels:
-                        _add(following.setdefault(key, []), _extended(label, mode))
-            layer = following
-        for (done, _), labels in layer.items():
-            assert done == every
-            found += [_closed(first, label) for label in labels]
-    return found
-
-
-def _free(choices: list[list[Mode]], waits: list[int], done: int) -> list[tuple[int, Mode]]:
+def _free(choices: list[list[Way]], waits: list[int], done: int) -> list[tuple[int, Way]]:
     return [
-        (part, mode)
+        (part, way)
         for part, some in enumerate(choices)
         if not done >> part & 1 and waits[part] & ~done == 0
-        for mode in some
+        for way in some
     ]
 
 
-def _extended(label: _Label, mode: Mode) -> _Label:
-    places = list(label.last.exit)
-    return _Label(
-        min(label.time + int(mode.time[places].max()), NEVER),
-        min(label.energy + int(mode.energy[places].max()), NEVER),
-        mode,
-        label.order + mode.order,
-    )
+def _all_orders(choices: list[list[Way]], waits: list[int]) -> list[tuple[Way, ...]]:
+    orders: list[tuple[int, tuple[Way, ...]]] = [(0, ())]
+    for _ in choices:
+        orders = [
+            (done | 1 << part, (*order, way))
+            for done, order in orders
+            for part, way in _free(choices, waits, done)
+        ]
+    return [order for _, order in orders]
+
+
+@dataclass(frozen=True)
+class _Label:
+    done: Outcome
+    order: tuple[Way, ...]
+
+
+def _best_orders(
+    problem: RouteProblem, choices: list[list[Way]], waits: list[int]
+) -> list[tuple[Way, ...]]:
+    """Dynamic programming over the parts done, from each first way to each last one, with the
+    labels of time and energy of which neither is the smaller."""
+    found: list[tuple[Way, ...]] = []
+    for k, first in _free(choices, waits, 0):
+        layer = {(1 << k, id(first)): [_Label(first.run(0, 0), (first,))]}
+        for _ in range(len(choices) - 1):
+            following: dict[tuple[int, int], list[_Label]] = {}
+            for (done, _), labels in layer.items():
+                for part, way in _free(choices, waits, done):
+                    some = following.setdefault((done | 1 << part, id(way)), [])
+                    for label in labels:
+                        after = _onward(problem, label.done, way)
+                        _add(some, _Label(after, (*label.order, way)))
+            layer = following
+        found += [label.order for labels in layer.values() for label in labels]
+    return found
 
 
 def _add(labels: list[_Label], new: _Label) -> None:
-    if new.time >= NEVER or any(
-        one.time <= new.time and one.energy <= new.energy for one in labels
-    ):
+    time, energy = new.done.time, new.done.energy
+    if time >= NEVER or any(one.done.time <= time and one.done.energy <= energy for one in labels):
         return
-    labels[:] = [one for one in labels if one.time < new.time or one.energy < new.energy]
+    labels[:] = [one for one in labels if one.done.time < time or one.done.energy < energy]
     labels.append(new)
 
 
-def _rotations(choices: list[list[Mode]], waits: list[int], cycle: list[int]) -> list[_Pass]:
+def _rotations(
+    choices: list[list[Way]], waits: list[int], cycle: list[int]
+) -> list[tuple[Way, ...]]:
     """A cyclic order of the parts, entered at each part that may be the first."""
     found = []
     for k in range(len(cycle)):
@@ -193,61 +322,21 @@ def _rotations(choices: list[list[Mode]], waits: list[int], cycle: list[int]) ->
                 break
             done |= 1 << part
         else:
-            # Of the modes of inner rounds the one that is left soonest.
-            picked = [min(choices[part], key=lambda mode: int(mode.time.min())) for part in order]
-            label = _Label(0, 0, picked[0], picked[0].order)
-            for mode in picked[1:]:
-                label = _extended(label, mode)
-            found.append(_closed(picked[0], label))
+            found.append(tuple(choices[part][0] for part in order))
     return found
 
 
-def _closed(first: Mode, label: _Label) -> _Pass:
-    places = list(label.last.exit)
-    return _Pass(
-        plus(first.time, label.time),
-        np.minimum(first.energy + label.energy, NEVER),
-        min(label.time + int(first.time[places].max()), NEVER),
-        min(label.energy + int(first.energy[places].max()), NEVER),
-        label.last.exit,
-        label.order,
-    )
-
-
-def _repeated(step: Step, one: _Pass) -> list[Mode]:
-    """All rounds of a pass: where the time may be up in the middle, that is a mode of its own."""
-    asked = step.round
-    assert asked is not None
-    first, limit = one.time, asked.duration
-    count = np.full(first.shape, asked.repeat or NEVER, np.int64)
-    if limit:
-        # The first round after which the clock is not below the limit; without time, the second.
-        lacking = np.maximum(limit - first, 0)
-        needed = 1 + (-(-lacking // one.again) if one.again else np.minimum(lacking, 1))
-        count = np.minimum(count, needed)
-    if one.again >= NEVER:
-        first = np.where(count > 1, NEVER, first)
-    time = np.where(first >= NEVER, NEVER, first + (count - 1) * (one.again % NEVER))
-    energy = np.minimum(one.energy + (count - 1) * (one.again_energy % NEVER), NEVER)
-    if not limit or asked.soft or not (cut := (time > limit) & (time < NEVER)).any():
-        return [Mode(time, energy, one.exit, one.order)]
-    left = Mode(np.where(cut, limit, NEVER), energy, tuple(sorted(step.visits)), one.order)
-    if (cut | (time >= NEVER)).all():
-        return [left]
-    return [left, Mode(np.where(cut, NEVER, time), energy, one.exit, one.order)]
-
-
-def _not_dominated(modes: list[Mode]) -> list[Mode]:
-    """Those modes than which no other with the same exit is as good from everywhere."""
-    kept: list[Mode] = []
-    for mode in sorted(modes, key=lambda mode: (int(mode.time.sum()), int(mode.energy.sum()))):
-        if not (mode.time < NEVER).any():
-            continue
-        if not any(
-            set(one.exit) <= set(mode.exit)
-            and (one.time <= mode.time).all()
-            and (one.energy <= mode.energy).all()
-            for one in kept
-        ):
-            kept.append(mode)
-    return kept
+def _modes(problem: RouteProblem, way: Way) -> list[Mode]:
+    """A way as modes: one for each of the ends that it has after the drives that there are."""
+    entries = np.unique(problem.travel[:, way.first])
+    entries = entries[entries < NEVER]
+    outcomes = [way.run(int(drive), 0) for drive in entries]
+    ends = sorted({outcome.exit for outcome in outcomes if outcome.time < NEVER})
+    found = []
+    for end in ends:
+        here = np.array([outcome.exit == end for outcome in outcomes])
+        time = np.array([outcome.time for outcome in outcomes], np.int64)
+        energy = np.array([outcome.energy for outcome in outcomes], np.int64)
+        time = np.where(here, time, NEVER)
+        found.append(Mode(way.first, end, way.order, 0, entries, time, energy))
+    return found

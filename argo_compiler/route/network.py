@@ -98,17 +98,17 @@ def network(problem: RouteProblem, order_of: Callable[[Step], tuple[Step, ...]])
         exact &= all_of_them
         nodes += some
         step_of += [number] * len(some)
-    n, m = problem.size, len(nodes)
+    n = problem.size
     single = [step.round is None for step in found]
     visits = [problem.visits[min(step.visits)] for step in found]
-    service = np.array([visits[s].service if single[s] else 0 for s in step_of], dtype=np.int64)
+    service = np.array([node.service for node in nodes], dtype=np.int64)
     places = [mode.exit for mode in nodes] + [(n,)]
-    time = _matrix(places, [mode.time for mode in nodes], problem.travel[:, problem.end])
-    time[:, :m] = np.where(time[:, :m] >= NEVER, NEVER, time[:, :m] - service)
-    energy = None
+    times = _worst(problem.travel, places)
+    used = np.zeros_like(times)
     if problem.battery is not None:
-        home = problem.battery.energy[:, problem.end]
-        energy = _matrix(places, [mode.energy for mode in nodes], home)
+        used = _worst(problem.battery.energy, places)
+    time, energies = _entered(nodes, times, used, problem.end)
+    energy = None if problem.battery is None else energies
     needs, before, mandatory = _orders(problem, found)
     return Network(
         problem,
@@ -117,7 +117,7 @@ def network(problem: RouteProblem, order_of: Callable[[Step], tuple[Step, ...]])
         time,
         service,
         energy,
-        tuple(_station(problem, nodes, places, service, k) for k in range(len(problem.chargers))),
+        tuple(_station(problem, nodes, places, k) for k in range(len(problem.chargers))),
         np.array([sum(problem.visits[v].prize for v in s.visits) for s in found], dtype=np.int64),
         mandatory,
         np.array([visits[s].earliest if one else 0 for s, one in enumerate(single)], np.int64),
@@ -133,30 +133,38 @@ def _latest(latest: int | None) -> int:
     return NEVER if latest is None else latest
 
 
-def _matrix(
-    places: list[tuple[int, ...]], entered: list[Vector], home: Vector
-) -> NDArray[np.int64]:
-    """The worst times from where each node ends to each node and to the end."""
-    columns = np.stack([*entered, home], axis=1)
-    return np.stack([columns[list(there)].max(axis=0) for there in places])
+def _worst(matrix: NDArray[np.int64], places: list[tuple[int, ...]]) -> NDArray[np.int64]:
+    """The most that a drive to each place takes from some places."""
+    firsts = matrix[[there[0] for there in places]]
+    for row, there in enumerate(places):
+        if len(there) > 1:
+            firsts[row] = matrix[list(there)].max(axis=0)
+    return firsts
+
+
+def _entered(
+    nodes: list[Mode], times: NDArray[np.int64], used: NDArray[np.int64], end: int
+) -> tuple[NDArray[np.int64], NDArray[np.int64]]:
+    """What rows of drives take until each node's beginning (a round's end), and until the end."""
+    firsts = [node.first for node in nodes] + [end]
+    time, energy = times[:, firsts], used[:, firsts]
+    for column, node in enumerate(nodes):
+        if node.entries is not None:
+            time[:, column], energy[:, column] = node.enter(time[:, column], energy[:, column])
+    return time, energy
 
 
 def _station(
-    problem: RouteProblem,
-    nodes: list[Mode],
-    places: list[tuple[int, ...]],
-    service: Vector,
-    number: int,
+    problem: RouteProblem, nodes: list[Mode], places: list[tuple[int, ...]], number: int
 ) -> Station:
     assert problem.battery is not None
     row, energy = problem.charger(number), problem.battery.energy
-    out = np.array([mode.time[row] for mode in nodes] + [problem.travel[row, problem.end]])
-    out[:-1] = np.where(out[:-1] >= NEVER, NEVER, out[:-1] - service)
+    out, out_energy = _entered(nodes, problem.travel[[row]], energy[[row]], problem.end)
     return Station(
         np.array([problem.travel[list(there), row].max() for there in places]),
         np.array([energy[list(there), row].max() for there in places]),
-        out,
-        np.array([mode.energy[row] for mode in nodes] + [energy[row, problem.end]]),
+        out[0],
+        out_energy[0],
     )
 
 

@@ -11,7 +11,7 @@ from argo_compiler.route.masks import Bits
 from argo_compiler.route.network import Network
 from argo_compiler.route.problem import Objective
 from argo_compiler.route.progress import Search
-from argo_compiler.route.pruning import Pruned
+from argo_compiler.route.pruning import Pruned, longest
 
 _MOST_SETS = 1_500_000
 _MOST_WORK = 24_000_000
@@ -33,8 +33,10 @@ def solve(network: Network, pruned: Pruned, search: Search) -> tuple[Found, str]
         search.say(f"{steps} steps in any order: CP-SAT proves those fastest")
         return _searched(network, pruned, search)
     # Windows may leave much fewer sets than the order does.
-    if (sets <= most or network.windowed) and Bits(network, pruned).fits:
-        layers = subsets.soonest_layers(network, pruned, most)
+    small = longest(network) < subsets.INF
+    if small and (sets <= most or network.windowed) and Bits(network, pruned).fits:
+        with search.part(0.7):
+            layers = subsets.soonest_layers(network, pruned, most, lambda: search.left() <= 0.0)
         if layers is not None:
             return _all_sets(network, pruned, search, layers)
     search.say(f"{steps} steps allow more than {most} sets, or have too much to reckon with")
@@ -115,7 +117,8 @@ def _prepared(
         better = routing.solve_routing(network, pruned, search, until, best)
         if better is not None and better.better_than(best):
             best, method = better, "guided local search"
-    if not network.selective and Bits(network, pruned).fits:
+    small = longest(network) < subsets.INF
+    if small and not network.selective and Bits(network, pruned).fits:
         search.say("beams of labels, with prices for what is still to come")
         some = labels.search_labels(network, pruned, search, best)
         search.known(bound=some.bound)

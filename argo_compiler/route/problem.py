@@ -16,8 +16,11 @@ from argo_compiler.errors import ArgoError
 
 NEVER = 1 << 40
 """a travel time where there is no way"""
-_LONGEST = 1 << 36
-"""the longest time that is one, in units"""
+_LONGEST = 1 << 30
+"""the longest time that is one, in units: so that sums of some hundred stay below NEVER"""
+_MOST_ROUNDS = 1 << 20
+_MOST_PRIZE = 1 << 40
+"""of all visits together"""
 
 
 class Objective(StrEnum):
@@ -164,8 +167,14 @@ def _troubles(problem: RouteProblem) -> Iterator[str]:
     for visit in problem.visits:
         if visit.service < 0 or visit.prize < 0 or visit.earliest < 0:
             yield f"{visit.name} has a negative service time, prize or earliest time"
-    if problem.max_duration is not None and problem.max_duration < 0:
-        yield "the maximum duration is negative"
+        if visit.latest is not None and visit.latest < visit.earliest:
+            yield f"the time window of {visit.name} ends before it begins"
+        if max(visit.service, visit.earliest, visit.latest or 0) > _LONGEST:
+            yield f"a time of {visit.name} is above {_LONGEST}: take a greater unit"
+    if sum(visit.prize for visit in problem.visits) > _MOST_PRIZE:
+        yield f"its prizes add up to more than {_MOST_PRIZE}"
+    if problem.max_duration is not None and not 0 <= problem.max_duration < NEVER:
+        yield "the maximum duration is negative, or too long"
     if problem.unit <= 0.0:
         yield "the unit of time is not positive"
     for precedence in problem.precedences:
@@ -187,7 +196,7 @@ def _matrix_troubles(matrix: NDArray[np.int64], what: str, side: int) -> Iterato
     elif matrix.dtype != np.int64:
         yield f"its {what} are {matrix.dtype}, not int64"
     elif matrix.min(initial=0) < 0 or (matrix[matrix != NEVER] > _LONGEST).any():
-        yield f"its {what} are not from 0 to {_LONGEST}, or NEVER"
+        yield f"its {what} are not from 0 to {_LONGEST}, or NEVER (else take a greater unit)"
 
 
 def _round_troubles(problem: RouteProblem) -> Iterator[str]:
@@ -202,6 +211,8 @@ def _round_troubles(problem: RouteProblem) -> Iterator[str]:
             continue
         if one.repeat < 0 or one.duration < 0 or one.repeat == one.duration == 0:
             yield f"the round {one.name} needs a number of rounds or a duration"
+        if one.repeat > _MOST_ROUNDS or one.duration > _LONGEST:
+            yield f"the round {one.name} is repeated too often, or lasts too long"
         for member in (problem.visits[m] for m in one.members):
             if member.earliest > 0 or member.latest is not None:
                 yield (

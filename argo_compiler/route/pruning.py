@@ -98,18 +98,23 @@ def shortest(network: Network) -> NDArray[np.int64]:
 
 def horizon(network: Network) -> int:
     """A time when every route that does not wait longer than it must is at the end."""
+    return min(network.limit, longest(network))
+
+
+def longest(network: Network) -> int:
+    """The same without the limit."""
     arcs = shortest(network)
     arcs = np.where(arcs >= NEVER, 0, arcs)
-    longest = int(np.append(network.service, 0).sum() + arcs.max(axis=0).sum())
+    total = int(np.append(network.service, 0).sum() + arcs.max(axis=0).sum())
     battery = network.problem.battery
     if battery is not None:
         ways = [int(np.where(s.to >= NEVER, 0, s.to).max()) for s in network.chargers]
         outs = [int(np.where(s.out >= NEVER, 0, s.out).max()) for s in network.chargers]
         charge = battery.capacity + battery.overhead + max(ways, default=0) + max(outs, default=0)
-        longest += charge * (len(network.prize) + 1)
+        total += charge * (len(network.prize) + 1)
     direct = int(network.time[:, :].max(initial=0, where=network.time < NEVER))
-    longest += direct * (len(network.prize) + 1)
-    return min(network.limit, int(network.earliest.max(initial=0)) + longest)
+    total += direct * (len(network.prize) + 1)
+    return int(network.earliest.max(initial=0)) + total
 
 
 def _possible_steps(needs: NDArray[np.bool_], before: NDArray[np.bool_]) -> NDArray[np.bool_]:

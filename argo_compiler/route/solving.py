@@ -5,6 +5,7 @@ from dataclasses import replace
 
 import numpy as np
 
+from argo_compiler.errors import ArgoError
 from argo_compiler.route.assignment import assignment_bound
 from argo_compiler.route.clash import find_clash
 from argo_compiler.route.found import Found, none_found
@@ -12,9 +13,9 @@ from argo_compiler.route.local import LocalSearch
 from argo_compiler.route.modes import Step
 from argo_compiler.route.network import Network, network
 from argo_compiler.route.portfolio import solve
-from argo_compiler.route.problem import Objective, RouteProblem
+from argo_compiler.route.problem import NEVER, Objective, RouteProblem
 from argo_compiler.route.progress import Search
-from argo_compiler.route.pruning import prune
+from argo_compiler.route.pruning import longest, prune
 from argo_compiler.route.suggestion import RouteSuggestion
 
 _CHECK = 2.0
@@ -67,6 +68,10 @@ def _solved(
     net = network(problem, order_of)
     if not net.exact:
         search.say("a round has too many members to weigh all of their orders")
+    if longest(net) >= NEVER // 2:
+        raise ArgoError(
+            "the times of this route problem are too long to be added up: take a greater unit"
+        )
     pruned = prune(net)
     bound = assignment_bound(net, pruned)
     if bound is None:

@@ -6,7 +6,7 @@ robot is done there. To be sooner is never worse, so time windows, limits and wh
 nothing more. What limits it is the number of sets: they are counted first.
 """
 
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 
 import numpy as np
@@ -86,16 +86,18 @@ class BestPath:
     end: int
 
 
-def soonest_layers(network: Network, pruned: Pruned, most: int) -> list[Layer] | None:
+def soonest_layers(
+    network: Network, pruned: Pruned, most: int, over: Callable[[], bool]
+) -> list[Layer] | None:
     """The layers of a network whose battery is never empty; None if they have more than `most`
-    sets."""
+    sets, or the time is over before."""
     arcs = arcs_of(network, pruned, shortest(network))
     latest = np.minimum(pruned.latest, INF - 1)
     earliest = network.earliest[network.step]
     layers, total = [], 0
     for layer in soonest(network, Bits(network, pruned), arcs, earliest, latest):
         total += len(layer.masks)
-        if total > most:
+        if total > most or over():
             return None
         layers.append(layer)
     return layers

@@ -27,7 +27,7 @@ def random_problem(rng: np.random.Generator, most: int = 8) -> RouteProblem:
     if rng.random() < 0.2:
         travel[rng.random(travel.shape) < 0.05] = NEVER
     selective, windowed = rng.random() < 0.4, rng.random() < 0.3
-    rounds = _rounds(rng, n) if rng.random() < 0.35 else ()
+    rounds = _rounds(rng, n) if rng.random() < 0.4 else ()
     inside = {member for one in rounds for member in one.members}
     horizon = 110 * (n + 1)
     visits = []
@@ -100,6 +100,7 @@ def _rounds(rng: np.random.Generator, n: int) -> tuple[Round, ...]:
 
 def _round(rng: np.random.Generator, name: str, members: tuple[int, ...]) -> Round:
     kind = rng.random()
-    repeat = int(rng.integers(1, 4)) if kind < 0.7 else 0
-    duration = int(rng.integers(1, 500)) if kind > 0.5 else 0
+    # Two rounds with durations in a row, and one in another, are the hard cases.
+    repeat = int(rng.integers(1, 4)) if kind < 0.6 else 0
+    duration = int(rng.integers(1, 500)) if kind > 0.4 else 0
     return Round(name, members, repeat, duration, bool(rng.random() < 0.5))

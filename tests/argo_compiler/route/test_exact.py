@@ -65,7 +65,7 @@ def _solved(solver, net, pruned):  # type: ignore[no-untyped-def]
     if solver == "circuit":
         return solve_circuit(net, pruned, search)
     if solver == "labels" and labels.applies(net):
-        layers = subsets.soonest_layers(net, pruned, 10**6)
+        layers = subsets.soonest_layers(net, pruned, 10**6, lambda: False)
         return labels.solve_labels(net, pruned, search, layers)
     if solver == "prices" and labels.applies(net) and not net.selective and len(net.prize):
         return labels.search_labels(net, pruned, search, None)

@@ -8,13 +8,16 @@ from scipy.optimize import linprog
 
 from argo_compiler.route.assignment import least_between_steps
 from argo_compiler.route.completion import Sets, to_come
-from argo_compiler.route.masks import Bits, Masks
+from argo_compiler.route.masks import MOST_BITS, Bits, Masks
 from argo_compiler.route.network import Network
 from argo_compiler.route.problem import NEVER
 from argo_compiler.route.pruning import Pruned
 from argo_compiler.route.subsets import may_end
 
 Vector = NDArray[np.int64]
+
+_PART = 16
+"""bits of a mask that are looked up at once"""
 
 
 class Guide(Protocol):
@@ -66,15 +69,31 @@ class PriceGuide:
         self._leave = np.stack([leave for leave, _ in prices])
         self._enter = np.stack([enter for _, enter in prices])
         self._step = np.append(network.step, len(network.prize))
+        self._of_layer: dict[int, list[NDArray[np.int64]]] = {}
 
     def to_come(self, size: int, masks: Masks, last: Vector) -> NDArray[np.int64]:
         both = (self._leave + self._enter)[:, :-1]
-        open_steps = ~self._bits.surely(size)
-        doubt = self._bits.in_doubt(size)
-        rest = np.repeat(both[:, open_steps].sum(axis=1, keepdims=True), len(masks), axis=1)
-        for s in np.flatnonzero(doubt).tolist():
-            rest -= both[:, s, None] * ((masks & self._bits.bit(s)) != 0)
+        rest = np.repeat(both.sum(axis=1, keepdims=True), len(masks), axis=1)
+        for part, sums in enumerate(self._sums(size, both)):
+            rest -= sums[:, (masks >> (_PART * part)) & ((1 << _PART) - 1)]
         return np.asarray(self._leave[:, self._step[last]] + rest + self._enter[:, -1:])
+
+    def _sums(self, size: int, both: NDArray[np.int64]) -> list[NDArray[np.int64]]:
+        """For each value of some bits of a mask together, what the steps made are worth: in the
+        first table, those that all sets of that size have are included."""
+        if size not in self._of_layer:
+            doubt, tables = self._bits.in_doubt(size), []
+            bit_of = {int(self._bits.bit(s)): s for s in np.flatnonzero(doubt).tolist()}
+            sure = both[:, self._bits.surely(size)].sum(axis=1, keepdims=True)
+            for first in range(0, MOST_BITS, _PART):
+                table = sure if first == 0 else np.zeros_like(sure)
+                for number in range(first, first + _PART):
+                    step = bit_of.get(1 << number)
+                    more = table if step is None else table + both[:, step, None]
+                    table = np.concatenate([table, more], axis=1)
+                tables.append(table)
+            self._of_layer = {size: tables}
+        return self._of_layer[size]
 
     def may_end(self, size: int, masks: Masks) -> NDArray[np.bool_]:
         return may_end(self._network, self._bits, size, masks)

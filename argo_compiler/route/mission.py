@@ -49,7 +49,6 @@ def route_problem(
     spine = find_spine(mission)
     require_ways(ways, mission)
     visits = Visits(spine)
-    precise = mission.order is Order.PRECISE or requirements.keep_order
     times, energies = _costs(visits, ways, _likely(visits, requirements))
     battery = _battery(visits, ways, times, energies)
     limit = _limit(mission, requirements)
@@ -64,7 +63,7 @@ def route_problem(
     problem = RouteProblem(
         visits=tuple(_visits(visits, ways, requirements)),
         travel=_travel(visits, times, ways),
-        precedences=rules(visits, precise, requirements),
+        precedences=rules(visits, mission.order is Order.PRECISE, requirements),
         rounds=tuple(_rounds(visits, ways)),
         max_duration=None if limit is None else ways.down(limit[0]),
         battery=battery,

@@ -3,7 +3,7 @@
 import re
 from typing import Annotated
 
-from pydantic import BeforeValidator, Field, model_validator
+from pydantic import AfterValidator, BeforeValidator, Field, model_validator
 
 from argo_compiler.errors import ArgoError
 from argo_compiler.model import Model
@@ -17,6 +17,8 @@ def parse_seconds(text: str) -> float:
     total, at = 0.0, 0
     scale = 2 * _SECONDS["h"]
     text = text.strip()
+    if text.startswith("-"):
+        raise ArgoError(f"`{text}` must be above 0: write `20 min`, `1 h 30 min` or `90 s`")
     while at < len(text):
         part = _PART.match(text, at)
         factor = _SECONDS[(part.group(2) or "s")[0]] if part else scale
@@ -37,9 +39,20 @@ def _seconds(value: object) -> object:
         raise ValueError(str(error)) from None
 
 
-Seconds = Annotated[float, BeforeValidator(_seconds), Field(ge=0.0)]
+Seconds = Annotated[float, BeforeValidator(_seconds), Field(ge=0.0, le=1e7)]
+"""s, up to 115 days: longer than any mission, and short enough to be reckoned in whole units"""
 What = Annotated[int, Field(strict=True, ge=1)] | Annotated[str, Field(min_length=1)]
 """The number of a checkpoint, or the name of a task or group."""
+
+
+def _distinct(sequence: tuple[What, ...]) -> tuple[What, ...]:
+    if len(set(map(str, sequence))) < len(sequence):
+        listed = ", ".join(map(str, sequence))
+        raise ValueError(f"`{listed}` names something twice: nothing comes before itself")
+    return sequence
+
+
+Sequence = Annotated[tuple[What, ...], Field(min_length=2), AfterValidator(_distinct)]
 
 
 class Priority(Model):
@@ -82,8 +95,8 @@ class Requirements(Model):
     """whether nothing changes places, even if the mission allows any order"""
     mandatory: tuple[What, ...] = ()
     optional: tuple[Priority, ...] = ()
-    before: tuple[Annotated[tuple[What, ...], Field(min_length=2)], ...] = ()
-    """sequences in which each comes before the next"""
+    before: tuple[Sequence, ...] = ()
+    """sequences in which each comes before all that follow, whichever of them are left out"""
     windows: tuple[Window, ...] = ()
     likelihoods: tuple[Likelihood, ...] = ()
     """where all conditional ways of a task have one, its ways are reckoned on average, not in the

@@ -40,8 +40,9 @@ def _require_possible(planned: MissionRoute, route: Route) -> None:
         raise ArgoError("this order leaves out every task: allow more time")
     worth = evaluate(problem, route)
     if worth.waiting:
+        minutes, seconds = divmod(round(worth.waiting * problem.unit), 60)
         raise ArgoError(
-            f"this order waits {worth.waiting * problem.unit:g} s for time windows, and no task of "
+            f"this order waits {minutes:02d}:{seconds:02d} for time windows, and no task of "
             "a mission does that: widen them, or start the mission later"
         )
     for violation in worth.violations:

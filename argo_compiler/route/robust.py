@@ -45,7 +45,7 @@ class RobustSuggestion:
     nominal: RouteSuggestion
     nominal_completion: Completion
     tried: int
-    """how many routes were compared"""
+    """how many different routes were compared"""
 
     @property
     def dropped(self) -> tuple[int, ...]:
@@ -128,7 +128,12 @@ class _Search:
     def __init__(self, problem: RouteProblem, draws: Draws, confidence: float) -> None:
         self._problem, self._draws, self._confidence = problem, draws, confidence
         self._best: tuple[_Key, Route] | None = None
-        self.tried = 0
+        self._seen: set[tuple[tuple[int, ...], tuple[tuple[int, int], ...]]] = set()
+
+    @property
+    def tried(self) -> int:
+        """How many different routes were compared."""
+        return len(self._seen)
 
     @property
     def best(self) -> Route:
@@ -144,7 +149,10 @@ class _Search:
 
     def consider(self, route: Route) -> bool:
         """Takes the route if it is the best one so far, and tells whether it is."""
-        self.tried += 1
+        same = (route.order, tuple(sorted(route.charges.items())))
+        if same in self._seen:
+            return False
+        self._seen.add(same)
         found = completion(self._problem, route, self._draws)
         key = _key(self._problem, route, found, self._confidence)
         if self._best is not None and key <= self._best[0]:

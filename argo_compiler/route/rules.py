@@ -1,32 +1,50 @@
 """What keeps its order in a mission, and why, in the mission's words."""
 
 from collections.abc import Iterator
-from itertools import pairwise
+from itertools import combinations, product
 
+from argo_compiler.errors import ArgoError
+from argo_compiler.il import Mission
 from argo_compiler.route.problem import Precedence
 from argo_compiler.route.requirements import Requirements
-from argo_compiler.route.spine import Stop, Unit, leaves_of
+from argo_compiler.route.spine import Stop, Unit, find_spine, leaves_of
 from argo_compiler.route.visits import Visits, said
 
 
 def rules(visits: Visits, precise: bool, requirements: Requirements) -> tuple[Precedence, ...]:
-    """All orders that have to be kept.
+    """All orders that have to be kept; `precise`: whether the mission asks for a precise one.
 
     Raises ArgoError if a requirement names something that the mission does not have.
     """
     everything = tuple(range(len(visits.stops)))
     found: list[Precedence] = []
-    if precise and len(everything) > 1:
+    kept = precise or requirements.keep_order
+    if kept and len(everything) > 1:
         shown = ", ".join(visits.short(k) for k in everything)
-        found.append(Precedence(everything, f"precise order {shown}"))
+        words = f"precise order {shown}" if precise else "the order as written (--keep-order)"
+        found.append(Precedence(everything, words))
     found += _asked_for(visits, requirements)
     # Also in a precise order: what a decision needs must not be left out.
     found += _deciding(visits)
-    if not precise:
+    if not kept:
         found += _measured_again(visits)
         found += _early_ends(visits)
         found += _last_ones(visits)
     return tuple(dict.fromkeys(found))
+
+
+def require_known(mission: Mission, requirements: Requirements) -> None:
+    """Raises ArgoError if a requirement names something that the mission does not have."""
+    visits = Visits(find_spine(mission))
+    named = [
+        *requirements.mandatory,
+        *(one.what for one in requirements.optional),
+        *(one.what for one in requirements.windows),
+    ]
+    for what in named:
+        visits.find(what)
+    for _ in _asked_for(visits, requirements):
+        pass
 
 
 def must_be_last(visits: Visits) -> int | None:
@@ -40,11 +58,21 @@ def must_be_last(visits: Visits) -> int | None:
 
 def _asked_for(visits: Visits, requirements: Requirements) -> Iterator[Precedence]:
     for sequence in requirements.before:
-        for first, then in pairwise(sequence):
-            words = f"{said(first)} before {said(then)}"
-            for a in visits.find(first):
-                for b in visits.find(then):
-                    yield Precedence((a, b), words)
+        found = [visits.find(what) for what in sequence]
+        words = " before ".join(map(said, sequence))
+        for (i, one), (j, other) in combinations(enumerate(found), 2):
+            if set(one) & set(other):
+                raise ArgoError(
+                    f"{words}: {said(sequence[i])} and {said(sequence[j])} have a task in common, "
+                    "which can't come before itself"
+                )
+        if all(len(one) == 1 for one in found):
+            yield Precedence(tuple(one[0] for one in found), words)
+            continue
+        # Also of those that are not neighbours: what is between them may be left out.
+        for (i, one), (j, other) in combinations(enumerate(found), 2):
+            words = f"{said(sequence[i])} before {said(sequence[j])}"
+            yield from (Precedence(pair, words) for pair in product(one, other))
 
 
 def _measured_again(visits: Visits) -> Iterator[Precedence]:

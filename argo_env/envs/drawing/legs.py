@@ -1,6 +1,6 @@
 """The ways from place to place, as they are drawn in pictures of routes."""
 
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 from itertools import pairwise, product
 from typing import Protocol
 
@@ -79,7 +79,7 @@ class _AisleLegs(_StraightLegs):
             for level in levels
         ]
 
-        def length(ends: tuple[float, ...]) -> float:
+        def length(ends: Iterable[float]) -> float:
             return sum(abs(p - q) for p, q in pairwise((a[0], *ends, b[0])))
 
         return list(min(product(*choices), key=length))

@@ -159,7 +159,7 @@ def _by_prize(
             best, complete = _better(network, search, beam, best), beam.complete
             if complete or search.left() <= 0.0:
                 break
-        if best is not None and best.path is not None and complete:
+        if best is not None and best.path is not None and complete and best.prize >= lowest:
             return _cheapest(network, pruned, search, best, goals[worth == best.prize])
         if not complete:
             break

@@ -117,8 +117,8 @@ def _prepared(
         better = routing.solve_routing(network, pruned, search, until, best)
         if better is not None and better.better_than(best):
             best, method = better, "guided local search"
-    small = longest(network) < subsets.INF
-    if small and not network.selective and Bits(network, pruned).fits:
+    small = longest(network) < subsets.INF and Bits(network, pruned).fits
+    if small and not network.selective and labels.applies(network):
         search.say("beams of labels, with prices for what is still to come")
         some = labels.search_labels(network, pruned, search, best)
         search.known(bound=some.bound)
@@ -173,11 +173,10 @@ def _raced(
     running: list[Any] = []
     results: list[Found] = []
     failures: list[BaseException] = []
-    whole = search.deadline
+    whole, alone = search.deadline, search.alone()
 
     def prove() -> None:
         try:
-            alone = search.alone()
             results.append(solve_circuit(network, pruned, alone, running=running))
         except BaseException as error:
             failures.append(error)

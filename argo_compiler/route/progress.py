@@ -20,6 +20,8 @@ class Search:
     prize_bound: int
     bound: int = 0
     begun: float = 0.0
+    certain: bool = True
+    """whether what is proven of the network is so of the problem"""
     history: list[Point] = field(default_factory=list)
     reasons: list[str] = field(default_factory=list)
     _prize: int | None = None
@@ -28,7 +30,14 @@ class Search:
     def alone(self) -> "Search":
         """A search with the same time, for another thread."""
         return Search(
-            self.clock, self.deadline, self.seed, 1, self.prize_bound, self.bound, self.begun
+            self.clock,
+            self.deadline,
+            self.seed,
+            1,
+            self.prize_bound,
+            self.bound,
+            self.begun,
+            self.certain,
         )
 
     @contextmanager
@@ -54,6 +63,8 @@ class Search:
 
     def known(self, prize_bound: int | None = None, bound: int | None = None) -> None:
         """Something is proven of all routes."""
+        if not self.certain:
+            return
         tighter = prize_bound is not None and prize_bound < self.prize_bound
         higher = bound is not None and bound > self.bound
         if tighter and prize_bound is not None:

@@ -66,8 +66,9 @@ def _solved(
         return _cycle(problem, step, time_limit / 4, seed)
 
     net = network(problem, order_of)
+    search.certain = net.exact
     if not net.exact:
-        search.say("a round has too many members to weigh all of their orders")
+        search.say("a round has too many members to weigh all of their orders: nothing is proven")
     if longest(net) >= NEVER // 2:
         raise ArgoError(
             "the times of this route problem are too long to be added up: take a greater unit"
@@ -76,10 +77,12 @@ def _solved(
     bound = assignment_bound(net, pruned)
     if bound is None:
         search.say("some step can't be made at all, or not in an order that is asked for")
-        return net, search, none_found(net, proven=True), "pruning"
+        return net, search, none_found(net, proven=net.exact), "pruning"
     if net.objective is not Objective.PRIZE:
         search.known(bound=bound)
     best, method = solve(net, pruned, search)
+    if not net.exact:
+        best = replace(best, prize_bound=most, bound=0, proven=False)
     return net, search, best, method
 
 

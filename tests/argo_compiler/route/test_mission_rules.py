@@ -4,6 +4,7 @@ from itertools import pairwise
 
 import numpy as np
 import pytest
+from pydantic import ValidationError
 
 from argo_compiler.errors import ArgoError
 from argo_compiler.hfsm import lower
@@ -83,7 +84,9 @@ def test_a_precise_order_is_one_rule():
     found = planned(row(measure(4), measure(8), measure(1), order=Order.PRECISE))
     assert kept(found) == ["precise order 4, 8, 1"]
     assert found.problem.precedences[0].sequence == (0, 1, 2)
-    assert kept(planned(row(measure(4), measure(8)), keep_order=True)) == ["precise order 4, 8"]
+    assert kept(planned(row(measure(4), measure(8)), keep_order=True)) == [
+        "the order as written (--keep-order)"
+    ]
     assert kept(planned(row(measure(4), measure(8)))) == []
 
 
@@ -97,6 +100,29 @@ def test_what_is_asked_for_is_said_in_the_words_of_the_mission():
         planned(row(measure(4), measure(8)), before=[("M44", 8)])
     with pytest.raises(ArgoError, match="'DOCK' stays where it is"):
         planned(row(measure(4), measure(8)), before=[("DOCK", 8)])
+
+
+def test_a_sequence_holds_without_its_middle():
+    mission = row(measure(4), measure(8), measure(1), measure(3))
+    found = planned(mission, before=[(8, 4, 1)], budget=100.0)
+    assert kept(found) == ["checkpoint 8 before checkpoint 4 before checkpoint 1"]
+    for order, feasible in [((2, 1), False), ((1, 2), True), ((1, 0, 2), True), ((0, 1), False)]:
+        assert evaluate(found.problem, Route(order)).feasible == feasible
+
+
+def test_a_sequence_with_a_group_holds_without_its_middle():
+    group = Group(name="G", start="M1", end="M2", max_repeat_count=2)
+    mission = row(measure(4), measure(1), measure(2), measure(3), groups=(group,))
+    found = planned(mission, before=[("G", 3, 4)], budget=100.0)
+    for order, feasible in [((0, 1, 2), False), ((2, 1, 0), True), ((3, 0), True), ((0, 3), False)]:
+        assert evaluate(found.problem, Route(order)).feasible == feasible
+    with pytest.raises(ArgoError, match="'G' and checkpoint 2 have a task in common"):
+        planned(mission, before=[("G", 2)])
+
+
+def test_nothing_comes_before_itself():
+    with pytest.raises(ValidationError, match="names something twice"):
+        Requirements(before=((4, "4"),))
 
 
 def test_what_a_condition_asks_for_is_measured_before():
@@ -194,7 +220,7 @@ def test_a_budget_makes_all_optional_that_is_not_mandatory():
 def test_a_mission_can_not_wait():
     found = planned(row(measure(1), measure(2)), windows=[{"what": 2, "earliest": "1 min"}])
     assert (found.problem.visits[1].earliest, found.problem.visits[1].latest) == (60, None)
-    with pytest.raises(ArgoError, match="waits 42 s for time windows"):
+    with pytest.raises(ArgoError, match="waits 00:42 for time windows"):
         apply_route(found, found.written)
 
 
@@ -256,7 +282,9 @@ def test_durations_are_read(text, seconds):
     assert parse_seconds(text) == seconds
 
 
-@pytest.mark.parametrize("text", ["", "soon", "5 miles", "5 s 2 min", "-3 min", "3 min 4 min"])
+@pytest.mark.parametrize(
+    "text", ["", "soon", "-5 min", "5 miles", "5 s 2 min", "-3 min", "3 min 4 min"]
+)
 def test_what_is_no_duration_is_refused(text):
     with pytest.raises(ArgoError, match="20 min"):
         parse_seconds(text)

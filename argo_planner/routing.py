@@ -1,39 +1,34 @@
-"""A mission's best order: asked for, applied and shown."""
+"""A mission's best order: asked for, and applied."""
 
-from collections.abc import Iterator
 from dataclasses import dataclass, replace
 from pathlib import Path
 
+import numpy as np
 from rich.console import Console
 from rich.markup import escape
-from rich.table import Table
 
 from argo_compiler.diagnostics import DiagnosticError
 from argo_compiler.errors import ArgoError
-from argo_compiler.il import Mission, Order
+from argo_compiler.il import Mission
 from argo_compiler.route.evaluation import Evaluation, evaluate
 from argo_compiler.route.mission import MissionRoute
-from argo_compiler.route.problem import Route
+from argo_compiler.route.problem import NEVER, Route, RouteProblem
 from argo_compiler.route.requirements import Requirements
 from argo_compiler.route.rewriting import apply_route
 from argo_compiler.route.robust import suggest_robust_route
-from argo_compiler.route.robust_sampling import Draws, completion
 from argo_compiler.route.robust_spread import TravelSpread
+from argo_compiler.route.rules import require_known
 from argo_compiler.route.suggest import suggest_route
 from argo_compiler.route.suggestion import RouteSuggestion
 from argo_env.navigation import Navigator
 from argo_env.record import Reordering
 from argo_env.route_matrix import plan_mission
-from argo_env.seeding import generator
 from argo_env.travel import SiteTravel
 from argo_env.words import clock
 from argo_env.yaml_file import read_yaml
 
 TIME_LIMIT = 5.0
 """s that a search takes at most, if nothing else is said"""
-_SAMPLES = 10_000  # of a mission, to tell how probable it is that it is in time
-_BROKEN = 3  # requirements that the written order does not keep to, as far as they are shown
-_SHOWN = 12  # orders to keep that are shown
 
 
 @dataclass(frozen=True, eq=False)
@@ -53,7 +48,7 @@ class Suggested:
     def route(self) -> Route:
         """Raises ArgoError, in the mission's words, where there is no order."""
         if self.suggestion.route is None:
-            raise ArgoError(why_none(self))
+            raise ArgoError(why_none(self) or "there is no order")
         return self.suggestion.route
 
     @property
@@ -111,6 +106,7 @@ def suggest(
     """
     travel = SiteTravel(navigator)
     try:
+        require_known(mission, requirements)  # before all ways are planned, which takes long
         planned = plan_mission(mission, navigator, requirements, travel)
     except DiagnosticError as error:
         raise DiagnosticError(str(source), error.diagnostics) from None
@@ -151,19 +147,6 @@ def suggest_robust(
     return replace(found, suggestion=suggestion)
 
 
-def show_risk(found: Suggested, spread: TravelSpread, seed: int, console: Console) -> None:
-    """Prints how probable it is that both orders keep to all limits."""
-    problem = found.planned.problem
-    for name, route in (("As written", found.planned.written), ("Suggested", found.route)):
-        done = completion(problem, route, Draws(spread, _SAMPLES, generator(seed, "route risk")))
-        text = f"{name}: within all limits with {done.probability:.1%}"
-        if done.duration < float("inf"):
-            mean, most = (clock(x * problem.unit) for x in (done.duration, done.duration_95))
-            text += f" ({done.low:.1%} to {done.high:.1%}); {mean} on average, {most} in 95 %"
-        console.print(escape(text), soft_wrap=True)
-    console.print(escape(f"Spread: {spread.source}"), soft_wrap=True)
-
-
 def optimised(source: Path, mission: Mission, navigator: Navigator) -> tuple[Mission, Reordering]:
     """The mission in its best order, and what is said of it. Prints how much time that saves.
 
@@ -171,8 +154,8 @@ def optimised(source: Path, mission: Mission, navigator: Navigator) -> tuple[Mis
     for.
     """
     found = suggest(source, mission, navigator, Requirements(), TIME_LIMIT, 0)
-    if found.suggestion.route is None:
-        raise ArgoError(f"{source}: {why_none(found)}")
+    if why := why_none(found):
+        raise ArgoError(f"{source}: {why}")
     done = found.reordering
     order = ", ".join(done.order)
     text = (
@@ -183,116 +166,68 @@ def optimised(source: Path, mission: Mission, navigator: Navigator) -> tuple[Mis
     return found.mission, done
 
 
-def why_none(found: Suggested) -> str:
-    """Why there is no order."""
-    suggestion, written = found.suggestion, found.seconds(found.written.duration)
-    if suggestion.clash:
-        lines = [f"  - {escape(words)}" for words in suggestion.clash]
+def why_none(found: Suggested) -> str | None:
+    """Why there is no order, or none with anything in it; None: there is one."""
+    if found.suggestion.route is None:
+        return _why_no_route(found)
+    if not found.suggestion.order and found.planned.problem.size:
+        return _why_empty(found)
+    return None
+
+
+def _why_no_route(found: Suggested) -> str:
+    suggestion, problem = found.suggestion, found.planned.problem
+    if len(suggestion.clash) == 1:
+        text = f"this can't be met: {suggestion.clash[0]}"
+    elif suggestion.clash:
+        lines = [f"  - {words}" for words in suggestion.clash]
         text = "\n".join(
             ["no order meets all of this, though it would without any one of it:", *lines]
         )
-    elif suggestion.proven:
-        text = "no order meets all that is asked for"
-    else:
+    elif not suggestion.proven:
         text = "no order was found in time; allow more with --time-limit"
-    if found.planned.problem.max_duration is not None and found.written.duration > (
-        found.planned.problem.max_duration
-    ):
-        text += f"\nAs it is written, the mission takes {clock(written)}; "
+    elif cut_off := _cut_off(problem):
+        text = f"no way leads to {cut_off}, or none on from there: look at the site's map there"
+    else:
+        text = (
+            "no order meets all that is asked for, and what of it clashes was not found: look at "
+            "the time limits first, then at what has to come before what, and leave some of it out"
+        )
+    limit, written = problem.max_duration, found.written.duration
+    if limit is not None and written > limit and not problem.selective:
+        text += f"\nAs it is written, the mission takes {clock(found.seconds(written))}; "
         text += "with --budget, what does not fit is left out."
     return text
 
 
-def show(found: Suggested, console: Console) -> None:
-    """Prints the suggested order beside the written one, and what is known of it."""
-    console.print(_table(found))
-    for line in _lines(found):
-        console.print(escape(line), soft_wrap=True)
-
-
-def _table(found: Suggested) -> Table:
-    planned, route = found.planned, found.route
-    worth = evaluate(planned.problem, route)
-    before = found.written.arrivals
-    written = {visit: k for k, visit in enumerate(planned.written.order)}
-    table = Table(title="Order", title_justify="left")
-    for name in ("", "task", "begins", "was", "began"):
-        table.add_column(name, justify="left" if name == "task" else "right")
-    for k, visit in enumerate(route.order):
-        if k in route.charges:
-            charger = planned.problem.chargers[route.charges[k]]
-            table.add_row("", f"[italic]charge at {escape(charger)}[/]", "", "", "")
-        table.add_row(
-            str(k + 1),
-            escape(planned.visits.names[visit]),
-            clock(found.seconds(worth.arrivals[k])),
-            str(written[visit] + 1),
-            clock(found.seconds(before[written[visit]])),
-        )
-    for visit in found.suggestion.dropped:
-        table.add_row(
-            "-",
-            escape(planned.visits.names[visit]),
-            "left out",
-            str(written[visit] + 1),
-            clock(found.seconds(before[written[visit]])),
-            style="yellow",
-        )
-    return table
-
-
-def _lines(found: Suggested) -> Iterator[str]:
-    planned, suggestion = found.planned, found.suggestion
-    problem, worth = planned.problem, evaluate(planned.problem, found.route)
-    new, old = found.seconds(worth.duration), found.seconds(found.written.duration)
-    yield f"As written: {clock(old)}" + _broken(found)
-    change = f", {clock(abs(old - new))} {'less' if new <= old else 'more'}" if new != old else ""
-    share = f" ({(old - new) / old:.0%})" if new < old and old > 0.0 else ""
-    yield f"Suggested:  {clock(new)}{change}{share}"
-    if suggestion.dropped:
-        done, of = len(suggestion.order), problem.size
-        names = ", ".join(planned.visits.names[visit] for visit in suggestion.dropped)
-        limit = problem.words.get("max_duration", "what is asked for")
-        yield f"{done} of {of} tasks within the {limit}; left out: {names}"
-    yield _proof(found)
-    if planned.mission.order is Order.PRECISE:
-        yield "The mission asks for a precise order: nothing may change places."
-    kept = list(dict.fromkeys(p.words for p in problem.precedences))
-    for words in kept[:_SHOWN]:
-        yield f"Kept: {words}"
-    if len(kept) > _SHOWN:
-        yield f"Kept: {len(kept) - _SHOWN} more"
-    for reason in planned.reasons:
-        yield f"Note: {reason}"
-    for reason in suggestion.reasons:
-        yield f"Search: {reason}"
-
-
-def _broken(found: Suggested) -> str:
-    """What the written order does not keep to."""
-    limit = found.planned.problem.words.get("max_duration", "")
-    broken = [
-        # Else in the problem's units.
-        limit
-        if violation.startswith("it takes ")
-        else violation.replace(" is begun at ", "'s time window|").partition("|")[0]
-        for violation in dict.fromkeys(found.written.violations)
+def _cut_off(problem: RouteProblem) -> str:
+    """What has to be visited and can't, or can't be left, wherever the robot is before or after."""
+    some = problem.travel < NEVER
+    np.fill_diagonal(some, False)
+    names = [
+        visit.name
+        for k, visit in enumerate(problem.visits)
+        if visit.mandatory and not (some[:, k].any() and some[k].any())
     ]
-    if not broken:
-        return ""
-    more = f" and {len(broken) - _BROKEN} more" if len(broken) > _BROKEN else ""
-    return f", which does not keep to: {'; '.join(broken[:_BROKEN])}{more}"
+    return ", ".join(names)
 
 
-def _proof(found: Suggested) -> str:
-    suggestion = found.suggestion
-    method = f" ({suggestion.method})" if suggestion.method else ""
-    if suggestion.proven:
-        return f"Proven: no order is better{method}"
-    if suggestion.prize < suggestion.prize_bound:
-        return (
-            f"Not proven: worth {suggestion.prize}, and none is worth more than "
-            f"{suggestion.prize_bound}{method}"
-        )
-    bound = clock(found.seconds(suggestion.bound))
-    return f"Not proven: no order takes less than {bound}, {suggestion.gap or 0.0:.1%} less{method}"
+def _why_empty(found: Suggested) -> str:
+    """All may be left out, and is."""
+    problem = found.planned.problem
+    limit = problem.words.get("max_duration", "what is asked for")
+    whole = {visit: one.members for one in problem.rounds for visit in one.members}
+    alone = [Route(whole.get(visit, (visit,))) for visit in range(problem.size)]
+    free = replace(problem, max_duration=None)
+    worth = [(evaluate(free, route), route.order[0]) for route in alone]
+    takes = [(one.duration, visit) for one, visit in worth if one.feasible]
+    if not takes:
+        return f"nothing fits within the {limit}"
+    least, visit = min(takes)
+    nearest = f"the nearest, {problem.visits[visit].name}, takes {clock(found.seconds(least))}"
+    if problem.max_duration is not None and least > problem.max_duration:
+        return f"nothing fits within the {limit}: {nearest}; allow more"
+    return (
+        f"nothing was found that is sure to fit within the {limit}, though {nearest}: allow more, "
+        "or more time to search with --time-limit"
+    )

@@ -43,11 +43,11 @@ def solve_circuit(
             return none_found(network, proven=True)
         if status in (cp_model.OPTIMAL, cp_model.FEASIBLE):
             path, charges = model.path(solver)
-            prize_bound = min(prize_bound, int(solver.best_objective_bound + 1e-6))
+            prize_bound = _tighter(prize_bound, solver)
             one = found(network, path, charges, prize_bound, 0)
             best = one if one.better_than(best) else best
         elif status == cp_model.UNKNOWN:
-            prize_bound = min(prize_bound, int(solver.best_objective_bound + 1e-6))
+            prize_bound = _tighter(prize_bound, solver)
         search.known(prize_bound=prize_bound)
         if best is None or best.path is None:
             return none_found(network, proven=False)
@@ -72,6 +72,12 @@ def solve_circuit(
     if best is None or best.path is None:
         return none_found(network, proven=False, bound=bound)
     return found(network, best.path, best.charges, prize_bound, bound)
+
+
+def _tighter(prize_bound: int, solver: cp_model.CpSolver) -> int:
+    """The bound on the prize after a search. One that was stopped before it had a bound says 0."""
+    bound = int(solver.best_objective_bound + 1e-6)
+    return min(prize_bound, bound) if bound > 0 else prize_bound
 
 
 def _solve(

@@ -5,20 +5,29 @@ from pathlib import Path
 from typing import Annotated
 
 import typer
+from pydantic import ValidationError
 from rich.console import Console
 
 from argo_compiler.errors import ArgoError
 from argo_compiler.files import write_mission
-from argo_compiler.route.requirements import Requirements, What, parse_seconds
+from argo_compiler.route.requirements import Requirements, What
 from argo_compiler.route.robust_spread import CAUTIOUS, SIMULATED
 from argo_env.pictures.route import write_route
-from argo_planner.loading import keep_input, load_mission, load_navigator, make_folder
+from argo_env.yaml_messages import message_of
+from argo_planner.loading import (
+    is_mission_file,
+    keep_input,
+    load_mission,
+    load_navigator,
+    make_folder,
+    refuse_areas,
+)
 from argo_planner.options import EndArea, SiteOption, Source, StartArea
+from argo_planner.route_shown import show, show_risk
 from argo_planner.routing import (
     TIME_LIMIT,
+    Suggested,
     read_requirements,
-    show,
-    show_risk,
     suggest,
     suggest_robust,
     why_none,
@@ -83,6 +92,8 @@ def suggest_order(
         keep_input(source, output)
     wanted = read_requirements(requirements) if requirements else Requirements()
     wanted = with_options(wanted, budget, keep_order, before or [])
+    if is_mission_file(source):
+        refuse_areas(source, start_area, end_area)
     if pictures:
         make_folder(pictures)
     navigator = load_navigator(site)
@@ -90,20 +101,26 @@ def suggest_order(
     found = suggest(source, mission, navigator, wanted, time_limit, seed)
     console = Console(highlight=False)
     spread = SPREADS[risk or Spread.CAUTIOUS]
-    if found.suggestion.route is None:
-        console.print(f"{source}: {why_none(found)}", soft_wrap=True, markup=False)
-        raise typer.Exit(2)
+    _require_order(source, found, console)
     if robust:
         found = suggest_robust(found, spread, time_limit, seed)
+        _require_order(source, found, console)
+    reordered = found.mission if output else None  # now: not every order can be written
     show(found, console)
     if robust or risk:
         show_risk(found, spread, seed, console)
-    if output:
-        write_mission(found.mission, output)
+    if output and reordered:
+        write_mission(reordered, output)
         console.print(f"Mission: {output}", soft_wrap=True, markup=False)
     if pictures:
         for path in write_route(found.planned, found.route, navigator, found.travel, pictures):
             console.print(f"Picture: {path}", soft_wrap=True, markup=False)
+
+
+def _require_order(source: Path, found: Suggested, console: Console) -> None:
+    if why := why_none(found):
+        console.print(f"{source}: {why}", soft_wrap=True, markup=False)
+        raise typer.Exit(2)
 
 
 def with_options(
@@ -112,12 +129,19 @@ def with_options(
     """The requirements with those that options ask for; ArgoError where they make no sense."""
     found: dict[str, object] = {"keep_order": keep_order or requirements.keep_order}
     if budget is not None:
-        seconds = parse_seconds(budget)
-        if seconds <= 0.0:
-            raise ArgoError(f"--budget {budget}: give a time above 0, such as 20min")
-        found["budget"] = seconds
-    found["before"] = (*requirements.before, *map(_sequence, before))
+        found["budget"] = _checked("budget", budget, budget).budget
+    asked = [_checked("before", one, (_sequence(one),)).before for one in before]
+    found["before"] = sum(asked, requirements.before)
     return requirements.model_copy(update=found)
+
+
+def _checked(name: str, option: str, value: object) -> Requirements:
+    """What one option asks for alone."""
+    try:
+        return Requirements.model_validate({name: value})
+    except ValidationError as error:
+        fault = error.errors(include_url=False)[0]
+        raise ArgoError(f"--{name} {option}: {message_of(fault, ())}") from None
 
 
 def _sequence(option: str) -> tuple[What, ...]:

@@ -1,6 +1,7 @@
 """`argo route`, and missions that are put in order before they are compiled or run."""
 
 import json
+import re
 
 import pytest
 from PIL import Image
@@ -97,6 +98,38 @@ def test_requirements_that_can_not_all_be_met_are_an_error(argo, source):
     result = argo("route", source, "--before", "3, 1", "--before", "1,3")
     assert result.exit_code == 2
     assert "no order meets all" in result.text
+    kept = argo("route", source, "--keep-order", "--before", "1, 2")
+    assert kept.exit_code == 2
+    assert "the order as written (--keep-order)" in kept.text
+
+
+def test_one_requirement_that_can_not_be_met_is_named_alone(argo, source, tmp_path):
+    wanted = tmp_path / "wanted.yaml"
+    wanted.write_text("windows:\n- {what: 1, latest: 1 s}\n")
+    result = argo("route", source, "--requirements", wanted)
+    assert result.exit_code == 2
+    assert "this can't be met: checkpoint 1 by 0:01" in result.text
+
+
+@pytest.mark.parametrize("extra", [[], ["--robust", "--time-limit", "1"]])
+def test_a_budget_for_nothing_is_an_error(argo, source, tmp_path, extra):
+    written = tmp_path / "new.json"
+    result = argo("route", source, "--budget", "3 s", "-o", written, *extra)
+    assert result.exit_code == 2
+    assert "nothing fits within the budget 3 s: the nearest, " in result.text
+    assert "Suggested" not in result.text
+    assert not written.exists()
+
+
+def test_an_order_that_waits_says_so_and_is_not_written(argo, source, tmp_path):
+    wanted = tmp_path / "wanted.yaml"
+    wanted.write_text("windows:\n- {what: 1, earliest: 30 min}\n")
+    shown = argo("route", source, "--requirements", wanted)
+    assert shown.exit_code == 0
+    waits = re.search(r"Pause: wait (\d\d:\d\d) for checkpoint 1;", shown.text)
+    assert f"wait {waits[1]} for checkpoint 1 " in shown.text.partition("As written")[0]
+    refused = argo("route", source, "--requirements", wanted, "-o", tmp_path / "new.json")
+    assert refused.text.startswith(f"this order waits {waits[1]} for time windows")
 
 
 @pytest.mark.parametrize(
@@ -105,7 +138,13 @@ def test_requirements_that_can_not_all_be_met_are_an_error(argo, source):
         (["--before", "3"], "name at least two"),
         (["--before", "3, 17"], "no checkpoint 17"),
         (["--budget", "soon"], "no duration"),
-        (["--budget", "0 s"], "above 0"),
+        (["--budget", "0 s"], "more than 0"),
+        (["--budget", "-5min"], "must be above 0"),
+        (["--budget", "9" * 400], "has to be"),
+        (["--before", "0, 3"], "at least 1"),
+        (["--before", "3, 3"], "nothing comes before itself"),
+        (["--before", "3, MEASURE 3"], "have a task in common"),
+        (["--start-area", "1"], "has its areas already"),
         (["--requirements", "missing.yaml"], "can't be read"),
     ],
 )

@@ -258,3 +258,9 @@ def test_what_has_no_route_is_refused():
         suggest_robust_route(problem, CAUTIOUS, time_limit=1.0)
     with pytest.raises(ArgoError, match="a confidence of 0"):
         suggest_robust_route(problem, CAUTIOUS, confidence=0.0)
+
+
+def test_each_order_is_counted_once():
+    problem = RouteProblem((Visit("a"), Visit("b")), UNEVEN, max_duration=150)
+    found = suggest_robust_route(problem, TravelSpread(way=0.3), time_limit=2.0)
+    assert found.tried == 2

@@ -73,11 +73,11 @@ def _searched(network: Network, pruned: Pruned, search: Search) -> tuple[Found, 
     if int(pruned.arcs.sum()) > _MOST_ARCS:
         search.say(f"{len(network.prize)} steps are too many for CP-SAT: guided local search")
         return _improved(network, pruned, search, best, method)
-    if not _ordered(network, pruned):
-        exact = solve_circuit(network, pruned, search, best, hinted=False)
-    elif search.workers > 1:
+    if search.workers > 1:
         search.say("CP-SAT from nothing, and beside it from the best route of other searches")
         best, method, exact = _raced(network, pruned, search, best, method)
+    elif not _ordered(network, pruned):
+        exact = solve_circuit(network, pruned, search, best, hinted=False)
     else:
         with search.part(0.4):
             best, method = _prepared(network, pruned, search, best, method)
@@ -168,8 +168,8 @@ def _bounded(network: Network, search: Search, best: Found, exact: Found) -> Fou
 def _raced(
     network: Network, pruned: Pruned, search: Search, best: Found | None, method: str
 ) -> tuple[Found | None, str, Found]:
-    """CP-SAT from nothing on one core; on another local search and beams, and then CP-SAT from what
-    they found. The first that proves something ends the other."""
+    """CP-SAT from nothing on one core; on another CP-SAT with what is known, and before that, where
+    the order is tight, local search and beams. The first that proves something ends the other."""
     running: list[Any] = []
     results: list[Found] = []
     failures: list[BaseException] = []
@@ -188,13 +188,14 @@ def _raced(
 
     thread = threading.Thread(target=prove)
     thread.start()
-    half = search.clock() + 0.5 * search.left()
-    search.deadline = min(search.deadline, half)
-    best, method = _prepared(network, pruned, search, best, method)
+    ordered = _ordered(network, pruned)
+    if ordered:
+        search.deadline = min(search.deadline, search.clock() + 0.5 * search.left())
+        best, method = _prepared(network, pruned, search, best, method)
     exact = best if best is not None and best.proven else None
     if exact is None and not (results and results[0].proven):
         search.deadline = whole
-        exact = solve_circuit(network, pruned, search, best, running=running)
+        exact = solve_circuit(network, pruned, search, best, hinted=ordered, running=running)
     if exact is not None and exact.proven:
         for solver in running:
             solver.stop_search()

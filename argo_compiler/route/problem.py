@@ -48,7 +48,7 @@ class Visit:
     earliest: int = 0
     """when it may begin: a robot that comes earlier waits"""
     latest: int | None = None
-    """when it must have begun; None: whenever"""
+    """when it must have begun; None: whenever; before `earliest`: it can't be made"""
 
 
 @dataclass(frozen=True)
@@ -167,8 +167,6 @@ def _troubles(problem: RouteProblem) -> Iterator[str]:
     for visit in problem.visits:
         if visit.service < 0 or visit.prize < 0 or visit.earliest < 0:
             yield f"{visit.name} has a negative service time, prize or earliest time"
-        if visit.latest is not None and visit.latest < visit.earliest:
-            yield f"the time window of {visit.name} ends before it begins"
         if max(visit.service, visit.earliest, visit.latest or 0) > _LONGEST:
             yield f"a time of {visit.name} is above {_LONGEST}: take a greater unit"
     if sum(visit.prize for visit in problem.visits) > _MOST_PRIZE:

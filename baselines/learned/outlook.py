@@ -12,6 +12,7 @@ POWERS = (0.0, 0.5, 1.0)
 RULES = len(POWERS)
 _SHORT = 0.01  # of the time left, added to all times, so that none is 0
 _ROUNDING = 1e-6
+_TIE = 1e-4
 
 
 @torch.no_grad()
@@ -30,7 +31,8 @@ def look_ahead(
     count = len(state)
     powers = torch.tensor(POWERS)[:, None, None, None]
     pull = powers * prize.clamp_min(1e-6).log()[:, None] - (between + _SHORT).log()
-    pull = pull.reshape(RULES * batch * size, size)
+    # Equal times are common: of those the greater prize, whatever the order of the nodes.
+    pull = (pull + _TIE * prize[:, None]).reshape(RULES * batch * size, size)
     need = (between + home[:, None]).reshape(batch * size, size)
     flat = before.reshape(batch * size, size)
 

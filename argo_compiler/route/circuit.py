@@ -7,6 +7,7 @@ gives the linear relaxation something to hold on to.
 
 from collections.abc import Sequence
 from itertools import pairwise
+from math import ceil
 from typing import Any
 
 import numpy as np
@@ -26,14 +27,17 @@ def solve_circuit(
     start: Found | None = None,
     *,
     hinted: bool = True,
+    timed: bool = False,
     running: list[cp_model.CpSolver] | None = None,
 ) -> Found:
     """The best path that CP-SAT finds until the deadline, and its bounds. `start`: a path that it
     need not do worse than; `hinted`: it also begins there, which helps if the path is good.
-    `running`: where solvers are put, for others to stop."""
+    `timed`: order is stated with times instead of positions where a path is known, which shows what
+    order costs. `running`: where solvers are put, for others to stop."""
     if not pruned.possible:
         return none_found(network, proven=True)
-    best, prize_bound = start, int(network.prize[pruned.steps].sum())
+    best = None if start is None or start.path is None else start
+    prize_bound = int(network.prize[pruned.steps].sum())
     total = None
     if network.selective:
         model = _Model(network, pruned)
@@ -43,39 +47,56 @@ def solve_circuit(
             return none_found(network, proven=True)
         if status in (cp_model.OPTIMAL, cp_model.FEASIBLE):
             path, charges = model.path(solver)
-            prize_bound = _tighter(prize_bound, solver)
+            if status == cp_model.OPTIMAL:
+                prize_bound = round(solver.objective_value)
+            else:
+                prize_bound = _tighter(prize_bound, solver)
             one = found(network, path, charges, prize_bound, 0)
             best = one if one.better_than(best) else best
         elif status == cp_model.UNKNOWN:
             prize_bound = _tighter(prize_bound, solver)
         search.known(prize_bound=prize_bound)
-        if best is None or best.path is None:
+        if best is None:
             return none_found(network, proven=False)
         if network.objective is Objective.PRIZE or best.prize < prize_bound:
             return found(network, best.path or (), best.charges, prize_bound, 0)
         total = best.prize
-    model = _Model(network, pruned)
-    model.minimise_cost(total, best)
-    status, solver = _solve(model, search, best if hinted else None, running, prizes=False)
+    if timed and best is not None and best.cost > 0 and _plain(network):
+        # Nothing but a better path is of interest: that is told apart sooner.
+        model, hint = _Model(network, pruned, end=best.cost - 1), None
+        model.minimise_cost(total, best.cost - 1)
+    else:
+        model, hint = _Model(network, pruned), best if hinted else None
+        model.minimise_cost(total, None if best is None else best.cost)
+    status, solver = _solve(model, search, hint, running, prizes=False)
     if status == cp_model.INFEASIBLE:
-        assert best is None or best.path is None
-        return none_found(network, proven=True)
-    bound = max(
-        0,
-        int(-(-solver.best_objective_bound // 1)) if abs(solver.best_objective_bound) < 1e15 else 0,
-    )
-    search.known(bound=bound)
+        bound = 0 if best is None else best.cost
+    else:
+        bound = _bound(solver)
+        search.known(bound=bound)
     if status in (cp_model.OPTIMAL, cp_model.FEASIBLE):
         path, charges = model.path(solver)
         one = found(network, path, charges, prize_bound, bound)
         best = one if one.better_than(best) else best
-    if best is None or best.path is None:
-        return none_found(network, proven=False, bound=bound)
-    return found(network, best.path, best.charges, prize_bound, bound)
+    if best is None:
+        return none_found(network, proven=status == cp_model.INFEASIBLE, bound=bound)
+    return found(network, best.path or (), best.charges, prize_bound, bound)
+
+
+def _plain(network: Network) -> bool:
+    """Whether the cost of a route is its time, and that the sum of its arcs."""
+    plain = network.problem.battery is None and not network.windowed
+    return plain and network.objective is not Objective.PRIZE
+
+
+def _bound(solver: cp_model.CpSolver) -> int:
+    """The bound on the cost after a search; 0 if it was stopped before it had one."""
+    bound = solver.best_objective_bound
+    return max(0, ceil(bound - 1e-6)) if abs(bound) < 1e15 else 0
 
 
 def _tighter(prize_bound: int, solver: cp_model.CpSolver) -> int:
-    """The bound on the prize after a search. One that was stopped before it had a bound says 0."""
+    """The bound on the prize after a search that was stopped: before it had one, it says 0."""
     bound = int(solver.best_objective_bound + 1e-6)
     return min(prize_bound, bound) if bound > 0 else prize_bound
 
@@ -118,11 +139,16 @@ class _Watch(cp_model.CpSolverSolutionCallback):
 class _Model:
     """The variables and constraints. Has state: the model that it builds."""
 
-    def __init__(self, network: Network, pruned: Pruned) -> None:
+    def __init__(self, network: Network, pruned: Pruned, end: int | None = None) -> None:
+        """`end`: when the route must end, where order is to be stated with times; for plain
+        networks only. It must be tight for the linear relaxation to see much."""
         self.model = cp_model.CpModel()
         self._network, self._pruned = network, pruned
+        self._timed = end is not None
         self._apart = paths(network)
         self._horizon = horizon(network)
+        if end is not None:
+            self._horizon = min(self._horizon, end)
         self._arcs: list[tuple[int, int, int | None, cp_model.IntVar]] = []
         self._arc_costs: list[int] = []
         self._arc_energies: list[int] = []
@@ -242,11 +268,11 @@ class _Model:
                 model.add(battery.used + energy <= battery.capacity)
         self._begins: list[cp_model.IntVar] | None = None
         duration = work
-        if network.windowed:
+        if network.windowed or self._timed:
             self._begins = self._clocks(used)
             end = model.new_int_var(0, self._horizon, "end")
             self._arrive(end, used)
-            waiting = model.new_int_var(0, self._horizon, "waiting")
+            waiting = model.new_int_var(0, 0 if self._timed else self._horizon, "waiting")
             model.add(end == work + waiting)
             duration = end
         elif network.limit < NEVER:
@@ -296,10 +322,13 @@ class _Model:
         for i, j, charger, literal in self._arcs:
             if j < m:
                 begin = begins[int(network.step[j])]
-                model.add(begin >= self._arrival(begins, used, i, j, charger)).only_enforce_if(
-                    literal
-                )
+                self._begin(begin, self._arrival(begins, used, i, j, charger), literal)
         return begins
+
+    def _begin(self, begin: cp_model.IntVar, arrival: Any, literal: cp_model.IntVar) -> None:
+        """With windows, there may be waiting."""
+        soon = begin == arrival if self._timed else begin >= arrival
+        self.model.add(soon).only_enforce_if(literal)
 
     def _arrival(
         self,
@@ -330,7 +359,7 @@ class _Model:
         for i, j, charger, literal in self._arcs:
             if j == m:
                 arrival = self._arrival(self._begins, used, i, j, charger)
-                self.model.add(end >= arrival).only_enforce_if(literal)
+                self._begin(end, arrival, literal)
 
     def _orders(self) -> None:
         """What is needed is made before, and what is ruled out is not made after."""
@@ -376,15 +405,15 @@ class _Model:
             self.model.add(prize >= start.prize)
         self.model.maximize(prize)
 
-    def minimise_cost(self, prize: int | None, start: Found | None) -> None:
-        """The cost, with a prize of at least `prize`; at most that of a path that is known."""
+    def minimise_cost(self, prize: int | None, most: int | None) -> None:
+        """The cost, which is `most` at most, with a prize of at least `prize`."""
         if prize is not None:
             total = sum(
                 int(p) * made for p, made in zip(self._network.prize, self._made, strict=True)
             )
             self.model.add(total >= prize)
-        if start is not None and start.path is not None:
-            self.model.add(self._cost <= start.cost)
+        if most is not None:
+            self.model.add(self._cost <= most)
         self.model.minimize(self._cost)
 
     def hint(self, start: Found) -> None:

@@ -1,15 +1,19 @@
-"""Routes for any problem: built step by step, then improved by ruin and recreate.
+"""Routes for any problem: built step by step, then changed again and again.
 
-Some steps near each other are taken out of the route and put back where they cost least (P. Shaw,
-CP 1998; G. Schrimpf et al., Journal of Computational Physics 159, 2000). Steps that were left out
-are tried as well. A route that is a little worse is taken now and then, less and less often.
+By ruin and recreate: some steps near each other are taken out of the route and put back where they
+cost least (P. Shaw, CP 1998; G. Schrimpf et al., Journal of Computational Physics 159, 2000). Steps
+that were left out are tried as well. Or by some random exchanges of stretches. Either is followed
+by the exchanges that pay, where a route's time is the sum of its arcs. A route that is a little
+worse is taken now and then, less and less often.
 """
 
 from collections.abc import Callable
+from itertools import pairwise
 
 import numpy as np
 from numpy.typing import NDArray
 
+from argo_compiler.route import exchange
 from argo_compiler.route.along import Follower, Stand
 from argo_compiler.route.found import Found, found
 from argo_compiler.route.network import Network
@@ -25,6 +29,12 @@ _ROUNDS = 10
 """that are made however little time there is"""
 _RUINED = 8
 """steps that are taken out at most"""
+_RUINS = 0.4
+"""share of ruin and recreate where stretches can be exchanged"""
+_EXCHANGES, _STRETCH = 6, 30
+"""random exchanges at a time, and steps in a stretch, at most"""
+_WORSE = 0.05
+"""by how much a route that is taken may be worse, in the beginning"""
 
 
 class LocalSearch:
@@ -34,6 +44,7 @@ class LocalSearch:
         self._network, self._pruned = network, pruned
         self._follower = Follower(network)
         self._rng = np.random.default_rng(seed)
+        self._exchange = exchange.Exchange(network, pruned) if exchange.applies(network) else None
         self._near = shortest(network)
         self._step = network.step.tolist()
         self._needs = [set(np.flatnonzero(column).tolist()) for column in pruned.needs.T]
@@ -103,9 +114,9 @@ class LocalSearch:
             rounds = 0
         for k in range(rounds):
             now = search.clock()
-            if now >= until and k >= _ROUNDS:
+            if (now >= until or search.stopped) and k >= _ROUNDS:
                 break
-            there = self._recreated(self._ruined(at))
+            there = self._changed(at)
             worth = None if there is None else self._worth(there)
             if there is None or worth is None:
                 continue
@@ -115,7 +126,7 @@ class LocalSearch:
             warm = max(0.0, 1.0 - (now - begun) / max(until - begun, 1e-9))
             worse = (at_worth[1] - worth[1]) / max(1, -best_worth[1])
             if worth > at_worth or (
-                worth[0] >= at_worth[0] and worse < 0.02 * warm * self._rng.random()
+                worth[0] >= at_worth[0] and worse < _WORSE * warm * self._rng.random()
             ):
                 at, at_worth = there, worth
             elif k % 200 == 199:
@@ -124,6 +135,20 @@ class LocalSearch:
         assert stand is not None
         network = self._network
         return found(network, best, dict(stand.charges), int(network.prize.sum()), 0)
+
+    def _changed(self, path: Path) -> Path | None:
+        """Another path; None: none was found."""
+        if self._exchange is None or self._rng.random() < _RUINS:
+            there = self._recreated(self._ruined(path))
+            if there is None or self._exchange is None:
+                return there
+            onward = set(pairwise(path))
+            near = {node for arc in pairwise(there) if arc not in onward for node in arc}
+        else:
+            times = int(self._rng.integers(1, _EXCHANGES + 1))
+            length = int(self._rng.integers(1, _STRETCH + 1))
+            there, near = self._exchange.shuffled(path, self._rng, times, length)
+        return self._exchange.improved(there, near)
 
     def _worth(self, path: Path) -> Worth | None:
         stand = self._follower.follow(path)

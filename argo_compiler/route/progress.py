@@ -22,6 +22,7 @@ class Search:
     begun: float = 0.0
     certain: bool = True
     """whether what is proven of the network is so of the problem"""
+    stopped: bool = False
     history: list[Point] = field(default_factory=list)
     reasons: list[str] = field(default_factory=list)
     _prize: int | None = None
@@ -52,7 +53,11 @@ class Search:
 
     def left(self) -> float:
         """s until the deadline, at least 0."""
-        return max(0.0, self.deadline - self.clock())
+        return 0.0 if self.stopped else max(0.0, self.deadline - self.clock())
+
+    def stop(self) -> None:
+        """From now on, there is no time left."""
+        self.stopped = True
 
     def route(self, prize: int, cost: int) -> None:
         """A route was found. Those that are no better than the best so far are not noted."""

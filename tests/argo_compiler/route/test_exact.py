@@ -6,9 +6,10 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from argo_compiler.route import NEVER, Route, evaluate, labels, portfolio, subsets, suggest_route
+from argo_compiler.route import NEVER, Route, evaluate, labels, subsets, suggest_route
 from argo_compiler.route.circuit import solve_circuit
 from argo_compiler.route.network import network
+from argo_compiler.route.preparing import first_route
 from argo_compiler.route.progress import Search
 from argo_compiler.route.pruning import prune
 from tests.argo_compiler.route.brute_force import brute_force
@@ -35,7 +36,7 @@ def test_the_best_route_is_that_of_brute_force(part: int) -> None:
             assert set(made.dropped) == left_out
 
 
-@pytest.mark.parametrize("solver", ["circuit", "labels", "prices", "local"])
+@pytest.mark.parametrize("solver", ["circuit", "times", "labels", "prices", "local"])
 def test_each_solver_agrees_with_brute_force(solver: str, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(labels, "_FIRST_GOALS", 2)  # so that small problems have several groups
     compared = 0
@@ -66,6 +67,11 @@ def _solved(solver, net, pruned):  # type: ignore[no-untyped-def]
     search = Search(lambda: 0.0, 60.0, 0, 1, int(net.prize.sum()))
     if solver == "circuit":
         return solve_circuit(net, pruned, search)
+    if solver == "times" and pruned.before.any():
+        search.clock = lambda: float(next(clock))
+        best, _ = first_route(net, pruned, search)
+        search.clock = lambda: 0.0
+        return solve_circuit(net, pruned, search, best, timed=True)
     if solver == "labels" and labels.applies(net):
         layers = subsets.soonest_layers(net, pruned, 10**6, lambda: False)
         return labels.solve_labels(net, pruned, search, layers)
@@ -73,7 +79,7 @@ def _solved(solver, net, pruned):  # type: ignore[no-untyped-def]
         return labels.search_labels(net, pruned, search, None)
     if solver == "local":
         search.clock = lambda: float(next(clock))
-        best, _ = portfolio._first(net, pruned, search)
+        best, _ = first_route(net, pruned, search)
         return best
     return None
 
@@ -117,6 +123,13 @@ def _grid(count: int):  # type: ignore[no-untyped-def]
     way += np.maximum(places[None, :, 1] - places[:, None, 1], 0)
     assert way.max() < NEVER
     return RouteProblem(tuple(Visit(f"checkpoint {k}", 5) for k in range(count)), way)
+
+
+def test_a_route_that_can_win_nothing_is_proven() -> None:
+    problem = random_problem(np.random.default_rng(1071), 5)
+    made = suggest_route(problem, 60.0)
+    assert made.proven
+    assert (made.order, made.prize, made.prize_bound) == ((), 0, 0)
 
 
 def test_of_a_round_with_many_members_nothing_is_claimed() -> None:

@@ -1,0 +1,67 @@
+"""Routes to begin with, before CP-SAT: by simple rules, local search and beams."""
+
+from argo_compiler.route import exchange, labels, routing, subsets
+from argo_compiler.route.found import Found
+from argo_compiler.route.local import LocalSearch
+from argo_compiler.route.masks import Bits
+from argo_compiler.route.network import Network
+from argo_compiler.route.progress import Search
+from argo_compiler.route.pruning import Pruned, longest
+
+_EXCHANGING = 0.12
+"""share of the time in which stretches are exchanged"""
+_PREPARING = 0.45
+"""share of the time for guided local search and beams"""
+_ROUTING = 0.15
+"""share of that for guided local search"""
+_MANY_STEPS = 24
+"""from which on routing's local search is worth its start-up"""
+
+
+def first_route(network: Network, pruned: Pruned, search: Search) -> tuple[Found | None, str]:
+    """A first route by simple rules, and a little better."""
+    local = LocalSearch(network, pruned, search.seed)
+    path = local.first(lambda: search.left() <= 0.0)
+    if path is None:
+        search.say("no simple rule leads to a first route")
+        return None, "CP-SAT"
+    until = search.clock() + min(0.1 * search.left(), 0.02 * len(network.prize))
+    return local.improve(path, search, until), "local search"
+
+
+def is_ordered(network: Network, pruned: Pruned) -> bool:
+    """Whether the steps can't come in any order."""
+    return bool(network.windowed or pruned.before.any() or network.problem.battery is not None)
+
+
+def prepare(
+    network: Network, pruned: Pruned, search: Search, best: Found | None, method: str
+) -> tuple[Found | None, str]:
+    """A good route for CP-SAT to begin with, where order and windows make that hard for it."""
+    if best is not None and exchange.applies(network):
+        search.say("stretches of the first route are exchanged")
+        until = search.clock() + _EXCHANGING * search.left()
+        return improve(network, pruned, search, until, best, method)
+    with search.part(_PREPARING):
+        if len(network.prize) >= _MANY_STEPS and routing.applies(network):
+            search.say("guided local search improves the first route")
+            until = search.clock() + _ROUTING * search.left()
+            better = routing.solve_routing(network, pruned, search, until, best)
+            if better is not None and better.better_than(best):
+                best, method = better, "guided local search"
+        small = longest(network) < subsets.INF and Bits(network, pruned).fits
+        if small and not network.selective and labels.applies(network):
+            search.say("beams of labels, with prices for what is still to come")
+            some = labels.search_labels(network, pruned, search, best)
+            search.known(bound=some.bound)
+            if some.proven or some.better_than(best):
+                best, method = some, "beams of labels"
+    return best, method
+
+
+def improve(
+    network: Network, pruned: Pruned, search: Search, until: float, best: Found, method: str
+) -> tuple[Found, str]:
+    """The better of a route and what local search makes of it, until then on the search's clock."""
+    more = LocalSearch(network, pruned, search.seed).improve(best.path or (), search, until)
+    return (more, "local search") if more.better_than(best) else (best, method)

@@ -44,27 +44,27 @@ class Exchange:
         """shape (m + 1, m + 1): row can't be made any more after column"""
         self.before[:m, :m] = pruned.before[np.ix_(network.step, network.step)]
 
-    def improved(self, path: tuple[int, ...], near: Iterable[int] | None = None) -> tuple[int, ...]:
-        """The path after exchanges, until none that has a cut beside one of the nodes `near` (None:
-        any) or beside a node that was moved makes it shorter."""
+    def improved(self, path: tuple[int, ...], near: Iterable[int]) -> tuple[int, ...]:
+        """The path after exchanges that make it shorter, until there is none with a cut right after
+        one of the nodes `near` or of those where it was cut."""
         line = _Line(self, path)
-        waiting = deque(line.nodes[:-1] if near is None else near)
+        waiting = deque(near)
         queued = set(waiting)
         while waiting:
             node = waiting.popleft()
             queued.discard(node)
-            cuts = line.shortest_at(node)
+            cuts = line.shortest_after(node)
             if cuts is not None:
-                moved = [other for other in line.exchange(cuts) if other not in queued]
-                waiting += moved
-                queued.update(moved)
+                cut = line.exchange(cuts) - queued
+                waiting += cut
+                queued |= cut
         return line.path()
 
     def shuffled(
         self, path: tuple[int, ...], rng: np.random.Generator, times: int, length: int
     ) -> tuple[tuple[int, ...], set[int]]:
         """The path after some random exchanges of stretches of `length` nodes at most, and the
-        nodes beside their cuts."""
+        nodes after which it was cut."""
         line, near = _Line(self, path), set[int]()
         for _ in range(times):
             for _ in range(_TRIES):
@@ -117,24 +117,23 @@ class _Line:
         return bool(third <= self._reach[first + 1, second])
 
     def exchange(self, cuts: Cuts) -> set[int]:
-        """Makes an exchange; the nodes beside its cuts."""
-        first, second, third = cuts
-        cut = np.split(self._order, [first + 1, second + 1, third + 1])
-        beside = {self.nodes[k + side] for k in cuts for side in (0, 1)}
-        self._put(np.concatenate((cut[0], cut[2], cut[1], cut[3])))
-        return beside
+        """Makes an exchange; the nodes after which it cut."""
+        first, second, third = (k + 1 for k in cuts)
+        order = self._order
+        after = {self.nodes[k] for k in cuts}
+        parts = order[:first], order[second:third], order[first:second], order[third:]
+        self._put(np.concatenate(parts))
+        return after
 
-    def shortest_at(self, node: int) -> Cuts | None:
-        """The exchange with a cut beside a node that saves most; None: none saves anything."""
-        least, best = 0, None
-        at = self._at[node]
-        for cut in (at - 1, at) if at else (0,):
-            for longer, allowed, cuts in (self._first(cut), self._second(cut), self._third(cut)):
-                if longer.size:
-                    longer[~allowed] = 0
-                    row, column = divmod(int(longer.argmin()), longer.shape[1])
-                    if longer[row, column] < least:
-                        least, best = int(longer[row, column]), cuts(row, column)
+    def shortest_after(self, node: int) -> Cuts | None:
+        """The exchange with a cut after a node that saves most; None: none saves anything."""
+        least, best, cut = 0, None, self._at[node]
+        for longer, allowed, cuts in (self._first(cut), self._second(cut), self._third(cut)):
+            if longer.size:
+                longer[~allowed] = 0
+                row, column = divmod(int(longer.argmin()), longer.shape[1])
+                if longer[row, column] < least:
+                    least, best = int(longer[row, column]), cuts(row, column)
         return best
 
     # Of an exchange, the new arcs are those from the first cut to behind the second, from the third

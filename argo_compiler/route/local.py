@@ -142,8 +142,9 @@ class LocalSearch:
             there = self._recreated(self._ruined(path))
             if there is None or self._exchange is None:
                 return there
-            onward = set(pairwise(path))
-            near = {node for arc in pairwise(there) if arc not in onward for node in arc}
+            m = self._network.size
+            old = set(pairwise((m, *path, m)))
+            near = {arc[0] for arc in pairwise((m, *there, m)) if arc not in old}
         else:
             times = int(self._rng.integers(1, _EXCHANGES + 1))
             length = int(self._rng.integers(1, _STRETCH + 1))

@@ -33,8 +33,12 @@ def solve(network: Network, pruned: Pruned, search: Search) -> tuple[Found, str]
     if small and (sets <= most or network.windowed) and Bits(network, pruned).fits:
         with search.part(0.7):
             layers = subsets.soonest_layers(network, pruned, most, lambda: search.left() <= 0.0)
+            in_time = search.left() > 0.0
         if layers is not None:
             return _all_sets(network, pruned, search, layers)
+        if not in_time:
+            search.say(f"there was no time to go through all sets of {steps} steps")
+            return _searched(network, pruned, search)
     search.say(f"{steps} steps allow more than {most} sets, or have too much to reckon with")
     return _searched(network, pruned, search)
 

@@ -8,7 +8,7 @@ from argo_compiler.route.network import Network
 from argo_compiler.route.progress import Search
 from argo_compiler.route.pruning import Pruned, longest
 
-_EXCHANGING = 0.12
+_EXCHANGING = 0.2
 """share of the time in which stretches are exchanged"""
 _PREPARING = 0.45
 """share of the time for guided local search and beams"""

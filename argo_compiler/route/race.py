@@ -13,7 +13,7 @@ from argo_compiler.route.preparing import improve, is_ordered, prepare
 from argo_compiler.route.progress import Search
 from argo_compiler.route.pruning import Pruned
 
-_FROM_NOTHING = 0.12
+_FROM_NOTHING = 0.2
 """share of the time for the first try where a good route will soon be known"""
 _TURNS = ((0.3, 0.2), (0.8, 1.0))
 """shares of the time that is left, for a proof and then for a better route"""
@@ -75,7 +75,7 @@ class _Race:
         if self._plain and not self._beside.proven:
             self._ready.wait()
             if not alone.stopped:
-                again = self._solved(alone, self._known)
+                again = self._solved(alone, self._known, timed=True)
                 self._beside = _both(network, alone, self._beside, again)
 
     def _run_here(self, best: Found | None, method: str) -> tuple[Found | None, str, Found | None]:
@@ -95,10 +95,10 @@ class _Race:
     def _alternated(self, best: Found, method: str) -> tuple[Found, str, Found]:
         """CP-SAT and local search by turns: a better route makes the proof easier."""
         network, pruned, search = self._network, self._pruned, self._search
-        search.say("CP-SAT with times instead of positions, and local search, by turns")
+        search.say("CP-SAT with positions and local search by turns, beside CP-SAT with times")
         for proving, improving in _TURNS:
             with search.part(proving):
-                exact = self._solved(search, best, timed=True)
+                exact = self._solved(search, best)
             if exact.better_than(best):
                 best, method = exact, "CP-SAT"
             far = best.cost > _FAR * max(search.bound, self._alone.bound)

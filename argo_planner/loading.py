@@ -120,6 +120,13 @@ def keep_input(source: Path, output: Path) -> None:
         raise ArgoError(f"{output} is the input as well; choose another place to write to")
 
 
+def require_mission_output(source: Path, output: Path) -> None:
+    """Raises ArgoError where a mission that is written there could not be read again."""
+    keep_input(source, output)
+    if output.suffix.lower() != ".json":
+        raise ArgoError(f"{output}: a mission is written as JSON; name a file that ends in .json")
+
+
 def make_folder(path: Path) -> None:
     """Makes the folder now, so that no run is lost for want of a place for its report."""
     try:

@@ -60,6 +60,8 @@ def _table(found: Suggested) -> Table:
             str(written[visit] + 1),
             clock(found.seconds(before[written[visit]])),
         )
+        if along := planned.visits.along(visit):
+            table.add_row("", f"[italic]then {escape(', '.join(along))}[/]", "", "", "")
     for pause in stops.get(len(route.order), ()):
         table.add_row("", f"[italic]{escape(_pause(found, pause))}[/]", "", "", "")
     for visit in found.suggestion.dropped:

@@ -216,15 +216,18 @@ def _why_empty(found: Suggested) -> str:
     """All may be left out, and is."""
     problem = found.planned.problem
     limit = problem.words.get("max_duration", "what is asked for")
-    whole = {visit: one.members for one in problem.rounds for visit in one.members}
-    alone = [Route(whole.get(visit, (visit,))) for visit in range(problem.size)]
+    group = {visit: one for one in problem.rounds for visit in one.members}
+    alone = [
+        Route(group[visit].members if visit in group else (visit,)) for visit in range(problem.size)
+    ]
     free = replace(problem, max_duration=None)
     worth = [(evaluate(free, route), route.order[0]) for route in alone]
     takes = [(one.duration, visit) for one, visit in worth if one.feasible]
     if not takes:
         return f"nothing fits within the {limit}"
     least, visit = min(takes)
-    nearest = f"the nearest, {problem.visits[visit].name}, takes {clock(found.seconds(least))}"
+    which = group[visit].name if visit in group else problem.visits[visit].name
+    nearest = f"the nearest, {which}, takes {clock(found.seconds(least))}"
     if problem.max_duration is not None and least > problem.max_duration:
         return f"nothing fits within the {limit}: {nearest}; allow more"
     return (

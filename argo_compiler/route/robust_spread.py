@@ -32,7 +32,7 @@ SIMULATED = TravelSpread(
     source=(
         "the simulator with the tracked drive and no faults: missions on UMAD take 0.05 % more or "
         "less than planned in the median and 0.22 % at most (docs/drives.md), single motions of "
-        "5.6 s on average 0.2 s (urdf/robot/tracker.calibration.yaml), and a way has some 30"
+        "5.6 s on average 0.2 s (urdf/robot/tracker.calibration.yaml); a way is some 30 motions"
     ),
 )
 

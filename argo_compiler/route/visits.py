@@ -60,6 +60,12 @@ class Visits:
         others = self._measuring[task.object_id or ""]
         return f"checkpoint {task.object_id}" + (f" ('{task.name}')" if len(others) > 1 else "")
 
+    def along(self, visit: int) -> tuple[str, ...]:
+        """The names of what is done with a visit, always or in some cases."""
+        stop = self.stops[visit]
+        others = (self.name(leaf) for leaf in stop.leaves if leaf != stop.entry)
+        return tuple(dict.fromkeys(others))
+
     def short(self, visit: int) -> str:
         """The same, with only the number of a checkpoint."""
         return self.names[visit].removeprefix("checkpoint ")

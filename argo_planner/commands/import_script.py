@@ -9,7 +9,12 @@ from rich.markup import escape
 
 from argo_compiler.errors import ArgoError
 from argo_compiler.files import write_mission
-from argo_planner.loading import is_own_mission, keep_input, load_mission, load_navigator
+from argo_planner.loading import (
+    is_own_mission,
+    load_mission,
+    load_navigator,
+    require_mission_output,
+)
 from argo_planner.options import EndArea, SiteOption, StartArea
 
 
@@ -25,7 +30,7 @@ def import_script(
     """Read a mission script, a bag or an isar mission, and write the mission as JSON."""
     if is_own_mission(script):
         raise ArgoError(f"{script} is no script: `argo run` and `argo compile` take missions")
-    keep_input(script, output)
+    require_mission_output(script, output)
     mission, _ = load_mission(script, load_navigator(site), start_area, end_area)
     write_mission(mission, output)
     names = ", ".join(task.name for task in mission.tasks)

@@ -16,11 +16,11 @@ from argo_env.pictures.route import write_route
 from argo_env.yaml_messages import message_of
 from argo_planner.loading import (
     is_mission_file,
-    keep_input,
     load_mission,
     load_navigator,
     make_folder,
     refuse_areas,
+    require_mission_output,
 )
 from argo_planner.options import EndArea, SiteOption, Source, StartArea
 from argo_planner.route_shown import show, show_risk
@@ -89,7 +89,7 @@ def suggest_order(
 ) -> None:
     """Suggest the best order of a mission's tasks; exits with status 2 if there is none."""
     if output:
-        keep_input(source, output)
+        require_mission_output(source, output)
     wanted = read_requirements(requirements) if requirements else Requirements()
     wanted = with_options(wanted, budget, keep_order, before or [])
     if is_mission_file(source):

@@ -182,3 +182,10 @@ def test_a_run_in_its_best_order_says_so_in_its_report(argo, source, tmp_path, m
     assert record.reordering.order == tuple(run.task for run in record.tasks[:-1])
     assert record.result.duration == pytest.approx(record.reordering.duration, rel=0.1)
     assert "As suggested" in (report / "report.html").read_text()
+
+
+def test_a_mission_is_only_written_where_it_can_be_read_again(argo, source, tmp_path):
+    result = argo("route", source, "-o", tmp_path / "new.txt")
+    assert result.exit_code == 1
+    assert "ends in .json" in result.text
+    assert not (tmp_path / "new.txt").exists()

@@ -94,6 +94,8 @@ def _lines(found: Suggested) -> Iterator[str]:
         yield f"Pause: {_pause(found, pause)}; no mission says that, so -o can't write it"
     if planned.mission.order is Order.PRECISE:
         yield "The mission asks for a precise order: nothing may change places."
+    for name, members in _unreached(found):
+        yield f"Note: the time of {name} is over before {members}: the way there counts"
     kept = list(dict.fromkeys(p.words for p in problem.precedences))
     for words in kept[:_SHOWN]:
         yield f"Kept: {words}"
@@ -103,6 +105,25 @@ def _lines(found: Suggested) -> Iterator[str]:
         yield f"Note: {reason}"
     for reason in suggestion.reasons:
         yield f"Search: {reason}"
+
+
+def _unreached(found: Suggested) -> Iterator[tuple[str, str]]:
+    """Groups that their time ends before all of their tasks have been reached once, and those tasks
+    that it ends before."""
+    planned, route = found.planned, found.route
+    problem, order = planned.problem, found.route.order
+    arrivals = dict(zip(order, evaluate(problem, route).arrivals, strict=True))
+    for one in problem.rounds:
+        inside = [visit for visit in order if visit in one.members]
+        if one.soft or not one.duration or not inside:
+            continue
+        begin, first = 0, order.index(inside[0])
+        if first:
+            before = order[first - 1]
+            begin = arrivals[before] + problem.visits[before].service
+        late = [visit for visit in inside if arrivals[visit] >= begin + one.duration]
+        if late and first not in route.charges:
+            yield one.name, ", ".join(planned.visits.names[visit] for visit in late)
 
 
 def _pause(found: Suggested, pause: Pause) -> str:

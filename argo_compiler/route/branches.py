@@ -45,6 +45,16 @@ class Branches:
         """From the end of a stop's first task to the end of what is done at each destination."""
         return self._row(stop, self._time, self._likely)
 
+    def along(self, stop: Stop) -> float:
+        """From the end of a stop's first task to the end of its last, wherever that goes on to."""
+        if len(stop.leaves) == 1:
+            return 0.0
+        inside, costs = frozenset(stop.leaves), self._time
+        rows = self._after(
+            stop.entry, inside, stop.level, costs, self._likely, lambda _: np.zeros(1)
+        )
+        return float(rows[0])
+
     def energy(self, stop: Stop) -> Row:
         """The same, always in the worst case."""
         return self._row(stop, self._energy, {})

@@ -49,7 +49,8 @@ def route_problem(
     spine = find_spine(mission)
     require_ways(ways, mission)
     visits = Visits(spine)
-    times, energies = _costs(visits, ways, _likely(visits, requirements))
+    times, energies, along = _costs(visits, ways, _likely(visits, requirements))
+    services = [_work(stop, ways) + more for stop, more in zip(visits.stops, along, strict=True)]
     battery = _battery(visits, ways, times, energies)
     limit = _limit(mission, requirements)
     words = {} if limit is None else {"max_duration": limit[1]}
@@ -61,8 +62,8 @@ def route_problem(
         words["battery"] = f"battery of {ways.battery:g} Wh"
         reasons.append(f"the battery gives {ways.battery:g} Wh, which may not be enough")
     problem = RouteProblem(
-        visits=tuple(_visits(visits, ways, requirements)),
-        travel=_travel(visits, times, ways),
+        visits=tuple(_visits(visits, services, ways, requirements)),
+        travel=_travel(visits, times, services, ways),
         precedences=rules(visits, mission.order is Order.PRECISE, requirements),
         rounds=tuple(_rounds(visits, ways)),
         max_duration=None if limit is None else ways.down(limit[0]),
@@ -113,9 +114,10 @@ def _likely(visits: Visits, requirements: Requirements) -> dict[tuple[int, int],
 
 def _costs(
     visits: Visits, ways: Ways, likely: dict[tuple[int, int], float]
-) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
-    """Times (units) and energies (Wh) of the problem's rows and columns, what is done at the column
-    included. inf: there is no way."""
+) -> tuple[NDArray[np.float64], NDArray[np.float64], list[int]]:
+    """Times (units) and energies (Wh) of the problem's rows and columns, with what goes along with
+    the row and what is done at the column, inf: there is no way; and whole units of what goes
+    along with each visit."""
     tasks, end = len(ways.tasks), visits.spine.end
     nowhere = np.zeros((len(ways.time), 1))  # to end where the robot is, and with nothing to do
     time, energy = np.hstack([ways.time, nowhere]), np.hstack([ways.energy, nowhere])
@@ -132,23 +134,30 @@ def _costs(
     chargers = range(tasks, tasks + len(ways.chargers))
     columns = [stop.entry for stop in visits.stops]
     columns += [len(time[0]) - 1 if end is None else end, *chargers]
-    return np.array(times)[:, columns], np.array(energies)[:, columns]
+    along = [int(branches.along(stop) + _ROUNDING) for stop in visits.stops]
+    return np.array(times)[:, columns], np.array(energies)[:, columns], along
 
 
-def _travel(visits: Visits, times: NDArray[np.float64], ways: Ways) -> NDArray[np.int64]:
-    """The times as the problem has them: whole units, without what is done at the column."""
+def _travel(
+    visits: Visits, times: NDArray[np.float64], services: list[int], ways: Ways
+) -> NDArray[np.int64]:
+    """The times as the problem has them: whole units, without what the visits themselves take."""
     found = np.isfinite(times)
     whole = np.ceil(np.where(found, times, 0.0) - _ROUNDING).astype(np.int64)
     for k, stop in enumerate(visits.stops):
-        whole[:, k] -= _service(stop, ways)
+        whole[:, k] -= _work(stop, ways)
+        whole[k] -= services[k] - _work(stop, ways)
     return np.where(found, np.maximum(whole, 0), NEVER)
 
 
-def _service(stop: Stop, ways: Ways) -> int:
+def _work(stop: Stop, ways: Ways) -> int:
+    """Units that the first task takes."""
     return int(ways.work[stop.entry])
 
 
-def _visits(visits: Visits, ways: Ways, requirements: Requirements) -> Iterator[Visit]:
+def _visits(
+    visits: Visits, services: list[int], ways: Ways, requirements: Requirements
+) -> Iterator[Visit]:
     everything = range(len(visits.stops))
     prizes = {} if requirements.budget is None else dict.fromkeys(everything, 1)
     for one in requirements.optional:
@@ -169,7 +178,7 @@ def _visits(visits: Visits, ways: Ways, requirements: Requirements) -> Iterator[
         optional = k in prizes and k not in mandatory
         yield Visit(
             visits.names[k],
-            service=_service(visits.stops[k], ways),
+            service=services[k],
             mandatory=not optional,
             prize=prizes.get(k, 0) if optional else 0,
             earliest=earliest,

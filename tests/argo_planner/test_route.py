@@ -9,7 +9,7 @@ from typer.testing import CliRunner
 
 from argo_compiler.files import read_mission, write_mission
 from argo_compiler.hfsm import Hfsm
-from argo_compiler.il import Order
+from argo_compiler.il import Group, Order
 from argo_compiler.model import Pose
 from argo_env.record import RunRecord
 from argo_planner.cli import app
@@ -189,3 +189,16 @@ def test_a_mission_is_only_written_where_it_can_be_read_again(argo, source, tmp_
     assert result.exit_code == 1
     assert "ends in .json" in result.text
     assert not (tmp_path / "new.txt").exists()
+
+
+def test_a_group_whose_time_is_over_before_it_is_reached_is_noted(argo, tmp_path):
+    patrol = Group(name="PATROL", start="near", end="far", max_repeat_duration=1.0)
+    far, near = waypoint("far", 5.5, 2.5), waypoint("near", 2.2, 1.05)
+    written = mission(
+        measure(2), near, far, waypoint("DOCK", 1.05, 1.05),
+        groups=(patrol,), order=Order.ANY, dock=DOCK,
+    )  # fmt: skip
+    write_mission(written, tmp_path / "mission.json")
+    shown = argo("route", tmp_path / "mission.json")
+    assert shown.exit_code == 0, shown.text
+    assert "the time of group 'PATROL' is over before" in shown.text

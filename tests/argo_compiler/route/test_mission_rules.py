@@ -192,13 +192,28 @@ def test_how_old_a_value_is_depends_on_what_comes_between():
     assert "asks how old the value of checkpoint 4 is" in found.reasons[0]
 
 
+def test_the_time_of_a_group_does_not_begin_before_what_goes_along_is_done():
+    patrol = Group(name="PATROL", start="M3", end="M4", max_repeat_duration=60.0)
+    first = measure(1, above(1, "M2"), Transition(target="M3"))
+    mission = row(first, measure(2), measure(3), measure(4), groups=(patrol,))
+    time = np.full((6, 5), 10.0)
+    time[0, 1] = 500.0
+    found = planned(mission, time)
+    assert evaluate(found.problem, found.written).duration >= 500 + 60
+
+
 def test_times_are_those_of_the_worst_way():
     mission = row(measure(1, above(1, "M2"), Transition(target="M3")), measure(2), measure(3))
     time = np.full((5, 4), 10.0)
     time[0, 1], time[1, 2], time[0, 2] = 30.0, 40.0, 20.0
-    assert planned(mission, time).problem.travel[0, 1] == 68
+
+    def takes(found):
+        return found.problem.visits[0].service + found.problem.travel[0, 1]
+
+    # M1 takes 2, and so does M3, which is not part of the way.
+    assert takes(planned(mission, time)) == 2 + 68
     likely = [{"task": "M1", "target": "M2", "probability": 0.25}]
-    assert planned(mission, time, likelihoods=likely).problem.travel[0, 1] == 31
+    assert takes(planned(mission, time, likelihoods=likely)) == 2 + 31
     with pytest.raises(ArgoError, match="no condition of a task 'M1' leads to 'M3'"):
         planned(mission, time, likelihoods=[{"task": "M1", "target": "M3", "probability": 0.5}])
 

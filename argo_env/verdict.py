@@ -87,5 +87,5 @@ def _praise(hfsm: Hfsm, runs: Iterable[TaskRun]) -> str:
     done = {t.task for t in runs} | RESERVED_NAMES
     passed_over = [leaf.task.name for leaf in hfsm.leaves if leaf.task.name not in done]
     if passed_over:
-        return f"the plan was carried out; its conditions passed over {', '.join(passed_over)}"
+        return f"the plan was carried out; it led past {', '.join(passed_over)}"
     return "everything was done as planned"

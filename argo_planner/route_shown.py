@@ -47,6 +47,7 @@ def _table(found: Suggested) -> Table:
     stops = pauses(planned.problem, route)
     before = found.written.arrivals
     written = {visit: k for k, visit in enumerate(planned.written.order)}
+    late = {visit for _, visits in _unreached(found) for visit in visits}
     table = Table(title="Order", title_justify="left")
     for name in ("", "task", "begins", "was", "began"):
         table.add_column(name, justify="left" if name == "task" else "right")
@@ -56,7 +57,7 @@ def _table(found: Suggested) -> Table:
         table.add_row(
             str(k + 1),
             escape(planned.visits.names[visit]),
-            clock(found.seconds(worth.arrivals[k])),
+            "not reached" if visit in late else clock(found.seconds(worth.arrivals[k])),
             str(written[visit] + 1),
             clock(found.seconds(before[written[visit]])),
         )
@@ -94,7 +95,8 @@ def _lines(found: Suggested) -> Iterator[str]:
         yield f"Pause: {_pause(found, pause)}; no mission says that, so -o can't write it"
     if planned.mission.order is Order.PRECISE:
         yield "The mission asks for a precise order: nothing may change places."
-    for name, members in _unreached(found):
+    for name, late in _unreached(found):
+        members = ", ".join(planned.visits.names[visit] for visit in late)
         yield f"Note: the time of {name} is over before {members}: the way there counts"
     kept = list(dict.fromkeys(p.words for p in problem.precedences))
     for words in kept[:_SHOWN]:
@@ -107,9 +109,9 @@ def _lines(found: Suggested) -> Iterator[str]:
         yield f"Search: {reason}"
 
 
-def _unreached(found: Suggested) -> Iterator[tuple[str, str]]:
+def _unreached(found: Suggested) -> Iterator[tuple[str, list[int]]]:
     """Groups that their time ends before all of their tasks have been reached once, and those tasks
-    that it ends before."""
+    that it ends before, as visits."""
     planned, route = found.planned, found.route
     problem, order = planned.problem, found.route.order
     arrivals = dict(zip(order, evaluate(problem, route).arrivals, strict=True))
@@ -123,7 +125,7 @@ def _unreached(found: Suggested) -> Iterator[tuple[str, str]]:
             begin = arrivals[before] + problem.visits[before].service
         late = [visit for visit in inside if arrivals[visit] >= begin + one.duration]
         if late and first not in route.charges:
-            yield one.name, ", ".join(planned.visits.names[visit] for visit in late)
+            yield one.name, late
 
 
 def _pause(found: Suggested, pause: Pause) -> str:

@@ -115,19 +115,24 @@ def suggest(
     return Suggested(planned, suggest_route(planned.problem, time_limit, seed), travel)
 
 
+def require_limit(mission: Mission, requirements: Requirements) -> None:
+    """Raises ArgoError if nothing limits the mission's time."""
+    limits = [mission.max_duration, requirements.budget, *(w.latest for w in requirements.windows)]
+    if all(limit is None for limit in limits):
+        raise ArgoError(
+            "nothing limits this mission's time, so every order is completed in time: give "
+            "--budget, or the mission a maximum duration"
+        )
+
+
 def suggest_robust(
     found: Suggested, spread: TravelSpread, time_limit: float, seed: int
 ) -> Suggested:
     """The order that is most probably kept to within all limits of time, instead.
 
-    Raises ArgoError if nothing limits the mission's time, or there is no order.
+    Raises ArgoError if there is no order.
     """
     problem = found.planned.problem
-    if problem.max_duration is None and all(visit.latest is None for visit in problem.visits):
-        raise ArgoError(
-            "nothing limits this mission's time, so every order is completed in time: give "
-            "--budget, or the mission a maximum duration"
-        )
     robust = suggest_robust_route(problem, spread, time_limit, seed)
     nominal, route = robust.nominal, robust.route
     made = set(route.order)
@@ -195,7 +200,10 @@ def _why_no_route(found: Suggested) -> str:
         )
     limit, written = problem.max_duration, found.written.duration
     if limit is not None and written > limit and not problem.selective:
-        text += f"\nAs it is written, the mission takes {clock(found.seconds(written))}; "
+        text += f"\nAs it is written, the mission takes {clock(found.seconds(written))}"
+        if found.written.waiting:
+            text += f", {clock(found.seconds(found.written.waiting))} of it spent waiting"
+        text += "; "
         text += "with --budget, what does not fit is left out."
     return text
 

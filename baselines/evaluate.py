@@ -23,6 +23,7 @@ from argo_compiler.errors import ArgoError
 from baselines.comparison import Comparison, compare
 from baselines.episodes import play
 from baselines.families import TEST_SETS, find_set
+from baselines.folders import make_folder
 from baselines.intervals import Interval
 from baselines.policy import POLICIES, make_policy
 from baselines.references import references
@@ -85,7 +86,7 @@ def markdown(comparison: Comparison) -> str:
 def write(comparisons: Sequence[Comparison], folder: Path) -> None:
     """Writes `results.json` with everything, `results.csv` with a line for each route, and
     `results.md` with what is printed."""
-    folder.mkdir(parents=True, exist_ok=True)
+    make_folder(folder)
     data = [asdict(comparison) for comparison in comparisons]
     (folder / "results.json").write_text(json.dumps(data, indent=1) + "\n", encoding="utf-8")
     text = "\n".join(markdown(comparison) for comparison in comparisons)
@@ -158,6 +159,8 @@ def _evaluate(given: argparse.Namespace) -> None:
         raise ArgoError(f"--seed is {given.seed}, and has to be at least 0")
     best = {tests.name: references(tests.name)[: given.instances] for tests in sets}
     policies = {name: make_policy(name) for name in dict.fromkeys(given.policy)}
+    if given.out is not None:
+        make_folder(given.out)
     console, notes = Console(), Console(stderr=True)
     if not console.is_terminal:
         console = Console(width=_WIDTH)

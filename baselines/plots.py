@@ -20,6 +20,7 @@ from argo_compiler.errors import ArgoError
 from argo_compiler.route import RouteProblem, suggest_route
 from argo_env.envs.route import RouteEnv
 from baselines.families import InstanceSet, TurnTaking, find_set
+from baselines.folders import make_folder
 from baselines.policy import Policy, make_policy
 from baselines.problem import HUNDREDTH, hindsight
 
@@ -32,9 +33,12 @@ def plot_gaps(results: Path, folder: Path) -> list[Path]:
     try:
         comparisons = json.loads(results.read_text(encoding="utf-8"))
         gaps = {one["test_set"]: _gaps(one) for one in comparisons}
-    except (OSError, ValueError, KeyError, TypeError) as error:
+    except OSError as error:
+        raise ArgoError(f"{results} can't be read: {error.strerror}") from None
+    except (ValueError, KeyError, TypeError):
         raise ArgoError(
-            f"{results} has no results of `python -m baselines.evaluate --out DIR` ({error})"
+            f"{results} has no results of `python -m baselines.evaluate --out DIR`: give the "
+            "results.json that it writes"
         ) from None
     return [_box_plot(name, found, folder / f"gaps-{name}.png") for name, found in gaps.items()]
 
@@ -64,7 +68,7 @@ def _box_plot(name: str, gaps: dict[str, list[float]], picture: Path) -> Path:
     )  # fmt: skip
     axes.invert_yaxis()
     axes.axvline(0.0, color="#64707c", linewidth=0.8)
-    axes.set_xlabel("below the best route, % of its prize (line: median, diamond: mean)")
+    axes.set_xlabel("below the best route, % of its prize (line: median, diamond: mean of all)")
     axes.set_title(f"{name}, {len(next(iter(gaps.values())))} instances", fontsize=10)
     axes.grid(axis="x", alpha=0.3)
     return _saved(figure, picture)
@@ -113,13 +117,13 @@ def draw_tour(tests: InstanceSet, policy: Policy, number: int, picture: Path) ->
     while not over:
         observation, _, over, _, _ = env.step(policy.act(observation))
     image = env.render()
-    picture.parent.mkdir(parents=True, exist_ok=True)
+    make_folder(picture.parent)
     Image.fromarray(np.asarray(image)).save(picture)
     return picture
 
 
 def _saved(figure: Any, picture: Path) -> Path:
-    picture.parent.mkdir(parents=True, exist_ok=True)
+    make_folder(picture.parent)
     figure.savefig(picture, dpi=110)
     plt.close(figure)
     return picture

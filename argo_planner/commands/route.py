@@ -28,6 +28,7 @@ from argo_planner.routing import (
     TIME_LIMIT,
     Suggested,
     read_requirements,
+    require_limit,
     suggest,
     suggest_robust,
     why_none,
@@ -98,6 +99,8 @@ def suggest_order(
         make_folder(pictures)
     navigator = load_navigator(site)
     mission, _ = load_mission(source, navigator, start_area, end_area)
+    if robust:
+        require_limit(mission, wanted)
     found = suggest(source, mission, navigator, wanted, time_limit, seed)
     console = Console(highlight=False)
     spread = SPREADS[risk or Spread.CAUTIOUS]

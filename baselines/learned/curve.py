@@ -62,7 +62,7 @@ def _draw_set(panel: Axes, points: Points, taught: int) -> None:
 
 
 def main(arguments: list[str] | None = None) -> int:
-    """The exit status: 1 if there is nothing to draw."""
+    """The exit status: 2 if there is nothing to draw."""
     parser = argparse.ArgumentParser(prog="python -m baselines.learned.curve", description=__doc__)
     parser.add_argument("folder", type=Path, metavar="DIR", help="what --out of the training was")
     parser.add_argument("picture", type=Path, metavar="PICTURE", help="a .png or .svg to write")
@@ -71,7 +71,7 @@ def main(arguments: list[str] | None = None) -> int:
         draw_curve(read_logs(given.folder), given.picture)
     except ArgoError as error:
         print(f"error: {error}", file=sys.stderr)
-        return 1
+        return 2
     return 0
 
 

@@ -6,11 +6,12 @@ from dataclasses import replace
 from pathlib import Path
 
 from argo_compiler.errors import ArgoError
+from baselines.folders import make_folder
 from baselines.learned.extra import check_learned
 
 
 def main(arguments: list[str] | None = None) -> int:
-    """The exit status: 1 if nothing could be trained."""
+    """The exit status: 2 if nothing could be trained."""
     parser = argparse.ArgumentParser(prog="python -m baselines.learned.train", description=__doc__)
     where = parser.add_mutually_exclusive_group(required=True)
     where.add_argument("--out", type=Path, metavar="DIR", help="train from nothing, and write here")
@@ -26,7 +27,7 @@ def main(arguments: list[str] | None = None) -> int:
         _train(given)
     except ArgoError as error:
         print(f"error: {error}", file=sys.stderr)
-        return 1
+        return 2
     return 0
 
 
@@ -46,7 +47,7 @@ def _train(given: argparse.Namespace) -> None:
         folder = given.out
         if (folder / CHECKPOINT).exists():
             raise ArgoError(f"{folder} has a training already: --resume {folder}, or another --out")
-        folder.mkdir(parents=True, exist_ok=True)
+        make_folder(folder)
         state = begin(replace(Settings(), **chosen))
     train(state, folder, lambda line: print(line, flush=True))
 

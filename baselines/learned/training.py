@@ -4,6 +4,7 @@ one before it left in a file, so that a training that was cut off goes on to the
 from collections.abc import Callable
 from dataclasses import asdict, dataclass, field
 from pathlib import Path
+from pickle import UnpicklingError
 from typing import Any
 
 import numpy as np
@@ -95,12 +96,16 @@ def load(folder: Path) -> State:
     path = folder / CHECKPOINT
     try:
         kept = torch.load(path, weights_only=True)
+        network = RouteNetwork()
+        network.load_state_dict(kept["network"])
+        settings = Settings(**kept["settings"])
+        return State(settings, network, kept["part"], kept["steps"], kept["optimiser"])
     except FileNotFoundError:
         raise ArgoError(f"no training to go on with: there is no {path}") from None
-    network = RouteNetwork()
-    network.load_state_dict(kept["network"])
-    settings = Settings(**kept["settings"])
-    return State(settings, network, kept["part"], kept["steps"], kept["optimiser"])
+    except (UnpicklingError, AttributeError, RuntimeError, EOFError, KeyError, TypeError):
+        raise ArgoError(
+            f"{path} is damaged, or not of this training: begin a new one with --out"
+        ) from None
 
 
 def train(state: State, folder: Path, tell: Callable[[str], None] = print) -> None:

@@ -124,10 +124,17 @@ def test_plots_are_drawn(results, tmp_path, capsys):
         assert picture(path).std() > 5.0
 
 
+def test_a_file_is_no_folder_for_results(tmp_path, capsys):
+    (tmp_path / "file").write_text("")
+    arguments = ["--policy", "given-order", "--instances", "1", "--out", str(tmp_path / "file")]
+    assert evaluate.main(arguments) == 2
+    assert "can't be made a folder" in capsys.readouterr().err
+
+
 @pytest.mark.parametrize(
     ("arguments", "words"),
     [
-        (["gaps", "nowhere.json"], "nowhere.json has no results"),
+        (["gaps", "nowhere.json"], "nowhere.json can't be read"),
         (["tour", "--instance", "7"], "1000000 to 1000099, not 7"),
         (["tour", "--policy", "best"], "no policy `best`"),
     ],

@@ -106,10 +106,13 @@ def test_what_can_not_be_done_is_said(
         (["--resume", folder, "--seed", "1"], "the settings that the training began with"),
         (["--out", folder], "has a training already"),
     ]:
-        assert main(arguments) == 1
+        assert main(arguments) == 2
         assert what in capsys.readouterr().err
-    assert curve.main([str(tmp_path), str(tmp_path / "curve.png")]) == 1
+    assert curve.main([str(tmp_path), str(tmp_path / "curve.png")]) == 2
     assert "no logs" in capsys.readouterr().err
+    (tmp_path / CHECKPOINT).write_text("nothing")
+    assert main(["--resume", str(tmp_path)]) == 2
+    assert "is damaged" in capsys.readouterr().err
     with pytest.raises(ArgoError, match="no weights at"):
         LearnedPolicy.load(tmp_path / "none.pt")
     (tmp_path / "text.pt").write_text("nothing")

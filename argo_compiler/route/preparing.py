@@ -11,9 +11,11 @@ from argo_compiler.route.pruning import Pruned, longest
 _EXCHANGING = 0.2
 """share of the time in which stretches are exchanged"""
 _PREPARING = 0.45
-"""share of the time for guided local search and beams"""
+"""share of the time for the others together"""
 _ROUTING = 0.15
 """share of that for guided local search"""
+_RUINING = 0.3
+"""share of the rest for ruin and recreate"""
 _MANY_STEPS = 24
 """from which on routing's local search is worth its start-up"""
 
@@ -49,6 +51,9 @@ def prepare(
             better = routing.solve_routing(network, pruned, search, until, best)
             if better is not None and better.better_than(best):
                 best, method = better, "guided local search"
+        if best is not None:
+            until = search.clock() + _RUINING * search.left()
+            best, method = improve(network, pruned, search, until, best, method)
         small = longest(network) < subsets.INF and Bits(network, pruned).fits
         if small and not network.selective and labels.applies(network):
             search.say("beams of labels, with prices for what is still to come")

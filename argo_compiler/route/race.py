@@ -18,7 +18,7 @@ _FROM_NOTHING = 0.2
 _TURNS = ((0.3, 0.2), (0.8, 1.0))
 """shares of the time that is left, for a proof and then for a better route"""
 _FAR = 1.15
-"""of the bound: from there on, there is no use in trying again to prove something"""
+"""of the bound: from there on, there is no use in trying to prove something"""
 
 
 def raced(
@@ -75,7 +75,7 @@ class _Race:
         if self._plain and not self._beside.proven:
             self._ready.wait()
             if not alone.stopped:
-                again = self._solved(alone, self._known, timed=True)
+                again = self._solved(alone, self._known)
                 self._beside = _both(network, alone, self._beside, again)
 
     def _run_here(self, best: Found | None, method: str) -> tuple[Found | None, str, Found | None]:
@@ -95,18 +95,19 @@ class _Race:
     def _alternated(self, best: Found, method: str) -> tuple[Found, str, Found]:
         """CP-SAT and local search by turns: a better route makes the proof easier."""
         network, pruned, search = self._network, self._pruned, self._search
-        search.say("CP-SAT with positions and local search by turns, beside CP-SAT with times")
+        search.say("CP-SAT with times and local search by turns, beside CP-SAT with positions")
+        exact = none_found(network, proven=False)
         for proving, improving in _TURNS:
-            with search.part(proving):
-                exact = self._solved(search, best)
-            if exact.better_than(best):
-                best, method = exact, "CP-SAT"
             far = best.cost > _FAR * max(search.bound, self._alone.bound)
+            if not far:
+                with search.part(proving):
+                    exact = self._solved(search, best, timed=True)
+                if exact.better_than(best):
+                    best, method = exact, "CP-SAT"
+                if exact.proven:
+                    break
             until = search.clock() + (1.0 if far else improving) * search.left()
-            if not exact.proven:
-                best, method = improve(network, pruned, search, until, best, method)
-            if search.left() <= 0.0 or exact.proven:
-                break
+            best, method = improve(network, pruned, search, until, best, method)
         return best, method, exact
 
     def _solved(

@@ -8,6 +8,8 @@ from argo_compiler.route.network import Network
 from argo_compiler.route.progress import Search
 from argo_compiler.route.pruning import Pruned, longest
 
+_FIRST = 0.002
+"""s for each step to improve the first route: what more would find, CP-SAT finds sooner"""
 _EXCHANGING = 0.2
 """share of the time in which stretches are exchanged"""
 _PREPARING = 0.45
@@ -27,7 +29,7 @@ def first_route(network: Network, pruned: Pruned, search: Search) -> tuple[Found
     if path is None:
         search.say("no simple rule leads to a first route")
         return None, "CP-SAT"
-    until = search.clock() + min(0.1 * search.left(), 0.02 * len(network.prize))
+    until = search.clock() + min(0.1 * search.left(), _FIRST * len(network.prize))
     return local.improve(path, search, until), "local search"
 
 

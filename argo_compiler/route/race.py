@@ -68,15 +68,18 @@ class _Race:
             self._stop_solvers()
 
     def _prove(self) -> None:
-        """From nothing; where a good route is soon known, again from that."""
+        """From nothing; where good routes are soon known, again from each of those."""
         network, alone = self._network, self._alone
         with alone.part(_FROM_NOTHING if self._plain else 1.0):
             self._beside = self._solved(alone)
-        if self._plain and not self._beside.proven:
-            self._ready.wait()
-            if not alone.stopped:
-                again = self._solved(alone, self._known)
-                self._beside = _both(network, alone, self._beside, again)
+        if not self._plain:
+            return
+        self._ready.wait()
+        begun: Found | None = None
+        while not (alone.stopped or self._beside.proven or self._known is begun):
+            begun = self._known
+            again = self._solved(alone, begun)
+            self._beside = _both(network, alone, self._beside, again)
 
     def _run_here(self, best: Found | None, method: str) -> tuple[Found | None, str, Found | None]:
         network, pruned, search = self._network, self._pruned, self._search
@@ -98,6 +101,9 @@ class _Race:
         search.say("CP-SAT with times and local search by turns, beside CP-SAT with positions")
         exact = none_found(network, proven=False)
         for proving, improving in _TURNS:
+            if self._known is not best:
+                self._known = best
+                self._stop_solvers()  # the one beside goes on from this
             far = best.cost > _FAR * max(search.bound, self._alone.bound)
             if not far:
                 with search.part(proving):

@@ -61,15 +61,17 @@ def solve_circuit(
         if network.objective is Objective.PRIZE or best.prize < prize_bound:
             return found(network, best.path or (), best.charges, prize_bound, 0)
         total = best.prize
-    if timed and best is not None and best.cost > 0 and _plain(network):
+    known = best if timed and best is not None and best.cost > 0 and _plain(network) else None
+    if known is not None:
         # Nothing but a better path is of interest: that is told apart sooner.
-        model, hint = _Model(network, pruned, end=best.cost - 1), None
-        model.minimise_cost(total, best.cost - 1)
+        model, hint = _Model(network, pruned, end=known.cost - 1), None
+        model.minimise_cost(total, known.cost - 1)
     else:
         model, hint = _Model(network, pruned), best if hinted else None
         model.minimise_cost(total, None if best is None else best.cost)
     status, solver = _solve(model, search, hint, running, prizes=False)
     if status == cp_model.INFEASIBLE:
+        assert known is not None or best is None
         bound = 0 if best is None else best.cost
     else:
         bound = _bound(solver)

@@ -39,6 +39,8 @@ def solve_circuit(
     best = None if start is None or start.path is None else start
     prize_bound = int(network.prize[pruned.steps].sum())
     total = None
+    if best is not None and not network.selective and network.objective is Objective.PRIZE:
+        return found(network, best.path or (), best.charges, prize_bound, 0)  # all are as good
     if network.selective:
         model = _Model(network, pruned)
         model.maximise_prize(start)

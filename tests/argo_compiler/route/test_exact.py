@@ -6,7 +6,16 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from argo_compiler.route import NEVER, Route, evaluate, labels, subsets, suggest_route
+from argo_compiler.route import (
+    NEVER,
+    Route,
+    evaluate,
+    labels,
+    portfolio,
+    solving,
+    subsets,
+    suggest_route,
+)
 from argo_compiler.route.circuit import solve_circuit
 from argo_compiler.route.network import network
 from argo_compiler.route.preparing import first_route
@@ -60,6 +69,17 @@ def test_each_solver_agrees_with_brute_force(solver: str, monkeypatch: pytest.Mo
             assert found.proven, seed
             assert (None if found.path is None else (found.prize, found.cost)) == best, seed
     assert compared >= PROBLEMS // 8
+
+
+@pytest.mark.parametrize("workers", [1, 2])
+def test_searches_agree_with_brute_force(workers: int, monkeypatch: pytest.MonkeyPatch) -> None:
+    # Problems as small as these would not be searched otherwise.
+    monkeypatch.setattr(solving, "solve", portfolio._searched)
+    for seed in range(3000, 3000 + PROBLEMS // 20):
+        problem = random_problem(np.random.default_rng(seed), 5)
+        made = suggest_route(problem, 4.0, workers=workers, explain=False)
+        assert made.proven, seed
+        assert (None if made.route is None else (made.prize, made.cost)) == brute_force(problem)
 
 
 def _solved(solver, net, pruned):  # type: ignore[no-untyped-def]

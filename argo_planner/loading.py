@@ -127,14 +127,6 @@ def require_mission_output(source: Path, output: Path) -> None:
         raise ArgoError(f"{output}: a mission is written as JSON; name a file that ends in .json")
 
 
-def make_folder(path: Path) -> None:
-    """Makes the folder now, so that no run is lost for want of a place for its report."""
-    try:
-        path.mkdir(parents=True, exist_ok=True)
-    except OSError as error:
-        raise ArgoError(f"{path}: can't be made a folder: {error.strerror}") from error
-
-
 def write_text(path: Path, text: str) -> None:
     """Writes text as UTF-8 with Unix line ends; ArgoError if that is impossible."""
     try:

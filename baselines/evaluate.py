@@ -20,10 +20,10 @@ from rich.console import Console
 from rich.table import Table
 
 from argo_compiler.errors import ArgoError
+from argo_env.folders import make_folder
 from baselines.comparison import Comparison, compare
 from baselines.episodes import play
 from baselines.families import TEST_SETS, find_set
-from baselines.folders import make_folder
 from baselines.intervals import Interval
 from baselines.policy import POLICIES, make_policy
 from baselines.references import references

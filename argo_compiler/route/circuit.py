@@ -63,7 +63,8 @@ def solve_circuit(
         if network.objective is Objective.PRIZE or best.prize < prize_bound:
             return found(network, best.path or (), best.charges, prize_bound, 0)
         total = best.prize
-    known = best if timed and best is not None and best.cost > 0 and _plain(network) else None
+    # That of a prize alone is 0.
+    known = best if timed and best is not None and best.cost > 0 and network.plain else None
     if known is not None:
         # Nothing but a better path is of interest: that is told apart sooner.
         model, hint = _Model(network, pruned, end=known.cost - 1), None
@@ -85,12 +86,6 @@ def solve_circuit(
     if best is None:
         return none_found(network, proven=status == cp_model.INFEASIBLE, bound=bound)
     return found(network, best.path or (), best.charges, prize_bound, bound)
-
-
-def _plain(network: Network) -> bool:
-    """Whether the cost of a route is its time, and that the sum of its arcs."""
-    plain = network.problem.battery is None and not network.windowed
-    return plain and network.objective is not Objective.PRIZE
 
 
 def _bound(solver: cp_model.CpSolver) -> int:

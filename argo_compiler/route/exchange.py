@@ -26,9 +26,8 @@ _TRIES = 50
 
 
 def applies(network: Network) -> bool:
-    """Whether a route's time is the sum of its arcs and no route can be too short."""
-    plain = network.problem.battery is None and not network.windowed
-    return plain and len(network.prize) <= _MOST_STEPS
+    """Whether less travel is less time, and the matrices are not too large."""
+    return network.plain and len(network.prize) <= _MOST_STEPS
 
 
 class Exchange:

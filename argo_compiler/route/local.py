@@ -210,8 +210,7 @@ class LocalSearch:
             more = near[before, node] + near[node, after] - near[before, after]
             blink = more * self._rng.uniform(1.0, 1.05, len(more))
             places += [(float(cost), low + k, node) for k, cost in enumerate(blink)]
-        plain = self._network.problem.battery is None and not self._network.windowed
-        tries = 1 if plain and self._network.limit >= NEVER else 6
+        tries = 1 if self._network.plain and self._network.limit >= NEVER else 6
         for _, position, node in sorted(places)[:tries]:
             longer = [*path[:position], node, *path[position:]]
             if self._follower.follow(tuple(longer)) is not None:

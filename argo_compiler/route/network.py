@@ -54,6 +54,11 @@ class Network:
         return bool((self.earliest > 0).any() or (self.latest < NEVER).any())
 
     @property
+    def plain(self) -> bool:
+        """Whether a route's time is the sum of its arcs, and none is too short."""
+        return self.problem.battery is None and not self.windowed
+
+    @property
     def objective(self) -> Objective:
         return self.problem.objective
 

@@ -3,7 +3,7 @@
 from argo_compiler.export import EXPORTERS, Exporter
 from argo_compiler.isar import to_isar
 from argo_env.navigation import Navigator
-from argo_env.views import find_views
+from argo_env.planning.reading_places import find_views
 
 
 def exporters(navigator: Navigator) -> dict[str, Exporter]:

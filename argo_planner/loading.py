@@ -16,16 +16,16 @@ from argo_compiler.diagnostics import (
     with_excerpts,
 )
 from argo_compiler.errors import ArgoError
-from argo_compiler.files import MissionFile, read_mission_file
+from argo_compiler.files.mission_file import MissionFile, read_mission_file
+from argo_compiler.files.writing import write_whole
 from argo_compiler.il import Mission
 from argo_compiler.isar import read_isar
 from argo_compiler.ros import is_bag, read_bag
 from argo_compiler.script import import_script, read_script
-from argo_compiler.script.source import Source as Script
-from argo_compiler.writing import write_whole
-from argo_env.catalog import make_catalog
+from argo_compiler.script.syntax.source import Source as Script
 from argo_env.navigation import Navigator
-from argo_env.navigation.generated import generate
+from argo_env.planning.catalog import make_catalog
+from argo_env.planning.generated import generate
 from argo_env.robot.spec import load_robot
 from argo_env.site import load_site
 from argo_env.site.family import is_family, parse_family

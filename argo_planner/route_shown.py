@@ -11,8 +11,8 @@ from argo_compiler.il import Order
 from argo_compiler.route.evaluation import evaluate
 from argo_compiler.route.robust_sampling import Draws, completion
 from argo_compiler.route.robust_spread import TravelSpread
+from argo_env.formatting import clock
 from argo_env.seeding import generator
-from argo_env.words import clock
 from argo_planner.route_pauses import Pause, pauses
 from argo_planner.routing import Suggested
 

@@ -10,22 +10,22 @@ from rich.markup import escape
 from argo_compiler.diagnostics import DiagnosticError
 from argo_compiler.errors import ArgoError
 from argo_compiler.il import Mission
+from argo_compiler.reorder.mission import MissionRoute
+from argo_compiler.reorder.requirements import Requirements
+from argo_compiler.reorder.rewriting import apply_route
+from argo_compiler.reorder.rules import require_known
 from argo_compiler.route.evaluation import Evaluation, evaluate
-from argo_compiler.route.mission import MissionRoute
 from argo_compiler.route.problem import NEVER, Route, RouteProblem
-from argo_compiler.route.requirements import Requirements
-from argo_compiler.route.rewriting import apply_route
 from argo_compiler.route.robust import suggest_robust_route
 from argo_compiler.route.robust_spread import TravelSpread
-from argo_compiler.route.rules import require_known
 from argo_compiler.route.suggest import suggest_route
 from argo_compiler.route.suggestion import RouteSuggestion
+from argo_env.files.yaml_file import read_yaml
+from argo_env.formatting import clock
 from argo_env.navigation import Navigator
-from argo_env.record import Reordering
-from argo_env.route_matrix import plan_mission
-from argo_env.travel import SiteTravel
-from argo_env.words import clock
-from argo_env.yaml_file import read_yaml
+from argo_env.planning.route_matrix import plan_mission
+from argo_env.planning.travel import SiteTravel
+from argo_env.run.record import Reordering
 
 TIME_LIMIT = 5.0
 """s that a search takes at most, if nothing else is said"""

@@ -10,12 +10,12 @@ from rich.progress import BarColumn, Progress, TextColumn, TimeElapsedColumn
 
 from argo_compiler.il import Task
 from argo_env.closing import Closing
-from argo_env.events.kinds import changed_site
+from argo_env.faults.kinds import changed_site
+from argo_env.formatting import where
 from argo_env.navigation import Navigator
 from argo_env.pictures import write_film, write_overview
-from argo_env.record import Anomaly, Reading, RunRecord
 from argo_env.report import write_report
-from argo_env.words import where
+from argo_env.run.record import Anomaly, Reading, RunRecord
 from argo_planner.summary import show_record
 
 

@@ -6,9 +6,9 @@ from rich.console import Console
 from rich.markup import escape
 from rich.table import Table
 
-from argo_env.record import RunRecord
+from argo_env.formatting import clock, where
 from argo_env.report.waiting import waits
-from argo_env.words import clock, where
+from argo_env.run.record import RunRecord
 
 
 def show_record(record: RunRecord, console: Console) -> None:

@@ -20,7 +20,7 @@ from rich.console import Console
 from rich.table import Table
 
 from argo_compiler.errors import ArgoError
-from argo_env.folders import make_folder
+from argo_env.files.folders import make_folder
 from baselines.comparison import Comparison, compare
 from baselines.episodes import play
 from baselines.families import TEST_SETS, find_set

@@ -19,7 +19,7 @@ from PIL import Image
 from argo_compiler.errors import ArgoError
 from argo_compiler.route import RouteProblem, suggest_route
 from argo_env.envs.route import RouteEnv
-from argo_env.folders import make_folder
+from argo_env.files.folders import make_folder
 from baselines.families import InstanceSet, TurnTaking, find_set
 from baselines.policy import Policy, make_policy
 from baselines.problem import HUNDREDTH, hindsight

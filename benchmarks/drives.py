@@ -32,20 +32,20 @@ import yaml
 
 from argo_compiler.il import Action, Mission, Task, Transition
 from argo_compiler.model import Pose
+from argo_env.drives.drive import Drive, DriveStatus
+from argo_env.drives.tracked.drive import TrackedDrive
 from argo_env.navigation import Navigator, Path
 from argo_env.navigation.path import Motion
+from argo_env.planning.start import start_pose
 from argo_env.robot.calibration import Calibration, MotionKind
-from argo_env.robot.drive import Drive, DriveStatus
-from argo_env.robot.fitting import TimedDrive, errors, fit
 from argo_env.robot.pose import BodyPose
 from argo_env.robot.spec import RobotSpec, calibration_file, load_robot
-from argo_env.robot.tracked.drive import TrackedDrive
+from argo_env.run.session import simulate
+from argo_env.run.spec import RunSettings
 from argo_env.seeding import generator
-from argo_env.session import simulate
-from argo_env.settings import RunSettings
 from argo_env.site import load_site
-from argo_env.starting import start_pose
-from argo_env.world import World
+from argo_env.world.world import World
+from benchmarks.fitting import TimedDrive, errors, fit
 from benchmarks.options import seed_number
 
 CHEAP = ("route", "kinematic")

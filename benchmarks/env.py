@@ -26,7 +26,7 @@ import numpy as np
 import argo_env  # noqa: F401
 from argo_env.envs import ENVIRONMENTS
 from argo_env.envs.expert import Expert
-from argo_env.pybullet_client import quiet
+from argo_env.world.pybullet_client import quiet
 
 WINDOWS, WINDOW = 5, 1.0  # s
 NODES = 20

@@ -26,16 +26,16 @@ from pathlib import Path
 from argo_compiler.hfsm import Resume
 from argo_compiler.il import Action, EventKind, Mission, Task, Transition
 from argo_compiler.script import import_script, read_script
-from argo_env import resources
-from argo_env.catalog import make_catalog
-from argo_env.events.reading import read_faults
-from argo_env.events.way import Brick
+from argo_env.faults.reading import read_faults
+from argo_env.faults.way import Brick
+from argo_env.files import resources
 from argo_env.navigation import Navigator
-from argo_env.record import RunRecord
+from argo_env.planning.catalog import make_catalog
 from argo_env.robot.spec import load_robot
+from argo_env.run.record import RunRecord
+from argo_env.run.session import DRIVES, simulate
+from argo_env.run.spec import RunSettings, logged
 from argo_env.seeding import generator
-from argo_env.session import DRIVES, simulate
-from argo_env.settings import RunSettings, logged
 from argo_env.site import load_site
 from benchmarks.options import seed_number
 

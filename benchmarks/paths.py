@@ -14,7 +14,7 @@ from scipy.sparse.csgraph import dijkstra
 
 from argo_compiler.model import Pose
 from argo_env.navigation import Blockage, Navigator
-from argo_env.navigation.generated import generate
+from argo_env.planning.generated import generate
 from argo_env.robot.spec import load_robot
 from argo_env.site import load_site
 from argo_env.site.family import TEST_SEEDS, Family

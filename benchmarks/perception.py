@@ -30,12 +30,12 @@ from argo_env.seeding import generator
 from argo_env.sensing.sensor import MeasurementError
 from argo_env.sensing.vision.align import FacePose
 from argo_env.sensing.vision.instrument import Instrument
-from argo_env.sensing.vision.placement import AS_PLANNED, draw_placement
 from argo_env.sensing.vision.sensor import INSTRUMENTS, CameraSensor
 from argo_env.sensing.vision.views import plan_views, solids_near
 from argo_env.site import load_site
 from argo_env.site.shapes import Box, Cylinder, Solid
-from argo_env.world import World
+from argo_env.world.placement import AS_PLANNED, draw_placement
+from argo_env.world.world import World
 from benchmarks.options import seed_number
 
 SURE = 0.9

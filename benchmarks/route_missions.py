@@ -16,10 +16,10 @@ from pathlib import Path
 import numpy as np
 
 from argo_compiler.catalog import Catalog
-from argo_compiler.route.requirements import Requirements
-from argo_env.catalog import make_catalog
-from argo_env.session import DRIVES, simulate
-from argo_env.settings import RunSettings
+from argo_compiler.reorder.requirements import Requirements
+from argo_env.planning.catalog import make_catalog
+from argo_env.run.session import DRIVES, simulate
+from argo_env.run.spec import RunSettings
 from argo_planner.loading import load_mission, load_navigator
 from argo_planner.routing import TIME_LIMIT, suggest
 from benchmarks.options import seed_number

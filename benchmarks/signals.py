@@ -15,10 +15,10 @@ import numpy as np
 
 from argo_compiler.il import EventKind
 from argo_compiler.model import Pose
-from argo_env.events.way import BlockedStairs, Brick, MissingPlate
+from argo_env.drives.drive import DriveStatus
+from argo_env.drives.kinematic import KinematicDrive
+from argo_env.faults.way import BlockedStairs, Brick, MissingPlate
 from argo_env.navigation import Navigator
-from argo_env.robot.drive import DriveStatus
-from argo_env.robot.kinematic import KinematicDrive
 from argo_env.robot.pose import BodyPose
 from argo_env.robot.spec import load_robot
 from argo_env.seeding import generator
@@ -30,7 +30,7 @@ from argo_env.site import Site, load_site
 from argo_env.site.shapes import Box, Cylinder, Role, Solid, Vector
 from argo_env.surroundings import Alarm, GasLeak, HotSpot, PumpFault, PumpSound, Surroundings
 from argo_env.surroundings.sources import Source
-from argo_env.world import World
+from argo_env.world.world import World
 
 STANDING = 8.0  # s at each checkpoint
 STEP = 0.1  # s

@@ -17,15 +17,15 @@ from multiprocessing import get_context
 from statistics import mean
 
 from argo_compiler.model import Pose
+from argo_env.drives.drive import DriveStatus, Trouble
+from argo_env.drives.tracked.belts import Traction
+from argo_env.drives.tracked.drive import TrackedDrive
 from argo_env.navigation import Navigator, Path
-from argo_env.robot.drive import DriveStatus, Trouble
 from argo_env.robot.pose import BodyPose
 from argo_env.robot.spec import load_robot
-from argo_env.robot.tracked.belts import Traction
-from argo_env.robot.tracked.drive import TrackedDrive
 from argo_env.seeding import generator
 from argo_env.site import load_site
-from argo_env.world import World
+from argo_env.world.world import World
 
 OFFSET = 0.05  # m, to each side, of the start
 TURNED = math.radians(5.0)

@@ -30,7 +30,7 @@ from argo_compiler.analysis import analyse
 from argo_compiler.check import check
 from argo_compiler.diagnostics import Severity
 from argo_compiler.errors import ArgoError
-from argo_compiler.files import read_mission
+from argo_compiler.files.mission_file import read_mission
 from argo_compiler.hfsm import (
     ActionFailed,
     ActionStopped,

@@ -25,8 +25,8 @@ from argo_compiler.il import (
     Task,
     Transition,
 )
+from argo_compiler.il.reserved import RESERVED_NAMES
 from argo_compiler.model import Pose
-from argo_compiler.reserved import RESERVED_NAMES
 
 # Signs that text recognition, JSON, the script language or a terminal could trip over.
 ODD = "\"'\\*`\t\n\r\0\x1b#:;.,/()[]-+ äßİﬁ’“–\u00ad\u200b\u2028\ufeff²٣😀and"

@@ -4,11 +4,11 @@ from itertools import pairwise
 
 from argo_compiler.il import Action, Mission, Task, Transition
 from argo_compiler.model import Pose
-from argo_env.action import Rig
+from argo_env.drives.drive import DriveStatus
 from argo_env.navigation import Navigator
-from argo_env.robot.drive import DriveStatus
 from argo_env.robot.pose import BodyPose
 from argo_env.robot.spec import load_robot
+from argo_env.run.action import Rig
 from argo_env.sensing.sensor import Measurement
 from argo_env.site import make_site
 from argo_env.site.spec import SiteSpec

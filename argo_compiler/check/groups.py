@@ -8,8 +8,8 @@ from bisect import bisect_left
 from collections.abc import Iterator
 
 from argo_compiler.diagnostics import Diagnostic, Severity
-from argo_compiler.grouping import GroupRange, Layout, group_ranges, parent_name
 from argo_compiler.il import Action, Group, Mission, Stop
+from argo_compiler.il.grouping import GroupRange, Layout, group_ranges, parent_name
 from argo_compiler.names import nearest_name
 
 MIN_HARD_DURATION_S = 1e-3

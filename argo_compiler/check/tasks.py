@@ -6,8 +6,8 @@ from argo_compiler.check.conditions import ConditionChecks
 from argo_compiler.check.finding import task_finding
 from argo_compiler.diagnostics import Diagnostic, Severity
 from argo_compiler.il import Action, Mission, OnFailure, Task
+from argo_compiler.il.reserved import RESERVED_NAMES
 from argo_compiler.names import nearest_name
-from argo_compiler.reserved import RESERVED_NAMES
 
 MANY_RETRIES = 100
 """that few actions are worth; more look like a mission that hangs"""

@@ -6,11 +6,11 @@ and code hosts. `CODES` explains every code there is.
 
 from argo_compiler.diagnostics.as_json import to_json
 from argo_compiler.diagnostics.codes import CODES
+from argo_compiler.diagnostics.codes.code import Severity
 from argo_compiler.diagnostics.error import DiagnosticError
 from argo_compiler.diagnostics.finding import (
     MAX_EXCERPT,
     Diagnostic,
-    Severity,
     Span,
     by_place,
     count,

@@ -4,7 +4,8 @@ import json
 from collections.abc import Sequence
 from typing import Any
 
-from argo_compiler.diagnostics.finding import Diagnostic, Severity, count
+from argo_compiler.diagnostics.codes.code import Severity
+from argo_compiler.diagnostics.finding import Diagnostic, count
 
 VERSION = 1
 """of this shape"""

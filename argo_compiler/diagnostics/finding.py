@@ -1,19 +1,12 @@
 """One finding about some input: what is wrong, how bad it is, and where."""
 
 from collections.abc import Iterable, Sequence
-from enum import StrEnum
 
+from argo_compiler.diagnostics.codes.code import Severity
 from argo_compiler.model import Model
 
 MAX_EXCERPT = 200
 """characters of the longest source line that is shown with a finding"""
-
-
-class Severity(StrEnum):
-    """How bad it is: an error stops the compiler, a warning is shown and the work goes on."""
-
-    ERROR = "error"
-    WARNING = "warning"
 
 
 class Span(Model):

@@ -3,7 +3,8 @@
 import unicodedata
 from collections.abc import Sequence
 
-from argo_compiler.diagnostics.finding import Diagnostic, Severity, has_errors, summary
+from argo_compiler.diagnostics.codes.code import Severity
+from argo_compiler.diagnostics.finding import Diagnostic, has_errors, summary
 
 _INDENT = "    "
 

@@ -9,7 +9,6 @@ end from the innermost group outward (G5 to G7), and each transition knows which
 from argo_compiler.check import check
 from argo_compiler.collecting import collector_held
 from argo_compiler.diagnostics import DiagnosticError, Severity
-from argo_compiler.grouping import Layout
 from argo_compiler.hfsm.model import (
     DONE,
     MISSION,
@@ -39,6 +38,7 @@ from argo_compiler.il import (
     Stop,
     Task,
 )
+from argo_compiler.il.grouping import Layout
 
 
 def lower(mission: Mission, progress: Progress | None = None, source_name: str = "mission") -> Hfsm:

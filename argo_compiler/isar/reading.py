@@ -10,7 +10,7 @@ from pydantic import ValidationError
 
 from argo_compiler.catalog import Catalog
 from argo_compiler.diagnostics import Diagnostic, DiagnosticError, Severity
-from argo_compiler.files import MAX_BYTES
+from argo_compiler.files.mission_file import MAX_BYTES
 from argo_compiler.headings import to_yaw
 from argo_compiler.il import Action, Mission, Task, Transition
 from argo_compiler.isar.definition import (

@@ -5,13 +5,13 @@ syntax tree, `resolve` looks up what it names and makes the mission; `import_scr
 three in one. `format_script` writes a mission back as a protocol.
 """
 
-from argo_compiler.script.format import format_script
-from argo_compiler.script.healing import Healed, heal
-from argo_compiler.script.nodes import Protocol, Script, Sheet
-from argo_compiler.script.parsing import parse
-from argo_compiler.script.reading import decode_script, read_script
-from argo_compiler.script.resolve import Resolved, import_script, resolve
-from argo_compiler.script.vocabulary import catalog_words
+from argo_compiler.script.resolve.importing import Resolved, import_script, resolve
+from argo_compiler.script.syntax.healing import Healed, heal
+from argo_compiler.script.syntax.nodes import Protocol, Script, Sheet
+from argo_compiler.script.syntax.parsing import parse
+from argo_compiler.script.syntax.reading import decode_script, read_script
+from argo_compiler.script.syntax.vocabulary import catalog_words
+from argo_compiler.script.write.protocol import format_script
 
 __all__ = [
     "Healed",

@@ -10,6 +10,7 @@ from gymnasium import spaces
 from numpy.typing import NDArray
 
 from argo_compiler.errors import ArgoError
+from argo_env.drives.tracked.body import FLIPPER_LIMITS, TIME_STEP
 from argo_env.envs import lidar
 from argo_env.envs.drawing.drive import draw_drive
 from argo_env.envs.drive_site import DriveSite
@@ -20,7 +21,6 @@ from argo_env.envs.options import LONGEST, check_positive, check_scenario, read_
 from argo_env.envs.rendering import Rendering, check_render_mode
 from argo_env.navigation.path import wrap
 from argo_env.robot.pose import BodyPose
-from argo_env.robot.tracked.body import FLIPPER_LIMITS, TIME_STEP
 
 Place = tuple[float, float, float]
 Start = tuple[float, float, float, float]

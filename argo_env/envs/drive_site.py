@@ -4,17 +4,17 @@ from dataclasses import replace
 
 from argo_compiler.errors import ArgoError
 from argo_env.closing import Closing
+from argo_env.drives.tracked.body import TrackedBody
 from argo_env.envs.guide import Guide
 from argo_env.envs.sites import navigator_of
-from argo_env.events.kinds import AnyFault, changed_site, settle
-from argo_env.events.machine import DriveDysfunction
+from argo_env.faults.kinds import AnyFault, changed_site, settle
+from argo_env.faults.machine import DriveDysfunction
 from argo_env.navigation import Navigator
 from argo_env.pictures.camera import Camera
 from argo_env.pictures.chase import ChaseCamera
 from argo_env.pictures.scene import Scene, View
 from argo_env.robot.pose import BodyPose
-from argo_env.robot.tracked.body import TrackedBody
-from argo_env.world import World
+from argo_env.world.world import World
 
 ON_THE_WAY = ("brick", "missing_plate", "blocked_stairs")
 """kinds of faults that change the site"""

@@ -6,7 +6,7 @@ from argo_compiler.errors import ArgoError
 from argo_compiler.model import Model
 from argo_env.envs.drive_site import DriveSite
 from argo_env.envs.options import LONGEST, check_floors
-from argo_env.events.kinds import AnyFault
+from argo_env.faults.kinds import AnyFault
 
 NEAREST = 5.0
 """s that a start is away from its goal at least"""

@@ -9,12 +9,12 @@ from numpy.typing import NDArray
 
 from argo_compiler.errors import ArgoError
 from argo_compiler.model import Pose
+from argo_env.drives.tracked.body import FLIPPER_LIMITS
+from argo_env.drives.tracked.flippers import CAREFUL, Flight, Flippers, find_flight
+from argo_env.drives.tracked.follower import Follower
 from argo_env.envs.drive import PERIOD, SPEED, TURN_RATE, DriveEnv
 from argo_env.navigation.path import Motion, wrap
 from argo_env.robot.pose import BodyPose
-from argo_env.robot.tracked.body import FLIPPER_LIMITS
-from argo_env.robot.tracked.flippers import CAREFUL, Flight, Flippers, find_flight
-from argo_env.robot.tracked.follower import Follower
 
 _ASTRAY = 0.3  # m beside its line, from where it plans anew
 _TURNED = math.radians(0.5)  # from a turn's end, where it waits for the robot to rest: with one

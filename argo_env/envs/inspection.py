@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 
 from argo_compiler.errors import ArgoError
 from argo_compiler.il import EventKind
+from argo_env.drives.route import RouteDrive
 from argo_env.envs.drawing.inspection import draw_inspection
 from argo_env.envs.episode import (
     Parts,
@@ -32,10 +33,9 @@ from argo_env.envs.options import (
 )
 from argo_env.envs.rendering import Rendering, check_render_mode
 from argo_env.envs.sites import navigator_of
-from argo_env.events.kinds import AnyFault
-from argo_env.robot.route import RouteDrive
-from argo_env.session import DRIVES, check_settings
-from argo_env.settings import RunSettings
+from argo_env.faults.kinds import AnyFault
+from argo_env.run.session import DRIVES, check_settings
+from argo_env.run.spec import RunSettings
 
 READING, ABNORMAL, FINDING, CONTACT, DOCKED, DEAD = 10.0, 10.0, 5.0, -1.0, 20.0, -20.0
 """points: see the description of the environment"""

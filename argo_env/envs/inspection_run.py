@@ -12,15 +12,15 @@ from numpy.typing import NDArray
 from argo_compiler.hfsm import ActionFailed
 from argo_compiler.il import Action, EventKind, Task
 from argo_compiler.model import Pose
-from argo_env.action import ActionUnderWay
+from argo_env.drives.battery import estimated_charge
 from argo_env.navigation import Navigator, UnreachableError
-from argo_env.odometry import Odometry
-from argo_env.perceiving import Perception, blockage
-from argo_env.record import Anomaly, Reading
-from argo_env.robot.battery import estimated_charge
 from argo_env.robot.pose import BodyPose
-from argo_env.session import outfit
-from argo_env.settings import RunSettings
+from argo_env.run.action import ActionUnderWay
+from argo_env.run.odometry import Odometry
+from argo_env.run.perception import Perception, blockage
+from argo_env.run.record import Anomaly, Reading
+from argo_env.run.session import outfit
+from argo_env.run.spec import RunSettings
 
 FULL = 0.999  # charge from where on the battery counts as full
 _TRAIL = 0.15  # m between poses that are kept

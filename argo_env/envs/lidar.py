@@ -6,7 +6,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from argo_env.robot.pose import BodyPose
-from argo_env.world import World
+from argo_env.world.world import World
 
 RAYS = 32
 RANGE = 5.0  # m

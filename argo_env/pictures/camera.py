@@ -5,8 +5,8 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from argo_env.pybullet_client import pybullet
 from argo_env.site.shapes import Vector
+from argo_env.world.pybullet_client import pybullet
 
 
 @dataclass(frozen=True)

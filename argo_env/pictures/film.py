@@ -16,8 +16,8 @@ from argo_env.pictures.codec import find_ffmpeg, make_palette, write_gif, write_
 from argo_env.pictures.light import compose, depth_shading
 from argo_env.pictures.motion import Motion, check_site
 from argo_env.pictures.scene import Scene
-from argo_env.record import RunRecord
 from argo_env.robot.spec import RobotSpec
+from argo_env.run.record import RunRecord
 from argo_env.site import Site
 
 MP4_SIZE, MP4_FPS = (640, 400), 12

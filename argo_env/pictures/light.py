@@ -6,7 +6,7 @@ from scipy.ndimage import gaussian_filter
 
 from argo_env.pictures.camera import Camera
 from argo_env.pictures.scene import Scene, View
-from argo_env.pybullet_client import SUN
+from argo_env.world.pybullet_client import SUN
 
 _SKY = np.array([(222, 231, 240), (247, 249, 251)], dtype=np.float64)
 _SHADE = 0.66  # of its brightness is left to what lies in the shadow

@@ -5,10 +5,10 @@ import math
 import numpy as np
 
 from argo_compiler.errors import ArgoError
-from argo_env.record import RunRecord
-from argo_env.robot.flipper_motion import FLAT, RAISED
+from argo_env.drives.flipper_motion import FLAT, RAISED
 from argo_env.robot.pose import BodyPose
 from argo_env.robot.spec import RobotSpec
+from argo_env.run.record import RunRecord
 from argo_env.site import Site
 
 _STAIR_PITCH = math.radians(5.0)  # from which the flippers lie flat

@@ -15,9 +15,9 @@ from argo_env.pictures.camera import Camera
 from argo_env.pictures.light import compose, depth_shading, shadows
 from argo_env.pictures.motion import Motion, check_site
 from argo_env.pictures.scene import Scene, View
-from argo_env.record import RunRecord
 from argo_env.report.track import colour
 from argo_env.robot.spec import RobotSpec
+from argo_env.run.record import RunRecord
 from argo_env.site import Site
 
 SIZE = (1200, 900)

@@ -10,20 +10,30 @@ from PIL import Image, ImageDraw
 from argo_compiler.errors import ArgoError
 from argo_compiler.il import Action, Task
 from argo_compiler.model import Pose
+from argo_compiler.reorder.mission import MissionRoute
 from argo_compiler.route.evaluation import evaluate
-from argo_compiler.route.mission import MissionRoute
 from argo_compiler.route.problem import Route
-from argo_env.envs.drawing.floors import plans_of
-from argo_env.envs.drawing.legend import draw_headline
-from argo_env.envs.drawing.sheet import FINER, FOOT, INK, PAPER, SIZE, SOFT, Sheet, font, make_sheet
-from argo_env.envs.drawing.spots import Spots
-from argo_env.envs.drawing.style import disc, paint_disc
-from argo_env.envs.drawing.way import Moment, draw_crossings, draw_lines, draw_thin, lines
+from argo_env.formatting import clock
 from argo_env.navigation import Navigator
+from argo_env.pictures.drawing.floors import plans_of
+from argo_env.pictures.drawing.legend import draw_headline
+from argo_env.pictures.drawing.sheet import (
+    FINER,
+    FOOT,
+    INK,
+    PAPER,
+    SIZE,
+    SOFT,
+    Sheet,
+    font,
+    make_sheet,
+)
+from argo_env.pictures.drawing.spots import Spots
+from argo_env.pictures.drawing.style import disc, paint_disc
+from argo_env.pictures.drawing.way import Moment, draw_crossings, draw_lines, draw_thin, lines
+from argo_env.planning.travel import SiteTravel
 from argo_env.report.track import colour
 from argo_env.site import Site
-from argo_env.travel import SiteTravel
-from argo_env.words import clock
 
 _STEP = 0.1  # m between the points of a drawn way
 _RADIUS = 11.0  # px

@@ -10,14 +10,14 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import NDArray
 
-from argo_env import resources
+from argo_env.files import resources
 from argo_env.pictures.camera import Camera, depth_in_metres
-from argo_env.pybullet_client import Connection, pybullet, quiet
 from argo_env.robot.pose import BodyPose
 from argo_env.robot.spec import RobotSpec, robot_folder
 from argo_env.site import Site
 from argo_env.site.shapes import Box, Cylinder, Element, Role, Solid, Vector, half_extents
 from argo_env.site.urdf import to_urdf
+from argo_env.world.pybullet_client import Connection, pybullet, quiet
 
 _UNDER_DECK = 0.25  # m below a floor that belongs to it: its plates and beams
 _HIDDEN: Vector = (0.0, 0.0, -1000.0)

@@ -8,7 +8,7 @@ from pathlib import Path
 
 from argo_compiler.errors import ArgoError
 from argo_env.recording.output import RecordingFile
-from argo_env.recording.recorder import Recorder
+from argo_env.run.recorder import Recorder
 
 VERSION = "1"
 """of what a recording of Argo's holds"""

@@ -10,10 +10,7 @@ from argo_compiler import __version__
 from argo_compiler.errors import ArgoError
 from argo_compiler.hfsm import Executor, Occurred
 from argo_compiler.il import Mission
-from argo_env.action import ActionUnderWay, Rig
-from argo_env.log import Entry
 from argo_env.navigation import Path as Way
-from argo_env.record import Anomaly, Contact, Reading, RunRecord, TaskRun, TraceStep
 from argo_env.recording import messages, scene
 from argo_env.recording.files import VERSION
 from argo_env.recording.motion import Limbs, MotionTopics
@@ -24,9 +21,12 @@ from argo_env.recording.topics import BatteryState, MissionState, mission_state
 from argo_env.recording.writer import RecordingWriter, media_type
 from argo_env.report.files import to_json
 from argo_env.robot.spec import robot_folder
-from argo_env.settings import RunSettings
+from argo_env.run.action import ActionUnderWay, Rig
+from argo_env.run.log import Entry
+from argo_env.run.record import Anomaly, Contact, Reading, RunRecord, TaskRun, TraceStep
+from argo_env.run.spec import RunSettings
 from argo_env.site import Site, SiteCheckpoint
-from argo_env.world import Shot, World
+from argo_env.world.world import Shot, World
 
 SAMPLE_PERIOD = 0.1
 """s between recorded poses, at least; a drive with longer steps has one at each"""

@@ -8,13 +8,13 @@ from typing import TYPE_CHECKING, NoReturn
 from pydantic import ValidationError
 
 from argo_compiler.errors import ArgoError
-from argo_compiler.json_places import format_path
-from argo_env.record import Reading, RunRecord, TaskRun
+from argo_compiler.files.json_places import format_path
+from argo_env.files.yaml_messages import message_of
 from argo_env.recording.files import MAGIC, VERSION, require_libraries
 from argo_env.recording.sections import Content, data_section, is_sound_end, trailing, unreadable
+from argo_env.run.record import Reading, RunRecord, TaskRun
 from argo_env.site import Site, make_site
 from argo_env.site.spec import SiteSpec
-from argo_env.yaml_messages import message_of
 
 if TYPE_CHECKING:  # what the extra brings
     from mcap.records import McapRecord

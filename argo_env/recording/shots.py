@@ -11,7 +11,7 @@ from scipy.spatial.transform import Rotation
 
 from argo_env.recording.messages import WORLD, set_rotation, set_vector, timestamp
 from argo_env.recording.writer import RecordingWriter
-from argo_env.world import Shot
+from argo_env.world.world import Shot
 
 CAMERA = "camera"
 """the optical frame of the camera: x to the right in the picture, y down, z into it"""

@@ -2,9 +2,9 @@
 
 import numpy as np
 
-from argo_env.record import RunRecord
 from argo_env.report.svg import Node, drawing, node, polyline, simplify
 from argo_env.report.timeline import LABELS, WIDTH, time_axis
+from argo_env.run.record import RunRecord
 
 HEIGHT = 96.0  # px of the curve
 TOP = 12.0  # px above it

@@ -1,10 +1,10 @@
 """The side view of the site along its y axis, with the path: where the robot climbed."""
 
-from argo_env.record import RunRecord
 from argo_env.report.canvas import Canvas
 from argo_env.report.outline import heights, outline
 from argo_env.report.svg import Node, drawing, node
 from argo_env.report.track import flag, stretches, track
+from argo_env.run.record import RunRecord
 from argo_env.site import Site
 from argo_env.site.shapes import Element, Role
 

@@ -4,8 +4,8 @@ import json
 from pathlib import Path
 
 from argo_compiler.errors import ArgoError
-from argo_env.record import RunRecord
 from argo_env.report.html import page
+from argo_env.run.record import RunRecord
 from argo_env.site import Site
 
 

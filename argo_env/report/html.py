@@ -7,8 +7,8 @@ from jinja2 import Environment, StrictUndefined, Template
 
 from argo_compiler.export import to_mermaid
 from argo_compiler.il import Action, Mission
-from argo_compiler.reserved import RETURN_TASK
-from argo_env.record import Reading, RunRecord
+from argo_compiler.il.reserved import RETURN_TASK
+from argo_env.formatting import clock, where
 from argo_env.report.charge import charge_curve
 from argo_env.report.elevation import elevation
 from argo_env.report.machine import drawable, machine
@@ -18,9 +18,9 @@ from argo_env.report.svg import Node, clean, drawing, markup, node
 from argo_env.report.timeline import timeline
 from argo_env.report.track import colour
 from argo_env.report.waiting import waits
+from argo_env.run.record import Reading, RunRecord
 from argo_env.site import Site
 from argo_env.site.site import SCALES
-from argo_env.words import clock, where
 
 BAR = 130.0  # px, width of the bar of a reading
 

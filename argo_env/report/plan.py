@@ -4,12 +4,12 @@ import math
 from itertools import pairwise
 
 from argo_compiler.il import EventKind
-from argo_env.record import PathSample, RunRecord
 from argo_env.report.canvas import Canvas
 from argo_env.report.outline import on_floor, outline
 from argo_env.report.svg import Node, drawing, node
 from argo_env.report.timeline import found_mark
 from argo_env.report.track import arrows, flag, stretches, track
+from argo_env.run.record import PathSample, RunRecord
 from argo_env.site import Site, SiteCheckpoint
 
 SCALE = 46.0  # px for 1 m

@@ -7,9 +7,9 @@ from itertools import groupby, pairwise
 
 from argo_compiler.hfsm import Composite, Hfsm
 from argo_compiler.hfsm.model import task_id
-from argo_compiler.reserved import RESERVED_NAMES
-from argo_env.record import TaskRun
+from argo_compiler.il.reserved import RESERVED_NAMES
 from argo_env.report.waiting import Wait
+from argo_env.run.record import TaskRun
 
 
 @dataclass(frozen=True)

@@ -3,10 +3,10 @@
 import math
 
 from argo_compiler.il import Action
-from argo_env.record import RunRecord, TaskRun
+from argo_env.formatting import clock
 from argo_env.report.rounds import blocks
 from argo_env.report.svg import Node, drawing, node, shorten
-from argo_env.words import clock
+from argo_env.run.record import RunRecord, TaskRun
 
 WIDTH = 1160.0  # px
 LABELS = 210.0  # px for the names of the tasks

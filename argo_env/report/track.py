@@ -7,9 +7,9 @@ from itertools import groupby, pairwise
 import numpy as np
 from numpy.typing import NDArray
 
-from argo_env.record import PathSample
 from argo_env.report.outline import Point
 from argo_env.report.svg import Node, node, number, polyline, simplify
+from argo_env.run.record import PathSample
 
 TOLERANCE = 0.02  # m that the drawn path may be away from the samples
 _AROUND = 0.1  # m of way before and after a point that tell its direction

@@ -2,7 +2,7 @@
 
 from dataclasses import dataclass
 
-from argo_env.record import Interruption, RunRecord
+from argo_env.run.record import Interruption, RunRecord
 
 MOMENT = 0.5
 """s, up to which standing still is no waiting"""

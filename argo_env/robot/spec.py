@@ -8,7 +8,7 @@ from pydantic import Field, ValidationError
 
 from argo_compiler.errors import ArgoError
 from argo_compiler.model import Model
-from argo_env import resources
+from argo_env.files import resources
 from argo_env.robot.calibration import Calibration, MotionKind
 
 

@@ -5,11 +5,11 @@ from collections.abc import Mapping
 import numpy as np
 
 from argo_env.navigation.views import camera_positions, face_normal, sight_target
-from argo_env.paper_world import AnyWorld
 from argo_env.robot.pose import BodyPose
 from argo_env.robot.spec import RobotSpec
 from argo_env.sensing.sensor import Measurement, MeasurementError, PoorViewError
 from argo_env.site import Site
+from argo_env.world.paper_world import AnyWorld
 
 
 class IdealSensor:

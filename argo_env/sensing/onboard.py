@@ -12,14 +12,14 @@ import numpy as np
 from numpy.typing import NDArray
 
 from argo_compiler.il import EventKind
-from argo_env.events.network import Network
+from argo_env.drives.battery import Battery, estimated_charge
+from argo_env.drives.powertrain import Powertrain
 from argo_env.navigation.path import Path, wrap
-from argo_env.robot.battery import Battery, estimated_charge
 from argo_env.robot.pose import BodyPose
-from argo_env.robot.powertrain import Powertrain
 from argo_env.robot.spec import RobotSpec
 from argo_env.sensing.instrument import Instrument
 from argo_env.sensing.watch import Finding, Told, Watch
+from argo_env.surroundings.network import Network
 
 LOW, FULL = 0.2, 0.99
 """shares of the charge: below the one the battery is low, from the other on it is charged again"""

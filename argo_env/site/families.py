@@ -1,7 +1,7 @@
 """Generated sites: from a family's parameters to the description of a site.
 
 The sites are after UMAD: decks of gratings around open fields, risers beside the aisles that carry
-the checkpoints, vessels that reach through all decks. `argo_env.navigation.generated` checks that a
+the checkpoints, vessels that reach through all decks. `argo_env.planning.generated` checks that a
 site can be driven before anybody gets it.
 """
 

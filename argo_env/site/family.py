@@ -8,7 +8,7 @@ from pydantic import Field, ValidationError, field_validator
 
 from argo_compiler.errors import ArgoError
 from argo_compiler.model import Model
-from argo_env.yaml_messages import message_of
+from argo_env.files.yaml_messages import message_of
 
 PREFIX = "generated:"
 TEST_SEEDS = 1_000_000

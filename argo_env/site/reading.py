@@ -2,8 +2,8 @@
 
 from pathlib import Path
 
+from argo_env.files.yaml_file import read_yaml
 from argo_env.site.spec import SiteSpec
-from argo_env.yaml_file import read_yaml
 
 
 def read_spec(path: Path) -> SiteSpec:

@@ -8,7 +8,7 @@ from pathlib import Path
 from argo_compiler.catalog import CheckpointKind, Interval
 from argo_compiler.errors import ArgoError
 from argo_compiler.model import Pose
-from argo_env import resources
+from argo_env.files import resources
 from argo_env.site.build import build_site
 from argo_env.site.family import PREFIX, is_family, parse_family
 from argo_env.site.index import SolidIndex
@@ -97,7 +97,7 @@ def load_site(name: str) -> Site:
     """
     if is_family(name):
         # Navigation is about sites, and only what it has checked is given out.
-        from argo_env.navigation.generated import generate
+        from argo_env.planning.generated import generate
 
         return generate(parse_family(name)).site
     path = Path(name)

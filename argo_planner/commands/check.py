@@ -21,8 +21,8 @@ from argo_compiler.diagnostics import (
     to_text,
 )
 from argo_compiler.errors import ArgoError
-from argo_env.catalog import make_catalog
-from argo_env.travel import SiteTravel
+from argo_env.planning.catalog import make_catalog
+from argo_env.planning.travel import SiteTravel
 from argo_planner.loading import (
     is_mission_file,
     keep_input,

@@ -12,7 +12,7 @@ from argo_compiler.diagnostics import DiagnosticError
 from argo_compiler.errors import ArgoError
 from argo_compiler.export import EXPORTERS, Exporter
 from argo_compiler.hfsm import lower
-from argo_env.folders import make_folder
+from argo_env.files.folders import make_folder
 from argo_planner.exporters import exporters
 from argo_planner.loading import (
     keep_input,

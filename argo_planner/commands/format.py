@@ -8,7 +8,7 @@ import typer
 
 from argo_compiler.diagnostics import DiagnosticError
 from argo_compiler.script import format_script
-from argo_env.catalog import make_catalog
+from argo_env.planning.catalog import make_catalog
 from argo_planner.loading import keep_input, load_mission, load_navigator, write_text
 from argo_planner.options import EndArea, SiteOption, Source, StartArea
 

@@ -8,7 +8,7 @@ from rich.console import Console
 from rich.markup import escape
 
 from argo_compiler.errors import ArgoError
-from argo_compiler.files import write_mission
+from argo_compiler.files.mission_file import write_mission
 from argo_planner.loading import (
     is_own_mission,
     load_mission,

@@ -8,12 +8,12 @@ import typer
 from rich.console import Console
 from rich.markup import escape
 
-from argo_env.folders import make_folder
+from argo_env.files.folders import make_folder
+from argo_env.formatting import clock
 from argo_env.navigation import Navigator
 from argo_env.pictures import check_film
 from argo_env.recording.reader import Recording, read_recording
 from argo_env.robot.spec import load_robot
-from argo_env.words import clock
 from argo_planner.running import conclude
 
 

@@ -8,11 +8,11 @@ from typing import Annotated
 import typer
 from rich.console import Console
 
-from argo_env.folders import make_folder
-from argo_env.journal import open_journal
+from argo_env.files.folders import make_folder
 from argo_env.recording.files import check_recording, recording_to
-from argo_env.session import resume
-from argo_env.settings import logged
+from argo_env.run.journal import open_journal
+from argo_env.run.session import resume
+from argo_env.run.spec import logged
 from argo_planner.commands.run import KINDS, parse_events
 from argo_planner.loading import load_navigator
 from argo_planner.running import RunDisplay, conclude

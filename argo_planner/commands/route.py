@@ -9,12 +9,12 @@ from pydantic import ValidationError
 from rich.console import Console
 
 from argo_compiler.errors import ArgoError
-from argo_compiler.files import write_mission
-from argo_compiler.route.requirements import Requirements, What
+from argo_compiler.files.mission_file import write_mission
+from argo_compiler.reorder.requirements import Requirements, What
 from argo_compiler.route.robust_spread import CAUTIOUS, SIMULATED
-from argo_env.folders import make_folder
+from argo_env.files.folders import make_folder
+from argo_env.files.yaml_messages import message_of
 from argo_env.pictures.route import write_route
-from argo_env.yaml_messages import message_of
 from argo_planner.loading import (
     is_mission_file,
     load_mission,

@@ -11,13 +11,13 @@ import typer
 from argo_compiler.errors import ArgoError
 from argo_compiler.hfsm import Cancel, Event, Occurred, Pause, Resume, lower
 from argo_compiler.il import EventKind
-from argo_env.events.reading import read_faults, require_fit
-from argo_env.folders import make_folder
-from argo_env.journal import JournalPlace, require_free
+from argo_env.faults.reading import read_faults, require_fit
+from argo_env.files.folders import make_folder
 from argo_env.pictures import check_film
 from argo_env.recording.files import check_recording, recording_to
-from argo_env.session import DRIVES, SENSORS, check_settings, simulate
-from argo_env.settings import RunSettings, logged
+from argo_env.run.journal import JournalPlace, require_free
+from argo_env.run.session import DRIVES, SENSORS, check_settings, simulate
+from argo_env.run.spec import RunSettings, logged
 from argo_planner.loading import keep_input, load_mission, load_navigator
 from argo_planner.options import EndArea, Optimise, SiteOption, Source, StartArea
 from argo_planner.routing import optimised

@@ -7,7 +7,7 @@ import typer
 
 from argo_compiler.schemas import SchemaName, read_schema
 from argo_compiler.schemas.generate import schema_of
-from argo_env.events.kinds import FaultFile
+from argo_env.faults.kinds import FaultFile
 
 
 class FileKind(StrEnum):

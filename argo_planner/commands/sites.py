@@ -8,7 +8,7 @@ import typer
 
 from argo_compiler.errors import ArgoError
 from argo_env.navigation import Navigator
-from argo_env.navigation.checking import unseen_checkpoints, unserved_floors
+from argo_env.planning.checking import unseen_checkpoints, unserved_floors
 from argo_env.site import load_site, site_names
 from argo_env.site.family import PREFIX, is_family
 from argo_env.site.norms import breaches, false_ends

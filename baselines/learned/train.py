@@ -6,7 +6,7 @@ from dataclasses import replace
 from pathlib import Path
 
 from argo_compiler.errors import ArgoError
-from argo_env.folders import make_folder
+from argo_env.files.folders import make_folder
 from baselines.learned.extra import check_learned
 
 

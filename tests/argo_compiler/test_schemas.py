@@ -9,7 +9,7 @@ from hypothesis import strategies as st
 from jsonschema import Draft202012Validator
 from pydantic import ValidationError
 
-from argo_compiler.files import mission_text
+from argo_compiler.files.mission_file import mission_text
 from argo_compiler.hfsm import Executor, Hfsm, Progress, lower
 from argo_compiler.il import (
     Action,

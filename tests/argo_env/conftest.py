@@ -4,14 +4,14 @@ import numpy as np
 import pybullet
 import pytest
 
-import argo_env.world
+import argo_env.world.world
 from argo_compiler.script import import_script, read_script
-from argo_env import resources
-from argo_env.catalog import make_catalog
+from argo_env.files import resources
 from argo_env.navigation import Navigator
+from argo_env.planning.catalog import make_catalog
 from argo_env.robot.spec import load_robot
-from argo_env.session import simulate
-from argo_env.settings import RunSettings
+from argo_env.run.session import simulate
+from argo_env.run.spec import RunSettings
 from argo_env.site import load_site
 from argo_env.site.urdf import to_urdf
 
@@ -112,7 +112,7 @@ def umad_world(umad_urdf):
 @pytest.fixture(scope="session")
 def simulation(umad, robot):
     """The world that Argo runs missions in, to place the robot in and look."""
-    with argo_env.world.World(umad, robot) as world:
+    with argo_env.world.world.World(umad, robot) as world:
         yield world
 
 

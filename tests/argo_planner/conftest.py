@@ -1,8 +1,8 @@
 import pytest
 
 from argo_compiler.catalog import Catalog
-from argo_env.catalog import make_catalog
 from argo_env.navigation import Navigator
+from argo_env.planning.catalog import make_catalog
 from argo_planner.loading import load_navigator
 
 

@@ -6,7 +6,7 @@ import pytest
 
 from argo_compiler.check import check
 from argo_compiler.errors import ArgoError
-from argo_compiler.files import mission_text
+from argo_compiler.files.mission_file import mission_text
 from argo_compiler.hfsm import lower
 from argo_compiler.il import Action, Mission, Task, Transition
 from argo_compiler.isar import View, to_isar

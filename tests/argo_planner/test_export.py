@@ -8,7 +8,7 @@ from typer.testing import CliRunner
 from argo_compiler.diagnostics import DiagnosticError
 from argo_compiler.errors import ArgoError
 from argo_compiler.export import EXPORTERS
-from argo_compiler.files import write_mission
+from argo_compiler.files.mission_file import write_mission
 from argo_compiler.il import EventKind, Mission, Reaction, Response, Task, Transition
 from argo_planner.cli import app
 

@@ -7,11 +7,11 @@ import pytest
 from PIL import Image
 from typer.testing import CliRunner
 
-from argo_compiler.files import read_mission, write_mission
+from argo_compiler.files.mission_file import read_mission, write_mission
 from argo_compiler.hfsm import Hfsm
 from argo_compiler.il import Group, Order
 from argo_compiler.model import Pose
-from argo_env.record import RunRecord
+from argo_env.run.record import RunRecord
 from argo_planner.cli import app
 from tests.yard import measure, mission, waypoint, yard
 

@@ -8,12 +8,12 @@ import yaml
 from typer.testing import CliRunner
 
 from argo_compiler.diagnostics import has_errors
-from argo_env import resources
-from argo_env.catalog import make_catalog
+from argo_env.files import resources
 from argo_env.navigation import Navigator
+from argo_env.planning.catalog import make_catalog
+from argo_env.planning.travel import SiteTravel
 from argo_env.robot.spec import load_robot
 from argo_env.site import load_site
-from argo_env.travel import SiteTravel
 from argo_planner.cli import app
 from argo_planner.commands.check import find_all
 

@@ -6,17 +6,17 @@ import pytest
 from argo_compiler.check import check
 from argo_compiler.il import Action
 from argo_compiler.model import Pose
-from argo_env.catalog import make_catalog
+from argo_env.drives.drive import DriveStatus
+from argo_env.drives.route import RouteDrive
+from argo_env.drives.timetable import Timetable
 from argo_env.navigation import Navigator
+from argo_env.planning.catalog import make_catalog
 from argo_env.robot.calibration import Calibration, Pace
-from argo_env.robot.drive import DriveStatus
-from argo_env.robot.fitting import errors, fit
 from argo_env.robot.pose import BodyPose
-from argo_env.robot.route import RouteDrive
 from argo_env.robot.spec import load_robot
-from argo_env.robot.timetable import Timetable
 from argo_env.site import load_site
 from benchmarks.drives import Run, compare, drive_along, random_mission, run
+from benchmarks.fitting import errors, fit
 
 
 @pytest.fixture(scope="module")

@@ -7,8 +7,8 @@ import pytest
 
 from argo_compiler.errors import ArgoError
 from argo_compiler.route import Battery, Precedence, Route, RouteProblem, Visit, evaluate
-from argo_compiler.route.files import Kind
 from benchmarks import peer_pyvrp
+from benchmarks.instances import Kind
 from benchmarks.routes import Known, Row, find_files, known_of, main, summary
 
 ATSP = """NAME: three

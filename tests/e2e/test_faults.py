@@ -6,8 +6,8 @@ import re
 import pytest
 import yaml
 
-from argo_compiler.files import write_mission
-from argo_env.record import RunRecord
+from argo_compiler.files.mission_file import write_mission
+from argo_env.run.record import RunRecord
 from tests.yard import SITE, measure, mission, waypoint
 
 FAULTS = """\

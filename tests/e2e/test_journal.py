@@ -16,14 +16,14 @@ from pathlib import Path
 import pytest
 import yaml
 
-from argo_compiler.files import write_mission
+from argo_compiler.files.mission_file import write_mission
 from argo_compiler.hfsm import Occurred, Pause, Resume
 from argo_compiler.il import Afterwards, EventKind, Group, Reaction, Response
 from argo_compiler.model import Pose
-from argo_env.journal import open_journal
-from argo_env.record import RunRecord
-from argo_env.session import resume, simulate
-from argo_env.settings import RunSettings, logged
+from argo_env.run.journal import open_journal
+from argo_env.run.record import RunRecord
+from argo_env.run.session import resume, simulate
+from argo_env.run.spec import RunSettings, logged
 from tests.yard import SITE, measure, mission, waypoint, yard
 
 ROOT = Path(__file__).parents[2]

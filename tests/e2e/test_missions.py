@@ -6,9 +6,9 @@ from pathlib import Path
 
 import pytest
 
-from argo_compiler.files import read_mission
+from argo_compiler.files.mission_file import read_mission
 from argo_compiler.hfsm import Hfsm
-from argo_env.record import RunRecord
+from argo_env.run.record import RunRecord
 
 
 @pytest.fixture(scope="module")

@@ -8,7 +8,7 @@ from pathlib import Path
 import pytest
 import yaml
 
-from argo_compiler.files import write_mission
+from argo_compiler.files.mission_file import write_mission
 from argo_compiler.il import Group
 from argo_env.recording.reader import read_recording
 from tests.yard import SITE, measure, mission, waypoint

@@ -3,7 +3,7 @@
 from pathlib import Path
 
 from argo_compiler.check import check
-from argo_compiler.files import read_mission
+from argo_compiler.files.mission_file import read_mission
 
 
 def test_a_sheet_in_any_order_is_put_in_order(argo, missions: Path, tmp_path: Path) -> None:

@@ -1,8 +1,14 @@
 """What a code stands for."""
 
 from dataclasses import dataclass
+from enum import StrEnum
 
-from argo_compiler.diagnostics.finding import Severity
+
+class Severity(StrEnum):
+    """How bad it is: an error stops the compiler, a warning is shown and the work goes on."""
+
+    ERROR = "error"
+    WARNING = "warning"
 
 
 @dataclass(frozen=True, slots=True)

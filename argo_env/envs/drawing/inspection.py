@@ -5,10 +5,10 @@ from collections.abc import Sequence
 import numpy as np
 from numpy.typing import NDArray
 
-from argo_env.envs.drawing.plan import Marker, PlanDrawing, Station, draw_plan
 from argo_env.envs.drawing.sites import site_sheet
-from argo_env.envs.drawing.way import Moment
 from argo_env.envs.inspection_run import Inspection
+from argo_env.pictures.drawing.plan import Marker, PlanDrawing, Station, draw_plan
+from argo_env.pictures.drawing.way import Moment
 
 _LEGEND = {
     "open": "to be read",

@@ -2,9 +2,9 @@
 
 from functools import lru_cache
 
-from argo_env.envs.drawing.floors import FloorPlan, plans_of
-from argo_env.envs.drawing.sheet import Sheet, make_sheet
 from argo_env.envs.sites import navigator_of
+from argo_env.pictures.drawing.floors import FloorPlan, plans_of
+from argo_env.pictures.drawing.sheet import Sheet, make_sheet
 
 
 @lru_cache(maxsize=4)  # a sheet takes 11 MB

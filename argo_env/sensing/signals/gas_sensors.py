@@ -9,7 +9,7 @@ from argo_env.sensing.signals.frames import NOSE, on_site, point
 from argo_env.surroundings import GasLeak, Surroundings
 from argo_env.surroundings.gas import concentration
 from argo_env.surroundings.ultrasound import leak_level
-from argo_env.world import World
+from argo_env.world.world import World
 
 
 class GasSensor:

@@ -13,7 +13,7 @@ from argo_env.sensing.signals.terrain_watch import TerrainWatch
 from argo_env.sensing.signals.thermal_camera import ThermalCamera
 from argo_env.sensing.watch import Watch
 from argo_env.surroundings import Surroundings
-from argo_env.world import World
+from argo_env.world.world import World
 
 
 def standard_watches(world: World, surroundings: Surroundings, seed: int) -> tuple[Watch, ...]:

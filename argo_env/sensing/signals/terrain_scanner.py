@@ -12,7 +12,7 @@ from argo_env.robot.pose import BodyPose
 from argo_env.sensing.signals.frames import on_site, point, rotation
 from argo_env.sensing.signals.site_map import SiteMap
 from argo_env.site.shapes import Vector
-from argo_env.world import World
+from argo_env.world.world import World
 
 FRONT: Vector = (0.4, 0.0, 0.8)
 REAR: Vector = (-0.45, 0.0, 0.8)

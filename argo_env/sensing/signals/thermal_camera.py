@@ -12,7 +12,7 @@ from argo_env.sensing.signals.frames import on_site, point, rotation
 from argo_env.site.shapes import Role, Vector
 from argo_env.surroundings import HotSpot, Surroundings
 from argo_env.surroundings.heat import temperatures
-from argo_env.world import World
+from argo_env.world.world import World
 
 WIDTH, HEIGHT = 80, 60
 """pixels"""

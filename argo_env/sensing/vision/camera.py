@@ -6,7 +6,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from argo_env.sensing.vision.arm import CameraPose
-from argo_env.world import World
+from argo_env.world.world import World
 
 NEAR, FAR = 0.05, 30.0  # m
 

@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 from argo_env.sensing.vision.align import FacePose, Photo
 from argo_env.sensing.vision.faces import PIXELS_PER_METRE
 from argo_env.sensing.vision.instrument import Instrument, blurred_texture, texture
-from argo_env.sensing.vision.placement import MAX_OFFSET
+from argo_env.world.placement import MAX_OFFSET
 
 _HALF = 11.0  # px, half the width of a face in the picture that is searched
 _STEP = math.radians(12)  # between the turns that are tried

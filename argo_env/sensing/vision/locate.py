@@ -10,8 +10,8 @@ from argo_env.sensing.vision.align import FacePose, Fit, Photo, compare, refine
 from argo_env.sensing.vision.candidates import find_candidates
 from argo_env.sensing.vision.instrument import Instrument, make_template
 from argo_env.sensing.vision.outlines import find_outlines
-from argo_env.sensing.vision.placement import MAX_OFFSET, MAX_TURN
 from argo_env.sensing.vision.rolls import likely_rolls, spacing
+from argo_env.world.placement import MAX_OFFSET, MAX_TURN
 
 _OUTLINES = 30  # that are looked at more closely
 _FITS = 7  # that are fitted

@@ -21,12 +21,12 @@ from argo_env.sensing.vision.instrument import Instrument
 from argo_env.sensing.vision.level import LEVEL
 from argo_env.sensing.vision.locate import find_face, look_closer
 from argo_env.sensing.vision.photo import make_photo
-from argo_env.sensing.vision.placement import MAX_OFFSET
 from argo_env.sensing.vision.valve import VALVE
 from argo_env.sensing.vision.views import ArmView, plan_views, solids_near
 from argo_env.site import SiteCheckpoint
 from argo_env.site.shapes import Solid
-from argo_env.world import Shot, World
+from argo_env.world.placement import MAX_OFFSET
+from argo_env.world.world import Shot, World
 
 INSTRUMENTS = {instrument.kind: instrument for instrument in (DIAL, VALVE, LEVEL)}
 

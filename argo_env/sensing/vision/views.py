@@ -17,7 +17,7 @@ from argo_env.sensing.vision.align import FacePose
 from argo_env.sensing.vision.arm import JOINTS, CameraPose, forward, inverse
 from argo_env.site import Site
 from argo_env.site.shapes import Solid, crossing, half_extents
-from argo_env.world import World
+from argo_env.world.world import World
 
 _AZIMUTHS = np.radians(np.arange(-75, 76, 15))
 _ELEVATIONS = np.radians([0, -18, 18, 36])

@@ -2,7 +2,7 @@
 
 A function that makes a `Diagnostic` with a code from one of its parameters passes codes on, and so
 does one that calls such a function with a parameter of its own. What they are called with, in the
-same folder, are the codes.
+same part of a package, are the codes.
 """
 
 import ast
@@ -70,7 +70,7 @@ def all_calls() -> dict[str, list[Call]]:
     found: dict[str, list[Call]] = defaultdict(list)
     for package in PACKAGES:
         for path in sorted((ROOT / package).rglob("*.py")):
-            folder = str(path.parent.relative_to(ROOT))
+            folder = "/".join(path.parent.relative_to(ROOT).parts[:2])
             inside: dict[ast.AST, Function | None] = {}
             for node in ast.walk(ast.parse(path.read_text(encoding="utf-8"))):
                 function = node if isinstance(node, Function) else inside.get(node)

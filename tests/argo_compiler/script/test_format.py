@@ -12,7 +12,7 @@ from argo_compiler.diagnostics import DiagnosticError, Severity
 from argo_compiler.il import Action, Condition, ConditionType, Mission, Task, Transition
 from argo_compiler.model import Pose
 from argo_compiler.script import import_script
-from argo_compiler.script.format import format_script
+from argo_compiler.script.write.protocol import format_script
 from tests.missions_sound import sound_missions
 
 HERE = Pose(x=1, y=2, z=0)

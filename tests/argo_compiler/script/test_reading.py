@@ -8,8 +8,8 @@ from argo_compiler.catalog import Catalog
 from argo_compiler.diagnostics import DiagnosticError
 from argo_compiler.errors import ArgoError
 from argo_compiler.script import import_script, parse, read_script
-from argo_compiler.script.parsing import MAX_LINES
-from argo_compiler.script.reading import MAX_BYTES
+from argo_compiler.script.syntax.parsing import MAX_LINES
+from argo_compiler.script.syntax.reading import MAX_BYTES
 
 
 def test_a_byte_order_mark_is_taken_off(tmp_path: Path) -> None:

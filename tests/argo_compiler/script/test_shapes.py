@@ -9,10 +9,10 @@ from hypothesis import strategies as st
 
 from argo_compiler.catalog import Catalog
 from argo_compiler.script import import_script
-from argo_compiler.script.protocol import protocol_grammar
-from argo_compiler.script.shapes import Branch, Leaf, StumbleError, Syntax
-from argo_compiler.script.sheet import sheet_grammar
-from argo_compiler.script.statements import Grammar, lower
+from argo_compiler.script.syntax.protocol import protocol_grammar
+from argo_compiler.script.syntax.shapes import Branch, Leaf, StumbleError, Syntax
+from argo_compiler.script.syntax.sheet import sheet_grammar
+from argo_compiler.script.syntax.statements import Grammar, lower
 
 DOCS = Path(__file__).parents[3] / "docs" / "script.md"
 NUMBERS = ["0", "7", "14", "2.5", "1e-3", "12:30", "00:12:30", "1st", "22nd", "3times", "1000000"]
@@ -112,7 +112,7 @@ def test_the_reference_in_any_order() -> None:
 
 
 def test_more_shapes_than_are_kept(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr("argo_compiler.script.shapes._MOST", 3)
+    monkeypatch.setattr("argo_compiler.script.syntax.shapes._MOST", 3)
     for text in forms("protocol")[:40]:
         assert_alike(protocol_grammar(), "line", text)
 

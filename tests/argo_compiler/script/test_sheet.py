@@ -6,7 +6,7 @@ from argo_compiler.catalog import Catalog
 from argo_compiler.diagnostics import Diagnostic, DiagnosticError, Severity
 from argo_compiler.il import Mission, Mode, Order
 from argo_compiler.script import import_script
-from argo_compiler.script.resolve import Resolved
+from argo_compiler.script.resolve.importing import Resolved
 
 HEADER = """\
 Mission's designation: Mission #7

@@ -5,11 +5,11 @@ from pathlib import Path
 import pytest
 from lark import Lark, UnexpectedInput
 
-from argo_compiler.script import tables
-from argo_compiler.script.protocol import FORMS as PROTOCOL_FORMS
-from argo_compiler.script.protocol import PROTOCOL_STARTS
-from argo_compiler.script.sheet import FORMS as SHEET_FORMS
-from argo_compiler.script.sheet import SHEET_STARTS
+from argo_compiler.script.syntax import tables
+from argo_compiler.script.syntax.protocol import FORMS as PROTOCOL_FORMS
+from argo_compiler.script.syntax.protocol import PROTOCOL_STARTS
+from argo_compiler.script.syntax.sheet import FORMS as SHEET_FORMS
+from argo_compiler.script.syntax.sheet import SHEET_STARTS
 
 GRAMMARS = [("protocol", PROTOCOL_STARTS, PROTOCOL_FORMS), ("sheet", SHEET_STARTS, SHEET_FORMS)]
 

@@ -10,16 +10,16 @@ from hypothesis import strategies as st
 from PIL import ImageColor, ImageDraw
 
 from argo_env.envs.drawing.drive import GOAL
-from argo_env.envs.drawing.floors import aisles, open_floors, plans_of
-from argo_env.envs.drawing.plan import Marker, PlanDrawing, Station, draw_plan
-from argo_env.envs.drawing.sheet import FINER, FOOT, HEAD, SIZE, make_sheet
-from argo_env.envs.drawing.spots import Spots
-from argo_env.envs.drawing.style import POINT, ROBOT, STYLES
-from argo_env.envs.drawing.way import Moment, draw_lines, lines
 from argo_env.envs.drive import DriveEnv
 from argo_env.envs.inspection import InspectEnv
 from argo_env.envs.route import RouteEnv, RouteVectorEnv
 from argo_env.envs.route_instance import make_instance
+from argo_env.pictures.drawing.floors import aisles, open_floors, plans_of
+from argo_env.pictures.drawing.plan import Marker, PlanDrawing, Station, draw_plan
+from argo_env.pictures.drawing.sheet import FINER, FOOT, HEAD, SIZE, make_sheet
+from argo_env.pictures.drawing.spots import Spots
+from argo_env.pictures.drawing.style import POINT, ROBOT, STYLES
+from argo_env.pictures.drawing.way import Moment, draw_lines, lines
 from argo_env.report.track import colour
 from argo_env.robot.spec import Footprint
 from argo_env.site.shapes import Role

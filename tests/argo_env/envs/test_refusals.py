@@ -17,7 +17,7 @@ from argo_env.envs.inspection import InspectEnv
 from argo_env.envs.inspection_options import draw_faults
 from argo_env.envs.route import RouteEnv, RouteVectorEnv
 from argo_env.envs.sites import navigator_of
-from argo_env.events.kinds import settle
+from argo_env.faults.kinds import settle
 from argo_env.site import load_site
 from tests.argo_env.envs import rollouts
 

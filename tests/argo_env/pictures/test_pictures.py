@@ -12,8 +12,8 @@ from argo_env.pictures import check_film, film, overview, write_film, write_over
 from argo_env.pictures.camera import Camera
 from argo_env.pictures.motion import Motion
 from argo_env.pictures.scene import Scene, storeys
-from argo_env.record import PathSample, Reading, Result, RunRecord
 from argo_env.robot.pose import BodyPose
+from argo_env.run.record import PathSample, Reading, Result, RunRecord
 
 DURATION = 20.0
 

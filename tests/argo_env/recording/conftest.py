@@ -9,8 +9,8 @@ from argo_compiler.il import Afterwards, EventKind, Group, Reaction, Response
 from argo_compiler.model import Pose
 from argo_env.recording.files import recording_to
 from argo_env.recording.reader import read_recording
-from argo_env.session import simulate
-from argo_env.settings import RunSettings, logged
+from argo_env.run.session import simulate
+from argo_env.run.spec import RunSettings, logged
 from tests.yard import measure, mission, waypoint, yard
 
 PLAN = mission(

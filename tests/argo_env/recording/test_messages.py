@@ -11,8 +11,8 @@ from mcap.reader import make_reader
 from mcap_protobuf.decoder import DecoderFactory
 
 from argo_compiler.il import EventKind
-from argo_env.record import Anomaly
 from argo_env.recording.scene import finding_scene
+from argo_env.run.record import Anomaly
 from argo_env.site.shapes import Box
 from argo_env.site.urdf import COLOURS
 

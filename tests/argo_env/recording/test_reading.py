@@ -10,12 +10,12 @@ from mcap.reader import make_reader
 from mcap.writer import Writer
 
 from argo_compiler.errors import ArgoError
-from argo_env.journal import JournalPlace, open_journal
 from argo_env.recording import files
 from argo_env.recording.files import check_recording, recording_to
 from argo_env.recording.reader import read_recording
 from argo_env.report import write_report
-from argo_env.session import resume, simulate
+from argo_env.run.journal import JournalPlace, open_journal
+from argo_env.run.session import resume, simulate
 from tests.argo_env.recording.conftest import PLAN, SETTINGS
 from tests.conftest import examples
 

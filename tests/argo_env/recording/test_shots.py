@@ -10,11 +10,11 @@ from mcap_protobuf.decoder import DecoderFactory
 from PIL import Image
 from scipy.spatial.transform import Rotation
 
-from argo_env.action import Rig
+from argo_env.drives.kinematic import KinematicDrive
 from argo_env.recording.files import recording_to
-from argo_env.robot.kinematic import KinematicDrive
 from argo_env.robot.pose import BodyPose
-from argo_env.world import World
+from argo_env.run.action import Rig
+from argo_env.world.world import World
 from tests.argo_env.recording.conftest import PLAN, SETTINGS
 
 pytest.importorskip("cv2")

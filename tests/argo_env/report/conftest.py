@@ -9,7 +9,7 @@ from argo_compiler.catalog import CheckpointKind, Interval
 from argo_compiler.diagnostics import Diagnostic, Severity
 from argo_compiler.hfsm import lower
 from argo_compiler.il import Action, Condition, ConditionType, Group, Mission, Task, Transition
-from argo_env.record import Contact, PathSample, Reading, Result, RunRecord, TaskRun, TraceStep
+from argo_env.run.record import Contact, PathSample, Reading, Result, RunRecord, TaskRun, TraceStep
 from argo_env.site import load_site
 
 CORNERS = ((3.05, -2.55, 0.0), (8.0, -2.0, 0.0), (8.0, 1.5, 0.0), (1.4, 1.5, 0.0), (0.85, 3.5, 0.0))

@@ -8,11 +8,11 @@ import pytest
 
 from argo_compiler.il import Action, EventKind, Mission, Task, Transition
 from argo_compiler.model import Pose
-from argo_env.events.process import GasLeakFault, PlatformAlarm
-from argo_env.record import Anomaly, Interruption
+from argo_env.faults.process import GasLeakFault, PlatformAlarm
 from argo_env.report.charge import charge_curve
 from argo_env.report.html import page
 from argo_env.report.track import beside
+from argo_env.run.record import Anomaly, Interruption
 
 
 def anomaly(t, kind=EventKind.GAS_LEAK, place=None, floor=None):

@@ -8,11 +8,11 @@ import pytest
 
 from argo_compiler.errors import ArgoError
 from argo_compiler.il import Action, Group, Mission, Task, Transition
-from argo_env.record import RunRecord
 from argo_env.report import write_report
 from argo_env.report.html import page
 from argo_env.report.machine import MAX_STATES, machine
 from argo_env.report.rounds import blocks
+from argo_env.run.record import RunRecord
 
 SECTIONS = [
     "summary",

@@ -10,7 +10,7 @@ import yourdfpy
 
 from argo_compiler.catalog import CheckpointKind
 from argo_compiler.errors import ArgoError
-from argo_env import resources
+from argo_env.files import resources
 from argo_env.robot.spec import load_robot, robot_folder
 
 CHECKPOINTS = sorted(p.stem for p in (resources.urdf() / "checkpoints").glob("*.urdf"))

@@ -8,7 +8,7 @@ from hypothesis import strategies as st
 
 from argo_compiler.errors import ArgoError
 from argo_compiler.model import Pose
-from argo_env.navigation.generated import generate
+from argo_env.planning.generated import generate
 from argo_env.site import load_site, make_site
 from argo_env.site.families import draw_site
 from argo_env.site.family import TEST_SEEDS, Family, Stairs, parse_family
@@ -86,8 +86,8 @@ def test_a_site_without_stairs_to_the_upper_floor_is_not_given_out(monkeypatch):
         spec, slots = draw_site(family, attempt, refused)
         return spec.model_copy(update={"towers": ()}), slots
 
-    monkeypatch.setattr("argo_env.navigation.generated.draw_site", without_stairs)
-    monkeypatch.setattr("argo_env.navigation.generated._LAYOUTS", 1)
+    monkeypatch.setattr("argo_env.planning.generated.draw_site", without_stairs)
+    monkeypatch.setattr("argo_env.planning.generated._LAYOUTS", 1)
     with pytest.raises(ArgoError, match="no draw of this seed can be driven"):
         generate(Family(floors=2, size=(12, 12), clutter=0.0, checkpoints=0, seed=5))
 
@@ -107,7 +107,7 @@ def test_checkpoints_that_can_not_be_read_are_moved(monkeypatch):
 
     family = Family(floors=1, size=(12, 12), clutter=0.0, checkpoints=3, seed=6)
     first_slot = draw_site(family)[1][1]
-    monkeypatch.setattr("argo_env.navigation.generated.draw_site", raised)
+    monkeypatch.setattr("argo_env.planning.generated.draw_site", raised)
     navigator = generate.__wrapped__(family)
     assert all(navigator.can_view(id) for id in (1, 2, 3))
     moved = draw_site(family, refused={first_slot})[0]

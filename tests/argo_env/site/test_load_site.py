@@ -4,7 +4,7 @@ import pytest
 import yaml
 
 from argo_compiler.errors import ArgoError
-from argo_env import resources
+from argo_env.files import resources
 from argo_env.site import load_site
 
 

@@ -3,7 +3,7 @@
 import pytest
 
 from argo_env.sensing.signals.site_map import SiteMap
-from argo_env.world import World
+from argo_env.world.world import World
 from tests.argo_env.sensing.signals.plant import plant
 
 

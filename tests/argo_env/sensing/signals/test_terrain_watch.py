@@ -9,13 +9,13 @@ from hypothesis import strategies as st
 
 from argo_compiler.il import EventKind
 from argo_compiler.model import Pose
-from argo_env.robot.drive import DriveStatus
-from argo_env.robot.kinematic import KinematicDrive
+from argo_env.drives.drive import DriveStatus
+from argo_env.drives.kinematic import KinematicDrive
 from argo_env.robot.pose import BodyPose
 from argo_env.sensing.signals.site_map import SiteMap
 from argo_env.sensing.signals.terrain_scanner import TerrainScanner
 from argo_env.sensing.signals.terrain_watch import TerrainWatch
-from argo_env.world import World
+from argo_env.world.world import World
 from tests.argo_env.sensing.signals.plant import Z, lane, told, with_brick, with_hole
 from tests.conftest import examples
 

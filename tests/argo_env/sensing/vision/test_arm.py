@@ -9,11 +9,11 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from argo_env.action import TURNS
 from argo_env.navigation import UnreachableError
 from argo_env.navigation.views import face_normal
 from argo_env.robot.pose import BodyPose
 from argo_env.robot.spec import robot_folder
+from argo_env.run.action import TURNS
 from argo_env.sensing.vision.align import FacePose
 from argo_env.sensing.vision.arm import JOINTS, forward, inverse
 from argo_env.sensing.vision.views import plan_views, solids_near

@@ -11,9 +11,9 @@ from argo_compiler.catalog import CheckpointKind
 from argo_env.robot.pose import BodyPose
 from argo_env.sensing.sensor import MeasurementError
 from argo_env.sensing.vision.faces import draw_face, face_file
-from argo_env.sensing.vision.placement import AS_PLANNED, Placement, draw_placement
 from argo_env.sensing.vision.sensor import CameraSensor
 from argo_env.site.shapes import Box
+from argo_env.world.placement import AS_PLANNED, Placement, draw_placement
 
 pytest.importorskip("cv2")
 from PIL import Image
@@ -166,5 +166,5 @@ def test_placements_fill_what_the_rules_allow():
 
 
 def test_importing_argo_env_needs_no_opencv():
-    code = "import sys, argo_env.session; sys.exit('cv2' in sys.modules)"
+    code = "import sys, argo_env.run.session; sys.exit('cv2' in sys.modules)"
     assert subprocess.run([sys.executable, "-c", code], check=False).returncode == 0

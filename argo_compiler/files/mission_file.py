@@ -1,0 +1,202 @@
+"""Missions as files: JSON that a person can read, with errors that say where it is wrong."""
+
+import json
+from collections.abc import Iterable, Iterator
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any, NoReturn
+
+from argo_compiler.diagnostics import (
+    MAX_EXCERPT,
+    Diagnostic,
+    DiagnosticError,
+    Span,
+    by_place,
+)
+from argo_compiler.files.json_places import (
+    Text,
+    find_duplicates,
+    find_places,
+    format_path,
+    parse_path,
+)
+from argo_compiler.files.migration import VERSION, migrate
+from argo_compiler.files.mission_data import MAX_FAULTS, Fault, fault, to_mission, too_deep
+from argo_compiler.files.writing import write_whole
+from argo_compiler.il import Mission
+
+MAX_BYTES = 50_000_000
+"""Far above any mission (10,000 tasks take 4 MB), far below what would exhaust the memory."""
+
+
+@dataclass(frozen=True)
+class MissionFile:
+    """A mission with the text that it was read from."""
+
+    mission: Mission
+    text: str
+
+    def placed(self, findings: Iterable[Diagnostic]) -> tuple[Diagnostic, ...]:
+        """The findings with their places in the file, by their subjects.
+
+        The places that they had are the script's from which the mission was imported.
+        """
+        return by_place(
+            _placed(
+                self.text,
+                (Fault(f, None if f.subject is None else parse_path(f.subject)) for f in findings),
+            )
+        )
+
+
+def read_mission(path: Path) -> Mission:
+    """The mission in a JSON file (UTF-8, with or without a byte order mark).
+
+    Only its shape is looked at; what it means is for `check`.
+
+    Raises:
+        DiagnosticError: the file can't be read or is no mission; says where, by line and column.
+    """
+    return read_mission_file(path).mission
+
+
+def read_mission_file(path: Path) -> MissionFile:
+    """The same, with the file's text, in which the places of later findings can be looked up."""
+    text = _read_text(path)
+    data, repeats = _parse(path, text)
+    faults = [*_duplicate_keys(text)] if repeats else []
+    if not isinstance(data, dict):
+        _refuse(path, text, [*faults, _not_a_mission()])
+    present = migrate(data)
+    version = present.get("version", VERSION)
+    if version != VERSION or isinstance(version, bool):
+        _refuse(path, text, [*faults, _unsupported(version)])
+    result = to_mission(present)
+    if isinstance(result, list) or faults:
+        _refuse(path, text, faults + (result if isinstance(result, list) else []))
+    return MissionFile(result, text)
+
+
+def write_mission(mission: Mission, path: Path) -> None:
+    """Writes a mission as JSON, without the fields that have their default value.
+
+    `read_mission` gives back an equal mission. A file that was there is replaced as a whole.
+
+    Raises:
+        DiagnosticError: the file can't be written.
+    """
+    try:
+        write_whole(path, mission_text(mission))
+    except OSError as error:
+        message = f"can't be written: {error.strerror}"
+        _refuse(path, "", [fault("file.unwritable", message, "choose another place")])
+
+
+def mission_text(mission: Mission) -> str:
+    """What `write_mission` writes."""
+    data = {"version": mission.version} | mission.model_dump(mode="json", exclude_defaults=True)
+    return json.dumps(data, indent=2, ensure_ascii=False) + "\n"
+
+
+def _refuse(path: Path, text: str, faults: Iterable[Fault]) -> NoReturn:
+    raise DiagnosticError(str(path), _placed(text, faults)) from None
+
+
+def _placed(text: str, faults: Iterable[Fault]) -> list[Diagnostic]:
+    faults = list(faults)
+    paths = [path for _, path in faults if path is not None]
+    lines = Text(text)
+    spans = find_places(lines, paths) if paths else {}
+    return [_at(lines, finding, spans[path] if path else None) for finding, path in faults]
+
+
+def _at(lines: Text, finding: Diagnostic, span: Span | None) -> Diagnostic:
+    excerpt = lines.line(span.line) if span else None
+    if excerpt is not None and len(excerpt) > MAX_EXCERPT:
+        excerpt = None
+    return finding.model_copy(update={"span": span, "excerpt": excerpt})
+
+
+def _read_text(path: Path) -> str:
+    def refuse(code: str, message: str, hint: str) -> NoReturn:
+        _refuse(path, "", [fault(code, message, hint)])
+
+    if path.is_dir():
+        refuse("file.directory", "is a directory", "name the mission file in it")
+    try:
+        with path.open("rb") as file:
+            content = file.read(MAX_BYTES + 1)
+    except FileNotFoundError:
+        refuse("file.missing", "there is no such file", "check the path")
+    except (OSError, ValueError) as error:  # ValueError: a NUL in the path
+        refuse("file.unreadable", f"can't be read: {error}", "check the file")
+    if len(content) > MAX_BYTES:
+        refuse(
+            "file.too-large",
+            f"is larger than {MAX_BYTES // 1_000_000} MB",
+            "a mission file is far smaller: is this the right file?",
+        )
+    try:
+        text = content.decode("utf-8-sig")
+    except UnicodeDecodeError as error:
+        refuse(
+            "file.not-text",
+            f"is not UTF-8 text: byte {error.start} is 0x{content[error.start]:02x}",
+            "save it as UTF-8, or name the mission's JSON file",
+        )
+    if "\0" in text:
+        refuse("file.not-text", "is a binary file", "name the mission's JSON file")
+    return text
+
+
+def _parse(path: Path, text: str) -> tuple[Any, bool]:
+    """The data in a JSON text, and whether any of its objects has a key twice."""
+    repeats = False
+
+    def to_dict(pairs: list[tuple[str, Any]]) -> dict[str, Any]:
+        nonlocal repeats
+        data = dict(pairs)
+        repeats = repeats or len(data) < len(pairs)
+        return data
+
+    try:
+        return json.loads(text, object_pairs_hook=to_dict), repeats
+    except json.JSONDecodeError as error:
+        lines = Text(text)
+        finding, _ = fault("file.not-json", f"is not JSON: {error.msg}", "correct it at the mark")
+        span = lines.span(error.pos, error.pos + 1)
+        raise DiagnosticError(str(path), [_at(lines, finding, span)]) from None
+    except RecursionError:
+        _refuse(path, text, [too_deep()])
+    except ValueError as error:  # an integer of thousands of digits
+        message = f"is not usable JSON: {error}"
+        _refuse(path, text, [fault("file.not-json", message, "correct the number")])
+
+
+def _not_a_mission() -> Fault:
+    return fault(
+        "file.not-a-mission",
+        "is not a mission: the JSON is no object",
+        f'a mission begins with {{"version": {VERSION}, "tasks": [',
+    )
+
+
+def _unsupported(version: object) -> Fault:
+    shown = json.dumps(version)
+    return fault(
+        "file.unsupported-version",
+        f"has version {shown if len(shown) < 40 else '...'} of the mission format",
+        f"this Argo reads versions up to {VERSION}: use a newer Argo or save the mission again",
+        ("version",),
+    )
+
+
+def _duplicate_keys(text: str) -> Iterator[Fault]:
+    for path, first in find_duplicates(Text(text), MAX_FAULTS).items():
+        yield fault(
+            "file.duplicate-key",
+            f"{format_path(path)} stands here again; it was given at line {first.line}, "
+            f"column {first.column}",
+            "remove one of the two",
+            path,
+        )

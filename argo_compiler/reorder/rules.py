@@ -1,0 +1,162 @@
+"""What keeps its order in a mission, and why, in the mission's words."""
+
+from collections.abc import Iterator
+from itertools import combinations, product
+
+from argo_compiler.errors import ArgoError
+from argo_compiler.il import Mission
+from argo_compiler.reorder.requirements import Requirements
+from argo_compiler.reorder.spine import Stop, Unit, find_spine, leaves_of
+from argo_compiler.reorder.visits import Visits, said
+from argo_compiler.route.problem import Precedence
+
+
+def rules(visits: Visits, precise: bool, requirements: Requirements) -> tuple[Precedence, ...]:
+    """All orders that have to be kept; `precise`: whether the mission asks for a precise one.
+
+    Raises ArgoError if a requirement names something that the mission does not have.
+    """
+    everything = tuple(range(len(visits.stops)))
+    found: list[Precedence] = []
+    kept = precise or requirements.keep_order
+    if kept and len(everything) > 1:
+        shown = ", ".join(visits.short(k) for k in everything)
+        words = f"precise order {shown}" if precise else "the order as written (--keep-order)"
+        found.append(Precedence(everything, words))
+    found += _asked_for(visits, requirements)
+    # Also in a precise order: what a decision needs must not be left out.
+    found += _deciding(visits)
+    if not kept:
+        found += _measured_again(visits)
+        found += _early_ends(visits)
+        found += _last_ones(visits)
+    return tuple(dict.fromkeys(found))
+
+
+def require_known(mission: Mission, requirements: Requirements) -> None:
+    """Raises ArgoError if a requirement names something that the mission does not have."""
+    visits = Visits(find_spine(mission))
+    named = [
+        *requirements.mandatory,
+        *(one.what for one in requirements.optional),
+        *(one.what for one in requirements.windows),
+    ]
+    for what in named:
+        visits.find(what)
+    for _ in _asked_for(visits, requirements):
+        pass
+
+
+def must_be_last(visits: Visits) -> int | None:
+    """The visit that has to be made as another one can't come last: it branches there."""
+    if visits.spine.end is not None or not visits.spine.units:
+        return None
+    if any(_branches(unit) for unit in visits.spine.units[:-1]):
+        return visits.numbers((visits.spine.units[-1],))[-1]
+    return None
+
+
+def _asked_for(visits: Visits, requirements: Requirements) -> Iterator[Precedence]:
+    for sequence in requirements.before:
+        found = [visits.find(what) for what in sequence]
+        words = " before ".join(map(said, sequence))
+        for (i, one), (j, other) in combinations(enumerate(found), 2):
+            if set(one) & set(other):
+                raise ArgoError(
+                    f"{words}: {said(sequence[i])} and {said(sequence[j])} have a task in common, "
+                    "which can't come before itself"
+                )
+        if all(len(one) == 1 for one in found):
+            yield Precedence(tuple(one[0] for one in found), words)
+            continue
+        # Also of those that are not neighbours: what is between them may be left out.
+        for (i, one), (j, other) in combinations(enumerate(found), 2):
+            words = f"{said(sequence[i])} before {said(sequence[j])}"
+            yield from (Precedence(pair, words) for pair in product(one, other))
+
+
+def _measured_again(visits: Visits) -> Iterator[Precedence]:
+    objects = dict.fromkeys(leaf.measures for leaf in visits.spine.flow.leaves if leaf.measures)
+    for object_id in objects:
+        made = visits.measuring(object_id)
+        if len(made) > 1:
+            yield Precedence(
+                tuple(made), f"the measurements of checkpoint {object_id} keep their order"
+            )
+
+
+def _deciding(visits: Visits) -> Iterator[Precedence]:
+    """What is measured before and after a condition asks for it."""
+    flow = visits.spine.flow
+    for number, stop in enumerate(visits.stops):
+        own = flow.leaves[stop.entry].measures
+        asked = dict.fromkeys(
+            condition.object_id
+            for leaf in stop.leaves
+            for conditions, _ in flow.leaves[leaf].conditional
+            for condition in conditions
+        )
+        for object_id in asked:
+            if object_id == own:
+                continue
+            made = visits.measuring(object_id)
+            before = [k for k in made if k < number]
+            for k in before:
+                words = f"checkpoint {object_id} is measured before {visits.names[number]} decides"
+                yield Precedence((k, number), f"{words} on it", needed=k == before[-1])
+            for k in made:
+                if k > number:
+                    words = f"{visits.names[number]} decides on checkpoint {object_id} before"
+                    yield Precedence((number, k), f"{words} it is measured again")
+
+
+def _early_ends(visits: Visits) -> Iterator[Precedence]:
+    """What comes before a task that may end the mission stays before it, and what after, after."""
+    leaves = {leaf for leaf, _ in visits.spine.gates}
+    gates = sorted({visits.of_leaf[leaf] for leaf in leaves if leaf in visits.of_leaf})
+    for gate, low, high in zip(gates, [-1, *gates], [*gates[1:], len(visits.stops)], strict=False):
+        name = visits.names[gate]
+        before = f"{name} may end the mission: what is written before it stays before it"
+        after = f"{name} may end the mission: what is written after it stays after it"
+        yield from (Precedence((k, gate), before) for k in range(low + 1, gate))
+        until = high + 1 if high < len(visits.stops) else high
+        yield from (Precedence((gate, k), after) for k in range(gate + 1, until))
+
+
+def _last_ones(visits: Visits) -> Iterator[Precedence]:
+    """A round ends with one task, and so does a mission that does not end docked: what goes on in
+    several ways can't be that."""
+    if visits.spine.end is None:
+        yield from _before_last(visits, visits.spine.units, "the mission")
+    for circuit, _ in visits.circuits:
+        name = visits.spine.flow.groups[circuit.group].name
+        yield from _before_last(visits, circuit.inside, f"a round of '{name}'")
+
+
+def _before_last(visits: Visits, units: tuple[Unit, ...], what: str) -> Iterator[Precedence]:
+    for unit in units[:-1]:
+        if isinstance(unit, Stop) and _branches(unit):
+            here, last = visits.of_leaf[unit.entry], visits.numbers((units[-1],))[-1]
+            words = f"{what} can't end with {visits.names[here]}, which goes on in several ways"
+            yield Precedence((here, last), words)
+
+
+def _branches(unit: Unit) -> bool:
+    return isinstance(unit, Stop) and unit.final is None
+
+
+def speed_notes(visits: Visits) -> Iterator[str]:
+    """What is said of speeds, which belong to the way to whatever task comes next."""
+    moving = [leaf for unit in visits.spine.units for leaf in leaves_of(unit)]
+    for leaf in moving:
+        velocity = visits.task(leaf).velocity
+        if velocity is not None:
+            yield f"{velocity:g} m/s is the speed from '{visits.task(leaf).name}' on, to any task"
+
+
+def round_notes(visits: Visits) -> Iterator[str]:
+    """What is said of rounds that are left in the middle."""
+    for circuit, _ in visits.circuits:
+        group = visits.spine.flow.groups[circuit.group]
+        if group.hard:
+            yield f"'{group.name}' is left where its time is up: reckoned from its farthest task"

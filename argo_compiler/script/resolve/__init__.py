@@ -1,0 +1,1 @@
+"""From syntax tree to mission: names are looked up, commands are carried out."""

@@ -1,0 +1,309 @@
+"""From a plan to the tasks and groups of a mission: names, transitions, nesting."""
+
+from collections import Counter
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+
+from argo_compiler.diagnostics import Span
+from argo_compiler.il import Action, Group, Stop, Task, Transition
+from argo_compiler.script.resolve.plan import Home, Item, Leg, Plan, Round
+from argo_compiler.script.syntax.commands import Plain
+from argo_compiler.script.syntax.source import Findings
+from argo_compiler.script.syntax.spelling import alternatives, nearest
+from argo_compiler.script.syntax.terms import StepRef
+
+Steps = Mapping[int, Sequence[Item] | None]
+"""the items that each step planned; None for a number that more than one step has"""
+
+
+def assemble(
+    plan: Plan, findings: Findings, steps: Steps | None = None
+) -> tuple[tuple[Task, ...], tuple[Group, ...]]:
+    """The tasks and groups of a plan whose home drives have been planned.
+
+    Waypoints are numbered through; of other names the second is `MEASURE 4 (2)`. Linear time but
+    for the names of groups, which are as long as the groups are deep.
+    """
+    return _Assembly(plan, findings, steps or {}).result()
+
+
+@dataclass(slots=True)
+class _Range:
+    """A round with its place in the list of tasks."""
+
+    round: Round
+    first: int
+    last: int
+    order: int
+    base: str = ""
+    name: str = ""
+
+
+class _Assembly:
+    """A plan on its way to tasks and groups."""
+
+    def __init__(self, plan: Plan, findings: Findings, steps: Steps) -> None:
+        self.plan = plan
+        self.findings = findings
+        self.steps = steps
+        self.items = list(plan)
+        self.at = {id(item): i for i, item in enumerate(self.items)}
+        self.names = self._name_tasks()
+        self.by_name: dict[str, int] = {}
+        for i, name in enumerate(self.names):
+            self.by_name.setdefault(name, i)
+
+    def result(self) -> tuple[tuple[Task, ...], tuple[Group, ...]]:
+        ranges, shown = self._groups()
+        self._spread_speeds({r.last for r in ranges})
+        tasks = tuple(self._task(i, item, shown[i]) for i, item in enumerate(self.items))
+        groups = tuple(
+            Group(
+                name=r.name,
+                start=self.names[r.first],
+                end=self.names[r.last],
+                max_repeat_count=r.round.limits.count,
+                max_repeat_duration=r.round.limits.duration,
+                count_interruptions=r.round.limits.count_interruptions,
+                stop=Stop.SOFT if r.round.limits.soft else Stop.HARD,
+                source=r.round.span,
+            )
+            for r in ranges
+        )
+        return tasks, groups
+
+    # ---- names
+
+    def _name_tasks(self) -> list[str]:
+        own: dict[str, Item] = {}
+        for item in self.items:
+            if item.name is None:
+                continue
+            if item.name in own:
+                message = f"more than one task is named `{item.name}`"
+                hint = "give each task a name of its own"
+                self.findings.error("repeated-name", message, item.source, hint)
+            own[item.name] = item
+        used: Counter[str] = Counter()
+
+        def name(base: str) -> str:
+            while True:
+                used[base] += 1
+                if base == Action.WAYPOINT:
+                    found = f"{base} {used[base]}"
+                else:
+                    found = base if used[base] == 1 else f"{base} ({used[base]})"
+                if found not in own:
+                    return found
+
+        return [name(item.base) if item.name is None else item.name for item in self.items]
+
+    def _range_names(self, ranges: list[_Range]) -> None:
+        own = {r.round.name for r in ranges if r.round.name is not None}
+        used: Counter[str] = Counter()
+        for r in ranges:
+            base = r.round.name or r.round.base
+            while r.round.name is None:
+                used[r.round.base] += 1
+                count = used[r.round.base]
+                base = r.round.base if count == 1 else f"{r.round.base} ({count})"
+                if base not in own:
+                    break
+            r.base = base
+
+    # ---- what a step or a name stands for
+
+    def _position(self, point: int | str, span: Span, last: bool = False) -> int | None:
+        """The place of a step's first task, or its last one, or of the task of this name."""
+        if isinstance(point, str):
+            found = self.by_name.get(point)
+            if found is None:
+                close = nearest(point, self.by_name)
+                hint = f"the nearest names are {alternatives(f'`{n}`' for n in close)}"
+                message = f"there is no task `{point}`"
+                self.findings.error("unknown-step", message, span, hint if close else None)
+            return found
+        if point not in self.steps:
+            known = sorted(self.steps, key=lambda n: (abs(n - point), n))[:3]
+            near = alternatives((str(number) for number in sorted(known)), "and")
+            hint = f"the nearest steps are {near}"
+            message = f"there is no step {point}"
+            self.findings.error("unknown-step", message, span, hint if known else None)
+            return None
+        items = self.steps[point]
+        if items is None:
+            message = f"more than one step has the number {point}"
+            hint = "number the steps anew, or name the task"
+            self.findings.error("ambiguous-step", message, span, hint)
+            return None
+        places = [
+            self.at[id(item)]
+            for item in items
+            if id(item) in self.at and item.action is not Action.START
+        ]
+        if not places:
+            message = f"step {point} leaves nothing to do at which the mission could go on"
+            hint = "name a step that measures or drives"
+            self.findings.error("empty-step", message, span, hint)
+            return None
+        return max(places) if last else min(places)
+
+    # ---- groups
+
+    def _groups(self) -> tuple[list[_Range], list[str]]:
+        """The groups in the order of the script, and the innermost one's name for each task."""
+        ranges = [r for i, round_ in enumerate(self.plan.rounds) if (r := self._range(i, round_))]
+        self._range_names(ranges)
+
+        def key(r: _Range) -> tuple[int, int, int, int]:
+            return (r.first, -r.last, (r.round.name or "").count("/"), -r.order)
+
+        nested = sorted(ranges, key=key)
+        shown = [""] * len(self.items)
+        around: list[_Range] = []
+        ends = 0
+        for i in range(len(self.items)):
+            while around and around[-1].last < i:
+                around.pop()
+            while ends < len(nested) and nested[ends].first == i:
+                r = nested[ends]
+                ends += 1
+                parent = around[-1] if around else None
+                if parent is not None and parent.last < r.last:
+                    message = "these steps lie partly in those of another repetition"
+                    where = f", line {parent.round.span.line}" if parent.round.span else ""
+                    hint = f"let one lie in the other as a whole{where}"
+                    self.findings.error("overlap", message, r.round.span, hint)
+                inside = parent is not None and not r.base.startswith(f"{parent.name}/")
+                r.name = f"{parent.name}/{r.base}" if parent is not None and inside else r.base
+                around.append(r)
+            if around:
+                shown[i] = around[-1].name
+        return ranges, shown
+
+    def _range(self, order: int, round_: Round) -> _Range | None:
+        first: int | None
+        last: int | None
+        if round_.first is not None and round_.last is not None:
+            first, last = self.at.get(id(round_.first)), self.at.get(id(round_.last))
+        elif round_.whole:
+            places = [
+                i for i, t in enumerate(self.items) if t.action is not Action.START and not t.docks
+            ]
+            first, last = (places[0], places[-1]) if places else (None, None)
+        else:
+            assert round_.steps is not None
+            start, end = round_.steps.first, round_.steps.last
+            first = self._position(start, round_.span)
+            last = self._position(start if end is None else end, round_.span, last=True)
+        if first is None or last is None:
+            return None
+        if first > last:
+            message = "the first of these steps comes after the last one"
+            self.findings.error("step-range", message, round_.span, "write the earlier one first")
+            return None
+        return _Range(round_, first, last, order)
+
+    # ---- speeds
+
+    def _spread_speeds(self, ends: set[int]) -> None:
+        """Gives the speed of the way to a task to the task before it; `ends` are those of rounds.
+
+        In a mission a task has one speed for all ways that lead on from it, so that is said where
+        there are others.
+        """
+        for item in self.items:
+            if item.arriving is None or item.before is None:
+                continue
+            before = item.before
+            if before.leaving not in (None, item.arriving):
+                message = f"two speeds for one way: {before.leaving:g} and {item.arriving:g} m/s"
+                self.findings.error("two-speeds", message, item.source, "leave one of them out")
+            before.leaving = item.arriving
+            branches = any(leg.alternatives for leg in before.routes or ())
+            if branches or self.at[id(before)] in ends:
+                name = self.names[self.at[id(before)]]
+                message = (
+                    f"{item.arriving:g} m/s will be the speed of all ways from '{name}', also of "
+                    + ("those that its conditions lead to" if branches else "the next round's")
+                )
+                hint = f"plan a waypoint after '{name}' if the other ways are not to be that fast"
+                self.findings.warning("speed-shared", message, item.source, hint)
+        for item in self.items:
+            if item.leaving is None:
+                item.leaving = item.passing
+
+    # ---- tasks
+
+    def _task(self, i: int, item: Item, group: str) -> Task:
+        return Task(
+            name=self.names[i],
+            action=item.action,
+            group=group if item.shown_in is None else item.shown_in,
+            object_id=item.object_id,
+            pose=item.pose,
+            velocity=item.leaving,
+            joint_states=item.joints,
+            retries=item.retries,
+            on_failure=item.on_failure,
+            transitions=self._transitions(item),
+            source=item.source,
+        )
+
+    def _next(self, item: Item) -> str | None:
+        """The task that follows the item and its detours; None: the mission ends."""
+        while item.returns is not None:
+            item = item.returns
+        while item.detour is not None:
+            item = item.detour
+        following = item.after
+        while following is not None and following.action is Action.START:
+            following = following.after
+        if following is None or following.apart:
+            return None
+        return self.names[self.at[id(following)]]
+
+    def _transitions(self, item: Item) -> tuple[Transition, ...]:
+        if not item.routes:
+            target = self._next(item)
+            return () if target is None else (Transition(target=target),)
+        transitions: list[Transition] = []
+        decided = False
+        for leg in item.routes:
+            if not leg.alternatives:
+                if decided:
+                    message = "the mission can go on in one way only where no condition holds"
+                    hint = "leave one of the two out, or give it a condition"
+                    self.findings.error("second-route", message, leg.span, hint)
+                decided = True
+            target = self._target(item, leg)
+            if target is None:
+                continue
+            for conditions in leg.alternatives or ((),):
+                transitions.append(Transition(target=target, conditions=conditions))
+        default = None if decided else self._next(item)
+        if default is not None:
+            transitions.append(Transition(target=default))
+        return tuple(transitions)
+
+    def _target(self, item: Item, leg: Leg) -> str | None:
+        target = leg.target
+        if isinstance(target, StepRef):
+            place = self._position(target.first, target.span)
+            return None if place is None else self.names[place]
+        if isinstance(target, Item):
+            if id(target) not in self.at:
+                message = "what this leads to has been taken out of the plan"
+                self.findings.error("empty-step", message, leg.span, "take the condition out, too")
+                return None
+            return self.names[self.at[id(target)]]
+        assert not isinstance(target, Home)
+        following = self._next(item) if target is Plain.GO_ON else None
+        if following is None and leg.alternatives:
+            message = "a condition leads to a task, and here the mission ends"
+            hint = (
+                "write `return to the docking station`, or turn it round: "
+                "`if ..., go to step 5; otherwise end the mission`"
+            )
+            self.findings.error("no-target", message, leg.span, hint)
+        return following

@@ -1,0 +1,143 @@
+"""The plan while a script's commands are carried out: what is to be done, in order.
+
+A plan is mutable. Its items are linked, so that any of thousands of changes takes the same time.
+"""
+
+from collections.abc import Iterator
+from dataclasses import dataclass, field
+
+from argo_compiler.diagnostics import Span
+from argo_compiler.il import Action, Condition, JointState, OnFailure
+from argo_compiler.model import Pose
+from argo_compiler.script.syntax.commands import Limits, Plain
+from argo_compiler.script.syntax.terms import StepRef
+
+
+@dataclass(eq=False, slots=True)
+class Item:
+    """One task to be."""
+
+    base: str
+    """what the task is called where it is the only one of its kind"""
+    action: Action
+    source: Span | None = None
+    pose: Pose | None = None
+    object_id: str | None = None
+    name: str | None = None
+    """set if the script names the task itself"""
+    docks: bool = False
+    apart: bool = False
+    """the task before it does not go on with it: only routes lead there"""
+    arriving: float | None = None
+    """m/s on the way to it"""
+    leaving: float | None = None
+    """m/s on the way to the next"""
+    passing: float | None = None
+    """m/s on the way to the next where neither of the two says it"""
+    retries: int = 0
+    on_failure: OnFailure = OnFailure.CONTINUE
+    joints: JointState | None = None
+    shown_in: str | None = None
+    routes: list["Leg"] | None = None
+    detour: "Item | None" = None
+    """the last item of those that are carried out only if a route of this one leads there"""
+    returns: "Item | None" = None
+    """the item of whose detours this one is the last; after it the mission goes on behind them"""
+    before: "Item | None" = None
+    after: "Item | None" = None
+    planned: bool = False
+
+
+@dataclass(eq=False, slots=True)
+class Leg:
+    """A route of an item, its checkpoints looked up; no alternatives: unconditional."""
+
+    alternatives: tuple[tuple[Condition, ...], ...]
+    target: "Plain | StepRef | Item | Home"
+    span: Span
+
+
+@dataclass(frozen=True, slots=True)
+class Home:
+    """The drive to the docking station at the end of the mission."""
+
+    area: int | None
+    span: Span
+
+
+@dataclass(eq=False, slots=True)
+class Round:
+    """A group to be: from an item to an item, or over steps that are looked up at the end."""
+
+    base: str
+    limits: Limits
+    span: Span
+    name: str | None = None
+    first: Item | None = None
+    last: Item | None = None
+    steps: StepRef | None = None
+    whole: bool = False
+    """over all tasks but START"""
+
+
+@dataclass
+class Plan:
+    """Items in order, and rounds in the order in which they were asked for."""
+
+    rounds: list[Round] = field(default_factory=list)
+    first: Item | None = None
+    last: Item | None = None
+
+    def __iter__(self) -> Iterator[Item]:
+        item = self.first
+        while item is not None:
+            yield item
+            item = item.after
+
+    def append(self, item: Item) -> None:
+        self.insert_after(self.last, item)
+
+    def insert_after(self, anchor: Item | None, item: Item) -> None:
+        """Puts the item behind the anchor; None: before all."""
+        after = anchor.after if anchor is not None else self.first
+        item.before, item.after, item.planned = anchor, after, True
+        if anchor is not None:
+            anchor.after = item
+        else:
+            self.first = item
+        if after is not None:
+            after.before = item
+        else:
+            self.last = item
+
+    def remove(self, item: Item) -> None:
+        if item.before is not None:
+            item.before.after = item.after
+        else:
+            self.first = item.after
+        if item.after is not None:
+            item.after.before = item.before
+        else:
+            self.last = item.before
+        item.before = item.after = None
+        item.planned = False
+
+
+def start_item(pose: Pose | None, source: Span | None) -> Item:
+    """Where the mission begins."""
+    return Item("START", Action.START, source, pose)
+
+
+def dock_item(pose: Pose, source: Span | None) -> Item:
+    """The way into the docking station."""
+    return Item("DOCK", Action.WAYPOINT, source, pose, docks=True)
+
+
+def waypoint_item(pose: Pose, source: Span | None) -> Item:
+    """The way to a place."""
+    return Item("WAYPOINT", Action.WAYPOINT, source, pose)
+
+
+def measure_item(checkpoint: int, source: Span | None) -> Item:
+    """One measurement."""
+    return Item(f"MEASURE {checkpoint}", Action.MEASURE, source, object_id=str(checkpoint))

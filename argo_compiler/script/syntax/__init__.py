@@ -1,0 +1,1 @@
+"""From text to syntax tree: noise is healed, statements are parsed."""

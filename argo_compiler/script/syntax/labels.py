@@ -1,0 +1,62 @@
+"""The labels of fields, and what is said about one that there is not."""
+
+import re
+
+from argo_compiler.diagnostics import Diagnostic
+from argo_compiler.script.syntax.source import Findings, Text
+from argo_compiler.script.syntax.spelling import alternatives, nearest
+
+PROTOCOL_LABELS = (
+    "Designation",
+    "Mode",
+    "Maximum duration",
+    "Order",
+    "Anomaly specification",
+    "Real-time reporting",
+    "After-mission report",
+    "Initial position",
+    "End of the mission",
+    "Site",
+    "Start area",
+    "End area",
+    "Dock",
+    "Current",
+    "Hint",
+)
+SHEET_LABELS = (
+    "Mission's designation",
+    "Main mode",
+    "Maximum mission total duration",
+    "Anomaly specification",
+    "Real-time reporting",
+    "After-mission report",
+    "Initial position",
+    "End of the mission",
+)
+_LABEL = re.compile(r"[^\W\d_][\w'-]*(?:\s+[\w'-]+){0,6}\s*:")
+
+
+def name_unknown_label(text: Text, known: tuple[str, ...], findings: Findings) -> None:
+    """Makes the last finding one of an unknown label, if the statement begins with one."""
+    match = _LABEL.match(text.content)
+    last = findings.diagnostics[-1]
+    if match is None or last.code != "script.not-understood" or last.span is None:
+        return
+    span = text.span(0, match.end() - 1)
+    if last.span.line != span.line or last.span.column > span.column + span.length:
+        return
+    label = match.group()[:-1].strip()
+    if any(label.lower() == k.lower() for k in known):
+        return
+    close = nearest(label, known)
+    hint = f"the labels are {alternatives((f'`{k}:`' for k in known), 'and')}"
+    if close:
+        hint = f"`{close[0]}:` is the nearest; {hint}"
+    findings.diagnostics[-1] = Diagnostic(
+        code="script.unknown-label",
+        severity=last.severity,
+        message=f"there is no field `{label}`",
+        span=span,
+        excerpt=last.excerpt,
+        hint=hint,
+    )

@@ -1,0 +1,1 @@
+"""From mission to text: the canonical script."""

@@ -1,0 +1,1 @@
+"""What moves the robot: the drives, their timetable, battery and powertrain."""

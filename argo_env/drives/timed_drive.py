@@ -1,0 +1,79 @@
+"""What the drives have in common that go by a timetable and know no forces."""
+
+import math
+from abc import ABC, abstractmethod
+
+from argo_compiler.model import Pose
+from argo_env.drives.drive import DriveStatus, Incident
+from argo_env.drives.timetable import Timetable, steps
+from argo_env.navigation.path import Motion, Path
+from argo_env.robot.pose import BodyPose
+from argo_env.robot.spec import RobotSpec
+
+_SAME_PLACE = 1e-3  # m
+
+
+class TimedDrive(ABC):
+    """Is where the timetable says, and nothing goes wrong. Holds the pose, the path and the time
+    on it; how the robot stands at a place of the path, the drives that build on it say."""
+
+    def __init__(self, robot: RobotSpec, time_step: float) -> None:
+        self.time_step = time_step
+        self._robot = robot
+        self._pose = BodyPose(0.0, 0.0, 0.0, 0.0)
+        self._timetable: Timetable | None = None
+        self._steps = 0
+
+    @property
+    def pose(self) -> BodyPose:
+        return self._pose
+
+    @property
+    def failure(self) -> str | None:
+        return None
+
+    @property
+    def incidents(self) -> tuple[Incident, ...]:
+        return ()
+
+    def place(self, pose: BodyPose) -> None:
+        """Puts the robot there, at rest."""
+        self.halt()
+        self._pose = pose
+
+    def begin(self, path: Path, velocity: float | None) -> None:
+        """Sets off along `path` at `velocity` (m/s) on the flat, or at the robot's own speeds."""
+        self._timetable = Timetable(self._from_here(path), self._robot, velocity)
+        self._steps = 0
+
+    def halt(self) -> None:
+        """Stops where it is and forgets the path."""
+        self._timetable = None
+
+    def step(self) -> DriveStatus:
+        """Moves along the path for one time step, over as many motions as that takes."""
+        if self._timetable is None:
+            return DriveStatus.ARRIVED
+        self._steps += 1
+        arrived = self._steps >= steps(self._timetable.duration, self.time_step)
+        place = self._timetable.at(math.inf if arrived else self._steps * self.time_step)
+        if place is not None:
+            self._pose = self._pose_at(*place)
+        if not arrived:
+            return DriveStatus.MOVING
+        self.halt()
+        return DriveStatus.ARRIVED
+
+    def _from_here(self, path: Path) -> Path:
+        """The path, with a straight shift to its start if that is beside the robot: paths begin
+        where the navigator's lattice has a state, some centimetres from a robot that was stopped,
+        and at most the navigator's SNAP_DISTANCE. No tracked robot could shift sideways."""
+        start, pose = path.start, self._pose
+        if math.dist((start.x, start.y), (pose.x, pose.y)) < _SAME_PLACE:
+            return path
+        here = Pose(x=pose.x, y=pose.y, z=pose.z, yaw=start.yaw)
+        return Path(here, (Motion(here, start), *path.motions))
+
+    @abstractmethod
+    def _pose_at(self, motion: Motion, share: float) -> BodyPose:
+        """How the robot stands after `share` of the motion, 0 to 1."""

@@ -1,0 +1,327 @@
+"""The robot's body on its tracks: masses, contacts and belts, without any path to follow."""
+
+import math
+import tempfile
+import weakref
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+from argo_env.drives.flipper_motion import RATE
+from argo_env.drives.tracked.belts import Belts, Traction
+from argo_env.drives.tracked.lumped import lumped
+from argo_env.drives.tracked.presses import Presses
+from argo_env.drives.tracked.terrain import Terrain
+from argo_env.robot.pose import BodyPose
+from argo_env.robot.spec import RobotSpec, robot_folder
+from argo_env.site.shapes import Vector
+from argo_env.world.pybullet_client import Connection, pybullet, quiet
+from argo_env.world.world import Touch, World
+
+TIME_STEP = 1 / 240  # s
+GRAVITY = 9.81  # m/s²
+FLIPPER_LIMITS = (math.radians(-30.0), math.radians(50.0))  # rad, up is positive
+FLIPPER_TORQUE = 150.0  # N m, each (assumption: two flippers can lift one end of the robot)
+ACCELERATION = 1.0  # m/s², of the belts
+SWING = 3.0  # rad/s², of the turning rate
+_YAW_GAIN = 4.0  # 1/s: belts that slip in a turn are sped up until the turning rate is met
+_YAW_REACH = 1.5  # the integral may add this much of the turning rate commanded
+_ITERATIONS = 6  # of the contact solver
+_BREAKING = 0.003  # m; fewer contacts that carry nothing than with PyBullet's 0.02
+_DROP = 0.002  # m above the ground at which the robot is put down
+_SETTLING = 60  # steps until it rests
+FLIPPERS = ("left_flipper_joint", "right_flipper_joint")
+_FAR = (0.0, 0.0, 1000.0)  # m, where nothing is
+
+
+@dataclass(frozen=True)
+class Snapshot:
+    """A moment of a body, to go back to."""
+
+    state: int
+    """PyBullet's number of it"""
+    memory: tuple[Any, ...]
+
+
+@dataclass(frozen=True)
+class Command:
+    """What the tracks and flippers are to do."""
+
+    speed: float = 0.0
+    """m/s forwards"""
+    turn_rate: float = 0.0
+    """rad/s counter-clockwise"""
+    flipper: float = 0.0
+    """rad, tips up"""
+
+
+class TrackedBody(Connection):
+    """The robot among the solids of a world. Holds a physics server of its own and the belts.
+
+    The server has the same solids as the world and nothing else that could move, so that steps are
+    cheap and a snapshot is whole. The world is shown the robot's pose after each `advance`.
+    """
+
+    def __init__(
+        self,
+        world: World,
+        robot: RobotSpec,
+        traction: Traction | None = None,
+        mass_scale: float = 1.0,
+    ) -> None:
+        """`mass_scale` multiplies the masses of the robot's model."""
+        super().__init__()
+        # Whoever makes drives closes the world only; the server ends with this object.
+        self._end = weakref.finalize(self, _disconnect, self._client)
+        self._world = world
+        self._robot = robot
+        self._terrain = Terrain(world)
+        with quiet(), tempfile.TemporaryDirectory() as folder:
+            self._ground = self._load(self._terrain.write(folder), fixed=True)
+            model = Path(folder) / "robot.urdf"
+            text = lumped(robot_folder() / robot.urdf, robot.arm_stowed, FLIPPERS, mass_scale)
+            model.write_text(text, encoding="utf-8")
+            self._body: int = pybullet.loadURDF(
+                str(model),
+                flags=pybullet.URDF_USE_INERTIA_FROM_FILE,
+                physicsClientId=self._client,
+            )
+        self._grounds = self._links(self._ground)
+        self._names = self._links(self._body)
+        joints = {joint: k for k, (joint, _) in self._parts(self._body).items()}
+        self._flippers = [joints[name] for name in FLIPPERS]
+        self._prepare()
+        self.mass = sum(self._dynamics(link)[0] for link in self._names)
+        """kg"""
+        offset: Vector = self._dynamics(-1)[3]
+        self._belts = Belts(offset, traction or Traction(), self.mass * GRAVITY)
+        self._walking = next(k for k, v in self._grounds.items() if v == self._terrain.walking)
+        self._center = offset  # of mass of the base, in its frame
+        self._pivot = self._mean_x()
+        self._command = Command()
+        self._speed, self._turn, self._push = 0.0, 0.0, 0.0
+        # Those of the last step, kept here since PyBullet does not restore them.
+        self._contacts: list[tuple[Any, ...]] = []
+        self._presses = Presses(self._terrain, self._grounds, self._names)
+        self._drive_flippers()
+        self._home = pybullet.saveState(physicsClientId=self._client)
+
+    def close(self) -> None:
+        """Ends the connection; the object is of no use afterwards."""
+        self._end()
+
+    def reset(self, pose: BodyPose, flipper: float = 0.0) -> None:
+        """Puts the robot down there, at rest, with its arm stowed; forgets all that was."""
+        self._return_to(self._home)
+        self._belts.bends = [0.0] * len(self._belts.bends)
+        self._speed, self._turn, self._push = 0.0, 0.0, 0.0
+        self._contacts = []
+        self._presses.take()
+        for k in self._flippers:
+            pybullet.resetJointState(self._body, k, flipper, physicsClientId=self._client)
+        self.command(0.0, 0.0, flipper)
+        up = _DROP * math.cos(pose.pitch)
+        self._place(self._body, (pose.x, pose.y, pose.z + up), (0.0, pose.pitch, pose.yaw))
+        self.advance(_SETTLING)
+
+    def command(self, speed: float, turn_rate: float, flipper: float) -> None:
+        """Sets what is wanted from now on: m/s forwards, rad/s counter-clockwise, and the angle of
+        the flippers in rad, tips up, within their limits."""
+        flipper = min(FLIPPER_LIMITS[1], max(FLIPPER_LIMITS[0], flipper))
+        self._command = Command(speed, turn_rate, flipper)
+        self._drive_flippers()
+
+    def advance(self, steps: int) -> None:
+        """Simulates that many steps of TIME_STEP."""
+        client, body = self._client, self._body
+        for _ in range(steps):
+            place, turned = pybullet.getBasePositionAndOrientation(body, physicsClientId=client)
+            velocity, spin = pybullet.getBaseVelocity(body, physicsClientId=client)
+            axes = pybullet.getMatrixFromQuaternion(turned)
+            speeds = self._belt_speeds(spin[0] * axes[2] + spin[1] * axes[5] + spin[2] * axes[8])
+            (fx, fy, fz, tx, ty, tz), strange = self._belts.wrench(
+                self._contacts, self._walking, speeds, place, axes, velocity, spin, TIME_STEP
+            )
+            pybullet.applyExternalForce(
+                body, -1, (fx, fy, fz), place, pybullet.WORLD_FRAME, physicsClientId=client
+            )
+            pybullet.applyExternalTorque(
+                body, -1, (tx, ty, tz), pybullet.WORLD_FRAME, physicsClientId=client
+            )
+            if strange:
+                self._presses.note(strange, *self._frame())
+            pybullet.stepSimulation(physicsClientId=client)
+            self._contacts = pybullet.getContactPoints(bodyA=body, physicsClientId=client)
+        self._show()
+
+    @property
+    def pose(self) -> BodyPose:
+        place, axes = self._frame()
+        return BodyPose(
+            *place,
+            math.atan2(axes[3], axes[0]),
+            math.atan2(-axes[6], math.hypot(axes[0], axes[3])),
+            math.atan2(axes[7], axes[8]),
+        )
+
+    @property
+    def pivot(self) -> float:
+        """m along the robot's x axis: what it turns about when it turns in place, which is below
+        its centre of mass."""
+        return self._pivot
+
+    @property
+    def roll(self) -> float:
+        """rad, positive with the left side up."""
+        return self.pose.roll
+
+    @property
+    def velocity(self) -> tuple[float, float]:
+        """m/s along the robot's x axis, and rad/s about its z axis."""
+        velocity, spin = pybullet.getBaseVelocity(self._body, physicsClientId=self._client)
+        _, axes = self._frame()
+        ahead = sum(velocity[k] * axes[3 * k] for k in range(3))
+        return ahead, sum(spin[k] * axes[3 * k + 2] for k in range(3))
+
+    @property
+    def flipper(self) -> float:
+        """rad, the mean of both; tips up."""
+        states = pybullet.getJointStates(self._body, self._flippers, physicsClientId=self._client)
+        return float(states[0][0] + states[1][0]) / 2
+
+    @property
+    def belt_speeds(self) -> tuple[float, float]:
+        """m/s of the left and the right belts."""
+        half = self._robot.track_gauge / 2 * (self._turn + self._push)
+        return self._speed - half, self._speed + half
+
+    def touches(self) -> tuple[Touch, ...]:
+        """Where the robot has pressed against what it must not since the last call."""
+        return self._presses.take()
+
+    def snapshot(self) -> Snapshot:
+        """The present moment; `release` it when it is of no use any more.
+
+        PyBullet does not restore what it remembers of contacts, so it is made to forget that here
+        too: what follows a snapshot is the same as what follows when it is restored.
+        """
+        state = pybullet.saveState(physicsClientId=self._client)
+        self._return_to(state)
+        memory = (
+            self._command, self._speed, self._turn, self._push,
+            tuple(self._belts.bends), tuple(self._contacts), tuple(self._presses.found.items()),
+        )  # fmt: skip
+        return Snapshot(state, memory)
+
+    def restore(self, snapshot: Snapshot) -> None:
+        """Goes back to a moment; all that follows is as it was then, bit by bit."""
+        self._return_to(snapshot.state)
+        (
+            self._command, self._speed, self._turn, self._push, bends, contacts, pressed
+        ) = snapshot.memory  # fmt: skip
+        self._belts.bends, self._contacts = list(bends), list(contacts)
+        self._presses.found = dict(pressed)
+        # PyBullet keeps no targets of motors.
+        self._drive_flippers()
+        self._show()
+
+    def release(self, snapshot: Snapshot) -> None:
+        """Gives the memory of a snapshot back."""
+        pybullet.removeState(snapshot.state, physicsClientId=self._client)
+
+    def _prepare(self) -> None:
+        client = self._client
+        pybullet.setGravity(0.0, 0.0, -GRAVITY, physicsClientId=client)
+        pybullet.setPhysicsEngineParameter(
+            fixedTimeStep=TIME_STEP,
+            numSolverIterations=_ITERATIONS,
+            contactBreakingThreshold=_BREAKING,
+            deterministicOverlappingPairs=1,
+            enableFileCaching=0,
+            physicsClientId=client,
+        )
+        for link in self._names:
+            # Belts push along normals only; what they drag with is added as a force.
+            pybullet.changeDynamics(
+                self._body,
+                link,
+                lateralFriction=0.0,
+                linearDamping=0.0,
+                angularDamping=0.0,
+                activationState=pybullet.ACTIVATION_STATE_DISABLE_SLEEPING,
+                physicsClientId=client,
+            )
+        self._place(self._body, _FAR, (0.0, 0.0, 0.0))
+
+    def _return_to(self, state: int) -> None:
+        """Restores a state of PyBullet's, without anything that it remembers of contacts."""
+        self._place(self._body, _FAR, (0.0, 0.0, 0.0))
+        pybullet.performCollisionDetection(physicsClientId=self._client)
+        pybullet.restoreState(state, physicsClientId=self._client)
+        self._drive_flippers()
+
+    def _mean_x(self) -> float:
+        """Where the robot's centre of mass is along its x axis, in m; read where it is level."""
+        total = self._dynamics(-1)[0] * self._center[0]
+        for link in self._flippers:
+            state = pybullet.getLinkState(self._body, link, physicsClientId=self._client)
+            total += self._dynamics(link)[0] * (state[0][0] - _FAR[0])
+        return float(total / self.mass)
+
+    def _drive_flippers(self) -> None:
+        for k in self._flippers:
+            pybullet.setJointMotorControl2(
+                self._body,
+                k,
+                pybullet.POSITION_CONTROL,
+                targetPosition=self._command.flipper,
+                force=FLIPPER_TORQUE,
+                maxVelocity=RATE,
+                physicsClientId=self._client,
+            )
+
+    def _belt_speeds(self, yaw_rate: float) -> tuple[float, float]:
+        """Moves the belts' speeds on by one step, m/s left and right."""
+        wanted = self._command
+        most = ACCELERATION * TIME_STEP
+        self._speed += min(most, max(-most, wanted.speed - self._speed))
+        most = SWING * TIME_STEP
+        self._turn += min(most, max(-most, wanted.turn_rate - self._turn))
+        reach = _YAW_REACH * abs(self._turn)
+        push = self._push + _YAW_GAIN * TIME_STEP * (self._turn - yaw_rate)
+        self._push = min(reach, max(-reach, push))
+        half = self._robot.track_gauge / 2 * (self._turn + self._push)
+        return self._speed - half, self._speed + half
+
+    def _frame(self) -> tuple[Vector, tuple[float, ...]]:
+        """Where the base's frame is (m), and its rotation matrix row by row."""
+        (x, y, z), turned = pybullet.getBasePositionAndOrientation(
+            self._body, physicsClientId=self._client
+        )
+        m = pybullet.getMatrixFromQuaternion(turned)
+        a, b, c = self._center
+        origin = (
+            x - m[0] * a - m[1] * b - m[2] * c,
+            y - m[3] * a - m[4] * b - m[5] * c,
+            z - m[6] * a - m[7] * b - m[8] * c,
+        )
+        return origin, m
+
+    def _show(self) -> None:
+        self._world.place_robot(self.pose)
+        angle = self.flipper
+        self._world.set_joints(dict.fromkeys(FLIPPERS, angle))
+
+    def _dynamics(self, link: int) -> tuple[Any, ...]:
+        info: tuple[Any, ...] = pybullet.getDynamicsInfo(
+            self._body, link, physicsClientId=self._client
+        )
+        return info
+
+    def _links(self, body: int) -> dict[int, str]:
+        base = pybullet.getBodyInfo(body, physicsClientId=self._client)[0].decode()
+        return {-1: base} | {k: link for k, (_, link) in self._parts(body).items()}
+
+
+def _disconnect(client: int) -> None:
+    pybullet.disconnect(physicsClientId=client)

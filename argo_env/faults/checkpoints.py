@@ -1,0 +1,144 @@
+"""Faults at checkpoints: values out of their nominal range, and checkpoints that were moved."""
+
+import math
+from typing import TYPE_CHECKING, Literal, Self
+
+import numpy as np
+from pydantic import Field, model_validator
+
+from argo_compiler.catalog import CheckpointKind
+from argo_compiler.errors import ArgoError
+from argo_env.faults.fault import TimedFault
+from argo_env.site import Site, SiteCheckpoint
+from argo_env.site.shapes import Vector
+from argo_env.world.placement import AS_PLANNED, Placement, draw_placement
+
+if TYPE_CHECKING:
+    from argo_env.faults.stage import Stage
+
+MAX_OFFSET = 0.1  # m (thesis 1.2)
+MAX_TURN = 90.0  # deg (thesis 1.2)
+_CLEARLY = 0.1  # of the scale that a drawn value lies beyond the nominal range, where there is room
+
+
+class CheckpointFault(TimedFault):
+    """A fault at one checkpoint."""
+
+    checkpoint: int | None = Field(default=None, ge=1)
+    """number of the checkpoint"""
+
+    def _at_checkpoint(self, site: Site, rng: np.random.Generator) -> SiteCheckpoint:
+        known = [c.id for c in site.checkpoints]
+        if not known:
+            raise ArgoError(f"site {site.name} has no checkpoint")
+        drawn = known[int(rng.integers(len(known)))]
+        id = self.checkpoint or drawn
+        if id not in known:
+            raise ArgoError(
+                f"site {site.name} has no checkpoint {id}; there are: {', '.join(map(str, known))}"
+            )
+        return site.checkpoint(id)
+
+
+class AbnormalValue(CheckpointFault):
+    """A checkpoint shows a value outside its nominal range."""
+
+    kind: Literal["abnormal_value"] = "abnormal_value"
+    value: float | None = None
+    """in the checkpoint's unit"""
+
+    def settled(self, site: Site, rng: np.random.Generator) -> Self:
+        checkpoint = self._at_checkpoint(site, rng)
+        drawn = _abnormal(checkpoint, rng)
+        value = drawn if self.value is None else self.value
+        shown, nominal = checkpoint.range, checkpoint.nominal
+        if not shown.contains(value):
+            raise ArgoError(
+                f"checkpoint {checkpoint.id} ({checkpoint.name}) shows {shown.low:g} to "
+                f"{shown.high:g} {checkpoint.unit}, not {value:g}"
+            )
+        if nominal.contains(value):
+            raise ArgoError(
+                f"{value:g} {checkpoint.unit} is nothing abnormal at checkpoint {checkpoint.id} "
+                f"({checkpoint.name}): nominal are {nominal.low:g} to {nominal.high:g}"
+            )
+        return super().settled(site, rng)._with(checkpoint=checkpoint.id, value=value)
+
+    def begin(self, stage: "Stage", now: float) -> None:  # noqa: ARG002
+        assert self.checkpoint is not None
+        assert self.value is not None
+        stage.show(self.checkpoint, self.value)
+
+    def end(self, stage: "Stage", now: float) -> None:  # noqa: ARG002
+        assert self.checkpoint is not None
+        stage.show(self.checkpoint, stage.usual[self.checkpoint])
+
+
+class DisplacedCheckpoint(CheckpointFault):
+    """A checkpoint is not where the plan of the site has it."""
+
+    kind: Literal["displaced_checkpoint"] = "displaced_checkpoint"
+    at: float | None = Field(default=0.0, ge=0)
+    """s, when it is moved; as a rule before the run"""
+    offset: Vector | None = None
+    """m along the site's axes, at most 0.1 in all"""
+    turn: float | None = Field(default=None, ge=-MAX_TURN, le=MAX_TURN)
+    """deg about the vertical, counter-clockwise seen from above"""
+    roll: float | None = Field(default=None, ge=-MAX_TURN, le=MAX_TURN)
+    """deg about the normal of its face, clockwise; a level gauge has none"""
+
+    @model_validator(mode="after")
+    def _near(self) -> Self:
+        if self.offset is not None and math.hypot(*self.offset) > MAX_OFFSET + 1e-9:
+            away = math.hypot(*self.offset)
+            raise ValueError(f"the offset is {away:.3f} m, and may be at most {MAX_OFFSET:g} m")
+        return self
+
+    def settled(self, site: Site, rng: np.random.Generator) -> Self:
+        checkpoint = self._at_checkpoint(site, rng)
+        upright = checkpoint.kind is CheckpointKind.LIQUID_LEVEL_GAUGE
+        if upright and self.roll:
+            raise ArgoError(f"checkpoint {checkpoint.id} is a level gauge, which is never rolled")
+        drawn = draw_placement(rng, upright)
+        x, y, z = (round(v, 4) for v in drawn.offset)
+        turn, roll = (round(math.degrees(angle), 1) for angle in (drawn.turn, drawn.roll))
+        return (
+            super()
+            .settled(site, rng)
+            ._with(
+                checkpoint=checkpoint.id,
+                offset=(x, y, z) if self.offset is None else self.offset,
+                turn=turn if self.turn is None else self.turn,
+                roll=roll if self.roll is None else self.roll,
+            )
+        )
+
+    def begin(self, stage: "Stage", now: float) -> None:  # noqa: ARG002
+        assert self.checkpoint is not None
+        assert self.offset is not None
+        assert self.turn is not None
+        assert self.roll is not None
+        placement = Placement(self.offset, math.radians(self.turn), math.radians(self.roll))
+        stage.world.displace(self.checkpoint, placement)
+
+    def end(self, stage: "Stage", now: float) -> None:  # noqa: ARG002
+        assert self.checkpoint is not None
+        stage.world.displace(self.checkpoint, AS_PLANNED)
+
+
+def _abnormal(checkpoint: SiteCheckpoint, rng: np.random.Generator) -> float:
+    """A value on the scale outside the nominal range, clearly so where there is room."""
+    scale, nominal = checkpoint.range, checkpoint.nominal
+    gap = _CLEARLY * (scale.high - scale.low)
+    parts = [(scale.low, nominal.low - gap), (nominal.high + gap, scale.high)]
+    free = [(low, high) for low, high in parts if low <= high]
+    if not free:
+        free = [p for p in ((scale.low, nominal.low), (nominal.high, scale.high)) if p[0] < p[1]]
+    if not free:
+        raise ArgoError(
+            f"checkpoint {checkpoint.id} ({checkpoint.name}) shows nothing abnormal: its whole "
+            "scale is nominal"
+        )
+    lengths = np.array([high - low for low, high in free]) + 1e-9
+    low, high = free[int(rng.choice(len(free), p=lengths / lengths.sum()))]
+    return round(float(rng.uniform(low, high)), 2)

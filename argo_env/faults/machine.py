@@ -1,0 +1,124 @@
+"""Faults of the robot itself and of what it depends on: battery, network, drive and sensor."""
+
+from typing import TYPE_CHECKING, ClassVar, Literal, Self
+
+import numpy as np
+from pydantic import Field
+
+from argo_compiler.errors import ArgoError
+from argo_env.faults.fault import Fault, TimedFault
+from argo_env.site import Site
+from argo_env.site.spec import Rect
+from argo_env.surroundings.network import Shadow
+
+if TYPE_CHECKING:
+    from argo_env.faults.stage import Stage
+
+
+class LowBattery(Fault):
+    """The robot sets off with little charge."""
+
+    kind: Literal["low_battery"] = "low_battery"
+    charge: float | None = Field(default=None, gt=0, le=1)
+    """share of the capacity that is there at the start"""
+
+    def settled(self, site: Site, rng: np.random.Generator) -> Self:  # noqa: ARG002
+        drawn = round(float(rng.uniform(0.1, 0.25)), 3)
+        return self._with(charge=self.charge or drawn)
+
+    def begin(self, stage: "Stage", now: float) -> None:  # noqa: ARG002
+        assert self.charge is not None
+        stage.battery.charge = self.charge
+
+
+class WornBattery(Fault):
+    """The battery holds less than it did when it was new."""
+
+    kind: Literal["worn_battery"] = "worn_battery"
+    capacity: float | None = Field(default=None, gt=0, le=1)
+    """share of the capacity that is left"""
+
+    def settled(self, site: Site, rng: np.random.Generator) -> Self:  # noqa: ARG002
+        drawn = round(float(rng.uniform(0.2, 0.6)), 3)
+        return self._with(capacity=self.capacity or drawn)
+
+    def begin(self, stage: "Stage", now: float) -> None:  # noqa: ARG002
+        assert self.capacity is not None
+        stage.battery.wear(self.capacity)
+
+
+class ConnectionLoss(TimedFault):
+    """There is no signal in a part of the site; without `rect` and `floor`, nowhere."""
+
+    adds_up: ClassVar[bool] = True
+    kind: Literal["connection_loss"] = "connection_loss"
+    rect: Rect | None = None
+    """m, [x0, y0, x1, y1]; None: the whole floor"""
+    floor: int | None = Field(default=None, ge=1)
+    """None: every floor"""
+
+    def settled(self, site: Site, rng: np.random.Generator) -> Self:
+        known = [f.number for f in site.spec.floors]
+        if self.floor is not None and self.floor not in known:
+            raise ArgoError(f"site {site.name} has no floor {self.floor}")
+        return super().settled(site, rng)
+
+    def begin(self, stage: "Stage", now: float) -> None:  # noqa: ARG002
+        stage.network.shadows.append(Shadow(self.rect, self.floor))
+
+    def end(self, stage: "Stage", now: float) -> None:  # noqa: ARG002
+        stage.network.shadows.remove(Shadow(self.rect, self.floor))
+
+
+class EmergencyStop(TimedFault):
+    """Someone presses the emergency stop, and releases it again if it ends."""
+
+    kind: Literal["emergency_stop"] = "emergency_stop"
+
+    def begin(self, stage: "Stage", now: float) -> None:  # noqa: ARG002
+        stage.drive.pressed = True
+
+    def end(self, stage: "Stage", now: float) -> None:  # noqa: ARG002
+        stage.drive.pressed = False
+
+
+class SensorDysfunction(TimedFault):
+    """The camera that reads checkpoints fails, or its pictures are noisy."""
+
+    kind: Literal["sensor_dysfunction"] = "sensor_dysfunction"
+    effect: Literal["fails", "noise"] | None = None
+    """whether there are no readings at all, or readings with noise"""
+    noise: float = Field(default=0.1, gt=0, le=1)
+    """with noise: standard deviation of readings, as a share of the scale"""
+
+    def settled(self, site: Site, rng: np.random.Generator) -> Self:
+        drawn = "fails" if rng.uniform() < 0.5 else "noise"
+        return super().settled(site, rng)._with(effect=self.effect or drawn)
+
+    def begin(self, stage: "Stage", now: float) -> None:  # noqa: ARG002
+        if self.effect == "fails":
+            stage.sensor.failed = True
+        else:
+            stage.sensor.noise = self.noise
+
+    def end(self, stage: "Stage", now: float) -> None:  # noqa: ARG002
+        stage.sensor.failed, stage.sensor.noise = False, 0.0
+
+
+class DriveDysfunction(TimedFault):
+    """The drive makes only a part of its speed, or none. Of several the worst counts."""
+
+    kind: Literal["drive_dysfunction"] = "drive_dysfunction"
+    speed: float | None = Field(default=None, ge=0, lt=1)
+    """share of the speed that is left; 0: it stops"""
+
+    def settled(self, site: Site, rng: np.random.Generator) -> Self:
+        drawn = round(float(rng.uniform(0.0, 0.5)), 2)
+        return super().settled(site, rng)._with(speed=drawn if self.speed is None else self.speed)
+
+    def begin(self, stage: "Stage", now: float) -> None:  # noqa: ARG002
+        assert self.speed is not None
+        stage.drive.share = min(stage.drive.share, self.speed)
+
+    def end(self, stage: "Stage", now: float) -> None:  # noqa: ARG002
+        stage.drive.share = 1.0

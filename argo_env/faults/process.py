@@ -1,0 +1,160 @@
+"""Faults of the process: gas that leaks, parts that run hot, pumps that run badly, the alarm."""
+
+from typing import TYPE_CHECKING, ClassVar, Literal, Self
+
+import numpy as np
+from pydantic import Field
+
+from argo_compiler.errors import ArgoError
+from argo_env.faults.fault import TimedFault
+from argo_env.site import Site
+from argo_env.site.shapes import Vector
+from argo_env.surroundings import Alarm, GasLeak, HotSpot, PumpFault, PumpSound
+from argo_env.surroundings.sources import Source
+
+if TYPE_CHECKING:
+    from argo_env.faults.stage import Stage
+
+_BESIDE, _ABOVE, _BELOW = 5.0, 10.0, 1.0
+"""m beside the ground, above the highest floor and below the ground, within which there may be
+something that leaks or glows"""
+_BEHIND = 0.2  # m behind the face of a checkpoint, where the pipe or vessel is that carries it
+
+
+class ProcessFault(TimedFault):
+    """A fault that the surroundings show: a source of gas, heat or sound."""
+
+    needs_world: ClassVar[bool] = True
+    adds_up: ClassVar[bool] = True
+
+    def source(self) -> Source:
+        """What it puts there."""
+        raise NotImplementedError
+
+    def begin(self, stage: "Stage", now: float) -> None:
+        stage.surroundings.add(self.source(), now)
+
+    def end(self, stage: "Stage", now: float) -> None:
+        stage.surroundings.remove(self.source(), now)
+
+
+class GasLeakFault(ProcessFault):
+    """Natural gas escapes and hisses."""
+
+    kind: Literal["gas_leak"] = "gas_leak"
+    place: Vector | None = None
+    """m; drawn: at a pipe or vessel that carries a checkpoint"""
+    rate: float | None = Field(default=None, gt=0, le=1.0)
+    """kg/s"""
+
+    def settled(self, site: Site, rng: np.random.Generator) -> Self:
+        _check_place(site, self.place)
+        place, rate = _near_equipment(site, rng, 0.0), round(float(rng.uniform(0.01, 0.04)), 4)
+        return (
+            super()
+            .settled(site, rng)
+            ._with(place=place if self.place is None else self.place, rate=self.rate or rate)
+        )
+
+    def source(self) -> Source:
+        assert self.place is not None
+        assert self.rate is not None
+        return GasLeak(self.place, self.rate)
+
+
+class HotSpotFault(ProcessFault):
+    """A part of the equipment is hot."""
+
+    kind: Literal["hot_spot"] = "hot_spot"
+    place: Vector | None = None
+    """m; drawn: at a pipe or vessel that carries a checkpoint"""
+    temperature: float | None = Field(default=None, ge=40, le=800)
+    """°C"""
+    radius: float = Field(default=0.15, gt=0, le=1.0)
+    """m"""
+
+    def settled(self, site: Site, rng: np.random.Generator) -> Self:
+        _check_place(site, self.place)
+        place = _near_equipment(site, rng, 0.3)
+        temperature = round(float(rng.uniform(80.0, 150.0)), 1)
+        return (
+            super()
+            .settled(site, rng)
+            ._with(
+                place=place if self.place is None else self.place,
+                temperature=self.temperature or temperature,
+            )
+        )
+
+    def source(self) -> Source:
+        assert self.place is not None
+        assert self.temperature is not None
+        return HotSpot(self.place, self.radius, self.temperature)
+
+
+class AbnormalPump(ProcessFault):
+    """A running pump sounds wrong."""
+
+    kind: Literal["abnormal_pump"] = "abnormal_pump"
+    pump: str | None = None
+    """name of the pump"""
+    defect: PumpFault | None = None
+    """what it sounds like"""
+
+    def settled(self, site: Site, rng: np.random.Generator) -> Self:
+        known = [pump.name for floor in site.spec.floors for pump in floor.pumps]
+        if not known:
+            raise ArgoError(f"site {site.name} has no pump")
+        pump, defect = known[int(rng.integers(len(known)))], list(PumpFault)[int(rng.integers(2))]
+        if self.pump is not None and self.pump not in known:
+            raise ArgoError(
+                f"site {site.name} has no pump `{self.pump}`; there are: {', '.join(known)}"
+            )
+        return (
+            super().settled(site, rng)._with(pump=self.pump or pump, defect=self.defect or defect)
+        )
+
+    def source(self) -> Source:
+        assert self.pump is not None
+        assert self.defect is not None
+        return PumpSound(self.pump, self.defect)
+
+
+class PlatformAlarm(ProcessFault):
+    """The general platform alarm (GPA) sounds."""
+
+    kind: Literal["platform_alarm"] = "platform_alarm"
+    level: float = Field(default=85.0, ge=40, le=120)
+    """dB"""
+
+    def source(self) -> Source:
+        return Alarm(self.level)
+
+
+def _check_place(site: Site, place: Vector | None) -> None:
+    if place is None:
+        return
+    x0, y0, x1, y1 = site.spec.ground
+    top, bottom = max(f.z for f in site.spec.floors), site.spec.ground_z
+    x, y, z = place
+    low = (x0 - _BESIDE, y0 - _BESIDE, bottom - _BELOW)
+    high = (x1 + _BESIDE, y1 + _BESIDE, top + _ABOVE)
+    if not all(a <= v <= b for a, v, b in zip(low, place, high, strict=True)):
+        raise ArgoError(
+            f"there is no equipment at ({x:g}, {y:g}, {z:g}): a place on site {site.name} lies "
+            f"between ({low[0]:g}, {low[1]:g}, {low[2]:g}) and "
+            f"({high[0]:g}, {high[1]:g}, {high[2]:g})"
+        )
+
+
+def _near_equipment(site: Site, rng: np.random.Generator, up: float) -> Vector:
+    """A place on the equipment behind one of the checkpoints, `up` m above it."""
+    if not site.checkpoints:
+        raise ArgoError(f"site {site.name} has no checkpoint: give the place")
+    checkpoint = site.checkpoints[int(rng.integers(len(site.checkpoints)))]
+    x, y, z = checkpoint.position
+    return (
+        round(x - _BEHIND * float(np.cos(checkpoint.yaw)), 3),
+        round(y - _BEHIND * float(np.sin(checkpoint.yaw)), 3),
+        round(z + up, 3),
+    )

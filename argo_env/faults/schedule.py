@@ -1,0 +1,51 @@
+"""When faults begin and end, and which of them count where several meet."""
+
+from collections.abc import Sequence
+
+from argo_env.faults.fault import Fault
+from argo_env.faults.kinds import AnyFault
+from argo_env.faults.stage import Stage
+
+
+class Schedule:
+    """Lets faults begin and end at their times. Holds how far it has come, and what has begun."""
+
+    def __init__(self, faults: Sequence[AnyFault], stage: Stage) -> None:
+        """The faults must be settled."""
+        self.faults = tuple(faults)
+        self._stage = stage
+        moments = [(f.begins, True, f) for f in faults]
+        moments += [(f.ends, False, f) for f in faults if f.ends is not None]
+        # Of one time, ends come first; else they are in the order of the list.
+        self._moments = sorted(moments, key=lambda m: (m[0], m[1]))
+        self._next = 0
+        self._active: list[AnyFault] = []  # in the order in which they began
+
+    @property
+    def pending(self) -> bool:
+        """Whether anything is still to begin or to end."""
+        return self._next < len(self._moments)
+
+    @property
+    def last_change(self) -> float:
+        """When something began or ended last (s); 0 if nothing has."""
+        return self._moments[self._next - 1][0] if self._next else 0.0
+
+    def advance(self, now: float) -> None:
+        """Carries out all that is due at time `now` (s)."""
+        while self.pending and self._moments[self._next][0] <= now + 1e-9:
+            at, begins, fault = self._moments[self._next]
+            self._next += 1
+            if begins:
+                self._active.append(fault)
+                fault.begin(self._stage, at)
+            else:
+                self._active.remove(fault)
+                fault.end(self._stage, at)
+                self._renew(type(fault), at)
+
+    def _renew(self, kind: type[Fault], now: float) -> None:
+        """Lets those of a kind that have not ended take effect again after one that has."""
+        for fault in self._active:
+            if type(fault) is kind and not kind.adds_up:
+                fault.begin(self._stage, now)

@@ -1,0 +1,239 @@
+"""Faults of the way: bricks on the walkway, missing ground plates, blocked stairs.
+
+They are there from the run's start: they change the site's solids before the world is made, so that
+rays, contacts, pictures and dynamics all meet the same thing.
+"""
+
+import cmath
+import math
+from dataclasses import replace
+from typing import Annotated, ClassVar, Literal, Self
+
+import numpy as np
+from pydantic import Field
+
+from argo_compiler.errors import ArgoError
+from argo_env.faults.fault import Fault
+from argo_env.site import Site
+from argo_env.site.shapes import Box, Element, Role, Solid
+from argo_env.site.spec import FlightSpec, FloorSpec, Point, Rect, TowerSpec
+from argo_env.site.stairs import run as flight_run
+
+PLATE = 0.6  # m, edge of a ground plate
+BARRIER = (0.06, 1.0)  # m, thickness and height of what blocks stairs
+_BARRIER_DISTANCE = 0.25  # m from the nosing to the barrier
+_FROM_RIM = 0.35  # m that a drawn place is away from the rim of its walkway, where there is room
+_TOUCHING = 1e-6  # m
+_DRAWS = 100  # places that are drawn until one is free
+_ROOM = 0.65  # m about the middle of a docked robot that it needs to turn
+_STATION = 0.6  # m before the middle of a docked robot, where its station stands
+_SAME_LEVEL = 1.0  # m between a floor and the ground under which a dock is in the way
+_Length = Annotated[float, Field(gt=0, le=1.5)]  # m; what is larger does not get onto a walkway
+
+
+class Brick(Fault):
+    """Something solid lies on the walkway."""
+
+    needs_world: ClassVar[bool] = True
+    kind: Literal["brick"] = "brick"
+    floor: int | None = Field(default=None, ge=1)
+    """number of the floor that it lies on"""
+    place: Point | None = None
+    """m, x and y of its middle; needs `floor`"""
+    size: tuple[_Length, _Length, _Length] = (0.3, 0.2, 0.2)
+    """m, along its own axes, at most 1.5"""
+    yaw: float | None = None
+    """deg"""
+
+    def settled(self, site: Site, rng: np.random.Generator) -> Self:
+        for _ in range(1 if self.place else _DRAWS):
+            floor, place = _place(site, rng, self.floor, self.place, lowest=1)
+            if not any(_holds(r, place) for r in floor.walkways.values()):
+                raise ArgoError(f"there is no walkway at ({place[0]:g}, {place[1]:g}) of floor "
+                                f"{floor.number}")  # fmt: skip
+            yaw = round(float(rng.uniform(-90.0, 90.0)), 1)
+            settled = self._with(
+                floor=floor.number, place=place, yaw=yaw if self.yaw is None else self.yaw
+            )
+            area = settled._over_dock(site, floor)
+            if area is None:
+                return settled
+        raise ArgoError(
+            f"a brick at ({place[0]:g}, {place[1]:g}) of floor {floor.number} lies over the dock "
+            f"of starting area {area}, where the robot has to stand: give another `place`, or a "
+            "smaller `size`"
+        )
+
+    def _over_dock(self, site: Site, floor: FloorSpec) -> int | None:
+        """The starting area whose dock it lies over, if there is one."""
+        assert self.place is not None
+        assert self.yaw is not None
+        if abs(floor.z - site.spec.ground_z) > _SAME_LEVEL:
+            return None
+        turn = cmath.rect(1.0, -math.radians(self.yaw))
+        half_length, half_width = self.size[0] / 2, self.size[1] / 2
+        for area, dock in site.docks.items():
+            for ahead in (0.0, _STATION):
+                at = complex(dock.x, dock.y) + cmath.rect(ahead, dock.yaw) - complex(*self.place)
+                own = at * turn  # in the axes of the brick
+                away = math.hypot(
+                    max(abs(own.real) - half_length, 0.0), max(abs(own.imag) - half_width, 0.0)
+                )
+                if away < _ROOM:
+                    return area
+        return None
+
+    def changed(self, site: Site) -> tuple[Element, ...]:
+        assert self.floor is not None
+        assert self.place is not None
+        assert self.yaw is not None
+        z = _floor(site, self.floor).z + self.size[2] / 2
+        box = Box((*self.place, z), self.size, (0.0, 0.0, math.radians(self.yaw)))
+        return (*site.elements, Element(_new_name(site, "brick"), Role.STRUCTURE, (box,), "brick"))
+
+
+class MissingPlate(Fault):
+    """A plate of an upper floor's deck is missing: a hole."""
+
+    needs_world: ClassVar[bool] = True
+    kind: Literal["missing_plate"] = "missing_plate"
+    floor: int | None = Field(default=None, ge=1)
+    """number of the floor; the lowest has no plates"""
+    rect: Rect | None = None
+    """m, [x0, y0, x1, y1]; needs `floor`; drawn: a square of 0.6 m"""
+
+    def settled(self, site: Site, rng: np.random.Generator) -> Self:
+        middle = None
+        if self.rect is not None:
+            x0, y0, x1, y1 = self.rect
+            middle = ((x0 + x1) / 2, (y0 + y1) / 2)
+        floor, (x, y) = _place(site, rng, self.floor, middle, lowest=2)
+        if not floor.railed:
+            raise ArgoError(f"floor {floor.number} is a slab on the ground and has no plates")
+        half = PLATE / 2
+        drawn = tuple(round(v, 3) for v in (x - half, y - half, x + half, y + half))
+        settled = self._with(floor=floor.number, rect=self.rect or drawn)
+        if settled.changed(site) == site.elements:
+            raise ArgoError(f"there is no deck at ({x:g}, {y:g}) of floor {floor.number}")
+        return settled
+
+    def changed(self, site: Site) -> tuple[Element, ...]:
+        assert self.floor is not None
+        assert self.rect is not None
+        z, rect = _floor(site, self.floor).z, self.rect
+        return tuple(
+            replace(e, solids=tuple(p for s in e.solids for p in _without(s, rect, z)))
+            if e.role is Role.DECK
+            else e
+            for e in site.elements
+        )
+
+
+class BlockedStairs(Fault):
+    """Barriers stand across both ends of a stairway from one floor to the next."""
+
+    needs_world: ClassVar[bool] = True
+    kind: Literal["blocked_stairs"] = "blocked_stairs"
+    tower: str | None = None
+    """name of the stair tower"""
+    floor: int | None = Field(default=None, ge=1)
+    """the lower one of the two floors"""
+
+    def settled(self, site: Site, rng: np.random.Generator) -> Self:
+        towers, floors = [t.name for t in site.spec.towers], site.spec.floors[:-1]
+        if not towers or not floors:
+            raise ArgoError(f"site {site.name} has no stairs")
+        tower = towers[int(rng.integers(len(towers)))]
+        floor = floors[int(rng.integers(len(floors)))].number
+        if self.tower is not None and self.tower not in towers:
+            raise ArgoError(
+                f"site {site.name} has no stair tower `{self.tower}`; there are: "
+                f"{', '.join(towers)}"
+            )
+        if self.floor is not None and self.floor not in [f.number for f in floors]:
+            raise ArgoError(f"site {site.name} has no stairs up from floor {self.floor}")
+        return self._with(tower=self.tower or tower, floor=self.floor or floor)
+
+    def changed(self, site: Site) -> tuple[Element, ...]:
+        assert self.floor is not None
+        tower = next(t for t in site.spec.towers if t.name == self.tower)
+        barriers = _barriers(tower, _floor(site, self.floor).z)
+        name = _new_name(site, f"barrier of the {self.tower}")
+        return (*site.elements, Element(name, Role.STRUCTURE, barriers, "brick"))
+
+
+def _barriers(tower: TowerSpec, base: float) -> tuple[Solid, ...]:
+    """One across the foot of the lowest flight and one across the top of the highest."""
+    first = min(tower.flights, key=lambda f: f.foot[2])
+    last = max(tower.flights, key=lambda f: f.foot[2] + f.risers * f.rise)
+    return (
+        _barrier(first, base, -_BARRIER_DISTANCE, 0.0),
+        _barrier(last, base, flight_run(last) + _BARRIER_DISTANCE, last.risers * last.rise),
+    )
+
+
+def _barrier(flight: FlightSpec, base: float, along: float, up: float) -> Solid:
+    """A panel across a flight, `along` m from its first nosing, on what lies `up` m above that."""
+    yaw, (thickness, height) = math.radians(flight.yaw), BARRIER
+    x, y, z = flight.foot
+    center = (
+        x + along * math.cos(yaw), y + along * math.sin(yaw), base + z + up + height / 2,
+    )  # fmt: skip
+    return Box(center, (thickness, flight.width, height), (0.0, 0.0, yaw))
+
+
+def _without(solid: Solid, rect: Rect, z: float) -> tuple[Solid, ...]:
+    """The plate with its top at `z` less the rectangle, in up to four parts; all else as it is."""
+    if not isinstance(solid, Box) or solid.rpy != (0.0, 0.0, 0.0):
+        return (solid,)
+    (x, y, middle), (length, width, thickness) = solid.center, solid.size
+    if abs(middle + thickness / 2 - z) > _TOUCHING:
+        return (solid,)
+    x0, y0, x1, y1 = x - length / 2, y - width / 2, x + length / 2, y + width / 2
+    a0, b0, a1, b1 = max(x0, rect[0]), max(y0, rect[1]), min(x1, rect[2]), min(y1, rect[3])
+    if a1 - a0 <= _TOUCHING or b1 - b0 <= _TOUCHING:
+        return (solid,)
+    left = ((x0, y0, x1, b0), (x0, b1, x1, y1), (x0, b0, a0, b1), (a1, b0, x1, b1))
+    return tuple(
+        Box(((c0 + c1) / 2, (d0 + d1) / 2, middle), (c1 - c0, d1 - d0, thickness))
+        for c0, d0, c1, d1 in left
+        if c1 - c0 > _TOUCHING and d1 - d0 > _TOUCHING
+    )
+
+
+def _place(
+    site: Site, rng: np.random.Generator, number: int | None, place: Point | None, lowest: int
+) -> tuple[FloorSpec, Point]:
+    """The floor and the place on one of its walkways: as given, or drawn."""
+    floors = [f for f in site.spec.floors if f.number >= lowest]
+    if not floors:
+        raise ArgoError(f"site {site.name} has no upper floor")
+    drawn = floors[int(rng.integers(len(floors)))]
+    if number is None and place is not None:
+        raise ArgoError("a place without a floor: give the `floor` as well")
+    floor = drawn if number is None else _floor(site, number)
+    x0, y0, x1, y1 = list(floor.walkways.values())[int(rng.integers(len(floor.walkways)))]
+    x, y = (
+        float(rng.uniform(a + m, b - m))
+        for a, b, m in (
+            (x0, x1, min(_FROM_RIM, (x1 - x0) / 2)), (y0, y1, min(_FROM_RIM, (y1 - y0) / 2)),
+        )
+    )  # fmt: skip
+    return floor, (round(x, 3), round(y, 3)) if place is None else place
+
+
+def _floor(site: Site, number: int) -> FloorSpec:
+    for floor in site.spec.floors:
+        if floor.number == number:
+            return floor
+    raise ArgoError(f"site {site.name} has no floor {number}")
+
+
+def _holds(rect: Rect, place: Point) -> bool:
+    return rect[0] <= place[0] <= rect[2] and rect[1] <= place[1] <= rect[3]
+
+
+def _new_name(site: Site, name: str) -> str:
+    known = {element.name for element in site.elements}
+    names = (name if k == 1 else f"{name} {k}" for k in range(1, len(known) + 2))
+    return next(n for n in names if n not in known)

@@ -1,0 +1,1 @@
+"""What plans are made with on a site: its catalogue, travel times, and generated sites."""

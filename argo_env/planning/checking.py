@@ -1,0 +1,23 @@
+"""Whether a site can be driven: what must hold of every site before missions run on it."""
+
+from argo_compiler.errors import ArgoError
+from argo_env.navigation.navigator import Navigator
+from argo_env.planning.catalog import patrol
+
+
+def unserved_floors(navigator: Navigator) -> list[int]:
+    """The floors that can't be patrolled on ways that the docking stations lead to and back."""
+    return [f.number for f in navigator.site.spec.floors if not _patrolled(navigator, f.number)]
+
+
+def _patrolled(navigator: Navigator, floor: int) -> bool:
+    try:
+        patrol(navigator, floor)
+    except ArgoError:
+        return False
+    return True
+
+
+def unseen_checkpoints(navigator: Navigator) -> list[int]:
+    """The checkpoints that can be read from nowhere that the docking stations lead to and back."""
+    return [c.id for c in navigator.site.checkpoints if not navigator.can_view(c.id)]

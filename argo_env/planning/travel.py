@@ -1,0 +1,99 @@
+"""Travel times and energy of a robot on a site, for the analysis of missions."""
+
+from argo_compiler.analysis import Leg, NoWay, Standing
+from argo_compiler.errors import ArgoError
+from argo_compiler.il import Action, Mission, Task
+from argo_compiler.model import Pose
+from argo_env.drives.timetable import steps
+from argo_env.navigation import Navigator, Path
+from argo_env.navigation.path import Motion
+from argo_env.planning.start import start_pose
+from argo_env.robot.calibration import MotionKind
+
+
+class SiteTravel:
+    """The ways that the navigator plans, with the times of a drive that follows them.
+
+    A standing is a pose. Keeps every way that it was asked for. With the `time_step` (s) of the
+    drive that is meant, times are rounded up to whole steps, as the drive's are.
+    """
+
+    def __init__(self, navigator: Navigator, time_step: float = 0.1) -> None:
+        self._navigator = navigator
+        self._robot = navigator.robot
+        self.time_step = time_step
+        self._ways: dict[tuple[Pose, str | Pose | None], Path | NoWay] = {}
+        self._legs: dict[tuple[Pose, str | Pose | None, float | None], Leg | NoWay] = {}
+
+    @property
+    def battery(self) -> float:
+        """Wh."""
+        return self._robot.battery
+
+    @property
+    def clean_up(self) -> float:
+        """s, to stow the arm."""
+        return self._stepped(self._robot.sensor.stowing_time) + self.time_step
+
+    def start(self, mission: Mission) -> Pose:
+        """Where the robot is put: the pose of START, or the dock of the starting area.
+
+        Raises UnreachableError if the robot can't stand there.
+        """
+        return self._navigator.snap(start_pose(mission, self._navigator.site.docks))
+
+    def work(self, task: Task) -> float:
+        """s of a task's action that the robot takes even if it is there already."""
+        measures = task.action is Action.MEASURE
+        return self._stepped(self._robot.sensor.measuring_time) if measures else 0.0
+
+    def way(self, origin: Pose, task: Task) -> Path:
+        """The way to the task's place. Raises ArgoError if there is none."""
+        way = self._way(origin, task.object_id if task.action is Action.MEASURE else task.pose)
+        if isinstance(way, NoWay):
+            raise ArgoError(f"the robot can't carry out task '{task.name}': {way.reason}")
+        return way
+
+    def leg(self, origin: Standing, task: Task, velocity: float | None) -> Leg | NoWay:
+        """The way to the task's place at `velocity` (m/s), and its action."""
+        assert isinstance(origin, Pose)
+        place = task.object_id if task.action is Action.MEASURE else task.pose
+        key = origin, place, velocity
+        if key not in self._legs:
+            way = self._way(origin, place)
+            work = self.work(task)
+            self._legs[key] = way if isinstance(way, NoWay) else self._leg(way, velocity, work)
+        return self._legs[key]
+
+    def _way(self, origin: Pose, place: str | Pose | None) -> Path | NoWay:
+        key = origin, place
+        if key not in self._ways:
+            try:
+                self._ways[key] = self._plan(origin, place)
+            except ArgoError as error:
+                self._ways[key] = NoWay(str(error))
+        return self._ways[key]
+
+    def _plan(self, origin: Pose, place: str | Pose | None) -> Path:
+        if isinstance(place, Pose):
+            return self._navigator.plan(origin, place)
+        checkpoint = self._navigator.site.measured_by(place)
+        return self._navigator.plan_to_view(origin, checkpoint.id)
+
+    def _leg(self, way: Path, velocity: float | None, work: float) -> Leg:
+        robot, power = self._robot, self._robot.power
+        drive = max(self.time_step, self._stepped(way.duration(robot, velocity)))
+        energy = sum(m.duration(robot, velocity) * self._watts(m) for m in way.motions) / 3600
+        work_energy = work * power.measuring / 3600
+        return Leg(drive + work, energy + work_energy, way.end, work, work_energy)
+
+    def _watts(self, motion: Motion) -> float:
+        power = self._robot.power
+        return {
+            MotionKind.TURN: power.turning,
+            MotionKind.UP: power.climbing,
+            MotionKind.DOWN: power.descending,
+        }.get(motion.kind, power.driving)
+
+    def _stepped(self, seconds: float) -> float:
+        return steps(seconds, self.time_step) * self.time_step

@@ -1,0 +1,1 @@
+"""Running a mission: the simulation, what it is made with, its log, journal and record."""

@@ -1,0 +1,30 @@
+"""When the mission was interrupted, and by what: seen from the executor as it goes on."""
+
+from argo_compiler.hfsm import Executor
+from argo_compiler.il import EventKind
+from argo_env.run.record import Interruption
+
+
+class InterruptionWatch:
+    """Notes each pause and each reaction. Holds the one that goes on."""
+
+    def __init__(self) -> None:
+        self._over: list[Interruption] = []
+        self._by: EventKind | None = None
+        self._since: float | None = None
+
+    def look(self, executor: Executor, now: float) -> None:
+        """Takes note of how the executor stands at time `now` (s), after each of its steps."""
+        interrupted = not executor.finished and (executor.paused or executor.reaction is not None)
+        by = None if executor.paused else executor.reaction
+        if self._since is not None and (not interrupted or by is not self._by):
+            self._over.append(Interruption(start=self._since, end=now, event=self._by))
+            self._since = None
+        if interrupted and self._since is None:
+            self._by, self._since = by, now
+
+    def all(self, now: float) -> tuple[Interruption, ...]:
+        """All of them, the one that goes on up to `now` (s)."""
+        if self._since is None:
+            return tuple(self._over)
+        return (*self._over, Interruption(start=self._since, end=now, event=self._by))

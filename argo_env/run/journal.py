@@ -1,0 +1,313 @@
+"""The journal: a run on disk, so that it can go on after its process has died.
+
+A file of lines, each a checksum and an entry as JSON. The first line holds all that the run is made
+from. It is there as a whole or not at all; of what follows only the last line can be torn, and is
+cut off then. One process at a time has the journal.
+"""
+
+import fcntl
+import hashlib
+import json
+import os
+import zlib
+from collections.abc import Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Literal, NoReturn, TypeVar
+
+from pydantic import ValidationError
+
+from argo_compiler import __version__
+from argo_compiler.diagnostics import Diagnostic
+from argo_compiler.errors import ArgoError
+from argo_compiler.il import Mission
+from argo_compiler.model import Model
+from argo_env.closing import Closing
+from argo_env.files.yaml_messages import message_of
+from argo_env.navigation import Navigator
+from argo_env.run.log import Entry
+from argo_env.run.record import Reordering
+from argo_env.run.spec import RunSettings
+
+VERSION = 2
+"""of the journal's format"""
+MAX_BYTES = 1_000_000_000  # of a journal; the longest run takes some 20 MB
+_MARK = "argo journal"
+
+ModelT = TypeVar("ModelT", bound=Model)
+
+
+class Header(Model):
+    """The first line: what the run is made from."""
+
+    format: Literal["argo journal"] = "argo journal"
+    version: Literal[2] = 2
+    site: str
+    """name of the site, or path of the file that describes it"""
+    source: str | None = None
+    """the file that the mission was read from"""
+    fingerprints: dict[str, str]
+    """of all that must be the same when the run goes on, by what it is"""
+    settings: RunSettings
+    mission: Mission
+    diagnostics: tuple[Diagnostic, ...]
+    reordering: Reordering | None = None
+
+
+@dataclass(frozen=True)
+class JournalPlace:
+    """Where to keep a journal, and where a later process finds site and mission again."""
+
+    path: Path
+    site: str
+    source: Path | None = None
+
+
+class Journal(Closing):
+    """An open journal. Holds the file and its lock; close it, or use it as a context."""
+
+    def __init__(self, path: Path, file: int, header: Header, entries: Sequence[Entry], size: int):
+        self.path = path
+        self.header = header
+        self.entries = tuple(entries)
+        """those that were there when it was opened"""
+        self._file = file
+        self._size = size
+        self._lines = 1 + len(entries)
+
+    @property
+    def ended(self) -> bool:
+        """Whether the run had ended when the journal was opened."""
+        return bool(self.entries) and self.entries[-1].ended
+
+    def append(self, entry: Entry) -> None:
+        """Writes an entry. When this returns, a process that dies does not lose it; a machine that
+        loses its power keeps what is precious.
+
+        Raises ArgoError if it can't be written; what has been written stays.
+        """
+        line = _line(self._lines, entry)
+        try:
+            _write(self._file, line)
+            if entry.precious:
+                os.fsync(self._file)
+        except OSError as error:
+            _cut(self._file, self._size)
+            raise ArgoError(
+                f"{self.path}: the journal can't be written any further: {error.strerror}; what "
+                f"was written stays, and `argo resume {self.path}` goes on from there"
+            ) from error
+        self._size += len(line)
+        self._lines += 1
+
+    def require_unchanged(self, navigator: Navigator) -> None:
+        """Raises ArgoError if the run would not go on with what it began with."""
+        before = self.header.fingerprints
+        source = Path(self.header.source) if self.header.source else None
+        now = fingerprints(navigator, self.header.mission, source)
+        if source is not None and not source.exists():
+            now["mission file"] = before.get("mission file", "")
+        changed = [
+            f"{what} (was {before.get(what, 'absent')}, is {now.get(what, 'absent')})"
+            for what in sorted(before.keys() | now.keys())
+            if before.get(what) != now.get(what)
+        ]
+        if changed:
+            raise ArgoError(
+                f"{self.path}: the run can't go on, as something has changed since it began: "
+                f"{', '.join(changed)}. Put it back as it was, or begin anew with `argo run`"
+            )
+
+    def close(self) -> None:
+        os.close(self._file)
+
+
+def fingerprints(navigator: Navigator, mission: Mission, source: Path | None) -> dict[str, str]:
+    """Short digests of all that a run depends on, by what it is."""
+    found = {"Argo": __version__, "mission": _digest(mission.model_dump_json())}
+    for what, model in (("site", navigator.site.spec), ("robot", navigator.robot)):
+        for field, value in model.model_dump(mode="json").items():
+            found[f"{what}'s {field}"] = _digest(json.dumps(value))
+    if source is not None and source.exists():
+        try:
+            found["mission file"] = _digest(source.read_bytes())
+        except OSError as error:
+            raise ArgoError(f"{source}: can't be read: {error.strerror}") from error
+    return found
+
+
+def require_free(path: Path) -> None:
+    """Raises ArgoError if no new journal can be written there."""
+    if path.exists():
+        _refuse(path, f"is there already: `argo resume {path}` goes on with it; or choose another")
+    if not path.parent.is_dir():
+        _refuse(path, "its folder does not exist: make it, or choose another")
+    if not os.access(path.parent, os.W_OK):
+        _refuse(path, "its folder can't be written to: choose another")
+
+
+def create_journal(path: Path, header: Header) -> Journal:
+    """A new journal with its header on disk, locked.
+
+    Raises ArgoError if the file is there already or can't be written.
+    """
+    require_free(path)
+    # The header is written under another name, so that a journal is never without it.
+    draft = path.with_name(path.name + ".new")
+    line = _line(0, header)
+    file = _open(draft, os.O_CREAT)
+    try:
+        _lock(file, path)
+        if path.exists():  # another process was faster; its draft has become the journal
+            draft.unlink(missing_ok=True)
+            require_free(path)
+        os.ftruncate(file, 0)
+        _write(file, line)
+        os.fsync(file)
+        draft.rename(path)
+        _sync_folder(path.parent)
+    except OSError as error:
+        os.close(file)
+        draft.unlink(missing_ok=True)
+        _refuse(path, f"can't be written: {error.strerror}; choose another place")
+    except ArgoError:
+        os.close(file)
+        raise
+    return Journal(path, file, header, (), len(line))
+
+
+def open_journal(path: Path) -> Journal:
+    """The journal of an earlier run, locked and ready to go on; a torn last line is cut off.
+
+    Raises ArgoError if it is none, is damaged, or another process has it.
+    """
+    if path.is_dir() or (path.exists() and not path.is_file()):
+        _refuse(path, "is no file: name a journal that `argo run --journal` has written")
+    file = _open(path)
+    try:
+        _lock(file, path)
+        content = _read(file, path)
+        header, entries, size = _parse(path, content)
+        if size < len(content):
+            os.ftruncate(file, size)
+            os.fsync(file)
+    except OSError as error:
+        os.close(file)
+        _refuse(path, f"can't be read: {error.strerror}")
+    except ArgoError:
+        os.close(file)
+        raise
+    return Journal(path, file, header, entries, size)
+
+
+def _parse(path: Path, content: bytes) -> tuple[Header, list[Entry], int]:
+    """The header, the entries, and how many bytes of the content they take."""
+    lines = content.split(b"\n")
+    # Behind the last line end there is nothing, or the beginning of a line.
+    whole = lines[:-1]
+    first = _payload(whole[0]) if whole else None
+    if first is None or first.get("format") != _MARK:
+        _refuse(path, "is no journal, or its first line is damaged: nothing can go on from it")
+    if first.get("version") != VERSION:
+        _refuse(
+            path,
+            f"has version {json.dumps(first.get('version'))} of the journal's format, and this "
+            f"Argo reads {VERSION}: resume it with the Argo that began it",
+        )
+    header = _model(Header, first, path, 0)
+    entries: list[Entry] = []
+    size = len(whole[0]) + 1
+    for number, line in enumerate(whole[1:], start=1):
+        data = _payload(line)
+        if data is None or data.pop("n", None) != number:
+            if any(_payload(later) is not None for later in whole[number + 1 :]):
+                _refuse(path, f"is damaged in line {number + 1}: take it from a copy")
+            break
+        entries.append(_model(Entry, data, path, number))
+        size += len(line) + 1
+    return header, entries, size
+
+
+def _model(cls: type[ModelT], data: dict[str, object], path: Path, number: int) -> ModelT:
+    try:
+        return cls.model_validate({k: v for k, v in data.items() if k != "n"})
+    except ValidationError as error:
+        fault = error.errors(include_url=False)[0]
+        place = ".".join(str(part) for part in fault["loc"])
+        _refuse(path, f"line {number + 1}, {place}: {message_of(fault, fault['loc'])}")
+
+
+def _line(number: int, model: Model) -> bytes:
+    data = {"n": number} | model.model_dump(mode="json", exclude_defaults=True)
+    if isinstance(model, Header):
+        data |= {"format": model.format, "version": model.version}
+    payload = json.dumps(data, ensure_ascii=False, separators=(",", ":")).encode()
+    return b"%08x %s\n" % (zlib.crc32(payload), payload)
+
+
+def _payload(line: bytes) -> dict[str, object] | None:
+    """The data in a line; None if its checksum does not fit."""
+    checksum, _, payload = line.partition(b" ")
+    if checksum != b"%08x" % zlib.crc32(payload):
+        return None
+    try:
+        data = json.loads(payload)
+    except (ValueError, RecursionError):
+        return None
+    return data if isinstance(data, dict) else None
+
+
+def _open(path: Path, flags: int = 0) -> int:
+    try:
+        return os.open(path, flags | os.O_RDWR | os.O_APPEND | os.O_CLOEXEC, 0o644)
+    except FileNotFoundError:
+        _refuse(path, "there is no such journal: `argo run --journal` begins one")
+    except OSError as error:
+        _refuse(path, f"can't be opened: {error.strerror}")
+
+
+def _lock(file: int, path: Path) -> None:
+    try:
+        fcntl.flock(file, fcntl.LOCK_EX | fcntl.LOCK_NB)
+    except BlockingIOError:
+        _refuse(path, "is in use: another process goes on with this run; wait for its end")
+
+
+def _read(file: int, path: Path) -> bytes:
+    if os.fstat(file).st_size > MAX_BYTES:
+        _refuse(path, f"is larger than {MAX_BYTES // 1_000_000} MB: no journal is")
+    parts = []
+    while part := os.read(file, 1 << 20):
+        parts.append(part)
+    return b"".join(parts)
+
+
+def _write(file: int, data: bytes) -> None:
+    while data:
+        data = data[os.write(file, data) :]
+
+
+def _cut(file: int, size: int) -> None:
+    """Takes back what was written of a line, if the disk lets us; else it is a torn one."""
+    try:
+        os.ftruncate(file, size)
+    except OSError:
+        return
+
+
+def _sync_folder(folder: Path) -> None:
+    """So that the file's name is on disk as well."""
+    file = os.open(folder, os.O_RDONLY)
+    try:
+        os.fsync(file)
+    finally:
+        os.close(file)
+
+
+def _digest(content: str | bytes) -> str:
+    data = content.encode() if isinstance(content, str) else content
+    return hashlib.sha256(data).hexdigest()[:12]
+
+
+def _refuse(path: Path, message: str) -> NoReturn:
+    raise ArgoError(f"{path}: {message}") from None

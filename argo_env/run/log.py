@@ -1,0 +1,154 @@
+"""The log of a run: entries, one for each moment of note, and what they add up to.
+
+A run that goes on from its journal reads the same entries that it would have made, so its log is
+the same as that of a run that was never cut short.
+"""
+
+from dataclasses import asdict
+from typing import Literal
+
+from argo_compiler.hfsm import (
+    ActionFailed,
+    ActionStopped,
+    ActionSucceeded,
+    Cancel,
+    Event,
+    Occurred,
+    Pause,
+    Resume,
+    Tick,
+)
+from argo_compiler.il import EventKind
+from argo_compiler.model import Model
+from argo_env.robot.pose import BodyPose
+from argo_env.run.record import DIGITS, Anomaly, Contact, Mishap, PathSample, Reading, TaskRun
+from argo_env.site import Site
+
+_EVENTS: dict[str, type[Event]] = {
+    "succeeded": ActionSucceeded,
+    "failed": ActionFailed,
+    "stopped": ActionStopped,
+    "tick": Tick,
+    "occurred": Occurred,
+    "pause": Pause,
+    "resume": Resume,
+    "cancel": Cancel,
+}
+_NAMES = {cls: name for name, cls in _EVENTS.items()}
+
+
+class LoggedEvent(Model):
+    """An event as data; the fields that its kind has not are left out."""
+
+    kind: Literal["succeeded", "failed", "stopped", "tick", "occurred", "pause", "resume", "cancel"]
+    task: str | None = None
+    value: float | None = None
+    reason: str | None = None
+    event: EventKind | None = None
+    detail: str | None = None
+
+    @classmethod
+    def of(cls, event: Event) -> "LoggedEvent":
+        return cls.model_validate({"kind": _NAMES[type(event)], **asdict(event)})
+
+    def original(self) -> Event:
+        """The event; ValueError if fields are missing or too many."""
+        fields = self.model_dump(exclude={"kind"}, exclude_none=True)
+        if "event" in fields:
+            fields["event"] = EventKind(fields["event"])
+        try:
+            return _EVENTS[self.kind](**fields)
+        except TypeError as error:
+            raise ValueError(f"no event of kind {self.kind} has {sorted(fields)}") from error
+
+
+class Entry(Model):
+    """What is to be known of one moment: where the robot was, and what had happened."""
+
+    t: float
+    """s"""
+    pose: tuple[float, float, float, float, float]
+    """x, y, z (m), yaw, pitch (rad)"""
+    distance: float
+    """m, driven since the mission's start"""
+    climbed: float
+    """m, upwards since the mission's start"""
+    charge: float | None = None
+    """of the battery, 0 to 1"""
+    given: int = 0
+    """how many of the events that the run was given had occurred"""
+    added: tuple[tuple[float, LoggedEvent], ...] = ()
+    """events that the run is given from here on, and when (s)"""
+    running: str | None = None
+    """the task whose action ran before the events"""
+    events: tuple[LoggedEvent, ...] = ()
+    """for the executor, in this order"""
+    found: tuple[Anomaly, ...] = ()
+    """what the robot noticed by itself"""
+    mishaps: tuple[Mishap, ...] = ()
+    """what the drive had trouble with"""
+    reading: Reading | None = None
+    task: TaskRun | None = None
+    """the run of a task that has ended"""
+    contacts: tuple[Contact, ...] = ()
+    """those that are over since the entry before"""
+    touching: tuple[Contact, ...] = ()
+    """those that may still go on"""
+    sample: bool = False
+    """whether the pose is a point of the recorded path"""
+    resumed: bool = False
+    """whether the run goes on here after its process had died"""
+    ended: bool = False
+    """whether this is the end of the run"""
+    stopped: str | None = None
+    """with `ended`: why the run was stopped before the mission's end, if it was"""
+
+    @property
+    def body_pose(self) -> BodyPose:
+        return BodyPose(*self.pose)
+
+    @property
+    def precious(self) -> bool:
+        """Whether it tells more than where the robot was."""
+        return bool(self.events) or self.resumed or self.ended
+
+
+class RunLog:
+    """What the record is made from. Grows as entries are added."""
+
+    def __init__(self, site: Site) -> None:
+        self._site = site
+        self.last: Entry | None = None
+        self.tasks: list[TaskRun] = []
+        self.readings: list[Reading] = []
+        self.anomalies: list[Anomaly] = []
+        self.mishaps: list[Mishap] = []
+        self.last_event = 0.0
+        """s, when the executor was told of something last"""
+        self.contacts: list[Contact] = []
+        self.path: list[PathSample] = []
+        self.resumed: list[float] = []
+
+    def add(self, entry: Entry) -> None:
+        self.last = entry
+        if entry.task:
+            self.tasks.append(entry.task)
+        if entry.reading:
+            self.readings.append(entry.reading)
+        self.anomalies += entry.found
+        self.mishaps += entry.mishaps
+        if entry.events:
+            self.last_event = entry.t
+        self.contacts += entry.contacts
+        if entry.resumed:
+            self.resumed.append(entry.t)
+        if entry.sample:
+            self.path.append(self._sample(entry))
+
+    def _sample(self, entry: Entry) -> PathSample:
+        x, y, z, yaw, pitch = (round(v, DIGITS) for v in entry.pose)
+        floor = self._site.floor_at(entry.pose[2])
+        charge = None if entry.charge is None else round(entry.charge, DIGITS)
+        return PathSample(
+            t=entry.t, x=x, y=y, z=z, yaw=yaw, pitch=pitch, floor=floor, charge=charge
+        )

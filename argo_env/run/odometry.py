@@ -1,0 +1,105 @@
+"""What the robot's way adds up to: metres, contacts with the site, mishaps, and charge."""
+
+import math
+from collections.abc import Iterable, Sequence
+
+from argo_env.drives.battery import Battery, load
+from argo_env.drives.drive import Incident
+from argo_env.robot.pose import BodyPose
+from argo_env.robot.spec import RobotSpec
+from argo_env.run.contacts import ContactWatch
+from argo_env.run.log import Entry
+from argo_env.run.record import DIGITS, Contact, Mishap
+from argo_env.run.verdict import at_dock
+from argo_env.site import Site
+from argo_env.world.world import Touch
+
+
+class Odometry:
+    """Adds up step by step. Holds the sums and the contacts that may still go on."""
+
+    def __init__(self, robot: RobotSpec, battery: Battery | None, site: Site) -> None:
+        """With a `battery` (changed here) its charge goes down, and up in a dock of the site."""
+        self.distance = 0.0
+        """m, driven since the mission's start"""
+        self.climbed = 0.0
+        """m, upwards since the mission's start"""
+        self.over: list[Contact] = []
+        """contacts that are over and not yet told"""
+        self.mishaps: list[Mishap] = []
+        """those that are not yet told"""
+        self._seen = 0  # of the drive's incidents
+        self.charging = False
+        self._robot = robot
+        self._battery = battery
+        self._site = site
+        self._contacts = ContactWatch()
+
+    @property
+    def touching(self) -> tuple[Contact, ...]:
+        """Contacts that may still go on."""
+        return self._contacts.open
+
+    @property
+    def charge(self) -> float | None:
+        """Of the battery, 0 to 1."""
+        return self._battery.charge if self._battery else None
+
+    @property
+    def empty(self) -> bool:
+        """Whether the battery is."""
+        return self._battery is not None and self._battery.empty
+
+    def restore(self, entry: Entry) -> None:
+        """Goes on from an entry."""
+        self.distance, self.climbed = entry.distance, entry.climbed
+        self._contacts.restore(entry.touching)
+        if self._battery and entry.charge is not None:
+            self._battery.charge = entry.charge
+            # If it does not stand there, the next step shows it.
+            self.charging = entry.charge < 1.0 and self._docked(entry.body_pose)
+
+    def close(self) -> None:
+        """No contact goes on any longer."""
+        self.over += self._contacts.open
+        self._contacts.restore(())
+
+    def moved(
+        self, before: BodyPose, after: BodyPose, touches: Iterable[Touch], now: float
+    ) -> None:
+        """The robot has gone from `before` to `after` until time `now` (s), touching these."""
+        self.distance += math.dist((before.x, before.y, before.z), (after.x, after.y, after.z))
+        self.climbed += max(0.0, after.z - before.z)
+        self.over += self._contacts.note(touches, now)
+
+    def trouble(self, incidents: Sequence[Incident], now: float) -> None:
+        """Notes which of the drive's `incidents` are new at time `now` (s)."""
+        for incident in incidents[self._seen :]:
+            pose = incident.pose
+            self.mishaps.append(
+                Mishap(
+                    t=now,
+                    trouble=incident.trouble,
+                    detail=incident.detail,
+                    place=(round(pose.x, DIGITS), round(pose.y, DIGITS), round(pose.z, DIGITS)),
+                    floor=self._site.floor_at(pose.z),
+                )
+            )
+        self._seen = len(incidents)
+
+    def spend(self, before: BodyPose, after: BodyPose, seconds: float, measuring: bool) -> None:
+        """Draws from the battery what that took, or charges it while the robot stands docked."""
+        if self._battery is None:
+            return
+        power = self._robot.power
+        watts = load(power, before, after, seconds, measuring)
+        stands = watts in (power.standing, power.measuring)
+        docked = stands and self._docked(after)
+        self.charging = docked and self._battery.charge < 1.0
+        if docked:
+            # The station powers the robot, and what it gives besides goes into the battery.
+            watts = -power.charging if self.charging else 0.0
+        self._battery.use(watts, seconds)
+
+    def _docked(self, pose: BodyPose) -> bool:
+        return any(at_dock(pose, dock) for dock in self._site.docks.values())

@@ -1,0 +1,106 @@
+"""What the robot notices by itself: watches are called at their periods, and each thing is told
+once, also when the run has been resumed meanwhile."""
+
+import math
+from collections.abc import Sequence
+
+from argo_compiler.il import EventKind
+from argo_env.navigation import Blockage
+from argo_env.robot.pose import BodyPose
+from argo_env.run.record import DIGITS, Anomaly, Reading
+from argo_env.sensing.signals.terrain_watch import KNOWN, ObstacleFinding
+from argo_env.sensing.watch import Finding, RememberingWatch, Told, Watch
+from argo_env.site import Site
+from argo_env.site.shapes import Vector
+
+OBSTACLES = frozenset({EventKind.POSITIVE_OBSTACLE, EventKind.NEGATIVE_OBSTACLE})
+_AROUND = 0.25  # m about the place of an obstacle whose extent was not seen
+_SAME_PLACE = 1.0  # m within which a watch finds the same again, after a run was resumed
+
+
+class Perception:
+    """Calls the watches of one run. Holds what was told before the run was resumed."""
+
+    def __init__(self, watches: Sequence[Watch], site: Site, time_step: float) -> None:
+        """`time_step` (s): how often it is asked."""
+        self._site = site
+        every = [max(1, round(watch.period / time_step)) for watch in watches]
+        # Those of one period look in turn, not all in the same step.
+        self._turns = [
+            (watch, steps, k % steps)
+            for k, (watch, steps) in enumerate(zip(watches, every, strict=True))
+        ]
+        self._known: list[Anomaly] = []
+
+    def remember(self, told: Sequence[tuple[Anomaly, BodyPose]], now: float) -> None:
+        """The run goes on at time `now` (s) after these have been told, with the robot at these
+        poses; the watches are new."""
+        self._known = [anomaly for anomaly, _ in told]
+        for watch, _, _ in self._turns:
+            if isinstance(watch, RememberingWatch):
+                own = [Told(a.kind, pose) for a, pose in told if a.source == watch.name]
+                watch.remember(own, now)
+
+    def look(self, step: int, now: float, pose: BodyPose) -> tuple[Anomaly, ...]:
+        """What is found in the step of that number, at time `now` (s) with the robot at `pose`."""
+        found = []
+        for watch, every, turn in self._turns:
+            if step % every == turn:
+                for finding in watch.look(now, pose):
+                    if not self._was_told(watch, finding):
+                        found.append(self._anomaly(watch, finding, now))
+        return tuple(found)
+
+    def _was_told(self, watch: Watch, finding: Finding) -> bool:
+        if finding.place is None or isinstance(watch, RememberingWatch):
+            return False
+        for known in self._known:
+            same = (known.kind, known.source) == (finding.kind, watch.name)
+            if same and known.place and math.dist(known.place, finding.place) <= _SAME_PLACE:
+                self._known.remove(known)
+                return True
+        return False
+
+    def _anomaly(self, watch: Watch, finding: Finding, now: float) -> Anomaly:
+        at = finding.place or finding.noticed_from
+        return Anomaly(
+            t=now,
+            kind=finding.kind,
+            detail=finding.detail,
+            source=watch.name,
+            place=None if finding.place is None else _rounded(finding.place),
+            noticed_from=None if finding.noticed_from is None else _rounded(finding.noticed_from),
+            floor=None if at is None else self._site.floor_at(at[2]),
+            confidence=round(finding.confidence, DIGITS),
+            extent=finding.blockage.rect if isinstance(finding, ObstacleFinding) else None,
+        )
+
+
+def blockage(anomaly: Anomaly) -> Blockage | None:
+    """What an obstacle closes of the surface; None for all else.
+
+    It may reach a little farther than was seen from the one side, without being told again.
+    """
+    if anomaly.kind not in OBSTACLES or anomaly.place is None:
+        return None
+    x, y, z = anomaly.place
+    x0, y0, x1, y1 = anomaly.extent or (x, y, x, y)
+    more = KNOWN if anomaly.extent else _AROUND
+    return Blockage((x0 - more, y0 - more, x1 + more, y1 + more), z, anomaly.detail)
+
+
+def abnormal_reading(reading: Reading, site: Site) -> Anomaly:
+    """What a reading outside the checkpoint's nominal range tells."""
+    return Anomaly(
+        t=reading.t,
+        kind=EventKind.ABNORMAL_READING,
+        detail=f"{reading.name} shows {reading.value:g} {reading.unit}",
+        source="reading",
+        place=_rounded(site.checkpoint(reading.checkpoint).position),
+        floor=reading.floor,
+    )
+
+
+def _rounded(place: Vector) -> Vector:
+    x, y, z = (round(v, DIGITS) for v in place)
+    return x, y, z

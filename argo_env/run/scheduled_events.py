@@ -1,0 +1,32 @@
+"""The events that a run is given beforehand, at their times."""
+
+from collections.abc import Iterable
+
+from argo_compiler.hfsm import Event
+from argo_env.run.log import LoggedEvent
+
+
+class GivenEvents:
+    """Gives out events when they are due. Holds how many have occurred."""
+
+    def __init__(self, events: Iterable[tuple[float, LoggedEvent]]) -> None:
+        self._events: list[tuple[float, Event]] = []
+        self.occurred = 0
+        self.add(events)
+
+    @property
+    def pending(self) -> bool:
+        """Whether any are still to occur."""
+        return self.occurred < len(self._events)
+
+    def add(self, events: Iterable[tuple[float, LoggedEvent]]) -> None:
+        """More of them; of equal times, those that were there before come first."""
+        ahead = [*self._events[self.occurred :], *((t, event.original()) for t, event in events)]
+        self._events[self.occurred :] = sorted(ahead, key=lambda given: given[0])
+
+    def due(self, now: float) -> list[Event]:
+        """Those that occur now, at time `now` (s)."""
+        first = self.occurred
+        while self.pending and self._events[self.occurred][0] <= now:
+            self.occurred += 1
+        return [event for _, event in self._events[first : self.occurred]]

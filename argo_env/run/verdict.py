@@ -1,0 +1,91 @@
+"""The verdict: whether the mission is a success, and what is missing if it is not."""
+
+import math
+from collections.abc import Iterable, Mapping, Sequence
+
+from argo_compiler.hfsm import Cause, Hfsm, Outcome, TraceEntry
+from argo_compiler.il import Mission
+from argo_compiler.il.reserved import RESERVED_NAMES
+from argo_compiler.model import Pose
+from argo_env.navigation.path import wrap
+from argo_env.robot.pose import BodyPose
+from argo_env.run.log import RunLog
+from argo_env.run.record import DIGITS, Result, TaskRun
+
+DOCKED_DISTANCE = 0.1  # m
+DOCKED_ANGLE = math.radians(5.0)
+
+_ENDINGS = {
+    Outcome.RETURNED: "the mission was given up, and the robot returned to its dock",
+    Outcome.SHELTERED: "the mission was given up, and the robot went to a safe area",
+    Outcome.FAILED: "the mission was given up, and the robot did not get to where it should wait",
+    Outcome.ABORTED: "the mission was aborted",
+    Outcome.CANCELLED: "the mission was cancelled by a person",
+}
+
+
+def is_docked(pose: BodyPose, docks: Mapping[int, Pose], area: int) -> bool:
+    """Whether a robot at `pose` is in the station of that area: within 10 cm and 5 degrees."""
+    return at_dock(pose, docks[area])
+
+
+def at_dock(pose: BodyPose, dock: Pose) -> bool:
+    """Whether a robot at `pose` is in the station of that pose."""
+    away = math.dist((pose.x, pose.y, pose.z), (dock.x, dock.y, dock.z))
+    return away <= DOCKED_DISTANCE and abs(wrap(pose.yaw - dock.yaw)) <= DOCKED_ANGLE
+
+
+def failed_tasks(runs: Sequence[TaskRun], trace: Iterable[TraceEntry]) -> tuple[str, ...]:
+    """The tasks that failed and were not tried again, by name and in order."""
+    retried = {(e.time, e.source) for e in trace if e.cause is Cause.RETRY}
+    failed = [r.task for r in runs if r.outcome == "failed" and (r.end, r.task) not in retried]
+    return tuple(dict.fromkeys(failed))
+
+
+def judge(
+    mission: Mission,
+    hfsm: Hfsm,
+    docks: Mapping[int, Pose],
+    log: RunLog,
+    outcome: Outcome | None,
+    failed: Sequence[str],
+) -> Result:
+    """How the mission ended: the machine with `outcome`, the tasks `failed` for good.
+
+    An `outcome` of None is that of a run that was stopped before.
+    """
+    last = log.last
+    assert last is not None
+    now, limit, area = last.t, mission.max_duration, mission.end_area
+    docked = None if area is None else is_docked(last.body_pose, docks, area)
+    missing = []
+    if outcome is None:
+        missing.append(last.stopped or f"it was stopped after {now:.0f} s")
+    elif outcome is not Outcome.COMPLETED:
+        missing.append(_ENDINGS[outcome])
+    if failed:
+        missing.append(f"failed: {', '.join(failed)}")
+    if limit is not None and now > limit:
+        missing.append(f"it took {now:.0f} s of at most {limit:.0f} s")
+    if docked is False:
+        missing.append(f"the robot is not docked in starting area {area}")
+    return Result(
+        success=not missing,
+        verdict="; ".join(missing) if missing else _praise(hfsm, log.tasks),
+        outcome=outcome,
+        duration=now,
+        max_duration=limit,
+        within_max_duration=limit is None or now <= limit,
+        docked=docked,
+        distance=round(last.distance, DIGITS),
+        climbed=round(last.climbed, DIGITS),
+    )
+
+
+def _praise(hfsm: Hfsm, runs: Iterable[TaskRun]) -> str:
+    """The verdict of a success: a plan with conditions may pass tasks over."""
+    done = {t.task for t in runs} | RESERVED_NAMES
+    passed_over = [leaf.task.name for leaf in hfsm.leaves if leaf.task.name not in done]
+    if passed_over:
+        return f"the plan was carried out; it led past {', '.join(passed_over)}"
+    return "everything was done as planned"

@@ -1,0 +1,134 @@
+"""Missions as route problems and back: an executor carries out what was rewritten."""
+
+from collections import Counter
+
+import numpy as np
+from hypothesis import assume, event, given, settings
+from hypothesis import strategies as st
+
+from argo_compiler.check import check
+from argo_compiler.diagnostics import has_errors
+from argo_compiler.errors import ArgoError
+from argo_compiler.il import Mission, Order
+from argo_compiler.reorder.mission import route_problem
+from argo_compiler.reorder.requirements import Requirements
+from argo_compiler.reorder.rewriting import apply_route
+from argo_compiler.route import evaluate
+from argo_compiler.route.problem import Route
+from tests.argo_compiler.reorder.written import (
+    OBJECTS,
+    carry_out,
+    missions,
+    random_ways,
+    shuffled,
+)
+from tests.conftest import examples
+from tests.mission_parts import groups_over, starts, task_names, tasks_named
+
+STRAIGHT = ("task", "task", "task", "group")
+SEEDS = st.integers(0, 2**32 - 1)
+SHOWN = st.fixed_dictionaries(
+    {o: st.lists(st.integers(0, 9), min_size=1, max_size=4) for o in OBJECTS}
+)
+
+
+@st.composite
+def wild_missions(draw):
+    """Transitions anywhere, groups anywhere, and no group that lasts for a time: how many rounds
+    such a one has depends on the way."""
+    names = draw(task_names(least=2))
+    tasks = [draw(tasks_named(name, names, i, failures=False)) for i, name in enumerate(names)]
+    groups = (
+        g.model_copy(update={"max_repeat_duration": 0.0}) for g in draw(groups_over(names, False))
+    )
+    mission = Mission(order=Order.ANY, tasks=(*draw(starts(names)), *tasks), groups=tuple(groups))
+    assume(not has_errors(check(mission)))
+    return mission
+
+
+def require_the_same_done(mission, values, seed):
+    """In another order that the problem allows, the same tasks are carried out as often."""
+    rng = np.random.default_rng(seed)
+    ways = random_ways(mission, rng)
+    planned = route_problem(mission, ways)
+    route = shuffled(planned, rng)
+    event("moved" if route != planned.written else "as written")
+    changed = apply_route(planned, route)
+    assert len(check(changed)) <= len(check(mission))
+    assert {t.name for t in changed.tasks} == {t.name for t in mission.tasks}
+    before, after = carry_out(mission, ways, values), carry_out(changed, ways, values)
+    assume(before.finished)
+    assert after.finished
+    assert Counter(after.tasks) == Counter(before.tasks)
+
+
+@given(missions(), SHOWN, SEEDS)
+@settings(max_examples=examples(60), deadline=None)
+def test_another_order_does_the_same_tasks(mission, values, seed):
+    require_the_same_done(mission, values, seed)
+
+
+@given(wild_missions(), SHOWN, SEEDS)
+@settings(max_examples=examples(60), deadline=None)
+def test_any_mission_is_refused_or_kept_the_same(mission, values, seed):
+    try:
+        require_the_same_done(mission, values, seed)
+    except ArgoError as error:
+        event(str(error)[:20])
+
+
+@given(missions(), SEEDS)
+@settings(max_examples=examples(40), deadline=None)
+def test_the_written_order_gives_the_same_mission(mission, seed):
+    planned = route_problem(mission, random_ways(mission, np.random.default_rng(seed)))
+    assert evaluate(planned.problem, planned.written).feasible
+    assert apply_route(planned, planned.written) == mission
+
+
+@given(missions(kinds=STRAIGHT, most=6, lasting=True), SEEDS)
+@settings(max_examples=examples(60), deadline=None)
+def test_a_mission_takes_as_long_as_its_route(mission, seed):
+    rng = np.random.default_rng(seed)
+    ways = random_ways(mission, rng)
+    planned = route_problem(mission, ways)
+    route = shuffled(planned, rng)
+    done = carry_out(apply_route(planned, route), ways, {o: [0] for o in OBJECTS})
+    assert done.finished
+    assert done.time == evaluate(planned.problem, route).duration
+    visits = planned.visits
+    names = [visits.spine.name(visits.stops[k].entry) for k in route.order]
+    assert [name for name in dict.fromkeys(done.tasks) if name != "DOCK"] == names
+
+
+@given(missions(calm=True), SHOWN, SEEDS)
+@settings(max_examples=examples(60), deadline=None)
+def test_no_branch_takes_longer_than_reckoned(mission, values, seed):
+    rng = np.random.default_rng(seed)
+    ways = random_ways(mission, rng)
+    planned = route_problem(mission, ways)
+    route = shuffled(planned, rng)
+    done = carry_out(apply_route(planned, route), ways, values)
+    assert done.finished
+    assert done.time <= evaluate(planned.problem, route).duration
+
+
+@given(missions(), SHOWN, SEEDS)
+@settings(max_examples=examples(60), deadline=None)
+def test_what_is_left_out_is_not_done(mission, values, seed):
+    rng = np.random.default_rng(seed)
+    ways = random_ways(mission, rng)
+    planned = route_problem(mission, ways, Requirements(budget=1e6))
+    kept = [k for k in planned.written.order if rng.random() < 0.6]
+    for _, members in planned.visits.circuits:
+        if not set(members) <= set(kept):
+            kept = [k for k in kept if k not in members]
+    route = Route(tuple(kept))
+    assume(kept and evaluate(planned.problem, route).feasible)
+    changed = apply_route(planned, route)
+    assert not has_errors(check(changed))
+    stops = planned.visits.stops
+    gone = {k for k in planned.written.order if k not in kept}
+    event("left out" if gone else "all kept")
+    names = {planned.visits.spine.name(leaf) for k in gone for leaf in stops[k].leaves}
+    assert {t.name for t in changed.tasks} == {t.name for t in mission.tasks} - names
+    assert not names & set(carry_out(changed, ways, values).tasks)

@@ -1,0 +1,242 @@
+"""Random missions as people write them: tasks in a row, detours, loops, ways home, and groups."""
+
+from collections import Counter
+from dataclasses import dataclass
+
+import numpy as np
+from hypothesis import strategies as st
+
+from argo_compiler.hfsm import ActionStopped, ActionSucceeded, Executor, StartAction, Tick, lower
+from argo_compiler.il import (
+    Action,
+    Condition,
+    ConditionType,
+    Group,
+    Mission,
+    Order,
+    Stop,
+    Task,
+    Transition,
+)
+from argo_compiler.model import Pose
+from argo_compiler.reorder.ways import Ways
+from argo_compiler.route import Route, evaluate
+
+HERE, DOCK = Pose(x=0, y=0, z=0), Pose(x=9, y=9, z=0)
+OBJECTS = ("1", "2", "3", "4")
+NEVER_ABOVE = 100.0
+COUNTS = st.integers(0, 4)
+"""of rounds; 0: no limit but the time"""
+
+
+@dataclass
+class Item:
+    """A part of a mission: the tasks, or the parts of a group."""
+
+    kind: str
+    name: str
+    parts: tuple
+    """names of the tasks, or items"""
+    condition: Condition | None = None
+    count: int = 1
+    duration: float = 0.0
+    stop: Stop = Stop.SOFT
+
+    @property
+    def entry(self):
+        return self.parts[0].entry if self.kind == "group" else self.parts[0]
+
+
+class Names:
+    """Gives each task a name. Counts."""
+
+    def __init__(self):
+        self.count = 0
+
+    def new(self, draw):
+        self.count += 1
+        measures = draw(st.booleans())
+        return f"M{draw(st.sampled_from(OBJECTS))} {self.count}" if measures else f"W{self.count}"
+
+
+def conditions(rising):
+    """`rising`: the value has to be higher than any that is ever measured."""
+    return st.builds(
+        Condition,
+        type=st.sampled_from([ConditionType.LESS, ConditionType.GREATER])
+        if not rising
+        else st.just(ConditionType.GREATER),
+        object_id=st.sampled_from(OBJECTS),
+        param1=st.just(NEVER_ABOVE) if rising else st.integers(1, 8).map(float),
+    )
+
+
+@st.composite
+def items(draw, names, kinds, depth, most, docked, calm):
+    """A row of items; the last one is a task or group."""
+    found = []
+    for _ in range(draw(st.integers(1, most))):
+        kind = draw(st.sampled_from(kinds))
+        if kind == "home" and not docked:
+            kind = "task"
+        if kind == "group":
+            if depth == 0:
+                continue
+            inside = tuple(draw(items(names, kinds, depth - 1, 3, docked, calm)))
+            found.append(
+                Item(
+                    "group",
+                    f"G{names.new(draw)[1:]}".replace(" ", "-"),
+                    inside,
+                    count=draw(st.integers(1, 3)),
+                )
+            )
+            continue
+        size = {"task": 1, "home": 1, "again": 1, "detour": 2, "skip": 2, "back": 2}[kind]
+        parts = tuple(names.new(draw) for _ in range(size))
+        rising = calm and kind in {"again", "back", "home"}
+        found.append(Item(kind, parts[0], parts, draw(conditions(rising))))
+    if not found or found[-1].kind not in {"task", "group"}:
+        name = names.new(draw)
+        found.append(Item("task", name, (name,)))
+    return found
+
+
+def _task(name, *ways):
+    measures = name.startswith("M")
+    return Task(
+        name=name,
+        action=Action.MEASURE if measures else Action.WAYPOINT,
+        object_id=name[1] if measures else None,
+        pose=None if measures else HERE,
+        transitions=tuple(way for way in ways if way is not None),
+    )
+
+
+def _lay_out(row, after, around, tasks, groups):
+    for k, item in enumerate(row):
+        following = row[k + 1].entry if k + 1 < len(row) else after
+        onward = None if following is None else Transition(target=following)
+        if item.kind == "group":
+            name = f"{around}/{item.name}" if around else item.name
+            begun = len(tasks)
+            _lay_out(item.parts, following, name, tasks, groups)
+            groups.append(
+                Group(
+                    name=name,
+                    start=tasks[begun].name,
+                    end=tasks[-1].name,
+                    max_repeat_count=item.count,
+                    max_repeat_duration=item.duration,
+                    stop=item.stop,
+                )
+            )
+            continue
+        first, *rest = item.parts
+        held = (item.condition,)
+        inner = Transition(target=rest[0]) if rest else None
+        if item.kind == "task":
+            tasks.append(_task(first, onward))
+        elif item.kind == "home":
+            tasks.append(_task(first, Transition(target="DOCK", conditions=held), onward))
+        elif item.kind == "again":
+            tasks.append(_task(first, Transition(target=first, conditions=held), onward))
+        elif item.kind == "detour":
+            way = Transition(target=rest[0], conditions=held)
+            tasks += [_task(first, way, onward), _task(rest[0], onward)]
+        elif item.kind == "skip":
+            skip = Transition(target=following, conditions=held)
+            tasks += [_task(first, inner, skip), _task(rest[0], onward)]
+        else:
+            back = Transition(target=first, conditions=held)
+            tasks += [_task(first, inner), _task(rest[0], onward, back)]
+
+
+ALL = ("task", "task", "task", "detour", "skip", "again", "back", "home", "group")
+
+
+@st.composite
+def missions(draw, kinds=ALL, most=5, calm=False, lasting=False):
+    """Any order. `calm`: what leads back or home never holds. `lasting`: with groups that last for
+    a time and end with a whole round."""
+    docked = draw(st.booleans())
+    row = draw(items(Names(), kinds, 2, most, docked, calm))
+    if lasting:
+        for item in row:
+            if item.kind == "group" and draw(st.booleans()):
+                item.duration, item.count = draw(st.integers(1, 90).map(float)), draw(COUNTS)
+    tasks, groups = [], []
+    _lay_out(row, "DOCK" if docked else None, "", tasks, groups)
+    if draw(st.booleans()):
+        ways = (Transition(target=row[0].entry),)
+        tasks.insert(0, Task(name="START", action=Action.START, pose=HERE, transitions=ways))
+    if docked:
+        tasks.append(Task(name="DOCK", action=Action.WAYPOINT, pose=DOCK))
+    return Mission(order=Order.ANY, tasks=tuple(tasks), groups=tuple(groups), dock=DOCK)
+
+
+def random_ways(mission, rng, most=20):
+    """Made-up times between the tasks, no two alike on the way out and back."""
+    names = tuple(t.name for t in mission.tasks if t.action is not Action.START)
+    n = len(names)
+    work = np.array([float(rng.integers(0, 3)) if name.startswith("M") else 0.0 for name in names])
+    time = rng.integers(1, most, (n + 1, n)) + work
+    return Ways(names, time, time / 10.0, work, unit=1.0)
+
+
+@dataclass
+class Done:
+    """What a run did."""
+
+    tasks: list
+    time: float
+    finished: bool
+
+
+def carry_out(mission, ways, values, steps=400):
+    """Runs a mission with a robot that takes the ways' times. `values`: for each checkpoint what
+    its measurements show, one after the other and then again from the first."""
+    executor = Executor(lower(mission))
+    number = {name: k for k, name in enumerate(ways.tasks)}
+    place, now, done = len(ways.tasks), 0.0, []
+    measured = Counter()
+    commands = executor.start(now)
+    while commands and len(done) < steps:
+        (command,) = commands
+        assert isinstance(command, StartAction)
+        task = command.task
+        ends = now + ways.time[place, number[task.name]] * ways.unit
+        due = executor.next_deadline
+        if due is not None and due < ends:
+            now = due
+            executor.handle(Tick(), now)
+            commands = executor.handle(ActionStopped(task.name), now)
+            continue
+        now, place = ends, number[task.name]
+        done.append(task.name)
+        value = None
+        if task.action is Action.MEASURE:
+            shown = values[task.object_id]
+            value = float(shown[measured[task.object_id] % len(shown)])
+            measured[task.object_id] += 1
+        commands = executor.handle(ActionSucceeded(task.name, value), now)
+    return Done(done, now, executor.finished)
+
+
+def shuffled(planned, rng, swaps=30):
+    """A feasible order that differs from the written one: neighbours are exchanged, all the time
+    within what the problem asks for, limits of time apart."""
+    order = list(planned.written.order)
+    levels = [planned.visits.spine.units, *(c.inside for c, _ in planned.visits.circuits)]
+    levels = [level for level in levels if len(level) > 1]
+    for _ in range(swaps if levels else 0):
+        level = levels[rng.integers(len(levels))]
+        blocks = [sorted(order.index(k) for k in planned.visits.numbers((u,))) for u in level]
+        blocks.sort()
+        k = int(rng.integers(len(blocks) - 1))
+        a, b = blocks[k], blocks[k + 1]
+        swapped = order[: a[0]] + order[b[0] : b[-1] + 1] + order[a[0] : a[-1] + 1]
+        swapped += order[b[-1] + 1 :]
+        if evaluate(planned.problem, Route(tuple(swapped))).feasible:
+            order = swapped
+    return Route(tuple(order))

@@ -1,0 +1,274 @@
+"""Faults as data: what files may say, what the seed draws, and what they change."""
+
+import json
+import math
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+from jsonschema import Draft202012Validator
+from pydantic import ValidationError
+
+from argo_compiler.diagnostics import DiagnosticError
+from argo_compiler.errors import ArgoError
+from argo_compiler.schemas.generate import schema_of
+from argo_env.faults.kinds import KINDS, FaultFile, changed_site, settle
+from argo_env.faults.reading import read_faults, require_fit
+from argo_env.files import resources
+from argo_env.run.spec import RunSettings
+from argo_env.site import make_site
+from argo_env.site.shapes import Box, Role
+from argo_env.site.spec import SiteSpec
+from argo_env.world.world import World
+from tests.conftest import examples
+from tests.yard import SITE
+
+SCENARIOS = sorted((resources.scenarios() / "umad" / "faults").glob("*.yaml"))
+
+
+def faults_of(*data):
+    return FaultFile.model_validate({"faults": data}).faults
+
+
+def written(tmp_path, text):
+    path = tmp_path / "faults.yaml"
+    path.write_text(text, encoding="utf-8")
+    return path
+
+
+class TestFiles:
+    @pytest.mark.parametrize("path", SCENARIOS, ids=lambda p: p.stem)
+    def test_the_shipped_ones_are_read_and_fit_their_site(self, path, umad):
+        faults = read_faults(path)
+        assert path.stem in {f.kind for f in faults}
+        settle(faults, umad, 1)
+
+    @pytest.mark.parametrize(
+        ("text", "line", "says"),
+        [
+            ("faults:\n  - {kind: gas_leek, at: 5}\n", 2, "no kind `gas_leek`"),
+            ("faults:\n  - {at: 5}\n", 2, "it has no `kind`"),
+            ("faults:\n  - kind: gas_leak\n    rat: 1\n", 3, "is `rate` meant?"),
+            ("faults:\n  - kind: gas_leak\n    rate: -1\n", 3, "faults[0].rate"),
+            ("faults:\n  - kind: brick\n    at: 3\n", 3, "have no such field"),
+            ("faults:\n  - kind: gas_leak\n    at: 9\n    until: 5\n", 2, "before it begins"),
+            ("faults:\n  - kind: brick\n    floor: 1\n    floor: 2\n", 4, "given at line 3"),
+            ("faults:\n  - kind: low_battery\n    charge: .nan\n", 3, "charge"),
+            (
+                "faults:\n  - kind: displaced_checkpoint\n    offset: [0.1, 0.1, 0]\n",
+                2,
+                "may be at most 0.1 m",
+            ),
+            ("faults: [\n", 2, "is not YAML"),
+            ("- kind: gas_leak\n", 1, "begin with `faults:` and a list below it"),
+            ("faults:\n", 1, "begin with `faults:` and a list below it"),
+            ("{}\n", 1, "begin with `faults:` and a list below it"),
+            ("faults:\n  - kind: gas_leak\n    at: soon\n", 3, "`at` has to be a number"),
+            ("faults:\n  - kind: gas_leak\n    at: -1\n", 3, "`at` has to be at least 0"),
+            ("faults:\n  - kind: gas_leak\n    place: [1, 2]\n", 3, "`place[2]` is missing"),
+            ("faults:\n  - kind: hot_spot\n    radius: 3\n", 3, "`radius` has to be at most 1"),
+            ("faults:\n  - kind: brick\n    size: [0.1, 0, 1]\n", 3, "has to be more than 0"),
+            ("faults:\n  - kind: brick\n    size: [0.2, 50, 1]\n", 3, "has to be at most 1.5"),
+            ("faults:\n  - kind: brick\n    at: 3\n", 3, "is there from the start"),
+        ],
+    )
+    def test_errors_tell_the_place(self, tmp_path, text, line, says):
+        with pytest.raises(DiagnosticError) as caught:
+            read_faults(written(tmp_path, text))
+        finding = caught.value.diagnostics[0]
+        assert finding.span.line == line
+        assert says in f"{finding.message} {finding.hint}"
+        assert finding.code.startswith("faults.")
+
+    def test_a_file_that_is_none(self, tmp_path):
+        with pytest.raises(ArgoError, match="can't be read"):
+            read_faults(tmp_path / "absent.yaml")
+        with pytest.raises(DiagnosticError) as caught:
+            read_faults(written(tmp_path, "# none\n"))
+        assert caught.value.diagnostics[0].hint == "begin with `faults:` and a list below it"
+
+    def test_the_schema_agrees(self):
+        schema = json.loads(schema_of(FaultFile, "faults"))
+        validator = Draft202012Validator(schema)
+        for path in SCENARIOS:
+            data = FaultFile(faults=read_faults(path)).model_dump(mode="json")
+            validator.validate(data)
+        assert not validator.is_valid({"faults": [{"kind": "brick", "at": 3}]})
+
+    def test_the_schema_says_what_each_field_is(self):
+        schema = json.loads(schema_of(FaultFile, "faults"))
+        for model in (schema, *(d for d in schema["$defs"].values() if "properties" in d)):
+            for name, field in model["properties"].items():
+                assert name == "kind" or field["description"], f"{model['title']}.{name}"
+        moved = schema["$defs"]["DisplacedCheckpoint"]["properties"]
+        assert moved["at"]["description"].startswith("s, when it is moved")
+        assert moved["until"]["description"] == "s, when it ends; None: it stays"
+
+    @pytest.mark.parametrize(
+        ("data", "says"),
+        [
+            ({"kind": "abnormal_value", "checkpoint": 99}, "no checkpoint 99"),
+            ({"kind": "abnormal_value", "checkpoint": 1, "value": 4.0}, "nothing abnormal"),
+            ({"kind": "abnormal_value", "checkpoint": 1, "value": 40.0}, "0 to 10 bar"),
+            ({"kind": "abnormal_pump", "pump": "pump P-999"}, "no pump `pump P-999`"),
+            ({"kind": "brick", "floor": 9}, "no floor 9"),
+            ({"kind": "brick", "place": [1, 1]}, "give the `floor`"),
+            ({"kind": "brick", "floor": 2, "place": [4.2, 7.7]}, "no walkway"),
+            ({"kind": "missing_plate", "floor": 1}, "slab on the ground"),
+            ({"kind": "missing_plate", "floor": 2, "rect": [4, 7, 4.5, 8]}, "no deck at"),
+            ({"kind": "blocked_stairs", "tower": "tower"}, "west tower, east tower"),
+            ({"kind": "blocked_stairs", "floor": 6}, "no stairs up from floor 6"),
+            ({"kind": "connection_loss", "floor": 7}, "no floor 7"),
+            ({"kind": "gas_leak", "place": [99, 0, 1]}, "no equipment at (99, 0, 1)"),
+            ({"kind": "gas_leak", "place": [0, 0, -9]}, "no equipment at"),
+            ({"kind": "hot_spot", "place": [0, 0, 30]}, "and (23, 20, 22.5)"),
+        ],
+    )
+    def test_what_the_site_does_not_have(self, umad, data, says):
+        brick = {"kind": "brick"}
+        with pytest.raises(ArgoError, match=r"^faults\[1\] \(" + data["kind"]) as caught:
+            settle(faults_of(brick, data), umad, 1)
+        assert says in str(caught.value)
+
+    def test_what_the_site_does_not_have_is_told_with_the_line(self, tmp_path, umad):
+        text = "faults:\n  - kind: brick\n    floor: 9\n  - kind: brick\n\n"
+        path = written(tmp_path, text + "  - {kind: brick, floor: 8}\n")
+        with pytest.raises(DiagnosticError) as caught:
+            require_fit(read_faults(path), path, umad, 1)
+        assert f"{path}:2:5: error: faults[0] (brick): site umad has no floor 9" in str(
+            caught.value
+        )
+        assert [d.span.line for d in caught.value.diagnostics] == [2, 6]
+        path.write_text("faults: [{kind: brick}]", encoding="utf-8")
+        require_fit(read_faults(path), path, umad, 1)
+
+    def test_no_brick_lies_over_a_dock(self):
+        """In the yard the robot is docked on the slab."""
+        site = make_site(SiteSpec.model_validate(SITE))
+        dock = site.docks[1]
+        for away, size, fits in ((0.0, 0.1, False), (0.9, 1.5, False), (2.3, 1.5, True)):
+            brick = {"kind": "brick", "floor": 1, "place": [dock.x + away, dock.y + away],
+                     "size": [size, 0.2, 0.2], "yaw": 45.0}  # fmt: skip
+            if fits:
+                settle(faults_of(brick), site, 0)
+            else:
+                with pytest.raises(ArgoError, match="over the dock of starting area 1"):
+                    settle(faults_of(brick), site, 0)
+        for seed in range(100):  # and none is drawn there
+            (drawn,) = settle(faults_of({"kind": "brick"}), site, seed)
+            assert math.dist(drawn.place, (dock.x, dock.y)) > 0.65
+
+
+class TestDrawing:
+    @pytest.mark.parametrize("kind", KINDS)
+    @settings(max_examples=examples(15), deadline=None)
+    @given(seed=st.integers(0, 2**32))
+    def test_all_that_is_left_out_is_drawn(self, umad, kind, seed):
+        faults = faults_of({"kind": kind})
+        (settled,) = settle(faults, umad, seed)
+        assert settled == settle(faults, umad, seed)[0]
+        assert None not in settled.model_dump(exclude={"seed", "until", "rect", "floor"}).values()
+        # What was drawn is something that could have been written, and is drawn no further.
+        again = faults_of(settled.model_dump(mode="json"))
+        assert settle(again, umad, seed + 1) == (settled,)
+
+    @pytest.mark.parametrize("kind", KINDS)
+    def test_what_is_given_stays(self, umad, kind):
+        fields = KINDS[kind].model_fields
+        given = {"kind": kind} | ({"at": 7.5, "until": 9.0} if "at" in fields else {})
+        (settled,) = settle(faults_of(given), umad, 3)
+        assert settled.model_dump(include=set(given)) == given
+        assert settled.begins == given.get("at", 0.0)
+        assert settled.ends == given.get("until")
+
+    @settings(max_examples=examples(30), deadline=None)
+    @given(seed=st.integers(0, 2**32), until=st.floats(1e-6, 500.0))
+    def test_a_fault_begins_before_it_ends(self, umad, seed, until):
+        (fault,) = settle(faults_of({"kind": "emergency_stop", "until": until}), umad, seed)
+        assert 0.0 <= fault.begins < fault.ends
+
+    def test_a_seed_of_its_own(self, umad):
+        own = faults_of({"kind": "gas_leak", "seed": 5})
+        assert settle(own, umad, 1) == settle((*faults_of({"kind": "brick"}), *own), umad, 2)[1:]
+        two = faults_of({"kind": "gas_leak"}, {"kind": "gas_leak"})
+        assert len({f.place for seed in range(5) for f in settle(two, umad, seed)}) > 1
+        first, second = settle(two, umad, 1)
+        assert first != second
+
+    @settings(max_examples=examples(60), deadline=None)
+    @given(seed=st.integers(0, 2**32))
+    def test_displacements_keep_to_the_rules(self, umad, seed):
+        (fault,) = settle(faults_of({"kind": "displaced_checkpoint"}), umad, seed)
+        assert math.hypot(*fault.offset) <= 0.1 + 1e-3
+        assert abs(fault.turn) <= 90
+
+    @settings(max_examples=examples(60), deadline=None)
+    @given(seed=st.integers(0, 2**32))
+    def test_abnormal_values_are_abnormal(self, umad, seed):
+        (fault,) = settle(faults_of({"kind": "abnormal_value"}), umad, seed)
+        checkpoint = umad.checkpoint(fault.checkpoint)
+        assert checkpoint.range.contains(fault.value)
+        assert not checkpoint.nominal.contains(fault.value)
+
+    def test_settings_go_through_json(self):
+        given = RunSettings(faults=faults_of(*({"kind": kind} for kind in KINDS)))
+        assert RunSettings.model_validate_json(given.model_dump_json()) == given
+        with pytest.raises(ValidationError):
+            RunSettings.model_validate({"faults": [{"kind": "flood"}]})
+
+
+def area(elements, role):
+    """m² of level tops, and m³ of boxes, of that role."""
+    boxes = [s for e in elements if e.role is role for s in e.solids if isinstance(s, Box)]
+    return sum(math.prod(b.size) for b in boxes)
+
+
+class TestChangedSite:
+    @settings(max_examples=examples(25), deadline=None)
+    @given(seed=st.integers(0, 2**32))
+    def test_a_hole_takes_away_its_volume_and_nothing_else(self, umad, seed):
+        (fault,) = settle(faults_of({"kind": "missing_plate"}), umad, seed)
+        x0, y0, x1, y1 = fault.rect
+        floor = next(f for f in umad.spec.floors if f.number == fault.floor)
+        changed = changed_site(umad, (fault,))
+        lost = area(umad.elements, Role.DECK) - area(changed.elements, Role.DECK)
+        # How much of the rectangle was plated, counted on a fine grid.
+        x, y = (np.linspace(a, b, 401) for a, b in ((x0, x1), (y0, y1)))
+        x, y = np.meshgrid((x[1:] + x[:-1]) / 2, (y[1:] + y[:-1]) / 2)
+        plated = np.zeros(x.shape, dtype=bool)
+        for a0, b0, a1, b1 in floor.walkways.values():
+            plated |= (x > a0) & (x < a1) & (y > b0) & (y < b1)
+        for a0, b0, a1, b1 in floor.openings.values():
+            plated &= ~((x > a0) & (x < a1) & (y > b0) & (y < b1))
+        assert lost == pytest.approx(plated.mean() * (x1 - x0) * (y1 - y0) * 0.04, rel=0.02)
+        assert [e.name for e in changed.elements] == [e.name for e in umad.elements]
+
+    def test_the_world_has_the_hole_and_the_map_has_not(self, umad, robot):
+        hole = {"kind": "missing_plate", "floor": 2, "rect": [1.5, 4.6, 2.1, 5.2]}
+        brick = {"kind": "brick", "floor": 2, "place": [9.0, 1.6], "yaw": 30.0}
+        settled = settle(faults_of(hole, brick), umad, 0)
+        points = np.array([[1.8, 4.9], [1.45, 4.9], [2.15, 4.9], [9.0, 1.6], [9.3, 1.6]])
+        below = np.full(5, 3.3)
+        with World(umad, robot, elements=changed_site(umad, settled).elements) as world:
+            hollow, *rest = world.heights(points, below).tolist()
+            assert hollow < 2.4
+            assert rest == pytest.approx([2.5, 2.5, 2.7, 2.5], abs=1e-3)
+            assert world.site is umad
+            assert world.obstacle_between((9.0, 1.0, 2.6), (9.0, 2.0, 2.6)) == "brick"
+            assert world.obstacle_between((9.0, 1.0, 2.8), (9.0, 2.0, 2.8)) is None
+        assert "brick" not in {e.name for e in umad.elements}
+
+    def test_barriers_stand_at_both_ends_of_a_stairway(self, umad, robot):
+        (fault,) = settle(faults_of({"kind": "blocked_stairs", "tower": "west tower", "floor": 1}),
+                          umad, 0)  # fmt: skip
+        with World(umad, robot, elements=changed_site(umad, (fault,)).elements) as world:
+            for y, z in ((3.5, 0.5), (7.14, 3.0)):
+                found = world.obstacle_between((0.85, y - 1.0, z), (0.85, y + 1.0, z))
+                assert found == "barrier of the west tower", (y, z)
+
+    def test_several_bricks_have_names_of_their_own(self, umad):
+        bricks = settle(faults_of({"kind": "brick"}, {"kind": "brick"}), umad, 0)
+        names = [e.name for e in changed_site(umad, bricks).elements]
+        assert names[-2:] == ["brick", "brick 2"]
+        assert len(set(names)) == len(names)

@@ -1,0 +1,94 @@
+"""The catalogue of UMAD: the site as scripts see it."""
+
+import itertools
+import math
+
+import pytest
+
+from argo_compiler.catalog import Catalog
+from argo_compiler.errors import ArgoError
+from argo_env.navigation import Navigator
+from argo_env.planning.catalog import make_catalog, patrol
+from argo_env.site import make_site
+from argo_env.site.spec import SiteSpec
+
+
+def test_six_floors(catalog):
+    assert [(f.number, f.z) for f in catalog.floors] == [(n, 2.5 * (n - 1)) for n in range(1, 7)]
+
+
+def test_checkpoints_are_the_sites(catalog, umad):
+    assert [c.id for c in catalog.checkpoints] == list(range(1, 21))
+    for info in catalog.checkpoints:
+        checkpoint = umad.checkpoint(info.id)
+        for name in ("kind", "name", "floor", "unit", "range", "nominal"):
+            assert getattr(info, name) == getattr(checkpoint, name)
+
+
+def test_areas_and_places(catalog, umad):
+    assert {a.number: a.dock for a in catalog.areas} == umad.docks
+    assert {p.name: p.pose for p in catalog.places} == umad.places
+    assert catalog.site == "umad"
+
+
+@pytest.mark.parametrize("number", range(1, 7))
+def test_patrol_is_a_round_near_the_corners(catalog, umad, number):
+    floor = catalog.floor(number)
+    assert len(floor.patrol) >= 3
+    rects = [
+        r for name, r in umad.spec.floors[number - 1].walkways.items() if name != "cross aisle"
+    ]
+    corners = list(
+        itertools.product(
+            (min(r[0] for r in rects), max(r[2] for r in rects)),
+            (min(r[1] for r in rects), max(r[3] for r in rects)),
+        )
+    )
+    nearest = [min(corners, key=lambda c: math.dist(c, (p.x, p.y))) for p in floor.patrol]
+    assert len(set(nearest)) == len(floor.patrol)
+    for pose, corner, following in zip(
+        floor.patrol, nearest, floor.patrol[1:] + floor.patrol[:1], strict=True
+    ):
+        assert math.dist(corner, (pose.x, pose.y)) <= 2.5
+        assert pose.z == pytest.approx(floor.z, abs=0.01)
+        ahead = math.atan2(following.y - pose.y, following.x - pose.x)
+        assert pose.yaw == pytest.approx(ahead, abs=1e-6)
+    # Counter-clockwise: the enclosed area is positive.
+    points = [(p.x, p.y) for p in floor.patrol]
+    edges = zip(points, points[1:] + points[:1], strict=True)
+    assert sum(a * d - b * c for (a, b), (c, d) in edges) > 0
+
+
+@pytest.mark.parametrize("number", range(1, 7))
+def test_patrol_goes_all_round(catalog, navigator, number):
+    """Each pose leads to the next, and the last to the first: all reach each other."""
+    poses = catalog.floor(number).patrol
+    for a, b in zip(poses, poses[1:] + poses[:1], strict=True):
+        end = navigator.plan(a, b).end
+        assert math.dist((end.x, end.y, end.z), (b.x, b.y, b.z)) <= 0.05
+
+
+def test_catalogue_goes_through_json(catalog):
+    assert Catalog.model_validate_json(catalog.model_dump_json()) == catalog
+
+
+def test_same_site_same_catalogue(catalog, navigator):
+    assert make_catalog(navigator) == catalog
+
+
+def test_floor_that_is_too_small_to_patrol(robot):
+    spec = SiteSpec.model_validate(
+        {
+            "name": "nook",
+            "title": "Nook",
+            "storey": 2.5,
+            "ground": (0, 0, 6, 6),
+            "ground_z": 0.0,
+            "towers": [],
+            "floors": [{"number": 1, "z": 0.0, "railed": False, "walkways": {"a": [2, 2, 4, 4]}}],
+            "areas": [{"number": 1, "dock": [3.05, 3.05, 0]}],
+        }
+    )
+    navigator = Navigator(make_site(spec), robot)
+    with pytest.raises(ArgoError, match="site nook: floor 1 has no three places"):
+        patrol(navigator, 1)

@@ -1,0 +1,115 @@
+"""The ways between a mission's tasks, against what a run takes."""
+
+import numpy as np
+import pytest
+
+import argo_env.planning.route_matrix as route_matrix
+from argo_compiler.errors import ArgoError
+from argo_compiler.il import Order
+from argo_compiler.model import Pose
+from argo_compiler.reorder.requirements import Requirements
+from argo_compiler.reorder.rewriting import apply_route
+from argo_compiler.route import Route, evaluate
+from argo_env.planning.route_matrix import mission_ways, plan_mission
+from argo_env.planning.travel import SiteTravel
+from argo_env.run.journal import JournalPlace, open_journal
+from argo_env.run.record import Reordering
+from argo_env.run.runner import MissionRunner
+from argo_env.run.session import resume, simulate
+from argo_env.run.spec import RunSettings
+from tests.yard import fast_rig, measure, mission, waypoint, yard
+
+STEP = 0.1  # s of the drive
+
+
+@pytest.fixture(scope="module")
+def navigator():
+    return yard()
+
+
+def driven(changed, navigator):
+    """How long a mission takes, s."""
+    return MissionRunner(changed, fast_rig(navigator), RunSettings()).run().result.duration
+
+
+def around(**fields):
+    places = waypoint("A", 2, 2), waypoint("B", 5.5, 3.5), waypoint("C", 5.5, 1.5)
+    return mission(*places, order=Order.ANY, **fields)
+
+
+def test_ways_between_places_take_as_long_as_driven(navigator):
+    plain = around()
+    slow = plain.model_copy(
+        update={
+            "tasks": tuple(t.model_copy(update={"velocity": 0.2}) for t in plain.tasks),
+        }
+    )
+    for written in (plain, slow):
+        planned = plan_mission(written, navigator, Requirements())
+        for order in ((0, 1, 2), (2, 0, 1), (1, 2, 0)):
+            predicted = evaluate(planned.problem, Route(order)).duration * planned.problem.unit
+            changed = apply_route(planned, Route(order))
+            assert driven(changed, navigator) == pytest.approx(predicted, abs=len(order) * STEP)
+
+
+def test_a_mission_with_checkpoints_takes_about_as_long(navigator):
+    written = mission(measure(1), waypoint("A", 5.5, 2), measure(3), measure(2), order=Order.ANY)
+    planned = plan_mission(written, navigator, Requirements())
+    for order in ((0, 1, 2, 3), (3, 2, 1, 0), (1, 3, 0, 2)):
+        predicted = evaluate(planned.problem, Route(order)).duration * planned.problem.unit
+        assert driven(apply_route(planned, Route(order)), navigator) == pytest.approx(
+            predicted, rel=0.1
+        )
+
+
+def test_many_places_are_reckoned_over_the_lattice(navigator, monkeypatch):
+    written = mission(measure(1), waypoint("A", 5.5, 2, velocity=0.2), measure(3))
+    exact = mission_ways(written, navigator, SiteTravel(navigator))
+    monkeypatch.setattr(route_matrix, "MOST_PLANNED", 2)
+    monkeypatch.setattr(route_matrix, "NEAREST", 1)
+    rough = mission_ways(written, navigator, SiteTravel(navigator))
+    assert np.array_equal(rough.work, exact.work)
+    assert np.array_equal(rough.time[1], exact.time[1])  # a way with a speed of its own is planned
+    away = ~np.eye(4, 3, dtype=bool)
+    assert np.abs(rough.time - exact.time)[away].sum() <= 0.2 * exact.time[away].sum()
+    assert (rough.energy >= exact.energy - 1e-9)[2:][away[2:]].all()
+
+
+def test_a_small_battery_brings_in_the_docking_stations(navigator):
+    weak = yard()
+    weak.robot = navigator.robot.model_copy(update={"battery": 1.5})
+    planned = plan_mission(around(), weak, Requirements())
+    assert planned.problem.chargers == ("docking station 1",)
+    assert planned.problem.battery is not None
+    assert plan_mission(around(), navigator, Requirements()).problem.battery is None
+
+
+def test_a_task_that_can_not_be_carried_out_is_named(navigator):
+    written = mission(measure(1), waypoint("far", 60, 60), measure(3))
+    with pytest.raises(ArgoError, match="can't carry out task 'far'"):
+        plan_mission(written, navigator, Requirements())
+
+
+def test_an_area_is_where_a_mission_without_a_pose_starts(navigator):
+    travel = SiteTravel(navigator)
+    written = mission(measure(1), measure(3))
+    start = written.tasks[0].model_copy(update={"pose": None})
+    docked = written.model_copy(update={"tasks": (start, *written.tasks[1:]), "start_area": 1})
+    assert travel.start(docked) == navigator.snap(Pose(x=1.05, y=1.05, z=0.0))
+    assert (mission_ways(docked, navigator, travel).time < np.inf).all()
+
+
+def test_a_resumed_run_still_says_in_what_order_it_is(navigator, tmp_path):
+    said = Reordering(
+        written=("A", "B"), order=("B", "A"), written_duration=90.0, duration=80.0, bound=80.0,
+        proven=True,
+    )  # fmt: skip
+    written = mission(waypoint("B", 5.5, 3.5), waypoint("A", 2, 2))
+    place = JournalPlace(tmp_path / "run.journal", "yard")
+    settings = RunSettings(drive="route")
+    whole = simulate(written, navigator, settings=settings, journal=place, reordering=said)
+    assert whole.reordering == said
+    lines = place.path.read_bytes().splitlines(keepends=True)
+    place.path.write_bytes(b"".join(lines[: len(lines) // 2]))
+    with open_journal(place.path) as journal:
+        assert resume(journal, navigator).reordering == said

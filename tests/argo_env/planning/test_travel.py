@@ -1,0 +1,88 @@
+"""Travel times for the analysis, against what the simulated robot takes."""
+
+import pytest
+
+from argo_compiler.analysis import Leg, NoWay, analyse
+from argo_compiler.il import Action, Mission, Task, Transition
+from argo_compiler.model import Pose
+from argo_env.planning.travel import SiteTravel
+from argo_env.run.session import simulate
+
+STEP = 0.1  # s of the drive, within which a sum of times may be rounded differently
+
+
+@pytest.fixture(scope="module")
+def travel(navigator):
+    return SiteTravel(navigator)
+
+
+def chain(*tasks, **more):
+    """The tasks one after the other."""
+    named = [t.name for t in tasks]
+    return Mission(
+        tasks=tuple(
+            t.model_copy(update={"transitions": (Transition(target=following),)})
+            if following
+            else t
+            for t, following in zip(tasks, [*named[1:], None], strict=True)
+        ),
+        **more,
+    )
+
+
+def measure(checkpoint, **more):
+    return Task(
+        name=f"MEASURE {checkpoint}", action=Action.MEASURE, object_id=str(checkpoint), **more
+    )
+
+
+def test_mission_1_takes_as_long_as_planned(shipped, catalog, travel, sheet_run):
+    record, _ = sheet_run
+    mission = shipped("mission_1.txt", start_area=1, end_area=2).mission
+    found = analyse(mission, catalog, travel)
+    assert found.diagnostics == ()
+    assert found.duration.least == found.duration.most
+    assert found.duration.least.value == pytest.approx(record.result.duration, abs=STEP)
+    ends = {stretch.task: stretch.until for stretch in found.duration.least.path}
+    assert ends == {t.task: pytest.approx(t.end, abs=STEP) for t in record.tasks}
+
+
+def test_protocol_2_lies_between_the_bounds(shipped, catalog, travel, protocol_record):
+    found = analyse(shipped("protocol_2.txt").mission, catalog, travel)
+    simulated = protocol_record.result.duration
+    assert found.duration.least.value <= simulated + STEP
+    assert simulated <= found.duration.most.value + STEP
+    # A hard stop leaves open where the robot is, and nothing else.
+    assert found.duration.most.value - found.duration.least.value < 0.15 * simulated
+
+
+def test_velocities_count_for_the_way_to_the_next_task(navigator, catalog, travel):
+    start = Task(name="S", action=Action.START, velocity=0.2)
+    mission = chain(start, measure(1, velocity=0.8), measure(4), start_area=1)
+    found = analyse(mission, catalog, travel)
+    record = simulate(mission, navigator)
+    assert found.duration.most.value == pytest.approx(record.result.duration, abs=STEP)
+
+
+def test_ways_that_do_not_exist_say_why(travel):
+    start = travel.start(Mission(tasks=(measure(1),)))
+    far = Task(name="far", action=Action.WAYPOINT, pose=Pose(x=500, y=0, z=0))
+    away = travel.leg(start, far, None)
+    assert isinstance(away, NoWay)
+    assert "(500.00, 0.00, 0.00)" in away.reason
+    unknown = travel.leg(start, measure(9999), None)
+    assert isinstance(unknown, NoWay)
+    assert "9999" in unknown.reason
+
+
+def test_energy_follows_from_times_and_powers(navigator, travel):
+    robot = navigator.robot
+    start = travel.start(Mission(tasks=(measure(1),)))
+    leg = travel.leg(start, measure(8), None)
+    assert isinstance(leg, Leg)
+    assert leg.work == pytest.approx(robot.sensor.measuring_time)
+    powers = robot.power.model_dump().values()
+    watts = (leg.energy - leg.work_energy) * 3600 / (leg.duration - leg.work)
+    assert min(powers) < watts < max(powers)
+    assert leg.work_energy * 3600 / leg.work == pytest.approx(robot.power.measuring)
+    assert 500 <= travel.battery <= 1000

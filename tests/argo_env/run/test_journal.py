@@ -1,0 +1,504 @@
+"""Journals: wherever a run is cut short, it goes on, and nothing is lost or done twice."""
+
+import os
+import resource
+import signal
+from dataclasses import replace
+from itertools import pairwise
+from pathlib import Path
+
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+import argo_env.run.journal
+from argo_compiler.errors import ArgoError
+from argo_compiler.hfsm import (
+    ActionFailed,
+    ActionStopped,
+    ActionSucceeded,
+    Cancel,
+    Occurred,
+    Outcome,
+    Pause,
+    Resume,
+    Tick,
+)
+from argo_compiler.il import Afterwards, EventKind, Group, Reaction, Response
+from argo_compiler.model import Pose
+from argo_env.navigation import Navigator
+from argo_env.run.journal import (
+    Header,
+    JournalPlace,
+    create_journal,
+    fingerprints,
+    open_journal,
+)
+from argo_env.run.log import LoggedEvent
+from argo_env.run.runner import SAMPLE_PERIOD, MissionRunner
+from argo_env.run.session import resume, simulate
+from argo_env.run.spec import RunSettings, logged
+from argo_env.site import make_site
+from argo_env.site.spec import SiteSpec
+from argo_env.world.world import Touch
+from tests.conftest import examples
+from tests.yard import SITE, EmptyWorld, fast_rig, measure, mission, waypoint, yard
+
+CAMPAIGN = examples(1) > 1
+"""whether to try all cuts, and not only some"""
+
+AWAY = Pose(x=3.05, y=1.55, z=0.02)
+SHELTER = Reaction(
+    event=EventKind.GAS_LEAK,
+    response=Response.SAFE_AREA,
+    pose=AWAY,
+    until=EventKind.ALL_CLEAR,
+    afterwards=Afterwards.RESUME,
+)
+PLAN = mission(
+    measure(1, retries=1),
+    waypoint("A", 2.05, 2.05),
+    waypoint("B", 4.05, 2.05),
+    measure(2),
+    measure(3),
+    groups=(Group(name="Round", start="A", end="B", max_repeat_duration=25.0),),
+    reactions=(SHELTER,),
+    max_duration=600.0,
+)
+EVENTS = (
+    (5.0, Occurred(EventKind.GAS_LEAK, "a hiss")),
+    (5.0, Occurred(EventKind.HOT_SPOT)),
+    (16.0, Occurred(EventKind.ALL_CLEAR)),
+    (30.0, Pause()),
+    (34.0, Resume()),
+)
+
+
+@pytest.fixture(scope="module")
+def navigator():
+    return yard()
+
+
+def header(navigator, plan=PLAN, events=EVENTS, source=None):
+    return Header(
+        site="yard",
+        source=None if source is None else str(source),
+        fingerprints=fingerprints(navigator, plan, source),
+        settings=RunSettings(seed=1, events=logged(*events)),
+        mission=plan,
+        diagnostics=(),
+    )
+
+
+def runner(navigator, journal, plan=PLAN, events=EVENTS, values=None):
+    rig = fast_rig(navigator, values or {2: 5.5})
+    return MissionRunner(plan, rig, RunSettings(seed=1, events=logged(*events)), (), journal)
+
+
+def resumed(navigator, path):
+    """Goes on with a journal to the end; the record and what was announced on the way."""
+    told = []
+    with open_journal(path) as journal:
+        record = runner(navigator, journal).run(announce=told.append)
+    return record, told
+
+
+class Whole:
+    """A journal's content, and the record of its run. Says little when a test fails."""
+
+    def __init__(self, content, record):
+        self.content = content
+        self.record = record
+
+    def __repr__(self):
+        return "whole"
+
+
+@pytest.fixture(scope="module")
+def whole(navigator, tmp_path_factory):
+    """The journal of a run that was never cut short, and its record."""
+    path = tmp_path_factory.mktemp("whole") / "run.journal"
+    told = []
+    with create_journal(path, header(navigator)) as journal:
+        record = runner(navigator, journal).run(announce=told.append)
+    assert tuple(told) == record.readings
+    return Whole(path.read_bytes(), record)
+
+
+def done(record):
+    return [t.task for t in record.tasks if t.outcome == "done"]
+
+
+def require_the_same_mission(record, reference):
+    """The same was done, and read; only how long an action took may differ."""
+    assert record.result.outcome is reference.result.outcome
+    assert record.result.success is reference.result.success
+    assert record.result.verdict == reference.result.verdict
+    assert record.result.docked == reference.result.docked
+    assert [(r.task, r.value, r.normal) for r in record.readings] == [
+        (r.task, r.value, r.normal) for r in reference.readings
+    ]
+    for name in ("MEASURE 1", "MEASURE 2", "MEASURE 3"):
+        assert done(record).count(name) == 1
+    assert done(record).count("react to gas_leak") == 1
+    assert [i.event for i in record.interruptions] == [i.event for i in reference.interruptions]
+    driven = sum(t.distance for t in record.tasks)
+    assert driven == pytest.approx(record.result.distance, abs=0.01)
+    assert record.tasks[0].start == 0.0
+    assert all(a.end <= b.start for a, b in pairwise(record.tasks))
+    assert all(a.t < b.t for a, b in pairwise(record.path))
+    assert max(b.t - a.t for a, b in pairwise(record.path)) <= SAMPLE_PERIOD + 1e-6
+    assert (record.path[0].t, record.path[-1].t) == (0.0, record.result.duration)
+    times = [step.t for step in record.trace]
+    assert times == sorted(times)
+    assert record.tasks[-1].end == record.result.duration
+
+
+def require_a_continuation(record, reference, reached):
+    """Up to the time `reached` (s) the record is the reference's, and so is what it leads to."""
+    require_the_same_mission(record, reference)
+    for name, at in (("tasks", "end"), ("readings", "t"), ("path", "t")):
+        before = [x for x in getattr(reference, name) if getattr(x, at) <= reached]
+        assert list(getattr(record, name)[: len(before)]) == before
+    assert record.resumed == (reached,)
+
+
+def test_the_reference_has_all_that_may_happen(whole):
+    record = whole.record
+    assert record.result.outcome is Outcome.COMPLETED
+    assert {t.outcome for t in record.tasks} == {"done", "interrupted", "cancelled"}
+    assert "react to gas_leak" in done(record)
+    assert [i.event for i in record.interruptions] == [EventKind.GAS_LEAK, None]
+    assert [r.normal for r in record.readings] == [True, False, True]
+
+
+def test_a_journal_changes_nothing(navigator, whole):
+    record = whole.record
+    assert runner(navigator, None).run() == record
+
+
+def test_cut_at_every_line_end(navigator, whole, tmp_path):
+    content, reference = whole.content, whole.record
+    path = tmp_path / "run.journal"
+    ends = [k + 1 for k, byte in enumerate(content) if byte == ord("\n")]
+    assert len(ends) > 100
+    for end in ends if CAMPAIGN else ends[::5]:
+        path.write_bytes(content[:end])
+        with open_journal(path) as journal:
+            entries = journal.entries
+        record, told = resumed(navigator, path)
+        known = [e.reading for e in entries if e.reading]
+        assert [*known, *told] == list(record.readings)
+        if entries and not entries[-1].ended and not record.resumed:
+            # The state machine had come to its end; only the last line was missing.
+            assert record == reference
+        elif entries and not entries[-1].ended:
+            require_a_continuation(record, reference, entries[-1].t)
+        else:
+            assert record == reference
+
+
+def test_cut_at_every_byte_of_the_last_lines(navigator, tmp_path):
+    """The end of a short run: its last lines hold the end of an action and that of the run."""
+    plan, path = mission(measure(1)), tmp_path / "run.journal"
+
+    def go_on():
+        with open_journal(path) as journal:
+            return runner(navigator, journal, plan, ()).run()
+
+    with create_journal(path, header(navigator, plan, ())) as journal:
+        reference = runner(navigator, journal, plan, ()).run()
+    content = path.read_bytes()
+    first = len(content) - sum(map(len, content.splitlines(keepends=True)[-4:]))
+    for cut in range(first, len(content)):
+        path.write_bytes(content[:cut])
+        with open_journal(path) as journal:
+            assert 1 + len(journal.entries) == content[:cut].count(b"\n")
+        assert path.read_bytes() == content[: content.rindex(b"\n", 0, cut) + 1]
+        if (cut - first) % 10 and not CAMPAIGN:
+            continue
+        path.write_bytes(content[:cut])
+        record = go_on()
+        assert done(record) == ["MEASURE 1"]
+        assert [r.value for r in record.readings] == [r.value for r in reference.readings]
+        assert record.result.verdict == reference.result.verdict
+        # Now it is whole, and ends as it has ended.
+        ended = path.read_bytes()
+        assert go_on() == record
+        assert path.read_bytes() == ended
+
+
+@settings(max_examples=examples(10), deadline=None)
+@given(st.lists(st.floats(0.0, 1.0), min_size=1, max_size=4))
+def test_cut_again_and_again(navigator, whole, tmp_path_factory, places):
+    """Each time it goes on to the end, and is cut at any byte behind the first line."""
+    content, reference = whole.content, whole.record
+    path = tmp_path_factory.mktemp("again") / "run.journal"
+    path.write_bytes(content)
+    least = content.index(b"\n") + 1
+    for place in places:
+        content = path.read_bytes()
+        cut = least + int(place * (len(content) - least))
+        path.write_bytes(content[:cut])
+        with open_journal(path) as journal:
+            certain = [e.reading for e in journal.entries if e.reading]
+        record, told = resumed(navigator, path)
+        require_the_same_mission(record, reference)
+        assert [*certain, *told] == list(record.readings)
+        assert list(record.resumed) == sorted(record.resumed)
+
+
+def test_a_reading_is_on_disk_when_it_is_told(navigator, tmp_path):
+    path = tmp_path / "run.journal"
+    seen = []
+
+    def announce(reading):
+        entries = argo_env.run.journal._parse(path, path.read_bytes())[1]
+        seen.append(entries[-1].reading == reading)
+
+    def observe(now, _):
+        last = argo_env.run.journal._parse(path, path.read_bytes())[1][-1]
+        assert now - last.t < SAMPLE_PERIOD
+
+    plan = mission(measure(1), measure(2))
+    with create_journal(path, header(navigator, plan, ())) as journal:
+        runner(navigator, journal, plan, ()).run(observe, announce)
+    assert seen == [True, True]
+
+
+class Scraping(EmptyWorld):
+    """A world in which the robot scrapes along something for a part of its way."""
+
+    def __init__(self, drive):
+        super().__init__()
+        self._drive = drive
+
+    def touches(self):
+        x = self._drive.pose.x
+        if 1.5 < x < 2.2:
+            return (Touch("base_link", "crate", (x, 1.0, 0.5), 0.01 * x),)
+        return ()
+
+
+def test_contacts_go_on_as_well(navigator, tmp_path):
+    def run(journal):
+        rig = fast_rig(navigator)
+        rig = replace(rig, world=Scraping(rig.drive))
+        return MissionRunner(plan, rig, RunSettings(seed=1), (), journal).run()
+
+    plan = mission(waypoint("A", 3.05, 1.05), waypoint("B", 1.05, 1.05))
+    path = tmp_path / "run.journal"
+    with create_journal(path, header(navigator, plan, ())) as journal:
+        reference = run(journal)
+    assert len(reference.contacts) == 2
+    content = path.read_bytes()
+    lines = content.splitlines(keepends=True)
+    for cut in range(1, len(lines), 3):
+        path.write_bytes(b"".join(lines[:cut]))
+        with open_journal(path) as journal:
+            reached = journal.entries[-1].t if journal.entries else 0.0
+            record = run(journal)
+        assert len(record.contacts) == 2
+        for contact, before in zip(record.contacts, reference.contacts, strict=True):
+            assert contact.depth == pytest.approx(before.depth, abs=0.002)
+            assert contact == before or contact.end >= reached - 0.1
+            assert contact.start == before.start or before.start > reached
+
+
+def test_simulate_and_resume_in_the_world(navigator, tmp_path):
+    plan = mission(measure(1), measure(2), end_area=1)
+    path = tmp_path / "run.journal"
+    place = JournalPlace(path, "yard")
+    settings = RunSettings(seed=4, values={2: 4.0})
+    reference = simulate(plan, navigator, settings=settings, journal=place)
+    assert simulate(plan, navigator, settings=settings) == reference
+    content = path.read_bytes()
+    lines = content.splitlines(keepends=True)
+    path.write_bytes(b"".join(lines[: len(lines) // 2])[:-3])
+    with open_journal(path) as journal:
+        at = journal.entries[-1].t
+        record = resume(journal, navigator)
+    assert 0.0 < at < reference.result.duration
+    assert record.resumed == (at,)
+    assert record.seed == 4
+    assert [r.value for r in record.readings] == [r.value for r in reference.readings]
+    assert record.result.duration == pytest.approx(reference.result.duration, abs=10.0)
+
+
+def events():
+    names = st.text(min_size=1)
+    return st.one_of(
+        st.builds(ActionSucceeded, names, st.none() | st.floats(-1e9, 1e9)),
+        st.builds(ActionFailed, names, st.text()),
+        st.builds(ActionStopped, names),
+        st.builds(Occurred, st.sampled_from(EventKind), st.text()),
+        st.sampled_from([Tick(), Pause(), Resume(), Cancel()]),
+    )
+
+
+@settings(max_examples=examples(50), deadline=None)
+@given(events())
+def test_events_go_through_json(event):
+    text = LoggedEvent.of(event).model_dump_json()
+    assert LoggedEvent.model_validate_json(text).original() == event
+
+
+class TestRefusals:
+    def test_two_processes(self, navigator, tmp_path):
+        path = tmp_path / "run.journal"
+        with create_journal(path, header(navigator)), pytest.raises(ArgoError, match="in use"):
+            open_journal(path)
+        with open_journal(path), pytest.raises(ArgoError, match="in use"):
+            open_journal(path)
+        open_journal(path).close()
+
+    def test_a_journal_that_is_there_already(self, navigator, tmp_path):
+        path = tmp_path / "run.journal"
+        create_journal(path, header(navigator)).close()
+        before = path.read_bytes()
+        with pytest.raises(ArgoError, match=r"argo resume .*run\.journal"):
+            create_journal(path, header(navigator))
+        assert path.read_bytes() == before
+        assert list(tmp_path.iterdir()) == [path]
+
+    def test_killed_while_the_first_line_was_written(self, navigator, tmp_path):
+        """The draft of the first line that another process has left is no obstacle."""
+        path = tmp_path / "run.journal"
+        (tmp_path / "run.journal.new").write_bytes(b"0123 half a li" * 1000)
+        create_journal(path, header(navigator)).close()
+        with open_journal(path) as journal:
+            assert journal.header == header(navigator)
+        assert list(tmp_path.iterdir()) == [path]
+
+    @pytest.mark.parametrize(
+        ("content", "says"),
+        [
+            (b"", "is no journal"),
+            (b"\n\n\n", "is no journal"),
+            (b'{"version": 2, "tasks": []}\n', "is no journal"),
+            (bytes(range(256)) * 100, "is no journal"),
+            (b"0" * 3_000_000, "is no journal"),
+        ],
+    )
+    def test_files_that_are_none(self, tmp_path, content, says):
+        path = tmp_path / "file"
+        path.write_bytes(content)
+        with pytest.raises(ArgoError, match=says):
+            open_journal(path)
+        assert path.read_bytes() == content
+
+    @pytest.mark.parametrize("cut", [0, 1, 8, 9, 50, -2, -1])
+    def test_the_first_line_is_not_whole(self, navigator, tmp_path, cut):
+        path = tmp_path / "run.journal"
+        create_journal(path, header(navigator)).close()
+        content = path.read_bytes()[:cut]
+        path.write_bytes(content)
+        with pytest.raises(ArgoError, match="is no journal, or its first line is damaged"):
+            open_journal(path)
+
+    @pytest.mark.parametrize("name", [".", "/dev/null", "missing.journal", "no/such/folder/j"])
+    def test_places_that_are_no_files(self, tmp_path, monkeypatch, name):
+        monkeypatch.chdir(tmp_path)
+        with pytest.raises(ArgoError, match=r"is no file|there is no such journal"):
+            open_journal(Path(name))
+
+    @pytest.mark.parametrize("name", [".", "/dev/full", "no/such/folder/j"])
+    def test_places_that_can_not_be_written(self, navigator, tmp_path, monkeypatch, name):
+        monkeypatch.chdir(tmp_path)
+        with pytest.raises(ArgoError, match=r"is there already|its folder does not exist"):
+            create_journal(Path(name), header(navigator))
+
+    def test_another_version(self, navigator, tmp_path):
+        path = tmp_path / "run.journal"
+        future = header(navigator).model_copy(update={"version": 7})
+        create_journal(path, future).close()
+        with pytest.raises(ArgoError, match="has version 7 of the journal's format"):
+            open_journal(path)
+
+    def test_damage_in_the_middle(self, whole, tmp_path):
+        content = whole.content
+        path = tmp_path / "run.journal"
+        lines = content.splitlines(keepends=True)
+        bad = bytes([lines[20][40] ^ 1])
+        lines[20] = lines[20][:40] + bad + lines[20][41:]
+        path.write_bytes(b"".join(lines))
+        with pytest.raises(ArgoError, match="damaged in line 21"):
+            open_journal(path)
+        assert path.read_bytes() == b"".join(lines)
+        path.write_bytes(b"".join(lines[:20] + lines[21:]))
+        with pytest.raises(ArgoError, match="damaged in line 21"):
+            open_journal(path)
+
+    def test_a_changed_site(self, navigator, tmp_path):
+        path = tmp_path / "run.journal"
+        create_journal(path, header(navigator)).close()
+        other = make_site(SiteSpec.model_validate({**SITE, "title": "Yard 2", "storey": 3.0}))
+        with open_journal(path) as journal, pytest.raises(ArgoError) as refused:
+            resume(journal, Navigator(other, navigator.robot))
+        assert "site's storey" in str(refused.value)
+        assert "site's title" in str(refused.value)
+        assert "floors" not in str(refused.value)
+
+    def test_another_argo(self, navigator, tmp_path, monkeypatch):
+        path = tmp_path / "run.journal"
+        create_journal(path, header(navigator)).close()
+        monkeypatch.setattr(argo_env.run.journal, "__version__", "99.9")
+        with open_journal(path) as journal, pytest.raises(ArgoError, match=r"Argo .*is 99\.9"):
+            resume(journal, navigator)
+
+    def test_a_changed_mission_file(self, navigator, tmp_path):
+        path, source = tmp_path / "run.journal", tmp_path / "mission.json"
+        source.write_text("first")
+        create_journal(path, header(navigator, source=source)).close()
+        with open_journal(path) as journal:
+            journal.require_unchanged(navigator)
+            source.write_text("second")
+            with pytest.raises(ArgoError, match="mission file"):
+                resume(journal, navigator)
+            # The journal holds the mission itself.
+            source.unlink()
+            journal.require_unchanged(navigator)
+
+    def test_entries_of_another_mission(self, navigator, whole, tmp_path):
+        content = whole.content
+        path = tmp_path / "run.journal"
+        other = mission(waypoint("A", 2.05, 2.05))
+        create_journal(path, header(navigator, other)).close()
+        path.write_bytes(path.read_bytes() + content.split(b"\n", 1)[1])
+        with open_journal(path) as journal, pytest.raises(ArgoError, match="does not fit"):
+            runner(navigator, journal, other).run()
+
+
+def test_a_full_disk(navigator, whole, tmp_path):
+    """The run ends with a message, nothing written is lost, and it goes on when there is room."""
+    reference = whole.record
+    path = tmp_path / "run.journal"
+    with create_journal(path, header(navigator)) as journal:
+        limits = resource.getrlimit(resource.RLIMIT_FSIZE)
+        ignored = signal.signal(signal.SIGXFSZ, signal.SIG_IGN)
+        try:
+            resource.setrlimit(resource.RLIMIT_FSIZE, (20_000, limits[1]))
+            with pytest.raises(ArgoError, match=r"can't be written any further.*argo resume"):
+                runner(navigator, journal).run()
+        finally:
+            resource.setrlimit(resource.RLIMIT_FSIZE, limits)
+            signal.signal(signal.SIGXFSZ, ignored)
+    assert 19_000 < path.stat().st_size <= 20_000
+    with open_journal(path) as journal:
+        reached = journal.entries[-1].t
+    record, _ = resumed(navigator, path)
+    require_a_continuation(record, reference, reached)
+
+
+def test_no_room_for_the_first_line(navigator, tmp_path):
+    path = tmp_path / "run.journal"
+    limits = resource.getrlimit(resource.RLIMIT_FSIZE)
+    ignored = signal.signal(signal.SIGXFSZ, signal.SIG_IGN)
+    try:
+        resource.setrlimit(resource.RLIMIT_FSIZE, (100, limits[1]))
+        with pytest.raises(ArgoError, match="can't be written: File too large"):
+            create_journal(path, header(navigator))
+    finally:
+        resource.setrlimit(resource.RLIMIT_FSIZE, limits)
+        signal.signal(signal.SIGXFSZ, ignored)
+    assert os.listdir(tmp_path) == []

@@ -1,0 +1,479 @@
+"""Watches in a run: called at their periods, their findings told once, obstacles driven around."""
+
+import math
+from dataclasses import replace
+from itertools import pairwise
+
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from argo_compiler.hfsm import Cause, Occurred, Outcome, Resume
+from argo_compiler.il import Afterwards, EventKind, OnFailure, Reaction, Response
+from argo_compiler.model import Pose
+from argo_env.faults.kinds import FaultFile
+from argo_env.faults.schedule import Schedule
+from argo_env.navigation import Blockage
+from argo_env.robot.pose import BodyPose
+from argo_env.run.action import TURNS, Rig
+from argo_env.run.journal import JournalPlace, open_journal
+from argo_env.run.perception import Perception, blockage
+from argo_env.run.record import Anomaly
+from argo_env.run.runner import SETTLING, MissionRunner
+from argo_env.run.session import resume, simulate
+from argo_env.run.spec import RunSettings, logged
+from argo_env.sensing.sensor import Measurement, PoorViewError
+from argo_env.sensing.signals.terrain_watch import ObstacleFinding
+from argo_env.sensing.watch import Finding
+from tests.conftest import examples
+from tests.yard import fast_rig, measure, mission, waypoint, yard
+
+DOCK = Pose(x=1.05, y=1.05, z=0.02)
+
+
+@pytest.fixture(scope="module")
+def navigator():
+    return yard()
+
+
+class Scripted:
+    """A watch that finds what it is told to, from a time on, once."""
+
+    name = "scripted"
+
+    def __init__(self, *findings, period=0.5):
+        self.period = period
+        self._left = list(findings)
+        self.looks = []
+
+    def look(self, now, pose):
+        self.looks.append((now, pose))
+        due = [f for t, f in self._left if t <= now]
+        self._left = [(t, f) for t, f in self._left if t > now]
+        return tuple(due)
+
+
+def run(navigator, plan, *watches, values=None, events=(), announce=None):
+    rig = fast_rig(navigator, values)
+    rig = Rig(rig.world, rig.navigator, rig.drive, rig.sensor, watches)
+    given = RunSettings(events=logged(*events))
+    return MissionRunner(plan, rig, given).run(announce=announce)
+
+
+def obstacle(x, y, half=0.15, kind=EventKind.POSITIVE_OBSTACLE):
+    rect = (x - half, y - half, x + half, y + half)
+    blockage = Blockage(rect, 0.02, "a crate")
+    return ObstacleFinding(kind, "a crate", (x, y, 0.02), blockage=blockage)
+
+
+class TestLooking:
+    @settings(max_examples=examples(30), deadline=None)
+    @given(periods=st.lists(st.sampled_from([0.1, 0.2, 0.5, 1.0, 3.0]), min_size=1, max_size=5))
+    def test_each_watch_at_its_period(self, navigator, periods):
+        watches = [Scripted(period=p) for p in periods]
+        perception = Perception(watches, navigator.site, 0.1)
+        for step in range(1, 121):
+            perception.look(step, round(0.1 * step, 6), BodyPose(0, 0, 0, 0))
+        for watch in watches:
+            times = [now for now, _ in watch.looks]
+            assert times[0] <= watch.period + 1e-9
+            for a, b in pairwise(times):
+                assert b - a == pytest.approx(watch.period)
+
+    def test_what_is_found_is_told_and_reported(self, navigator):
+        leak = Finding(EventKind.GAS_LEAK, "gas, 300 ppm", (2.0, 2.0, 0.5), 0.9)
+        told = []
+        plan = mission(waypoint("A", 3.05, 2.05))
+        record = run(navigator, plan, Scripted((4.0, leak)), announce=told.append)
+        (anomaly,) = record.anomalies
+        assert told == [anomaly]
+        assert (anomaly.t, anomaly.kind, anomaly.detail) == (4.0, leak.kind, leak.detail)
+        assert (anomaly.place, anomaly.confidence, anomaly.source) == (leak.place, 0.9, "scripted")
+        assert anomaly.floor == 1
+        assert record.result.success
+        assert [s.t for s in record.trace if "gas, 300 ppm" in s.cause] == [4.0]
+
+    def test_what_has_no_place_tells_from_where_it_was_noticed(self, navigator):
+        leak = Finding(EventKind.GAS_LEAK, "gas, 300 ppm", noticed_from=(2.0, 2.0, 0.5))
+        record = run(navigator, mission(waypoint("A", 3.05, 2.05)), Scripted((4.0, leak)))
+        (anomaly,) = record.anomalies
+        assert (anomaly.place, anomaly.noticed_from, anomaly.floor) == (None, (2.0, 2.0, 0.5), 1)
+        # Records of before know no `noticed_from`.
+        old = anomaly.model_dump(mode="json")
+        del old["noticed_from"]
+        assert Anomaly.model_validate(old).noticed_from is None
+
+    def test_a_reaction_answers_and_its_end_is_sensed_too(self, navigator):
+        shelter = Reaction(
+            event=EventKind.GAS_LEAK, response=Response.RETURN, until=EventKind.ALL_CLEAR,
+            afterwards=Afterwards.RESUME,
+        )  # fmt: skip
+        watch = Scripted(
+            (4.0, Finding(EventKind.GAS_LEAK, "gas")), (40.0, Finding(EventKind.ALL_CLEAR, "none"))
+        )
+        plan = mission(waypoint("A", 5.05, 3.05), reactions=(shelter,), dock=DOCK)
+        # Something that occurs later keeps the run from ending while it waits.
+        record = run(navigator, plan, watch, events=((60.0, Occurred(EventKind.HOT_SPOT)),))
+        assert [(t.task, t.outcome) for t in record.tasks] == [
+            ("A", "interrupted"), ("react to gas_leak", "done"), ("A", "done"),
+        ]  # fmt: skip
+        assert record.tasks[2].start == 40.0
+        assert record.result.success
+
+    def test_an_abnormal_reading_is_among_what_was_found(self, navigator):
+        record = run(navigator, mission(measure(1)), values={1: 9.0})
+        (anomaly,) = record.anomalies
+        assert anomaly.kind is EventKind.ABNORMAL_READING
+        assert anomaly.detail == "gauge 1 shows 9 bar"
+        assert anomaly.t == record.readings[0].t
+
+
+class TestObstacles:
+    PLAN = mission(waypoint("A", 5.55, 2.55))
+
+    def nearest(self, record, x, y):
+        return min(math.dist((s.x, s.y), (x, y)) for s in record.path)
+
+    def test_another_way_is_taken(self, navigator):
+        free = run(navigator, self.PLAN)
+        half_way = next(s for s in free.path if s.t >= 0.65 * free.result.duration)
+        x, y = half_way.x, half_way.y
+        assert self.nearest(free, x, y) < 0.1
+        record = run(navigator, self.PLAN, Scripted((3.0, obstacle(x, y))))
+        assert record.result.success
+        assert [t.outcome for t in record.tasks] == ["done"]
+        assert self.nearest(record, x, y) > 0.29 + 0.15
+        assert record.path[-1].x == pytest.approx(free.path[-1].x, abs=0.01)
+        for a, b in pairwise(record.path):
+            assert math.dist((a.x, a.y), (b.x, b.y)) <= 0.4 * (b.t - a.t) + 0.08
+
+    def test_a_detour_leads_to_the_view_that_was_under_way(self, navigator):
+        looks = []
+
+        class Turned:
+            """A checkpoint that can't be read from the first view."""
+
+            name = "turned"
+
+            def measure(self, _, pose):
+                looks.append(pose)
+                if len(looks) == 1:
+                    raise PoorViewError("too much from the side")
+                return Measurement(4.0, 1.0)
+
+        class OnTheWay(Scripted):
+            """Finds something ahead as soon as the robot is on its way to the next view."""
+
+            def look(self, _, pose):
+                if not looks or self._left:
+                    return ()
+                if math.dist((pose.x, pose.y), (looks[0].x, looks[0].y)) < 0.1:
+                    return ()
+                self._left = [Pose(x=pose.x, y=pose.y, z=pose.z, yaw=pose.yaw)]
+                view = navigator.plan_to_view(self._left[0], 1, TURNS[1]).end
+                return (obstacle((pose.x + view.x) / 2, (pose.y + view.y) / 2, 0.05),)
+
+        rig = fast_rig(navigator)
+        watch = OnTheWay(period=0.1)
+        rig = replace(rig, sensor=Turned(), watches=(watch,))
+        record = MissionRunner(mission(measure(1)), rig, RunSettings()).run()
+        (found,), (reading,) = record.anomalies, record.readings
+        assert record.result.success
+        assert len(looks) == reading.views == 2
+        aware = navigator.avoiding([blockage(found)])
+        unturned, turned = (aware.plan_to_view(watch._left[0], 1, t).end for t in TURNS[:2])
+        assert math.dist((looks[1].x, looks[1].y), (turned.x, turned.y)) < 0.01
+        assert math.dist((unturned.x, unturned.y), (turned.x, turned.y)) > 0.1
+
+    def test_one_that_is_not_in_the_way_changes_nothing(self, navigator):
+        aside = obstacle(1.05, 4.0)
+        record = run(navigator, self.PLAN, Scripted((3.0, aside)))
+        assert record.path == run(navigator, self.PLAN).path
+        assert len(record.anomalies) == 1
+
+    @pytest.mark.parametrize(
+        ("policy", "outcome"),
+        [(OnFailure.CONTINUE, Outcome.COMPLETED), (OnFailure.RETURN, Outcome.RETURNED)],
+    )
+    def test_without_another_way_the_task_fails_with_the_reason(self, navigator, policy, outcome):
+        rect = (3.4, 0.0, 3.6, 5.0)
+        wall = ObstacleFinding(
+            EventKind.NEGATIVE_OBSTACLE, "a trench", (3.5, 2.5, 0.02),
+            blockage=Blockage(rect, 0.02, "a trench"),
+        )  # fmt: skip
+        plan = mission(
+            waypoint("A", 5.55, 2.55, on_failure=policy), waypoint("B", 1.55, 1.55), dock=DOCK
+        )
+        record = run(navigator, plan, Scripted((1.0, wall)))
+        first, *rest = record.tasks
+        assert (first.task, first.outcome) == ("A", "failed")
+        assert "a trench" in first.reason
+        assert [t.outcome for t in rest] == ["done"]
+        assert record.result.outcome is outcome
+        assert not record.result.success
+
+    def test_a_pause_comes_first_then_the_detour(self, navigator):
+        pause = Reaction(event=EventKind.POSITIVE_OBSTACLE, response=Response.PAUSE)
+        plan = mission(waypoint("A", 5.55, 2.55), reactions=(pause,))
+        record = run(
+            navigator, plan, Scripted((3.0, obstacle(3.3, 1.8))), events=((30.0, Resume()),)
+        )
+        assert [(t.task, t.outcome) for t in record.tasks] == [("A", "interrupted"), ("A", "done")]
+        assert self.nearest(record, 3.3, 1.8) > 0.44
+        assert record.tasks[1].start == 30.0
+
+
+def anomaly(kind, t, place=None, source="scripted"):
+    return Anomaly(t=t, kind=kind, detail="", source=source, place=place)
+
+
+FAULTS = FaultFile.model_validate(
+    {
+        "faults": [
+            {"kind": "brick", "floor": 1, "place": [3.0, 2.0], "yaw": 0},
+            {"kind": "connection_loss", "at": 4, "until": 12},
+            {"kind": "abnormal_value", "checkpoint": 3, "value": 8.0, "at": 5},
+            {"kind": "low_battery", "charge": 0.202},
+            {"kind": "worn_battery", "capacity": 0.1},
+        ]
+    }
+).faults
+
+
+@pytest.fixture(scope="module")
+def whole(navigator, tmp_path_factory):
+    path = tmp_path_factory.mktemp("whole") / "run.journal"
+    place = JournalPlace(path, "yard")
+    settings = RunSettings(seed=4, faults=FAULTS)
+    plan = mission(waypoint("A", 5.05, 2.55), measure(3), waypoint("B", 1.55, 1.55))
+    return path, simulate(plan, navigator, settings=settings, journal=place)
+
+
+class TestResumed:
+    """After a resume the watches are new, and find again what is there."""
+
+    def look(self, navigator, told, finding, now):
+        perception = Perception((Scripted((0.0, finding), period=0.1),), navigator.site, 0.1)
+        perception.remember([(a, BodyPose(0, 0, 0, 0)) for a in told], 100.0)
+        return perception.look(round(now * 10), now, BodyPose(0, 0, 0, 0))
+
+    def test_not_told_twice(self, navigator):
+        spot = Finding(EventKind.HOT_SPOT, "", (2.3, 2.2, 1.0))
+        told = [anomaly(EventKind.HOT_SPOT, 90.0, (2.0, 2.0, 1.0))]
+        assert self.look(navigator, told, spot, 100.5) == ()
+        assert self.look(navigator, told, spot, 300.0) == ()
+
+    def test_other_things_are_told(self, navigator):
+        at, away = (2.0, 2.0, 1.0), (4.0, 2.0, 1.0)
+        told = [anomaly(EventKind.HOT_SPOT, 90.0, at)]
+        for kind, place in (
+            (EventKind.HOT_SPOT, away), (EventKind.HOT_SPOT, None), (EventKind.GAS_LEAK, at)
+        ):  # fmt: skip
+            assert len(self.look(navigator, told, Finding(kind, "", place), 100.5)) == 1
+        told = [anomaly(EventKind.HOT_SPOT, 90.0, at, source="another watch")]
+        assert len(self.look(navigator, told, Finding(EventKind.HOT_SPOT, "", at), 100.5)) == 1
+
+    def test_a_watch_remembers_only_what_it_has_told_itself(self, navigator):
+        class Remembering(Scripted):
+            def remember(self, told, now):
+                self.told = [(each.kind, each.pose) for each in told], now
+
+        watch = Remembering((0.0, Finding(EventKind.ALL_CLEAR, "", (2.0, 2.0, 1.0))), period=0.1)
+        perception = Perception((watch,), navigator.site, 0.1)
+        pose = BodyPose(1, 2, 3, 0)
+        own = anomaly(EventKind.ALL_CLEAR, 90.0, (2.0, 2.0, 1.0))
+        other = anomaly(EventKind.GAS_LEAK, 95.0, source="another watch")
+        perception.remember([(own, pose), (other, pose)], 100.0)
+        assert watch.told == ([(EventKind.ALL_CLEAR, pose)], 100.0)
+        assert len(perception.look(1001, 100.1, pose)) == 1
+
+    def test_obstacles_are_known_by_their_place(self, navigator):
+        told = [anomaly(EventKind.POSITIVE_OBSTACLE, 90.0, (2.0, 2.0, 0.02))]
+        assert self.look(navigator, told, obstacle(2.3, 2.2), 900.0) == ()
+        assert len(self.look(navigator, told, obstacle(4.0, 2.0), 100.5)) == 1
+
+    def test_the_whole_run(self, whole):
+        _, record = whole
+        assert sorted(a.kind for a in record.anomalies) == sorted(
+            [
+                EventKind.POSITIVE_OBSTACLE, EventKind.CONNECTION_LOST,
+                EventKind.CONNECTION_RESTORED, EventKind.LOW_BATTERY, EventKind.ABNORMAL_READING,
+            ]
+        )  # fmt: skip
+        assert record.result.success
+
+    def test_the_same_again(self, navigator, whole):
+        _, record = whole
+        settings = RunSettings(seed=4, faults=FAULTS)
+        assert simulate(record.mission, navigator, settings=settings) == record
+
+    @pytest.mark.parametrize("share", [0.1, 0.3, 0.5, 0.8, 0.97])
+    def test_a_run_that_was_cut_short(self, navigator, whole, tmp_path, share):
+        path, record = whole
+        lines = path.read_bytes().splitlines(keepends=True)
+        cut = tmp_path / "cut.journal"
+        cut.write_bytes(b"".join(lines[: max(2, round(share * len(lines)))]))
+        with open_journal(cut) as journal:
+            again = resume(journal, navigator)
+        assert again.result.success
+        assert [r.value for r in again.readings] == [r.value for r in record.readings]
+        assert sorted(a.kind for a in again.anomalies) == sorted(a.kind for a in record.anomalies)
+        assert again.faults == record.faults
+        assert again.contacts == ()
+        assert again.path[-1].charge == pytest.approx(record.path[-1].charge, abs=0.01)
+
+    def test_further_events_are_given_on_resuming_and_kept(self, navigator, whole, tmp_path):
+        path, _ = whole
+        lines = path.read_bytes().splitlines(keepends=True)
+        cut = tmp_path / "cut.journal"
+        cut.write_bytes(b"".join(lines[: len(lines) // 3]))
+        events = logged((2.0, Occurred(EventKind.HOT_SPOT)), (40.0, Occurred(EventKind.ALL_CLEAR)))
+        with open_journal(cut) as journal:
+            began = journal.entries[-1].t
+            first = resume(journal, navigator, events=events)
+        reported = {s.cause: s.t for s in first.trace if s.cause.startswith(Cause.REPORT)}
+        hot = [s.t for s in first.trace if "hot spot" in s.cause]
+        assert hot == [pytest.approx(began + 0.1)], reported
+        assert 40.0 in [s.t for s in first.trace if "all clear" in s.cause]
+        # The journal knows them: the same again from it, without giving them anew.
+        lines = cut.read_bytes().splitlines(keepends=True)
+        later = tmp_path / "later.journal"
+        third = len(lines) // 3 + 2
+        later.write_bytes(b"".join(lines[: third + 3]))
+        with open_journal(later) as journal:
+            second = resume(journal, navigator)
+        assert 40.0 in [s.t for s in second.trace if "all clear" in s.cause]
+        assert [s.t for s in second.trace if "hot spot" in s.cause] == hot
+
+
+class TestResumedWhileItWaits:
+    """With the drive `route`: cut where a reaction waits for what ends it."""
+
+    LOW = Reaction(
+        event=EventKind.LOW_BATTERY, response=Response.RETURN, until=EventKind.BATTERY_CHARGED,
+        afterwards=Afterwards.RESUME,
+    )  # fmt: skip
+    LOST = Reaction(
+        event=EventKind.CONNECTION_LOST, response=Response.PAUSE,
+        until=EventKind.CONNECTION_RESTORED,
+    )  # fmt: skip
+
+    def cut_where(self, navigator, path, reaction, faults, wanted):
+        """The record of the whole run, and of one that is cut at the wanted entry and resumed."""
+        faults = FaultFile.model_validate({"faults": faults}).faults
+        plan = mission(waypoint("A", 5.05, 2.55), reactions=(reaction,), dock=DOCK)
+        settings = RunSettings(drive="route", faults=faults)
+        whole = simulate(plan, navigator, settings=settings, journal=JournalPlace(path, "yard"))
+        assert whole.result.success
+        lines = path.read_bytes().splitlines(keepends=True)
+        with open_journal(path) as journal:
+            at = next(k for k, entry in enumerate(journal.entries) if wanted(entry))
+        path.write_bytes(b"".join(lines[: at + 2]))
+        with open_journal(path) as journal:
+            return whole, resume(journal, navigator)
+
+    @pytest.mark.parametrize("charge", [0.3, 0.7, 0.98])
+    def test_charging(self, navigator, tmp_path, charge):
+        low = [{"kind": "low_battery", "charge": 0.202}, {"kind": "worn_battery", "capacity": 0.1}]
+        whole, again = self.cut_where(
+            navigator, tmp_path / "run.journal", self.LOW, low,
+            lambda e: e.charge > charge and e.t > 5,
+        )  # fmt: skip
+        assert again.result.success
+        kinds = [EventKind.LOW_BATTERY, EventKind.BATTERY_CHARGED]
+        assert [a.kind for a in again.anomalies] == kinds
+        assert again.result.duration == pytest.approx(whole.result.duration, abs=2.0)
+
+    @pytest.mark.parametrize("cut", [5.0, 11.9, 12.1])
+    def test_the_connection_is_back_before_or_after(self, navigator, tmp_path, cut):
+        loss = [{"kind": "connection_loss", "at": 2, "until": 12}]
+        whole, again = self.cut_where(
+            navigator, tmp_path / "run.journal", self.LOST, loss, lambda e: e.t >= cut
+        )
+        kinds = [EventKind.CONNECTION_LOST, EventKind.CONNECTION_RESTORED]
+        assert [a.kind for a in again.anomalies] == kinds
+        assert again.result.success
+        assert again.result.duration == pytest.approx(whole.result.duration, abs=2.0)
+
+    def test_lost_once_more_right_after(self, navigator, tmp_path):
+        losses = [
+            {"kind": "connection_loss", "at": 1, "until": 4},
+            {"kind": "connection_loss", "at": 7, "until": 12},
+        ]
+        _, again = self.cut_where(
+            navigator, tmp_path / "run.journal", self.LOST, losses, lambda e: e.t >= 6
+        )
+        kinds = [EventKind.CONNECTION_LOST, EventKind.CONNECTION_RESTORED]
+        assert [a.kind for a in again.anomalies] == 2 * kinds
+
+
+class TestStandingStill:
+    def schedule(self, *data):
+        faults = FaultFile.model_validate({"faults": data}).faults
+        return faults
+
+    def test_a_robot_that_waits_is_given_time_for_what_faults_lead_to(self, navigator):
+        pause = Reaction(
+            event=EventKind.CONNECTION_LOST, response=Response.PAUSE,
+            until=EventKind.CONNECTION_RESTORED,
+        )  # fmt: skip
+        plan = mission(waypoint("A", 5.05, 2.55), reactions=(pause,))
+        faults = self.schedule({"kind": "connection_loss", "at": 2, "until": 200})
+        record = simulate(plan, navigator, settings=RunSettings(faults=faults))
+        assert record.result.success
+        forever = self.schedule({"kind": "connection_loss", "at": 2})
+        record = simulate(plan, navigator, settings=RunSettings(faults=forever))
+        assert not record.result.success
+        assert "nothing more occurs" in record.result.verdict
+        assert record.result.duration == pytest.approx(record.anomalies[0].t + SETTLING, abs=0.2)
+
+    def test_held_by_the_emergency_stop(self, navigator):
+        faults = self.schedule({"kind": "emergency_stop", "at": 3})
+        plan = mission(waypoint("A", 5.05, 2.55))
+        record = simulate(plan, navigator, settings=RunSettings(faults=faults))
+        assert "held by its emergency stop" in record.result.verdict
+        held = [s for s in record.path if s.t >= 3]
+        assert len({(s.x, s.y) for s in held}) == 1
+        assert math.dist((held[0].x, held[0].y), (record.path[0].x, record.path[0].y)) > 0.1
+
+    def test_an_empty_battery_ends_the_run(self, navigator):
+        faults = self.schedule(
+            {"kind": "low_battery", "charge": 0.01}, {"kind": "worn_battery", "capacity": 0.04}
+        )
+        plan = mission(waypoint("A", 5.05, 2.55), waypoint("B", 1.55, 1.55))
+        record = simulate(plan, navigator, settings=RunSettings(faults=faults))
+        assert "the battery was empty" in record.result.verdict
+        assert record.path[-1].charge == 0.0
+        assert record.anomalies[0].kind is EventKind.LOW_BATTERY
+        assert record.result.duration < 15
+
+    def test_a_drive_that_stops_fails_the_task(self, navigator):
+        faults = self.schedule({"kind": "drive_dysfunction", "at": 3, "speed": 0})
+        plan = mission(waypoint("A", 5.05, 2.55))
+        record = simulate(plan, navigator, settings=RunSettings(faults=faults))
+        assert [a.kind for a in record.anomalies] == [EventKind.DYSFUNCTION]
+        assert "has not moved for 30 s" in record.tasks[0].reason
+
+
+def test_a_schedule_begins_and_ends_in_order():
+    told = []
+
+    class Loud:
+        def __init__(self, name, begins, ends):
+            self.name, self.begins, self.ends = name, begins, ends
+
+        def begin(self, _, now):
+            told.append((now, self.name, "begins"))
+
+        def end(self, _, now):
+            told.append((now, self.name, "ends"))
+
+    schedule = Schedule((Loud("a", 1.0, 3.0), Loud("b", 3.0, None), Loud("c", 0.0, 1.0)), None)
+    for now in (0.0, 0.5, 2.0):
+        schedule.advance(now)
+    assert told == [(0.0, "c", "begins"), (1.0, "c", "ends"), (1.0, "a", "begins")]
+    assert schedule.pending
+    schedule.advance(99.0)
+    assert told[3:] == [(3.0, "a", "ends"), (3.0, "b", "begins")]
+    assert not schedule.pending
+    assert schedule.last_change == 3.0

@@ -1,0 +1,319 @@
+"""Route problems as files: what is written is read again, and what is wrong is named."""
+
+import itertools
+import math
+import os
+from pathlib import Path
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from argo_compiler.errors import ArgoError
+from argo_compiler.route import NEVER, Objective, Route, evaluate
+from argo_compiler.route.suggest import suggest_route
+from benchmarks.instances import Kind, read_known_route, read_route_problem
+from benchmarks.instances.text import MAX_NODES
+from tests.conftest import examples
+
+DISTANCES = st.integers(2, 7).flatmap(
+    lambda n: st.lists(
+        st.lists(st.integers(0, 9999), min_size=n, max_size=n), min_size=n, max_size=n
+    )
+)
+
+
+def read(folder, text, name="some.txt"):
+    path = folder / name
+    path.write_text(text)
+    return read_route_problem(path)
+
+
+def wrapped(numbers, width):
+    """Rows that break at will, as in TSPLIB."""
+    rows = [numbers[k : k + width] for k in range(0, len(numbers), width)]
+    return "\n".join("   ".join(map(str, row)) for row in rows)
+
+
+def explicit(kind, rows, form="FULL_MATRIX", width=5, numbers=None, more=""):
+    numbers = list(itertools.chain(*rows)) if numbers is None else numbers
+    return (
+        f"NAME:  x\nTYPE: {kind}\nCOMMENT: one\nCOMMENT: two\nDIMENSION : {len(rows)}\n"
+        f"EDGE_WEIGHT_TYPE: EXPLICIT\nEDGE_WEIGHT_FORMAT: {form} \n{more}"
+        f"EDGE_WEIGHT_SECTION\n{wrapped(numbers, width)}\nEOF\n"
+    )
+
+
+def length(rows, nodes):
+    return sum(rows[a][b] for a, b in itertools.pairwise(nodes))
+
+
+@settings(deadline=None, max_examples=examples(25))
+@given(rows=DISTANCES, width=st.integers(1, 9), random=st.randoms(use_true_random=False))
+def test_tours_cost_what_the_matrix_says(tmp_path_factory, rows, width, random):
+    named = read(tmp_path_factory.mktemp("x"), explicit("ATSP", rows, width=width), "seven.atsp")
+    assert (named.name, named.kind) == ("seven", Kind.ATSP)
+    nodes = list(range(1, len(rows)))
+    random.shuffle(nodes)
+    found = evaluate(named.problem, named.route([1, *(node + 1 for node in nodes)]))
+    assert found.feasible
+    assert named.value(found.prize, found.duration) == length(rows, [0, *nodes, 0])
+
+
+@settings(deadline=None, max_examples=examples(25))
+@given(rows=DISTANCES, form=st.sampled_from(["UPPER", "LOWER", "UPPER_DIAG", "LOWER_DIAG"]))
+def test_triangles_are_symmetric(tmp_path_factory, rows, form):
+    n = len(rows)
+    diagonal = form.endswith("DIAG")
+    inside = [
+        (i, j)
+        for i in range(n)
+        for j in range(n)
+        if (diagonal and i == j) or (i < j if "UPPER" in form else i > j)
+    ]
+    text = explicit("TSP", rows, f"{form}_ROW", numbers=[rows[i][j] for i, j in inside])
+    travel = read(tmp_path_factory.mktemp("x"), text).problem.travel
+    full = np.zeros((n, n), dtype=np.int64)
+    for i, j in inside:
+        if i != j:
+            full[i, j] = full[j, i] = rows[i][j]
+    last = [*range(1, n), 0]
+    assert (travel == full[np.ix_(last, last)]).all()
+
+
+@settings(deadline=None, max_examples=examples(25))
+@given(
+    rows=DISTANCES.filter(lambda rows: len(rows) > 3),
+    again=st.booleans(),
+    random=st.randoms(use_true_random=False),
+)
+def test_orders_of_a_sequential_ordering_problem(tmp_path_factory, rows, again, random):
+    n = len(rows)
+    rows = [[0 if i == j else d for j, d in enumerate(row)] for i, row in enumerate(rows)]
+    free = [row.copy() for row in rows]
+    hidden = list(range(1, n - 1))
+    random.shuffle(hidden)
+    before = {pair for pair in itertools.combinations(hidden, 2) if random.random() < 0.4}
+    before |= {(0, node) for node in range(1, n)} | {(node, n - 1) for node in range(n - 1)}
+    for a, b in before:
+        rows[b][a] = -1
+    numbers = ([n] if again else []) + list(itertools.chain(*rows))
+    text = explicit("SOP", rows, numbers=numbers, width=n)
+    named = read(tmp_path_factory.mktemp("x"), text)
+    for middle in itertools.permutations(range(1, n - 1)):
+        order = (0, *middle, n - 1)
+        found = evaluate(named.problem, named.route([node + 1 for node in order]))
+        allowed = not any((b, a) in before for a, b in itertools.combinations(order, 2))
+        assert found.feasible == allowed
+        if allowed:
+            assert found.duration == length(free, order)
+
+
+def test_precedence_in_words_and_ways_that_are_none(tmp_path):
+    rows = [[0, 1, 2, 9], [-1, 0, 3, 4], [-1, -1, 0, 5], [-1, -1, -1, 0]]
+    problem = read(tmp_path, explicit("SOP", rows)).problem
+    assert [precedence.words for precedence in problem.precedences] == ["node 2 before node 3"]
+    assert problem.travel.tolist() == [[0, 3, 4], [NEVER, 0, 5], [1, 2, 9]]
+
+
+def orienteering(kind, points, scores, depot, limit):
+    coordinates = "\n".join(f"{k} {x} {y}" for k, (x, y) in enumerate(points, start=1))
+    worth = "\n".join(f"{k} {score}" for k, score in enumerate(scores, start=1))
+    return (
+        f"NAME : y\nCOMMENT : made\nTYPE : OP\nDIMENSION : {len(points)}\nCOST_LIMIT : {limit}\n"
+        f"EDGE_WEIGHT_TYPE : {kind}\nNODE_COORD_SECTION\n{coordinates}\n"
+        f"NODE_SCORE_SECTION\n{worth}\nDEPOT_SECTION\n{depot}\n-1\nEOF\n"
+    )
+
+
+ROUNDED = {
+    "EUC_2D": lambda square: int(math.sqrt(square) + 0.5),
+    "CEIL_2D": lambda square: math.ceil(math.sqrt(square)),
+    "ATT": lambda square: math.ceil(math.sqrt(square / 10)),
+}
+
+
+@settings(deadline=None, max_examples=examples(40))
+@given(
+    kind=st.sampled_from([*ROUNDED]),
+    points=st.lists(st.tuples(*[st.integers(0, 900)] * 2), min_size=2, max_size=8),
+    limit=st.integers(0, 5000),
+    data=st.data(),
+)
+def test_scores_within_a_limit(tmp_path_factory, kind, points, limit, data):
+    n = len(points)
+    scores = data.draw(st.lists(st.integers(0, 99), min_size=n, max_size=n))
+    depot = data.draw(st.integers(1, n))
+    made = data.draw(st.lists(st.sampled_from(range(1, n + 1)), unique=True))
+    nodes = [depot, *(node for node in made if node != depot)]
+    text = orienteering(kind, points, scores, depot, limit)
+    named = read(tmp_path_factory.mktemp("x"), text)
+    assert named.problem.objective == Objective.PRIZE
+    found = evaluate(named.problem, named.route(nodes))
+    assert named.value(found.prize, 0) == sum(scores[node - 1] for node in nodes)
+    assert found.duration == sum(
+        ROUNDED[kind](sum((a - b) ** 2 for a, b in zip(points[i - 1], points[j - 1], strict=True)))
+        for i, j in itertools.pairwise([*nodes, depot])
+    )
+    assert found.feasible == (found.duration <= limit)
+
+
+def test_known_routes(tmp_path):
+    (tmp_path / "y.sol").write_text(
+        "NAME : y\nTYPE : OP\nROUTE_NODES : 3\nROUTE_SCORE : 7\nROUTE_COST : 12\n"
+        "NODE_SEQUENCE_SECTION\n2\n1\n3\n-1\nDEPOT_SECTION\n2\n-1\nEOF\n"
+    )
+    known = read_known_route(tmp_path / "y.sol")
+    assert (known.nodes, known.score, known.cost) == ((2, 1, 3), 7, 12)
+
+
+def time_windows(rows, windows):
+    lines = [str(len(rows)), *(" ".join(map(str, row)) for row in rows)]
+    lines += [f"{opens}   {closes}   " for opens, closes in windows]
+    return "\n".join([*lines, "# Sum of service times: 0"]) + "\n"
+
+
+@settings(deadline=None, max_examples=examples(40))
+@given(rows=DISTANCES, decimals=st.integers(0, 2), data=st.data())
+def test_tours_with_time_windows(tmp_path_factory, rows, decimals, data):
+    n, scale = len(rows), 10**decimals
+    opening = data.draw(st.lists(st.integers(0, 9999), min_size=n, max_size=n))
+    windows = [(opens, opens + data.draw(st.integers(0, 9999))) for opens in opening]
+    text = time_windows(
+        [[f"{d / scale:.{decimals}f}" for d in row] for row in rows],
+        [(opens / scale, closes / scale) for opens, closes in windows],
+    )
+    named = read(tmp_path_factory.mktemp("x"), text, "z.tw")
+    nodes = data.draw(st.permutations(range(1, n)))
+    found = evaluate(named.problem, named.route([node + 1 for node in nodes]))
+    time, late = windows[0][0], False
+    for a, b in itertools.pairwise([0, *nodes, 0]):
+        time = max(time + rows[a][b], windows[b][0])
+        late |= time > windows[b][1]
+    assert found.feasible == (not late)
+    travel = length(rows, [0, *nodes, 0])
+    assert named.value(0, found.cost(named.problem.objective)) == pytest.approx(travel / scale)
+
+
+SQUARE = [[0, 1], [1, 0]]
+COORDINATES = orienteering("EUC_2D", [(0, 0), (1, 1)], [0, 5], 1, 10)
+WINDOWS = time_windows(SQUARE, [(0, 9), (1, 5)])
+
+
+@pytest.mark.parametrize(
+    ("text", "said"),
+    [
+        ("", "is empty"),
+        ("\n \n", "is empty"),
+        ("# nothing but a comment\n", "the number of nodes"),
+        ("\0" * 9, "binary"),
+        ("Lorem ipsum, dolor\n", ":1: `Lorem ipsum, dolor` is no keyword"),
+        ("{}", ":1: `{}` is no keyword"),
+        (explicit("HCP", SQUARE), ":2: problems of TYPE `HCP` are not read; there are: TSP, "),
+        (explicit("ATSP", SQUARE).replace("TYPE: ATSP\n", ""), "it has no TYPE"),
+        (explicit("ATSP", SQUARE).replace(": 2", ": two"), ":5: DIMENSION `two` is no whole"),
+        (explicit("ATSP", SQUARE).replace(": 2", ": 0"), ":5: 0 nodes"),
+        (explicit("ATSP", SQUARE).replace(": 2", f": {MAX_NODES + 1}"), f"at most {MAX_NODES}"),
+        (explicit("ATSP", SQUARE).replace(": 2", ": 3"), ":9: of 9 numbers for EDGE_WEIGHT"),
+        (explicit("ATSP", SQUARE).replace("EOF", "7\nEOF"), ":10: there are 1 numbers more"),
+        (explicit("ATSP", [[0, "x"], [1, 0]]), ":9: `x` is no number"),
+        (explicit("ATSP", [[0, "nan"], [1, 0]]), ":9: `nan` is no number"),
+        (explicit("ATSP", [[0, "1e99"], [1, 0]]), ":9: `1e99` is no number"),
+        (explicit("ATSP", [[0, 1.5], [1, 0]]), ":9: 1.5 is no distance"),
+        (explicit("ATSP", [[0, -2], [1, 0]]), ":9: -2 is no distance"),
+        (explicit("ATSP", [[0, -1], [1, 0]]), "meant to be SOP"),
+        (explicit("SOP", SQUARE).replace("0   1   1", "0   -1   1"), "comes before the first"),
+        (explicit("ATSP", SQUARE, "LOWER_COL"), "EDGE_WEIGHT_FORMAT LOWER_COL is not read"),
+        (explicit("ATSP", SQUARE, more="TYPE: ATSP\n"), ":8: TYPE stands here again"),
+        (COORDINATES.replace("EUC_2D", "GEO"), "EDGE_WEIGHT_TYPE GEO is not read"),
+        (COORDINATES.replace("2 1 1", "1 1 1"), ":9: 1 is no node or one that is there twice"),
+        (COORDINATES.replace("2 5", "2 -5"), "the score of node 2 is -5"),
+        (COORDINATES.replace("COST_LIMIT : 10", "COST_LIMIT : -1"), "-1 is negative"),
+        (COORDINATES.replace("COST_LIMIT : 10\n", ""), "it has no COST_LIMIT"),
+        (COORDINATES.replace("DEPOT_SECTION\n1", "DEPOT_SECTION\n3"), "3 is no node; there are 1"),
+        (COORDINATES.split("NODE_SCORE")[0], "it has no NODE_SCORE_SECTION"),
+        (WINDOWS.replace("1 0", "1 -4"), ":3: -4 is a negative time"),
+        (WINDOWS.replace("1   5", "7   5"), ":5: 7 is part of a time window"),
+        (WINDOWS.replace("1   5", "1"), "of 4 numbers for the time windows there are 3"),
+        (WINDOWS.replace("1   5", "1   5.000001"), "more than 4 decimals"),
+        (WINDOWS.replace("2\n", "2.5\n", 1), ":1: 2.5 nodes"),
+        (WINDOWS.replace("2\n", "9999\n", 1), "at most"),
+    ],
+)
+def test_wrong_files_are_refused_with_their_place(tmp_path, text, said):
+    with pytest.raises(ArgoError) as found:
+        read(tmp_path, text)
+    assert str(tmp_path / "some.txt") in str(found.value)
+    assert said in str(found.value)
+
+
+def test_files_that_are_none(tmp_path):
+    (tmp_path / "x.bin").write_bytes(b"\xff\xfe\x00")
+    for path, said in [
+        (tmp_path, "is a directory"),
+        (tmp_path / "none", "no such file"),
+        (tmp_path / "x.bin", "is no text"),
+        (Path("\0"), "can't be read"),
+    ]:
+        with pytest.raises(ArgoError, match=said):
+            read_route_problem(path)
+
+
+@settings(deadline=None, max_examples=examples(150))
+@given(data=st.data())
+def test_spoilt_files_are_read_or_refused(tmp_path_factory, data):
+    whole = data.draw(
+        st.sampled_from(
+            [explicit("SOP", [[0, 1, 2], [-1, 0, 3], [-1, -1, 0]]), COORDINATES, WINDOWS]
+        )
+    )
+    begin, end = sorted(data.draw(st.tuples(*[st.integers(0, len(whole))] * 2)))
+    text = whole[:begin] + data.draw(st.text("0123456789-.:eE \nEOFx_#", max_size=6)) + whole[end:]
+    try:
+        named = read(tmp_path_factory.mktemp("x"), text)
+    except ArgoError:
+        return
+    evaluate(named.problem, Route(tuple(range(named.problem.size))))
+
+
+ORIGINALS = os.environ.get("ARGO_ROUTES")
+
+
+@pytest.fixture
+def originals():
+    if not ORIGINALS:
+        pytest.skip("ARGO_ROUTES names no folder: the published route problems are not read")
+    return Path(ORIGINALS)
+
+
+def test_published_routes_score_and_cost_what_is_published(originals):
+    paths = sorted(originals.rglob("*.sol"))
+    assert paths
+    for path in paths:
+        known = read_known_route(path)
+        named = read_route_problem(path.with_suffix(".oplib"))
+        found = evaluate(named.problem, named.route(known.nodes))
+        assert found.feasible
+        assert (named.value(found.prize, 0), found.duration) == (known.score, known.cost)
+
+
+def test_all_published_problems_are_read(originals):
+    endings = {".atsp": Kind.ATSP, ".sop": Kind.SOP, ".oplib": Kind.OP, ".tw": Kind.TSPTW}
+    paths = [path for path in originals.rglob("*") if path.suffix in endings]
+    assert {path.suffix for path in paths} == {*endings}
+    for path in paths:
+        assert read_route_problem(path).kind == endings[path.suffix]
+
+
+@pytest.mark.parametrize(
+    ("file", "value"),
+    [("atsp/br17.atsp", 39), ("sop/ESC12.sop", 1675), ("tsptw/rbg010a.tw", 671),
+     ("tsptw/rbg017.tw", 893), ("tsptw/rbg019c.tw", 4536)],
+)  # fmt: skip
+def test_small_published_problems_are_solved_to_their_known_values(originals, file, value):
+    named = read_route_problem(originals / file)
+    found = suggest_route(named.problem, 30.0)  # they take less than 1 s on a quiet machine
+    assert found.proven
+    assert named.value(found.prize, found.cost) == named.value(found.prize_bound, found.bound)
+    assert named.value(found.prize, found.cost) == value

@@ -4,10 +4,10 @@ from collections.abc import Iterable
 
 from argo_compiler.diagnostics.finding import Diagnostic, by_place
 from argo_compiler.diagnostics.text import to_text
-from argo_compiler.errors import ArgoError
+from argo_compiler.errors import Invalid
 
 
-class DiagnosticError(ArgoError):
+class DiagnosticError(Invalid):
     """The input can't be used; `diagnostics` says why, errors and warnings alike, by place."""
 
     def __init__(self, source_name: str, diagnostics: Iterable[Diagnostic]) -> None:

@@ -32,7 +32,7 @@ class Expert:
     def __init__(self, env: gym.Env[Any, Any]) -> None:
         """For the episode that `env` is in, a Drive-v0 in wrappers or not: make it after the reset.
 
-        Raises UnreachableError if there is no way to the goal, as with what faults have blocked.
+        Raises Unreachable if there is no way to the goal, as with what faults have blocked.
         """
         drive = env.unwrapped
         if not isinstance(drive, DriveEnv):

@@ -9,11 +9,12 @@ from weakref import WeakKeyDictionary
 import numpy as np
 from numpy.typing import NDArray
 
+from argo_compiler.errors import Unreachable
 from argo_compiler.hfsm import ActionFailed
 from argo_compiler.il import Action, EventKind, Task
 from argo_compiler.model import Pose
 from argo_env.drives.battery import estimated_charge
-from argo_env.navigation import Navigator, UnreachableError
+from argo_env.navigation import Navigator
 from argo_env.robot.pose import BodyPose
 from argo_env.run.action import ActionUnderWay
 from argo_env.run.odometry import Odometry
@@ -210,14 +211,14 @@ class TravelTimes:
 def _view(navigator: Navigator, checkpoint: int) -> Pose | None:
     try:
         return navigator.viewing_pose(checkpoint)
-    except UnreachableError:
+    except Unreachable:
         return None
 
 
 def _free(navigator: Navigator, pose: Pose) -> bool:
     try:
         navigator.snap(pose)
-    except UnreachableError:
+    except Unreachable:
         return False
     return True
 

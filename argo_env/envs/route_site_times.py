@@ -8,9 +8,10 @@ from functools import lru_cache
 import numpy as np
 from numpy.typing import NDArray
 
+from argo_compiler.errors import Unreachable
 from argo_env.envs.route_instance import Stair
 from argo_env.envs.sites import navigator_of
-from argo_env.navigation import Navigator, UnreachableError
+from argo_env.navigation import Navigator
 from argo_env.navigation.blockage import Blockage
 from argo_env.site.stairs import run
 
@@ -60,7 +61,7 @@ def times_without(scenario: str, blocked: tuple[Stair, ...]) -> NDArray[np.float
     places += [navigator.viewing_pose(c.id) for c in site.checkpoints]
     try:
         times = navigator_without(navigator, blocked).travel_times(places)
-    except UnreachableError:
+    except Unreachable:
         return None
     return times if np.isfinite(times).all() else None
 

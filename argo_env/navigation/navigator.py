@@ -9,7 +9,7 @@ from itertools import pairwise
 import numpy as np
 from numpy.typing import NDArray
 
-from argo_compiler.errors import ArgoError
+from argo_compiler.errors import ArgoError, Unreachable
 from argo_compiler.model import Pose
 from argo_env.navigation.blockage import Blockage, close, closed_cells, turns_over
 from argo_env.navigation.lattice import DRIVING_LEVEL, LEVEL, Lattice, build_lattice, connected_part
@@ -30,10 +30,6 @@ Views = tuple[NDArray[np.int64], NDArray[np.float64]]
 """States of the lattice from which a checkpoint is seen, and what each costs as a goal, in s."""
 
 
-class UnreachableError(ArgoError):
-    """There is no way to where the robot should go; the message says what and why."""
-
-
 class Navigator:
     """Finds the fastest paths on a site. Holds the site's lattice and what it knows of the ways."""
 
@@ -49,7 +45,7 @@ class Navigator:
         """A navigator of the same site that also keeps clear of `blockages`.
 
         Raster and surface are shared. Docks and checkpoints may be out of reach then: the paths
-        there raise UnreachableError. A robot that stands where it may no longer be starts from the
+        there raise Unreachable. A robot that stands where it may no longer be starts from the
         nearest place where it may.
         """
         if not blockages:
@@ -100,7 +96,7 @@ class Navigator:
     def snap(self, pose: Pose) -> Pose:
         """The pose nearest to `pose` that the robot can take; its heading stays.
 
-        Raises UnreachableError if there is none within SNAP_DISTANCE.
+        Raises Unreachable if there is none within SNAP_DISTANCE.
         """
         (place,) = _poses(self.lattice, [self._state_at(pose)])
         return place.model_copy(update={"yaw": pose.yaw})
@@ -109,7 +105,7 @@ class Navigator:
         """The fastest path from pose to pose.
 
         The end is on the lattice, within SNAP_DISTANCE of the goal (5 cm where there is room), and
-        turned as the goal asks where there is room to turn. Raises UnreachableError.
+        turned as the goal asks where there is room to turn. Raises Unreachable.
         """
         source = self._state_at(start)
         target = self._state_at(goal)
@@ -123,7 +119,7 @@ class Navigator:
         """The path to the best place to read the checkpoint from: near in time, and a good view.
         Its face may be taken to be `turned` (rad) against the plan.
 
-        Raises UnreachableError if there is no such place, KeyError if there is no such checkpoint.
+        Raises Unreachable if there is no such place, KeyError if there is no such checkpoint.
         """
         return self._smoothed(self._way_to_view(start, checkpoint_id, turned), start)
 
@@ -136,7 +132,7 @@ class Navigator:
         whatever comes before or after it: where `plan_to_view` leads from the docking station of
         the lowest number. Where there is no way the time is inf; from a place to itself it is 0.
 
-        Raises UnreachableError for a pose where the robot can't stand and a checkpoint that it
+        Raises Unreachable for a pose where the robot can't stand and a checkpoint that it
         can't see, KeyError if there is no such checkpoint.
         """
         return self._routes.times(self._states(places))
@@ -149,7 +145,7 @@ class Navigator:
     def viewing_pose(self, checkpoint_id: int) -> Pose:
         """The pose that `travel_times` counts with for a checkpoint.
 
-        Raises UnreachableError if it can't be seen, KeyError if there is no such checkpoint.
+        Raises Unreachable if it can't be seen, KeyError if there is no such checkpoint.
         """
         return _poses(self.lattice, [self._viewing_state(checkpoint_id)])[0]
 
@@ -203,15 +199,15 @@ class Navigator:
     def _state_at(self, pose: Pose) -> int:
         state = _nearest(self.lattice, pose)
         if state is None:
-            raise UnreachableError(
+            raise Unreachable(
                 f"there is no place that the robot can reach within {SNAP_DISTANCE} m of "
                 f"({pose.x:.2f}, {pose.y:.2f}, {pose.z:.2f})"
             )
         return state
 
-    def _no_way(self, start: Pose, goal: str) -> UnreachableError:
+    def _no_way(self, start: Pose, goal: str) -> Unreachable:
         reasons = ", ".join(dict.fromkeys(b.reason for b in self.blockages))
-        return UnreachableError(
+        return Unreachable(
             f"there is no way from ({start.x:.2f}, {start.y:.2f}, {start.z:.2f}) to {goal}"
             + (f" that avoids what is closed: {reasons}" if reasons else "")
         )
@@ -220,7 +216,7 @@ class Navigator:
         goals = self._views(checkpoint_id, turned)
         if not len(goals[0]):
             checkpoint = self.site.checkpoint(checkpoint_id)
-            raise UnreachableError(
+            raise Unreachable(
                 f"checkpoint {checkpoint_id} ({checkpoint.name}) can't be seen from anywhere that"
                 " the robot can reach"
             )

@@ -1,1 +1,5 @@
-"""What plans are made with on a site: its catalogue, travel times, and generated sites."""
+"""What plans are made with on a site: opened sites, catalogues, travel times, generated sites."""
+
+from argo_env.planning.opening import OpenedSite, open_site
+
+__all__ = ["OpenedSite", "open_site"]

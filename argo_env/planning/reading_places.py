@@ -10,7 +10,7 @@ def find_views(mission: Mission, navigator: Navigator) -> dict[str, View]:
     """For each checkpoint that the mission measures, by its `object_id`, the place that a robot
     reads it from that does the tasks in list order. Checkpoints that the site has not are left out.
 
-    Raises UnreachableError where there is no such place.
+    Raises Unreachable where there is no such place.
     """
     known = {str(checkpoint.id): checkpoint for checkpoint in navigator.site.checkpoints}
     docks = navigator.site.docks

@@ -7,13 +7,13 @@ import numpy as np
 from numpy.typing import NDArray
 
 from argo_compiler.analysis import Leg, NoWay
-from argo_compiler.errors import ArgoError
+from argo_compiler.errors import ArgoError, Unreachable
 from argo_compiler.il import Action, Mission, Task
 from argo_compiler.model import Pose
 from argo_compiler.reorder.mission import MissionRoute, route_problem
 from argo_compiler.reorder.requirements import Requirements
 from argo_compiler.reorder.ways import Ways
-from argo_env.navigation import Navigator, UnreachableError
+from argo_env.navigation import Navigator
 from argo_env.planning.travel import SiteTravel
 
 MOST_PLANNED = 40
@@ -147,7 +147,7 @@ def _over_lattice(
     number = {pose: k for k, pose in enumerate(distinct)}
     try:
         times = navigator.travel_times(distinct)
-    except UnreachableError as error:  # stands there, says the path, and not the lattice
+    except Unreachable as error:  # stands there, says the path, and not the lattice
         raise ArgoError(f"the ways between the tasks can't be found: {error}") from None
     drive = times[np.ix_([number[p] for p in origins], [number[p] for p in standings])]
     step, power = travel.time_step, navigator.robot.power

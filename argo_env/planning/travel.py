@@ -38,7 +38,7 @@ class SiteTravel:
     def start(self, mission: Mission) -> Pose:
         """Where the robot is put: the pose of START, or the dock of the starting area.
 
-        Raises UnreachableError if the robot can't stand there.
+        Raises Unreachable if the robot can't stand there.
         """
         return self._navigator.snap(start_pose(mission, self._navigator.site.docks))
 

@@ -4,14 +4,14 @@ import math
 from collections.abc import Callable
 from dataclasses import dataclass
 
-from argo_compiler.errors import ArgoError
+from argo_compiler.errors import ArgoError, Unreachable
 from argo_compiler.hfsm import ActionFailed, ActionStopped, ActionSucceeded
 from argo_compiler.il import Action, Task
 from argo_compiler.model import Pose
 from argo_env.drives.battery import Battery
 from argo_env.drives.drive import Drive, DriveStatus
 from argo_env.faults.schedule import Schedule
-from argo_env.navigation import Navigator, Path, UnreachableError
+from argo_env.navigation import Navigator, Path
 from argo_env.navigation.blockage import leads_through
 from argo_env.navigation.retreat import way_back
 from argo_env.robot.pose import BodyPose
@@ -188,7 +188,7 @@ class ActionUnderWay:
             if may_retreat and not _is_free(navigator, drive.pose):
                 return self._go_back()
             path = self._path()
-        except UnreachableError as error:
+        except Unreachable as error:
             if may_retreat:
                 # From where there is room to turn there may be a way.
                 return self._go_back()
@@ -260,7 +260,7 @@ class ActionUnderWay:
             self._views += 1
             try:
                 path = navigator.plan_to_view(_standing(pose), self._checkpoint_id(), turned)
-            except UnreachableError:
+            except Unreachable:
                 continue
             self._rig.world.move_arm(navigator.robot.arm_stowed)
             self.path = self.came = path
@@ -292,7 +292,7 @@ class ActionUnderWay:
             turned = TURNS[self._views - 1]
             return self._rig.navigator.plan_to_view(start, self._checkpoint_id(), turned)
         if self.task.pose is None:
-            raise UnreachableError(f"task {self.task.name} has no pose")
+            raise Unreachable(f"task {self.task.name} has no pose")
         return self._rig.navigator.plan(start, self.task.pose)
 
     def _checkpoint_id(self) -> int:
@@ -304,7 +304,7 @@ def _is_free(navigator: Navigator, pose: BodyPose) -> bool:
     """Whether a robot at `pose` has a place to set off from right there."""
     try:
         place = navigator.snap(_standing(pose))
-    except UnreachableError:
+    except Unreachable:
         return False
     return math.dist((place.x, place.y, place.z), (pose.x, pose.y, pose.z)) <= _NEAR
 

@@ -87,7 +87,7 @@ class Behavior:
         self.name = "unnamed"
 
 
-class Stop(Exception):  # noqa: N818
+class Stop(Exception):
     pass
 
 

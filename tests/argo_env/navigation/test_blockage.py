@@ -7,8 +7,9 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
+from argo_compiler.errors import Unreachable
 from argo_compiler.model import Pose
-from argo_env.navigation import Blockage, UnreachableError
+from argo_env.navigation import Blockage
 from tests.conftest import examples
 from tests.yard import yard
 
@@ -51,7 +52,7 @@ def test_no_way_leads_over_what_is_closed(hall, robot, x, y, width, depth, seed)
         for goal in poses:
             try:
                 path = avoiding.plan(start, goal)
-            except UnreachableError:
+            except Unreachable:
                 continue
             assert not any(over(p, robot.footprint, rect) for p in driven(path) if p.z < 0.9)
 
@@ -83,7 +84,7 @@ def test_blocked_stairs_part_the_floors(hall):
         lambda: avoiding.plan(dock, Pose(x=9.0, y=1.5, z=2.5)),
         lambda: avoiding.plan(Pose(x=9.0, y=1.5, z=2.5), dock),
     ):
-        with pytest.raises(UnreachableError, match="the stairs are blocked"):
+        with pytest.raises(Unreachable, match="the stairs are blocked"):
             refused()
     # On either side all is as it was.
     assert avoiding.plan_to_view(dock, 3) == hall.plan_to_view(dock, 3)
@@ -143,5 +144,5 @@ def test_without_a_way_round_there_is_none():
     wall = Blockage((3.4, 0.0, 3.6, 5.0), 0.02, "a trench")
     start, goal = Pose(x=1.55, y=1.55, z=0.02), Pose(x=5.55, y=2.55, z=0.02)
     assert navigator.plan(start, goal).length > 4.0
-    with pytest.raises(UnreachableError, match="a trench"):
+    with pytest.raises(Unreachable, match="a trench"):
         navigator.avoiding([wall]).plan(start, goal)

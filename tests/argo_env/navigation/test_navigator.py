@@ -7,9 +7,9 @@ import numpy as np
 import pytest
 from scipy.sparse.csgraph import dijkstra
 
-from argo_compiler.errors import ArgoError
+from argo_compiler.errors import ArgoError, Unreachable
 from argo_compiler.model import Pose
-from argo_env.navigation import Navigator, UnreachableError
+from argo_env.navigation import Navigator
 from argo_env.navigation.navigator import SNAP_DISTANCE
 from argo_env.navigation.views import camera_positions, sight_target
 
@@ -244,7 +244,7 @@ def test_places_that_cannot_be_reached(navigator, umad, place):
         lambda: navigator.plan_to_view(pose, 1),
         lambda: navigator.snap(pose),
     ):
-        with pytest.raises(UnreachableError) as caught:
+        with pytest.raises(Unreachable) as caught:
             refused()
         assert isinstance(caught.value, ArgoError)
         assert wanted in str(caught.value)

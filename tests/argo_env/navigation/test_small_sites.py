@@ -4,9 +4,9 @@ import math
 
 import pytest
 
-from argo_compiler.errors import ArgoError
+from argo_compiler.errors import ArgoError, Unreachable
 from argo_compiler.model import Pose
-from argo_env.navigation import Navigator, UnreachableError
+from argo_env.navigation import Navigator
 from argo_env.robot.calibration import Calibration
 from argo_env.robot.spec import load_robot
 from argo_env.site import make_site
@@ -172,7 +172,7 @@ def test_walkway_narrower_than_the_robot_is_not_entered(robot, width):
     dock = yard.site.docks[1]
     assert yard.plan(dock, pose(5.5, 5.5, z=0.05)).motions
     for goal in (pose(11.5, 5.5, z=0.05), pose(8.5, 5.25, z=0.05)):
-        with pytest.raises(UnreachableError, match="no place that the robot can reach"):
+        with pytest.raises(Unreachable, match="no place that the robot can reach"):
             yard.plan(dock, goal)
 
 

@@ -9,7 +9,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from argo_env.navigation import UnreachableError
+from argo_compiler.errors import Unreachable
 from argo_env.navigation.views import face_normal
 from argo_env.robot.pose import BodyPose
 from argo_env.robot.spec import robot_folder
@@ -173,7 +173,7 @@ def test_is_raised_at_every_view_without_touching_anything(simulation, navigator
     for checkpoint, turned in product(navigator.site.checkpoints, TURNS):
         try:
             at = navigator.plan_to_view(dock, checkpoint.id, turned).end
-        except UnreachableError:
+        except Unreachable:
             continue
         simulation.place_robot(BodyPose(at.x, at.y, at.z, at.yaw))
         for share in np.linspace(0.0, 1.0, 25):

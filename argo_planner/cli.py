@@ -6,40 +6,94 @@ from typing import Annotated
 import typer
 
 from argo_compiler import __version__
-from argo_compiler.diagnostics import DiagnosticError
 from argo_compiler.errors import ArgoError
-from argo_planner.commands.check import check_mission
-from argo_planner.commands.compile import compile_mission
-from argo_planner.commands.export import export_mission
-from argo_planner.commands.format import format_mission
-from argo_planner.commands.import_script import import_script
-from argo_planner.commands.replay import replay
-from argo_planner.commands.resume import resume_run
-from argo_planner.commands.route import suggest_order
-from argo_planner.commands.run import run
-from argo_planner.commands.schema import show_schema
-from argo_planner.commands.sites import show_sites
+from argo_planner.lazy_group import LazyCommand, LazyGroup
+
+
+def _command(name: str, module: str, function: str, help: str) -> LazyCommand:
+    return LazyCommand(name, f"argo_planner.commands.{module}", function, help)
+
+
+class ArgoCommands(LazyGroup):
+    """The commands in the order in which `argo --help` lists them."""
+
+    lazy_commands = (
+        _command(
+            "import",
+            "import_script",
+            "import_script",
+            "Read a mission script, a bag or an isar mission, and write the mission as JSON.",
+        ),
+        _command(
+            "check",
+            "check",
+            "check_mission",
+            "Say all that is wrong or odd about a mission; exits with status 2 if there are "
+            "errors.",
+        ),
+        _command(
+            "compile",
+            "compile",
+            "compile_mission",
+            "Lower a mission to its state machine and write it as JSON.",
+        ),
+        _command(
+            "format",
+            "format",
+            "format_mission",
+            "Write a mission as a script, in one canonical form; importing that gives the same "
+            "mission.",
+        ),
+        _command(
+            "export", "export", "export_mission", "Write a mission in the format of another tool."
+        ),
+        _command(
+            "route",
+            "route",
+            "suggest_order",
+            "Suggest the best order of a mission's tasks; exits with status 2 if there is none.",
+        ),
+        _command(
+            "run",
+            "run",
+            "run",
+            "Run a mission on a site, show what was measured, and write a report.",
+        ),
+        _command(
+            "resume",
+            "resume",
+            "resume_run",
+            "Go on with a run whose process has died, from its journal.",
+        ),
+        _command(
+            "replay",
+            "replay",
+            "replay",
+            "Show what was recorded of a run, and make its report and its film again.",
+        ),
+        _command(
+            "sites",
+            "sites",
+            "show_sites",
+            "List the sites, or check one; exits with status 2 if it can't be driven.",
+        ),
+        _command(
+            "schema",
+            "schema",
+            "show_schema",
+            "Print the JSON Schema of a mission, a machine, a mission's progress or a file of "
+            "faults.",
+        ),
+    )
+
 
 app = typer.Typer(
     name="argo",
+    cls=ArgoCommands,
     help="Turns a written inspection mission into a checked plan and drives it through a site.",
     no_args_is_help=True,
-    add_completion=False,
     pretty_exceptions_enable=False,
 )
-
-# In the order in which `argo --help` lists them.
-app.command("import")(import_script)
-app.command("check")(check_mission)
-app.command("compile")(compile_mission)
-app.command("format")(format_mission)
-app.command("export")(export_mission)
-app.command("route")(suggest_order)
-app.command("run")(run)
-app.command("resume")(resume_run)
-app.command("replay")(replay)
-app.command("sites")(show_sites)
-app.command("schema")(show_schema)
 
 
 def _show_version(wanted: bool) -> None:
@@ -64,12 +118,15 @@ def main() -> None:
     """The entry point: what goes wrong is said in one message, with exit status 2."""
     try:
         app()
-    except DiagnosticError as error:
-        print(error, file=sys.stderr)
-        raise SystemExit(2) from None
     except ArgoError as error:
-        print(f"argo: {error}", file=sys.stderr)
+        print(_said(error), file=sys.stderr)
         raise SystemExit(2) from None
+
+
+def _said(error: ArgoError) -> str:
+    from argo_compiler.diagnostics import DiagnosticError
+
+    return str(error) if isinstance(error, DiagnosticError) else f"argo: {error}"
 
 
 if __name__ == "__main__":

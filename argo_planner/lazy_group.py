@@ -1,0 +1,45 @@
+"""A group of commands whose modules are imported when one of them is called."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from importlib import import_module
+from typing import Any, ClassVar
+
+import typer
+from typer.core import TyperCommand, TyperGroup
+from typer.main import get_command
+
+
+@dataclass(frozen=True)
+class LazyCommand:
+    """A command by its name, where its function is found, and the line that lists it."""
+
+    name: str
+    module: str
+    function: str
+    help: str
+
+
+class LazyGroup(TyperGroup):
+    """Lists its commands without importing them, in the order of `lazy_commands`."""
+
+    lazy_commands: ClassVar[Sequence[LazyCommand]] = ()
+
+    def __init__(self, **attributes: Any) -> None:
+        super().__init__(**attributes)
+        for command in self.lazy_commands:
+            self.add_command(TyperCommand(command.name, help=command.help))
+
+    # What runs, helps or completes a command comes by here; what lists them does not.
+    def resolve_command(self, ctx: Any, args: list[str]) -> Any:
+        """The command that is called, with its parameters."""
+        name, listed, rest = super().resolve_command(ctx, args)
+        called = next((c for c in self.lazy_commands if c.name == name), None)
+        return name, load_command(called) if called else listed, rest
+
+
+def load_command(command: LazyCommand) -> Any:
+    """The command with its parameters, as Typer makes it of its function."""
+    app = typer.Typer(add_completion=False, pretty_exceptions_enable=False)
+    app.command(command.name)(getattr(import_module(command.module), command.function))
+    return get_command(app)

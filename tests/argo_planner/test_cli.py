@@ -1,0 +1,93 @@
+"""The command as a whole: its list of commands, what it imports, misspelt words, completion."""
+
+import os
+import subprocess
+import sys
+
+import pytest
+from typer.testing import CliRunner
+
+from argo_planner.cli import ArgoCommands, app
+from argo_planner.lazy_group import LazyCommand, load_command
+
+COMMANDS = {command.name: command for command in ArgoCommands.lazy_commands}
+
+
+@pytest.mark.parametrize("command", COMMANDS.values(), ids=lambda command: command.name)
+def test_each_command_is_listed_with_the_line_that_it_has_itself(command: LazyCommand) -> None:
+    assert load_command(command).help == command.help
+
+
+def test_the_help_lists_the_commands_in_their_order() -> None:
+    shown = CliRunner().invoke(app, ["--help"], env={"COLUMNS": "200"}).output
+    places = [shown.index(f"│ {name} ") for name in COMMANDS]
+    assert places == sorted(places)
+    assert all(command.help in shown for command in COMMANDS.values())
+
+
+def test_the_help_of_a_command_has_its_options() -> None:
+    shown = CliRunner().invoke(app, ["check", "--help"], env={"COLUMNS": "200"}).output
+    assert "--strict" in shown
+    assert "exit with status 1 if there are warnings" in shown
+
+
+def test_a_misspelt_command_is_answered_with_the_ones_that_are_like_it() -> None:
+    answer = CliRunner().invoke(app, ["chek"], env={"COLUMNS": "200"})
+    assert answer.exit_code == 2
+    assert "Did you mean 'check'" in answer.output
+
+
+def test_help_and_version_import_no_command_and_none_of_what_commands_need() -> None:
+    program = (
+        "import sys; from argo_planner.cli import main\n"
+        "try: main()\n"
+        "except SystemExit: print(*sys.modules, file=sys.stderr)"
+    )
+    for option in ("--help", "--version"):
+        ran = subprocess.run(
+            [sys.executable, "-c", program, option], capture_output=True, text=True, check=True
+        )
+        loaded = set(ran.stderr.split())
+        assert "argo_planner.cli" in loaded
+        assert not loaded & {"numpy", "pydantic", "scipy", "gymnasium", "argo_env"}
+        assert not {name for name in loaded if name.startswith("argo_planner.commands.")}
+
+
+def complete(shell: str, words: str) -> str:
+    """What a shell is told when a person presses the tabulator after these words."""
+    asked = {
+        "bash": {"COMP_WORDS": words, "COMP_CWORD": str(len(words.split(" ")) - 1)},
+        "zsh": {"_TYPER_COMPLETE_ARGS": words},
+        "fish": {"_TYPER_COMPLETE_ARGS": words, "_TYPER_COMPLETE_FISH_ACTION": "get-args"},
+    }[shell]
+    ran = subprocess.run(
+        [
+            sys.executable,
+            "-c",
+            "import sys; sys.argv = ['argo']\nimport argo_planner.cli as c; c.main()",
+        ],
+        env={**os.environ, **asked, "_ARGO_COMPLETE": f"complete_{shell}"},
+        capture_output=True,
+        text=True,
+        check=False,
+    )
+    assert not ran.stderr
+    return ran.stdout
+
+
+@pytest.mark.parametrize("shell", ["bash", "zsh", "fish"])
+def test_a_shell_completes_commands_and_options(shell: str) -> None:
+    assert "check" in complete(shell, "argo ch")
+    assert "compile" not in complete(shell, "argo ch")
+    assert "--strict" in complete(shell, "argo check --s")
+    assert "--site" in complete(shell, "argo check --s")
+
+
+def test_bash_completes_what_there_is_to_choose_from() -> None:
+    assert complete("bash", "argo check --format ").split() == ["text", "json", "sarif"]
+    assert complete("bash", "argo schema ma").split() == ["machine"]
+
+
+def test_files_are_left_to_the_shell() -> None:
+    assert not complete("bash", "argo check scen").strip()
+    assert "_files" in complete("zsh", "argo check scen")

@@ -6,7 +6,7 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from argo_compiler.catalog import Catalog
-from argo_compiler.check import check
+from argo_compiler.checks import check
 from argo_compiler.diagnostics import (
     Diagnostic,
     DiagnosticError,

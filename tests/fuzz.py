@@ -27,7 +27,7 @@ from itertools import repeat
 from pathlib import Path
 
 from argo_compiler.analysis import analyse
-from argo_compiler.check import check
+from argo_compiler.checks import check
 from argo_compiler.diagnostics import Severity
 from argo_compiler.errors import ArgoError
 from argo_compiler.files.mission_file import read_mission

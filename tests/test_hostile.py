@@ -22,7 +22,7 @@ resource.setrlimit(resource.RLIMIT_CPU, ({CPU_SECONDS}, {CPU_SECONDS}))
 import sys
 from pathlib import Path
 from argo_compiler.analysis import analyse
-from argo_compiler.check import check
+from argo_compiler.checks import check
 from argo_compiler.errors import ArgoError
 from argo_compiler.files.mission_file import read_mission
 from argo_compiler.hfsm import Executor, lower

@@ -3,7 +3,7 @@
 The structures and names are those of the thesis (sections 3.2 and 4.4), so that a plan maps one to
 one onto its ROS messages. What they mean is written in `docs/language.md` and carried out by
 `argo_compiler.hfsm`. A `Mission` read from JSON has the right shape; whether it makes sense is what
-`argo_compiler.check` says.
+`argo_compiler.checks` says.
 """
 
 from enum import StrEnum

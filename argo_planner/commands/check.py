@@ -8,7 +8,7 @@ import typer
 
 from argo_compiler.analysis import Travel, analyse
 from argo_compiler.catalog import Catalog
-from argo_compiler.check import check
+from argo_compiler.checks import check
 from argo_compiler.diagnostics import (
     Diagnostic,
     DiagnosticError,

@@ -3,7 +3,7 @@
 import pytest
 
 from argo_compiler.catalog import Area, Catalog, CheckpointInfo, CheckpointKind, Interval
-from argo_compiler.check import check
+from argo_compiler.checks import check
 from argo_compiler.diagnostics import Severity, Span
 from argo_compiler.il import (
     Action,

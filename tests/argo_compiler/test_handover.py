@@ -6,7 +6,7 @@ import pytest
 from hypothesis import assume, given, reject, settings
 from hypothesis import strategies as st
 
-from argo_compiler.check import check
+from argo_compiler.checks import check
 from argo_compiler.diagnostics import has_errors
 from argo_compiler.diagnostics.codes import CODES
 from argo_compiler.errors import ArgoError

@@ -4,7 +4,7 @@ import json
 
 import pytest
 
-from argo_compiler.check import check
+from argo_compiler.checks import check
 from argo_compiler.errors import ArgoError
 from argo_compiler.files.mission_file import mission_text
 from argo_compiler.hfsm import lower

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from argo_compiler.check import check
+from argo_compiler.checks import check
 from argo_compiler.il import Action
 from argo_compiler.model import Pose
 from argo_env.drives.drive import DriveStatus

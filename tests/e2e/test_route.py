@@ -2,7 +2,7 @@
 
 from pathlib import Path
 
-from argo_compiler.check import check
+from argo_compiler.checks import check
 from argo_compiler.files.mission_file import read_mission
 
 

@@ -4,7 +4,7 @@ from hypothesis import HealthCheck, assume, event, given, settings
 from hypothesis import strategies as st
 
 from argo_compiler.analysis import Verdict, analyse
-from argo_compiler.check import check
+from argo_compiler.checks import check
 from argo_compiler.diagnostics import has_errors
 from argo_compiler.hfsm import Cause, lower
 from argo_compiler.hfsm.conditions import words

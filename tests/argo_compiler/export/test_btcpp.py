@@ -6,7 +6,7 @@ import pytest
 from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 
-from argo_compiler.check import check
+from argo_compiler.checks import check
 from argo_compiler.diagnostics import DiagnosticError, Severity
 from argo_compiler.export.btcpp import to_btcpp
 from argo_compiler.hfsm import lower

@@ -3,7 +3,7 @@ from hypothesis import assume, given
 from hypothesis import strategies as st
 from lark import Lark, Transformer
 
-from argo_compiler.check import check
+from argo_compiler.checks import check
 from argo_compiler.diagnostics import Severity
 from argo_compiler.export import to_dot
 from argo_compiler.hfsm import lower

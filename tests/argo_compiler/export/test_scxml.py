@@ -7,7 +7,7 @@ from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 from statemachine.io import load
 
-from argo_compiler.check import check
+from argo_compiler.checks import check
 from argo_compiler.diagnostics import Severity
 from argo_compiler.export.scxml import to_scxml
 from argo_compiler.hfsm import lower

@@ -1,6 +1,6 @@
 import pytest
 
-from argo_compiler.check import check
+from argo_compiler.checks import check
 from argo_compiler.diagnostics import DiagnosticError, Span
 from argo_compiler.files import mission_file as files
 from argo_compiler.files.mission_file import read_mission, read_mission_file, write_mission

@@ -8,7 +8,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from argo_compiler.catalog import Catalog, CheckpointInfo, CheckpointKind, Interval
-from argo_compiler.check import check
+from argo_compiler.checks import check
 from argo_compiler.diagnostics import DiagnosticError, Severity
 from argo_compiler.hfsm import lower
 from argo_compiler.il import (

@@ -6,7 +6,7 @@ import numpy as np
 from hypothesis import assume, event, given, settings
 from hypothesis import strategies as st
 
-from argo_compiler.check import check
+from argo_compiler.checks import check
 from argo_compiler.diagnostics import has_errors
 from argo_compiler.errors import ArgoError
 from argo_compiler.il import Mission, Order

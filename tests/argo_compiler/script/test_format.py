@@ -7,7 +7,7 @@ from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 
 from argo_compiler.catalog import Catalog
-from argo_compiler.check import check
+from argo_compiler.checks import check
 from argo_compiler.diagnostics import DiagnosticError, Severity
 from argo_compiler.il import Action, Condition, ConditionType, Mission, Task, Transition
 from argo_compiler.model import Pose

@@ -3,7 +3,7 @@
 from collections.abc import Iterator
 from dataclasses import dataclass
 
-from argo_compiler.check.finding import task_finding
+from argo_compiler.checks.finding import task_finding
 from argo_compiler.diagnostics import Diagnostic, Severity
 from argo_compiler.il import Condition, ConditionType, Task
 

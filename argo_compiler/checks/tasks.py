@@ -2,8 +2,8 @@
 
 from collections.abc import Iterable, Iterator
 
-from argo_compiler.check.conditions import ConditionChecks
-from argo_compiler.check.finding import task_finding
+from argo_compiler.checks.conditions import ConditionChecks
+from argo_compiler.checks.finding import task_finding
 from argo_compiler.diagnostics import Diagnostic, Severity
 from argo_compiler.il import Action, Mission, OnFailure, Task
 from argo_compiler.il.reserved import RESERVED_NAMES

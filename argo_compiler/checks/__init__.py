@@ -5,10 +5,10 @@ mission has no agreed meaning and can't be lowered; a warning, that it has one t
 """
 
 from argo_compiler.catalog import Catalog
-from argo_compiler.check.groups import check_groups
-from argo_compiler.check.header import check_header
-from argo_compiler.check.reactions import check_reactions
-from argo_compiler.check.tasks import TaskChecks
+from argo_compiler.checks.groups import check_groups
+from argo_compiler.checks.header import check_header
+from argo_compiler.checks.reactions import check_reactions
+from argo_compiler.checks.tasks import TaskChecks
 from argo_compiler.diagnostics import Diagnostic, Severity
 from argo_compiler.il import Mission
 

@@ -2,7 +2,7 @@
 
 from collections.abc import Iterator
 
-from argo_compiler.check.finding import reaction_finding
+from argo_compiler.checks.finding import reaction_finding
 from argo_compiler.diagnostics import Diagnostic, Severity
 from argo_compiler.il import Afterwards, EventKind, Mission, Reaction, Response
 

@@ -4,15 +4,24 @@ PYTHON ?= python3.11
 BIN := .venv/bin
 INSTALL := $(BIN)/python -m pip install --quiet --disable-pip-version-check --constraint constraints.txt
 
-.PHONY: demo test lint format generated clean
+# The suite starts `argo` in many processes: what they compile is kept in .venv, whatever the
+# environment says.
+PYTEST := env -u PYTHONDONTWRITEBYTECODE PYTHONPYCACHEPREFIX=$(CURDIR)/.venv/pycache \
+	$(BIN)/python -m pytest
+TWO_WORKERS := --numprocesses 2 --dist loadgroup --no-loadscope-reorder
+
+.PHONY: demo test test-long lint format generated help clean
 
 demo: .venv/demo.stamp ## run mission #1 and write its report
 	$(BIN)/argo run scenarios/umad/missions/mission_1.txt --site umad --seed 0 \
 		--start-area 1 --end-area 2 --report out/demo
 	@echo "Open out/demo/report.html in a browser; out/demo/site.png shows the path on the site."
 
-test: .venv/test.stamp ## run the whole suite
-	$(BIN)/python -m pytest --numprocesses 2 --dist loadgroup
+test: .venv/test.stamp ## run the suite, but for what takes long; says which tests took longest
+	$(PYTEST) -m "not long" $(TWO_WORKERS) --durations 15 --durations-min 3
+
+test-long: .venv/test.stamp ## run what takes long: the wheel, kills, what is as large as can be
+	$(PYTEST) -m long $(TWO_WORKERS) --durations 0 --durations-min 3
 
 lint: .venv/test.stamp ## style and types
 	$(BIN)/ruff check .
@@ -28,7 +37,10 @@ generated: .venv/test.stamp ## write anew what is made from the code: JSON Schem
 	$(BIN)/python -m argo_compiler.script
 	$(BIN)/python -m argo_compiler.diagnostics docs/diagnostics.md
 
-clean:
+help: ## say what can be made
+	@sed -n 's/^\([a-z-]*\):.*## /\1\t/p' $(MAKEFILE_LIST) | expand -t 12
+
+clean: ## remove the environment and what was made
 	rm -rf .venv out dist
 
 .venv/python.stamp:

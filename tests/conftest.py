@@ -1,8 +1,49 @@
 """What the whole suite shares. Import it as `from tests.conftest import examples`."""
 
 import os
+from pathlib import Path
+
+import pytest
+from hypothesis import HealthCheck, settings
+from hypothesis.internal.conjecture import providers
+
+EXAMPLES = os.environ.get("ARGO_EXAMPLES")
+
+# How long an example takes depends on what else the machine does: no answer may depend on that.
+_UNTIMED = settings(deadline=None, database=None, suppress_health_check=[HealthCheck.too_slow])
+settings.register_profile("suite", _UNTIMED, derandomize=True)
+settings.register_profile("campaign", _UNTIMED, print_blob=True)
+settings.load_profile("campaign" if EXAMPLES else "suite")
+
+if not EXAMPLES:
+    # Hypothesis also draws numbers and words that it finds in the modules loaded so far, and which
+    # these are depends on the tests that ran before in the same process.
+    assert providers._get_local_constants
+    providers._get_local_constants = lambda: providers._local_constants
 
 
 def examples(suite: int) -> int:
-    """How many random examples to try: `suite`, or what ARGO_EXAMPLES says for a campaign."""
-    return int(os.environ.get("ARGO_EXAMPLES", suite))
+    """How many random examples to try: `suite`, or what ARGO_EXAMPLES says for a campaign.
+
+    The suite tries the same ones each time, a campaign others each time.
+    """
+    return int(EXAMPLES or suite)
+
+
+_ORDER = ("e2e", "argo_env", "baselines")
+"""The folders whose files take longest come first, so that no worker waits for another's last."""
+
+
+def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
+    """Gives the tests of a file to one worker, in their order: their fixtures are made once, and
+    what one test leaves behind is left to the same others each time."""
+    root = Path(__file__).parent
+
+    def place(item: pytest.Item) -> int:
+        folder = item.path.relative_to(root).parts[0]
+        return _ORDER.index(folder) if folder in _ORDER else len(_ORDER)
+
+    items.sort(key=place)
+    for item in items:
+        if item.get_closest_marker("xdist_group") is None:
+            item.add_marker(pytest.mark.xdist_group(item.path.relative_to(root).as_posix()))

@@ -142,7 +142,13 @@ def test_hostile_scripts(name: str, tmp_path: Path) -> None:
     assert answer(path).split()[0] in ("mission", "refused")
 
 
-@pytest.mark.parametrize("name", FILES)
+@pytest.mark.parametrize(
+    "name",
+    [
+        pytest.param(name, marks=pytest.mark.long) if name == "a hundred thousand tasks" else name
+        for name in FILES
+    ],
+)
 def test_hostile_files(name: str, tmp_path: Path) -> None:
     path = tmp_path / "mission.json"
     path.write_text(json.dumps(FILES[name]), encoding="utf-8")

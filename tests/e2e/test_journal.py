@@ -126,6 +126,7 @@ def settings(seed: int) -> RunSettings:
     return RunSettings(seed=seed, events=logged(*EVENTS), values={2: 7.25})
 
 
+@pytest.mark.long
 def test_runs_that_are_killed_lose_nothing(server, folder, navigator, record_property) -> None:
     rng = random.Random(7)
     kills, done, silent, seeds = 0, 0, 0, count()

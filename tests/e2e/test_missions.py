@@ -74,6 +74,7 @@ def test_protocol_2_runs_to_success(argo, missions: Path, tmp_path: Path) -> Non
     require_protocol_2(record_in(tmp_path))
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("area", [1, 2])
 def test_the_original_of_mission_1_runs_to_success(argo, originals: Path, tmp_path, area) -> None:
     script = originals / "mission_1.txt"
@@ -82,6 +83,7 @@ def test_the_original_of_mission_1_runs_to_success(argo, originals: Path, tmp_pa
     require_mission_1(record_in(tmp_path))
 
 
+@pytest.mark.long
 def test_the_original_of_protocol_2_runs_to_success(argo, originals: Path, tmp_path: Path) -> None:
     result = argo("run", originals / "protocol_2.txt", "--report", tmp_path)
     assert result.returncode == 0, result.stderr

@@ -77,7 +77,7 @@ def test_searches_agree_with_brute_force(workers: int, monkeypatch: pytest.Monke
     monkeypatch.setattr(solving, "solve", portfolio._searched)
     for seed in range(3000, 3000 + PROBLEMS // 20):
         problem = random_problem(np.random.default_rng(seed), 5)
-        made = suggest_route(problem, 4.0, workers=workers, explain=False)
+        made = suggest_route(problem, 6.0, workers=workers, explain=False)
         assert made.proven, seed
         assert (None if made.route is None else (made.prize, made.cost)) == brute_force(problem)
 

@@ -8,6 +8,7 @@ from argo_compiler.analysis.facts import Bound, Bounds, Stretch
 from argo_compiler.analysis.study import Study
 from argo_compiler.analysis.travel import NoWay, Travel
 from argo_compiler.diagnostics import Diagnostic, Severity
+from argo_compiler.diagnostics.subject import subject_of
 from argo_compiler.hfsm.conditions import words
 from argo_compiler.il import Action, OnFailure, Response, Task
 from argo_compiler.model import Pose
@@ -50,10 +51,12 @@ def _blocked_retreats(study: Study, travel: Travel) -> Iterator[Diagnostic]:
     )
     if back and mission.dock is not None:
         retreats.append((mission.dock, "dock", "return to the dock"))
-    for i, reaction in enumerate(mission.reactions):
+    for reaction in mission.reactions:
         if reaction.response is Response.SAFE_AREA and reaction.pose is not None:
             place = f"go to the safe area of the reaction to {reaction.event}"
-            retreats.append((reaction.pose, f"reactions[{i}].pose", place))
+            retreats.append(
+                (reaction.pose, subject_of("reactions", reaction.event, ".pose"), place)
+            )
     start = travel.start(mission)
     for pose, subject, what in retreats:
         drive = Task(name="retreat", action=Action.WAYPOINT, pose=pose)

@@ -13,6 +13,7 @@ from argo_compiler.analysis.travel import Travel
 from argo_compiler.analysis.values import Paths
 from argo_compiler.catalog import Catalog
 from argo_compiler.diagnostics import Diagnostic, Severity
+from argo_compiler.diagnostics.subject import subject_of
 from argo_compiler.il import Afterwards, Mission, Response, Task
 
 _NAMES = 6  # of a list or path that a message spells out
@@ -150,7 +151,7 @@ class Study:
         span = None
         if leaf is not None and self.is_own(leaf):
             span = self.task(leaf).source
-            subject = f"tasks[{self.position[self.name(leaf)]}]"
+            subject = subject_of("tasks", self.name(leaf))
             if transition is not None:
                 subject += f".transitions[{transition}]"
         return Diagnostic(

@@ -19,7 +19,7 @@ def check(mission: Mission, catalog: Catalog | None = None) -> tuple[Diagnostic,
     """All that is wrong or odd about a mission: its tasks, groups, reactions and header.
 
     With a catalogue, what the mission names on the site is looked up in it. Linear time. Each
-    finding has the path of what it is about as its `subject`.
+    finding names what it is about as its `subject`.
     """
     if not mission.tasks:
         return (

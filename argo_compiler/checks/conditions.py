@@ -18,13 +18,13 @@ class ConditionChecks:
     """on the site; None: not known"""
 
     def findings(
-        self, i: int, task: Task, condition: Condition, field: str
+        self, at: str, task: Task, condition: Condition, field: str
     ) -> Iterator[Diagnostic]:
-        """What is wrong with a condition of the mission's task `i`, in that field."""
-        yield from _check_bounds(i, task, condition, field)
+        """What is wrong with a condition of the task whose subject is `at`, in that field."""
+        yield from _check_bounds(at, task, condition, field)
         if self.known is not None and condition.object_id not in self.known:
             yield task_finding(
-                i,
+                at,
                 task,
                 "il.unknown-object",
                 f"task '{task.name}' names checkpoint '{condition.object_id}', which the site does "
@@ -34,7 +34,7 @@ class ConditionChecks:
             )
         elif condition.object_id not in self.measured:
             yield task_finding(
-                i,
+                at,
                 task,
                 "il.never-measured",
                 f"a condition of task '{task.name}' compares checkpoint '{condition.object_id}', "
@@ -45,13 +45,13 @@ class ConditionChecks:
             )
 
 
-def _check_bounds(i: int, task: Task, condition: Condition, field: str) -> Iterator[Diagnostic]:
+def _check_bounds(at: str, task: Task, condition: Condition, field: str) -> Iterator[Diagnostic]:
     low, high = condition.param1, condition.param2
     which = f"a {condition.type} condition of task '{task.name}'"
     if condition.type is not ConditionType.WITHIN:
         if high is not None:
             yield task_finding(
-                i,
+                at,
                 task,
                 "il.unused-field",
                 f"{which} has a param2, which has no effect",
@@ -61,7 +61,7 @@ def _check_bounds(i: int, task: Task, condition: Condition, field: str) -> Itera
             )
     elif high is None:
         yield task_finding(
-            i,
+            at,
             task,
             "il.within-bounds",
             f"{which} has no param2",
@@ -70,7 +70,7 @@ def _check_bounds(i: int, task: Task, condition: Condition, field: str) -> Itera
         )
     elif low > high or (low == high and not condition.inclusive):
         yield task_finding(
-            i,
+            at,
             task,
             "il.within-bounds",
             f"{which} never holds: no value lies between {low:g} and {high:g}",

@@ -5,7 +5,7 @@ from argo_compiler.il import Reaction, Task
 
 
 def task_finding(
-    i: int,
+    at: str,
     task: Task,
     code: str,
     message: str,
@@ -13,12 +13,12 @@ def task_finding(
     severity: Severity = Severity.ERROR,
     field: str = "",
 ) -> Diagnostic:
-    """A finding about the mission's task `i`, or one of its fields."""
-    return _finding(f"tasks[{i}]{field}", task.source, code, message, hint, severity)
+    """A finding about the task whose subject is `at`, or one of its fields."""
+    return _finding(at + field, task.source, code, message, hint, severity)
 
 
 def reaction_finding(
-    i: int,
+    at: str,
     reaction: Reaction,
     code: str,
     message: str,
@@ -26,8 +26,8 @@ def reaction_finding(
     severity: Severity = Severity.ERROR,
     field: str = "",
 ) -> Diagnostic:
-    """A finding about the mission's reaction `i`, or one of its fields."""
-    return _finding(f"reactions[{i}]{field}", reaction.source, code, message, hint, severity)
+    """A finding about the reaction whose subject is `at`, or one of its fields."""
+    return _finding(at + field, reaction.source, code, message, hint, severity)
 
 
 def _finding(

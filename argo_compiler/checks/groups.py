@@ -10,6 +10,7 @@ from collections.abc import Iterator
 from argo_compiler.diagnostics import Diagnostic, Severity
 from argo_compiler.il import Action, Group, Mission, Stop
 from argo_compiler.il.grouping import GroupRange, Layout, group_ranges, parent_name
+from argo_compiler.il.subjects import Subjects
 from argo_compiler.names import nearest_name
 
 MIN_HARD_DURATION_S = 1e-3
@@ -27,38 +28,39 @@ def check_groups(mission: Mission) -> tuple[Diagnostic, ...]:
     if not mission.groups:
         return ()
     ranges = group_ranges(mission)
+    subjects = Subjects(mission)
     findings = [
-        *_check_names(mission.groups),
-        *_check_ends(mission),
-        *_check_nesting(ranges),
-        *_check_starts(mission, ranges),
+        *_check_names(mission.groups, subjects),
+        *_check_ends(mission, subjects),
+        *_check_nesting(ranges, subjects),
+        *_check_starts(mission, ranges, subjects),
     ]
     if not findings and ranges:
-        findings += _check_endless(mission)
-    return (*findings, *_check_unused(mission.groups))
+        findings += _check_endless(mission, subjects)
+    return (*findings, *_check_unused(mission.groups, subjects))
 
 
 def _error(
-    index: int, group: Group, code: str, message: str, hint: str, field: str = ""
+    at: str, group: Group, code: str, message: str, hint: str, field: str = ""
 ) -> Diagnostic:
-    """A finding about the mission's group of that index, or one of its fields."""
+    """A finding about the group whose subject is `at`, or one of its fields."""
     return Diagnostic(
         code=code,
         severity=Severity.ERROR,
         message=message,
         span=group.source,
         hint=hint,
-        subject=f"groups[{index}]{field}",
+        subject=at + field,
     )
 
 
-def _check_names(groups: tuple[Group, ...]) -> Iterator[Diagnostic]:
+def _check_names(groups: tuple[Group, ...], subjects: Subjects) -> Iterator[Diagnostic]:
     names = {group.name for group in groups}
     seen: set[str] = set()
     for i, group in enumerate(groups):
         if group.name in seen:
             yield _error(
-                i,
+                subjects.group(i),
                 group,
                 "il.duplicate-group",
                 f"more than one group is named '{group.name}'",
@@ -69,7 +71,7 @@ def _check_names(groups: tuple[Group, ...]) -> Iterator[Diagnostic]:
         parent = parent_name(group.name)
         if not all(group.name.split("/")):
             yield _error(
-                i,
+                subjects.group(i),
                 group,
                 "il.group-name",
                 f"the group name '{group.name}' has an empty part",
@@ -78,7 +80,7 @@ def _check_names(groups: tuple[Group, ...]) -> Iterator[Diagnostic]:
             )
         elif parent is not None and parent not in names:
             yield _error(
-                i,
+                subjects.group(i),
                 group,
                 "il.group-parent",
                 f"group '{group.name}' is to lie in group '{parent}', which does not exist",
@@ -87,7 +89,7 @@ def _check_names(groups: tuple[Group, ...]) -> Iterator[Diagnostic]:
             )
 
 
-def _check_ends(mission: Mission) -> Iterator[Diagnostic]:
+def _check_ends(mission: Mission, subjects: Subjects) -> Iterator[Diagnostic]:
     position: dict[str, int] = {}
     for i, task in enumerate(mission.tasks):
         position.setdefault(task.name, i)
@@ -99,7 +101,7 @@ def _check_ends(mission: Mission) -> Iterator[Diagnostic]:
             hints += 1
             near = nearest_name(name, position) if hints <= _MOST_HINTS else None
             yield _error(
-                i,
+                subjects.group(i),
                 group,
                 "il.unknown-group-task",
                 f"group '{group.name}' begins or ends with '{name}', which is no task of the "
@@ -109,7 +111,7 @@ def _check_ends(mission: Mission) -> Iterator[Diagnostic]:
             )
         if not unknown and position[group.start] > position[group.end]:
             yield _error(
-                i,
+                subjects.group(i),
                 group,
                 "il.group-order",
                 f"group '{group.name}' starts with task '{group.start}', which comes after its "
@@ -119,7 +121,7 @@ def _check_ends(mission: Mission) -> Iterator[Diagnostic]:
             )
         if group.stop is Stop.HARD and 0 < group.max_repeat_duration < MIN_HARD_DURATION_S:
             yield _error(
-                i,
+                subjects.group(i),
                 group,
                 "il.group-duration",
                 f"the time of group '{group.name}' is up after {group.max_repeat_duration:g} s, "
@@ -129,7 +131,7 @@ def _check_ends(mission: Mission) -> Iterator[Diagnostic]:
             )
 
 
-def _check_nesting(ranges: tuple[GroupRange, ...]) -> Iterator[Diagnostic]:
+def _check_nesting(ranges: tuple[GroupRange, ...], subjects: Subjects) -> Iterator[Diagnostic]:
     by_name = {r.group.name: r for r in ranges}
     around: list[GroupRange] = []
     for r in ranges:
@@ -137,7 +139,7 @@ def _check_nesting(ranges: tuple[GroupRange, ...]) -> Iterator[Diagnostic]:
         parent = by_name.get(parent_name(name) or "")
         if parent and not (parent.contains(r.first) and parent.contains(r.last)):
             yield _error(
-                r.index,
+                subjects.group(r.index),
                 r.group,
                 "il.group-outside-parent",
                 f"group '{name}' reaches beyond group '{parent.group.name}', in which it is to lie",
@@ -149,7 +151,7 @@ def _check_nesting(ranges: tuple[GroupRange, ...]) -> Iterator[Diagnostic]:
             other = around[-1]
             same = (other.first, other.last) == (r.first, r.last)
             yield _error(
-                r.index,
+                subjects.group(r.index),
                 r.group,
                 "il.group-same-range" if same else "il.group-overlap",
                 f"groups '{other.group.name}' and '{name}' "
@@ -161,13 +163,15 @@ def _check_nesting(ranges: tuple[GroupRange, ...]) -> Iterator[Diagnostic]:
         around.append(r)
 
 
-def _check_starts(mission: Mission, ranges: tuple[GroupRange, ...]) -> Iterator[Diagnostic]:
+def _check_starts(
+    mission: Mission, ranges: tuple[GroupRange, ...], subjects: Subjects
+) -> Iterator[Diagnostic]:
     starts = [i for i, task in enumerate(mission.tasks) if task.action is Action.START]
     for r in ranges:
         i = bisect_left(starts, r.first)
         if i < len(starts) and r.contains(starts[i]):
             yield _error(
-                r.index,
+                subjects.group(r.index),
                 r.group,
                 "il.start-in-group",
                 f"the START task '{mission.tasks[starts[i]].name}' lies in group '{r.group.name}'",
@@ -175,11 +179,11 @@ def _check_starts(mission: Mission, ranges: tuple[GroupRange, ...]) -> Iterator[
             )
 
 
-def _check_unused(groups: tuple[Group, ...]) -> Iterator[Diagnostic]:
+def _check_unused(groups: tuple[Group, ...], subjects: Subjects) -> Iterator[Diagnostic]:
     for i, group in enumerate(groups):
         if group.count_interruptions and not group.max_repeat_duration:
             finding = _error(
-                i,
+                subjects.group(i),
                 group,
                 "il.unused-field",
                 f"group '{group.name}' has no duration that interruptions could count as part of",
@@ -197,7 +201,7 @@ def _timed_out(group: Group) -> bool:
     return group.stop is Stop.HARD and group.max_repeat_duration > 0
 
 
-def _check_endless(mission: Mission) -> Iterator[Diagnostic]:
+def _check_endless(mission: Mission, subjects: Subjects) -> Iterator[Diagnostic]:
     """Endless groups that no transition leaves, and no time-out of a group around them.
 
     A transition leaves a group if its target lies outside the group's range. So the lowest and the
@@ -218,7 +222,7 @@ def _check_endless(mission: Mission) -> Iterator[Diagnostic]:
         left = lowest[i] < r.first or highest[i] > r.last
         if _endless(r.group) and not left and not bounded[i]:
             yield _error(
-                r.index,
+                subjects.group(r.index),
                 r.group,
                 "il.endless-group",
                 f"group '{r.group.name}' is repeated for ever: it has neither a count nor a "

@@ -5,6 +5,7 @@ from collections.abc import Iterator
 from argo_compiler.checks.finding import reaction_finding
 from argo_compiler.diagnostics import Diagnostic, Severity
 from argo_compiler.il import Afterwards, EventKind, Mission, Reaction, Response
+from argo_compiler.il.subjects import Subjects
 
 _DRIVES = frozenset([Response.RETURN, Response.SAFE_AREA])
 _HOLDS = _DRIVES | {Response.PAUSE}
@@ -15,24 +16,26 @@ def check_reactions(mission: Mission) -> Iterator[Diagnostic]:
     first: dict[EventKind, Reaction] = {}
     for reaction in mission.reactions:
         first.setdefault(reaction.event, reaction)
+    subjects = Subjects(mission)
     for i, reaction in enumerate(mission.reactions):
+        at = subjects.reaction(i)
         if first[reaction.event] is not reaction:
             yield reaction_finding(
-                i,
+                at,
                 reaction,
                 "il.duplicate-reaction",
                 f"there is more than one reaction to {reaction.event}",
                 "keep one reaction for each event",
                 field=".event",
             )
-        yield from _check_places(i, reaction, mission)
-        yield from _check_unused(i, reaction)
+        yield from _check_places(at, reaction, mission)
+        yield from _check_unused(at, reaction)
         if reaction.response in _HOLDS and reaction.until is not None:
-            yield from _check_until(i, reaction, first)
+            yield from _check_until(at, reaction, first)
         for field, event in (("event", reaction.event), ("until", reaction.until)):
             if event is EventKind.TIME_UP and mission.max_duration is None:
                 yield reaction_finding(
-                    i,
+                    at,
                     reaction,
                     "il.time-up-without-limit",
                     f"the reaction to {reaction.event} waits for {event}, which never occurs: the "
@@ -43,10 +46,10 @@ def check_reactions(mission: Mission) -> Iterator[Diagnostic]:
                 )
 
 
-def _check_places(i: int, reaction: Reaction, mission: Mission) -> Iterator[Diagnostic]:
+def _check_places(at: str, reaction: Reaction, mission: Mission) -> Iterator[Diagnostic]:
     if reaction.response is Response.SAFE_AREA and reaction.pose is None:
         yield reaction_finding(
-            i,
+            at,
             reaction,
             "il.safe-area-without-pose",
             f"the reaction to {reaction.event} does not say where the safe area is",
@@ -55,7 +58,7 @@ def _check_places(i: int, reaction: Reaction, mission: Mission) -> Iterator[Diag
         )
     if reaction.response is Response.RETURN and mission.dock is None:
         yield reaction_finding(
-            i,
+            at,
             reaction,
             "il.no-dock",
             f"the robot is to return to the dock on {reaction.event}, but the mission has no dock",
@@ -64,7 +67,7 @@ def _check_places(i: int, reaction: Reaction, mission: Mission) -> Iterator[Diag
         )
 
 
-def _check_unused(i: int, reaction: Reaction) -> Iterator[Diagnostic]:
+def _check_unused(at: str, reaction: Reaction) -> Iterator[Diagnostic]:
     response = reaction.response
     unused = {
         "pose": reaction.pose is not None and response is not Response.SAFE_AREA,
@@ -76,7 +79,7 @@ def _check_unused(i: int, reaction: Reaction) -> Iterator[Diagnostic]:
     }
     for field in (field for field, given in unused.items() if given):
         yield reaction_finding(
-            i,
+            at,
             reaction,
             "il.unused-field",
             f"the reaction to {reaction.event} has `{field}`, which has no effect on the response "
@@ -88,11 +91,11 @@ def _check_unused(i: int, reaction: Reaction) -> Iterator[Diagnostic]:
 
 
 def _check_until(
-    i: int, reaction: Reaction, first: dict[EventKind, Reaction]
+    at: str, reaction: Reaction, first: dict[EventKind, Reaction]
 ) -> Iterator[Diagnostic]:
     if reaction.until is reaction.event:
         yield reaction_finding(
-            i,
+            at,
             reaction,
             "il.until-itself",
             f"the reaction to {reaction.event} waits for {reaction.event} itself, which changes "
@@ -104,7 +107,7 @@ def _check_until(
     other = first.get(reaction.until) if reaction.until else None
     if other and other.response is not Response.REPORT and other.priority > reaction.priority:
         yield reaction_finding(
-            i,
+            at,
             reaction,
             "il.until-answered",
             f"the reaction to {reaction.event} waits for {reaction.until}, which has a reaction of "

@@ -7,6 +7,7 @@ from argo_compiler.checks.finding import task_finding
 from argo_compiler.diagnostics import Diagnostic, Severity
 from argo_compiler.il import Action, Mission, OnFailure, Task
 from argo_compiler.il.reserved import RESERVED_NAMES
+from argo_compiler.il.subjects import Subjects
 from argo_compiler.names import nearest_name
 
 MANY_RETRIES = 100
@@ -33,6 +34,7 @@ class TaskChecks:
 
     def __init__(self, mission: Mission, known: frozenset[str] | None) -> None:
         self.mission = mission
+        self.subjects = Subjects(mission)
         tasks = mission.tasks
         self.names = {task.name for task in tasks}
         self.starts = [task.name for task in tasks if task.action is _START]
@@ -44,7 +46,7 @@ class TaskChecks:
 
     def findings(self) -> Iterator[Diagnostic]:
         if len(self.names) < len(self.mission.tasks) or not RESERVED_NAMES.isdisjoint(self.names):
-            yield from _check_names(self.mission.tasks)
+            yield from _check_names(self.mission.tasks, self.subjects)
         starts = 0
         targets, known = self.targets, self.known
         for i, task in enumerate(self.mission.tasks):
@@ -52,48 +54,48 @@ class TaskChecks:
             if action is _MEASURE:
                 object_id = task.object_id
                 if object_id is None or (known is not None and object_id not in known):
-                    yield _wrong_object(i, task)
+                    yield _wrong_object(self.subjects.task(i), task)
             elif action is _WAYPOINT:
                 if task.pose is None:
-                    yield _no_pose(i, task)
+                    yield _no_pose(self.subjects.task(i), task)
             else:
                 starts += 1
                 if starts > 1:
-                    yield self._second_start(i, task)
-                yield from _unused_by_start(i, task)
+                    yield self._second_start(self.subjects.task(i), task)
+                yield from _unused_by_start(self.subjects.task(i), task)
             transitions = task.transitions
             if len(transitions) != 1 or transitions[0].conditions:
-                yield from self._branching(i, task)
+                yield from self._branching(self.subjects.task(i), task)
             elif transitions[0].target not in targets:
-                yield self._wrong_target(i, task, 0)
+                yield self._wrong_target(self.subjects.task(i), task, 0)
             if task.retries > MANY_RETRIES:
-                yield _many_retries(i, task)
+                yield _many_retries(self.subjects.task(i), task)
             if task.joint_states is not None:
-                yield from _check_joints(i, task)
-        yield from _check_returns(self.mission)
+                yield from _check_joints(self.subjects.task(i), task)
+        yield from _check_returns(self.mission, self.subjects)
 
-    def _second_start(self, i: int, task: Task) -> Diagnostic:
+    def _second_start(self, at: str, task: Task) -> Diagnostic:
         return task_finding(
-            i,
+            at,
             task,
             "il.many-starts",
             f"'{task.name}' is a second START task; '{self.starts[0]}' is the first",
             "a mission begins at one place: remove all START tasks but one",
         )
 
-    def _branching(self, i: int, task: Task) -> Iterator[Diagnostic]:
+    def _branching(self, at: str, task: Task) -> Iterator[Diagnostic]:
         """The transitions of a task that has none, several, or a conditional one."""
         unconditional = 0
         for k, transition in enumerate(task.transitions):
             if transition.target not in self.targets:
-                yield self._wrong_target(i, task, k)
+                yield self._wrong_target(at, task, k)
             unconditional += not transition.conditions
             for n, condition in enumerate(transition.conditions):
                 field = f".transitions[{k}].conditions[{n}]"
-                yield from self.conditions.findings(i, task, condition, field)
+                yield from self.conditions.findings(at, task, condition, field)
         if unconditional > 1:
             yield task_finding(
-                i,
+                at,
                 task,
                 "il.many-unconditional",
                 f"task '{task.name}' has {unconditional} unconditional transitions",
@@ -102,7 +104,7 @@ class TaskChecks:
             )
         if task.action is Action.START and unconditional < len(task.transitions):
             yield task_finding(
-                i,
+                at,
                 task,
                 "il.start-condition",
                 f"the START task '{task.name}' has a conditional transition, which is never taken: "
@@ -113,7 +115,7 @@ class TaskChecks:
             )
         elif task.transitions and not unconditional:
             yield task_finding(
-                i,
+                at,
                 task,
                 "il.no-unconditional",
                 f"the mission ends after task '{task.name}' if none of its conditions hold",
@@ -122,12 +124,12 @@ class TaskChecks:
                 ".transitions",
             )
 
-    def _wrong_target(self, i: int, task: Task, k: int) -> Diagnostic:
+    def _wrong_target(self, at: str, task: Task, k: int) -> Diagnostic:
         target = task.transitions[k].target
         field = f".transitions[{k}].target"
         if target in self.names:
             return task_finding(
-                i,
+                at,
                 task,
                 "il.start-as-target",
                 f"a transition of task '{task.name}' leads to the START task '{target}', which is "
@@ -137,7 +139,7 @@ class TaskChecks:
             )
         near = self._nearest(target)
         return task_finding(
-            i,
+            at,
             task,
             "il.unknown-target",
             f"a transition of task '{task.name}' leads to '{target}', which is no task of the "
@@ -153,12 +155,12 @@ class TaskChecks:
         return nearest_name(name, self.names) if self.hints <= _MOST_HINTS else None
 
 
-def _check_names(tasks: Iterable[Task]) -> Iterator[Diagnostic]:
+def _check_names(tasks: Iterable[Task], subjects: Subjects) -> Iterator[Diagnostic]:
     seen: set[str] = set()
     for i, task in enumerate(tasks):
         if task.name in seen:
             yield task_finding(
-                i,
+                subjects.task(i),
                 task,
                 "il.duplicate-task",
                 f"more than one task is named '{task.name}'",
@@ -167,7 +169,7 @@ def _check_names(tasks: Iterable[Task]) -> Iterator[Diagnostic]:
             )
         if task.name in RESERVED_NAMES:
             yield task_finding(
-                i,
+                subjects.task(i),
                 task,
                 "il.reserved-name",
                 f"the machine needs the name '{task.name}' for a drive of its own",
@@ -177,17 +179,17 @@ def _check_names(tasks: Iterable[Task]) -> Iterator[Diagnostic]:
         seen.add(task.name)
 
 
-def _wrong_object(i: int, task: Task) -> Diagnostic:
+def _wrong_object(at: str, task: Task) -> Diagnostic:
     if task.object_id is None:
         return task_finding(
-            i,
+            at,
             task,
             "il.measure-without-object",
             f"the MEASURE task '{task.name}' has no object_id",
             "say which checkpoint it measures",
         )
     return task_finding(
-        i,
+        at,
         task,
         "il.unknown-object",
         f"task '{task.name}' names checkpoint '{task.object_id}', which the site does not have",
@@ -196,9 +198,9 @@ def _wrong_object(i: int, task: Task) -> Diagnostic:
     )
 
 
-def _no_pose(i: int, task: Task) -> Diagnostic:
+def _no_pose(at: str, task: Task) -> Diagnostic:
     return task_finding(
-        i,
+        at,
         task,
         "il.waypoint-without-pose",
         f"the WAYPOINT task '{task.name}' has no pose",
@@ -206,11 +208,11 @@ def _no_pose(i: int, task: Task) -> Diagnostic:
     )
 
 
-def _unused_by_start(i: int, task: Task) -> Iterator[Diagnostic]:
+def _unused_by_start(at: str, task: Task) -> Iterator[Diagnostic]:
     unused = {"retries": task.retries != 0, "on_failure": task.on_failure != OnFailure.CONTINUE}
     for field in (field for field, given in unused.items() if given):
         yield task_finding(
-            i,
+            at,
             task,
             "il.unused-field",
             f"the START task '{task.name}' has no action that could fail, so its {field} has no "
@@ -221,9 +223,9 @@ def _unused_by_start(i: int, task: Task) -> Iterator[Diagnostic]:
         )
 
 
-def _many_retries(i: int, task: Task) -> Diagnostic:
+def _many_retries(at: str, task: Task) -> Diagnostic:
     return task_finding(
-        i,
+        at,
         task,
         "il.many-retries",
         f"task '{task.name}' would be tried again {task.retries} times",
@@ -233,7 +235,7 @@ def _many_retries(i: int, task: Task) -> Diagnostic:
     )
 
 
-def _check_joints(i: int, task: Task) -> Iterator[Diagnostic]:
+def _check_joints(at: str, task: Task) -> Iterator[Diagnostic]:
     joints = task.joint_states
     if joints is None:
         return
@@ -244,7 +246,7 @@ def _check_joints(i: int, task: Task) -> Iterator[Diagnostic]:
     else:
         return
     yield task_finding(
-        i,
+        at,
         task,
         "il.joint-states",
         f"task '{task.name}' {fault}",
@@ -253,7 +255,7 @@ def _check_joints(i: int, task: Task) -> Iterator[Diagnostic]:
     )
 
 
-def _check_returns(mission: Mission) -> Iterator[Diagnostic]:
+def _check_returns(mission: Mission, subjects: Subjects) -> Iterator[Diagnostic]:
     """One finding for all tasks that are to return to a dock that is not there."""
     if mission.dock:
         return
@@ -262,7 +264,7 @@ def _check_returns(mission: Mission) -> Iterator[Diagnostic]:
         task = mission.tasks[returning[0]]
         others = f" (and {len(returning) - 1} more)" if len(returning) > 1 else ""
         yield task_finding(
-            returning[0],
+            subjects.task(returning[0]),
             task,
             "il.no-dock",
             f"task '{task.name}'{others} is to return to the dock if it fails, but the mission has "

@@ -29,7 +29,8 @@ class Diagnostic(Model):
     hint: str | None = None
     """the way out"""
     subject: str | None = None
-    """what it is about, as a path into the mission such as `tasks[3].transitions[0]`"""
+    """what it is about, as a path into the mission that goes by names, such as
+    `tasks['MEASURE 4'].transitions[0]`; see `argo_compiler.diagnostics.subject`"""
 
 
 def has_errors(findings: Iterable[Diagnostic]) -> bool:

@@ -14,12 +14,6 @@ JsonPath = tuple[Step, ...]
 """names of fields and positions in lists, from the outermost value inward"""
 
 _TOKEN = re.compile(r'"[^"\\]*(?:\\.[^"\\]*)*"|[{}\[\],:]|[^\s{}\[\],:"]+')
-_STEP = re.compile(r"\[(\d+)\]|\.?([^.\[\]]+)")
-
-
-def parse_path(path: str) -> JsonPath:
-    """The path that is written as `tasks[3].transitions[0]`."""
-    return tuple(int(index) if index else name for index, name in _STEP.findall(path))
 
 
 def format_path(path: JsonPath) -> str:

@@ -18,12 +18,12 @@ from argo_compiler.files.json_places import (
     find_duplicates,
     find_places,
     format_path,
-    parse_path,
 )
 from argo_compiler.files.migration import VERSION, migrate
 from argo_compiler.files.mission_data import MAX_FAULTS, Fault, fault, to_mission, too_deep
 from argo_compiler.files.writing import write_whole
 from argo_compiler.il import Mission
+from argo_compiler.il.subjects import Subjects
 
 MAX_BYTES = 50_000_000
 """Far above any mission (10,000 tasks take 4 MB), far below what would exhaust the memory."""
@@ -41,12 +41,9 @@ class MissionFile:
 
         The places that they had are the script's from which the mission was imported.
         """
-        return by_place(
-            _placed(
-                self.text,
-                (Fault(f, None if f.subject is None else parse_path(f.subject)) for f in findings),
-            )
-        )
+        path = Subjects(self.mission).path
+        faults = (Fault(f, None if f.subject is None else path(f.subject)) for f in findings)
+        return by_place(_placed(self.text, faults))
 
 
 def read_mission(path: Path) -> Mission:

@@ -3,6 +3,7 @@
 from typing import Any, NoReturn
 
 from argo_compiler.diagnostics import Diagnostic, DiagnosticError, Severity, Span
+from argo_compiler.diagnostics.subject import subject_of
 from argo_compiler.headings import to_quaternion
 from argo_compiler.il import Condition, Group, Mission, Reaction, Task
 from argo_compiler.model import Pose
@@ -30,11 +31,11 @@ class _Writer:
         return self.types.new(
             "MissionSpecification",
             version=mission.version,
-            tasks=[self._task(i, task) for i, task in enumerate(mission.tasks)],
-            groups=[self._group(i, group) for i, group in enumerate(mission.groups)],
+            tasks=[self._task(task) for task in mission.tasks],
+            groups=[self._group(group) for group in mission.groups],
             has_current=mission.current is not None,
             current=_text("current", mission.current or ""),
-            reactions=[self._reaction(i, r) for i, r in enumerate(mission.reactions)],
+            reactions=[self._reaction(reaction) for reaction in mission.reactions],
             designation=_text("designation", mission.designation),
             site=_text("site", mission.site),
             mode=self.numbers.mode[mission.mode],
@@ -52,8 +53,8 @@ class _Writer:
             after_mission_report=_text("after_mission_report", mission.after_mission_report),
         )
 
-    def _task(self, index: int, task: Task) -> Any:
-        place = f"tasks[{index}]"
+    def _task(self, task: Task) -> Any:
+        place = subject_of("tasks", task.name)
         joints = task.joint_states
         names = () if joints is None else joints.names
         return self.types.new(
@@ -96,8 +97,8 @@ class _Writer:
             max_age=condition.max_age or 0.0,
         )
 
-    def _group(self, index: int, group: Group) -> Any:
-        place = f"groups[{index}]"
+    def _group(self, group: Group) -> Any:
+        place = subject_of("groups", group.name)
         return self.types.new(
             "MissionGroup",
             name=_text(f"{place}.name", group.name),
@@ -112,8 +113,8 @@ class _Writer:
             **_source(place, group.source),
         )
 
-    def _reaction(self, index: int, reaction: Reaction) -> Any:
-        place = f"reactions[{index}]"
+    def _reaction(self, reaction: Reaction) -> Any:
+        place = subject_of("reactions", reaction.event)
         return self.types.new(
             "MissionReaction",
             event=self.numbers.event[reaction.event],

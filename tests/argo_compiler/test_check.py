@@ -243,9 +243,13 @@ class TestReactions:
                 "[1].event",
                 [react(GAS, Response.PAUSE), react(GAS, Response.ABORT)],
             ),
-            ("il.safe-area-without-pose", "[0].response", [react(GAS, Response.SAFE_AREA)]),
-            ("il.no-dock", "[0].response", [react(LOW, Response.RETURN)]),
-            ("il.until-itself", "[0].until", [react(GAS, Response.PAUSE, until=GAS)]),
+            (
+                "il.safe-area-without-pose",
+                "['gas_leak'].response",
+                [react(GAS, Response.SAFE_AREA)],
+            ),
+            ("il.no-dock", "['low_battery'].response", [react(LOW, Response.RETURN)]),
+            ("il.until-itself", "['gas_leak'].until", [react(GAS, Response.PAUSE, until=GAS)]),
         ],
     )
     def test_errors(self, code, field, reactions):
@@ -287,7 +291,7 @@ class TestReactions:
     def test_warnings(self, code, field, reactions):
         (finding,) = check(Mission(tasks=CHAIN, reactions=reactions))
         assert (finding.code, finding.severity) == (code, Severity.WARNING)
-        assert finding.subject == f"reactions[0].{field}"
+        assert finding.subject == f"reactions['{reactions[0].event}'].{field}"
 
     @pytest.mark.parametrize(
         "reactions",
@@ -308,13 +312,13 @@ class TestReactions:
 @pytest.mark.parametrize("name", ["return to dock", "react to gas_leak"])
 def test_names_that_the_machine_needs_are_reserved(name):
     (finding,) = check(chain(tasks=(measure(name),)))
-    assert (finding.code, finding.subject) == ("il.reserved-name", "tasks[0].name")
+    assert (finding.code, finding.subject) == ("il.reserved-name", f"tasks['{name}'].name")
 
 
 def test_returning_without_a_dock_is_one_finding():
     tasks = (measure("A", "B", on_failure="return"), measure("B", on_failure="return"))
     (finding,) = check(chain(tasks=tasks))
-    assert (finding.code, finding.subject) == ("il.no-dock", "tasks[0].on_failure")
+    assert (finding.code, finding.subject) == ("il.no-dock", "tasks['A'].on_failure")
     assert "1 more" in finding.message
     assert codes(Mission(tasks=tasks, dock=DOCK)) == []
 
@@ -330,7 +334,7 @@ def test_bounds_of_within(low, high, inclusive, sound):
     way = Transition(target="A", conditions=(condition,))
     found = check(chain(tasks=(measure("A", "A", way),)))
     assert [f.code for f in found] == ([] if sound else ["il.within-bounds"])
-    assert all(f.subject == "tasks[0].transitions[1].conditions[0]" for f in found)
+    assert all(f.subject == "tasks['A'].transitions[1].conditions[0]" for f in found)
 
 
 @pytest.mark.parametrize(
@@ -368,9 +372,9 @@ def test_a_name_that_is_nearly_right_is_named():
     tasks = (measure("MEASURE 1", "MESURE 2"), measure("MEASURE 2"))
     target, start = check(chain(group("G", "MEASURE 1", "MEASUR 2"), tasks=tasks))
     assert "'MEASURE 2'" in target.hint
-    assert target.subject == "tasks[0].transitions[0].target"
+    assert target.subject == "tasks['MEASURE 1'].transitions[0].target"
     assert "'MEASURE 2'" in start.hint
-    assert start.subject == "groups[0].end"
+    assert start.subject == "groups['G'].end"
 
 
 def test_the_current_task_has_to_exist():

@@ -9,6 +9,7 @@ import re
 
 from argo_compiler.catalog import Catalog
 from argo_compiler.diagnostics import DiagnosticError
+from argo_compiler.diagnostics.subject import subject_of
 from argo_compiler.il import Afterwards, Mission, Mode, Order, Reaction, Response
 from argo_compiler.model import Pose
 from argo_compiler.script.write.steps import Steps, unwritable, write_steps
@@ -47,12 +48,14 @@ def format_script(mission: Mission, catalog: Catalog) -> str:
         header = _header(mission, catalog, steps)
     except UnwritableError as error:
         findings.append(unwritable("the header", "", None, error))
-    for i, reaction in enumerate(mission.reactions):
+    for reaction in mission.reactions:
         try:
             reactions += statement(_reaction(reaction, places))
         except UnwritableError as error:
             what = f"the reaction to {reaction.event}"
-            findings.append(unwritable(what, f"reactions[{i}]", reaction.source, error))
+            findings.append(
+                unwritable(what, subject_of("reactions", reaction.event), reaction.source, error)
+            )
     if findings:
         raise DiagnosticError("mission", findings)
     parts = [header, steps.lines, steps.rounds, reactions]

@@ -6,6 +6,7 @@ from dataclasses import dataclass, field
 
 from argo_compiler.catalog import Catalog
 from argo_compiler.diagnostics import Diagnostic, Severity, Span
+from argo_compiler.diagnostics.subject import subject_of
 from argo_compiler.il import Action, Group, Mission, Stop, Task, Transition
 from argo_compiler.il.grouping import Layout
 from argo_compiler.model import Pose
@@ -99,7 +100,9 @@ class _Writer:
                     self._write_task(i)
             except UnwritableError as error:
                 task = self.tasks[i]
-                found = unwritable(f"task '{task.name}'", f"tasks[{i}]", task.source, error)
+                found = unwritable(
+                    f"task '{task.name}'", subject_of("tasks", task.name), task.source, error
+                )
                 self.result.findings.append(found)
             i = patrol.last + 1 if patrol is not None else i + 1
         self.result.rounds += self._repeats(len(self.mission.groups))
@@ -236,7 +239,8 @@ class _Writer:
             try:
                 lines += statement(self._repeat(index, group))
             except UnwritableError as error:
-                found = unwritable(f"group '{group.name}'", f"groups[{index}]", group.source, error)
+                at = subject_of("groups", group.name)
+                found = unwritable(f"group '{group.name}'", at, group.source, error)
                 self.result.findings.append(found)
         self.written = end
         return lines

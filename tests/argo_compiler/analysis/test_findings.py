@@ -39,7 +39,7 @@ def test_a_loop_that_nothing_leaves():
 def test_a_trap_beside_the_way_to_the_end():
     found = findings(mission(task("Am1", way("B", "1 < 5"), "End"), task("B", "B"), "End"))
     assert set(found) == {"endless-loop"}
-    assert found["endless-loop"].subject == "tasks[1]"
+    assert found["endless-loop"].subject == "tasks['B']"
 
 
 def test_a_reaction_that_ends_the_mission_makes_it_a_warning():
@@ -109,7 +109,7 @@ def test_places_that_cannot_be_reached():
     assert "a wall stands in the way" in found["unreachable-place"].message
     shelter = Reaction(event=EventKind.GAS_LEAK, response=Response.SAFE_AREA, pose=FAR)
     found = findings(mission("A", reactions=(shelter,)), Steady())
-    assert found["unreachable-place"].subject == "reactions[0].pose"
+    assert found["unreachable-place"].subject == "reactions['gas_leak'].pose"
     back = Reaction(event=EventKind.LOW_BATTERY, response=Response.RETURN)
     found = findings(mission("A", dock=FAR, reactions=(back,)), Steady())
     assert found["unreachable-place"].subject == "dock"

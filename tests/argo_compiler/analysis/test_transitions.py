@@ -133,18 +133,18 @@ def test_why_a_task_is_unreachable():
     )
     lost = {d.subject: d for d in found.diagnostics if d.code == "analysis.unreachable-task"}
     assert found.reachable == {"Am1", "End"}
-    assert sorted(lost) == ["tasks[1]", "tasks[2]", "tasks[3]", "tasks[4]"]
-    assert "checkpoint 1 (valve R1) shows 0 to 10" in lost["tasks[1]"].message
-    assert "no path measures it before" in lost["tasks[2]"].message
-    assert "only 'X' leads to it" in lost["tasks[3]"].message
-    assert "no transition leads to it" in lost["tasks[4]"].message
+    assert sorted(lost) == [f"tasks['{name}']" for name in ("Alone", "Behind", "X", "Y")]
+    assert "checkpoint 1 (valve R1) shows 0 to 10" in lost["tasks['X']"].message
+    assert "no path measures it before" in lost["tasks['Y']"].message
+    assert "only 'X' leads to it" in lost["tasks['Behind']"].message
+    assert "no transition leads to it" in lost["tasks['Alone']"].message
     assert all(d.hint for d in found.diagnostics)
 
 
 def test_transitions_that_are_never_and_always_taken_are_told():
     found = analyse(mission(task("Am1", way("B", "1 < 4"), way("B", "1 < 3"), "B"), "B"), CATALOG)
     assert codes(found) == ["transition-never"]
-    assert found.diagnostics[0].subject == "tasks[0].transitions[1]"
+    assert found.diagnostics[0].subject == "tasks['Am1'].transitions[1]"
     assert "can only be 4 to 10 here" in found.diagnostics[0].message
     found = analyse(mission(task("Am1", way("B", "1 < 11"), "B"), "B"), CATALOG)
     assert codes(found) == ["transition-always"]
@@ -166,8 +166,8 @@ def test_values_that_are_compared_before_they_are_measured():
     assert codes(found) == ["maybe-unmeasured", "never-measured"]
     maybe, never = sorted(found.diagnostics, key=lambda d: d.code)
     assert "such as Am1 > C" in maybe.message
-    assert maybe.subject == "tasks[2].transitions[0]"
-    assert never.subject == "tasks[2].transitions[1]"
+    assert maybe.subject == "tasks['C'].transitions[0]"
+    assert never.subject == "tasks['C'].transitions[1]"
 
 
 @pytest.mark.parametrize(

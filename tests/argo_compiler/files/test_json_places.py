@@ -6,12 +6,12 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
+from argo_compiler.diagnostics.subject import parse_subject
 from argo_compiler.files.json_places import (
     Text,
     find_duplicates,
     find_places,
     format_path,
-    parse_path,
 )
 
 KEYS = st.text('ab"\\ü\n{[:,', max_size=4)
@@ -87,7 +87,7 @@ def test_duplicates_are_found_at_any_depth_and_in_any_spelling():
 
 @pytest.mark.parametrize("path", ["tasks[3].transitions[0].target", "tasks", "groups[10].name"])
 def test_paths_are_written_and_read_back(path):
-    assert format_path(parse_path(path)) == path
+    assert format_path(parse_subject(path)) == path
 
 
 def test_depth_costs_nothing():

@@ -203,8 +203,8 @@ def test_flags_decide_whether_a_field_counts():
 @pytest.mark.parametrize(
     ("task", "said"),
     [
-        (Task(name="A", action=Action.START, retries=2**64), "tasks[0].retries: 184467"),
-        (Task(name="A", action=Action.START, group="\ud800"), "tasks[0].group: is no text"),
+        (Task(name="A", action=Action.START, retries=2**64), "tasks['A'].retries: 184467"),
+        (Task(name="A", action=Action.START, group="\ud800"), "tasks['A'].group: is no text"),
     ],
 )
 def test_what_a_message_can_not_hold_is_refused_by_its_place(task, said):

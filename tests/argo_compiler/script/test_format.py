@@ -129,4 +129,4 @@ def test_long_texts_and_many_ways_are_broken_into_lines(catalog: Catalog) -> Non
 def test_what_no_script_says_is_refused(task: Task, reason: str, catalog: Catalog) -> None:
     with pytest.raises(DiagnosticError, match=f"(?s)task 'a'.*{reason}") as caught:
         format_script(Mission(site=catalog.site, tasks=(task,)), catalog)
-    assert [d.subject for d in caught.value.diagnostics] == ["tasks[0]"]
+    assert [d.subject for d in caught.value.diagnostics] == ["tasks['a']"]

@@ -1,0 +1,78 @@
+"""The parts of one mission as findings name them, and where such a subject stands in its lists."""
+
+from collections.abc import Iterable
+from functools import cached_property
+
+from argo_compiler.diagnostics.subject import Named, parse_subject, subject_of
+from argo_compiler.il import Mission
+
+
+class Subjects:
+    """Names the tasks, groups and reactions of a mission; reactions go by their event.
+
+    Of several with one name the first goes by it, the others by their positions. Linear time.
+    """
+
+    def __init__(self, mission: Mission) -> None:
+        self.mission = mission
+
+    def task(self, position: int, rest: str = "") -> str:
+        """The task at a position, or what of it `rest` leads to."""
+        return _named("tasks", position, self._tasks, rest)
+
+    def group(self, position: int, rest: str = "") -> str:
+        """The same for a group."""
+        return _named("groups", position, self._groups, rest)
+
+    def reaction(self, position: int, rest: str = "") -> str:
+        """The same for a reaction."""
+        return _named("reactions", position, self._reactions, rest)
+
+    def path(self, text: str) -> tuple[str | int, ...]:
+        """A subject as fields and positions in the mission's lists.
+
+        Where it names what the mission does not have, the path ends with the list.
+        """
+        steps: list[str | int] = []
+        for step in parse_subject(text):
+            if not isinstance(step, Named):
+                steps.append(step)
+                continue
+            lists = {"tasks": self._tasks, "groups": self._groups, "reactions": self._reactions}
+            _, first = lists.get(str(steps[-1]), ([], {})) if steps else ([], {})
+            if step.name not in first:
+                break
+            steps.append(first[step.name])
+        return tuple(steps)
+
+    @cached_property
+    def _tasks(self) -> "_Names":
+        return _names(task.name for task in self.mission.tasks)
+
+    @cached_property
+    def _groups(self) -> "_Names":
+        return _names(group.name for group in self.mission.groups)
+
+    @cached_property
+    def _reactions(self) -> "_Names":
+        return _names(reaction.event.value for reaction in self.mission.reactions)
+
+
+_Names = tuple[list[str], dict[str, int]]
+"""names by position, and the first position of each name"""
+
+
+def _names(names: Iterable[str]) -> _Names:
+    ordered = list(names)
+    first: dict[str, int] = {}
+    for position, name in enumerate(ordered):
+        first.setdefault(name, position)
+    return ordered, first
+
+
+def _named(field: str, position: int, names: _Names, rest: str) -> str:
+    ordered, first = names
+    name = ordered[position]
+    return (
+        subject_of(field, name, rest) if first[name] == position else f"{field}[{position}]{rest}"
+    )

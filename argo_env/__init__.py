@@ -1,5 +1,62 @@
-"""The site: scenarios, geometry, navigation, robot, sensing, the mission runner and its reports."""
+"""The site: geometry, navigation, the robot, what it senses, mission runs and their reports.
 
-from argo_env.envs import register_environments
+What common jobs need is here by name, and imported when it is first used:
 
-register_environments()
+- a site that is ready for work: `open_site`;
+- a run on it: `simulate` a mission with `RunSettings`, which gives a `RunRecord`;
+- what is left of it: `write_report`, `write_overview`, `write_film`, `read_recording`;
+- faults from a file: `read_faults`.
+
+With this import Gymnasium knows the environments, `argo/Route-v0` and its siblings.
+"""
+
+from typing import TYPE_CHECKING
+
+from argo_compiler.lazy_names import lazy_names
+from argo_env.envs.registration import register_with_gymnasium
+
+__all__ = [
+    "Navigator",
+    "OpenedSite",
+    "RunRecord",
+    "RunSettings",
+    "Site",
+    "open_site",
+    "read_faults",
+    "read_recording",
+    "simulate",
+    "site_names",
+    "write_film",
+    "write_overview",
+    "write_report",
+]
+
+if TYPE_CHECKING:
+    from argo_env.faults.reading import read_faults
+    from argo_env.navigation import Navigator
+    from argo_env.pictures import write_film, write_overview
+    from argo_env.planning import OpenedSite, open_site
+    from argo_env.recording.reader import read_recording
+    from argo_env.report import write_report
+    from argo_env.run.record import RunRecord
+    from argo_env.run.session import simulate
+    from argo_env.run.spec import RunSettings
+    from argo_env.site import Site, site_names
+else:
+    __getattr__, __dir__ = lazy_names(
+        __name__,
+        {
+            "faults.reading": ["read_faults"],
+            "navigation": ["Navigator"],
+            "pictures": ["write_film", "write_overview"],
+            "planning": ["OpenedSite", "open_site"],
+            "recording.reader": ["read_recording"],
+            "report": ["write_report"],
+            "run.record": ["RunRecord"],
+            "run.session": ["simulate"],
+            "run.spec": ["RunSettings"],
+            "site": ["Site", "site_names"],
+        },
+    )
+
+register_with_gymnasium()

@@ -1,0 +1,75 @@
+"""How Gymnasium gets to know Argo's environments, without being imported for it.
+
+Gymnasium and NumPy take longer to import than most of what a command does. So the environments are
+registered at once where Gymnasium has been imported already, and else right after it is.
+"""
+
+import sys
+from collections.abc import Sequence
+from importlib.abc import Loader, MetaPathFinder
+from importlib.machinery import ModuleSpec
+from types import ModuleType
+
+ENVIRONMENTS: dict[str, dict[str, str]] = {
+    "argo/Route-v0": {
+        "entry_point": "argo_env.envs.route:RouteEnv",
+        "vector_entry_point": "argo_env.envs.route:RouteVectorEnv",
+    },
+    "argo/Drive-v0": {"entry_point": "argo_env.envs.drive:DriveEnv"},
+    "argo/Inspect-v0": {"entry_point": "argo_env.envs.inspection:InspectEnv"},
+}
+"""What is registered, by id: the tests run over all of them."""
+
+_GYMNASIUM = "gymnasium"
+
+
+def register_with_gymnasium() -> None:
+    """Makes the environments known to Gymnasium, now or when it is imported; they are loaded when
+    one is made.
+    """
+    if sys.modules.get(_GYMNASIUM):
+        _register()
+    elif not any(isinstance(finder, _Finder) for finder in sys.meta_path):
+        sys.meta_path.insert(0, _Finder())
+
+
+def _register() -> None:
+    import gymnasium as gym
+
+    for id, entry_points in ENVIRONMENTS.items():
+        if id not in gym.registry:
+            gym.register(id, **entry_points)  # type: ignore[arg-type]
+
+
+class _Finder(MetaPathFinder):
+    """Finds Gymnasium where the others find it, and has the environments registered with it."""
+
+    def find_spec(
+        self, fullname: str, path: Sequence[str] | None, target: ModuleType | None = None
+    ) -> ModuleSpec | None:
+        if fullname != _GYMNASIUM:
+            return None
+        for finder in sys.meta_path:
+            if finder is not self and (spec := finder.find_spec(fullname, path, target)):
+                if spec.loader:
+                    spec.loader = _RegisteringLoader(spec.loader)
+                return spec
+        return None
+
+
+class _RegisteringLoader(Loader):
+    """Loads a module as another loader does, then registers the environments."""
+
+    def __init__(self, loader: Loader) -> None:
+        self._loader = loader
+
+    def create_module(self, spec: ModuleSpec) -> ModuleType | None:
+        return self._loader.create_module(spec)
+
+    def exec_module(self, module: ModuleType) -> None:
+        # The module is the other loader's: it is asked for the module's resources and source.
+        module.__loader__ = self._loader
+        if module.__spec__:
+            module.__spec__.loader = self._loader
+        self._loader.exec_module(module)
+        _register()

@@ -1,0 +1,106 @@
+"""What `import argo_compiler` and `import argo_env` give, and that they cost next to nothing."""
+
+import ast
+import importlib
+import pkgutil
+import re
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+ROOT = Path(__file__).parents[1]
+DOORS = ("argo_compiler", "argo_env")
+
+
+def imported_for_type_checkers(door: str) -> dict[str, str]:
+    """The module that type checkers and editors are told each name comes from."""
+    tree = ast.parse((ROOT / door / "__init__.py").read_text(encoding="utf-8"))
+    (told,) = (
+        node
+        for node in tree.body
+        if isinstance(node, ast.If) and ast.unparse(node.test) == "TYPE_CHECKING"
+    )
+    return {
+        alias.name: node.module or ""
+        for node in told.body
+        if isinstance(node, ast.ImportFrom)
+        for alias in node.names
+    }
+
+
+@pytest.mark.parametrize("door", DOORS)
+def test_each_name_is_what_type_checkers_are_told(door):
+    package = importlib.import_module(door)
+    told = imported_for_type_checkers(door)
+    assert sorted(told) == package.__all__
+    assert set(package.__all__) <= set(dir(package))
+    for name, module in told.items():
+        assert getattr(package, name) is getattr(importlib.import_module(module), name)
+
+
+@pytest.mark.parametrize("door", DOORS)
+def test_no_name_is_that_of_a_module(door):
+    """Such a module would take the name's place as soon as it is imported."""
+    package = importlib.import_module(door)
+    modules = {module.name for module in pkgutil.iter_modules(package.__path__)}
+    assert not modules & set(package.__all__)
+
+
+@pytest.mark.parametrize("door", DOORS)
+def test_what_is_not_there_is_said_so(door):
+    with pytest.raises(AttributeError, match=f"module '{door}' has no attribute 'nothing'"):
+        importlib.import_module(door).nothing  # noqa: B018
+
+
+def run_python(program):
+    return subprocess.run(
+        [sys.executable, "-c", program], cwd=ROOT, capture_output=True, text=True, check=True
+    ).stdout
+
+
+@pytest.mark.parametrize("door", DOORS)
+def test_importing_it_imports_no_library(door):
+    loaded = set(run_python(f"import {door}, sys; print(*sys.modules)").split())
+    assert not loaded & {"numpy", "scipy", "pydantic", "lark", "ortools", "gymnasium", "pybullet"}
+
+
+@pytest.mark.parametrize(
+    "program",
+    [
+        "import gymnasium\nimport argo_env",
+        "import argo_env\nimport gymnasium",
+        "import argo_env\nfrom gymnasium.envs import registration\nimport gymnasium",
+        "import gymnasium\nimport argo_env\nimport importlib\nimportlib.reload(argo_env)",
+    ],
+)
+def test_gymnasium_knows_the_environments_whichever_is_imported_first(program):
+    made = "print(gymnasium.make('argo/Route-v0').spec.id, gymnasium.__loader__.get_filename())"
+    id, file = run_python(f"{program}\n{made}").split()
+    assert id == "argo/Route-v0"
+    assert file.endswith("__init__.py")
+
+
+def test_gymnasium_can_be_looked_for_without_being_imported():
+    asked = "import argo_env, importlib.util, sys\nimportlib.util.find_spec('gymnasium')"
+    assert run_python(f"{asked}\nprint('gymnasium' in sys.modules)").strip() == "False"
+
+
+def test_the_readme_imports_from_the_front_doors_only():
+    text = (ROOT / "README.md").read_text(encoding="utf-8")
+    snippets = re.findall(r"^```python\n(.*?)^```", text, re.M | re.S)
+    imported = {
+        module
+        for snippet in snippets
+        for node in ast.walk(ast.parse(snippet))
+        for module in (
+            [node.module]
+            if isinstance(node, ast.ImportFrom)
+            else [alias.name for alias in node.names]
+            if isinstance(node, ast.Import)
+            else []
+        )
+        if module and module.startswith("argo")
+    }
+    assert imported == set(DOORS)

@@ -25,17 +25,12 @@ from argo_compiler.script import import_script, read_script
 from argo_compiler.script.syntax.source import Source as Script
 from argo_env.navigation import Navigator
 from argo_env.planning.catalog import make_catalog
-from argo_env.planning.generated import generate
-from argo_env.robot.spec import load_robot
-from argo_env.site import load_site
-from argo_env.site.family import is_family, parse_family
+from argo_env.planning.opening import open_site
 
 
 def load_navigator(site: str) -> Navigator:
     """The navigator of a site by its name, by the file that describes it, or of a generated one."""
-    if is_family(site):
-        return generate(parse_family(site))  # which has been made already, to check it
-    return Navigator(load_site(site), load_robot())
+    return open_site(site).navigator
 
 
 def is_mission_file(source: Path) -> bool:

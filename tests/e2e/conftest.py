@@ -1,9 +1,10 @@
 """What the end-to-end tests share: the command as a user runs it, and the scripts to run it on."""
 
+import json
 import os
 import subprocess
 import sys
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from pathlib import Path
 
 import pytest
@@ -14,9 +15,83 @@ ORIGINALS = os.environ.get("ARGO_ORIGINALS")
 Argo = Callable[..., subprocess.CompletedProcess[str]]
 
 
+class ForkedArgo:
+    """Runs `argo` in processes that need no time to load: forked from one that has loaded it.
+
+    Holds that process, and a folder for what the others print.
+    """
+
+    def __init__(self, process: subprocess.Popen[str], folder: Path) -> None:
+        self._process, self._folder = process, folder
+
+    def __call__(
+        self, *arguments: object, cwd: Path | None = None
+    ) -> subprocess.CompletedProcess[str]:
+        """Runs a command to its end."""
+        files = self._folder / "stdout", self._folder / "stderr"
+        for file in files:
+            file.unlink(missing_ok=True)
+        status = self._carry_out(arguments, cwd or Path.cwd(), *files, None)
+        output, errors = (file.read_text(encoding="utf-8") for file in files)
+        return subprocess.CompletedProcess(arguments, status, output, errors)
+
+    def kill(self, *arguments: object, output: Path, after: float | None) -> int:
+        """Runs a command, adds what it prints to a file and kills it after a time (s); its exit
+        status, -9 if it was killed."""
+        return self._carry_out(arguments, ROOT, output, output, after)
+
+    def open(self, site: object) -> None:
+        """Makes a site ready for all later commands."""
+        assert self._ask({"open": str(site)}) == 0
+
+    def _carry_out(
+        self,
+        arguments: tuple[object, ...],
+        cwd: Path,
+        stdout: Path,
+        stderr: Path,
+        after: float | None,
+    ) -> int:
+        return self._ask(
+            {
+                "arguments": [str(a) for a in arguments],
+                "cwd": str(cwd),
+                "environment": {**os.environ, "COLUMNS": "120"},
+                "stdout": str(stdout),
+                "stderr": str(stderr),
+                "after": after,
+            }
+        )
+
+    def _ask(self, request: dict[str, object]) -> int:
+        assert self._process.stdin
+        assert self._process.stdout
+        self._process.stdin.write(json.dumps(request) + "\n")
+        self._process.stdin.flush()
+        return int(self._process.stdout.readline())
+
+
 @pytest.fixture(scope="session")
-def argo() -> Argo:
-    """Runs `argo` with arguments in a process of its own."""
+def argo(tmp_path_factory: pytest.TempPathFactory) -> Iterator[ForkedArgo]:
+    """Runs `argo` with arguments, without the time that it takes to start."""
+    with subprocess.Popen(
+        [sys.executable, "-m", "tests.e2e.forked_argo"],
+        cwd=ROOT,
+        stdin=subprocess.PIPE,
+        stdout=subprocess.PIPE,
+        text=True,
+    ) as process:
+        argo = ForkedArgo(process, tmp_path_factory.mktemp("argo"))
+        argo.open("umad")
+        yield argo
+        assert process.stdin
+        process.stdin.close()
+        assert process.wait(timeout=30) == 0
+
+
+@pytest.fixture(scope="session")
+def argo_process() -> Argo:
+    """Runs `argo` with arguments in a process of its own, from its start on."""
 
     def call(*arguments: object, cwd: Path | None = None) -> subprocess.CompletedProcess[str]:
         return subprocess.run(

@@ -1,8 +1,9 @@
-"""`argo` again and again without loading anew: for tests that kill it many times.
+"""`argo` again and again without loading anew: for tests of what it does, not of how it starts.
 
-Loads the yard once. Then each line of standard input, a JSON list, is a command that a forked
-process carries out: the file for what it prints, after how many seconds it is killed if it still
-runs (null: never), and the arguments. Its exit status is printed when it has ended.
+Loads the commands once. Then each line of standard input is a JSON object: `{"open": site}` makes
+a site ready for all that follow; any other is a command that a forked process carries out:
+`arguments`, `cwd`, `environment`, the files that `stdout` and `stderr` are added to, and `after`
+how many seconds it is killed if it still runs (null: never). The answer is the exit status.
 """
 
 import json
@@ -10,36 +11,64 @@ import os
 import signal
 import sys
 import time
+import traceback
+from collections.abc import Callable
+from importlib import import_module
+from typing import Any
 
-import argo_planner.cli
-import argo_planner.commands.resume
-import argo_planner.commands.run
-from tests.yard import yard
+from argo_env.planning import open_site
+from argo_planner.cli import ArgoCommands, main
 
 
-def main() -> None:
-    navigator = yard()
-    for module in (argo_planner.commands.run, argo_planner.commands.resume):
-        module.load_navigator = lambda _: navigator
+def serve() -> None:
+    for command in ArgoCommands.lazy_commands:
+        import_module(command.module)
+    kept = []
     for line in sys.stdin:
-        output, after, *arguments = json.loads(line)
+        request = json.loads(line)
+        if "open" in request:
+            kept.append(open_site(request["open"]))
+            kept[-1].navigator.prepare()
+            print(0, flush=True)
+            continue
         child = os.fork()
         if child == 0:
-            file = os.open(output, os.O_WRONLY | os.O_CREAT | os.O_APPEND)
-            os.dup2(file, 1)
-            os.dup2(file, 2)
-            sys.argv = ["argo", *arguments]
-            try:
-                argo_planner.cli.main()
-            finally:
-                sys.stdout.flush()
-                # Not `exit`: the parent's buffers and handlers are not ours.
-                status = sys.exc_info()[1]
-                os._exit(status.code or 0 if isinstance(status, SystemExit) else 70)
-        print(os.waitstatus_to_exitcode(end_of(child, after)), flush=True)
+            # Not `exit`: the parent's buffers and handlers are not ours.
+            os._exit(_status(lambda request=request: _carry_out(request)))
+        print(os.waitstatus_to_exitcode(_end_of(child, request["after"])), flush=True)
 
 
-def end_of(child: int, after: float | None) -> int:
+def _carry_out(request: dict[str, Any]) -> None:
+    os.dup2(os.open(os.devnull, os.O_RDONLY), 0)
+    for number, name in ((1, "stdout"), (2, "stderr")):
+        os.dup2(os.open(request[name], os.O_WRONLY | os.O_CREAT | os.O_APPEND), number)
+    os.chdir(request["cwd"])
+    os.environ.clear()
+    os.environ.update(request["environment"])
+    sys.argv = ["argo", *request["arguments"]]
+    main()
+
+
+def _status(act: Callable[[], None]) -> int:
+    """The status that Python would exit with, after what it would print."""
+    try:
+        act()
+    except SystemExit as end:
+        status = end.code
+    except BaseException:
+        traceback.print_exc()
+        status = 1
+    else:
+        status = 0
+    sys.stdout.flush()
+    sys.stderr.flush()
+    if status is None or isinstance(status, int):
+        return status or 0
+    os.write(2, f"{status}\n".encode())
+    return 1
+
+
+def _end_of(child: int, after: float | None) -> int:
     """Waits for the end of a process, and kills it after a time (s) if it has not come by then."""
     deadline = time.monotonic() + (after or 0.0)
     while after is not None and time.monotonic() < deadline:
@@ -53,4 +82,4 @@ def end_of(child: int, after: float | None) -> int:
 
 
 if __name__ == "__main__":
-    main()
+    serve()

@@ -17,8 +17,8 @@ def test_findings_are_written_for_a_code_host(argo, tmp_path: Path) -> None:
     assert run["results"][0]["ruleId"] == "il.unknown-object"
 
 
-def test_the_version_is_printed(argo) -> None:
-    assert argo("--version").stdout == f"argo {__version__}\n"
+def test_the_version_is_printed(argo_process) -> None:
+    assert argo_process("--version").stdout == f"argo {__version__}\n"
 
 
 def test_a_finding_is_not_announced_by_the_programs_name(argo, missions: Path, tmp_path) -> None:

@@ -57,11 +57,13 @@ def test_a_bad_script_is_refused(argo, tmp_path: Path, command, name, content, s
     assert not (tmp_path / "out.json").exists()
 
 
-def test_an_unknown_word_is_shown_in_its_line_with_what_was_expected(argo, tmp_path) -> None:
+def test_an_unknown_word_is_shown_in_its_line_with_what_was_expected(
+    argo_process, tmp_path
+) -> None:
     script = tmp_path / "script.txt"
     line = "2. Checkpoint #4: befriend the position of valve R25"
     script.write_text(SHEET + line + "\n")
-    result = argo("run", script)
+    result = argo_process("run", script)
     message = refused(result)
     assert f"{script}:8:19" in message
     assert line in result.stderr

@@ -3,7 +3,6 @@
 ARGO_KILLS=200 makes it a campaign.
 """
 
-import json
 import os
 import random
 import re
@@ -68,34 +67,12 @@ def navigator():
 
 
 @pytest.fixture(scope="module")
-def folder(tmp_path_factory):
+def folder(tmp_path_factory, argo):
     folder = tmp_path_factory.mktemp("killed")
     (folder / "yard.yaml").write_text(yaml.safe_dump(SITE), encoding="utf-8")
     write_mission(PLAN, folder / "plan.json")
+    argo.open(folder / "yard.yaml")
     return folder
-
-
-@pytest.fixture(scope="module")
-def server():
-    """Processes of `argo` that need no time to load."""
-    process = subprocess.Popen(
-        [sys.executable, "-m", "tests.e2e.forked_argo"],
-        cwd=ROOT,
-        stdin=subprocess.PIPE,
-        stdout=subprocess.PIPE,
-        text=True,
-    )
-    yield process
-    process.stdin.close()
-    assert process.wait(timeout=30) == 0
-    process.stdout.close()
-
-
-def run_and_kill(server, output: Path, arguments, after: float | None) -> int:
-    """Runs a command and kills it after a time (s); its exit status, -9 if it was killed."""
-    server.stdin.write(json.dumps([str(output), after, *map(str, arguments)]) + "\n")
-    server.stdin.flush()
-    return int(server.stdout.readline())
 
 
 def announced(output: Path) -> list[tuple[float, str, int, float]]:
@@ -127,7 +104,7 @@ def settings(seed: int) -> RunSettings:
 
 
 @pytest.mark.long
-def test_runs_that_are_killed_lose_nothing(server, folder, navigator, record_property) -> None:
+def test_runs_that_are_killed_lose_nothing(argo, folder, navigator, record_property) -> None:
     rng = random.Random(7)
     kills, done, silent, seeds = 0, 0, 0, count()
     while kills < KILLS:
@@ -144,7 +121,7 @@ def test_runs_that_are_killed_lose_nothing(server, folder, navigator, record_pro
             arguments = ("resume", journal) if journal.exists() else begin
             # The last processes of the last run may live as long as they like.
             after = rng.uniform(0.0, LONGEST) if kills < KILLS else None
-            status = run_and_kill(server, output, arguments, after)
+            status = argo.kill(*arguments, output=output, after=after)
             told += announced(output)
             if status == 0:
                 ended = True
@@ -162,7 +139,9 @@ def test_runs_that_are_killed_lose_nothing(server, folder, navigator, record_pro
     print(f"{kills} kills, {done} runs, {silent} processes that told nothing")
 
 
-def test_kill_and_resume_by_the_command(argo, folder: Path, tmp_path: Path, navigator) -> None:
+def test_kill_and_resume_by_the_command(
+    argo_process, folder: Path, tmp_path: Path, navigator
+) -> None:
     journal = tmp_path / "run.journal"
     begin = (
         "run", folder / "plan.json", "--site", folder / "yard.yaml", "--seed", 3,
@@ -180,10 +159,10 @@ def test_kill_and_resume_by_the_command(argo, folder: Path, tmp_path: Path, navi
             assert line, "it has ended without a reading"
             line = process.stderr.readline()
         process.send_signal(signal.SIGSTOP)
-        refused = argo("resume", journal)
+        refused = argo_process("resume", journal)
         process.kill()
     assert (refused.returncode, refused.stderr.count("in use")) == (2, 1)
-    result = argo("resume", journal, "--report", tmp_path / "report")
+    result = argo_process("resume", journal, "--report", tmp_path / "report")
     assert result.returncode == 0, result.stderr
     assert "The run goes on at" in result.stderr
     text = (tmp_path / "report" / "report.json").read_text(encoding="utf-8")
@@ -195,7 +174,7 @@ def test_kill_and_resume_by_the_command(argo, folder: Path, tmp_path: Path, navi
     reference = simulate(PLAN, navigator, settings=settings(3))
     require_complete(record, reference, told)
     assert len(record.resumed) == 1
-    again = argo("resume", journal, "--report", tmp_path / "again")
+    again = argo_process("resume", journal, "--report", tmp_path / "again")
     assert again.returncode == 0, again.stderr
     assert "had ended already" in again.stderr
     assert (tmp_path / "again" / "report.json").read_text(encoding="utf-8") == text

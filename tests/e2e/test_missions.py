@@ -12,10 +12,10 @@ from argo_env.run.record import RunRecord
 
 
 @pytest.fixture(scope="module")
-def first(argo, missions: Path, tmp_path_factory: pytest.TempPathFactory):
+def first(argo_process, missions: Path, tmp_path_factory: pytest.TempPathFactory):
     """Mission #1, run and reported once."""
     folder = tmp_path_factory.mktemp("first")
-    result = argo(
+    result = argo_process(
         "run", missions / "mission_1.txt", "--start-area", 1, "--end-area", 2, "--report", folder
     )
     return result, folder

@@ -3,10 +3,10 @@
 from collections.abc import Iterator, Sequence
 
 from argo_compiler.diagnostics import Diagnostic, Severity
-from argo_compiler.hfsm.model import RETURN_TASK
 from argo_compiler.hfsm.progress import ByHand, GroupProgress, Progress
 from argo_compiler.il import Action, Mission, OnFailure, Response
 from argo_compiler.il.grouping import group_ranges
+from argo_compiler.il.reserved import RETURN_TASK
 
 
 def hand_over(progress: Progress, by_hand: Sequence[ByHand]) -> Progress:

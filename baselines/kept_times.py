@@ -1,13 +1,11 @@
 """The travel times of the test sets' sites, kept so that test sets stay as they are.
 
-    python -m baselines.kept_times       # find those that are missing, and keep them
-
-A change of the navigator would change them; then the test sets would need new versions, and what
-was measured before could not be compared.
+`python -m baselines.keep_times` finds those that are missing, and keeps them. A change of
+the navigator would change them; then the test sets would need new versions, and what was measured
+before could not be compared.
 """
 
 import re
-import sys
 from functools import lru_cache
 from importlib import resources
 from pathlib import Path
@@ -31,8 +29,10 @@ def kept_times(scenario: str) -> SiteTimes | None:
         )
 
 
-def keep(scenario: str, folder: Path) -> None:
-    """Finds a site's travel times and writes them."""
+def keep_times(scenario: str) -> None:
+    """Finds a site's travel times and writes them to where they are kept, in a checkout."""
+    folder = Path(__file__).parent / _FOLDER
+    folder.mkdir(exist_ok=True)
     site = site_times(scenario)
     np.savez_compressed(
         folder / _file_name(scenario),
@@ -45,20 +45,3 @@ def keep(scenario: str, folder: Path) -> None:
 
 def _file_name(scenario: str) -> str:
     return re.sub(r"[^a-z0-9]+", "-", scenario.lower()) + ".npz"
-
-
-def main() -> None:
-    """Keeps the travel times of all sites of the test sets that are not kept yet."""
-    from baselines.families import TEST_SETS
-
-    folder = Path(__file__).parent / _FOLDER
-    folder.mkdir(exist_ok=True)
-    sites = {site for one in TEST_SETS.values() for site in one.family.sites} - {"random"}
-    for site in sorted(sites):
-        if kept_times(site) is None:
-            print(f"{site} …", file=sys.stderr, flush=True)
-            keep(site, folder)
-
-
-if __name__ == "__main__":
-    main()

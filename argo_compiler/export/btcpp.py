@@ -10,7 +10,6 @@ from collections.abc import Iterator
 from argo_compiler.diagnostics import Diagnostic
 from argo_compiler.export.registry import refusal, refuse
 from argo_compiler.export.xml import Attributes, XmlWriter, number
-from argo_compiler.hfsm.model import RETURN_TASK
 from argo_compiler.il import (
     Action,
     Condition,
@@ -22,6 +21,7 @@ from argo_compiler.il import (
     Task,
 )
 from argo_compiler.il.grouping import GroupRange, Layout
+from argo_compiler.il.reserved import RETURN_TASK
 from argo_compiler.model import Pose
 
 MAX_MSEC = 2**32 - 1

@@ -13,7 +13,6 @@ from argo_compiler.hfsm.model import (
     DONE,
     MISSION,
     RETURN,
-    RETURN_TASK,
     Composite,
     Hfsm,
     Leaf,
@@ -23,7 +22,6 @@ from argo_compiler.hfsm.model import (
     TransitionKind,
     group_id,
     reaction_id,
-    reaction_task_name,
     task_id,
 )
 from argo_compiler.hfsm.progress import Progress
@@ -39,6 +37,7 @@ from argo_compiler.il import (
     Task,
 )
 from argo_compiler.il.grouping import Layout
+from argo_compiler.il.reserved import RETURN_TASK, reaction_task_name
 
 
 def lower(mission: Mission, progress: Progress | None = None, source_name: str = "mission") -> Hfsm:

@@ -29,8 +29,6 @@ from pydantic import Field, model_validator
 from argo_compiler.diagnostics import Span
 from argo_compiler.hfsm.validation import validate
 from argo_compiler.il import Condition, Reaction, Stop, Task
-from argo_compiler.il.reserved import RETURN_TASK as RETURN_TASK
-from argo_compiler.il.reserved import reaction_task_name as reaction_task_name
 from argo_compiler.model import Model
 
 MISSION = "mission"

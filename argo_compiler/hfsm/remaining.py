@@ -5,9 +5,10 @@ from collections.abc import Iterator
 from itertools import count
 
 from argo_compiler.errors import ArgoError
-from argo_compiler.hfsm.model import DONE, RETURN, RETURN_TASK, Composite, Hfsm, Leaf, task_id
+from argo_compiler.hfsm.model import DONE, RETURN, Composite, Hfsm, Leaf, task_id
 from argo_compiler.hfsm.progress import GroupProgress, Progress
 from argo_compiler.hfsm.tables import GroupNode, LeafNode, Way, tables
+from argo_compiler.il.reserved import RETURN_TASK
 
 
 def remaining(hfsm: Hfsm, progress: Progress) -> Hfsm:

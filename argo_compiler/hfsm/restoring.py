@@ -4,7 +4,7 @@ from collections import deque
 from collections.abc import Mapping
 
 from argo_compiler.errors import ArgoError
-from argo_compiler.hfsm.model import RETURN, RETURN_TASK, task_id
+from argo_compiler.hfsm.model import RETURN, task_id
 from argo_compiler.hfsm.place import Frame, Place
 from argo_compiler.hfsm.progress import (
     ByHand,
@@ -18,6 +18,7 @@ from argo_compiler.hfsm.progress import (
 from argo_compiler.hfsm.reactions import Reactions
 from argo_compiler.hfsm.tables import GroupNode, LeafNode, ReactionNode, Tables
 from argo_compiler.il import EventKind, Response
+from argo_compiler.il.reserved import RETURN_TASK
 
 _OTHER = "use the mission that it was saved from, or match it to this one first"
 

@@ -13,7 +13,7 @@ from types import ModuleType
 ENVIRONMENTS: dict[str, dict[str, str]] = {
     "argo/Route-v0": {
         "entry_point": "argo_env.envs.route:RouteEnv",
-        "vector_entry_point": "argo_env.envs.route:RouteVectorEnv",
+        "vector_entry_point": "argo_env.envs.route_batch:RouteVectorEnv",
     },
     "argo/Drive-v0": {"entry_point": "argo_env.envs.drive:DriveEnv"},
     "argo/Inspect-v0": {"entry_point": "argo_env.envs.inspection:InspectEnv"},

@@ -19,7 +19,6 @@ from argo_env.envs.episode import (
 )
 from argo_env.envs.observations import Observation
 from argo_env.envs.rendering import Rendering, check_render_mode
-from argo_env.envs.route_batch import RouteVectorEnv
 from argo_env.envs.route_episodes import (
     FPS,
     Episodes,
@@ -29,8 +28,6 @@ from argo_env.envs.route_episodes import (
 )
 from argo_env.envs.route_instance import DOCK, evaluate
 from argo_env.envs.route_sources import RouteSource
-
-__all__ = ["RouteEnv", "RouteVectorEnv"]
 
 _NOTHING = np.zeros(1, np.int16)
 _STATE: Parts = {

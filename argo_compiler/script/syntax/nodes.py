@@ -14,15 +14,11 @@ from argo_compiler.script.syntax.commands import Command
 from argo_compiler.script.syntax.terms import (
     Coordinates,
     Duration,
-    Name,
     Node,
     Number,
-    Quantity,
     Reference,
     StepRef,
 )
-
-__all__ = ["Duration", "Name", "Node", "Number", "Quantity", "Reference"]
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

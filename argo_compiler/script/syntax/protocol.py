@@ -8,12 +8,13 @@ from itertools import islice
 from argo_compiler.script.syntax.clauses import Header, LineBuilder, Statement
 from argo_compiler.script.syntax.healing import MOST_ERRORS, Healed
 from argo_compiler.script.syntax.labels import PROTOCOL_LABELS, name_unknown_label
-from argo_compiler.script.syntax.nodes import AreaField, Hint, Node, Protocol, ProtocolStep
+from argo_compiler.script.syntax.nodes import AreaField, Hint, Protocol, ProtocolStep
 from argo_compiler.script.syntax.sentences import SentenceBuilder
 from argo_compiler.script.syntax.sheet import sheet_grammar
 from argo_compiler.script.syntax.sheet_rows import RowBuilder
 from argo_compiler.script.syntax.source import Findings, Source, Text, join
 from argo_compiler.script.syntax.statements import Grammar, load_grammar, parse_statement
+from argo_compiler.script.syntax.terms import Node
 
 FORMS = (
     "Mission Protocol #2",

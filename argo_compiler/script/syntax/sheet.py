@@ -14,9 +14,7 @@ from argo_compiler.diagnostics import Span
 from argo_compiler.script.syntax.healing import Healed
 from argo_compiler.script.syntax.nodes import (
     AreaField,
-    Duration,
     ModeField,
-    Node,
     OrderField,
     Sheet,
     SheetStep,
@@ -26,6 +24,7 @@ from argo_compiler.script.syntax.sheet_rows import Cell, Label, RowBuilder
 from argo_compiler.script.syntax.source import MAX_LINE, Findings, Source, Text, join
 from argo_compiler.script.syntax.spelling import most_alike, respell
 from argo_compiler.script.syntax.statements import Grammar, load_grammar, matches, parse_statement
+from argo_compiler.script.syntax.terms import Duration, Node
 
 FORMS = (
     "Mission's designation: Mission #1",

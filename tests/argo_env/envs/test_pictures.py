@@ -12,7 +12,8 @@ from PIL import ImageColor, ImageDraw
 from argo_env.envs.drawing.drive import GOAL
 from argo_env.envs.drive import DriveEnv
 from argo_env.envs.inspection import InspectEnv
-from argo_env.envs.route import RouteEnv, RouteVectorEnv
+from argo_env.envs.route import RouteEnv
+from argo_env.envs.route_batch import RouteVectorEnv
 from argo_env.envs.route_instance import make_instance
 from argo_env.pictures.drawing.floors import aisles, open_floors, plans_of
 from argo_env.pictures.drawing.plan import Marker, PlanDrawing, Station, draw_plan

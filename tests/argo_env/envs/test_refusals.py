@@ -15,7 +15,8 @@ from argo_env.envs import ENVIRONMENTS
 from argo_env.envs.drive import DriveEnv
 from argo_env.envs.inspection import InspectEnv
 from argo_env.envs.inspection_options import draw_faults
-from argo_env.envs.route import RouteEnv, RouteVectorEnv
+from argo_env.envs.route import RouteEnv
+from argo_env.envs.route_batch import RouteVectorEnv
 from argo_env.envs.sites import navigator_of
 from argo_env.faults.kinds import settle
 from argo_env.site import load_site

@@ -1,0 +1,93 @@
+"""How the packages hang together: one direction of imports, one home for each name."""
+
+import ast
+from pathlib import Path
+
+import pytest
+
+ROOT = Path(__file__).parents[1]
+KNOWS = {
+    "argo_compiler": set(),
+    "argo_env": {"argo_compiler"},
+    "argo_planner": {"argo_compiler", "argo_env"},
+    "baselines": {"argo_compiler", "argo_env"},
+}
+"""What each package may import of the others."""
+# Written into exported behaviours, and imported by FlexBE only.
+EXPORTED = ROOT / "argo_compiler" / "export" / "flexbe_states"
+
+
+def dotted(path):
+    parts = path.relative_to(ROOT).with_suffix("").parts
+    return ".".join(parts[:-1] if parts[-1] == "__init__" else parts)
+
+
+TREES = {
+    dotted(path): ast.parse(path.read_text(encoding="utf-8"))
+    for package in KNOWS
+    for path in sorted((ROOT / package).rglob("*.py"))
+    if EXPORTED not in path.parents
+}
+PACKAGES = {dotted(path) for package in KNOWS for path in (ROOT / package).rglob("__init__.py")}
+
+
+def imports_of(module):
+    """The modules of the project that a module imports, wherever in it."""
+    found = set()
+    for node in ast.walk(TREES[module]):
+        if isinstance(node, ast.ImportFrom):
+            assert node.level == 0, f"{module} imports relatively"
+            for alias in node.names:
+                full = f"{node.module}.{alias.name}"
+                found.add(full if full in TREES else node.module)
+        elif isinstance(node, ast.Import):
+            found.update(alias.name for alias in node.names)
+    return (found & set(TREES)) - {module}
+
+
+@pytest.mark.parametrize("package", KNOWS)
+def test_packages_import_in_one_direction(package):
+    imported = {
+        (module, other)
+        for module in TREES
+        if module.split(".")[0] == package
+        for other in imports_of(module)
+        if other.split(".")[0] not in {package, *KNOWS[package]}
+    }
+    assert not imported
+
+
+def imported_into(module):
+    """The names that a module has from other modules of the project."""
+    return {
+        alias.name
+        for node in ast.walk(TREES[module])
+        if isinstance(node, ast.ImportFrom) and node.module in TREES
+        for alias in node.names
+        if f"{node.module}.{alias.name}" not in TREES
+    }
+
+
+@pytest.mark.parametrize("package", KNOWS)
+def test_names_are_imported_from_their_home_or_from_the_package_that_offers_them(package):
+    strays = [
+        f"{module} imports {alias.name} from {node.module}, which has it from elsewhere"
+        for module in TREES
+        if module.split(".")[0] == package
+        for node in ast.walk(TREES[module])
+        if isinstance(node, ast.ImportFrom) and node.module in set(TREES) - PACKAGES
+        for alias in node.names
+        if alias.name in imported_into(node.module)
+    ]
+    assert not strays
+
+
+def test_only_packages_offer_what_they_import():
+    offered = {
+        (module, name)
+        for module in set(TREES) - PACKAGES
+        for node in TREES[module].body
+        if isinstance(node, ast.Assign) and ast.unparse(node.targets[0]) == "__all__"
+        for name in set(ast.literal_eval(node.value)) & imported_into(module)
+    }
+    assert not offered

@@ -18,7 +18,7 @@ def match(progress: Progress, mission: Mission) -> tuple[Progress | None, tuple[
     """The progress as that of a mission that was edited since, by the names of tasks and groups.
 
     The mission is one that `check` finds no error in. None where it can't go on without a decision:
-    then a finding is an error.
+    then a diagnostic is an error.
     """
     if progress.outcome is not None:
         return progress, ()
@@ -32,7 +32,7 @@ def match(progress: Progress, mission: Mission) -> tuple[Progress | None, tuple[
     return matched, (*of_groups, *of_done, *of_reactions)
 
 
-def _finding(
+def _diagnostic(
     code: str, message: str, hint: str, severity: Severity = Severity.WARNING
 ) -> Diagnostic:
     return Diagnostic(code=f"handover.{code}", severity=severity, message=message, hint=hint)
@@ -44,7 +44,7 @@ def _active(progress: Progress, mission: Mission) -> Iterator[Diagnostic]:
         return
     if name == RETURN_TASK:
         if all(task.on_failure is not OnFailure.RETURN for task in mission.tasks):
-            yield _finding(
+            yield _diagnostic(
                 "no-return",
                 "the robot is on its way back to the dock after a failure, but no task of the plan "
                 "returns when it has failed",
@@ -54,7 +54,7 @@ def _active(progress: Progress, mission: Mission) -> Iterator[Diagnostic]:
         return
     task = mission.task(name)
     if task is None or task.action is Action.START:
-        yield _finding(
+        yield _diagnostic(
             "task-gone",
             f"the mission stands at task '{name}', which the plan does not have any more",
             "put a task of that name back, or set `active` in the progress to the task that the "
@@ -72,8 +72,8 @@ def _groups(
         r.group.name for r in group_ranges(mission) if position is not None and r.contains(position)
     ]
     known = {p.group: p for p in progress.groups}
-    findings = [
-        _finding(
+    diagnostics = [
+        _diagnostic(
             "new-group",
             f"group '{name}' is new around task '{progress.active}': it begins in round 1, with "
             "its clock at 0",
@@ -82,8 +82,8 @@ def _groups(
         for name in around
         if name not in known
     ]
-    findings += [
-        _finding(
+    diagnostics += [
+        _diagnostic(
             "group-gone",
             f"group '{name}' is not around task '{progress.active}' any more: its round "
             f"{p.round} and its clock are dropped",
@@ -93,16 +93,16 @@ def _groups(
         if name not in around
     ]
     groups = (known.get(name) or GroupProgress(group=name, round=1, elapsed=0) for name in around)
-    return tuple(groups), findings
+    return tuple(groups), diagnostics
 
 
 def _by_hand(progress: Progress, mission: Mission) -> tuple[tuple[ByHand, ...], list[Diagnostic]]:
     actions = {t.name: t.action for t in mission.tasks if t.action is not Action.START}
-    kept, findings = [], []
+    kept, diagnostics = [], []
     for done in progress.by_hand:
         if done.task not in actions:
-            findings.append(
-                _finding(
+            diagnostics.append(
+                _diagnostic(
                     "by-hand-gone",
                     f"task '{done.task}' was done by hand, but the plan does not have it",
                     "put it back into the plan if it is to count",
@@ -111,21 +111,21 @@ def _by_hand(progress: Progress, mission: Mission) -> tuple[tuple[ByHand, ...], 
             continue
         kept.append(done)
         if done.value is not None and actions[done.task] is not Action.MEASURE:
-            findings.append(
-                _finding(
+            diagnostics.append(
+                _diagnostic(
                     "by-hand-value",
                     f"a value was given for task '{done.task}', which measures nothing",
                     "leave the value out, or give it for the task that measures it",
                 )
             )
-    return tuple(kept), findings
+    return tuple(kept), diagnostics
 
 
 def _reactions(progress: Progress, mission: Mission) -> tuple[Progress, tuple[Diagnostic, ...]]:
     answered = {r.event for r in mission.reactions if r.response is not Response.REPORT}
     begun = answered - {r.event for r in mission.reactions if r.response is Response.ABORT}
-    findings = [
-        _finding(
+    diagnostics = [
+        _diagnostic(
             "reaction-gone",
             f"the plan does not react to {w.event} any more, which waited for its turn",
             "put the reaction back into the plan if it is to be carried out",
@@ -138,8 +138,8 @@ def _reactions(progress: Progress, mission: Mission) -> tuple[Progress, tuple[Di
     }
     active = progress.reaction
     if active is not None and active.event not in begun:
-        findings.append(
-            _finding(
+        diagnostics.append(
+            _diagnostic(
                 "reaction-gone",
                 f"the mission was interrupted by {active.event}, for which the plan has no such "
                 "reaction any more: it is paused",
@@ -147,4 +147,4 @@ def _reactions(progress: Progress, mission: Mission) -> tuple[Progress, tuple[Di
             )
         )
         update |= {"reaction": None, "paused": True}
-    return progress.model_copy(update=update), tuple(findings)
+    return progress.model_copy(update=update), tuple(diagnostics)

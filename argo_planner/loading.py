@@ -52,13 +52,13 @@ class Loaded:
     file: MissionFile | Script | None
     """None: a bag or another tool's file, whose lines say nothing to people"""
 
-    def placed(self, findings: Iterable[Diagnostic]) -> tuple[Diagnostic, ...]:
-        """Findings about the mission, with the lines of the file that they point at."""
+    def placed(self, diagnostics: Iterable[Diagnostic]) -> tuple[Diagnostic, ...]:
+        """Diagnostics about the mission, with the lines of the file that they point at."""
         if self.file is None:
-            return tuple(f.model_copy(update={"span": None}) for f in findings)
+            return tuple(f.model_copy(update={"span": None}) for f in diagnostics)
         if isinstance(self.file, Script):
-            return with_excerpts(findings, self.file.lines)
-        return self.file.placed(findings)
+            return with_excerpts(diagnostics, self.file.lines)
+        return self.file.placed(diagnostics)
 
 
 def load_source(
@@ -92,11 +92,11 @@ def load_mission(
     """
     catalog = make_catalog(navigator)
     loaded = load_source(source, catalog, start_area, end_area)
-    findings = by_place((*loaded.diagnostics, *loaded.placed(check(loaded.mission, catalog))))
-    if has_errors(findings):
-        raise DiagnosticError(str(source), findings)
-    if findings:
-        print(to_text(findings, str(source)), file=sys.stderr)
+    diagnostics = by_place((*loaded.diagnostics, *loaded.placed(check(loaded.mission, catalog))))
+    if has_errors(diagnostics):
+        raise DiagnosticError(str(source), diagnostics)
+    if diagnostics:
+        print(to_text(diagnostics, str(source)), file=sys.stderr)
     return loaded.mission, loaded.diagnostics
 
 

@@ -13,7 +13,7 @@ from argo_compiler.route.robust_sampling import Draws, completion
 from argo_compiler.route.robust_spread import TravelSpread
 from argo_env.formatting import clock
 from argo_env.seeding import generator
-from argo_planner.route_pauses import Pause, pauses
+from argo_planner.route_pauses import TourPause, pauses
 from argo_planner.routing import Suggested
 
 _SAMPLES = 10_000  # of a mission, to tell how probable it is that it is in time
@@ -128,7 +128,7 @@ def _unreached(found: Suggested) -> Iterator[tuple[str, list[int]]]:
             yield one.name, late
 
 
-def _pause(found: Suggested, pause: Pause) -> str:
+def _pause(found: Suggested, pause: TourPause) -> str:
     how_long = clock(found.seconds(pause.duration))
     if pause.charger is not None:
         return f"charge {how_long} at {found.planned.problem.chargers[pause.charger]}"

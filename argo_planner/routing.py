@@ -11,11 +11,11 @@ from argo_compiler.diagnostics import DiagnosticError
 from argo_compiler.errors import ArgoError
 from argo_compiler.il import Mission
 from argo_compiler.reorder.mission import MissionRoute
+from argo_compiler.reorder.precedences import require_known
 from argo_compiler.reorder.requirements import Requirements
 from argo_compiler.reorder.rewriting import apply_route
-from argo_compiler.reorder.rules import require_known
 from argo_compiler.route.evaluation import Evaluation, evaluate
-from argo_compiler.route.problem import NEVER, Route, RouteProblem
+from argo_compiler.route.problem import NEVER, RouteProblem, Tour
 from argo_compiler.route.robust import suggest_robust_route
 from argo_compiler.route.robust_spread import TravelSpread
 from argo_compiler.route.suggest import suggest_route
@@ -45,7 +45,7 @@ class Suggested:
         return evaluate(self.planned.problem, self.planned.written)
 
     @property
-    def route(self) -> Route:
+    def route(self) -> Tour:
         """Raises ArgoError, in the mission's words, where there is no order."""
         if self.suggestion.route is None:
             raise ArgoError(why_none(self) or "there is no order")
@@ -182,10 +182,10 @@ def why_none(found: Suggested) -> str | None:
 
 def _why_no_route(found: Suggested) -> str:
     suggestion, problem = found.suggestion, found.planned.problem
-    if len(suggestion.clash) == 1:
-        text = f"this can't be met: {suggestion.clash[0]}"
-    elif suggestion.clash:
-        lines = [f"  - {words}" for words in suggestion.clash]
+    if len(suggestion.infeasible_subset) == 1:
+        text = f"this can't be met: {suggestion.infeasible_subset[0]}"
+    elif suggestion.infeasible_subset:
+        lines = [f"  - {words}" for words in suggestion.infeasible_subset]
         text = "\n".join(
             ["no order meets all of this, though it would without any one of it:", *lines]
         )
@@ -226,7 +226,7 @@ def _why_empty(found: Suggested) -> str:
     limit = problem.words.get("max_duration", "what is asked for")
     group = {visit: one for one in problem.rounds for visit in one.members}
     alone = [
-        Route(group[visit].members if visit in group else (visit,)) for visit in range(problem.size)
+        Tour(group[visit].members if visit in group else (visit,)) for visit in range(problem.size)
     ]
     free = replace(problem, max_duration=None)
     worth = [(evaluate(free, route), route.order[0]) for route in alone]

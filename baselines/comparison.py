@@ -5,10 +5,10 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from baselines.episodes import Outcome
+from baselines.episodes import EpisodeOutcome
 from baselines.families import InstanceSet
-from baselines.intervals import Bootstrap, Interval
-from baselines.references import Reference
+from baselines.intervals import Bootstrap, ConfidenceInterval
+from baselines.references import BestKnown
 
 
 @dataclass(frozen=True)
@@ -16,21 +16,21 @@ class Row:
     """A policy on a test set."""
 
     policy: str
-    prize: Interval
-    gap: Interval
+    prize: ConfidenceInterval
+    gap: ConfidenceInterval
     """share of the best routes' prize that it did not win"""
-    behind: Interval
+    behind: ConfidenceInterval
     """by how much its prize is below that of the policy with the highest mean"""
-    time: Interval
+    time: ConfidenceInterval
     """s until the robot is docked"""
-    feasible: Interval
+    feasible: ConfidenceInterval
     """share of the routes"""
-    thinking: Interval
+    thinking: ConfidenceInterval
     """s for a decision, preparation included"""
 
 
 @dataclass(frozen=True)
-class Comparison:
+class PolicyComparison:
     """Policies on the first instances of a test set."""
 
     test_set: str
@@ -40,17 +40,17 @@ class Comparison:
     proven: int
     """for how many of them the best route is proven to be that"""
     rows: tuple[Row, ...]
-    outcomes: dict[str, tuple[Outcome, ...]]
+    outcomes: dict[str, tuple[EpisodeOutcome, ...]]
     """by policy"""
-    best: tuple[Reference, ...]
+    best: tuple[BestKnown, ...]
 
 
 def compare(
     tests: InstanceSet,
-    outcomes: dict[str, tuple[Outcome, ...]],
-    best: Sequence[Reference],
+    outcomes: dict[str, tuple[EpisodeOutcome, ...]],
+    best: Sequence[BestKnown],
     seed: int,
-) -> Comparison:
+) -> PolicyComparison:
     """The figures of policies on the same instances of a test set, whose best routes are given."""
     count = len(best)
     bootstrap = Bootstrap(count, seed)
@@ -72,6 +72,6 @@ def compare(
             )
         )
     proven = sum(reference.proven for reference in best)
-    return Comparison(
+    return PolicyComparison(
         tests.name, tests.checksum(count), count, proven, tuple(rows), outcomes, tuple(best)
     )

@@ -15,7 +15,7 @@ Clock = Callable[[], float]
 
 
 @dataclass(frozen=True)
-class Outcome:
+class EpisodeOutcome:
     """What a policy did on one instance."""
 
     instance: int
@@ -37,7 +37,7 @@ def play(
     instances: int,
     seed: int = 0,
     clock: Clock = time.perf_counter,
-) -> Iterator[Outcome]:
+) -> Iterator[EpisodeOutcome]:
     """The outcomes of a policy on the first instances of a test set, one after the other.
 
     Raises ArgoError if the policy's action is no node.
@@ -47,7 +47,7 @@ def play(
         yield _drive(policy, env, number, seed, clock)
 
 
-def _drive(policy: Policy, env: RouteEnv, number: int, seed: int, clock: Clock) -> Outcome:
+def _drive(policy: Policy, env: RouteEnv, number: int, seed: int, clock: Clock) -> EpisodeOutcome:
     observation, _ = env.reset(options={"instance": number})
     begun = clock()
     policy.begin(observation, env.instance.budget, seed)
@@ -66,4 +66,4 @@ def _drive(policy: Policy, env: RouteEnv, number: int, seed: int, clock: Clock) 
         total += reward
         illegal = illegal or info["illegal"]
     feasible = not illegal and not info.get("late", False)
-    return Outcome(number, total, info["time"], feasible, len(route), seconds, tuple(route))
+    return EpisodeOutcome(number, total, info["time"], feasible, len(route), seconds, tuple(route))

@@ -21,10 +21,10 @@ from rich.table import Table
 
 from argo_compiler.errors import ArgoError
 from argo_env.files.folders import make_folder
-from baselines.comparison import Comparison, compare
+from baselines.comparison import PolicyComparison, compare
 from baselines.episodes import play
 from baselines.families import TEST_SETS, find_set
-from baselines.intervals import Interval
+from baselines.intervals import ConfidenceInterval
 from baselines.policy import POLICIES, make_policy
 from baselines.references import references
 
@@ -35,7 +35,7 @@ _WIDTH = 150  # characters of a table that goes to a file
 COLUMNS = ("policy", "prize", "gap %", "behind the best", "docked after s", "feasible %", "ms/act")
 
 
-def title(comparison: Comparison) -> str:
+def title(comparison: PolicyComparison) -> str:
     """What is compared."""
     return (
         f"{comparison.test_set}: {comparison.instances} instances, the best route proven for "
@@ -43,7 +43,7 @@ def title(comparison: Comparison) -> str:
     )
 
 
-def lines(comparison: Comparison) -> list[tuple[str, ...]]:
+def lines(comparison: PolicyComparison) -> list[tuple[str, ...]]:
     """What is printed of each policy, the best first."""
     return [
         (
@@ -59,13 +59,13 @@ def lines(comparison: Comparison) -> list[tuple[str, ...]]:
     ]
 
 
-def _said(interval: Interval, scale: float, digits: int) -> str:
+def _said(interval: ConfidenceInterval, scale: float, digits: int) -> str:
     numbers = (interval.value, interval.low, interval.high)
     value, low, high = (f"{round(scale * n, digits) + 0.0:.{digits}f}" for n in numbers)
     return value if low == high else f"{value} [{low}, {high}]"
 
 
-def table(comparison: Comparison) -> Table:
+def table(comparison: PolicyComparison) -> Table:
     """The comparison as it is printed."""
     caption = "in brackets: 95 % intervals, bootstrap over instances, paired"
     made = Table(title=title(comparison), caption=caption)
@@ -76,14 +76,14 @@ def table(comparison: Comparison) -> Table:
     return made
 
 
-def markdown(comparison: Comparison) -> str:
+def markdown(comparison: PolicyComparison) -> str:
     """The same as a table in Markdown."""
     rows = [COLUMNS, ("---",) * len(COLUMNS), *lines(comparison)]
     text = "".join(f"| {' | '.join(row)} |\n" for row in rows)
     return f"{title(comparison)}\n\n{text}"
 
 
-def write(comparisons: Sequence[Comparison], folder: Path) -> None:
+def write(comparisons: Sequence[PolicyComparison], folder: Path) -> None:
     """Writes `results.json` with everything, `results.csv` with a line for each route, and
     `results.md` with what is printed."""
     make_folder(folder)

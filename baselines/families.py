@@ -31,7 +31,7 @@ the ways of each take a quarter of a minute to find."""
 
 
 @dataclass(frozen=True)
-class Family:
+class InstanceFamily:
     """Instances of one kind."""
 
     checkpoints: int = 20
@@ -92,7 +92,7 @@ class InstanceSet:
 
     name: str
     """with its version at the end"""
-    family: Family
+    family: InstanceFamily
     numbers: range = TEST
 
     def checksum(self, instances: int | None = None) -> str:
@@ -118,13 +118,13 @@ _NOISE = RouteNoise(failing=0.2, blocked=2)
 TEST_SETS = {
     one.name: one
     for one in (
-        InstanceSet("random-20-v1", Family()),
-        InstanceSet("random-40-v1", Family(40)),
-        InstanceSet("ordered-20-v1", Family(precedence=0.8)),
-        InstanceSet("umad-20-v1", Family(sites=("umad",))),
-        InstanceSet("generated-40-v1", Family(40, UNSEEN_SITES)),
-        InstanceSet("noisy-20-v1", Family(noise=_NOISE)),
-        InstanceSet("noisy-40-v1", Family(40, noise=_NOISE)),
+        InstanceSet("random-20-v1", InstanceFamily()),
+        InstanceSet("random-40-v1", InstanceFamily(40)),
+        InstanceSet("ordered-20-v1", InstanceFamily(precedence=0.8)),
+        InstanceSet("umad-20-v1", InstanceFamily(sites=("umad",))),
+        InstanceSet("generated-40-v1", InstanceFamily(40, UNSEEN_SITES)),
+        InstanceSet("noisy-20-v1", InstanceFamily(noise=_NOISE)),
+        InstanceSet("noisy-40-v1", InstanceFamily(40, noise=_NOISE)),
     )
 }
 """By name. A set that is to be different gets a new version, and the old one stays."""

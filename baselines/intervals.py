@@ -12,7 +12,7 @@ _LEVEL = 0.95
 
 
 @dataclass(frozen=True)
-class Interval:
+class ConfidenceInterval:
     """An estimate with its 95 % confidence interval."""
 
     value: float
@@ -33,16 +33,16 @@ class Bootstrap:
         # How often each instance is drawn, shape (resamples, instances).
         self._weights = np.apply_along_axis(np.bincount, 1, draws, minlength=instances)
 
-    def mean(self, values: NDArray[np.float64]) -> Interval:
+    def mean(self, values: NDArray[np.float64]) -> ConfidenceInterval:
         """Of one value an instance."""
         return self.ratio(values, np.ones(len(values)))
 
-    def ratio(self, values: NDArray[np.float64], to: NDArray[np.float64]) -> Interval:
+    def ratio(self, values: NDArray[np.float64], to: NDArray[np.float64]) -> ConfidenceInterval:
         """Of the sum of one to the sum of the other; 0 where that is 0."""
         whole = self._share(values.sum(keepdims=True), to.sum(keepdims=True))
         drawn = self._share(self._weights @ values, self._weights @ to)
         low, high = np.quantile(drawn, [(1 - _LEVEL) / 2, (1 + _LEVEL) / 2])
-        return Interval(float(whole[0]), float(low), float(high))
+        return ConfidenceInterval(float(whole[0]), float(low), float(high))
 
     @staticmethod
     def _share(a: NDArray[np.float64], b: NDArray[np.float64]) -> NDArray[np.float64]:

@@ -7,7 +7,7 @@ from argo_env.envs.route_instance import DOCK
 from baselines.policy import Policy
 
 
-class Planned(Policy):
+class PlannedPolicy(Policy):
     """Plans at the beginning; with `again` also whenever what is seen is not what was planned for:
     a reading failed, or travel times have changed. Holds the plan of the present episode."""
 

@@ -2,14 +2,14 @@
 
 from argo_compiler.route import suggest_route
 from argo_env.envs.observations import Observation
-from baselines.planned import Planned
+from baselines.planned import PlannedPolicy
 from baselines.problem import problem_of
 
 TIME_LIMIT = 5.0
 """s for a plan"""
 
 
-class Portfolio(Planned):
+class Portfolio(PlannedPolicy):
     """Drives the best route that is found at the beginning, whatever happens on the way. What has
     become illegal is left out."""
 

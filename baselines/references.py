@@ -30,7 +30,7 @@ Known = tuple[int, int]
 
 
 @dataclass(frozen=True)
-class Reference:
+class BestKnown:
     """What is known of the best route on one instance."""
 
     prize: float
@@ -44,7 +44,7 @@ class Reference:
 
 
 @lru_cache(maxsize=16)
-def references(name: str) -> tuple[Reference, ...]:
+def references(name: str) -> tuple[BestKnown, ...]:
     """Those of the test set of that name, in the order of its numbers.
 
     Raises ArgoError if there are none, or they are not those of the test set as it is now.
@@ -62,7 +62,7 @@ def references(name: str) -> tuple[Reference, ...]:
             f"{tests.checksum()}, not {data['checksum']}): give the changed set another version"
         )
     return tuple(
-        Reference(round(prize * HUNDREDTH, 2), round(bound * HUNDREDTH, 2))
+        BestKnown(round(prize * HUNDREDTH, 2), round(bound * HUNDREDTH, 2))
         for prize, bound in data["instances"]
     )
 

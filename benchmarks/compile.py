@@ -47,7 +47,7 @@ from argo_compiler.catalog import (
 from argo_compiler.hfsm import Executor, lower
 from argo_compiler.model import Pose
 from argo_compiler.script import catalog_words, parse
-from argo_compiler.script.resolve.importing import importing as resolve
+from argo_compiler.script.resolve.importing import resolve
 
 SIZES = (1_000, 10_000, 30_000, 100_000)
 PEER_LIMIT = 1_000

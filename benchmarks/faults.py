@@ -27,7 +27,7 @@ from argo_compiler.hfsm import Resume
 from argo_compiler.il import Action, EventKind, Mission, Task, Transition
 from argo_compiler.script import import_script, read_script
 from argo_env.faults.reading import read_faults
-from argo_env.faults.way import Brick
+from argo_env.faults.walkway import Brick
 from argo_env.files import resources
 from argo_env.navigation import Navigator
 from argo_env.planning.catalog import make_catalog

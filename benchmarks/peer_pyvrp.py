@@ -13,7 +13,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from argo_compiler.errors import ArgoError
-from argo_compiler.route import Objective, Route, RouteProblem
+from argo_compiler.route import Objective, RouteProblem, Tour
 
 _LATEST = 1 << 40
 _FAR = 1 << 30
@@ -33,7 +33,7 @@ def why_not(problem: RouteProblem) -> str | None:
     return None
 
 
-def search(problem: RouteProblem, time_limit: float, seed: int) -> Route | None:
+def search(problem: RouteProblem, time_limit: float, seed: int) -> Tour | None:
     """The best route that PyVRP finds in that time (s); None: it has found none.
 
     Raises ArgoError if PyVRP is not installed or can't state the problem.
@@ -87,7 +87,7 @@ def search(problem: RouteProblem, time_limit: float, seed: int) -> Route | None:
         best = pyvrp.solve(data, MaxRuntime(time_limit), seed, collect_stats=False).best
     if not best.is_feasible():
         return None
-    return Route(tuple(a.idx for route in best.routes() for a in route if a.is_client()))
+    return Tour(tuple(a.idx for route in best.routes() for a in route if a.is_client()))
 
 
 def _times(problem: RouteProblem) -> NDArray[np.int64]:

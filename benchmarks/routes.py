@@ -30,7 +30,7 @@ from itertools import groupby
 from pathlib import Path
 
 from argo_compiler.errors import ArgoError
-from argo_compiler.route import Route, evaluate
+from argo_compiler.route import Tour, evaluate
 from argo_compiler.route.suggest import suggest_route
 from benchmarks import peer_pyvrp
 from benchmarks.instances import Kind, NamedProblem, read_known_route, read_route_problem
@@ -156,7 +156,7 @@ def measure(path: Path, time_limit: float, workers: int, seed: int, peers: bool)
     )  # fmt: skip
 
 
-def _worth(named: NamedProblem, route: Route) -> tuple[float, str | None]:
+def _worth(named: NamedProblem, route: Tour) -> tuple[float, str | None]:
     """The value of a route as the file counts, and what it does not keep to."""
     evaluation = evaluate(named.problem, route)
     value = named.value(evaluation.prize, evaluation.cost(named.problem.objective))

@@ -11,7 +11,7 @@ from itertools import permutations
 
 import numpy as np
 
-from argo_compiler.route import Route, RouteProblem, Visit, evaluate
+from argo_compiler.route import RouteProblem, Tour, Visit, evaluate
 from argo_compiler.route.robust import RobustSuggestion, suggest_robust_route
 from argo_compiler.route.robust_sampling import Draws, completion
 from argo_compiler.route.robust_spread import CAUTIOUS
@@ -62,7 +62,7 @@ def compare_with_all_orders() -> None:
             completion(problem, route, draws).probability
             for route in (found.nominal.route, found.route)
         )
-        every = [completion(problem, Route(o), draws) for o in permutations(range(VISITS))]
+        every = [completion(problem, Tour(o), draws) for o in permutations(range(VISITS))]
         gained.append(sure - usual)
         missed.append(max(one.probability for one in every) - sure)
     print(f"{PROBLEMS} problems of {VISITS} visits that all have to be made, in percentage points:")

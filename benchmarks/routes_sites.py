@@ -15,7 +15,7 @@ from numpy.typing import NDArray
 
 from argo_compiler.route import (
     NEVER,
-    Battery,
+    EnergyBudget,
     Objective,
     Precedence,
     Round,
@@ -82,7 +82,7 @@ def mission(rng: np.random.Generator, site: SiteMatrix, most: int = 20) -> Route
     battery = None
     if charged:
         energy = np.where(travel >= NEVER, 0, travel // 3 + 10)
-        battery = Battery(energy, int(rng.uniform(0.3, 1.2) * hop * n / 3) + 2 * hop, hop, 100)
+        battery = EnergyBudget(energy, int(rng.uniform(0.3, 1.2) * hop * n / 3) + 2 * hop, hop, 100)
     limit = int(rng.uniform(0.3, 1.0) * hop * n) + 6 * hop if selective else None
     return RouteProblem(
         tuple(visits),
@@ -175,7 +175,7 @@ class Row:
 
 
 def timed(problem: RouteProblem, time_limit: float) -> Row:
-    """The suggestion for a problem, without the search for a clash."""
+    """The suggestion for a problem, without the search for an infeasible subset."""
     begun = time.perf_counter()
     made = suggest_route(problem, time_limit, explain=False)
     return Row(time.perf_counter() - begun, mixture(problem), problem.size, made)

@@ -17,7 +17,7 @@ from argo_compiler.il import EventKind
 from argo_compiler.model import Pose
 from argo_env.drives.drive import DriveStatus
 from argo_env.drives.kinematic import KinematicDrive
-from argo_env.faults.way import BlockedStairs, Brick, MissingPlate
+from argo_env.faults.walkway import BlockedStairs, Brick, MissingPlate
 from argo_env.navigation import Navigator
 from argo_env.robot.pose import BodyPose
 from argo_env.robot.spec import load_robot
@@ -25,7 +25,7 @@ from argo_env.seeding import generator
 from argo_env.sensing.signals import standard_watches
 from argo_env.sensing.signals.frames import NOSE, on_site
 from argo_env.sensing.signals.microphone import pump_places
-from argo_env.sensing.watch import Finding
+from argo_env.sensing.watch import Detection
 from argo_env.site import Site, load_site
 from argo_env.site.shapes import Box, Cylinder, Role, Solid, Vector
 from argo_env.surroundings import Alarm, GasLeak, HotSpot, PumpFault, PumpSound, Surroundings
@@ -69,9 +69,9 @@ def drives(navigator: Navigator, world: World, count: int, duration: float) -> I
         yield track
 
 
-def findings(
+def detections(
     world: World, around: Surroundings, track: Track, seed: int, names: Sequence[str]
-) -> Iterator[tuple[float, BodyPose, Finding]]:
+) -> Iterator[tuple[float, BodyPose, Detection]]:
     """What the watches of these names find along the track."""
     watches = [w for w in standard_watches(world, around, seed) if w.name in names]
     due = dict.fromkeys(names, track[0][0])
@@ -79,8 +79,8 @@ def findings(
         for watch in watches:
             if now >= due[watch.name] - 1e-6:
                 due[watch.name] += watch.period
-                for finding in watch.look(now, pose):
-                    yield now, pose, finding
+                for detection in watch.look(now, pose):
+                    yield now, pose, detection
 
 
 EVERYTHING = ("gas", "heat", "pumps", "alarm", "terrain")
@@ -94,9 +94,9 @@ def false_alarms(world: World, tracks: Sequence[Track], missions: int) -> None:
         track = tracks[mission % len(tracks)]
         seconds += track[-1][0]
         around = Surroundings(world.site)
-        for now, pose, finding in findings(world, around, track, 1000 + mission, EVERYTHING):
+        for now, pose, detection in detections(world, around, track, 1000 + mission, EVERYTHING):
             count += 1
-            print(f"  false alarm in mission {mission} at {now} s, {pose}: {finding}")
+            print(f"  false alarm in mission {mission} at {now} s, {pose}: {detection}")
     cost += time.process_time()
     print(f"false alarms: {count} in {missions} clean missions, {seconds:.0f} s of looks")
     print(f"cost of all looks: {1000 * cost / seconds:.2f} ms of processor time a simulated second")
@@ -159,11 +159,11 @@ def obstacle(kind: str, site: Site, tracks: Sequence[Track], number: int) -> Fou
         math.cos(pose.yaw) * (pose.x - before.x) + math.sin(pose.yaw) * (pose.y - before.y) < 0
     )
     with World(site, load_robot(), elements=fault.changed(site)) as world:
-        for _, at, finding in findings(world, Surroundings(site), way, number, ("terrain",)):
-            right = (finding.kind is EventKind.POSITIVE_OBSTACLE) == (kind == "brick")
-            if finding.place is None or not right:
+        for _, at, detection in detections(world, Surroundings(site), way, number, ("terrain",)):
+            right = (detection.kind is EventKind.POSITIVE_OBSTACLE) == (kind == "brick")
+            if detection.place is None or not right:
                 return Found(True)
-            off = math.hypot(finding.place[0] - x, finding.place[1] - y)
+            off = math.hypot(detection.place[0] - x, detection.place[1] - y)
             return Found(True, {"m ahead": gap(at, corners, backwards), "m off": off})
     return Found(True)
 
@@ -189,7 +189,7 @@ def blocked_stairs(site: Site, tracks: Sequence[Track], number: int) -> Found:
             s for e in fault.changed(site) if e.name.startswith("barrier") for s in e.solids
         ]
         start = max(0, moment - 900)
-        for _, at, finding in findings(
+        for _, at, detection in detections(
             world, Surroundings(site), track[start : moment + 1], number, ("terrain",)
         ):
             apart = min(
@@ -198,7 +198,7 @@ def blocked_stairs(site: Site, tracks: Sequence[Track], number: int) -> Found:
                 if abs(b.center[2] - at.z) < 1.5
                 for x, y in np.linspace(*_ends(b), 10)
             )
-            if finding.kind is EventKind.POSITIVE_OBSTACLE:
+            if detection.kind is EventKind.POSITIVE_OBSTACLE:
                 return Found(True, {"m ahead": apart - 0.55})
     return Found(True)
 
@@ -251,8 +251,10 @@ def source(
     for part, pairs in ((0, track[: round(since / STEP)]), (1, track[round(since / STEP) :])):
         if part:
             around.add(made, since)
-        for now, pose, finding in findings(world, around, pairs, number, (name,)) if pairs else ():
-            if finding.kind is not kind or not part:
+        for now, pose, detection in (
+            detections(world, around, pairs, number, (name,)) if pairs else ()
+        ):
+            if detection.kind is not kind or not part:
                 return Found(True)
             figures = {"s after": now - since} if isinstance(made, Alarm) else {}
             if isinstance(made, GasLeak | HotSpot):
@@ -260,9 +262,9 @@ def source(
             if isinstance(made, PumpSound):
                 place = pump_places(world.site)[made.pump]
                 figures["m away"] = math.dist(on_site(pose, NOSE).tolist(), place)
-                figures["right pump"] = float(made.pump in finding.detail)
-            if isinstance(made, HotSpot) and finding.place:
-                figures["m off"] = math.dist(finding.place, made.place)
+                figures["right pump"] = float(made.pump in detection.detail)
+            if isinstance(made, HotSpot) and detection.place:
+                figures["m off"] = math.dist(detection.place, made.place)
             return Found(True, figures)
     return Found(True)
 

@@ -50,7 +50,7 @@ class Climb:
 
 
 @dataclass(frozen=True)
-class Outcome:
+class ClimbOutcome:
     """How a climb went."""
 
     climb: Climb
@@ -85,7 +85,7 @@ def path_of(navigator: Navigator, tower: str, storey: int, up: bool) -> Path:
     return navigator.plan(low, high) if up else navigator.plan(high, low)
 
 
-def run(climb: Climb) -> Outcome:
+def run(climb: Climb) -> ClimbOutcome:
     """Drives one climb."""
     navigator, world = _site()
     path = path_of(navigator, climb.tower, climb.storey, climb.up)
@@ -107,7 +107,7 @@ def run(climb: Climb) -> Outcome:
         contacts |= {f"{t.link} on {t.element}" for t in world.touches()}
     end, pose = path.end, drive.pose
     kinds = [i.trouble for i in drive.incidents]
-    outcome = Outcome(
+    outcome = ClimbOutcome(
         climb,
         status is DriveStatus.ARRIVED,
         drive.failure or (None if status is DriveStatus.ARRIVED else "it took too long"),

@@ -6,7 +6,7 @@ from dataclasses import dataclass
 from argo_compiler.analysis.facts import Bound, Bounds, Stretch
 from argo_compiler.analysis.flow import Flow
 from argo_compiler.analysis.legs import Legs
-from argo_compiler.analysis.levels import Level, Levels, Loop
+from argo_compiler.analysis.levels import LevelGraph, Levels, Loop
 from argo_compiler.analysis.rounds import Out
 from argo_compiler.analysis.values import Paths
 
@@ -47,7 +47,9 @@ def measure(flow: Flow, paths: Paths, legs: Legs, endless: bool) -> Extent:
     return Extent(duration, energy, tuple(levels.loops.values()))
 
 
-def _bounds(flow: Flow, legs: Legs, level: Level, quantity: str, endless: bool) -> Bounds | None:
+def _bounds(
+    flow: Flow, legs: Legs, level: LevelGraph, quantity: str, endless: bool
+) -> Bounds | None:
     """None if no path comes to its end: rounds in which no time passes never fill a duration."""
     least = min(
         (level.least[quantity][node] + getattr(cost, quantity).least, k)
@@ -72,7 +74,9 @@ def _bounds(flow: Flow, legs: Legs, level: Level, quantity: str, endless: bool) 
     )
 
 
-def _path(flow: Flow, level: Level, quantity: str, end: int, shortest: bool) -> tuple[Stretch, ...]:
+def _path(
+    flow: Flow, level: LevelGraph, quantity: str, end: int, shortest: bool
+) -> tuple[Stretch, ...]:
     """The path to one of the ends of a level, the middle of a very long one left out."""
     before = (level.least_before if shortest else level.most_before)[quantity]
     distance = (level.least if shortest else level.most)[quantity]

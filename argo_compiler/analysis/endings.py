@@ -1,4 +1,4 @@
-"""Findings about how a mission ends: whether it can, what goes on without limit, and where."""
+"""Diagnostics about how a mission ends: whether it can, what goes on without limit, and where."""
 
 import math
 from collections.abc import Iterator
@@ -10,7 +10,7 @@ from argo_compiler.model import Pose
 
 DOCKED_DISTANCE_M = 0.1
 DOCKED_ANGLE = math.radians(5.0)
-_PATHS = 200  # findings that come with a path
+_PATHS = 200  # diagnostics that come with a path
 _WAY_OUT = (
     "lead a transition out of it, or make it a group with max_repeat_count or max_repeat_duration"
 )
@@ -34,7 +34,7 @@ def _endless(study: Study, traps: tuple[tuple[int, ...], ...]) -> Iterator[Diagn
         if not trap:
             continue
         path = study.path_words(trap[0])
-        yield study.finding(
+        yield study.diagnostic(
             "endless-loop",
             severity,
             f"{_tasks(study, trap)} {'follows itself' if len(trap) == 1 else 'follow each other'} "
@@ -50,7 +50,7 @@ def _endless(study: Study, traps: tuple[tuple[int, ...], ...]) -> Iterator[Diagn
         )
         if study.all.reached(study.flow.done):
             why += ", unless an action fails"
-        yield study.finding(
+        yield study.diagnostic(
             "no-end",
             severity,
             f"the mission never ends: {why}",
@@ -78,7 +78,7 @@ def _unbounded(study: Study, trapped: set[int]) -> Iterator[Diagnostic]:
             *([f"group{'s' if len(groups) > 1 else ''} {listed(groups)}"] if groups else []),
         ]
         single = len(loop.leaves) + len(loop.groups) == 1
-        yield study.finding(
+        yield study.diagnostic(
             "unbounded-loop",
             Severity.WARNING,
             f"{' and '.join(parts)} may be repeated without limit: "
@@ -116,7 +116,7 @@ def _elsewhere(study: Study) -> Iterator[Diagnostic]:
             )
     for k, (leaf, where) in enumerate(sorted(last_elsewhere.items())):
         path = f" (path: {study.path_words(leaf)})" if k < _PATHS else ""
-        yield study.finding(
+        yield study.diagnostic(
             "end-elsewhere",
             Severity.WARNING,
             f"the mission is to end docked in starting area {area}, but it can end {where}{path}",

@@ -7,7 +7,7 @@ up, whatever was under way; and one node is the end of the mission.
 
 from dataclasses import dataclass, field
 
-from argo_compiler.hfsm.model import MISSION, Hfsm, Leaf, Transition
+from argo_compiler.hfsm.model import MISSION, Hfsm, Leaf, StateTransition
 from argo_compiler.il import Action, Condition, Mission, Stop
 
 NOWHERE = -1
@@ -136,12 +136,12 @@ class _Builder:
             timed=tuple(timed),
         )
 
-    def _node(self, transition: Transition) -> int:
+    def _node(self, transition: StateTransition) -> int:
         if transition.completes is not None:
             return len(self.hfsm.leaves) + self.groups[transition.completes]
         return self.number.get(transition.target or "", self.done)
 
-    def _domain(self, transition: Transition) -> int:
+    def _domain(self, transition: StateTransition) -> int:
         return self.groups[transition.domain or MISSION]
 
     def _leaf_flow(self, leaf: Leaf) -> LeafFlow:

@@ -21,37 +21,37 @@ _ROUNDS = 8  # over cuts that lead to cuts, before what they take is unbounded
 
 
 @dataclass(frozen=True, slots=True)
-class Span:
+class QuantityRange:
     """Between what a quantity lies, `most` perhaps infinite."""
 
     least: float
     most: float
 
-    def __add__(self, other: "Span") -> "Span":
-        return Span(self.least + other.least, self.most + other.most)
+    def __add__(self, other: "QuantityRange") -> "QuantityRange":
+        return QuantityRange(self.least + other.least, self.most + other.most)
 
-    def __or__(self, other: "Span") -> "Span":
-        return Span(min(self.least, other.least), max(self.most, other.most))
+    def __or__(self, other: "QuantityRange") -> "QuantityRange":
+        return QuantityRange(min(self.least, other.least), max(self.most, other.most))
 
-    def times(self, count: float) -> "Span":
+    def times(self, count: float) -> "QuantityRange":
         """For as many of it; nothing, if none are."""
         if count <= 0:
             return NOTHING
-        return Span(
+        return QuantityRange(
             self.least * count if self.least else 0.0, self.most * count if self.most else 0.0
         )
 
 
-NOTHING = Span(0.0, 0.0)
+NOTHING = QuantityRange(0.0, 0.0)
 
 
 @dataclass(frozen=True, slots=True)
 class Cost:
     """What something takes."""
 
-    time: Span
+    time: QuantityRange
     """s"""
-    energy: Span
+    energy: QuantityRange
     """Wh"""
 
     def __add__(self, other: "Cost") -> "Cost":
@@ -188,7 +188,9 @@ class Legs:
         if isinstance(leg, NoWay):
             self.blocked.setdefault(target, leg.reason)
             leg = Leg(0.0, 0.0, standing)
-        cost = Cost(Span(leg.duration, leg.duration), Span(leg.energy, leg.energy))
+        cost = Cost(
+            QuantityRange(leg.duration, leg.duration), QuantityRange(leg.energy, leg.energy)
+        )
         work = self._work.get(target, (math.inf, math.inf))
         self._work[target] = min(work[0], leg.work), min(work[1], leg.work_energy)
         self._join(_rest(cut_at) if source is None else source, target, cost)
@@ -242,12 +244,15 @@ class Legs:
                     if attempt == _ROUNDS - 1:
                         time = energy = math.inf
                     work, work_energy = self._work[target]
-                    rest = Cost(Span(min(work, time), time), Span(min(work_energy, energy), energy))
+                    rest = Cost(
+                        QuantityRange(min(work, time), time),
+                        QuantityRange(min(work_energy, energy), energy),
+                    )
                     into = most.get(target)
                     joined = rest if into is None else into | rest
                     changed = changed or joined != into
                     most[target] = joined
-                    waited = Cost(Span(0.0, clean_up), NOTHING)
+                    waited = Cost(QuantityRange(0.0, clean_up), NOTHING)
                     self._join(("cut", group), target, rest + waited)
             if not changed:
                 return

@@ -14,8 +14,8 @@ from typing import cast
 
 from argo_compiler.analysis.flow import NOWHERE, Flow
 from argo_compiler.analysis.graph import components, is_loop
-from argo_compiler.analysis.legs import ANY, BEGIN, FREE, Cost, Legs, Source, Span
-from argo_compiler.analysis.rounds import Out, Round, Rounds, Way, combine
+from argo_compiler.analysis.legs import ANY, BEGIN, FREE, Cost, Legs, QuantityRange, Source
+from argo_compiler.analysis.rounds import GroupRound, Out, Rounds, WayOut, combine
 from argo_compiler.analysis.values import Paths
 
 WORK = 400_000
@@ -26,7 +26,7 @@ Key = int | tuple[int, int, Source]
 """a leaf, or (group, leaf it is entered at, from where)"""
 
 
-class TooLargeError(Exception):
+class BoundsTooLargeError(Exception):
     """The bounds would take too long to compute."""
 
 
@@ -41,12 +41,12 @@ class Hop:
 
 
 @dataclass
-class Level:
+class LevelGraph:
     """The graph of a level, entered in one way, and the distances in it."""
 
     keys: list[Key] = field(default_factory=list)
     hops: list[list[Hop]] = field(default_factory=list)
-    outs: list[tuple[int, Way, Cost, Out | None]] = field(default_factory=list)
+    outs: list[tuple[int, WayOut, Cost, Out | None]] = field(default_factory=list)
     """node, how the level is left or its round ends, what it takes from the node on"""
     first: Cost = FREE
     """until the first node"""
@@ -74,17 +74,17 @@ class Levels:
         self.loops: dict[tuple[tuple[int, ...], tuple[int, ...]], Loop] = {}
         self._work = work
         self._rounds: dict[tuple[int, int, Source], Rounds] = {}
-        self._later: dict[int, Round] = {}
+        self._later: dict[int, GroupRound] = {}
         self._sources: dict[tuple[int, int], set[Source]] = {}
         self._children: list[list[int]] = [[] for _ in range(len(flow.groups) + 1)]
         for number, group in enumerate(flow.groups):
             self._children[group.parent].append(number)
 
-    def mission(self) -> Level:
+    def mission(self) -> LevelGraph:
         """The level of the mission. Raises TooLargeError."""
         # Levels are computed inside each other; a stack of generators instead of calls, as groups
         # may nest deeper than calls can.
-        stack: list[Generator[tuple[int, int, Source], Rounds, Level | Rounds]]
+        stack: list[Generator[tuple[int, int, Source], Rounds, LevelGraph | Rounds]]
         stack = [self._level(NOWHERE, self.flow.initial, BEGIN)]
         keys: list[tuple[int, int, Source] | None] = [None]
         answer: Rounds | None = None
@@ -95,7 +95,7 @@ class Levels:
                 stack.pop()
                 key = keys.pop()
                 if key is None:
-                    return cast(Level, stop.value)
+                    return cast(LevelGraph, stop.value)
                 answer = self._rounds[key] = cast(Rounds, stop.value)
                 continue
             answer = self._rounds.get(wanted)
@@ -122,10 +122,10 @@ class Levels:
             self._note_loop((), (group,))
         return rounds
 
-    def _round(self, group: int, level: Level) -> Round:
+    def _round(self, group: int, level: LevelGraph) -> GroupRound:
         end = self.flow.round_end(group)
         ends: dict[Source, Cost] = {}
-        exits: dict[Way, Cost] = {}
+        exits: dict[WayOut, Cost] = {}
         for node, (source, target), cost, _ in level.outs:
             total = _spans(level, node) + cost
             if target == end:
@@ -138,13 +138,13 @@ class Levels:
         for node, key in enumerate(level.keys):
             inside = 0.0 if isinstance(key, int) else self._rounds[key].energy
             energy = max(energy, level.most["energy"][node] + inside)
-        return Round(ends, exits, energy)
+        return GroupRound(ends, exits, energy)
 
     def _level(
         self, level: int, entry: int, source: Source
-    ) -> Generator[tuple[int, int, Source], Rounds, Level]:
+    ) -> Generator[tuple[int, int, Source], Rounds, LevelGraph]:
         """The graph of a level that is entered at a leaf from a source, with its distances."""
-        graph = Level()
+        graph = LevelGraph()
         number: dict[Key, int] = {}
 
         def node(key: Key) -> int:
@@ -166,7 +166,7 @@ class Levels:
         at = 0
         while at < len(graph.keys):
             key = graph.keys[at]
-            ways: list[tuple[Way, Cost, Out | None]]
+            ways: list[tuple[WayOut, Cost, Out | None]]
             if isinstance(key, int):
                 ways = [((key, t), FREE, None) for t in self.paths.targets(self.flow, key)]
             else:
@@ -174,7 +174,7 @@ class Levels:
                 ways = [(way, out.cost, out) for way, out in rounds.outs.items()]
             self._work -= 1 + len(ways)
             if self._work < 0:
-                raise TooLargeError
+                raise BoundsTooLargeError
             for (last, target), cost, out in ways:
                 if self.flow.is_leaf(target) and self._holds(level, target):
                     following = self._key(level, target, last)
@@ -209,7 +209,7 @@ class Levels:
             sources.add(source)
         return child, leaf, source
 
-    def _measure(self, graph: Level, level: int) -> None:
+    def _measure(self, graph: LevelGraph, level: int) -> None:
         """Distances to all nodes of a level, and its loops."""
         successors = [[hop.target for hop in hops] for hops in graph.hops]
         parts = components(successors)
@@ -234,15 +234,15 @@ class Levels:
         self.loops.setdefault((leaves, groups), Loop(leaves, groups))
 
 
-def _spans(level: Level, node: int) -> Cost:
+def _spans(level: LevelGraph, node: int) -> Cost:
     """What it takes to come to a node of a level."""
     return Cost(
-        Span(level.least["time"][node], level.most["time"][node]),
-        Span(level.least["energy"][node], level.most["energy"][node]),
+        QuantityRange(level.least["time"][node], level.most["time"][node]),
+        QuantityRange(level.least["energy"][node], level.most["energy"][node]),
     )
 
 
-def _least(graph: Level, measure: str) -> None:
+def _least(graph: LevelGraph, measure: str) -> None:
     """Dijkstra's algorithm."""
     distance = [math.inf] * len(graph.keys)
     before: list[tuple[int, Out | None] | None] = [None] * len(graph.keys)
@@ -261,7 +261,7 @@ def _least(graph: Level, measure: str) -> None:
     graph.least[measure], graph.least_before[measure] = distance, before
 
 
-def _most(graph: Level, measure: str, order: list[int], looping: list[bool]) -> None:
+def _most(graph: LevelGraph, measure: str, order: list[int], looping: list[bool]) -> None:
     """The longest ways; without bound in loops and after them."""
     distance = [-math.inf] * len(graph.keys)
     before: list[tuple[int, Out | None] | None] = [None] * len(graph.keys)

@@ -1,4 +1,4 @@
-"""Findings about duration, battery, ages of values, and places that can't be reached."""
+"""Diagnostics about duration, battery, ages of values, and places that can't be reached."""
 
 import heapq
 import math
@@ -33,7 +33,7 @@ def limits(study: Study, travel: Travel) -> Iterator[Diagnostic]:
 
 def _blocked(study: Study) -> Iterator[Diagnostic]:
     for leaf, reason in sorted(study.legs.blocked.items()):
-        yield study.finding(
+        yield study.diagnostic(
             "unreachable-place",
             Severity.ERROR,
             f"the robot can't carry out task '{study.name(leaf)}': {reason}",
@@ -62,7 +62,7 @@ def _blocked_retreats(study: Study, travel: Travel) -> Iterator[Diagnostic]:
         drive = Task(name="retreat", action=Action.WAYPOINT, pose=pose)
         leg = travel.leg(start, drive, None)
         if isinstance(leg, NoWay):
-            yield study.finding(
+            yield study.diagnostic(
                 "unreachable-place",
                 Severity.ERROR,
                 f"the robot can't {what}: {leg.reason}",
@@ -74,7 +74,7 @@ def _blocked_retreats(study: Study, travel: Travel) -> Iterator[Diagnostic]:
 def _too_long(study: Study, duration: Bounds, limit: float) -> Iterator[Diagnostic]:
     least, most = duration.least.value, duration.most.value
     if least is not None and least > limit:
-        yield study.finding(
+        yield study.diagnostic(
             "too-long",
             Severity.ERROR,
             f"the mission takes at least {time_words(least)}, longer than its maximum duration of "
@@ -83,7 +83,7 @@ def _too_long(study: Study, duration: Bounds, limit: float) -> Iterator[Diagnost
             subject="max_duration",
         )
     elif most is not None and most > limit:
-        yield study.finding(
+        yield study.diagnostic(
             "maybe-too-long",
             Severity.WARNING,
             f"the mission may take up to {time_words(most)}, longer than its maximum duration of "
@@ -92,7 +92,7 @@ def _too_long(study: Study, duration: Bounds, limit: float) -> Iterator[Diagnost
             subject="max_duration",
         )
     elif most is None:
-        yield study.finding(
+        yield study.diagnostic(
             "maybe-too-long",
             Severity.WARNING,
             f"the mission may take longer than its maximum duration of {time_words(limit)}, as "
@@ -106,7 +106,7 @@ def _too_long(study: Study, duration: Bounds, limit: float) -> Iterator[Diagnost
 def _too_far(study: Study, energy: Bounds, battery: float) -> Iterator[Diagnostic]:
     least, most = energy.least.value, energy.most.value
     if least is not None and least > battery:
-        yield study.finding(
+        yield study.diagnostic(
             "battery-exceeded",
             Severity.ERROR,
             f"the mission needs at least {energy_words(least)}, and the battery gives "
@@ -117,7 +117,7 @@ def _too_far(study: Study, energy: Bounds, battery: float) -> Iterator[Diagnosti
     elif most is None or most > battery:
         need = "without limit" if most is None else f"up to {energy_words(most)}"
         path = energy.least if most is None else energy.most
-        yield study.finding(
+        yield study.diagnostic(
             "battery-maybe-exceeded",
             Severity.WARNING,
             f"the mission may need energy {need}, and the battery gives {energy_words(battery)} "
@@ -158,7 +158,7 @@ def _stale(
             youngest = age.get(leaf, math.inf)
             assert condition.max_age is not None
             if math.isfinite(youngest) and youngest > condition.max_age:
-                yield study.finding(
+                yield study.diagnostic(
                     "always-stale",
                     Severity.WARNING,
                     f"a condition of task '{study.name(leaf)}' never holds: {words(condition)}, "

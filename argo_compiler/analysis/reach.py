@@ -1,4 +1,4 @@
-"""Findings about tasks that no path leads to, and why."""
+"""Diagnostics about tasks that no path leads to, and why."""
 
 from collections.abc import Iterator
 
@@ -10,13 +10,13 @@ _REASONS = 3  # ways to a task that a message speaks of
 
 
 def unreachable_tasks(study: Study) -> Iterator[Diagnostic]:
-    """One finding for each task that can't be reached, whatever is measured and whatever fails."""
+    """One for each task that can't be reached, whatever is measured and whatever fails."""
     lost = [
         i for i in range(len(study.flow.leaves)) if not study.all.reached(i) and study.is_own(i)
     ]
     reasons = _ways_in(study, lost)
     for leaf in lost:
-        yield study.finding(
+        yield study.diagnostic(
             "unreachable-task",
             Severity.WARNING,
             f"task '{study.name(leaf)}' can't be reached: {_why(*reasons[leaf])}",

@@ -5,11 +5,11 @@ from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
 
 from argo_compiler.analysis.flow import GroupFlow
-from argo_compiler.analysis.legs import NOTHING, Cost, Source, Span
+from argo_compiler.analysis.legs import NOTHING, Cost, QuantityRange, Source
 
 _SLACK = 1e-9  # of a round: sums of floats are not exact
 
-Way = tuple[Source, int]
+WayOut = tuple[Source, int]
 """how a group is left: what ended last, and the node that is next"""
 
 
@@ -29,12 +29,12 @@ class Out:
 
 
 @dataclass(frozen=True)
-class Round:
+class GroupRound:
     """One round of a group."""
 
     ends: Mapping[Source, Cost]
     """where the round comes to its end, by what ended last"""
-    exits: Mapping[Way, Cost]
+    exits: Mapping[WayOut, Cost]
     """where the group is left within the round"""
     energy: float
     """Wh at most at any moment of it"""
@@ -48,7 +48,7 @@ class Round:
 class Rounds:
     """All ways out of a group, entered in one way."""
 
-    outs: Mapping[Way, Out]
+    outs: Mapping[WayOut, Out]
     energy: float
     """Wh at most at any moment inside"""
     unlimited: bool
@@ -63,13 +63,15 @@ def union(costs: Iterable[Cost]) -> Cost | None:
     return joined
 
 
-def combine(number: int, group: GroupFlow, first: Round, later: Round | None) -> Rounds:
+def combine(number: int, group: GroupFlow, first: GroupRound, later: GroupRound | None) -> Rounds:
     """The ways out of group `number` when its first round is `first`, and each other `later`."""
     return _Combination(number, group, first, later).rounds()
 
 
 class _Combination:
-    def __init__(self, number: int, group: GroupFlow, first: Round, later: Round | None) -> None:
+    def __init__(
+        self, number: int, group: GroupFlow, first: GroupRound, later: GroupRound | None
+    ) -> None:
         self.number = number
         self.group = group
         self.first = first
@@ -79,7 +81,7 @@ class _Combination:
         self.limit = group.duration or math.inf
         self.count = group.count or math.inf
         self.fewest, self.most = self._range()
-        self.outs: dict[Way, Out] = {}
+        self.outs: dict[WayOut, Out] = {}
 
     def rounds(self) -> Rounds:
         self._leave_within()
@@ -138,8 +140,8 @@ class _Combination:
             # No round begins after the limit.
             latest = min(soonest.time.most + between.most, self.limit + cost.time.most)
             later = Cost(
-                Span(soonest.time.least, max(latest, soonest.time.least)),
-                Span(soonest.energy.least, soonest.energy.most + energy.most),
+                QuantityRange(soonest.time.least, max(latest, soonest.time.least)),
+                QuantityRange(soonest.energy.least, soonest.energy.most + energy.most),
             )
             self._add(way, later, 2, self.most)
 
@@ -176,7 +178,7 @@ class _Combination:
         if last is not None:
             most = min(most, last.time.most)
         energy = by_time.energy | (last or by_time).energy
-        return Cost(Span(min(least, most), most), energy), self.fewest, self.most
+        return Cost(QuantityRange(min(least, most), most), energy), self.fewest, self.most
 
     def _time_out(self) -> None:
         end = self._after(self.count) if not math.isinf(self.count) else None
@@ -190,8 +192,8 @@ class _Combination:
                 completed -= 1
         least = self._after(1 if math.isinf(completed) else completed)
         cost = Cost(
-            Span(self.limit, self.limit),
-            Span(0.0 if least is None else least.energy.least, self._energy_inside()),
+            QuantityRange(self.limit, self.limit),
+            QuantityRange(0.0 if least is None else least.energy.least, self._energy_inside()),
         )
         fewest = completed if 1 <= completed < math.inf else 1
         self._add((("cut", self.number), self.group.onward), cost, fewest, max(1, self.most))
@@ -205,12 +207,12 @@ class _Combination:
             energy = max(energy, before + self.later.energy)
         return energy
 
-    def _add(self, way: Way, cost: Cost, fewest: float, most: float) -> None:
+    def _add(self, way: WayOut, cost: Cost, fewest: float, most: float) -> None:
         if self.group.hard and not (isinstance(way[0], tuple) and way[0] == ("cut", self.number)):
             if cost.time.least > self.limit + _SLACK:
                 return
             least = min(cost.time.least, self.limit)
-            cost = Cost(Span(least, min(cost.time.most, self.limit)), cost.energy)
+            cost = Cost(QuantityRange(least, min(cost.time.most, self.limit)), cost.energy)
         out = Out(cost, fewest, most)
         known = self.outs.get(way)
         self.outs[way] = out if known is None else known | out

@@ -1,4 +1,4 @@
-"""All that the findings are made from, put together once for a mission."""
+"""All that the diagnostics are made from, put together once for a mission."""
 
 from collections.abc import Iterator
 from dataclasses import dataclass
@@ -8,7 +8,7 @@ from argo_compiler.analysis.bounds import Extent, measure, too_many_cuts
 from argo_compiler.analysis.flow import Flow
 from argo_compiler.analysis.graph import components, first_ways, leading_to, way_to
 from argo_compiler.analysis.legs import Legs
-from argo_compiler.analysis.levels import TooLargeError
+from argo_compiler.analysis.levels import BoundsTooLargeError
 from argo_compiler.analysis.travel import Travel
 from argo_compiler.analysis.values import Paths
 from argo_compiler.catalog import Catalog
@@ -67,7 +67,7 @@ class Study:
             return None
         try:
             return measure(self.flow, self.nominal, self.legs, endless=bool(self.traps))
-        except TooLargeError:
+        except BoundsTooLargeError:
             return None
 
     def name(self, leaf: int) -> str:
@@ -137,7 +137,7 @@ class Study:
         if group.parent >= 0 and flow.timed[group.parent]:
             yield flow.time_up(group.parent)
 
-    def finding(
+    def diagnostic(
         self,
         code: str,
         severity: Severity,
@@ -147,7 +147,7 @@ class Study:
         transition: int | None = None,
         subject: str | None = None,
     ) -> Diagnostic:
-        """A finding about a leaf's task, one of its transitions, or what `subject` names."""
+        """A diagnostic about a leaf's task, one of its transitions, or what `subject` names."""
         span = None
         if leaf is not None and self.is_own(leaf):
             span = self.task(leaf).source

@@ -1,17 +1,17 @@
-"""Findings about transitions that are never or always taken, and about values not measured yet."""
+"""Diagnostics about transitions never or always taken, and about values not measured yet."""
 
 from collections.abc import Iterator
 
 from argo_compiler.analysis.graph import first_ways, way_to
 from argo_compiler.analysis.regions import Scale
 from argo_compiler.analysis.study import Study
-from argo_compiler.analysis.values import Look, objects_of
+from argo_compiler.analysis.values import GuardStatus, objects_of
 from argo_compiler.diagnostics import Diagnostic, Severity
 from argo_compiler.hfsm.conditions import words
 from argo_compiler.il import Action, Condition
 
 _SEARCHES = 10  # objects for which a path that does not measure them is looked up
-_PATHS = 200  # findings that come with a path
+_PATHS = 200  # diagnostics that come with a path
 
 
 def transitions(study: Study) -> Iterator[Diagnostic]:
@@ -26,17 +26,17 @@ def transitions(study: Study) -> Iterator[Diagnostic]:
         for k, index in enumerate(study.indices(leaf)):
             conditions = flow.conditional[k][0]
             if k >= len(looks) or not looks[k].possible:
-                # What no task measures is a finding of the check.
+                # What no task measures is a diagnostic of the check.
                 if objects_of(conditions) <= measured:
                     yield _never(study, leaf, k, index)
                 continue
             if _always(study, leaf, k):
                 yield _always_taken(study, leaf, k, index)
             for o in sorted(objects_of(conditions) - told):
-                finding = paths.finding(leaf, k, index, o)
-                if finding is not None:
+                diagnostic = paths.diagnostic(leaf, k, index, o)
+                if diagnostic is not None:
                     told.add(o)
-                    yield finding
+                    yield diagnostic
 
 
 def why_never(study: Study, leaf: int, k: int) -> str:
@@ -92,7 +92,7 @@ def _object_name(study: Study, object_id: str) -> str:
 
 def _first_state(study: Study, leaf: int) -> int | None:
     """The values when the first transition of a leaf is looked at."""
-    looks: tuple[Look, ...] = study.all.looks[leaf]
+    looks: tuple[GuardStatus, ...] = study.all.looks[leaf]
     return looks[0].state if looks else None
 
 
@@ -112,7 +112,7 @@ def _never(study: Study, leaf: int, k: int, index: int) -> Diagnostic:
     for condition in task.transitions[index].conditions:
         if _unmeasured(study, leaf, condition.object_id):
             name = _object_name(study, condition.object_id)
-            return study.finding(
+            return study.diagnostic(
                 "never-measured",
                 Severity.WARNING,
                 f"{start}no path to '{task.name}' measures {name} before",
@@ -120,7 +120,7 @@ def _never(study: Study, leaf: int, k: int, index: int) -> Diagnostic:
                 leaf,
                 index,
             )
-    return study.finding(
+    return study.diagnostic(
         "transition-never",
         Severity.WARNING,
         start + why_never(study, leaf, k),
@@ -152,7 +152,7 @@ def _always_taken(study: Study, leaf: int, k: int, index: int) -> Diagnostic:
     task = study.task(leaf)
     held = " and ".join(words(c) for c in task.transitions[index].conditions)
     after = len(task.transitions) > 1
-    return study.finding(
+    return study.diagnostic(
         "transition-always",
         Severity.WARNING,
         f"the transition from task '{task.name}' to '{task.transitions[index].target}' is always "
@@ -172,8 +172,8 @@ class _Unmeasured:
         self.before: dict[str, list[int | None]] = {}
         self.told = 0
 
-    def finding(self, leaf: int, k: int, index: int, object_id: str) -> Diagnostic | None:
-        """The finding where a path without a failure comes to a transition without the value."""
+    def diagnostic(self, leaf: int, k: int, index: int, object_id: str) -> Diagnostic | None:
+        """The diagnostic where a path without a failure comes to a transition without the value."""
         study = self.study
         fields = study.nominal.fields
         looks = study.nominal.conditional(study.flow, leaf)
@@ -187,7 +187,7 @@ class _Unmeasured:
         task = study.task(leaf)
         name = _object_name(study, object_id)
         path = self._path(leaf, object_id)
-        return study.finding(
+        return study.diagnostic(
             "maybe-unmeasured",
             Severity.WARNING,
             f"a transition from task '{task.name}' to '{task.transitions[index].target}' compares "

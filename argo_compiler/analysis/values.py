@@ -23,7 +23,7 @@ _GIVE_UP_AFTER = 40  # updates of a node, after which all its values may be anyt
 
 
 @dataclass(frozen=True, slots=True)
-class Look:
+class GuardStatus:
     """What is known when one transition of a leaf is looked at."""
 
     possible: bool
@@ -41,14 +41,14 @@ class Paths:
     fields: Fields
     states: tuple[int | None, ...]
     """at each node before its action; None where no path leads"""
-    looks: tuple[tuple[Look, ...], ...]
+    looks: tuple[tuple[GuardStatus, ...], ...]
     """of each leaf: its conditional transitions, up to the last one that may be looked at, and
     then, if it may be, the tail"""
 
     def reached(self, node: int) -> bool:
         return self.states[node] is not None
 
-    def conditional(self, flow: Flow, leaf: int) -> tuple[Look, ...]:
+    def conditional(self, flow: Flow, leaf: int) -> tuple[GuardStatus, ...]:
         return self.looks[leaf][: len(flow.leaves[leaf].conditional)]
 
     def tail_possible(self, flow: Flow, leaf: int) -> bool:
@@ -195,7 +195,7 @@ class _Search:
         measured = self._measured(self.flow.leaves[node], state)
         return state | measured if self.failures else measured
 
-    def _look(self, node: int, state: int) -> Iterator[tuple[Look, int, int]]:
+    def _look(self, node: int, state: int) -> Iterator[tuple[GuardStatus, int, int]]:
         """The transitions of a leaf as long as they may be looked at: what is known of each, where
         it leads, and the values if it is taken."""
         leaf = self.flow.leaves[node]
@@ -216,7 +216,7 @@ class _Search:
                 if not timely or self._there(state, o, fresh) & ~satisfying:
                     unsure.append((condition, timely))
             certain = possible and not unsure
-            yield Look(possible, certain, state), target, taken
+            yield GuardStatus(possible, certain, state), target, taken
             if certain:
                 return
             if len(unsure) == 1 and unsure[0][1]:
@@ -224,7 +224,7 @@ class _Search:
                 rest = self._there(state, condition.object_id, fresh)
                 rest &= ~self._satisfying(condition)
                 state = fields.set(state, condition.object_id, rest)
-        yield Look(True, True, state), leaf.tail, state
+        yield GuardStatus(True, True, state), leaf.tail, state
 
     def _there(self, state: int, object_id: str, fresh: str | None) -> int:
         there = self.fields.get(state, object_id)

@@ -19,7 +19,7 @@ def check(mission: Mission, catalog: Catalog | None = None) -> tuple[Diagnostic,
     """All that is wrong or odd about a mission: its tasks, groups, reactions and header.
 
     With a catalogue, what the mission names on the site is looked up in it. Linear time. Each
-    finding names what it is about as its `subject`.
+    diagnostic names what it is about as its `subject`.
     """
     if not mission.tasks:
         return (
@@ -36,7 +36,7 @@ def check(mission: Mission, catalog: Catalog | None = None) -> tuple[Diagnostic,
     else:
         known = None if catalog is None else frozenset(str(c.id) for c in catalog.checkpoints)
     return (
-        *TaskChecks(mission, known).findings(),
+        *TaskChecks(mission, known).diagnostics(),
         *check_groups(mission),
         *check_reactions(mission),
         *check_header(mission, catalog),

@@ -9,9 +9,9 @@ from collections.abc import Iterator
 
 from argo_compiler.diagnostics import Diagnostic, Severity
 from argo_compiler.il import Action, Group, Mission, Stop
-from argo_compiler.il.grouping import GroupRange, Layout, group_ranges, parent_name
+from argo_compiler.il.grouping import GroupNesting, GroupRange, group_ranges, parent_name
 from argo_compiler.il.subjects import Subjects
-from argo_compiler.names import nearest_name
+from argo_compiler.nearest_name import nearest_name
 
 MIN_HARD_DURATION_S = 1e-3
 """A group that a time-out enters again has to last: each visit is a step of the machine."""
@@ -29,21 +29,21 @@ def check_groups(mission: Mission) -> tuple[Diagnostic, ...]:
         return ()
     ranges = group_ranges(mission)
     subjects = Subjects(mission)
-    findings = [
+    diagnostics = [
         *_check_names(mission.groups, subjects),
         *_check_ends(mission, subjects),
         *_check_nesting(ranges, subjects),
         *_check_starts(mission, ranges, subjects),
     ]
-    if not findings and ranges:
-        findings += _check_endless(mission, subjects)
-    return (*findings, *_check_unused(mission.groups, subjects))
+    if not diagnostics and ranges:
+        diagnostics += _check_endless(mission, subjects)
+    return (*diagnostics, *_check_unused(mission.groups, subjects))
 
 
 def _error(
     at: str, group: Group, code: str, message: str, hint: str, field: str = ""
 ) -> Diagnostic:
-    """A finding about the group whose subject is `at`, or one of its fields."""
+    """A diagnostic about the group whose subject is `at`, or one of its fields."""
     return Diagnostic(
         code=code,
         severity=Severity.ERROR,
@@ -182,7 +182,7 @@ def _check_starts(
 def _check_unused(groups: tuple[Group, ...], subjects: Subjects) -> Iterator[Diagnostic]:
     for i, group in enumerate(groups):
         if group.count_interruptions and not group.max_repeat_duration:
-            finding = _error(
+            diagnostic = _error(
                 subjects.group(i),
                 group,
                 "il.unused-field",
@@ -190,7 +190,7 @@ def _check_unused(groups: tuple[Group, ...], subjects: Subjects) -> Iterator[Dia
                 "give it max_repeat_duration, or remove count_interruptions",
                 ".count_interruptions",
             )
-            yield finding.model_copy(update={"severity": Severity.WARNING})
+            yield diagnostic.model_copy(update={"severity": Severity.WARNING})
 
 
 def _endless(group: Group) -> bool:
@@ -207,7 +207,7 @@ def _check_endless(mission: Mission, subjects: Subjects) -> Iterator[Diagnostic]
     A transition leaves a group if its target lies outside the group's range. So the lowest and the
     highest target of all members decide; they are gathered from the innermost groups outward.
     """
-    layout = Layout.of(mission)
+    layout = GroupNesting.of(mission)
     lowest, highest = _target_bounds(mission, layout)
     bounded = [False] * len(layout.ranges)
     for i, r in enumerate(layout.ranges):
@@ -232,7 +232,7 @@ def _check_endless(mission: Mission, subjects: Subjects) -> Iterator[Diagnostic]
             )
 
 
-def _target_bounds(mission: Mission, layout: Layout) -> tuple[list[int], list[int]]:
+def _target_bounds(mission: Mission, layout: GroupNesting) -> tuple[list[int], list[int]]:
     """For each group, the lowest and highest target of the tasks of which it is the innermost.
 
     The end of the mission counts as a target behind the last task.
@@ -255,7 +255,7 @@ def _target_bounds(mission: Mission, layout: Layout) -> tuple[list[int], list[in
     return lowest, highest
 
 
-def _goes_on(layout: Layout, task: int) -> bool:
+def _goes_on(layout: GroupNesting, task: int) -> bool:
     """Whether the unconditional transition of a task can be taken at all.
 
     It can't where an endless group ends with the task, unless the time of a group further out that

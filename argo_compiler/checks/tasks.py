@@ -3,12 +3,12 @@
 from collections.abc import Iterable, Iterator
 
 from argo_compiler.checks.conditions import ConditionChecks
-from argo_compiler.checks.finding import task_finding
+from argo_compiler.checks.diagnostic import task_diagnostic
 from argo_compiler.diagnostics import Diagnostic, Severity
 from argo_compiler.il import Action, Mission, OnFailure, Task
 from argo_compiler.il.reserved import RESERVED_NAMES
 from argo_compiler.il.subjects import Subjects
-from argo_compiler.names import nearest_name
+from argo_compiler.nearest_name import nearest_name
 
 MANY_RETRIES = 100
 """that few actions are worth; more look like a mission that hangs"""
@@ -44,7 +44,7 @@ class TaskChecks:
         self.conditions = ConditionChecks(measured, known)
         self.hints = 0
 
-    def findings(self) -> Iterator[Diagnostic]:
+    def diagnostics(self) -> Iterator[Diagnostic]:
         if len(self.names) < len(self.mission.tasks) or not RESERVED_NAMES.isdisjoint(self.names):
             yield from _check_names(self.mission.tasks, self.subjects)
         starts = 0
@@ -75,7 +75,7 @@ class TaskChecks:
         yield from _check_returns(self.mission, self.subjects)
 
     def _second_start(self, at: str, task: Task) -> Diagnostic:
-        return task_finding(
+        return task_diagnostic(
             at,
             task,
             "il.many-starts",
@@ -92,9 +92,9 @@ class TaskChecks:
             unconditional += not transition.conditions
             for n, condition in enumerate(transition.conditions):
                 field = f".transitions[{k}].conditions[{n}]"
-                yield from self.conditions.findings(at, task, condition, field)
+                yield from self.conditions.diagnostics(at, task, condition, field)
         if unconditional > 1:
-            yield task_finding(
+            yield task_diagnostic(
                 at,
                 task,
                 "il.many-unconditional",
@@ -103,7 +103,7 @@ class TaskChecks:
                 field=".transitions",
             )
         if task.action is Action.START and unconditional < len(task.transitions):
-            yield task_finding(
+            yield task_diagnostic(
                 at,
                 task,
                 "il.start-condition",
@@ -114,7 +114,7 @@ class TaskChecks:
                 ".transitions",
             )
         elif task.transitions and not unconditional:
-            yield task_finding(
+            yield task_diagnostic(
                 at,
                 task,
                 "il.no-unconditional",
@@ -128,7 +128,7 @@ class TaskChecks:
         target = task.transitions[k].target
         field = f".transitions[{k}].target"
         if target in self.names:
-            return task_finding(
+            return task_diagnostic(
                 at,
                 task,
                 "il.start-as-target",
@@ -138,7 +138,7 @@ class TaskChecks:
                 field=field,
             )
         near = self._nearest(target)
-        return task_finding(
+        return task_diagnostic(
             at,
             task,
             "il.unknown-target",
@@ -159,7 +159,7 @@ def _check_names(tasks: Iterable[Task], subjects: Subjects) -> Iterator[Diagnost
     seen: set[str] = set()
     for i, task in enumerate(tasks):
         if task.name in seen:
-            yield task_finding(
+            yield task_diagnostic(
                 subjects.task(i),
                 task,
                 "il.duplicate-task",
@@ -168,7 +168,7 @@ def _check_names(tasks: Iterable[Task], subjects: Subjects) -> Iterator[Diagnost
                 field=".name",
             )
         if task.name in RESERVED_NAMES:
-            yield task_finding(
+            yield task_diagnostic(
                 subjects.task(i),
                 task,
                 "il.reserved-name",
@@ -181,14 +181,14 @@ def _check_names(tasks: Iterable[Task], subjects: Subjects) -> Iterator[Diagnost
 
 def _wrong_object(at: str, task: Task) -> Diagnostic:
     if task.object_id is None:
-        return task_finding(
+        return task_diagnostic(
             at,
             task,
             "il.measure-without-object",
             f"the MEASURE task '{task.name}' has no object_id",
             "say which checkpoint it measures",
         )
-    return task_finding(
+    return task_diagnostic(
         at,
         task,
         "il.unknown-object",
@@ -199,7 +199,7 @@ def _wrong_object(at: str, task: Task) -> Diagnostic:
 
 
 def _no_pose(at: str, task: Task) -> Diagnostic:
-    return task_finding(
+    return task_diagnostic(
         at,
         task,
         "il.waypoint-without-pose",
@@ -211,7 +211,7 @@ def _no_pose(at: str, task: Task) -> Diagnostic:
 def _unused_by_start(at: str, task: Task) -> Iterator[Diagnostic]:
     unused = {"retries": task.retries != 0, "on_failure": task.on_failure != OnFailure.CONTINUE}
     for field in (field for field, given in unused.items() if given):
-        yield task_finding(
+        yield task_diagnostic(
             at,
             task,
             "il.unused-field",
@@ -224,7 +224,7 @@ def _unused_by_start(at: str, task: Task) -> Iterator[Diagnostic]:
 
 
 def _many_retries(at: str, task: Task) -> Diagnostic:
-    return task_finding(
+    return task_diagnostic(
         at,
         task,
         "il.many-retries",
@@ -245,7 +245,7 @@ def _check_joints(at: str, task: Task) -> Iterator[Diagnostic]:
         fault = "names a joint twice"
     else:
         return
-    yield task_finding(
+    yield task_diagnostic(
         at,
         task,
         "il.joint-states",
@@ -256,14 +256,14 @@ def _check_joints(at: str, task: Task) -> Iterator[Diagnostic]:
 
 
 def _check_returns(mission: Mission, subjects: Subjects) -> Iterator[Diagnostic]:
-    """One finding for all tasks that are to return to a dock that is not there."""
+    """One diagnostic for all tasks that are to return to a dock that is not there."""
     if mission.dock:
         return
     returning = [i for i, t in enumerate(mission.tasks) if t.on_failure is _RETURN]
     if returning:
         task = mission.tasks[returning[0]]
         others = f" (and {len(returning) - 1} more)" if len(returning) > 1 else ""
-        yield task_finding(
+        yield task_diagnostic(
             subjects.task(returning[0]),
             task,
             "il.no-dock",

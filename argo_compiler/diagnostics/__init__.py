@@ -1,14 +1,13 @@
-"""What the compiler has to say about its input: findings with a place in the source.
+"""What the compiler has to say about its input: diagnostics with a place in the source.
 
-`Diagnostic` is one finding; `to_text`, `to_json` and `to_sarif` show findings to people, programs
-and code hosts. `CODES` explains every code there is.
+`Diagnostic` is one of them; `to_text`, `to_json` and `to_sarif` show them to people, programs and
+code hosts. `CODES` explains every code there is.
 """
 
 from argo_compiler.diagnostics.as_json import to_json
 from argo_compiler.diagnostics.codes import CODES
 from argo_compiler.diagnostics.codes.code import Severity
-from argo_compiler.diagnostics.error import DiagnosticError
-from argo_compiler.diagnostics.finding import (
+from argo_compiler.diagnostics.diagnostic import (
     MAX_EXCERPT,
     Diagnostic,
     Span,
@@ -18,6 +17,7 @@ from argo_compiler.diagnostics.finding import (
     summary,
     with_excerpts,
 )
+from argo_compiler.diagnostics.error import DiagnosticError
 from argo_compiler.diagnostics.sarif import to_sarif
 from argo_compiler.diagnostics.text import to_text
 

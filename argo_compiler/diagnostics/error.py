@@ -1,8 +1,8 @@
-"""The exception that carries findings."""
+"""The exception that carries diagnostics."""
 
 from collections.abc import Iterable
 
-from argo_compiler.diagnostics.finding import Diagnostic, by_place
+from argo_compiler.diagnostics.diagnostic import Diagnostic, by_place
 from argo_compiler.diagnostics.text import to_text
 from argo_compiler.errors import Invalid
 

@@ -1,4 +1,4 @@
-"""Findings as SARIF 2.1.0 (OASIS), which editors and code hosts show beside the source."""
+"""Diagnostics as SARIF 2.1.0 (OASIS), which editors and code hosts show beside the source."""
 
 import hashlib
 import json
@@ -10,14 +10,14 @@ from urllib.parse import quote
 
 from argo_compiler import __version__
 from argo_compiler.diagnostics.codes import CODES
-from argo_compiler.diagnostics.finding import Diagnostic
+from argo_compiler.diagnostics.diagnostic import Diagnostic
 
 SCHEMA = "https://json.schemastore.org/sarif-2.1.0.json"
 
 
-def to_sarif(findings: Sequence[Diagnostic], source_name: str) -> str:
-    """A SARIF log of one run with the findings about one file, as a JSON text."""
-    codes = sorted({finding.code for finding in findings})
+def to_sarif(diagnostics: Sequence[Diagnostic], source_name: str) -> str:
+    """A SARIF log of one run with the diagnostics about one file, as a JSON text."""
+    codes = sorted({diagnostic.code for diagnostic in diagnostics})
     log = {
         "$schema": SCHEMA,
         "version": "2.1.0",
@@ -32,7 +32,7 @@ def to_sarif(findings: Sequence[Diagnostic], source_name: str) -> str:
                     }
                 },
                 "columnKind": "unicodeCodePoints",
-                "results": list(_results(findings, codes, _uri(source_name))),
+                "results": list(_results(diagnostics, codes, _uri(source_name))),
             }
         ],
     }
@@ -54,31 +54,31 @@ def _rule(code: str) -> dict[str, Any]:
 
 
 def _results(
-    findings: Sequence[Diagnostic], codes: Sequence[str], uri: str
+    diagnostics: Sequence[Diagnostic], codes: Sequence[str], uri: str
 ) -> Iterator[dict[str, Any]]:
     index = {code: i for i, code in enumerate(codes)}
     seen: Counter[str] = Counter()
-    for finding in findings:
-        fingerprint = _fingerprint(finding)
+    for diagnostic in diagnostics:
+        fingerprint = _fingerprint(diagnostic)
         seen[fingerprint] += 1
         yield {
-            "ruleId": finding.code,
-            "ruleIndex": index[finding.code],
-            "level": finding.severity.value,
-            "message": {"text": _message(finding)},
-            "locations": [_location(finding, uri)],
+            "ruleId": diagnostic.code,
+            "ruleIndex": index[diagnostic.code],
+            "level": diagnostic.severity.value,
+            "message": {"text": _message(diagnostic)},
+            "locations": [_location(diagnostic, uri)],
             "partialFingerprints": {
                 "primaryLocationLineHash": f"{fingerprint}:{seen[fingerprint]}"
             },
         }
 
 
-def _message(finding: Diagnostic) -> str:
-    return f"{finding.message} ({finding.hint})" if finding.hint else finding.message
+def _message(diagnostic: Diagnostic) -> str:
+    return f"{diagnostic.message} ({diagnostic.hint})" if diagnostic.hint else diagnostic.message
 
 
-def _location(finding: Diagnostic, uri: str) -> dict[str, Any]:
-    span = finding.span
+def _location(diagnostic: Diagnostic, uri: str) -> dict[str, Any]:
+    span = diagnostic.span
     region: dict[str, Any] = {"startLine": 1}  # code hosts ask for a region, known or not
     if span:
         region = {
@@ -87,20 +87,20 @@ def _location(finding: Diagnostic, uri: str) -> dict[str, Any]:
             "endLine": span.line,
             "endColumn": span.column + max(1, span.length),
         }
-        if finding.excerpt is not None:
-            region["snippet"] = {"text": finding.excerpt}
+        if diagnostic.excerpt is not None:
+            region["snippet"] = {"text": diagnostic.excerpt}
     location: dict[str, Any] = {
         "physicalLocation": {"artifactLocation": {"uri": uri}, "region": region}
     }
-    if finding.subject:
-        location["logicalLocations"] = [{"fullyQualifiedName": finding.subject}]
+    if diagnostic.subject:
+        location["logicalLocations"] = [{"fullyQualifiedName": diagnostic.subject}]
     return location
 
 
-def _fingerprint(finding: Diagnostic) -> str:
-    """What stays the same when lines before the finding come and go."""
-    line = " ".join((finding.excerpt or finding.message).split())
-    return hashlib.sha256(f"{finding.code}\n{line}".encode("utf-8", "replace")).hexdigest()[:16]
+def _fingerprint(diagnostic: Diagnostic) -> str:
+    """What stays the same when lines before the diagnostic come and go."""
+    line = " ".join((diagnostic.excerpt or diagnostic.message).split())
+    return hashlib.sha256(f"{diagnostic.code}\n{line}".encode("utf-8", "replace")).hexdigest()[:16]
 
 
 def _uri(source_name: str) -> str:

@@ -1,4 +1,4 @@
-"""How a finding names what it is about: a path whose tasks, groups and reactions go by name.
+"""How a diagnostic names what it is about: a path whose tasks, groups and reactions go by name.
 
 `tasks['MEASURE 4'].transitions[0].target`: a position changes when something is added before it, a
 name does not. Names stand in single quotes with the escapes of normalised paths in JSONPath

@@ -1,50 +1,52 @@
-"""Findings as text for a terminal."""
+"""Diagnostics as text for a terminal."""
 
 import unicodedata
 from collections.abc import Sequence
 
 from argo_compiler.diagnostics.codes.code import Severity
-from argo_compiler.diagnostics.finding import Diagnostic, has_errors, summary
+from argo_compiler.diagnostics.diagnostic import Diagnostic, has_errors, summary
 
 _INDENT = "    "
 
 
-def to_text(findings: Sequence[Diagnostic], source_name: str) -> str:
-    """All findings, the source line with a mark below each, and how many there are.
+def to_text(diagnostics: Sequence[Diagnostic], source_name: str) -> str:
+    """All diagnostics, the source line with a mark below each, and how many there are.
 
     Beside errors a warning takes one line only: what stops the work should be seen first.
     """
-    brief = has_errors(findings)
+    brief = has_errors(diagnostics)
     lines = []
-    for finding in findings:
-        lines.append(_headline(finding, source_name))
-        if not (brief and finding.severity is Severity.WARNING):
-            lines += _details(finding)
-    if len(findings) > 1:
-        lines.append(f"{_printable(source_name)}: {summary(findings)}")
+    for diagnostic in diagnostics:
+        lines.append(_headline(diagnostic, source_name))
+        if not (brief and diagnostic.severity is Severity.WARNING):
+            lines += _details(diagnostic)
+    if len(diagnostics) > 1:
+        lines.append(f"{_printable(source_name)}: {summary(diagnostics)}")
     return "\n".join(lines)
 
 
-def _headline(finding: Diagnostic, source_name: str) -> str:
-    span = finding.span
+def _headline(diagnostic: Diagnostic, source_name: str) -> str:
+    span = diagnostic.span
     place = f"{source_name}:{span.line}:{span.column}" if span else source_name
-    subject = "" if span or not finding.subject else f"{finding.subject}: "
-    return _printable(f"{place}: {finding.severity}: {subject}{finding.message} [{finding.code}]")
+    subject = "" if span or not diagnostic.subject else f"{diagnostic.subject}: "
+    return _printable(
+        f"{place}: {diagnostic.severity}: {subject}{diagnostic.message} [{diagnostic.code}]"
+    )
 
 
-def _details(finding: Diagnostic) -> list[str]:
+def _details(diagnostic: Diagnostic) -> list[str]:
     lines = []
-    if finding.span and finding.excerpt:
-        excerpt = _printable(finding.excerpt.replace("\t", " "))
+    if diagnostic.span and diagnostic.excerpt:
+        excerpt = _printable(diagnostic.excerpt.replace("\t", " "))
         lines.append(_INDENT + excerpt)
-        start = finding.span.column - 1
+        start = diagnostic.span.column - 1
         # A shortened source line may end before the mark.
         if start <= len(excerpt):
-            marked = excerpt[start : start + finding.span.length]
+            marked = excerpt[start : start + diagnostic.span.length]
             caret = "^" * max(1, _width(marked))
             lines.append(_INDENT + " " * _width(excerpt[:start]) + caret)
-    if finding.hint:
-        lines.append(f"{_INDENT}hint: {_printable(finding.hint)}")
+    if diagnostic.hint:
+        lines.append(f"{_INDENT}hint: {_printable(diagnostic.hint)}")
     return lines
 
 

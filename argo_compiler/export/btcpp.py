@@ -20,7 +20,7 @@ from argo_compiler.il import (
     Stop,
     Task,
 )
-from argo_compiler.il.grouping import GroupRange, Layout
+from argo_compiler.il.grouping import GroupNesting, GroupRange
 from argo_compiler.il.reserved import RETURN_TASK
 from argo_compiler.model import Pose
 
@@ -62,7 +62,7 @@ def to_btcpp(mission: Mission) -> str:
 class _Tree:
     def __init__(self, mission: Mission) -> None:
         self.mission = mission
-        self.layout = Layout.of(mission)
+        self.layout = GroupNesting.of(mission)
         start = next((t for t in mission.tasks if t.action is Action.START), None)
         self.start = start
         self.position = {task.name: i for i, task in enumerate(mission.tasks, 1)}

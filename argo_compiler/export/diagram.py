@@ -3,7 +3,7 @@
 from collections.abc import Iterator
 from dataclasses import dataclass, replace
 
-from argo_compiler.hfsm import Composite, Hfsm, Leaf, Transition, TransitionKind
+from argo_compiler.hfsm import Composite, Hfsm, Leaf, StateTransition, TransitionKind
 from argo_compiler.hfsm.conditions import words
 from argo_compiler.hfsm.model import DONE
 from argo_compiler.il import Afterwards, Reaction, Response, Stop
@@ -86,7 +86,7 @@ class Drawing:
                 arrow = self._arrow(self.ids[group.id], group.timeout, group)
                 yield replace(arrow, leaves=group)
 
-    def _arrow(self, source: str, way: Transition, group: Composite | None = None) -> Arrow:
+    def _arrow(self, source: str, way: StateTransition, group: Composite | None = None) -> Arrow:
         if way.completes is not None:
             target: str | None = self.choice(way.completes)
         else:
@@ -101,7 +101,7 @@ class Drawing:
         return id
 
 
-def transition_words(transition: Transition, group: Composite | None = None) -> str:
+def transition_words(transition: StateTransition, group: Composite | None = None) -> str:
     """Why it is taken, as text; empty where nothing has to be said."""
     if transition.kind is TransitionKind.CONDITIONAL:
         return " and ".join(words(condition) for condition in transition.conditions)

@@ -13,7 +13,7 @@ from importlib.resources import files
 from argo_compiler.diagnostics import Diagnostic
 from argo_compiler.export.registry import refusal, refuse
 from argo_compiler.export.xml import XmlWriter
-from argo_compiler.hfsm import Composite, Hfsm, Leaf, Transition, TransitionKind
+from argo_compiler.hfsm import Composite, Hfsm, Leaf, StateTransition, TransitionKind
 from argo_compiler.hfsm.model import DONE, MISSION, RETURN
 from argo_compiler.il import Action, Condition, ConditionType, Mission, Response, Task
 
@@ -246,7 +246,7 @@ class _Behavior:
             {"again": "route", "over": "left"},
         )
 
-    def _target(self, transition: Transition, end: str) -> int | str:
+    def _target(self, transition: StateTransition, end: str) -> int | str:
         if transition.completes is not None:
             return -self.depths[transition.completes]
         id = transition.target or DONE

@@ -20,20 +20,20 @@ class Exporter:
     suffixes: tuple[str, ...]
     """what the file's name ends with, the usual one first; none where a folder is written"""
     export: Callable[[Mission, Hfsm], Exported]
-    """raises DiagnosticError with a finding for each thing that the format can't say"""
+    """raises DiagnosticError with a diagnostic for each thing that the format can't say"""
 
 
 def refusal(
     code: str, message: str, hint: str | None = None, span: Span | None = None
 ) -> Diagnostic:
-    """The finding that the target can't say something of the mission; `code` without `export.`."""
+    """Says that the target can't say something of the mission; `code` without `export.`."""
     return Diagnostic(
         code=f"export.{code}", severity=Severity.ERROR, message=message, span=span, hint=hint
     )
 
 
-def refuse(findings: Iterable[Diagnostic]) -> None:
-    """Raises DiagnosticError if there are findings."""
-    found = tuple(findings)
+def refuse(diagnostics: Iterable[Diagnostic]) -> None:
+    """Raises DiagnosticError if there are diagnostics."""
+    found = tuple(diagnostics)
     if found:
         raise DiagnosticError("mission", found)

@@ -10,7 +10,7 @@ from argo_compiler.export.scxml_control import (
     ABORTED,
     FAILED,
     RETURNED,
-    Control,
+    ControlRegion,
     outcome_states,
 )
 from argo_compiler.export.scxml_data import (
@@ -22,7 +22,7 @@ from argo_compiler.export.scxml_data import (
     task_attributes,
 )
 from argo_compiler.export.xml import XmlWriter, number
-from argo_compiler.hfsm import Composite, Hfsm, Leaf, Transition, TransitionKind
+from argo_compiler.hfsm import Composite, Hfsm, Leaf, StateTransition, TransitionKind
 from argo_compiler.hfsm.model import DONE, RETURN
 from argo_compiler.il import Action, Condition, ConditionType, Mission, Task
 
@@ -69,7 +69,7 @@ class _Document:
                         with xml.element("send", time_up):
                             xml.add("param", {"name": "time", "expr": limit})
                 self._plan()
-                Control(xml, self.hfsm, self.ids, self.timers).write()
+                ControlRegion(xml, self.hfsm, self.ids, self.timers).write()
                 self._actuator()
             outcome_states(xml)
         return xml.text()
@@ -129,7 +129,7 @@ class _Document:
             with xml.element("onexit"):
                 xml.add("cancel", {"sendid": f"timer_{n}"})
 
-    def _group_transition(self, group: Composite, transition: Transition) -> None:
+    def _group_transition(self, group: Composite, transition: StateTransition) -> None:
         n = self.ids.groups[group.id]
         repeat = group.repeat
         assert repeat is not None
@@ -205,7 +205,7 @@ class _Document:
             if outcome is not None:
                 assign(self.xml, "outcome", str(outcome))
 
-    def _onward(self, transition: Transition, cond: str) -> None:
+    def _onward(self, transition: StateTransition, cond: str) -> None:
         if transition.completes is not None:
             n = self.ids.groups[transition.completes]
             with self.xml.element("transition", {"cond": cond}):

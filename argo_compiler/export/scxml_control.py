@@ -32,7 +32,7 @@ def outcome_states(xml: XmlWriter) -> None:
         xml.add("final", {"id": outcome})
 
 
-class Control:
+class ControlRegion:
     """The region, which is written once."""
 
     def __init__(self, xml: XmlWriter, hfsm: Hfsm, ids: ActionIds, timers: bool) -> None:

@@ -35,7 +35,7 @@ class Value(NamedTuple):
     end: int
 
 
-class Text:
+class JsonText:
     """A JSON text that `json.loads` has accepted. Knows where its lines begin."""
 
     def __init__(self, text: str) -> None:
@@ -99,7 +99,7 @@ class _Node:
     further: dict[Step, "_Node"] = field(default_factory=dict)
 
 
-def find_places(text: Text, paths: Collection[JsonPath]) -> dict[JsonPath, Span]:
+def find_places(text: JsonText, paths: Collection[JsonPath]) -> dict[JsonPath, Span]:
     """The place of each path's value, with its key where it has one.
 
     An object is shown by its first member, which tells more than a brace. If a path does not exist,
@@ -114,7 +114,7 @@ def find_places(text: Text, paths: Collection[JsonPath]) -> dict[JsonPath, Span]
     return {path: _place(text, root, path) for path in paths}
 
 
-def _locate(text: Text, root: _Node) -> None:
+def _locate(text: JsonText, root: _Node) -> None:
     around: list[_Node | None] = []  # for each open container, what is looked for in it
     for value in text.values():
         del around[value.depth :]
@@ -130,7 +130,7 @@ def _locate(text: Text, root: _Node) -> None:
         around.append(node)
 
 
-def _place(text: Text, root: _Node, path: JsonPath) -> Span:
+def _place(text: JsonText, root: _Node, path: JsonPath) -> Span:
     node = root
     for step in path:
         further = node.further[step]
@@ -145,7 +145,7 @@ def _place(text: Text, root: _Node, path: JsonPath) -> Span:
     return text.span(value.key[0] if value.key else value.start, value.end)
 
 
-def find_duplicates(text: Text, limit: int) -> dict[JsonPath, Span]:
+def find_duplicates(text: JsonText, limit: int) -> dict[JsonPath, Span]:
     """The keys that stand more than once in their object, with where each stands first.
 
     At most `limit` of them. `find_places` tells where a key stands last.

@@ -30,28 +30,30 @@ _LISTS: dict[str, TypeAdapter[Any]] = {
 }
 
 
-class Fault(NamedTuple):
-    """A finding that has no place yet, and the path of what it is about."""
+class UnplacedDiagnostic(NamedTuple):
+    """A diagnostic that has no place yet, and the path of what it is about."""
 
-    finding: Diagnostic
+    diagnostic: Diagnostic
     path: JsonPath | None
 
 
-def fault(code: str, message: str, hint: str | None, path: JsonPath | None = None) -> Fault:
+def unplaced(
+    code: str, message: str, hint: str | None, path: JsonPath | None = None
+) -> UnplacedDiagnostic:
     """An error about what is at the path; None: about the whole file."""
     subject = None if path is None else format_path(path)
-    finding = Diagnostic(
+    diagnostic = Diagnostic(
         code=code, severity=Severity.ERROR, message=message, hint=hint, subject=subject
     )
-    return Fault(finding, path)
+    return UnplacedDiagnostic(diagnostic, path)
 
 
-def too_deep() -> Fault:
+def too_deep() -> UnplacedDiagnostic:
     """The fault of data that are nested deeper than a program's stack."""
-    return fault("file.too-deep", "is nested too deeply", "no mission is: check the file")
+    return unplaced("file.too-deep", "is nested too deeply", "no mission is: check the file")
 
 
-def to_mission(data: dict[str, Any]) -> Mission | list[Fault]:
+def to_mission(data: dict[str, Any]) -> Mission | list[UnplacedDiagnostic]:
     """The mission that the data of the present version describe, or what is wrong with them."""
     lists = {name: data[name] for name in _LISTS if isinstance(data.get(name), list)}
     header = {name: value for name, value in data.items() if name not in lists}
@@ -66,7 +68,7 @@ def to_mission(data: dict[str, Any]) -> Mission | list[Fault]:
     return faults or read.model_copy(update=items)
 
 
-def _read_header(header: dict[str, Any]) -> tuple[Mission, list[Fault]]:
+def _read_header(header: dict[str, Any]) -> tuple[Mission, list[UnplacedDiagnostic]]:
     text = json.dumps(header)
     if len(text) > MAX_ITEM:
         return Mission(), [_too_large("what is no task, group or reaction", None)]
@@ -77,10 +79,12 @@ def _read_header(header: dict[str, Any]) -> tuple[Mission, list[Fault]]:
         return Mission(), list(_faults(error, (), 0))
 
 
-def _read_list(name: str, values: list[Any], most: int) -> tuple[tuple[Model, ...], list[Fault]]:
+def _read_list(
+    name: str, values: list[Any], most: int
+) -> tuple[tuple[Model, ...], list[UnplacedDiagnostic]]:
     """The items of a list, as far as there were no more than `most` faults in them."""
     items: list[Model] = []
-    faults: list[Fault] = []
+    faults: list[UnplacedDiagnostic] = []
     for start, text in _portions(values):
         if len(faults) >= most:
             break
@@ -109,8 +113,8 @@ def _portions(values: list[Any]) -> Iterator[tuple[int, str]]:
         yield start, f"[{','.join(texts)}]"
 
 
-def _too_large(what: str, path: JsonPath | None) -> Fault:
-    return fault(
+def _too_large(what: str, path: JsonPath | None) -> UnplacedDiagnostic:
+    return unplaced(
         "file.too-large",
         f"{what}: takes more than {MAX_ITEM} characters",
         "no mission's does: check the file",
@@ -118,7 +122,7 @@ def _too_large(what: str, path: JsonPath | None) -> Fault:
     )
 
 
-def _faults(error: ValidationError, around: JsonPath, first: int) -> Iterator[Fault]:
+def _faults(error: ValidationError, around: JsonPath, first: int) -> Iterator[UnplacedDiagnostic]:
     """The faults in a portion of the list `around`, which begins with its item `first`."""
     for found in error.errors(include_url=False, include_input=False)[:MAX_FAULTS]:
         if found["type"] == "json_invalid":
@@ -127,7 +131,7 @@ def _faults(error: ValidationError, around: JsonPath, first: int) -> Iterator[Fa
             else:  # a character that JSON allows and Unicode does not
                 message = re.sub("^Invalid JSON: (.*) at line .*", r"\1", found["msg"])
                 where = format_path((*around, first)) if around else "the file"
-                yield fault(
+                yield unplaced(
                     "file.not-json",
                     f"{where} or what follows is not usable JSON: {message}",
                     "correct the character",
@@ -140,4 +144,4 @@ def _faults(error: ValidationError, around: JsonPath, first: int) -> Iterator[Fa
         if found["type"] == "extra_forbidden":
             message, hint = "the mission format has no such field", field_hint(Mission, path)
         where = format_path(path) or "the file"
-        yield fault("file.wrong-field", f"{where}: {message}", hint, path)
+        yield unplaced("file.wrong-field", f"{where}: {message}", hint, path)

@@ -14,13 +14,19 @@ from argo_compiler.diagnostics import (
     by_place,
 )
 from argo_compiler.files.json_places import (
-    Text,
+    JsonText,
     find_duplicates,
     find_places,
     format_path,
 )
 from argo_compiler.files.migration import VERSION, migrate
-from argo_compiler.files.mission_data import MAX_FAULTS, Fault, fault, to_mission, too_deep
+from argo_compiler.files.mission_data import (
+    MAX_FAULTS,
+    UnplacedDiagnostic,
+    to_mission,
+    too_deep,
+    unplaced,
+)
 from argo_compiler.files.writing import write_whole
 from argo_compiler.il import Mission
 from argo_compiler.il.subjects import Subjects
@@ -36,13 +42,16 @@ class MissionFile:
     mission: Mission
     text: str
 
-    def placed(self, findings: Iterable[Diagnostic]) -> tuple[Diagnostic, ...]:
-        """The findings with their places in the file, by their subjects.
+    def placed(self, diagnostics: Iterable[Diagnostic]) -> tuple[Diagnostic, ...]:
+        """The diagnostics with their places in the file, by their subjects.
 
         The places that they had are the script's from which the mission was imported.
         """
         path = Subjects(self.mission).path
-        faults = (Fault(f, None if f.subject is None else path(f.subject)) for f in findings)
+        faults = (
+            UnplacedDiagnostic(f, None if f.subject is None else path(f.subject))
+            for f in diagnostics
+        )
         return by_place(_placed(self.text, faults))
 
 
@@ -58,7 +67,7 @@ def read_mission(path: Path) -> Mission:
 
 
 def read_mission_file(path: Path) -> MissionFile:
-    """The same, with the file's text, in which the places of later findings can be looked up."""
+    """The same, with the file's text, in which the places of later diagnostics can be looked up."""
     text = _read_text(path)
     data, repeats = _parse(path, text)
     faults = [*_duplicate_keys(text)] if repeats else []
@@ -86,7 +95,7 @@ def write_mission(mission: Mission, path: Path) -> None:
         write_whole(path, mission_text(mission))
     except OSError as error:
         message = f"can't be written: {error.strerror}"
-        _refuse(path, "", [fault("file.unwritable", message, "choose another place")])
+        _refuse(path, "", [unplaced("file.unwritable", message, "choose another place")])
 
 
 def mission_text(mission: Mission) -> str:
@@ -95,28 +104,28 @@ def mission_text(mission: Mission) -> str:
     return json.dumps(data, indent=2, ensure_ascii=False) + "\n"
 
 
-def _refuse(path: Path, text: str, faults: Iterable[Fault]) -> NoReturn:
+def _refuse(path: Path, text: str, faults: Iterable[UnplacedDiagnostic]) -> NoReturn:
     raise DiagnosticError(str(path), _placed(text, faults)) from None
 
 
-def _placed(text: str, faults: Iterable[Fault]) -> list[Diagnostic]:
+def _placed(text: str, faults: Iterable[UnplacedDiagnostic]) -> list[Diagnostic]:
     faults = list(faults)
     paths = [path for _, path in faults if path is not None]
-    lines = Text(text)
+    lines = JsonText(text)
     spans = find_places(lines, paths) if paths else {}
-    return [_at(lines, finding, spans[path] if path else None) for finding, path in faults]
+    return [_at(lines, diagnostic, spans[path] if path else None) for diagnostic, path in faults]
 
 
-def _at(lines: Text, finding: Diagnostic, span: Span | None) -> Diagnostic:
+def _at(lines: JsonText, diagnostic: Diagnostic, span: Span | None) -> Diagnostic:
     excerpt = lines.line(span.line) if span else None
     if excerpt is not None and len(excerpt) > MAX_EXCERPT:
         excerpt = None
-    return finding.model_copy(update={"span": span, "excerpt": excerpt})
+    return diagnostic.model_copy(update={"span": span, "excerpt": excerpt})
 
 
 def _read_text(path: Path) -> str:
     def refuse(code: str, message: str, hint: str) -> NoReturn:
-        _refuse(path, "", [fault(code, message, hint)])
+        _refuse(path, "", [unplaced(code, message, hint)])
 
     if path.is_dir():
         refuse("file.directory", "is a directory", "name the mission file in it")
@@ -159,28 +168,30 @@ def _parse(path: Path, text: str) -> tuple[Any, bool]:
     try:
         return json.loads(text, object_pairs_hook=to_dict), repeats
     except json.JSONDecodeError as error:
-        lines = Text(text)
-        finding, _ = fault("file.not-json", f"is not JSON: {error.msg}", "correct it at the mark")
+        lines = JsonText(text)
+        diagnostic, _ = unplaced(
+            "file.not-json", f"is not JSON: {error.msg}", "correct it at the mark"
+        )
         span = lines.span(error.pos, error.pos + 1)
-        raise DiagnosticError(str(path), [_at(lines, finding, span)]) from None
+        raise DiagnosticError(str(path), [_at(lines, diagnostic, span)]) from None
     except RecursionError:
         _refuse(path, text, [too_deep()])
     except ValueError as error:  # an integer of thousands of digits
         message = f"is not usable JSON: {error}"
-        _refuse(path, text, [fault("file.not-json", message, "correct the number")])
+        _refuse(path, text, [unplaced("file.not-json", message, "correct the number")])
 
 
-def _not_a_mission() -> Fault:
-    return fault(
+def _not_a_mission() -> UnplacedDiagnostic:
+    return unplaced(
         "file.not-a-mission",
         "is not a mission: the JSON is no object",
         f'a mission begins with {{"version": {VERSION}, "tasks": [',
     )
 
 
-def _unsupported(version: object) -> Fault:
+def _unsupported(version: object) -> UnplacedDiagnostic:
     shown = json.dumps(version)
-    return fault(
+    return unplaced(
         "file.unsupported-version",
         f"has version {shown if len(shown) < 40 else '...'} of the mission format",
         f"this Argo reads versions up to {VERSION}: use a newer Argo or save the mission again",
@@ -188,9 +199,9 @@ def _unsupported(version: object) -> Fault:
     )
 
 
-def _duplicate_keys(text: str) -> Iterator[Fault]:
-    for path, first in find_duplicates(Text(text), MAX_FAULTS).items():
-        yield fault(
+def _duplicate_keys(text: str) -> Iterator[UnplacedDiagnostic]:
+    for path, first in find_duplicates(JsonText(text), MAX_FAULTS).items():
+        yield unplaced(
             "file.duplicate-key",
             f"{format_path(path)} stands here again; it was given at line {first.line}, "
             f"column {first.column}",

@@ -23,8 +23,8 @@ from argo_compiler.hfsm.model import (
     Hfsm,
     Leaf,
     ReactionState,
-    Repeat,
-    Transition,
+    RepeatRule,
+    StateTransition,
     TransitionKind,
 )
 from argo_compiler.hfsm.progress import ByHand, Progress
@@ -50,12 +50,12 @@ __all__ = [
     "Pause",
     "Progress",
     "ReactionState",
-    "Repeat",
+    "RepeatRule",
     "Resume",
     "StartAction",
+    "StateTransition",
     "Tick",
     "TraceEntry",
-    "Transition",
     "TransitionKind",
     "lower",
 ]

@@ -3,12 +3,12 @@
 import math
 from collections import deque
 
+from argo_compiler.hfsm.configuration import Configuration
 from argo_compiler.hfsm.events import Outcome
 from argo_compiler.hfsm.model import RETURN
-from argo_compiler.hfsm.place import Place
 from argo_compiler.hfsm.progress import ByHand, Phase
 from argo_compiler.hfsm.reactions import Pending, Reactions
-from argo_compiler.hfsm.tables import LeafNode, Tables, Way
+from argo_compiler.hfsm.tables import CompiledTransition, LeafNode, Tables
 from argo_compiler.hfsm.trace import Cause, RawEntry
 from argo_compiler.il import Afterwards, EventKind, Response
 
@@ -18,7 +18,7 @@ class Control:
 
     def __init__(self, tables: Tables) -> None:
         self.tables = tables
-        self.place = Place(tables)
+        self.place = Configuration(tables)
         self.reactions = Reactions()
         self.by_hand: dict[str, deque[ByHand]] = {}
         self.now = -math.inf
@@ -82,7 +82,7 @@ class Control:
 
     def _take(
         self,
-        ways: tuple[Way, ...],
+        ways: tuple[CompiledTransition, ...],
         failure: str | None = None,
         timed_out: str | None = None,
         by_hand: bool = False,

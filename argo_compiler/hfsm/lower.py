@@ -7,8 +7,8 @@ end from the innermost group outward (G5 to G7), and each transition knows which
 """
 
 from argo_compiler.checks import check
-from argo_compiler.collecting import collector_held
 from argo_compiler.diagnostics import DiagnosticError, Severity
+from argo_compiler.garbage_collector import collector_held
 from argo_compiler.hfsm.model import (
     DONE,
     MISSION,
@@ -17,8 +17,8 @@ from argo_compiler.hfsm.model import (
     Hfsm,
     Leaf,
     ReactionState,
-    Repeat,
-    Transition,
+    RepeatRule,
+    StateTransition,
     TransitionKind,
     group_id,
     reaction_id,
@@ -36,7 +36,7 @@ from argo_compiler.il import (
     Stop,
     Task,
 )
-from argo_compiler.il.grouping import Layout
+from argo_compiler.il.grouping import GroupNesting
 from argo_compiler.il.reserved import RETURN_TASK, reaction_task_name
 
 
@@ -49,19 +49,19 @@ def lower(mission: Mission, progress: Progress | None = None, source_name: str =
         DiagnosticError: `check` finds errors in the mission.
         ArgoError: the mission does not have the task that the progress is at.
     """
-    findings = check(mission)
-    if any(finding.severity is Severity.ERROR for finding in findings):
-        raise DiagnosticError(source_name, findings)
+    diagnostics = check(mission)
+    if any(diagnostic.severity is Severity.ERROR for diagnostic in diagnostics):
+        raise DiagnosticError(source_name, diagnostics)
     with collector_held():
         machine = _Lowering(mission).machine()
         return machine if progress is None else remaining(machine, progress)
 
 
-_END = Transition(kind=TransitionKind.DEFAULT, target=DONE, domain=MISSION)
+_END = StateTransition(kind=TransitionKind.DEFAULT, target=DONE, domain=MISSION)
 
 _FAILURES = {
-    OnFailure.RETURN: Transition(kind=TransitionKind.FAILURE, target=RETURN, domain=MISSION),
-    OnFailure.ABORT: Transition(kind=TransitionKind.FAILURE, target=DONE, domain=MISSION),
+    OnFailure.RETURN: StateTransition(kind=TransitionKind.FAILURE, target=RETURN, domain=MISSION),
+    OnFailure.ABORT: StateTransition(kind=TransitionKind.FAILURE, target=DONE, domain=MISSION),
 }
 
 
@@ -70,7 +70,7 @@ class _Lowering:
 
     def __init__(self, mission: Mission) -> None:
         self.mission = mission
-        self.layout = Layout.of(mission)
+        self.layout = GroupNesting.of(mission)
         self.position = {task.name: i for i, task in enumerate(mission.tasks)}
         self.group_ids = [group_id(r.group.name) for r in self.layout.ranges]
 
@@ -125,13 +125,13 @@ class _Lowering:
     def _composite(self, index: int, children: tuple[str, ...]) -> Composite:
         r = self.layout.ranges[index]
         parent = self.layout.parent[index]
-        repeat = Transition(
+        repeat = StateTransition(
             kind=TransitionKind.REPEAT,
             target=task_id(r.group.start),
             domain=self.group_ids[index],
         )
         if parent is not None and self.layout.ranges[parent].last == r.last:
-            onward = Transition(kind=TransitionKind.DEFAULT, completes=self.group_ids[parent])
+            onward = StateTransition(kind=TransitionKind.DEFAULT, completes=self.group_ids[parent])
         else:
             onward = self._default(parent, self.mission.tasks[r.last])
         return Composite(
@@ -140,7 +140,7 @@ class _Lowering:
             parent=self._composite_id(parent),
             children=children,
             initial=task_id(r.group.start),
-            repeat=Repeat(
+            repeat=RepeatRule(
                 count=r.group.max_repeat_count,
                 duration=r.group.max_repeat_duration,
                 stop=r.group.stop,
@@ -154,7 +154,7 @@ class _Lowering:
     def _leaf(self, index: int, task: Task) -> Leaf:
         parent = self.layout.innermost[index]
         conditional = [
-            Transition(
+            StateTransition(
                 kind=TransitionKind.CONDITIONAL,
                 target=task_id(t.target),
                 domain=self._domain(parent, t.target),
@@ -165,7 +165,7 @@ class _Lowering:
         ]
         ending = self.layout.ending[index]
         if ending:
-            last = Transition(kind=TransitionKind.DEFAULT, completes=self.group_ids[ending[0]])
+            last = StateTransition(kind=TransitionKind.DEFAULT, completes=self.group_ids[ending[0]])
         else:
             last = self._default(parent, task)
         return Leaf(
@@ -189,12 +189,12 @@ class _Lowering:
             ),
         )
 
-    def _default(self, inside: int | None, task: Task) -> Transition:
+    def _default(self, inside: int | None, task: Task) -> StateTransition:
         """The unconditional transition of a task, taken by a state that lies in `inside`."""
         target = _unconditional_target(task)
         if target is None:
             return _END
-        return Transition(
+        return StateTransition(
             kind=TransitionKind.DEFAULT,
             target=task_id(target),
             domain=self._domain(inside, target),
@@ -229,7 +229,7 @@ def _reaction_state(reaction: Reaction, mission: Mission) -> ReactionState:
     return ReactionState(id=reaction_id(reaction.event), reaction=reaction, task=task)
 
 
-def _timeout(group: Group) -> Transition | None:
+def _timeout(group: Group) -> StateTransition | None:
     if group.stop is Stop.SOFT or not group.max_repeat_duration:
         return None
-    return Transition(kind=TransitionKind.TIMEOUT, completes=group_id(group.name))
+    return StateTransition(kind=TransitionKind.TIMEOUT, completes=group_id(group.name))

@@ -71,7 +71,7 @@ class TransitionKind(StrEnum):
     """the action has failed for good, and the task says not to go on then"""
 
 
-class Transition(Model):
+class StateTransition(Model):
     """One way on. Exactly one of `target` and `completes` is given."""
 
     kind: TransitionKind
@@ -85,7 +85,7 @@ class Transition(Model):
     """CONDITIONAL only: all of them have to hold"""
 
 
-class Repeat(Model):
+class RepeatRule(Model):
     """When a group wants another round: while neither limit is reached."""
 
     count: int = Field(ge=0)
@@ -110,11 +110,11 @@ class Composite(Model):
     """the states that lie in it directly, in the mission's order"""
     initial: str
     """the leaf that a round begins with; it may lie in a composite further down"""
-    repeat: Repeat | None = None
+    repeat: RepeatRule | None = None
     """None for the mission, which is gone through once"""
-    transitions: tuple[Transition, ...] = ()
+    transitions: tuple[StateTransition, ...] = ()
     """for the end of a round, in the order in which they are tried"""
-    timeout: Transition | None = None
+    timeout: StateTransition | None = None
     """taken when the repeat's duration is over; None: the round is completed first"""
     source: Span | None = None
 
@@ -125,9 +125,9 @@ class Leaf(Model):
     id: str
     parent: str
     task: Task
-    transitions: tuple[Transition, ...]
+    transitions: tuple[StateTransition, ...]
     """for the end of the action, in the order in which they are tried"""
-    failure: Transition | None = None
+    failure: StateTransition | None = None
     """for an action that failed for good; None: `transitions`"""
 
     @property
@@ -163,7 +163,7 @@ class Hfsm(Model):
     def mission(self) -> Composite:
         return self.composites[0]
 
-    def transitions(self) -> Iterator[Transition]:
+    def transitions(self) -> Iterator[StateTransition]:
         """All transitions, by source."""
         for leaf in self.leaves:
             yield from leaf.transitions

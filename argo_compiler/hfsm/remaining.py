@@ -7,7 +7,7 @@ from itertools import count
 from argo_compiler.errors import ArgoError
 from argo_compiler.hfsm.model import DONE, RETURN, Composite, Hfsm, Leaf, task_id
 from argo_compiler.hfsm.progress import GroupProgress, Progress
-from argo_compiler.hfsm.tables import GroupNode, LeafNode, Way, tables
+from argo_compiler.hfsm.tables import CompiledTransition, GroupNode, LeafNode, tables
 from argo_compiler.il.reserved import RETURN_TASK
 
 
@@ -121,7 +121,7 @@ class _Reach:
                 self._complete(group, under_way, time_up=True)
             self._looked_at.add((group.id, under_way, True))
 
-    def _take(self, ways: tuple[Way, ...], under_way: int) -> None:
+    def _take(self, ways: tuple[CompiledTransition, ...], under_way: int) -> None:
         for way in ways:
             if way.completes is not None:
                 self._complete(way.completes, under_way, time_up=False)

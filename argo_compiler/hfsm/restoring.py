@@ -4,8 +4,8 @@ from collections import deque
 from collections.abc import Mapping
 
 from argo_compiler.errors import ArgoError
+from argo_compiler.hfsm.configuration import Configuration, Frame
 from argo_compiler.hfsm.model import RETURN, task_id
-from argo_compiler.hfsm.place import Frame, Place
 from argo_compiler.hfsm.progress import (
     ByHand,
     GroupProgress,
@@ -23,13 +23,13 @@ from argo_compiler.il.reserved import RETURN_TASK
 _OTHER = "use the mission that it was saved from, or match it to this one first"
 
 
-def place_of(tables: Tables, progress: Progress, now: float, away: float) -> Place:
+def place_of(tables: Tables, progress: Progress, now: float, away: float) -> Configuration:
     """Where a machine stands that goes on from `progress` at `now`, after `away` seconds.
 
     Raises:
         ArgoError: the progress is not one of this machine.
     """
-    place = Place(tables)
+    place = Configuration(tables)
     place.visit = place.new_visit()
     place.attempt = progress.attempt
     if progress.paused or progress.reaction:
@@ -66,7 +66,7 @@ def reactions_of(tables: Tables, progress: Progress) -> Reactions:
     return reactions
 
 
-def group_progress(place: Place, now: float) -> tuple[GroupProgress, ...]:
+def group_progress(place: Configuration, now: float) -> tuple[GroupProgress, ...]:
     """The active groups, outermost first."""
     return tuple(
         GroupProgress(
@@ -78,7 +78,7 @@ def group_progress(place: Place, now: float) -> tuple[GroupProgress, ...]:
     )
 
 
-def value_progress(place: Place, now: float) -> tuple[ValueProgress, ...]:
+def value_progress(place: Configuration, now: float) -> tuple[ValueProgress, ...]:
     """The values with their ages."""
     clock = now + place.shift
     return tuple(

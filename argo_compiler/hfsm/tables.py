@@ -3,7 +3,7 @@
 from collections.abc import Callable
 from dataclasses import dataclass, field
 
-from argo_compiler.collecting import collector_held
+from argo_compiler.garbage_collector import collector_held
 from argo_compiler.hfsm.conditions import comparison
 from argo_compiler.hfsm.events import StartAction
 from argo_compiler.hfsm.model import (
@@ -12,7 +12,7 @@ from argo_compiler.hfsm.model import (
     Hfsm,
     Leaf,
     ReactionState,
-    Transition,
+    StateTransition,
     TransitionKind,
 )
 from argo_compiler.hfsm.trace import Cause
@@ -31,7 +31,7 @@ Guard = tuple[str, Callable[[float], bool], float | None]
 
 
 @dataclass(slots=True, eq=False)
-class Way:
+class CompiledTransition:
     """A transition. Filled in while the tables are made, then never changed."""
 
     cause: Cause
@@ -60,8 +60,8 @@ class GroupNode:
     counts_interruptions: bool
     hard: bool
     """whether a time-out leaves it"""
-    ways: tuple[Way, ...] = ()
-    timeout: Way | None = None
+    ways: tuple[CompiledTransition, ...] = ()
+    timeout: CompiledTransition | None = None
 
 
 @dataclass(slots=True, eq=False)
@@ -76,8 +76,8 @@ class LeafNode:
     retries: int
     measures: str | None
     """the checkpoint, for MEASURE"""
-    ways: tuple[Way, ...] = ()
-    failure: Way | None = None
+    ways: tuple[CompiledTransition, ...] = ()
+    failure: CompiledTransition | None = None
 
 
 @dataclass(slots=True, eq=False)
@@ -116,9 +116,9 @@ def _tables(hfsm: Hfsm) -> Tables:
         groups[composite.id] = _group(composite, groups)
     leaves = {leaf.id: _leaf(leaf, groups) for leaf in hfsm.leaves}
 
-    def way(transition: Transition) -> Way:
+    def way(transition: StateTransition) -> CompiledTransition:
         domain = None if transition.domain is None else groups.get(transition.domain)
-        return Way(
+        return CompiledTransition(
             cause=_CAUSES[transition.kind],
             guards=tuple((c.object_id, comparison(c), c.max_age) for c in transition.conditions),
             conditions=transition.conditions,

@@ -4,7 +4,7 @@ from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
-    from argo_compiler.hfsm.model import Composite, Hfsm, Transition
+    from argo_compiler.hfsm.model import Composite, Hfsm, StateTransition
 
 
 def validate(hfsm: "Hfsm") -> None:
@@ -29,7 +29,9 @@ def validate(hfsm: "Hfsm") -> None:
             if state not in states:
                 raise ValueError(f"there is no state '{state}' in '{composite.id}'")
 
-    def check(id: str, parent: str, transitions: Sequence["Transition"], completes: str) -> None:
+    def check(
+        id: str, parent: str, transitions: Sequence["StateTransition"], completes: str
+    ) -> None:
         for t in transitions:
             if (t.target is None) == (t.completes is None):
                 raise ValueError(f"a transition of '{id}' has not one of target and completes")

@@ -43,7 +43,7 @@ def group_ranges(mission: Mission) -> tuple[GroupRange, ...]:
 
 
 @dataclass(frozen=True)
-class Layout:
+class GroupNesting:
     """The nesting of a mission's groups. Tasks and groups are meant by position."""
 
     ranges: tuple[GroupRange, ...]
@@ -56,7 +56,7 @@ class Layout:
     """for each task, the ranges that end with it, innermost first"""
 
     @classmethod
-    def of(cls, mission: Mission) -> "Layout":
+    def of(cls, mission: Mission) -> "GroupNesting":
         """The layout of a mission whose groups `check` finds no error in. Linear time."""
         ranges = group_ranges(mission)
         parent: list[int | None] = []

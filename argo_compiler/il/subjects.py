@@ -1,4 +1,4 @@
-"""The parts of one mission as findings name them, and where such a subject stands in its lists."""
+"""The parts of a mission as diagnostics name them, and where such a subject is in its lists."""
 
 from collections.abc import Iterable
 from functools import cached_property

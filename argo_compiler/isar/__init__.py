@@ -5,6 +5,6 @@ order. `docs/exchange.md` says what that can hold.
 """
 
 from argo_compiler.isar.reading import Imported, from_isar, read_isar
-from argo_compiler.isar.writing import View, to_isar
+from argo_compiler.isar.writing import InspectionView, to_isar
 
-__all__ = ["Imported", "View", "from_isar", "read_isar", "to_isar"]
+__all__ = ["Imported", "InspectionView", "from_isar", "read_isar", "to_isar"]

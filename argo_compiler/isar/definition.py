@@ -44,7 +44,7 @@ class RobotPose(Part):
     frame_name: str = "robot"
 
 
-class Inspection(Part):
+class IsarInspection(Part):
     """What is recorded, and of which point."""
 
     type: str = IMAGE
@@ -60,7 +60,7 @@ class TaskDefinition(Part):
     id: str | None = None
     type: Literal["inspection", "return_to_home"] = "inspection"
     pose: RobotPose
-    inspection: Inspection | None = None
+    inspection: IsarInspection | None = None
     tag: str | None = None
     """of the equipment that is inspected"""
     zoom: dict[str, Any] | None = None

@@ -11,7 +11,6 @@ from pydantic import ValidationError
 from argo_compiler.catalog import Catalog
 from argo_compiler.diagnostics import Diagnostic, DiagnosticError, Severity
 from argo_compiler.files.mission_file import MAX_BYTES
-from argo_compiler.headings import to_yaw
 from argo_compiler.il import Action, Mission, Task, Transition
 from argo_compiler.isar.definition import (
     FRAME,
@@ -23,6 +22,7 @@ from argo_compiler.isar.definition import (
     TaskDefinition,
 )
 from argo_compiler.model import Pose
+from argo_compiler.quaternions import to_yaw
 
 _WRAPPED = "mission_definition"
 """what isar's API calls the definition in the body of a request"""
@@ -73,27 +73,27 @@ def from_isar(data: Any, source_name: str, catalog: Catalog | None = None) -> Im
     A tag is a checkpoint's number, or its name where a catalogue is given. The robot's pose is
     kept, though Argo chooses its own; the target is the site's.
 
-    Raises DiagnosticError for what Argo can't do, with a finding for each.
+    Raises DiagnosticError for what Argo can't do, with a diagnostic for each.
     """
     definition = data.get(_WRAPPED, data) if isinstance(data, dict) else data
     try:
         read = MissionDefinition.model_validate(definition)
     except ValidationError as error:
-        findings = [
-            _finding("wrong-field", _path(e["loc"]), e["msg"], "correct the isar mission")
+        diagnostics = [
+            _diagnostic("wrong-field", _path(e["loc"]), e["msg"], "correct the isar mission")
             for e in error.errors(include_url=False)[:100]
         ]
-        raise DiagnosticError(source_name, findings) from None
+        raise DiagnosticError(source_name, diagnostics) from None
     return _Reader(source_name, catalog).mission(read)
 
 
 @dataclass
 class _Reader:
-    """Reads one definition; collects findings on the way."""
+    """Reads one definition; collects diagnostics on the way."""
 
     source_name: str
     catalog: Catalog | None
-    findings: list[Diagnostic] = field(default_factory=list)
+    diagnostics: list[Diagnostic] = field(default_factory=list)
 
     def mission(self, read: MissionDefinition) -> Imported:
         names = (
@@ -119,14 +119,14 @@ class _Reader:
                 self._check_inspection(place, task)
                 object_id = names.get(task.tag or "", task.tag)
                 tasks.append(Task(name=name, action=Action.MEASURE, object_id=object_id, pose=pose))
-        if any(finding.severity is Severity.ERROR for finding in self.findings):
-            raise DiagnosticError(self.source_name, self.findings)
+        if any(diagnostic.severity is Severity.ERROR for diagnostic in self.diagnostics):
+            raise DiagnosticError(self.source_name, self.diagnostics)
         linked = [
             task.model_copy(update={"transitions": (Transition(target=following.name),)})
             for task, following in pairwise(tasks)
         ]
         mission = Mission(designation=read.name or "", tasks=(*linked, *tasks[-1:]), dock=dock)
-        return Imported(mission, tuple(self.findings))
+        return Imported(mission, tuple(self.diagnostics))
 
     def _check_inspection(self, place: str, task: TaskDefinition) -> None:
         inspection = task.inspection
@@ -161,7 +161,9 @@ class _Reader:
 
     def _require(self, place: str, given: bool, code: str, message: str) -> None:
         if not given:
-            self.findings.append(_finding(code, place, message, "remove the task, or complete it"))
+            self.diagnostics.append(
+                _diagnostic(code, place, message, "remove the task, or complete it")
+            )
 
     def _warn_of_extras(self, place: str, part: Part) -> None:
         for name, value in (part.model_extra or {}).items():
@@ -169,8 +171,8 @@ class _Reader:
                 self._warn(f"{place}.{name}".removeprefix("."), "is not taken over")
 
     def _warn(self, place: str, message: str) -> None:
-        finding = _finding("dropped", place, message, None)
-        self.findings.append(finding.model_copy(update={"severity": Severity.WARNING}))
+        diagnostic = _diagnostic("dropped", place, message, None)
+        self.diagnostics.append(diagnostic.model_copy(update={"severity": Severity.WARNING}))
 
 
 def _fresh(name: str, used: set[str]) -> str:
@@ -185,7 +187,7 @@ def _path(location: tuple[int | str, ...]) -> str:
     return "".join(steps).removeprefix(".") or "the mission"
 
 
-def _finding(code: str, place: str, message: str, hint: str | None) -> Diagnostic:
+def _diagnostic(code: str, place: str, message: str, hint: str | None) -> Diagnostic:
     return Diagnostic(
         code=f"isar.{code}", severity=Severity.ERROR, message=f"{place}: {message}", hint=hint
     )

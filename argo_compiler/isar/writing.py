@@ -7,17 +7,17 @@ from uuid import NAMESPACE_URL, uuid5
 
 from argo_compiler.diagnostics import Diagnostic
 from argo_compiler.export.registry import refusal, refuse
-from argo_compiler.headings import to_quaternion
 from argo_compiler.hfsm import ActionSucceeded, Executor, Hfsm, StartAction
 from argo_compiler.il import Action, Mission, Mode, OnFailure, Task
 from argo_compiler.isar.definition import FRAME, IMAGE, INSPECTION, RETURN_TO_HOME
 from argo_compiler.model import Model, Pose
+from argo_compiler.quaternions import to_quaternion
 
 MAX_TASKS = 10_000
 """of the definition, rounds unrolled"""
 
 
-class View(Model):
+class InspectionView(Model):
     """How a checkpoint is inspected: from where, which point, and its name for people."""
 
     pose: Pose
@@ -26,13 +26,13 @@ class View(Model):
     name: str = ""
 
 
-def to_isar(mission: Mission, hfsm: Hfsm, views: Mapping[str, View]) -> str:
+def to_isar(mission: Mission, hfsm: Hfsm, views: Mapping[str, InspectionView]) -> str:
     """The definition as JSON: the inspections in the order in which the machine does them.
 
     `views` holds the site's checkpoints by their `object_id`; a MEASURE with a pose is inspected
     from there. Groups with a count are unrolled.
 
-    Raises DiagnosticError with a finding for all that isar can't say.
+    Raises DiagnosticError with a diagnostic for all that isar can't say.
     """
     refuse(_unsaid(mission))
     tasks = _in_order(hfsm)
@@ -111,7 +111,7 @@ def _in_order(hfsm: Hfsm) -> tuple[Task, ...]:
 
 
 def _unplaced(
-    mission: Mission, tasks: tuple[Task, ...], views: Mapping[str, View]
+    mission: Mission, tasks: tuple[Task, ...], views: Mapping[str, InspectionView]
 ) -> Iterator[Diagnostic]:
     if not tasks:
         yield refusal("isar-empty", "isar has no missions without tasks", "measure something")
@@ -140,7 +140,7 @@ def _unplaced(
             )
 
 
-def _task(task: Task, id: str, views: Mapping[str, View]) -> dict[str, Any]:
+def _task(task: Task, id: str, views: Mapping[str, InspectionView]) -> dict[str, Any]:
     if task.action is Action.WAYPOINT:
         assert task.pose is not None
         return {"id": id, "type": RETURN_TO_HOME, "pose": _pose(task.pose)}

@@ -10,7 +10,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from argo_compiler.reorder.spine import Spine, Stop
+from argo_compiler.reorder.units import Spine, TaskUnit
 
 Costs = NDArray[np.float64]
 """by the leaf that the robot comes from, and the destination, of which the first are the leaves"""
@@ -41,11 +41,11 @@ class Branches:
         self._unit, self._likely = unit, likely
         self._rounds: dict[int, float] = {}
 
-    def time(self, stop: Stop) -> Row:
+    def time(self, stop: TaskUnit) -> Row:
         """From the end of a stop's first task to the end of what is done at each destination."""
         return self._row(stop, self._time, self._likely)
 
-    def along(self, stop: Stop) -> float:
+    def along(self, stop: TaskUnit) -> float:
         """From the end of a stop's first task to the end of its last, wherever that goes on to."""
         if len(stop.leaves) == 1:
             return 0.0
@@ -55,11 +55,11 @@ class Branches:
         )
         return float(rows[0])
 
-    def energy(self, stop: Stop) -> Row:
+    def energy(self, stop: TaskUnit) -> Row:
         """The same, always in the worst case."""
         return self._row(stop, self._energy, {})
 
-    def _row(self, stop: Stop, costs: Costs, likely: Likely) -> Row:
+    def _row(self, stop: TaskUnit, costs: Costs, likely: Likely) -> Row:
         if len(stop.leaves) == 1 and not self._spine.flow.leaves[stop.entry].conditional:
             row: Row = costs[stop.entry]
             return row

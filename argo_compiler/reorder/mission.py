@@ -10,12 +10,12 @@ from argo_compiler.analysis.limits import time_words
 from argo_compiler.errors import ArgoError
 from argo_compiler.il import Mission, Order
 from argo_compiler.reorder.branches import Branches
+from argo_compiler.reorder.precedences import must_be_last, precedences, round_notes, speed_notes
 from argo_compiler.reorder.requirements import Requirements
-from argo_compiler.reorder.rules import must_be_last, round_notes, rules, speed_notes
-from argo_compiler.reorder.spine import Stop, Unit, find_spine
+from argo_compiler.reorder.travel_matrix import TravelMatrix, require_matrix_of
+from argo_compiler.reorder.units import TaskUnit, Unit, find_spine
 from argo_compiler.reorder.visits import Visits
-from argo_compiler.reorder.ways import Ways, require_ways
-from argo_compiler.route.problem import NEVER, Battery, Round, Route, RouteProblem, Visit
+from argo_compiler.route.problem import NEVER, EnergyBudget, Round, RouteProblem, Tour, Visit
 
 _NOTHING = Requirements()
 _ROUNDING = 1e-6  # of a unit, left by sums of floats
@@ -28,14 +28,14 @@ class MissionRoute:
     mission: Mission
     visits: Visits
     problem: RouteProblem
-    written: Route
+    written: Tour
     """the order in which the mission is written"""
     reasons: tuple[str, ...]
     """what stays as it is written, and how it is reckoned"""
 
 
 def route_problem(
-    mission: Mission, ways: Ways, requirements: Requirements = _NOTHING
+    mission: Mission, ways: TravelMatrix, requirements: Requirements = _NOTHING
 ) -> MissionRoute:
     """The problem of the best order of a mission's tasks: what `docs/routes.md` says may change.
 
@@ -47,7 +47,7 @@ def route_problem(
             have.
     """
     spine = find_spine(mission)
-    require_ways(ways, mission)
+    require_matrix_of(ways, mission)
     visits = Visits(spine)
     times, energies, along = _costs(visits, ways, _likely(visits, requirements))
     services = [_work(stop, ways) + more for stop, more in zip(visits.stops, along, strict=True)]
@@ -64,7 +64,7 @@ def route_problem(
     problem = RouteProblem(
         visits=tuple(_visits(visits, services, ways, requirements)),
         travel=_travel(visits, times, services, ways),
-        precedences=rules(visits, mission.order is Order.PRECISE, requirements),
+        precedences=precedences(visits, mission.order is Order.PRECISE, requirements),
         rounds=tuple(_rounds(visits, ways)),
         max_duration=None if limit is None else ways.down(limit[0]),
         battery=battery,
@@ -73,7 +73,7 @@ def route_problem(
         words=words,
     )
     return MissionRoute(
-        mission, visits, problem, Route(tuple(range(len(visits.stops)))), tuple(reasons)
+        mission, visits, problem, Tour(tuple(range(len(visits.stops)))), tuple(reasons)
     )
 
 
@@ -113,7 +113,7 @@ def _likely(visits: Visits, requirements: Requirements) -> dict[tuple[int, int],
 
 
 def _costs(
-    visits: Visits, ways: Ways, likely: dict[tuple[int, int], float]
+    visits: Visits, ways: TravelMatrix, likely: dict[tuple[int, int], float]
 ) -> tuple[NDArray[np.float64], NDArray[np.float64], list[int]]:
     """Times (units) and energies (Wh) of the problem's rows and columns, with what goes along with
     the row and what is done at the column, inf: there is no way; and whole units of what goes
@@ -139,7 +139,7 @@ def _costs(
 
 
 def _travel(
-    visits: Visits, times: NDArray[np.float64], services: list[int], ways: Ways
+    visits: Visits, times: NDArray[np.float64], services: list[int], ways: TravelMatrix
 ) -> NDArray[np.int64]:
     """The times as the problem has them: whole units, without what the visits themselves take."""
     found = np.isfinite(times)
@@ -150,13 +150,13 @@ def _travel(
     return np.where(found, np.maximum(whole, 0), NEVER)
 
 
-def _work(stop: Stop, ways: Ways) -> int:
+def _work(stop: TaskUnit, ways: TravelMatrix) -> int:
     """Units that the first task takes."""
     return int(ways.work[stop.entry])
 
 
 def _visits(
-    visits: Visits, services: list[int], ways: Ways, requirements: Requirements
+    visits: Visits, services: list[int], ways: TravelMatrix, requirements: Requirements
 ) -> Iterator[Visit]:
     everything = range(len(visits.stops))
     prizes = {} if requirements.budget is None else dict.fromkeys(everything, 1)
@@ -186,7 +186,7 @@ def _visits(
         )
 
 
-def _rounds(visits: Visits, ways: Ways) -> Iterator[Round]:
+def _rounds(visits: Visits, ways: TravelMatrix) -> Iterator[Round]:
     for circuit, members in visits.circuits:
         group = visits.spine.flow.groups[circuit.group]
         yield Round(
@@ -199,8 +199,8 @@ def _rounds(visits: Visits, ways: Ways) -> Iterator[Round]:
 
 
 def _battery(
-    visits: Visits, ways: Ways, times: NDArray[np.float64], energies: NDArray[np.float64]
-) -> Battery | None:
+    visits: Visits, ways: TravelMatrix, times: NDArray[np.float64], energies: NDArray[np.float64]
+) -> EnergyBudget | None:
     """The battery, if there is an order in which it does not last to the end for sure."""
     if ways.battery is None or ways.charging <= 0.0:
         return None
@@ -208,11 +208,11 @@ def _battery(
         return None
     used = np.where(np.isfinite(energies), energies, 0.0)
     used = np.ceil(ways.units_of_energy(used) - _ROUNDING).astype(np.int64)
-    return Battery(used, int(ways.units_of_energy(np.array(ways.battery))))
+    return EnergyBudget(used, int(ways.units_of_energy(np.array(ways.battery))))
 
 
 def _most_energy(
-    visits: Visits, ways: Ways, times: NDArray[np.float64], energies: NDArray[np.float64]
+    visits: Visits, ways: TravelMatrix, times: NDArray[np.float64], energies: NDArray[np.float64]
 ) -> float:
     """Wh that no order needs more than, the way to the end included."""
     n = len(visits.stops)
@@ -224,7 +224,7 @@ def _most_energy(
     def most(units: tuple[Unit, ...]) -> float:
         total = 0.0
         for unit in units:
-            if isinstance(unit, Stop):
+            if isinstance(unit, TaskUnit):
                 total += worst[visits.of_leaf[unit.entry]]
                 continue
             group = visits.spine.flow.groups[unit.group]

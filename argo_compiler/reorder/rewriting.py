@@ -5,12 +5,12 @@ from collections.abc import Sequence
 from argo_compiler.errors import ArgoError
 from argo_compiler.il import Action, Group, Mission, Task, Transition
 from argo_compiler.reorder.mission import MissionRoute
-from argo_compiler.reorder.spine import Circuit, Stop, Unit
+from argo_compiler.reorder.units import Circuit, TaskUnit, Unit
 from argo_compiler.route.evaluation import evaluate
-from argo_compiler.route.problem import Route
+from argo_compiler.route.problem import Tour
 
 
-def apply_route(planned: MissionRoute, route: Route) -> Mission:
+def apply_route(planned: MissionRoute, route: Tour) -> Mission:
     """The mission with its tasks in the order of the route.
 
     What the route leaves out is taken away, with what is done only after it. Transitions, the
@@ -24,7 +24,7 @@ def apply_route(planned: MissionRoute, route: Route) -> Mission:
     return _Rewriting(planned, route).mission()
 
 
-def _require_possible(planned: MissionRoute, route: Route) -> None:
+def _require_possible(planned: MissionRoute, route: Tour) -> None:
     problem = planned.problem
     if route.charges:
         first = min(route.charges)
@@ -53,7 +53,7 @@ def _require_possible(planned: MissionRoute, route: Route) -> None:
 class _Rewriting:
     """The tables over one mission. Collects its tasks and groups in their new order."""
 
-    def __init__(self, planned: MissionRoute, route: Route) -> None:
+    def __init__(self, planned: MissionRoute, route: Tour) -> None:
         self.mission_before = planned.mission
         self.visits = planned.visits
         self.spine = planned.visits.spine
@@ -122,7 +122,7 @@ class _Rewriting:
         """Appends the tasks of units that follow each other; `after` is what follows the last."""
         for k, unit in enumerate(units):
             following = self._entry(units[k + 1]) if k + 1 < len(units) else after
-            if isinstance(unit, Stop):
+            if isinstance(unit, TaskUnit):
                 self._write_stop(unit, following)
                 continue
             begun = len(self.tasks)
@@ -130,7 +130,7 @@ class _Rewriting:
             name = self.spine.flow.groups[unit.group].name
             self.limits[name] = self.tasks[begun].name, self.tasks[-1].name
 
-    def _write_stop(self, stop: Stop, following: str | None) -> None:
+    def _write_stop(self, stop: TaskUnit, following: str | None) -> None:
         inside = {self.spine.name(leaf) for leaf in stop.leaves}
         for leaf in stop.leaves:
             task = self.tasks_before[self.spine.name(leaf)]

@@ -6,9 +6,9 @@ from functools import cached_property
 from argo_compiler.analysis.flow import NOWHERE
 from argo_compiler.errors import ArgoError
 from argo_compiler.il import Action, Task
-from argo_compiler.names import nearest_name
+from argo_compiler.nearest_name import nearest_name
 from argo_compiler.reorder.requirements import What
-from argo_compiler.reorder.spine import Circuit, Spine, Stop, Unit, stops_of
+from argo_compiler.reorder.units import Circuit, Spine, TaskUnit, Unit, stops_of
 
 
 @dataclass(frozen=True)
@@ -18,7 +18,7 @@ class Visits:
     spine: Spine
 
     @cached_property
-    def stops(self) -> tuple[Stop, ...]:
+    def stops(self) -> tuple[TaskUnit, ...]:
         return tuple(stops_of(self.spine.units))
 
     @cached_property

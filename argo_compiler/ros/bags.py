@@ -224,5 +224,5 @@ def _first_bytes(path: Path) -> bytes:
 
 
 def _refuse(path: Path, code: str, message: str, hint: str) -> NoReturn:
-    finding = Diagnostic(code=code, severity=Severity.ERROR, message=message, hint=hint)
-    raise DiagnosticError(str(path), [finding]) from None
+    diagnostic = Diagnostic(code=code, severity=Severity.ERROR, message=message, hint=hint)
+    raise DiagnosticError(str(path), [diagnostic]) from None

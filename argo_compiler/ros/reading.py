@@ -7,8 +7,8 @@ from typing import Any, NoReturn, TypeVar
 from pydantic import ValidationError
 
 from argo_compiler.diagnostics import Diagnostic, DiagnosticError, Severity
-from argo_compiler.headings import to_yaw
 from argo_compiler.il import Mission
+from argo_compiler.quaternions import to_yaw
 from argo_compiler.ros.numbers import Numbers
 from argo_compiler.ros.types import RosTypes
 
@@ -25,11 +25,13 @@ def from_message(message: Any, types: RosTypes, source_name: str) -> Mission:
     try:
         return Mission.model_validate(data)
     except ValidationError as error:
-        findings = [
-            _finding("ros.wrong-field", f"{_path(e['loc'])}: {e['msg']}", "publish a sound value")
+        diagnostics = [
+            _diagnostic(
+                "ros.wrong-field", f"{_path(e['loc'])}: {e['msg']}", "publish a sound value"
+            )
             for e in error.errors(include_url=False)
         ]
-        raise DiagnosticError(source_name, findings) from None
+        raise DiagnosticError(source_name, diagnostics) from None
 
 
 class _Reader:
@@ -171,9 +173,9 @@ def _path(location: Iterable[int | str]) -> str:
     return "".join(steps).removeprefix(".")
 
 
-def _finding(code: str, message: str, hint: str) -> Diagnostic:
+def _diagnostic(code: str, message: str, hint: str) -> Diagnostic:
     return Diagnostic(code=code, severity=Severity.ERROR, message=message, hint=hint)
 
 
 def _refuse(source_name: str, code: str, message: str, hint: str) -> NoReturn:
-    raise DiagnosticError(source_name, [_finding(code, message, hint)])
+    raise DiagnosticError(source_name, [_diagnostic(code, message, hint)])

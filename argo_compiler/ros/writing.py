@@ -4,9 +4,9 @@ from typing import Any, NoReturn
 
 from argo_compiler.diagnostics import Diagnostic, DiagnosticError, Severity, Span
 from argo_compiler.diagnostics.subject import subject_of
-from argo_compiler.headings import to_quaternion
 from argo_compiler.il import Condition, Group, Mission, Reaction, Task
 from argo_compiler.model import Pose
+from argo_compiler.quaternions import to_quaternion
 from argo_compiler.ros.numbers import Numbers
 from argo_compiler.ros.types import RosTypes
 
@@ -164,5 +164,7 @@ def _integer(place: str, value: int, kind: str) -> int:
 
 
 def _refuse(code: str, message: str, hint: str) -> NoReturn:
-    finding = Diagnostic(code=f"export.{code}", severity=Severity.ERROR, message=message, hint=hint)
-    raise DiagnosticError("mission", [finding]) from None
+    diagnostic = Diagnostic(
+        code=f"export.{code}", severity=Severity.ERROR, message=message, hint=hint
+    )
+    raise DiagnosticError("mission", [diagnostic]) from None

@@ -3,12 +3,12 @@
 from argo_compiler.route.evaluation import Evaluation, evaluate
 from argo_compiler.route.problem import (
     NEVER,
-    Battery,
+    EnergyBudget,
     Objective,
     Precedence,
     Round,
-    Route,
     RouteProblem,
+    Tour,
     Visit,
 )
 from argo_compiler.route.suggest import suggest_route
@@ -16,15 +16,15 @@ from argo_compiler.route.suggestion import Point, RouteSuggestion
 
 __all__ = [
     "NEVER",
-    "Battery",
+    "EnergyBudget",
     "Evaluation",
     "Objective",
     "Point",
     "Precedence",
     "Round",
-    "Route",
     "RouteProblem",
     "RouteSuggestion",
+    "Tour",
     "Visit",
     "evaluate",
     "suggest_route",

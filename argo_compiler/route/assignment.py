@@ -4,12 +4,12 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.optimize import linear_sum_assignment
 
-from argo_compiler.route.network import Network
+from argo_compiler.route.network import StepNetwork
 from argo_compiler.route.problem import NEVER
 from argo_compiler.route.pruning import Pruned, shortest
 
 
-def assignment_bound(network: Network, pruned: Pruned) -> int | None:
+def assignment_bound(network: StepNetwork, pruned: Pruned) -> int | None:
     """The least time that arcs and services take if each step is left once and entered once; 0
     where something may be left out. None: there is no route."""
     if not pruned.possible:
@@ -27,7 +27,7 @@ def assignment_bound(network: Network, pruned: Pruned) -> int | None:
 
 
 def least_between_steps(
-    network: Network, pruned: Pruned, costs: NDArray[np.int64]
+    network: StepNetwork, pruned: Pruned, costs: NDArray[np.int64]
 ) -> NDArray[np.int64]:
     """The least cost of the arcs that are left from each step to each other; the last row is that
     of the start, the last column that of the end; NEVER: no arc."""

@@ -5,7 +5,7 @@ Written for reading, and on purpose without anything that the solvers use.
 
 from dataclasses import dataclass
 
-from argo_compiler.route.problem import NEVER, Objective, Round, Route, RouteProblem
+from argo_compiler.route.problem import NEVER, Objective, Round, RouteProblem, Tour
 
 
 @dataclass(frozen=True)
@@ -38,7 +38,7 @@ class Evaluation:
                 return 0
 
 
-def evaluate(problem: RouteProblem, route: Route) -> Evaluation:
+def evaluate(problem: RouteProblem, route: Tour) -> Evaluation:
     """What the route is worth, and what it does not keep to."""
     return _Walk(problem, route).evaluation()
 
@@ -55,7 +55,7 @@ class _State:
 class _Walk:
     """Follows a route. Collects violations and arrivals."""
 
-    def __init__(self, problem: RouteProblem, route: Route) -> None:
+    def __init__(self, problem: RouteProblem, route: Tour) -> None:
         self._problem, self._route = problem, route
         self._violations: list[str] = []
         self._arrivals: dict[int, int] = {}

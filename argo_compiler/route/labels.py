@@ -12,18 +12,9 @@ from collections.abc import Iterable
 import numpy as np
 from numpy.typing import NDArray
 
-from argo_compiler.route.along import Follower
-from argo_compiler.route.beams import Beam, Space
-from argo_compiler.route.completion import Sets, sets_of, sets_towards
-from argo_compiler.route.found import Found, found, none_found
-from argo_compiler.route.guides import PriceGuide, TableGuide
-from argo_compiler.route.masks import Bits
-from argo_compiler.route.modes import plus
-from argo_compiler.route.network import Network
-from argo_compiler.route.problem import Objective
-from argo_compiler.route.progress import Search
-from argo_compiler.route.pruning import Pruned, shortest
-from argo_compiler.route.subsets import (
+from argo_compiler.route.beam_search import Beam, Space
+from argo_compiler.route.completion_bounds import Sets, sets_of, sets_towards
+from argo_compiler.route.held_karp import (
     INF,
     Layer,
     arcs_of,
@@ -33,6 +24,15 @@ from argo_compiler.route.subsets import (
     prizes,
     soonest,
 )
+from argo_compiler.route.lower_bounds import PriceGuide, TableGuide
+from argo_compiler.route.modes import plus
+from argo_compiler.route.network import StepNetwork
+from argo_compiler.route.order_ideals import Bits
+from argo_compiler.route.path_timing import PathTiming
+from argo_compiler.route.problem import Objective
+from argo_compiler.route.pruning import Pruned, shortest
+from argo_compiler.route.search import Search
+from argo_compiler.route.solution import Solution, make_solution, no_solution
 
 Vector = NDArray[np.int64]
 
@@ -45,28 +45,30 @@ _MOST_OPTIONAL = 22
 """steps where something may be left out: then tables of all their subsets are made"""
 
 
-def applies(network: Network) -> bool:
+def applies(network: StepNetwork) -> bool:
     """Whether two measures are enough."""
     waits = network.objective is Objective.TRAVEL and network.windowed
     few = not network.selective or len(network.prize) <= _MOST_OPTIONAL
     return few and not (waits and network.problem.battery is not None)
 
 
-def solve_labels(network: Network, pruned: Pruned, search: Search, layers: list[Layer]) -> Found:
+def solve_labels(
+    network: StepNetwork, pruned: Pruned, search: Search, layers: list[Layer]
+) -> Solution:
     """The best path that the beams find until the deadline, and its bounds. `layers`: those of the
     network without a battery."""
-    start: Found | None = None
+    start: Solution | None = None
     soon = best_path(network, layers, pruned)
     if soon is None:
-        return none_found(network, proven=True)
+        return no_solution(network, proven=True)
     # If the battery lasts for the best route without a battery, that is it.
-    follower = Follower(network)
+    follower = PathTiming(network)
     stand = follower.follow(soon.path)
     if stand is not None:
-        one = found(network, soon.path, dict(stand.charges), int(network.prize.sum()), 0)
+        one = make_solution(network, soon.path, dict(stand.charges), int(network.prize.sum()), 0)
         search.route(one.prize, one.cost)
         if stand.time == soon.end and network.objective is not Objective.TRAVEL:
-            return found(network, soon.path, dict(stand.charges), soon.prize, one.cost)
+            return make_solution(network, soon.path, dict(stand.charges), soon.prize, one.cost)
         start = one
     if network.selective:
         return _by_prize(network, pruned, search, layers, start)
@@ -77,7 +79,9 @@ def solve_labels(network: Network, pruned: Pruned, search: Search, layers: list[
     return _widening(network, space, search, WIDTHS, start)
 
 
-def search_labels(network: Network, pruned: Pruned, search: Search, start: Found | None) -> Found:
+def search_labels(
+    network: StepNetwork, pruned: Pruned, search: Search, start: Solution | None
+) -> Solution:
     """The best path that the beams find until the deadline, and its bounds, with as many sets as
     there may be. For networks in which nothing may be left out, and whose steps `Bits` fit."""
     bits = Bits(network, pruned)
@@ -86,7 +90,7 @@ def search_labels(network: Network, pruned: Pruned, search: Search, start: Found
     return _widening(network, space, search, _NARROWER, start)
 
 
-def _kinds(network: Network) -> list[Vector]:
+def _kinds(network: StepNetwork) -> list[Vector]:
     """The costs of arcs that bounds are made from: time, and time and energy together."""
     service = np.append(network.service, 0)[None, :]
     kinds = [plus(shortest(network), service)]
@@ -95,7 +99,7 @@ def _kinds(network: Network) -> list[Vector]:
     return kinds
 
 
-def _with_tables(network: Network, pruned: Pruned, sets: Sets) -> Space:
+def _with_tables(network: StepNetwork, pruned: Pruned, sets: Sets) -> Space:
     bits = Bits(network, pruned)
     kinds = np.stack([arcs_of(network, pruned, kind) for kind in _kinds(network)])
     guide = TableGuide(network, bits, sets, kinds)
@@ -105,12 +109,12 @@ def _with_tables(network: Network, pruned: Pruned, sets: Sets) -> Space:
 
 
 def _widening(
-    network: Network,
+    network: StepNetwork,
     space: Space,
     search: Search,
     widths: tuple[int, ...],
-    start: Found | None,
-) -> Found:
+    start: Solution | None,
+) -> Solution:
     """Beams, each wider than the one before, until one drops nothing or the time is over."""
     prize, bound, best = int(network.prize.sum()), 0, start
     for width in widths:
@@ -118,24 +122,24 @@ def _widening(
         best = _better(network, search, beam, best)
         if beam.complete:
             if best is None or best.path is None:
-                return none_found(network, proven=True)
-            return found(network, best.path, best.charges, prize, best.cost)
+                return no_solution(network, proven=True)
+            return make_solution(network, best.path, best.charges, prize, best.cost)
         bound = max(bound, beam.bound)
         search.known(bound=bound)
         if search.left() <= 0.0:
             break
     if best is None or best.path is None:
-        return none_found(network, proven=False, bound=bound)
-    return found(network, best.path, best.charges, prize, bound)
+        return no_solution(network, proven=False, bound=bound)
+    return make_solution(network, best.path, best.charges, prize, bound)
 
 
 def _by_prize(
-    network: Network,
+    network: StepNetwork,
     pruned: Pruned,
     search: Search,
     layers: list[Layer],
-    start: Found | None,
-) -> Found:
+    start: Solution | None,
+) -> Solution:
     """The sets that could be made in time without windows and battery, from those of the highest
     prize down, so many at once: which of them can be made, and then at which least cost."""
     goals, worth = _goals(network, pruned, layers)
@@ -165,34 +169,36 @@ def _by_prize(
         first, size = after, size * 4
         most = int(worth[after]) if after < len(goals) else -1
     if best is None or best.path is None:
-        return none_found(network, proven=most < 0)
-    return found(network, best.path, best.charges, max(most, best.prize), 0)
+        return no_solution(network, proven=most < 0)
+    return make_solution(network, best.path, best.charges, max(most, best.prize), 0)
 
 
 def _cheapest(
-    network: Network, pruned: Pruned, search: Search, best: Found, goals: Vector
-) -> Found:
+    network: StepNetwork, pruned: Pruned, search: Search, best: Solution, goals: Vector
+) -> Solution:
     """The cheapest path to any of the goals, which are all of those with the best prize."""
     search.known(prize_bound=best.prize)
     if network.objective is Objective.PRIZE:
-        return found(network, best.path or (), best.charges, best.prize, 0)
+        return make_solution(network, best.path or (), best.charges, best.prize, 0)
     space = _with_tables(network, pruned, sets_towards(goals, len(network.prize)))
     cheapest = _widening(network, space, search, WIDTHS, best)
-    return found(network, cheapest.path or (), cheapest.charges, best.prize, cheapest.bound)
+    return make_solution(network, cheapest.path or (), cheapest.charges, best.prize, cheapest.bound)
 
 
-def _better(network: Network, search: Search, beam: Beam, best: Found | None) -> Found | None:
+def _better(
+    network: StepNetwork, search: Search, beam: Beam, best: Solution | None
+) -> Solution | None:
     """The better of a beam's path and the best so far."""
     if beam.path is None:
         return best
-    one = found(network, beam.path, beam.charges, int(network.prize.sum()), 0)
+    one = make_solution(network, beam.path, beam.charges, int(network.prize.sum()), 0)
     if not one.better_than(best):
         return best
     search.route(one.prize, one.cost)
     return one
 
 
-def _goals(network: Network, pruned: Pruned, layers: list[Layer]) -> tuple[Vector, Vector]:
+def _goals(network: StepNetwork, pruned: Pruned, layers: list[Layer]) -> tuple[Vector, Vector]:
     """The sets that may be all that is made, and their prizes, which fall: what can't be made in
     time is not among them, the time for charging what is used at least included."""
     limit, m = min(network.limit, int(INF) - 1), network.size
@@ -215,7 +221,7 @@ def _goals(network: Network, pruned: Pruned, layers: list[Layer]) -> tuple[Vecto
 
 
 def _soonest_ends(
-    network: Network, arcs: NDArray[np.int32], layers: Iterable[Layer]
+    network: StepNetwork, arcs: NDArray[np.int32], layers: Iterable[Layer]
 ) -> tuple[Vector, Vector]:
     """All sets that can be made, and their soonest ends."""
     m = network.size
@@ -226,7 +232,7 @@ def _soonest_ends(
     return np.concatenate(masks), np.concatenate(at_end)
 
 
-def _times_and_energies(network: Network) -> NDArray[np.int64]:
+def _times_and_energies(network: StepNetwork) -> NDArray[np.int64]:
     """The least time and energy together that each arc takes, straight or by a charger."""
     battery = network.problem.battery
     assert battery is not None

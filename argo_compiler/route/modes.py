@@ -23,7 +23,7 @@ MOST_TIMED = 6
 
 
 @dataclass(frozen=True, eq=False)
-class Mode:
+class StepMode:
     """One way to make a visit or a round, where it ends in one way."""
 
     first: int
@@ -75,7 +75,7 @@ def steps(problem: RouteProblem) -> list[Step]:
 
 def modes(
     problem: RouteProblem, step: Step, order_of: Callable[[Step], tuple[Step, ...]]
-) -> tuple[list[Mode], bool]:
+) -> tuple[list[StepMode], bool]:
     """The ways to make a step that may be the best, and whether they are all of those.
 
     A round of more than MOST_MEMBERS parts, or of more than MOST_TIMED with a duration among them,
@@ -83,7 +83,7 @@ def modes(
     """
     if step.round is None:
         (visit,) = step.visits
-        return [Mode(visit, (visit,), (visit,), problem.visits[visit].service)], True
+        return [StepMode(visit, (visit,), (visit,), problem.visits[visit].service)], True
     ways, exact = _ways(problem, step, order_of)
     return [mode for way in ways for mode in _modes(problem, way)], exact
 
@@ -94,7 +94,7 @@ def plus(times: Vector, more: int | Vector) -> Vector:
     return total
 
 
-class Way(Protocol):
+class StepPlan(Protocol):
     """How a visit or a round is made, its order decided."""
 
     @property
@@ -107,13 +107,13 @@ class Way(Protocol):
         """Its visits in the first round."""
         ...
 
-    def run(self, drive: int, energy: int) -> "Outcome":
+    def run(self, drive: int, energy: int) -> "StepOutcome":
         """What it takes after a drive to `first` of that time and energy."""
         ...
 
 
 @dataclass(frozen=True)
-class Outcome:
+class StepOutcome:
     """What a way takes, the drive to it included, and where the robot may then be."""
 
     time: int
@@ -130,8 +130,8 @@ class _Single:
     def order(self) -> tuple[int, ...]:
         return (self.first,)
 
-    def run(self, drive: int, energy: int) -> Outcome:
-        return Outcome(min(drive + self.service, NEVER), energy, (self.first,))
+    def run(self, drive: int, energy: int) -> StepOutcome:
+        return StepOutcome(min(drive + self.service, NEVER), energy, (self.first,))
 
 
 @dataclass(frozen=True, eq=False)
@@ -140,7 +140,7 @@ class _Rounds:
 
     problem: RouteProblem
     round: Round
-    parts: tuple[Way, ...]
+    parts: tuple[StepPlan, ...]
 
     @property
     def first(self) -> int:
@@ -150,7 +150,7 @@ class _Rounds:
     def order(self) -> tuple[int, ...]:
         return tuple(visit for part in self.parts for visit in part.order)
 
-    def once(self, drive: int, energy: int) -> Outcome:
+    def once(self, drive: int, energy: int) -> StepOutcome:
         """A single round."""
         done = self.parts[0].run(drive, energy)
         for part in self.parts[1:]:
@@ -159,18 +159,18 @@ class _Rounds:
 
     def again(self) -> int:
         """The time of a round that follows another."""
-        begun = Outcome(0, 0, (self.first,))
+        begun = StepOutcome(0, 0, (self.first,))
         once = _onward(self.problem, begun, self.parts[0])
         for part in self.parts[1:]:
             once = _onward(self.problem, once, part)
-        return self._next(Outcome(0, 0, once.exit)).time
+        return self._next(StepOutcome(0, 0, once.exit)).time
 
-    def _next(self, done: Outcome) -> Outcome:
+    def _next(self, done: StepOutcome) -> StepOutcome:
         for part in self.parts:
             done = _onward(self.problem, done, part)
         return done
 
-    def run(self, drive: int, energy: int) -> Outcome:
+    def run(self, drive: int, energy: int) -> StepOutcome:
         asked = self.round
         done, count = self.once(drive, energy), 1
         while done.time < NEVER and (not asked.repeat or count < asked.repeat):
@@ -187,18 +187,18 @@ class _Rounds:
                 more = asked.repeat - count if asked.repeat else NEVER
                 if asked.duration:
                     more = min(more, -(-max(0, asked.duration - done.time) // step))
-                done = Outcome(
+                done = StepOutcome(
                     min(done.time + more * step, NEVER),
                     min(done.energy + more * used, NEVER),
                     done.exit,
                 )
                 break
         if asked.duration and not asked.soft and asked.duration < done.time < NEVER:
-            return Outcome(asked.duration, done.energy, tuple(sorted(self.order)))
+            return StepOutcome(asked.duration, done.energy, tuple(sorted(self.order)))
         return done
 
 
-def _onward(problem: RouteProblem, done: Outcome, way: Way) -> Outcome:
+def _onward(problem: RouteProblem, done: StepOutcome, way: StepPlan) -> StepOutcome:
     """A way after what was done, from the worst of the places where the robot may be."""
     places = list(done.exit)
     drive = int(problem.travel[places, way.first].max())
@@ -207,12 +207,12 @@ def _onward(problem: RouteProblem, done: Outcome, way: Way) -> Outcome:
         energy = int(problem.battery.energy[places, way.first].max())
     after = way.run(drive, energy)
     time = NEVER if drive >= NEVER else min(done.time + after.time, NEVER)
-    return Outcome(time, min(done.energy + after.energy, NEVER), after.exit)
+    return StepOutcome(time, min(done.energy + after.energy, NEVER), after.exit)
 
 
 def _ways(
     problem: RouteProblem, step: Step, order_of: Callable[[Step], tuple[Step, ...]]
-) -> tuple[list[Way], bool]:
+) -> tuple[list[StepPlan], bool]:
     """The ways to make a step among which the best is, and whether that is so."""
     if step.round is None:
         (visit,) = step.visits
@@ -255,7 +255,7 @@ def _waits(problem: RouteProblem, parts: list[Step]) -> list[int]:
     return waits
 
 
-def _free(choices: list[list[Way]], waits: list[int], done: int) -> list[tuple[int, Way]]:
+def _free(choices: list[list[StepPlan]], waits: list[int], done: int) -> list[tuple[int, StepPlan]]:
     return [
         (part, way)
         for part, some in enumerate(choices)
@@ -264,8 +264,8 @@ def _free(choices: list[list[Way]], waits: list[int], done: int) -> list[tuple[i
     ]
 
 
-def _all_orders(choices: list[list[Way]], waits: list[int]) -> list[tuple[Way, ...]]:
-    orders: list[tuple[int, tuple[Way, ...]]] = [(0, ())]
+def _all_orders(choices: list[list[StepPlan]], waits: list[int]) -> list[tuple[StepPlan, ...]]:
+    orders: list[tuple[int, tuple[StepPlan, ...]]] = [(0, ())]
     for _ in choices:
         orders = [
             (done | 1 << part, (*order, way))
@@ -277,16 +277,16 @@ def _all_orders(choices: list[list[Way]], waits: list[int]) -> list[tuple[Way, .
 
 @dataclass(frozen=True)
 class _Label:
-    done: Outcome
-    order: tuple[Way, ...]
+    done: StepOutcome
+    order: tuple[StepPlan, ...]
 
 
 def _best_orders(
-    problem: RouteProblem, choices: list[list[Way]], waits: list[int]
-) -> list[tuple[Way, ...]]:
+    problem: RouteProblem, choices: list[list[StepPlan]], waits: list[int]
+) -> list[tuple[StepPlan, ...]]:
     """Dynamic programming over the parts done, from each first way to each last one, with the
     labels of time and energy of which neither is the smaller."""
-    found: list[tuple[Way, ...]] = []
+    found: list[tuple[StepPlan, ...]] = []
     for k, first in _free(choices, waits, 0):
         layer = {(1 << k, id(first)): [_Label(first.run(0, 0), (first,))]}
         for _ in range(len(choices) - 1):
@@ -311,8 +311,8 @@ def _add(labels: list[_Label], new: _Label) -> None:
 
 
 def _rotations(
-    choices: list[list[Way]], waits: list[int], cycle: list[int]
-) -> list[tuple[Way, ...]]:
+    choices: list[list[StepPlan]], waits: list[int], cycle: list[int]
+) -> list[tuple[StepPlan, ...]]:
     """A cyclic order of the parts, entered at each part that may be the first."""
     found = []
     for k in range(len(cycle)):
@@ -326,7 +326,7 @@ def _rotations(
     return found
 
 
-def _modes(problem: RouteProblem, way: Way) -> list[Mode]:
+def _modes(problem: RouteProblem, way: StepPlan) -> list[StepMode]:
     """A way as modes: one for each of the ends that it has after the drives that there are."""
     entries = np.unique(problem.travel[:, way.first])
     entries = entries[entries < NEVER]
@@ -338,5 +338,5 @@ def _modes(problem: RouteProblem, way: Way) -> list[Mode]:
         time = np.array([outcome.time for outcome in outcomes], np.int64)
         energy = np.array([outcome.energy for outcome in outcomes], np.int64)
         time = np.where(here, time, NEVER)
-        found.append(Mode(way.first, end, way.order, 0, entries, time, energy))
+        found.append(StepMode(way.first, end, way.order, 0, entries, time, energy))
     return found

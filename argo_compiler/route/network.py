@@ -7,17 +7,17 @@ from functools import cached_property
 import numpy as np
 from numpy.typing import NDArray
 
-from argo_compiler.route.modes import Mode, Step, Vector, modes, steps
-from argo_compiler.route.problem import NEVER, Objective, Route, RouteProblem
+from argo_compiler.route.modes import Step, StepMode, Vector, modes, steps
+from argo_compiler.route.problem import NEVER, Objective, RouteProblem, Tour
 
 
 @dataclass(frozen=True, eq=False)
-class Network:
+class StepNetwork:
     """m nodes, each a mode of one of s steps. A route makes each step at most once, by one of its
     modes. Row m of a matrix is the start, column m the end."""
 
     problem: RouteProblem
-    nodes: tuple[Mode, ...]
+    nodes: tuple[StepMode, ...]
     step: NDArray[np.int64]
     """of each node, shape (m,)"""
     time: NDArray[np.int64]
@@ -26,7 +26,7 @@ class Network:
     """from a node's beginning to its end, shape (m,); that of a round is part of `time`"""
     energy: NDArray[np.int64] | None
     """from the end of row to the end of column, shape (m + 1, m + 1); None: without a battery"""
-    chargers: tuple["Station", ...]
+    chargers: tuple["ChargingStation", ...]
     prize: NDArray[np.int64]
     """of each step, shape (s,)"""
     mandatory: NDArray[np.bool_]
@@ -69,7 +69,7 @@ class Network:
     def nodes_of(self, step: int) -> list[int]:
         return np.flatnonzero(self.step == step).tolist()
 
-    def route(self, path: Iterable[int], charges: dict[int, int] | None = None) -> Route:
+    def route(self, path: Iterable[int], charges: dict[int, int] | None = None) -> Tour:
         """The route that makes these nodes. `charges`: the charger by the position in the path."""
         order: list[int] = []
         places: dict[int, int] = {}
@@ -80,11 +80,11 @@ class Network:
             order += self.nodes[node].order
         if charges and len(path) in charges:
             places[len(order)] = charges[len(path)]
-        return Route(tuple(order), places)
+        return Tour(tuple(order), places)
 
 
 @dataclass(frozen=True, eq=False)
-class Station:
+class ChargingStation:
     """A charger: the ways there from the end of each node, and from there to its beginning; the
     last entry is that of the start, and of the end."""
 
@@ -94,7 +94,7 @@ class Station:
     out_energy: Vector
 
 
-def network(problem: RouteProblem, order_of: Callable[[Step], tuple[Step, ...]]) -> Network:
+def network(problem: RouteProblem, order_of: Callable[[Step], tuple[Step, ...]]) -> StepNetwork:
     """The network of a problem. `order_of`: see `argo_compiler.route.modes.modes`."""
     found = steps(problem)
     exact, nodes, step_of = True, [], []
@@ -115,7 +115,7 @@ def network(problem: RouteProblem, order_of: Callable[[Step], tuple[Step, ...]])
     time, energies = _entered(nodes, times, used, problem.end)
     energy = None if problem.battery is None else energies
     needs, before, mandatory = _orders(problem, found)
-    return Network(
+    return StepNetwork(
         problem,
         tuple(nodes),
         np.array(step_of, dtype=np.int64),
@@ -148,7 +148,7 @@ def _worst(matrix: NDArray[np.int64], places: list[tuple[int, ...]]) -> NDArray[
 
 
 def _entered(
-    nodes: list[Mode], times: NDArray[np.int64], used: NDArray[np.int64], end: int
+    nodes: list[StepMode], times: NDArray[np.int64], used: NDArray[np.int64], end: int
 ) -> tuple[NDArray[np.int64], NDArray[np.int64]]:
     """What rows of drives take until each node's beginning (a round's end), and until the end."""
     firsts = [node.first for node in nodes] + [end]
@@ -160,12 +160,12 @@ def _entered(
 
 
 def _station(
-    problem: RouteProblem, nodes: list[Mode], places: list[tuple[int, ...]], number: int
-) -> Station:
+    problem: RouteProblem, nodes: list[StepMode], places: list[tuple[int, ...]], number: int
+) -> ChargingStation:
     assert problem.battery is not None
     row, energy = problem.charger(number), problem.battery.energy
     out, out_energy = _entered(nodes, problem.travel[[row]], energy[[row]], problem.end)
-    return Station(
+    return ChargingStation(
         np.array([problem.travel[list(there), row].max() for there in places]),
         np.array([energy[list(there), row].max() for there in places]),
         out[0],

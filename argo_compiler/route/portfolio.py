@@ -1,15 +1,15 @@
 """Which solver for which network: picked by structure, and said why."""
 
-from argo_compiler.route import labels, routing, subsets
-from argo_compiler.route.circuit import solve_circuit
-from argo_compiler.route.found import Found, found, none_found
-from argo_compiler.route.masks import Bits
-from argo_compiler.route.network import Network
-from argo_compiler.route.preparing import first_route, improve, is_ordered, prepare
+from argo_compiler.route import guided_local_search, held_karp, labels
+from argo_compiler.route.cp_sat import solve_cp_sat
+from argo_compiler.route.first_routes import first_route, improve, is_ordered, prepare
+from argo_compiler.route.network import StepNetwork
+from argo_compiler.route.order_ideals import Bits
+from argo_compiler.route.parallel_search import raced
 from argo_compiler.route.problem import Objective
-from argo_compiler.route.progress import Search
 from argo_compiler.route.pruning import Pruned, longest
-from argo_compiler.route.race import raced
+from argo_compiler.route.search import Search
+from argo_compiler.route.solution import Solution, make_solution, no_solution
 
 _MOST_SETS = 1_500_000
 _MOST_WORK = 24_000_000
@@ -20,19 +20,19 @@ _MOST_ARCS = 80_000
 """of a model for CP-SAT"""
 
 
-def solve(network: Network, pruned: Pruned, search: Search) -> tuple[Found, str]:
+def solve(network: StepNetwork, pruned: Pruned, search: Search) -> tuple[Solution, str]:
     """The best path found until the deadline, and the solver that it comes from."""
     steps = int(pruned.steps.sum())
     most = min(_MOST_SETS, _MOST_WORK // max(1, network.size))
-    sets = subsets.count_sets(network, pruned, most)
+    sets = held_karp.count_sets(network, pruned, most)
     if not is_ordered(network, pruned) and sets > _FEW_SETS:
         search.say(f"{steps} steps in any order: CP-SAT proves those fastest")
         return _searched(network, pruned, search)
     # Windows may leave much fewer sets than the order does.
-    small = longest(network) < subsets.INF
+    small = longest(network) < held_karp.INF
     if small and (sets <= most or network.windowed) and Bits(network, pruned).fits:
         with search.part(0.7):
-            layers = subsets.soonest_layers(network, pruned, most, lambda: search.left() <= 0.0)
+            layers = held_karp.soonest_layers(network, pruned, most, lambda: search.left() <= 0.0)
             in_time = search.left() > 0.0
         if layers is not None:
             return _all_sets(network, pruned, search, layers)
@@ -44,14 +44,14 @@ def solve(network: Network, pruned: Pruned, search: Search) -> tuple[Found, str]
 
 
 def _all_sets(
-    network: Network, pruned: Pruned, search: Search, layers: list[subsets.Layer]
-) -> tuple[Found, str]:
+    network: StepNetwork, pruned: Pruned, search: Search, layers: list[held_karp.Layer]
+) -> tuple[Solution, str]:
     """Dynamic programming over the sets of the layers."""
     count = 1 + sum(len(layer.masks) for layer in layers)
     reason = f"order and time allow {count} sets of {int(pruned.steps.sum())} steps"
-    if subsets.applies(network):
+    if held_karp.applies(network):
         search.say(f"{reason}: all are gone through")
-        best = subsets.solve_subsets(network, pruned, layers)
+        best = held_karp.solve_held_karp(network, pruned, layers)
         if best.path is not None:
             search.route(best.prize, best.cost)
         return best, "dynamic programming over sets"
@@ -62,11 +62,11 @@ def _all_sets(
     return _searched(network, pruned, search)
 
 
-def _second(network: Network) -> str:
+def _second(network: StepNetwork) -> str:
     return "travel" if network.problem.battery is None else "energy"
 
 
-def _searched(network: Network, pruned: Pruned, search: Search) -> tuple[Found, str]:
+def _searched(network: StepNetwork, pruned: Pruned, search: Search) -> tuple[Solution, str]:
     """A first route, better ones by what fits the network, and CP-SAT; local search for the rest of
     the time."""
     best, method = first_route(network, pruned, search)
@@ -77,12 +77,12 @@ def _searched(network: Network, pruned: Pruned, search: Search) -> tuple[Found, 
         search.say("CP-SAT from nothing, and beside it from the best route of other searches")
         best, method, exact = raced(network, pruned, search, best, method)
     elif not is_ordered(network, pruned):
-        exact = solve_circuit(network, pruned, search, best, hinted=False)
+        exact = solve_cp_sat(network, pruned, search, best, hinted=False)
     else:
         best, method = prepare(network, pruned, search, best, method)
         if best is not None and best.proven:
             return best, method
-        exact = solve_circuit(network, pruned, search, best, timed=True)
+        exact = solve_cp_sat(network, pruned, search, best, timed=True)
     if exact is not best and (best is None or exact.proven or exact.better_than(best)):
         best, method = exact, "CP-SAT"
     if best.path is None or best.proven:
@@ -95,24 +95,26 @@ def _searched(network: Network, pruned: Pruned, search: Search) -> tuple[Found, 
 
 
 def _improved(
-    network: Network, pruned: Pruned, search: Search, best: Found | None, method: str
-) -> tuple[Found, str]:
+    network: StepNetwork, pruned: Pruned, search: Search, best: Solution | None, method: str
+) -> tuple[Solution, str]:
     """Local search until the deadline."""
-    if routing.applies(network):
+    if guided_local_search.applies(network):
         # From nothing, the library finds a better first route than by the nearest.
         start = best if is_ordered(network, pruned) or network.selective else None
-        better = routing.solve_routing(network, pruned, search, search.deadline, start)
+        better = guided_local_search.solve_guided_local_search(
+            network, pruned, search, search.deadline, start
+        )
         if better is not None and better.better_than(best):
             best, method = better, "guided local search"
     if best is None:
-        return none_found(network, proven=False, bound=search.bound), method
+        return no_solution(network, proven=False, bound=search.bound), method
     best, method = improve(network, pruned, search, search.deadline, best, method)
-    return _bounded(network, search, best, none_found(network, proven=False)), method
+    return _bounded(network, search, best, no_solution(network, proven=False)), method
 
 
-def _bounded(network: Network, search: Search, best: Found, exact: Found) -> Found:
+def _bounded(network: StepNetwork, search: Search, best: Solution, exact: Solution) -> Solution:
     """A path with all bounds that are known."""
     bound = exact.bound
     if not network.selective and network.objective is not Objective.PRIZE:
         bound = max(bound, min(search.bound, best.cost))
-    return found(network, best.path or (), best.charges, exact.prize_bound, bound)
+    return make_solution(network, best.path or (), best.charges, exact.prize_bound, bound)

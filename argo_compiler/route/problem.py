@@ -83,7 +83,7 @@ class Round:
 
 
 @dataclass(frozen=True)
-class Battery:
+class EnergyBudget:
     """Energy, in the time that it takes to charge it."""
 
     energy: NDArray[np.int64]
@@ -114,7 +114,7 @@ class RouteProblem:
     rounds: tuple[Round, ...] = ()
     max_duration: int | None = None
     """when the robot must be at the end"""
-    battery: Battery | None = None
+    battery: EnergyBudget | None = None
     chargers: tuple[str, ...] = ()
     """names"""
     objective: Objective = Objective.DURATION
@@ -151,7 +151,7 @@ class RouteProblem:
 
 
 @dataclass(frozen=True)
-class Route:
+class Tour:
     """Visits in their order; those of a round as in its first round."""
 
     order: tuple[int, ...]

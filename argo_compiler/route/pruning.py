@@ -5,7 +5,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from argo_compiler.route.network import Network, compose
+from argo_compiler.route.network import StepNetwork, compose
 from argo_compiler.route.problem import NEVER
 
 
@@ -22,14 +22,14 @@ class Pruned:
     latest: NDArray[np.int64]
     """when it must begin at the latest"""
     needs: NDArray[np.bool_]
-    """`Network.needs` and what the windows add to it"""
+    """`StepNetwork.needs` and what the windows add to it"""
     before: NDArray[np.bool_]
-    """`Network.before` and what the windows add to it"""
+    """`StepNetwork.before` and what the windows add to it"""
     possible: bool
     """false: there is no route"""
 
 
-def prune(network: Network) -> Pruned:
+def prune(network: StepNetwork) -> Pruned:
     """What is left when ways, precedence, windows and the limit are looked at arc by arc."""
     m, step = network.size, network.step
     best = shortest(network)
@@ -62,7 +62,7 @@ def prune(network: Network) -> Pruned:
 
 
 def _orders(
-    network: Network, earliest: NDArray[np.int64], latest: NDArray[np.int64]
+    network: StepNetwork, earliest: NDArray[np.int64], latest: NDArray[np.int64]
 ) -> tuple[NDArray[np.bool_], NDArray[np.bool_]]:
     """The order between steps, and what follows from windows: if `column` can't be begun any more
     when `row` has been made at its soonest, it comes before it."""
@@ -84,7 +84,7 @@ def _orders(
         needs = wider
 
 
-def shortest(network: Network) -> NDArray[np.int64]:
+def shortest(network: StepNetwork) -> NDArray[np.int64]:
     """The times of the arcs, or by a charger where that is shorter than straight, without the time
     of charging itself: no way from row to column takes less."""
     best = network.time.copy()
@@ -96,12 +96,12 @@ def shortest(network: Network) -> NDArray[np.int64]:
     return best
 
 
-def horizon(network: Network) -> int:
+def horizon(network: StepNetwork) -> int:
     """A time when every route that does not wait longer than it must is at the end."""
     return min(network.limit, longest(network))
 
 
-def longest(network: Network) -> int:
+def longest(network: StepNetwork) -> int:
     """The same without the limit."""
     arcs = shortest(network)
     arcs = np.where(arcs >= NEVER, 0, arcs)
@@ -127,7 +127,7 @@ def _possible_steps(needs: NDArray[np.bool_], before: NDArray[np.bool_]) -> NDAr
 
 
 def _windows(
-    network: Network, best: NDArray[np.int64]
+    network: StepNetwork, best: NDArray[np.int64]
 ) -> tuple[NDArray[np.int64], NDArray[np.int64]]:
     """When each node may begin: no sooner than on the shortest way from the start, and no later
     than leaves time to get to the end. Ways need not keep the triangle inequality, so these are
@@ -151,7 +151,7 @@ def _windows(
     return earliest, np.minimum(network.latest[network.step], home)
 
 
-def paths(network: Network) -> NDArray[np.int64]:
+def paths(network: StepNetwork) -> NDArray[np.int64]:
     """The least time from the end of one node to the beginning of another, by whatever nodes,
     shape (m, m)."""
     m = network.size

@@ -17,7 +17,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from argo_compiler.errors import ArgoError
-from argo_compiler.route.problem import NEVER, Route, RouteProblem
+from argo_compiler.route.problem import NEVER, RouteProblem, Tour
 from argo_compiler.route.robust_sampling import Completion, Draws, completion
 from argo_compiler.route.robust_spread import TravelSpread
 from argo_compiler.route.suggest import suggest_route
@@ -39,7 +39,7 @@ _LONGEST_MOVED = 3
 class RobustSuggestion:
     """The route, and the one that is best without any spread, judged on the same samples."""
 
-    route: Route
+    route: Tour
     completion: Completion
     prize: int
     nominal: RouteSuggestion
@@ -73,7 +73,7 @@ def suggest_robust_route(
     # From here: the first search imports OR-Tools, which may take longer than the time limit.
     end = time.monotonic() + time_limit * 0.75
     if nominal.route is None:
-        why = "; ".join(nominal.clash) or "none was found within the time limit"
+        why = "; ".join(nominal.infeasible_subset) or "none was found within the time limit"
         raise ArgoError(f"there is no route: {why}; relax what it must keep to, or give more time")
     search = _Search(problem, Draws(spread, SEARCHED, _rng(seed, 0)), confidence)
     search.consider(nominal.route)
@@ -109,14 +109,14 @@ def _rng(seed: int, purpose: int) -> np.random.Generator:
     return np.random.default_rng((seed, purpose))
 
 
-def _prize(problem: RouteProblem, route: Route) -> int:
+def _prize(problem: RouteProblem, route: Tour) -> int:
     return sum(problem.visits[visit].prize for visit in route.order)
 
 
 _Key = tuple[float, int, float, float]
 
 
-def _key(problem: RouteProblem, route: Route, found: Completion, confidence: float) -> _Key:
+def _key(problem: RouteProblem, route: Tour, found: Completion, confidence: float) -> _Key:
     """What makes a route better than another, the greater first."""
     sure = min(found.probability, confidence)
     prize = _prize(problem, route) if found.probability > 0.0 else 0
@@ -128,7 +128,7 @@ class _Search:
 
     def __init__(self, problem: RouteProblem, draws: Draws, confidence: float) -> None:
         self._problem, self._draws, self._confidence = problem, draws, confidence
-        self._best: tuple[_Key, Route] | None = None
+        self._best: tuple[_Key, Tour] | None = None
         self._seen: set[tuple[tuple[int, ...], tuple[tuple[int, int], ...]]] = set()
 
     @property
@@ -137,7 +137,7 @@ class _Search:
         return len(self._seen)
 
     @property
-    def best(self) -> Route:
+    def best(self) -> Tour:
         assert self._best is not None
         return self._best[1]
 
@@ -148,7 +148,7 @@ class _Search:
         (_, prize, probability, _), _ = self._best
         return probability == 1.0 and prize == sum(visit.prize for visit in self._problem.visits)
 
-    def consider(self, route: Route) -> bool:
+    def consider(self, route: Tour) -> bool:
         """Takes the route if it is the best one so far, and tells whether it is."""
         same = (route.order, tuple(sorted(route.charges.items())))
         if same in self._seen:
@@ -161,7 +161,7 @@ class _Search:
         self._best = (key, route)
         return True
 
-    def deviation(self, route: Route) -> float:
+    def deviation(self, route: Tour) -> float:
         """About the standard deviation of a route's duration, in units."""
         found = completion(self._problem, route, self._draws)
         return max(0.0, (found.duration_95 - found.duration) / 1.645)
@@ -179,7 +179,7 @@ class _Search:
                     break
 
 
-def _neighbours(problem: RouteProblem, route: Route) -> Iterator[Route]:
+def _neighbours(problem: RouteProblem, route: Tour) -> Iterator[Tour]:
     """Routes with some visits moved, a part reversed, one left out or one more made.
 
     Charges stay at their positions as far as these exist.
@@ -187,9 +187,9 @@ def _neighbours(problem: RouteProblem, route: Route) -> Iterator[Route]:
     order = route.order
     n = len(order)
 
-    def changed(*parts: tuple[int, ...]) -> Route:
+    def changed(*parts: tuple[int, ...]) -> Tour:
         made = sum(parts, ())
-        return Route(made, {k: c for k, c in route.charges.items() if k <= len(made)})
+        return Tour(made, {k: c for k, c in route.charges.items() if k <= len(made)})
 
     for size in range(1, _LONGEST_MOVED + 1):
         for k in range(n - size + 1):

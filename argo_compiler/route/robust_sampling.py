@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 
 from argo_compiler.errors import ArgoError
 from argo_compiler.route.evaluation import evaluate
-from argo_compiler.route.problem import NEVER, Route, RouteProblem
+from argo_compiler.route.problem import NEVER, RouteProblem, Tour
 from argo_compiler.route.robust_spread import TravelSpread
 
 Floats = NDArray[np.float64]
@@ -77,7 +77,7 @@ def _factors(deviation: float, samples: int, rng: np.random.Generator) -> Floats
 
 def completion_probability(
     problem: RouteProblem,
-    route: Route,
+    route: Tour,
     spread: TravelSpread,
     samples: int,
     rng: np.random.Generator,
@@ -89,7 +89,7 @@ def completion_probability(
     return completion(problem, route, Draws(spread, samples, rng))
 
 
-def completion(problem: RouteProblem, route: Route, draws: Draws) -> Completion:
+def completion(problem: RouteProblem, route: Tour, draws: Draws) -> Completion:
     """The same, over runs that have been drawn."""
     walk = _Walk(problem, draws)
     if _is_none(problem, route):
@@ -110,7 +110,7 @@ def completion(problem: RouteProblem, route: Route, draws: Draws) -> Completion:
     )
 
 
-def _is_none(problem: RouteProblem, route: Route) -> bool:
+def _is_none(problem: RouteProblem, route: Tour) -> bool:
     """Whether the route breaks what has nothing to do with times: as if all ways took none."""
     side = problem.size + 1
     visits = tuple(replace(visit, earliest=0, latest=None) for visit in problem.visits)
@@ -145,7 +145,7 @@ class _Walk:
         self._where = np.zeros(samples, dtype=np.int64)
         self._sets = [(self.problem.size,)]
 
-    def follow(self, route: Route) -> None:
+    def follow(self, route: Tour) -> None:
         everyone = np.ones(self.draws.samples, dtype=np.bool_)
         position = 0
         while position < len(route.order):
@@ -195,7 +195,7 @@ class _Walk:
         found: NDArray[np.int64] = worst[self._where]
         return found
 
-    def _charge(self, who: Bools, route: Route, position: int) -> None:
+    def _charge(self, who: Bools, route: Tour, position: int) -> None:
         battery, number = self.problem.battery, route.charges.get(position)
         if battery is not None and number is not None:
             self._drive(who, self.problem.charger(number))

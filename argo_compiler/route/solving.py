@@ -1,4 +1,4 @@
-"""From a problem to a suggestion: modes, pruning, bounds, the portfolio, and the clash."""
+"""From a problem to a suggestion: modes, pruning, bounds, the portfolio; why there is none."""
 
 import time
 from dataclasses import replace
@@ -7,15 +7,15 @@ import numpy as np
 
 from argo_compiler.errors import ArgoError
 from argo_compiler.route.assignment import assignment_bound
-from argo_compiler.route.clash import find_clash
-from argo_compiler.route.found import Found, none_found
-from argo_compiler.route.local import LocalSearch
+from argo_compiler.route.infeasible_subset import find_infeasible_subset
 from argo_compiler.route.modes import Step
-from argo_compiler.route.network import Network, network
+from argo_compiler.route.network import StepNetwork, network
 from argo_compiler.route.portfolio import solve
 from argo_compiler.route.problem import NEVER, Objective, RouteProblem
-from argo_compiler.route.progress import Search
 from argo_compiler.route.pruning import longest, prune
+from argo_compiler.route.ruin_recreate import LocalSearch
+from argo_compiler.route.search import Search
+from argo_compiler.route.solution import Solution, no_solution
 from argo_compiler.route.suggestion import RouteSuggestion
 
 _CHECK = 2.0
@@ -27,11 +27,11 @@ def find_route(
 ) -> RouteSuggestion:
     """See `argo_compiler.route.suggest.suggest_route`."""
     net, search, best, method = _solved(problem, time_limit, seed, workers)
-    clash: tuple[str, ...] = ()
+    infeasible_subset: tuple[str, ...] = ()
     if explain and best.path is None and best.proven:
-        found = find_clash(problem, lambda part: _possible(part, seed))
+        found = find_infeasible_subset(problem, lambda part: _possible(part, seed))
         if found is not None:
-            clash = found.words
+            infeasible_subset = found.words
             search.say(
                 "fewer requirements than these can always be met"
                 if found.smallest
@@ -47,7 +47,7 @@ def find_route(
         best.bound,
         best.proven,
         () if route is None else tuple(v for v in range(problem.size) if v not in made),
-        clash,
+        infeasible_subset,
         method,
         tuple(search.reasons),
         tuple(search.history),
@@ -56,7 +56,7 @@ def find_route(
 
 def _solved(
     problem: RouteProblem, time_limit: float, seed: int, workers: int
-) -> tuple[Network, Search, Found, str]:
+) -> tuple[StepNetwork, Search, Solution, str]:
     begun = time.perf_counter()
     most = sum(visit.prize for visit in problem.visits)
     deadline = begun + time_limit
@@ -77,7 +77,7 @@ def _solved(
     bound = assignment_bound(net, pruned)
     if bound is None:
         search.say("some step can't be made at all, or not in an order that is asked for")
-        return net, search, none_found(net, proven=net.exact), "pruning"
+        return net, search, no_solution(net, proven=net.exact), "pruning"
     if net.objective is not Objective.PRIZE:
         search.known(bound=bound)
     best, method = solve(net, pruned, search)

@@ -13,7 +13,8 @@ def suggest_route(
     explain: bool = True,
 ) -> RouteSuggestion:
     """The best route that is found within the time limit (s), and what is known of it. Where there
-    is none, the clash is looked for after that time as well, unless nothing is to be explained.
+    is none, what can't all be met is looked for after that time as well, unless nothing is to be
+    explained.
 
     What is proven does not depend on the seed; the route may, where others are as good or the time
     is over. Raises ArgoError if the time limit or the number of workers is not positive.

@@ -3,7 +3,7 @@
 from collections.abc import Mapping
 from dataclasses import dataclass
 
-from argo_compiler.route.problem import Route
+from argo_compiler.route.problem import Tour
 
 
 @dataclass(frozen=True)
@@ -29,7 +29,7 @@ class RouteSuggestion:
     With something optional, first as much prize as possible is won, and then the cost made small.
     """
 
-    route: Route | None
+    route: Tour | None
     """None: none was found"""
     prize: int
     prize_bound: int
@@ -42,7 +42,7 @@ class RouteSuggestion:
     """whether the route is known to be the best, or, without one, that there is none"""
     dropped: tuple[int, ...] = ()
     """the visits that are left out"""
-    clash: tuple[str, ...] = ()
+    infeasible_subset: tuple[str, ...] = ()
     """without a route: requirements, in the mission's words, that can't all be met, though each
     smaller set of them can; empty: none are known"""
     method: str = ""

@@ -8,11 +8,11 @@ from argo_env.drives.tracked.body import TrackedBody
 from argo_env.envs.guide import Guide
 from argo_env.envs.sites import navigator_of
 from argo_env.faults.kinds import AnyFault, changed_site, settle
-from argo_env.faults.machine import DriveDysfunction
+from argo_env.faults.robot import DriveDysfunction
 from argo_env.navigation import Navigator
 from argo_env.pictures.camera import Camera
 from argo_env.pictures.chase import ChaseCamera
-from argo_env.pictures.scene import Scene, View
+from argo_env.pictures.scene import CameraView, Scene
 from argo_env.robot.pose import BodyPose
 from argo_env.world.world import World
 
@@ -71,7 +71,7 @@ class DriveSite(Closing):
         ]
         return min(shares, default=1.0)
 
-    def look(self, pose: BodyPose, flipper: float) -> tuple[View, Camera]:
+    def look(self, pose: BodyPose, flipper: float) -> tuple[CameraView, Camera]:
         """The robot from behind, 640 × 360 px, and the camera; `flipper` in degrees."""
         if self._scene is None:
             self._scene = Scene(self._real, self.robot)

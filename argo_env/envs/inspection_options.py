@@ -9,7 +9,7 @@ from argo_compiler.errors import ArgoError
 from argo_compiler.model import Model
 from argo_env.drives.route import RouteDrive
 from argo_env.faults.kinds import KINDS, AnyFault, settle
-from argo_env.faults.machine import EmergencyStop
+from argo_env.faults.robot import EmergencyStop
 from argo_env.site import Site
 
 MOST_FAULTS = 8

@@ -19,7 +19,7 @@ def check_render_mode(mode: str | None, known: Sequence[str]) -> None:
         raise ArgoError(f"no render mode `{mode}`; there are: {', '.join(known)}")
 
 
-class Window:
+class FigureWindow:
     """A matplotlib window that shows one picture after the other. Close it."""
 
     def __init__(self, title: str) -> None:
@@ -71,7 +71,7 @@ class Rendering:
     render_mode: str | None
     _title: str
     """of the window"""
-    _window: Window | None = None
+    _window: FigureWindow | None = None
 
     def render(self) -> NDArray[np.uint8] | None:
         """A picture, shape (height, width, 3); with `human` it is in a window."""
@@ -80,7 +80,7 @@ class Rendering:
         picture = self._picture()
         if self.render_mode == "rgb_array":
             return picture
-        self._window = self._window or Window(self._title)
+        self._window = self._window or FigureWindow(self._title)
         self._window.show(picture)
         return None
 

@@ -14,7 +14,7 @@ from argo_env.site.shapes import Vector
 from argo_env.world.placement import AS_PLANNED, Placement, draw_placement
 
 if TYPE_CHECKING:
-    from argo_env.faults.stage import Stage
+    from argo_env.faults.targets import FaultTargets
 
 MAX_OFFSET = 0.1  # m (thesis 1.2)
 MAX_TURN = 90.0  # deg (thesis 1.2)
@@ -64,12 +64,12 @@ class AbnormalValue(CheckpointFault):
             )
         return super().settled(site, rng)._with(checkpoint=checkpoint.id, value=value)
 
-    def begin(self, stage: "Stage", now: float) -> None:  # noqa: ARG002
+    def begin(self, stage: "FaultTargets", now: float) -> None:  # noqa: ARG002
         assert self.checkpoint is not None
         assert self.value is not None
         stage.show(self.checkpoint, self.value)
 
-    def end(self, stage: "Stage", now: float) -> None:  # noqa: ARG002
+    def end(self, stage: "FaultTargets", now: float) -> None:  # noqa: ARG002
         assert self.checkpoint is not None
         stage.show(self.checkpoint, stage.usual[self.checkpoint])
 
@@ -113,7 +113,7 @@ class DisplacedCheckpoint(CheckpointFault):
             )
         )
 
-    def begin(self, stage: "Stage", now: float) -> None:  # noqa: ARG002
+    def begin(self, stage: "FaultTargets", now: float) -> None:  # noqa: ARG002
         assert self.checkpoint is not None
         assert self.offset is not None
         assert self.turn is not None
@@ -121,7 +121,7 @@ class DisplacedCheckpoint(CheckpointFault):
         placement = Placement(self.offset, math.radians(self.turn), math.radians(self.roll))
         stage.world.displace(self.checkpoint, placement)
 
-    def end(self, stage: "Stage", now: float) -> None:  # noqa: ARG002
+    def end(self, stage: "FaultTargets", now: float) -> None:  # noqa: ARG002
         assert self.checkpoint is not None
         stage.world.displace(self.checkpoint, AS_PLANNED)
 

@@ -10,7 +10,7 @@ from argo_env.site import Site
 from argo_env.site.shapes import Element
 
 if TYPE_CHECKING:  # the models of faults are read by much that runs no simulation
-    from argo_env.faults.stage import Stage
+    from argo_env.faults.targets import FaultTargets
 
 LATEST = 120.0
 """s, up to which the seed draws the time of a fault that has none"""
@@ -54,13 +54,13 @@ class Fault(Model):
         """The site's elements as they are with this fault."""
         return site.elements
 
-    def begin(self, stage: "Stage", now: float) -> None:
+    def begin(self, stage: "FaultTargets", now: float) -> None:
         """Takes effect at time `now` (s).
 
         One that does not add up does so again each time that another one of its kind has ended.
         """
 
-    def end(self, stage: "Stage", now: float) -> None:
+    def end(self, stage: "FaultTargets", now: float) -> None:
         """Takes the effect back; one that does not add up, that of all of its kind."""
 
     def _with(self, **fields: Any) -> Self:

@@ -10,7 +10,8 @@ from argo_compiler.errors import ArgoError
 from argo_compiler.model import Model
 from argo_env.faults.checkpoints import AbnormalValue, DisplacedCheckpoint
 from argo_env.faults.fault import Fault
-from argo_env.faults.machine import (
+from argo_env.faults.plant import AbnormalPump, GasLeakFault, HotSpotFault, PlatformAlarm
+from argo_env.faults.robot import (
     ConnectionLoss,
     DriveDysfunction,
     EmergencyStop,
@@ -18,8 +19,7 @@ from argo_env.faults.machine import (
     SensorDysfunction,
     WornBattery,
 )
-from argo_env.faults.process import AbnormalPump, GasLeakFault, HotSpotFault, PlatformAlarm
-from argo_env.faults.way import BlockedStairs, Brick, MissingPlate
+from argo_env.faults.walkway import BlockedStairs, Brick, MissingPlate
 from argo_env.seeding import generator
 from argo_env.site import Site
 

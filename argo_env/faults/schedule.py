@@ -4,13 +4,13 @@ from collections.abc import Sequence
 
 from argo_env.faults.fault import Fault
 from argo_env.faults.kinds import AnyFault
-from argo_env.faults.stage import Stage
+from argo_env.faults.targets import FaultTargets
 
 
 class Schedule:
     """Lets faults begin and end at their times. Holds how far it has come, and what has begun."""
 
-    def __init__(self, faults: Sequence[AnyFault], stage: Stage) -> None:
+    def __init__(self, faults: Sequence[AnyFault], stage: FaultTargets) -> None:
         """The faults must be settled."""
         self.faults = tuple(faults)
         self._stage = stage

@@ -46,7 +46,7 @@ def read_yaml(
     no_field: Mapping[str, str] | None = None,
 ) -> ModelT:
     """The model in a YAML file. `things` names what the file holds, such as `sites`; the next
-    three are the codes of findings. `no_field` has hints for fields that only some things have.
+    three are the codes of diagnostics. `no_field` has hints for fields that only some things have.
 
     Raises ArgoError if the file can't be read, and DiagnosticError if it is no such thing.
     """
@@ -60,14 +60,14 @@ def read_yaml(
         tree, repeated, data = _compose(text)
     except NotYamlError as error:
         raise _error(path, text, [_diagnostic(not_yaml, error.flaw)]) from None
-    findings = [_diagnostic(duplicate_key, flaw) for flaw in repeated]
+    diagnostics = [_diagnostic(duplicate_key, flaw) for flaw in repeated]
     try:
         found = model.model_validate(data)
     except ValidationError as error:
         for flaw in _wrong_fields(error, model, things, no_field or {}, tree, data):
-            findings.append(_diagnostic(wrong_field, flaw))
-    if findings:
-        raise _error(path, text, findings)
+            diagnostics.append(_diagnostic(wrong_field, flaw))
+    if diagnostics:
+        raise _error(path, text, diagnostics)
     return found
 
 
@@ -102,8 +102,8 @@ def _compose(text: str) -> tuple[yaml.Node | None, list[_Flaw], Any]:
         raise NotYamlError(_Flaw(f"is not YAML: {why}", "check the file", None, None)) from None
 
 
-def _error(path: Path, text: str, findings: list[Diagnostic]) -> DiagnosticError:
-    return DiagnosticError(str(path), with_excerpts(findings, text.splitlines()))
+def _error(path: Path, text: str, diagnostics: list[Diagnostic]) -> DiagnosticError:
+    return DiagnosticError(str(path), with_excerpts(diagnostics, text.splitlines()))
 
 
 def _diagnostic(code: str, flaw: _Flaw) -> Diagnostic:

@@ -14,7 +14,7 @@ from argo_env.pictures.caption import add_caption, add_verdict
 from argo_env.pictures.chase import ChaseCamera
 from argo_env.pictures.codec import find_ffmpeg, make_palette, write_gif, write_mp4
 from argo_env.pictures.light import compose, depth_shading
-from argo_env.pictures.motion import Motion, check_site
+from argo_env.pictures.motion import RecordedMotion, check_site
 from argo_env.pictures.scene import Scene
 from argo_env.robot.spec import RobotSpec
 from argo_env.run.record import RunRecord
@@ -74,7 +74,7 @@ def write_film(
     if min(width, height) < 64 or width % 2 or height % 2:
         raise ArgoError(f"a film needs an even width and height from 64 px: {width}x{height}")
     frame_time = round(100 / fps) / 100 if is_gif else 1 / fps
-    motion = Motion(record, robot)
+    motion = RecordedMotion(record, robot)
     count = math.ceil(motion.end / (speed * frame_time) - 1e-9) + 1
     times = [min(k * speed * frame_time, motion.end) for k in range(count)]
     times += [motion.end] * (round(VERDICT_TIME / frame_time) - 1)
@@ -100,7 +100,7 @@ def write_film(
 
 def _frames(
     record: RunRecord,
-    motion: Motion,
+    motion: RecordedMotion,
     scene: Scene,
     times: list[float],
     size: tuple[int, int],

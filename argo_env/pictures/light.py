@@ -5,7 +5,7 @@ from numpy.typing import NDArray
 from scipy.ndimage import gaussian_filter
 
 from argo_env.pictures.camera import Camera
-from argo_env.pictures.scene import Scene, View
+from argo_env.pictures.scene import CameraView, Scene
 from argo_env.world.pybullet_client import SUN
 
 _SKY = np.array([(222, 231, 240), (247, 249, 251)], dtype=np.float64)
@@ -21,7 +21,7 @@ def backdrop(size: tuple[int, int]) -> NDArray[np.float64]:
     return np.broadcast_to(_SKY[0] + share * (_SKY[1] - _SKY[0]), (height, width, 3))
 
 
-def compose(view: View, brightness: NDArray[np.float64]) -> NDArray[np.uint8]:
+def compose(view: CameraView, brightness: NDArray[np.float64]) -> NDArray[np.uint8]:
     """The view with each pixel dimmed to its brightness (0 to 1), on the backdrop."""
     height, width = view.depth.shape
     lit = (view.colours * brightness[:, :, None].astype(np.float32)).astype(np.uint8)
@@ -30,7 +30,7 @@ def compose(view: View, brightness: NDArray[np.float64]) -> NDArray[np.uint8]:
     return lit
 
 
-def depth_shading(view: View, radius: float, strength: float) -> NDArray[np.float64]:
+def depth_shading(view: CameraView, radius: float, strength: float) -> NDArray[np.float64]:
     """Brightness that sets things off from what lies behind them, shape (height, width).
 
     What is farther away than its surroundings gets darker: the depth buffer minus its blurred
@@ -46,7 +46,7 @@ def depth_shading(view: View, radius: float, strength: float) -> NDArray[np.floa
 
 
 def shadows(
-    scene: Scene, camera: Camera, view: View, size: int, softness: float
+    scene: Scene, camera: Camera, view: CameraView, size: int, softness: float
 ) -> NDArray[np.float64]:
     """Brightness after the sun's shadows, shape (height, width), from 0.66 to 1.
 

@@ -16,7 +16,7 @@ _PITCH_RAMP = math.radians(2.0)  # to each side of it, so that they don't jump
 _ARM_TIME = 2.0  # s to raise or to stow the arm
 
 
-class Motion:
+class RecordedMotion:
     """The motion of a record, interpolated between the samples of its path."""
 
     def __init__(self, record: RunRecord, robot: RobotSpec) -> None:

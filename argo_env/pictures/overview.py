@@ -13,8 +13,8 @@ from PIL import Image, ImageDraw, ImageFont
 from argo_compiler.errors import ArgoError
 from argo_env.pictures.camera import Camera
 from argo_env.pictures.light import compose, depth_shading, shadows
-from argo_env.pictures.motion import Motion, check_site
-from argo_env.pictures.scene import Scene, View
+from argo_env.pictures.motion import RecordedMotion, check_site
+from argo_env.pictures.scene import CameraView, Scene
 from argo_env.report.track import colour
 from argo_env.robot.spec import RobotSpec
 from argo_env.run.record import RunRecord
@@ -43,7 +43,7 @@ def write_overview(record: RunRecord, site: Site, robot: RobotSpec, file: Path) 
     ArgoError if the record is of another site or has no path, or the file can't be written.
     """
     check_site(record, site)
-    motion = Motion(record, robot)
+    motion = RecordedMotion(record, robot)
     camera = site_camera(site, (SIZE[0] * _FINER, SIZE[1] * _FINER))
     with Scene(site, robot) as scene:
         scene.place_robot(motion.pose(motion.end), motion.joints(motion.end))
@@ -81,7 +81,7 @@ def site_camera(site: Site, size: tuple[int, int]) -> Camera:
 
 
 def _draw_path(
-    image: Image.Image, record: RunRecord, motion: Motion, camera: Camera, view: View
+    image: Image.Image, record: RunRecord, motion: RecordedMotion, camera: Camera, view: CameraView
 ) -> None:
     """Draws the path over the picture: hidden parts dashed and faint, the others on top."""
     times = np.array(list(_times(record)))
@@ -117,7 +117,7 @@ def _times(record: RunRecord) -> Iterator[float]:
     yield record.path[-1].t
 
 
-def _seen(pixels: NDArray[np.float64], view: View) -> NDArray[np.bool_]:
+def _seen(pixels: NDArray[np.float64], view: CameraView) -> NDArray[np.bool_]:
     """Whether nothing hides the points, for more than half of those about each of them."""
     height, width = view.depth.shape
     column = np.clip(pixels[:, 0].astype(int), 0, width - 1)
@@ -142,7 +142,7 @@ def _stroke(
 
 
 def _draw_markers(
-    image: Image.Image, record: RunRecord, site: Site, motion: Motion, camera: Camera
+    image: Image.Image, record: RunRecord, site: Site, motion: RecordedMotion, camera: Camera
 ) -> None:
     draw = ImageDraw.Draw(image)
     font = ImageFont.load_default(21.0 * _FINER)

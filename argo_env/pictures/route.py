@@ -12,7 +12,7 @@ from argo_compiler.il import Action, Task
 from argo_compiler.model import Pose
 from argo_compiler.reorder.mission import MissionRoute
 from argo_compiler.route.evaluation import evaluate
-from argo_compiler.route.problem import Route
+from argo_compiler.route.problem import Tour
 from argo_env.formatting import clock
 from argo_env.navigation import Navigator
 from argo_env.pictures.drawing.floors import plans_of
@@ -24,7 +24,7 @@ from argo_env.pictures.drawing.sheet import (
     PAPER,
     SIZE,
     SOFT,
-    Sheet,
+    FloorSheet,
     font,
     make_sheet,
 )
@@ -45,7 +45,7 @@ _OLD = (120, 132, 145)
 
 def write_route(
     planned: MissionRoute,
-    route: Route,
+    route: Tour,
     navigator: Navigator,
     travel: SiteTravel,
     folder: FilePath,
@@ -85,7 +85,7 @@ def write_route(
 
 
 def _way(
-    planned: MissionRoute, route: Route, navigator: Navigator, travel: SiteTravel
+    planned: MissionRoute, route: Tour, navigator: Navigator, travel: SiteTravel
 ) -> list[Moment]:
     """Where the robot is when, from its start to the mission's end."""
     here = travel.start(planned.mission)
@@ -106,7 +106,7 @@ def _way(
     return moments
 
 
-def _tasks(planned: MissionRoute, route: Route) -> Iterator[Task]:
+def _tasks(planned: MissionRoute, route: Tour) -> Iterator[Task]:
     """The tasks that are always done, with the way into the docking station at the end."""
     visits = planned.visits
     for visit in route.order:
@@ -116,10 +116,10 @@ def _tasks(planned: MissionRoute, route: Route) -> Iterator[Task]:
 
 
 def _draw(
-    sheet: Sheet,
+    sheet: FloorSheet,
     floor: int,
     planned: MissionRoute,
-    route: Route,
+    route: Tour,
     old: Sequence[Moment],
     new: Sequence[Moment],
     travel: SiteTravel,

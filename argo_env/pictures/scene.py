@@ -27,7 +27,7 @@ _CUT_ROLES = frozenset({Role.VESSEL, Role.PIPE, Role.STRUCTURE})
 
 
 @dataclass(frozen=True)
-class View:
+class CameraView:
     """What a camera sees: colours (0 to 255), shape (height, width, 3), and the depth of each
     pixel along the line of sight (m), infinite where there is nothing."""
 
@@ -98,10 +98,10 @@ class Scene(Connection):
         """Takes the robot out of sight until it is placed again."""
         self._place(self._robot_body, _HIDDEN, (0.0, 0.0, 0.0))
 
-    def look(self, camera: Camera) -> View:
+    def look(self, camera: Camera) -> CameraView:
         """What the camera sees, without shadows."""
         colours, buffer = self._render(camera.view_matrix, camera.projection_matrix, camera.size)
-        return View(colours, depth_in_metres(buffer, camera))
+        return CameraView(colours, depth_in_metres(buffer, camera))
 
     def blocked(self, start: Vector, ends: list[Vector]) -> NDArray[np.bool_]:
         """Whether something of the site, railings left out, lies between `start` and each end."""

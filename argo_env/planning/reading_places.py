@@ -1,12 +1,12 @@
 """From where each checkpoint of a mission would be read: what isar's missions have to say."""
 
 from argo_compiler.il import Action, Mission
-from argo_compiler.isar import View
+from argo_compiler.isar import InspectionView
 from argo_compiler.model import Pose
 from argo_env.navigation import Navigator
 
 
-def find_views(mission: Mission, navigator: Navigator) -> dict[str, View]:
+def find_views(mission: Mission, navigator: Navigator) -> dict[str, InspectionView]:
     """For each checkpoint that the mission measures, by its `object_id`, the place that a robot
     reads it from that does the tasks in list order. Checkpoints that the site has not are left out.
 
@@ -15,7 +15,7 @@ def find_views(mission: Mission, navigator: Navigator) -> dict[str, View]:
     known = {str(checkpoint.id): checkpoint for checkpoint in navigator.site.checkpoints}
     docks = navigator.site.docks
     here: Pose | None = docks[min(docks)] if docks else None
-    views: dict[str, View] = {}
+    views: dict[str, InspectionView] = {}
     for task in mission.tasks:
         checkpoint = known.get(task.object_id or "")
         if task.action is not Action.MEASURE:
@@ -23,7 +23,7 @@ def find_views(mission: Mission, navigator: Navigator) -> dict[str, View]:
         elif checkpoint and task.object_id not in views:
             path = navigator.plan_to_view(here or _anywhere(navigator), checkpoint.id)
             here = path.end
-            views[str(checkpoint.id)] = View(
+            views[str(checkpoint.id)] = InspectionView(
                 pose=here, target=checkpoint.position, name=checkpoint.name
             )
     return views

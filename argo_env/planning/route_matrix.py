@@ -12,7 +12,7 @@ from argo_compiler.il import Action, Mission, Task
 from argo_compiler.model import Pose
 from argo_compiler.reorder.mission import MissionRoute, route_problem
 from argo_compiler.reorder.requirements import Requirements
-from argo_compiler.reorder.ways import Ways
+from argo_compiler.reorder.travel_matrix import TravelMatrix
 from argo_env.navigation import Navigator
 from argo_env.planning.travel import SiteTravel
 
@@ -46,7 +46,7 @@ def plan_mission(
 
 def mission_ways(
     mission: Mission, navigator: Navigator, travel: SiteTravel, chargers: bool = False
-) -> Ways:
+) -> TravelMatrix:
     """Times and energies between the tasks of a mission, in steps of the drive that `travel` means,
     and with `chargers` from and to the docking stations.
 
@@ -79,7 +79,7 @@ def mission_ways(
         )
         time[slowed], energy[slowed] = rows
     work = np.array([travel.work(task) for task in places])
-    return Ways(
+    return TravelMatrix(
         tuple(task.name for task in tasks),
         np.rint(time / travel.time_step),
         energy,

@@ -18,7 +18,7 @@ _GREY: Colour = (0.6, 0.6, 0.6, 1.0)
 
 
 @dataclass(frozen=True)
-class Look:
+class Visual:
     """A solid of a link's looks: a box of edges `size` (m), or a cylinder or ball whose bounding
     box has them, in the link's frame."""
 
@@ -62,7 +62,7 @@ class RobotModel:
 
     text: str
     """the URDF document"""
-    looks: Mapping[str, Sequence[Look]]
+    looks: Mapping[str, Sequence[Visual]]
     """by link; meshes are left out"""
     joints: tuple[Joint, ...]
 
@@ -142,7 +142,7 @@ def _link(joint: ET.Element, end: str) -> str:
     return "" if element is None else element.attrib["link"]
 
 
-def _look(visual: ET.Element, colours: Mapping[str, Colour]) -> Look | None:
+def _look(visual: ET.Element, colours: Mapping[str, Colour]) -> Visual | None:
     position, rotation = _origin(visual)
     material = visual.find("material")
     colour = _GREY
@@ -161,7 +161,7 @@ def _look(visual: ET.Element, colours: Mapping[str, Colour]) -> Look | None:
                 size = (across, across, across)
             case _:
                 return None
-        return Look(shape.tag, size, position, rotation, colour)
+        return Visual(shape.tag, size, position, rotation, colour)
     return None
 
 

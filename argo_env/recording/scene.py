@@ -13,9 +13,9 @@ from argo_env.pictures.scene import storeys
 from argo_env.recording.messages import WORLD, colour, pose, timestamp, vector
 from argo_env.recording.robot_model import (
     Colour,
-    Look,
     Quaternion,
     RobotModel,
+    Visual,
     from_rpy,
     multiply,
 )
@@ -73,13 +73,13 @@ def finding_scene(found: Sequence[Anomaly], t: float) -> SceneUpdate:
 def _finding(id: str, anomaly: Anomaly, place: Vector, t: float) -> SceneEntity:
     level: Quaternion = (0.0, 0.0, 0.0, 1.0)
     text = f"{anomaly.kind.replace('_', ' ')}: {anomaly.detail}"
-    looks = [Look("sphere", (_BALL, _BALL, _BALL), place, level, _ABNORMAL)]
+    looks = [Visual("sphere", (_BALL, _BALL, _BALL), place, level, _ABNORMAL)]
     if anomaly.place is None:
         text, looks = f"noticed from here: {text}", []
     if anomaly.extent is not None:
         x0, y0, x1, y1 = anomaly.extent
         middle = ((x0 + x1) / 2, (y0 + y1) / 2, place[2])
-        looks.append(Look("box", (x1 - x0, y1 - y0, _CLOSED), middle, level, _SEEN_THROUGH))
+        looks.append(Visual("box", (x1 - x0, y1 - y0, _CLOSED), middle, level, _SEEN_THROUGH))
     entity = _entity(id, WORLD, looks, t)
     entity.texts.append(_label(place, text))
     return entity
@@ -102,16 +102,16 @@ def _element(element: Element, t: float) -> SceneEntity:
     return _entity(element.name, WORLD, looks, t)
 
 
-def _look(solid: Solid, colour: Colour) -> Look:
+def _look(solid: Solid, colour: Colour) -> Visual:
     if isinstance(solid, Box):
-        return Look("box", solid.size, solid.center, from_rpy(solid.rpy), colour)
+        return Visual("box", solid.size, solid.center, from_rpy(solid.rpy), colour)
     across = 2 * solid.radius
     size = (across, across, solid.length)
-    return Look("cylinder", size, solid.center, from_rpy(solid.rpy), colour)
+    return Visual("cylinder", size, solid.center, from_rpy(solid.rpy), colour)
 
 
 def _entity(
-    id: str, frame: str, looks: Iterable[Look], t: float, locked: bool = False
+    id: str, frame: str, looks: Iterable[Visual], t: float, locked: bool = False
 ) -> SceneEntity:
     entity = SceneEntity(timestamp=timestamp(t), frame_id=frame, id=id, frame_locked=locked)
     for look in looks:
@@ -139,7 +139,7 @@ def _checkpoint(checkpoint: SiteCheckpoint, reading: Reading | None, t: float) -
         shade = _NORMAL if reading.normal else _ABNORMAL
     # The face looks along x of the checkpoint's frame; a cylinder stands along its z.
     turned = multiply(from_rpy((0.0, 0.0, checkpoint.yaw)), from_rpy((0.0, 1.5707963267948966, 0)))
-    face = Look("cylinder", _FACE, checkpoint.position, turned, shade)
+    face = Visual("cylinder", _FACE, checkpoint.position, turned, shade)
     entity = _entity(f"checkpoint {checkpoint.id}", WORLD, [face], t)
     entity.texts.append(_label(checkpoint.position, text))
     return entity

@@ -8,7 +8,7 @@ own. So no label can meet another one or a line that does not belong to it.
 from collections.abc import Iterator
 from dataclasses import dataclass, field
 
-from argo_compiler.hfsm import Composite, Hfsm, Transition, TransitionKind
+from argo_compiler.hfsm import Composite, Hfsm, StateTransition, TransitionKind
 from argo_compiler.hfsm.conditions import words
 from argo_compiler.hfsm.model import DONE, MISSION
 from argo_compiler.il import Stop
@@ -146,13 +146,13 @@ def _ways(hfsm: Hfsm) -> Iterator[_Way]:
             yield _way(group.id, group.timeout, group)
 
 
-def _way(source: str, transition: Transition, group: Composite | None) -> _Way:
+def _way(source: str, transition: StateTransition, group: Composite | None) -> _Way:
     completed = transition.completes
     target = transition.target or DONE if completed is None else _DECISION + completed
     return _Way(source, target, transition.kind, shorten(_label(transition, group), MAX_LABEL))
 
 
-def _label(transition: Transition, group: Composite | None) -> str:
+def _label(transition: StateTransition, group: Composite | None) -> str:
     if transition.kind is TransitionKind.CONDITIONAL:
         return " and ".join(words(condition) for condition in transition.conditions)
     if group is None or group.repeat is None:

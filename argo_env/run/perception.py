@@ -8,8 +8,8 @@ from argo_compiler.il import EventKind
 from argo_env.navigation import Blockage
 from argo_env.robot.pose import BodyPose
 from argo_env.run.record import DIGITS, Anomaly, Reading
-from argo_env.sensing.signals.terrain_watch import KNOWN, ObstacleFinding
-from argo_env.sensing.watch import Finding, RememberingWatch, Told, Watch
+from argo_env.sensing.signals.terrain_watch import KNOWN, ObstacleDetection
+from argo_env.sensing.watch import Detection, RememberingWatch, Told, Watch
 from argo_env.site import Site
 from argo_env.site.shapes import Vector
 
@@ -46,33 +46,35 @@ class Perception:
         found = []
         for watch, every, turn in self._turns:
             if step % every == turn:
-                for finding in watch.look(now, pose):
-                    if not self._was_told(watch, finding):
-                        found.append(self._anomaly(watch, finding, now))
+                for detection in watch.look(now, pose):
+                    if not self._was_told(watch, detection):
+                        found.append(self._anomaly(watch, detection, now))
         return tuple(found)
 
-    def _was_told(self, watch: Watch, finding: Finding) -> bool:
-        if finding.place is None or isinstance(watch, RememberingWatch):
+    def _was_told(self, watch: Watch, detection: Detection) -> bool:
+        if detection.place is None or isinstance(watch, RememberingWatch):
             return False
         for known in self._known:
-            same = (known.kind, known.source) == (finding.kind, watch.name)
-            if same and known.place and math.dist(known.place, finding.place) <= _SAME_PLACE:
+            same = (known.kind, known.source) == (detection.kind, watch.name)
+            if same and known.place and math.dist(known.place, detection.place) <= _SAME_PLACE:
                 self._known.remove(known)
                 return True
         return False
 
-    def _anomaly(self, watch: Watch, finding: Finding, now: float) -> Anomaly:
-        at = finding.place or finding.noticed_from
+    def _anomaly(self, watch: Watch, detection: Detection, now: float) -> Anomaly:
+        at = detection.place or detection.noticed_from
         return Anomaly(
             t=now,
-            kind=finding.kind,
-            detail=finding.detail,
+            kind=detection.kind,
+            detail=detection.detail,
             source=watch.name,
-            place=None if finding.place is None else _rounded(finding.place),
-            noticed_from=None if finding.noticed_from is None else _rounded(finding.noticed_from),
+            place=None if detection.place is None else _rounded(detection.place),
+            noticed_from=None
+            if detection.noticed_from is None
+            else _rounded(detection.noticed_from),
             floor=None if at is None else self._site.floor_at(at[2]),
-            confidence=round(finding.confidence, DIGITS),
-            extent=finding.blockage.rect if isinstance(finding, ObstacleFinding) else None,
+            confidence=round(detection.confidence, DIGITS),
+            extent=detection.blockage.rect if isinstance(detection, ObstacleDetection) else None,
         )
 
 

@@ -17,7 +17,7 @@ from argo_env.drives.route import RouteDrive
 from argo_env.drives.tracked.drive import TrackedDrive
 from argo_env.faults.kinds import changed_site, settle
 from argo_env.faults.schedule import Schedule
-from argo_env.faults.stage import Stage
+from argo_env.faults.targets import FaultTargets
 from argo_env.navigation import Navigator
 from argo_env.robot.spec import RobotSpec
 from argo_env.run.action import Rig
@@ -28,15 +28,15 @@ from argo_env.run.runner import Announcer, LoggedEvents, MissionRunner, Observer
 from argo_env.run.spec import RunSettings
 from argo_env.seeding import generator
 from argo_env.sensing.ideal import IdealSensor, draw_values
-from argo_env.sensing.instrument import Instrument
 from argo_env.sensing.onboard import onboard_watches
+from argo_env.sensing.onboard_sensor import OnboardSensor
 from argo_env.sensing.sensor import Sensor
 from argo_env.sensing.signals import standard_watches
 from argo_env.sensing.vision.sensor import CameraSensor
 from argo_env.sensing.watch import Watch
 from argo_env.site import Site
 from argo_env.surroundings import Surroundings
-from argo_env.surroundings.network import Network
+from argo_env.surroundings.network import RadioNetwork
 from argo_env.world.paper_world import AnyWorld, PaperWorld
 from argo_env.world.world import World
 
@@ -212,9 +212,9 @@ def outfit(settings: RunSettings, navigator: Navigator, gui: bool, stack: ExitSt
         watches = standard_watches(world, surroundings, seed)
         for id, value in truth.items():
             world.show_value(id, value)
-    drive, network, battery = Powertrain(inner), Network(site), Battery(robot)
-    sensor = Instrument(camera, site, generator(seed, "instrument"))
-    stage = Stage(world, truth, surroundings, drive, sensor, battery, network)
+    drive, network, battery = Powertrain(inner), RadioNetwork(site), Battery(robot)
+    sensor = OnboardSensor(camera, site, generator(seed, "instrument"))
+    stage = FaultTargets(world, truth, surroundings, drive, sensor, battery, network)
     watches += onboard_watches(robot, battery, network, drive, sensor)
     schedule = Schedule(faults, stage)
     return Rig(world, navigator, drive, sensor, watches, battery, schedule)

@@ -17,9 +17,9 @@ from argo_env.drives.powertrain import Powertrain
 from argo_env.navigation.path import Path, wrap
 from argo_env.robot.pose import BodyPose
 from argo_env.robot.spec import RobotSpec
-from argo_env.sensing.instrument import Instrument
-from argo_env.sensing.watch import Finding, Told, Watch
-from argo_env.surroundings.network import Network
+from argo_env.sensing.onboard_sensor import OnboardSensor
+from argo_env.sensing.watch import Detection, Told, Watch
+from argo_env.surroundings.network import RadioNetwork
 
 LOW, FULL = 0.2, 0.99
 """shares of the charge: below the one the battery is low, from the other on it is charged again"""
@@ -43,15 +43,15 @@ class BatteryWatch:
     def remember(self, told: Sequence[Told], now: float) -> None:  # noqa: ARG002
         self._low = bool(told) and told[-1].kind is EventKind.LOW_BATTERY
 
-    def look(self, now: float, pose: BodyPose) -> tuple[Finding, ...]:  # noqa: ARG002
+    def look(self, now: float, pose: BodyPose) -> tuple[Detection, ...]:  # noqa: ARG002
         voltage = self._battery.voltage
         charge = estimated_charge(voltage, self._battery.current)
         if not self._low and charge < LOW:
             self._low = True
-            return (Finding(EventKind.LOW_BATTERY, f"{voltage:.1f} V, {charge:.0%} charged"),)
+            return (Detection(EventKind.LOW_BATTERY, f"{voltage:.1f} V, {charge:.0%} charged"),)
         if self._low and charge >= FULL:
             self._low = False
-            return (Finding(EventKind.BATTERY_CHARGED, f"{voltage:.1f} V, {charge:.0%} charged"),)
+            return (Detection(EventKind.BATTERY_CHARGED, f"{voltage:.1f} V, {charge:.0%} charged"),)
         return ()
 
 
@@ -61,7 +61,7 @@ class ConnectionWatch:
     name = "connection"
     period = 0.5
 
-    def __init__(self, network: Network, missed: int = 4) -> None:
+    def __init__(self, network: RadioNetwork, missed: int = 4) -> None:
         """The connection is lost when `missed` answers in a row have not come."""
         self._network = network
         self._limit = missed
@@ -71,19 +71,19 @@ class ConnectionWatch:
         lost = bool(told) and told[-1].kind is EventKind.CONNECTION_LOST
         self._missed = self._limit if lost else 0
 
-    def look(self, now: float, pose: BodyPose) -> tuple[Finding, ...]:  # noqa: ARG002
+    def look(self, now: float, pose: BodyPose) -> tuple[Detection, ...]:  # noqa: ARG002
         here = (pose.x, pose.y, pose.z)
         if not self._network.connected(pose):
             self._missed += 1
             if self._missed == self._limit:
                 silent = self._limit * self.period
                 detail = f"no answer for {silent:g} s"
-                return (Finding(EventKind.CONNECTION_LOST, detail, noticed_from=here),)
+                return (Detection(EventKind.CONNECTION_LOST, detail, noticed_from=here),)
             return ()
         lost, self._missed = self._missed >= self._limit, 0
         if lost:
             detail = "the base station answers"
-            return (Finding(EventKind.CONNECTION_RESTORED, detail, noticed_from=here),)
+            return (Detection(EventKind.CONNECTION_RESTORED, detail, noticed_from=here),)
         return ()
 
 
@@ -100,10 +100,10 @@ class EmergencyStopWatch:
     def remember(self, told: Sequence[Told], now: float) -> None:  # noqa: ARG002
         self._pressed = bool(told)  # if it no longer is, the first look shows it
 
-    def look(self, now: float, pose: BodyPose) -> tuple[Finding, ...]:  # noqa: ARG002
+    def look(self, now: float, pose: BodyPose) -> tuple[Detection, ...]:  # noqa: ARG002
         before, self._pressed = self._pressed, self._drive.pressed
         if self._pressed and not before:
-            return (Finding(EventKind.EMERGENCY_STOP, "someone has pressed the emergency stop"),)
+            return (Detection(EventKind.EMERGENCY_STOP, "someone has pressed the emergency stop"),)
         return ()
 
 
@@ -125,7 +125,7 @@ class DriveWatch:
     def remember(self, told: Sequence[Told], now: float) -> None:  # noqa: ARG002
         self._told = bool(told)  # until the robot is seen to be fast enough again
 
-    def look(self, now: float, pose: BodyPose) -> tuple[Finding, ...]:
+    def look(self, now: float, pose: BodyPose) -> tuple[Detection, ...]:
         way = self._drive.way
         if way is None or self._drive.pressed:
             self._way = None
@@ -150,7 +150,7 @@ class DriveWatch:
         self._told = True
         detail = f"the drive makes {share:.0%} of the planned speed"
         here = (pose.x, pose.y, pose.z)
-        return (Finding(EventKind.DYSFUNCTION, detail, noticed_from=here),)
+        return (Detection(EventKind.DYSFUNCTION, detail, noticed_from=here),)
 
     def _nearest(self, pose: BodyPose) -> int:
         """Where on the plan the robot is: at most twice as far on as time would have it."""
@@ -166,14 +166,14 @@ class CameraWatch:
     name = "camera"
     period = 5.0
 
-    def __init__(self, sensor: Instrument) -> None:
+    def __init__(self, sensor: OnboardSensor) -> None:
         self._sensor = sensor
         self._told = False
 
     def remember(self, told: Sequence[Told], now: float) -> None:  # noqa: ARG002
         self._told = bool(told)  # if the camera is well again, the first picture shows it
 
-    def look(self, now: float, pose: BodyPose) -> tuple[Finding, ...]:  # noqa: ARG002
+    def look(self, now: float, pose: BodyPose) -> tuple[Detection, ...]:  # noqa: ARG002
         pattern = self._sensor.test()
         spread = 0.0 if pattern is None else float(np.sqrt(np.mean(np.square(pattern))))
         before, self._told = self._told, pattern is None or spread > NOISY
@@ -184,11 +184,15 @@ class CameraWatch:
             if pattern is None
             else f"the camera's picture of the test pattern is off by {spread:.1%} of the scale"
         )
-        return (Finding(EventKind.DYSFUNCTION, detail),)
+        return (Detection(EventKind.DYSFUNCTION, detail),)
 
 
 def onboard_watches(
-    robot: RobotSpec, battery: Battery, network: Network, drive: Powertrain, sensor: Instrument
+    robot: RobotSpec,
+    battery: Battery,
+    network: RadioNetwork,
+    drive: Powertrain,
+    sensor: OnboardSensor,
 ) -> tuple[Watch, ...]:
     """All watches over the robot itself, for one run."""
     return (

@@ -1,4 +1,4 @@
-"""What the robot notices by itself while it goes: findings, and what makes them."""
+"""What the robot notices by itself while it goes: detections, and what makes them."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -10,7 +10,7 @@ from argo_env.site.shapes import Vector
 
 
 @dataclass(frozen=True)
-class Finding:
+class Detection:
     """Something found by sensing."""
 
     kind: EventKind
@@ -31,7 +31,7 @@ class Watch(Protocol):
     period: float
     """s between two looks"""
 
-    def look(self, now: float, pose: BodyPose) -> tuple[Finding, ...]:
+    def look(self, now: float, pose: BodyPose) -> tuple[Detection, ...]:
         """What has been found at time `now` (s) with the robot at `pose`; each thing is told once,
         and again only after it was gone."""
         ...
@@ -47,7 +47,7 @@ class Told:
 
 @runtime_checkable
 class RememberingWatch(Watch, Protocol):
-    """A watch whose findings have no place by which they are known again."""
+    """A watch whose detections have no place by which they are known again."""
 
     def remember(self, told: Sequence[Told], now: float) -> None:
         """Goes on at time `now` (s) as the one that has told all these, in this order."""

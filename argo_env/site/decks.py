@@ -11,7 +11,7 @@ _EPSILON = 1e-6
 
 
 @dataclass(frozen=True)
-class Edge:
+class RimEdge:
     """A straight piece of a deck's rim, from `start` to `end` (m); `outward` is its unit normal."""
 
     start: tuple[float, float]
@@ -67,10 +67,10 @@ class Deck:
             float(self.y[last]),
         )
 
-    def free_edges(self, gaps: tuple[Rect, ...]) -> list[Edge]:
+    def free_edges(self, gaps: tuple[Rect, ...]) -> list[RimEdge]:
         """The rim of the deck, without the pieces that lie in one of the `gaps`."""
         padded = np.pad(self.plan, 1)
-        edges: list[Edge] = []
+        edges: list[RimEdge] = []
         for axis, lines, across in ((0, self.x, self.y), (1, self.y, self.x)):
             plan = padded if axis == 0 else padded.T
             for line in range(len(lines)):
@@ -81,9 +81,9 @@ class Deck:
                     for first, last in _runs(kept):
                         a, b = float(across[first]), float(across[last])
                         if axis == 0:
-                            edges.append(Edge((at, a), (at, b), (sign, 0.0)))
+                            edges.append(RimEdge((at, a), (at, b), (sign, 0.0)))
                         else:
-                            edges.append(Edge((a, at), (b, at), (0.0, sign)))
+                            edges.append(RimEdge((a, at), (b, at), (0.0, sign)))
         return edges
 
 

@@ -24,7 +24,7 @@ class Shadow:
         return x0 <= pose.x <= x1 and y0 <= pose.y <= y1
 
 
-class Network:
+class RadioNetwork:
     """The network of a site. Holds the shadows that are there now."""
 
     def __init__(self, site: Site) -> None:

@@ -35,7 +35,7 @@ from argo_planner.options import EndArea, SiteOption, Source, StartArea
 
 
 class Format(StrEnum):
-    """How findings are written."""
+    """How diagnostics are written."""
 
     TEXT = "text"
     JSON = "json"
@@ -63,19 +63,19 @@ def check_mission(
     if is_mission_file(source):
         refuse_areas(source, start_area, end_area)
     navigator = load_navigator(site)
-    findings = find_all(
+    diagnostics = find_all(
         source, make_catalog(navigator), start_area, end_area, SiteTravel(navigator)
     )
-    written = _WRITERS[format](findings, str(source))
-    count = f"{source}: {summary(findings)}"
+    written = _WRITERS[format](diagnostics, str(source))
+    count = f"{source}: {summary(diagnostics)}"
     if output:
         write_text(output, written + "\n")
         print(count)
     else:
         print(written)
-    if has_errors(findings):
+    if has_errors(diagnostics):
         raise typer.Exit(2)
-    if findings and strict:
+    if diagnostics and strict:
         raise typer.Exit(1)
 
 
@@ -86,7 +86,7 @@ def find_all(
     end_area: int | None = None,
     travel: Travel | None = None,
 ) -> tuple[Diagnostic, ...]:
-    """The findings of every stage that the mission gets through, by place."""
+    """The diagnostics of every stage that the mission gets through, by place."""
     try:
         loaded = load_source(source, catalog, start_area, end_area)
     except DiagnosticError as error:
@@ -99,10 +99,12 @@ def find_all(
     return by_place((*loaded.diagnostics, *loaded.placed(found)))
 
 
-def _to_text(findings: tuple[Diagnostic, ...], source_name: str) -> str:
-    text = to_text(findings, source_name)
-    # Of several findings it says by itself how many there are.
-    return text if len(findings) > 1 else f"{text}\n{source_name}: {summary(findings)}".lstrip()
+def _to_text(diagnostics: tuple[Diagnostic, ...], source_name: str) -> str:
+    text = to_text(diagnostics, source_name)
+    # Of several diagnostics it says by itself how many there are.
+    return (
+        text if len(diagnostics) > 1 else f"{text}\n{source_name}: {summary(diagnostics)}".lstrip()
+    )
 
 
 _WRITERS = {Format.TEXT: _to_text, Format.JSON: to_json, Format.SARIF: to_sarif}

@@ -4,13 +4,13 @@ from collections.abc import Iterator
 
 from argo_compiler.route import RouteProblem
 from argo_env.envs.observations import Observation
-from baselines.planned import Planned
+from baselines.planned import PlannedPolicy
 from baselines.problem import problem_of
 
 _SEGMENT = 3  # visits that or-opt moves at most
 
 
-class Insertion(Planned):
+class Insertion(PlannedPolicy):
     """Plans by `insert_and_improve`, and again when something has gone otherwise than planned."""
 
     name = "insertion"

@@ -4,7 +4,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from enum import StrEnum
 
-from argo_compiler.route.problem import Objective, Route, RouteProblem
+from argo_compiler.route.problem import Objective, RouteProblem, Tour
 
 
 class Kind(StrEnum):
@@ -40,7 +40,7 @@ class NamedProblem:
             return prize + self.start_score
         return cost * self.problem.unit
 
-    def route(self, nodes: Sequence[int]) -> Route:
+    def route(self, nodes: Sequence[int]) -> Tour:
         """The route through these nodes; the start and the end may be among them."""
         visits = {node: visit for visit, node in enumerate(self.nodes)}
-        return Route(tuple(visits[node] for node in nodes if node in visits))
+        return Tour(tuple(visits[node] for node in nodes if node in visits))

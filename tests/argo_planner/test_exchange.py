@@ -9,7 +9,7 @@ from argo_compiler.errors import ArgoError
 from argo_compiler.files.mission_file import mission_text
 from argo_compiler.hfsm import lower
 from argo_compiler.il import Action, Mission, Task, Transition
-from argo_compiler.isar import View, to_isar
+from argo_compiler.isar import InspectionView, to_isar
 from argo_compiler.model import Pose
 from argo_compiler.ros import Storage, to_ros1_bag, to_ros2_bag
 from argo_planner.exporters import exporters
@@ -23,7 +23,7 @@ PLAN = Mission(
         Task(name="B", action=Action.MEASURE, object_id="4"),
     ),
 )
-VIEWS = {id: View(pose=Pose(x=1, y=2, z=0), target=(0, 2, 1)) for id in ("1", "4")}
+VIEWS = {id: InspectionView(pose=Pose(x=1, y=2, z=0), target=(0, 2, 1)) for id in ("1", "4")}
 
 
 def load(path):

@@ -8,8 +8,8 @@ from rich.console import Console
 from argo_compiler.catalog import CheckpointKind, Interval
 from argo_compiler.hfsm import lower
 from argo_compiler.il import Action, Afterwards, EventKind, Mission, Reaction, Response, Task
-from argo_env.faults.machine import ConnectionLoss
-from argo_env.faults.process import GasLeakFault
+from argo_env.faults.plant import GasLeakFault
+from argo_env.faults.robot import ConnectionLoss
 from argo_env.formatting import clock
 from argo_env.run.record import Contact, Interruption, Reading, Result, RunRecord, TaskRun
 from argo_planner.summary import show_record

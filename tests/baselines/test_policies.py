@@ -9,18 +9,18 @@ from argo_env.envs.route_instance import evaluate
 from argo_env.envs.route_noise import RouteNoise
 from baselines import portfolio
 from baselines.episodes import play
-from baselines.families import TEST_SETS, Family, InstanceSet
+from baselines.families import TEST_SETS, InstanceFamily, InstanceSet
 from baselines.heuristics.given_order import GivenOrder
 from baselines.policy import POLICIES, Policy, make_policy
 from baselines.problem import hindsight
 
 NUMBERS = range(1_000_000, 1_000_100)
 KINDS = {
-    "plain": Family(9, budget=600.0),
-    "ordered": Family(9, budget=600.0, precedence=0.9),
-    "noisy": Family(9, budget=600.0, noise=RouteNoise(failing=0.4, blocked=3)),
-    "umad": Family(9, ("umad",)),
-    "tight": Family(3, budget=200.0),
+    "plain": InstanceFamily(9, budget=600.0),
+    "ordered": InstanceFamily(9, budget=600.0, precedence=0.9),
+    "noisy": InstanceFamily(9, budget=600.0, noise=RouteNoise(failing=0.4, blocked=3)),
+    "umad": InstanceFamily(9, ("umad",)),
+    "tight": InstanceFamily(3, budget=200.0),
 }
 
 

@@ -6,7 +6,7 @@ import numpy as np
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from argo_compiler.route import Objective, Route, suggest_route
+from argo_compiler.route import Objective, Tour, suggest_route
 from argo_compiler.route import evaluate as evaluate_problem
 from argo_env.envs.route import RouteEnv
 from argo_env.envs.route_instance import DOCK, TICK, evaluate
@@ -57,7 +57,7 @@ def test_optimum_is_that_of_brute_force(number, checkpoints, budget, precedence)
     # Never better than the best, and what it claims is so.
     found = problem_of(seen, budget)
     order = insert_and_improve(found.problem)
-    assert evaluate_problem(found.problem, Route(order)).feasible
+    assert evaluate_problem(found.problem, Tour(order)).feasible
     score = evaluate(instance, found.order_of(order))
     assert score.illegal is None
     assert round(100 * score.prize) == sum(found.problem.visits[v].prize for v in order) <= best

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from argo_compiler.errors import ArgoError
-from argo_compiler.route import Battery, Precedence, Route, RouteProblem, Visit, evaluate
+from argo_compiler.route import EnergyBudget, Precedence, RouteProblem, Tour, Visit, evaluate
 from benchmarks import peer_pyvrp
 from benchmarks.instances import Kind
 from benchmarks.routes import Known, Row, find_files, known_of, main, summary
@@ -97,7 +97,7 @@ def test_a_problem_as_pyvrp_sees_it():
     assert peer_pyvrp.why_not(ordered) == "precedence"
     with pytest.raises(ArgoError, match="does not know precedence"):
         peer_pyvrp.search(ordered, 0.1, 1)
-    powered = RouteProblem(visits, travel, battery=Battery(travel, 100))
+    powered = RouteProblem(visits, travel, battery=EnergyBudget(travel, 100))
     assert peer_pyvrp.why_not(powered) == "a battery"
     empty = RouteProblem((), travel[3:, 3:])
-    assert peer_pyvrp.search(empty, 0.1, 1) == Route(())
+    assert peer_pyvrp.search(empty, 0.1, 1) == Tour(())

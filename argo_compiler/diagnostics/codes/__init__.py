@@ -1,4 +1,4 @@
-"""Every code that a finding can have: how bad it is, what it means, and the way out.
+"""Every code that a diagnostic can have: how bad it is, what it means, and the way out.
 
 The one place where codes are explained, a file for each part of Argo. SARIF's rules are made from
 it, and so are the tables in `docs/diagnostics.md`, which `make generated` writes.

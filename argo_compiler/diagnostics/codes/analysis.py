@@ -1,4 +1,4 @@
-"""The codes of findings of the analysis over all paths."""
+"""The codes of diagnostics of the analysis over all paths."""
 
 from argo_compiler.diagnostics.codes.code import error, warning
 

@@ -1,4 +1,4 @@
-"""The codes of findings about what an exporter's target can't say."""
+"""The codes of diagnostics about what an exporter's target can't say."""
 
 from argo_compiler.diagnostics.codes.code import error
 

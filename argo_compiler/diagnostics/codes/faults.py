@@ -1,4 +1,4 @@
-"""The codes of findings about files of faults."""
+"""The codes of diagnostics about files of faults."""
 
 from argo_compiler.diagnostics.codes.code import error
 

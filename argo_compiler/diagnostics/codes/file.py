@@ -1,4 +1,4 @@
-"""The codes of findings about mission files."""
+"""The codes of diagnostics about mission files."""
 
 from argo_compiler.diagnostics.codes.code import error
 

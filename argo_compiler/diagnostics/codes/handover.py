@@ -1,4 +1,4 @@
-"""The codes of findings when a mission goes on with a plan that was edited meanwhile."""
+"""The codes of diagnostics when a mission goes on with a plan that was edited meanwhile."""
 
 from argo_compiler.diagnostics.codes.code import error, warning
 

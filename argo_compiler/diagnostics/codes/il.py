@@ -1,4 +1,4 @@
-"""The codes of findings about the structure of missions."""
+"""The codes of diagnostics about the structure of missions."""
 
 from argo_compiler.diagnostics.codes.code import error, warning
 

@@ -1,4 +1,4 @@
-"""The codes of findings about missions of isar."""
+"""The codes of diagnostics about missions of isar."""
 
 from argo_compiler.diagnostics.codes.code import error, warning
 

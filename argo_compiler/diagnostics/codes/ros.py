@@ -1,4 +1,4 @@
-"""The codes of findings about missions as ROS messages."""
+"""The codes of diagnostics about missions as ROS messages."""
 
 from argo_compiler.diagnostics.codes.code import error
 

@@ -1,4 +1,4 @@
-"""The codes of findings about the requirements of an order."""
+"""The codes of diagnostics about the requirements of an order."""
 
 from argo_compiler.diagnostics.codes.code import error
 

@@ -1,4 +1,4 @@
-"""The codes of findings about mission scripts."""
+"""The codes of diagnostics about mission scripts."""
 
 from argo_compiler.diagnostics.codes.code import error, warning
 

@@ -1,4 +1,4 @@
-"""The codes of findings about descriptions of sites."""
+"""The codes of diagnostics about descriptions of sites."""
 
 from argo_compiler.diagnostics.codes.code import error
 

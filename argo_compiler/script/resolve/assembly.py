@@ -6,9 +6,9 @@ from dataclasses import dataclass
 
 from argo_compiler.diagnostics import Span
 from argo_compiler.il import Action, Group, Stop, Task, Transition
-from argo_compiler.script.resolve.plan import Home, Item, Leg, Plan, Round
+from argo_compiler.script.resolve.plan import Home, Item, Plan, PlannedGroup, ResolvedBranch
 from argo_compiler.script.syntax.commands import Plain
-from argo_compiler.script.syntax.source import Findings
+from argo_compiler.script.syntax.source import Diagnostics
 from argo_compiler.script.syntax.spelling import alternatives, nearest
 from argo_compiler.script.syntax.terms import StepRef
 
@@ -17,21 +17,21 @@ Steps = Mapping[int, Sequence[Item] | None]
 
 
 def assemble(
-    plan: Plan, findings: Findings, steps: Steps | None = None
+    plan: Plan, diagnostics: Diagnostics, steps: Steps | None = None
 ) -> tuple[tuple[Task, ...], tuple[Group, ...]]:
     """The tasks and groups of a plan whose home drives have been planned.
 
     Waypoints are numbered through; of other names the second is `MEASURE 4 (2)`. Linear time but
     for the names of groups, which are as long as the groups are deep.
     """
-    return _Assembly(plan, findings, steps or {}).result()
+    return _Assembly(plan, diagnostics, steps or {}).result()
 
 
 @dataclass(slots=True)
 class _Range:
     """A round with its place in the list of tasks."""
 
-    round: Round
+    round: PlannedGroup
     first: int
     last: int
     order: int
@@ -42,9 +42,9 @@ class _Range:
 class _Assembly:
     """A plan on its way to tasks and groups."""
 
-    def __init__(self, plan: Plan, findings: Findings, steps: Steps) -> None:
+    def __init__(self, plan: Plan, diagnostics: Diagnostics, steps: Steps) -> None:
         self.plan = plan
-        self.findings = findings
+        self.diagnostics = diagnostics
         self.steps = steps
         self.items = list(plan)
         self.at = {id(item): i for i, item in enumerate(self.items)}
@@ -82,7 +82,7 @@ class _Assembly:
             if item.name in own:
                 message = f"more than one task is named `{item.name}`"
                 hint = "give each task a name of its own"
-                self.findings.error("repeated-name", message, item.source, hint)
+                self.diagnostics.error("repeated-name", message, item.source, hint)
             own[item.name] = item
         used: Counter[str] = Counter()
 
@@ -121,20 +121,20 @@ class _Assembly:
                 close = nearest(point, self.by_name)
                 hint = f"the nearest names are {alternatives(f'`{n}`' for n in close)}"
                 message = f"there is no task `{point}`"
-                self.findings.error("unknown-step", message, span, hint if close else None)
+                self.diagnostics.error("unknown-step", message, span, hint if close else None)
             return found
         if point not in self.steps:
             known = sorted(self.steps, key=lambda n: (abs(n - point), n))[:3]
             near = alternatives((str(number) for number in sorted(known)), "and")
             hint = f"the nearest steps are {near}"
             message = f"there is no step {point}"
-            self.findings.error("unknown-step", message, span, hint if known else None)
+            self.diagnostics.error("unknown-step", message, span, hint if known else None)
             return None
         items = self.steps[point]
         if items is None:
             message = f"more than one step has the number {point}"
             hint = "number the steps anew, or name the task"
-            self.findings.error("ambiguous-step", message, span, hint)
+            self.diagnostics.error("ambiguous-step", message, span, hint)
             return None
         places = [
             self.at[id(item)]
@@ -144,7 +144,7 @@ class _Assembly:
         if not places:
             message = f"step {point} leaves nothing to do at which the mission could go on"
             hint = "name a step that measures or drives"
-            self.findings.error("empty-step", message, span, hint)
+            self.diagnostics.error("empty-step", message, span, hint)
             return None
         return max(places) if last else min(places)
 
@@ -173,7 +173,7 @@ class _Assembly:
                     message = "these steps lie partly in those of another repetition"
                     where = f", line {parent.round.span.line}" if parent.round.span else ""
                     hint = f"let one lie in the other as a whole{where}"
-                    self.findings.error("overlap", message, r.round.span, hint)
+                    self.diagnostics.error("overlap", message, r.round.span, hint)
                 inside = parent is not None and not r.base.startswith(f"{parent.name}/")
                 r.name = f"{parent.name}/{r.base}" if parent is not None and inside else r.base
                 around.append(r)
@@ -181,7 +181,7 @@ class _Assembly:
                 shown[i] = around[-1].name
         return ranges, shown
 
-    def _range(self, order: int, round_: Round) -> _Range | None:
+    def _range(self, order: int, round_: PlannedGroup) -> _Range | None:
         first: int | None
         last: int | None
         if round_.first is not None and round_.last is not None:
@@ -200,7 +200,9 @@ class _Assembly:
             return None
         if first > last:
             message = "the first of these steps comes after the last one"
-            self.findings.error("step-range", message, round_.span, "write the earlier one first")
+            self.diagnostics.error(
+                "step-range", message, round_.span, "write the earlier one first"
+            )
             return None
         return _Range(round_, first, last, order)
 
@@ -218,7 +220,7 @@ class _Assembly:
             before = item.before
             if before.leaving not in (None, item.arriving):
                 message = f"two speeds for one way: {before.leaving:g} and {item.arriving:g} m/s"
-                self.findings.error("two-speeds", message, item.source, "leave one of them out")
+                self.diagnostics.error("two-speeds", message, item.source, "leave one of them out")
             before.leaving = item.arriving
             branches = any(leg.alternatives for leg in before.routes or ())
             if branches or self.at[id(before)] in ends:
@@ -228,7 +230,7 @@ class _Assembly:
                     + ("those that its conditions lead to" if branches else "the next round's")
                 )
                 hint = f"plan a waypoint after '{name}' if the other ways are not to be that fast"
-                self.findings.warning("speed-shared", message, item.source, hint)
+                self.diagnostics.warning("speed-shared", message, item.source, hint)
         for item in self.items:
             if item.leaving is None:
                 item.leaving = item.passing
@@ -274,7 +276,7 @@ class _Assembly:
                 if decided:
                     message = "the mission can go on in one way only where no condition holds"
                     hint = "leave one of the two out, or give it a condition"
-                    self.findings.error("second-route", message, leg.span, hint)
+                    self.diagnostics.error("second-route", message, leg.span, hint)
                 decided = True
             target = self._target(item, leg)
             if target is None:
@@ -286,7 +288,7 @@ class _Assembly:
             transitions.append(Transition(target=default))
         return tuple(transitions)
 
-    def _target(self, item: Item, leg: Leg) -> str | None:
+    def _target(self, item: Item, leg: ResolvedBranch) -> str | None:
         target = leg.target
         if isinstance(target, StepRef):
             place = self._position(target.first, target.span)
@@ -294,7 +296,9 @@ class _Assembly:
         if isinstance(target, Item):
             if id(target) not in self.at:
                 message = "what this leads to has been taken out of the plan"
-                self.findings.error("empty-step", message, leg.span, "take the condition out, too")
+                self.diagnostics.error(
+                    "empty-step", message, leg.span, "take the condition out, too"
+                )
                 return None
             return self.names[self.at[id(target)]]
         assert not isinstance(target, Home)
@@ -305,5 +309,5 @@ class _Assembly:
                 "write `return to the docking station`, or turn it round: "
                 "`if ..., go to step 5; otherwise end the mission`"
             )
-            self.findings.error("no-target", message, leg.span, hint)
+            self.diagnostics.error("no-target", message, leg.span, hint)
         return following

@@ -6,7 +6,7 @@ from itertools import product
 from argo_compiler.catalog import CheckpointInfo
 from argo_compiler.il import Condition, ConditionType
 from argo_compiler.script.syntax.commands import Comparison, Normality
-from argo_compiler.script.syntax.source import Findings
+from argo_compiler.script.syntax.source import Diagnostics
 
 _UNITS = {"degree": "deg", "degrees": "deg", "°": "deg", "percent": "%", "bars": "bar"}
 
@@ -15,22 +15,22 @@ Find = Callable[[Comparison], CheckpointInfo | None]
 
 
 def resolve_alternatives(
-    alternatives: Sequence[Sequence[Comparison]], find: Find, findings: Findings
+    alternatives: Sequence[Sequence[Comparison]], find: Find, diagnostics: Diagnostics
 ) -> tuple[tuple[Condition, ...], ...]:
     """The conditions of each alternative; what is not normal becomes two of them."""
     found: list[tuple[Condition, ...]] = []
     for tests in alternatives:
-        each = [_conditions(test, find, findings) for test in tests]
+        each = [_conditions(test, find, diagnostics) for test in tests]
         if sum(len(conditions) > 1 for conditions in each) > 4:
             message = "more than four `abnormal` joined by `and`"
             hint = "name the values, or divide the condition"
-            findings.error("condition", message, tests[0].span, hint)
+            diagnostics.error("condition", message, tests[0].span, hint)
             continue
         found += product(*each)
     return tuple(found)
 
 
-def _conditions(test: Comparison, find: Find, findings: Findings) -> tuple[Condition, ...]:
+def _conditions(test: Comparison, find: Find, diagnostics: Diagnostics) -> tuple[Condition, ...]:
     """The conditions of which one must hold."""
     checkpoint = find(test)
     if checkpoint is None:
@@ -39,7 +39,7 @@ def _conditions(test: Comparison, find: Find, findings: Findings) -> tuple[Condi
         if _plain(unit) != _plain(checkpoint.unit):
             message = f"{checkpoint.name} (#{checkpoint.id}) is measured in {checkpoint.unit}"
             hint = f"write the value in {checkpoint.unit}, not in {unit}"
-            findings.error("unit", message, test.span, hint)
+            diagnostics.error("unit", message, test.span, hint)
     nominal = checkpoint.nominal
     bounds: list[tuple[ConditionType, float, float | None, bool]]
     if test.test is Normality.NORMAL:
@@ -58,7 +58,7 @@ def _conditions(test: Comparison, find: Find, findings: Findings) -> tuple[Condi
         if test.test is ConditionType.WITHIN and empty:
             message = "no value lies between these"
             hint = "write the lower one first"
-            findings.error("condition", message, test.span, hint)
+            diagnostics.error("condition", message, test.span, hint)
     return tuple(
         Condition(
             type=kind,

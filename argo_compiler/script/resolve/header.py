@@ -4,7 +4,7 @@ from dataclasses import dataclass
 
 from argo_compiler.diagnostics import Span
 from argo_compiler.script.syntax.nodes import AreaField, AreaHeader, Protocol
-from argo_compiler.script.syntax.source import Findings
+from argo_compiler.script.syntax.source import Diagnostics
 from argo_compiler.script.syntax.spelling import alternatives
 from argo_compiler.script.syntax.terms import Coordinates
 
@@ -32,15 +32,15 @@ class HeaderValues:
 
 
 def header_values(
-    protocol: Protocol, findings: Findings, start_area: int | None, end_area: int | None
+    protocol: Protocol, diagnostics: Diagnostics, start_area: int | None, end_area: int | None
 ) -> HeaderValues:
     """The header's choices; the options must be among what it offers."""
     dock = protocol.dock
     return HeaderValues(
         start=_choice(
-            "start", protocol.start_area, protocol.initial_position, start_area, findings
+            "start", protocol.start_area, protocol.initial_position, start_area, diagnostics
         ),
-        end=_choice("end", protocol.end_area, protocol.end_of_mission, end_area, findings),
+        end=_choice("end", protocol.end_area, protocol.end_of_mission, end_area, diagnostics),
         dock_said=dock is not None,
         dock=dock.dock if dock else None,
     )
@@ -51,14 +51,14 @@ def _choice(
     header: AreaHeader | None,
     cell: AreaField | None,
     option: int | None,
-    findings: Findings,
+    diagnostics: Diagnostics,
 ) -> AreaChoice:
     flag = f"--{which}-area"
     if header is not None:
         if option is not None and option != header.area:
             message = f"{flag} {option} contradicts the script"
             hint = f"leave {flag} out, or take this line out of the script"
-            findings.error("area-conflict", message, header.span, hint)
+            diagnostics.error("area-conflict", message, header.span, hint)
         return AreaChoice(header.area, header.span, header.as_planned, said=True)
     offered = sorted({area.value for area in cell.areas}) if cell else []
     if not offered:
@@ -68,9 +68,9 @@ def _choice(
     choices = alternatives(f"{flag} {number}" for number in offered)
     if option is not None and option not in offered:
         message = f"{flag} {option} is not what the script offers"
-        findings.error("area-not-offered", message, span, f"give {choices}")
+        diagnostics.error("area-not-offered", message, span, f"give {choices}")
     elif option is None and len(offered) > 1:
         areas = alternatives(str(number) for number in offered)
         message = f"the script leaves the {which} to the preparation: starting area {areas}"
-        findings.error("area-choice", message, span, f"choose with {choices}")
+        diagnostics.error("area-choice", message, span, f"choose with {choices}")
     return AreaChoice(option if option is not None else offered[0], span, said=True)

@@ -3,8 +3,8 @@
 from collections.abc import Sequence
 
 from argo_compiler.catalog import Catalog
-from argo_compiler.collecting import collector_held
 from argo_compiler.diagnostics import Diagnostic, DiagnosticError
+from argo_compiler.garbage_collector import collector_held
 from argo_compiler.il import Mission
 from argo_compiler.model import Model
 from argo_compiler.script.resolve.lookup import Lookup
@@ -12,7 +12,7 @@ from argo_compiler.script.resolve.protocol import protocol_mission
 from argo_compiler.script.resolve.sheet import sheet_mission
 from argo_compiler.script.syntax.nodes import ProtocolStep, Script, Sheet, SheetStep
 from argo_compiler.script.syntax.parsing import parse
-from argo_compiler.script.syntax.source import Findings, Source
+from argo_compiler.script.syntax.source import Diagnostics, Source
 from argo_compiler.script.syntax.vocabulary import catalog_words
 
 
@@ -33,17 +33,19 @@ def resolve(
     Raises DiagnosticError with all errors and warnings, those of parsing among them, sorted by
     place.
     """
-    findings = Findings(Source(script.source_text, script.source_name), list(script.diagnostics))
-    if not findings.errors:
-        _check_numbering(script.steps, findings)
-    lookup = Lookup(catalog, findings)
+    diagnostics = Diagnostics(
+        Source(script.source_text, script.source_name), list(script.diagnostics)
+    )
+    if not diagnostics.errors:
+        _check_numbering(script.steps, diagnostics)
+    lookup = Lookup(catalog, diagnostics)
     if isinstance(script, Sheet):
-        mission = sheet_mission(script, lookup, findings, start_area, end_area)
+        mission = sheet_mission(script, lookup, diagnostics, start_area, end_area)
     else:
-        mission = protocol_mission(script, lookup, findings, start_area, end_area)
+        mission = protocol_mission(script, lookup, diagnostics, start_area, end_area)
     if mission is None:
-        raise DiagnosticError(script.source_name, findings.by_place())
-    return Resolved(mission=mission, diagnostics=findings.by_place())
+        raise DiagnosticError(script.source_name, diagnostics.by_place())
+    return Resolved(mission=mission, diagnostics=diagnostics.by_place())
 
 
 @collector_held()
@@ -60,7 +62,7 @@ def import_script(
     return resolve(script, catalog, start_area, end_area)
 
 
-def _check_numbering(steps: Sequence[SheetStep | ProtocolStep], findings: Findings) -> None:
+def _check_numbering(steps: Sequence[SheetStep | ProtocolStep], diagnostics: Diagnostics) -> None:
     """Warns where the steps' numbers are not one after the other: a line may have been lost."""
     expected = 1
     for step in steps:
@@ -69,5 +71,5 @@ def _check_numbering(steps: Sequence[SheetStep | ProtocolStep], findings: Findin
         if step.number != expected:
             message = f"step {step.number} stands where step {expected} would be"
             hint = "is a line missing, or in the wrong place?"
-            findings.warning("step-number", message, step.span, hint)
+            diagnostics.warning("step-number", message, step.span, hint)
         expected = step.number + 1

@@ -5,7 +5,7 @@ from typing import Literal
 from argo_compiler.catalog import Area
 from argo_compiler.model import Pose
 from argo_compiler.script.resolve.lookup import Lookup
-from argo_compiler.script.syntax.source import Findings
+from argo_compiler.script.syntax.source import Diagnostics
 from argo_compiler.script.syntax.spelling import alternatives
 from argo_compiler.script.syntax.terms import (
     AreaLocation,
@@ -20,10 +20,10 @@ class Locator:
     """Finds poses; knows which docking stations the mission starts and ends at, if that is said."""
 
     def __init__(
-        self, lookup: Lookup, findings: Findings, start_area: int | None, end_area: int | None
+        self, lookup: Lookup, diagnostics: Diagnostics, start_area: int | None, end_area: int | None
     ) -> None:
         self.lookup = lookup
-        self.findings = findings
+        self.diagnostics = diagnostics
         self.start_area = start_area
         self.end_area = end_area
 
@@ -52,13 +52,13 @@ class Locator:
             if z is not None and z != floor.z:
                 message = f"floor {floor.number} lies at z = {floor.z:g} m, not at {z:g} m"
                 hint = "leave the height or the floor out"
-                self.findings.error("height", message, point.span, hint)
+                self.diagnostics.error("height", message, point.span, hint)
                 return None
             z = floor.z
         if z is None:
             message = "these coordinates have no height"
             hint = "write a third number or a floor: `(12.5, 3, 2.5)`, `(12.5, 3) on floor 2`"
-            self.findings.error("height", message, point.span, hint)
+            self.diagnostics.error("height", message, point.span, hint)
             return None
         return Pose(x=point.x, y=point.y, z=z, yaw=point.yaw)
 
@@ -70,11 +70,11 @@ class Locator:
             known = alternatives(f"{flag} {area.number}" for area in self.lookup.catalog.areas)
             message = "this does not say which docking station"
             hint = f"add `in starting area 1`, or give {known}"
-            self.findings.error("area-choice", message, dock.span, hint)
+            self.diagnostics.error("area-choice", message, dock.span, hint)
             return None
         if which == "end" and option is not None and option != named:
             message = f"the mission is to end in starting area {option}, not {named}"
             hint = f"leave {flag} (or `End area:`) out, or take the area out of this line"
-            self.findings.error("area-conflict", message, dock.span, hint)
+            self.diagnostics.error("area-conflict", message, dock.span, hint)
             return None
         return self.lookup.area(named, dock.span)

@@ -7,12 +7,12 @@ from rapidfuzz.distance import OSA
 from argo_compiler.catalog import Area, Catalog, CheckpointInfo, CheckpointKind, Floor
 from argo_compiler.diagnostics import Span
 from argo_compiler.model import Pose
-from argo_compiler.script.syntax.source import Findings
+from argo_compiler.script.syntax.source import Diagnostics
 from argo_compiler.script.syntax.spelling import alternatives, nearest
 from argo_compiler.script.syntax.terms import (
-    Edge,
     FloorName,
     Name,
+    NamedFloor,
     PlaceLocation,
     Quantity,
     Reference,
@@ -31,9 +31,9 @@ _SAME_PLACE = 0.85
 class Lookup:
     """The catalogue of one site by number and name. What it does not find is an error."""
 
-    def __init__(self, catalog: Catalog, findings: Findings) -> None:
+    def __init__(self, catalog: Catalog, diagnostics: Diagnostics) -> None:
         self.catalog = catalog
-        self.findings = findings
+        self.diagnostics = diagnostics
         self._by_number = {c.id: c for c in catalog.checkpoints}
         self._by_name: dict[str, list[CheckpointInfo]] = defaultdict(list)
         for checkpoint in catalog.checkpoints:
@@ -52,7 +52,7 @@ class Lookup:
         if found and reference.quantity not in (None, _QUANTITIES[found.kind]):
             usual = _QUANTITIES[found.kind]
             message = f"a {found.kind} has no {reference.quantity}; its {usual} will be read"
-            self.findings.warning("quantity", message, reference.span, f"write `the {usual}`")
+            self.diagnostics.warning("quantity", message, reference.span, f"write `the {usual}`")
         return found
 
     def _numbered(self, number: int, span: Span) -> CheckpointInfo | None:
@@ -63,7 +63,7 @@ class Lookup:
                 f"the nearest numbers are {alternatives((f'#{n}' for n in sorted(close)), 'and')}"
             )
             message = f"there is no checkpoint #{number} on {self.catalog.site}"
-            self.findings.error("unknown-checkpoint", message, span, hint if close else None)
+            self.diagnostics.error("unknown-checkpoint", message, span, hint if close else None)
         return found
 
     def _named(self, name: Name) -> CheckpointInfo | None:
@@ -74,12 +74,12 @@ class Lookup:
             numbers = alternatives((f"#{c.id}" for c in found), "and")
             message = f"checkpoints {numbers} are all called {name.text}"
             hint = "name the checkpoint by its number"
-            self.findings.error("ambiguous-checkpoint", message, name.span, hint)
+            self.diagnostics.error("ambiguous-checkpoint", message, name.span, hint)
             return None
         close = nearest(name.text, (c.name for c in self.catalog.checkpoints))
         message = f"there is no {name.text} on {self.catalog.site}"
         hint = f"the nearest names are {alternatives(close, 'and')}"
-        self.findings.error("unknown-checkpoint", message, name.span, hint if close else None)
+        self.diagnostics.error("unknown-checkpoint", message, name.span, hint if close else None)
         return None
 
     def _agrees(self, found: CheckpointInfo, name: Name) -> bool:
@@ -92,7 +92,7 @@ class Lookup:
             its = f"there is no {name.text} on {self.catalog.site}"
         message = f"checkpoint #{found.id} is {found.name}, and {its}"
         hint = "correct the number or the name"
-        self.findings.error("checkpoint-mismatch", message, name.span, hint)
+        self.diagnostics.error("checkpoint-mismatch", message, name.span, hint)
         return False
 
     def area(self, number: int, span: Span | None) -> Area | None:
@@ -100,22 +100,22 @@ class Lookup:
         if found is None:
             known = alternatives((str(a.number) for a in self.catalog.areas), "and")
             message = f"there is no starting area {number} on {self.catalog.site}"
-            self.findings.error("unknown-area", message, span, f"the starting areas are {known}")
+            self.diagnostics.error("unknown-area", message, span, f"the starting areas are {known}")
         return found
 
     def floor(self, floor: FloorName) -> Floor | None:
         """The floor of this number, or the highest or lowest one."""
         floors = self.catalog.floors
-        if floor.number is Edge.TOP and floors:
+        if floor.number is NamedFloor.TOP and floors:
             return max(floors, key=lambda f: f.z)
-        if floor.number is Edge.BOTTOM and floors:
+        if floor.number is NamedFloor.BOTTOM and floors:
             return min(floors, key=lambda f: f.z)
         found = next((f for f in floors if f.number == floor.number), None)
         if found is None:
             known = alternatives((str(f.number) for f in floors), "and")
             message = f"there is no floor {floor.number} on {self.catalog.site}"
             hint = f"the floors are {known}, counted from the bottom"
-            self.findings.error("unknown-floor", message, floor.span, hint)
+            self.diagnostics.error("unknown-floor", message, floor.span, hint)
         return found
 
     def place(self, location: PlaceLocation) -> Pose | None:
@@ -128,13 +128,13 @@ class Lookup:
         if len(alike) == 1:
             place = places[alike[0]]
             message = f"read `{location.name}` as `{place.name}`"
-            self.findings.warning("respelled", message, location.span)
+            self.diagnostics.warning("respelled", message, location.span)
             return place.pose
         message = f"there is no place `{location.name}` on {self.catalog.site}"
         known = [place.name for place in self.catalog.places]
         known += [f"starting area {area.number}" for area in self.catalog.areas]
         hint = f"the places are {alternatives([*known, 'the docking station'], 'and')}"
-        self.findings.error("unknown-place", message, location.span, hint)
+        self.diagnostics.error("unknown-place", message, location.span, hint)
         return None
 
     def _place_key(self, name: str) -> str:

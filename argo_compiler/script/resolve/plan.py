@@ -38,7 +38,7 @@ class Item:
     on_failure: OnFailure = OnFailure.CONTINUE
     joints: JointState | None = None
     shown_in: str | None = None
-    routes: list["Leg"] | None = None
+    routes: list["ResolvedBranch"] | None = None
     detour: "Item | None" = None
     """the last item of those that are carried out only if a route of this one leads there"""
     returns: "Item | None" = None
@@ -49,7 +49,7 @@ class Item:
 
 
 @dataclass(eq=False, slots=True)
-class Leg:
+class ResolvedBranch:
     """A route of an item, its checkpoints looked up; no alternatives: unconditional."""
 
     alternatives: tuple[tuple[Condition, ...], ...]
@@ -66,7 +66,7 @@ class Home:
 
 
 @dataclass(eq=False, slots=True)
-class Round:
+class PlannedGroup:
     """A group to be: from an item to an item, or over steps that are looked up at the end."""
 
     base: str
@@ -84,7 +84,7 @@ class Round:
 class Plan:
     """Items in order, and rounds in the order in which they were asked for."""
 
-    rounds: list[Round] = field(default_factory=list)
+    rounds: list[PlannedGroup] = field(default_factory=list)
     first: Item | None = None
     last: Item | None = None
 

@@ -13,9 +13,9 @@ from argo_compiler.script.resolve.lookup import Lookup
 from argo_compiler.script.resolve.plan import (
     Home,
     Item,
-    Leg,
     Plan,
-    Round,
+    PlannedGroup,
+    ResolvedBranch,
     dock_item,
     measure_item,
     start_item,
@@ -24,6 +24,7 @@ from argo_compiler.script.resolve.plan import (
 from argo_compiler.script.syntax.commands import (
     Add,
     Amend,
+    Branch,
     Command,
     Comparison,
     Delete,
@@ -38,12 +39,11 @@ from argo_compiler.script.syntax.commands import (
     React,
     Repeat,
     Replace,
-    Route,
     SetStart,
     Side,
 )
 from argo_compiler.script.syntax.nodes import Protocol
-from argo_compiler.script.syntax.source import Findings
+from argo_compiler.script.syntax.source import Diagnostics
 from argo_compiler.script.syntax.spelling import alternatives
 from argo_compiler.script.syntax.terms import (
     DockLocation,
@@ -57,11 +57,11 @@ from argo_compiler.script.syntax.terms import (
 class Planner:
     """The plan while a protocol's commands are carried out."""
 
-    def __init__(self, lookup: Lookup, findings: Findings, header: HeaderValues) -> None:
+    def __init__(self, lookup: Lookup, diagnostics: Diagnostics, header: HeaderValues) -> None:
         self.lookup = lookup
-        self.findings = findings
+        self.diagnostics = diagnostics
         self.header = header
-        self.locator = Locator(lookup, findings, header.start.area, header.end.area)
+        self.locator = Locator(lookup, diagnostics, header.start.area, header.end.area)
         self.plan = Plan()
         self.steps: dict[int, list[Item] | None] = {}
         self.reactions: list[Reaction] = []
@@ -78,12 +78,12 @@ class Planner:
         self.start: Item | None = None
         self.start_at: Span | None = None
         self.docked: Item | None = None
-        self.homes: list[Leg] = []
+        self.homes: list[ResolvedBranch] = []
         self.events: dict[str, Span] = {}
         self.done = False
         self.done_is_news = True
         """what comes after `Done!` has not been complained about yet"""
-        self.whole = not findings.errors
+        self.whole = not diagnostics.errors
         """all that was asked for so far is planned: what a change does not find is not there"""
 
     def begin_step(self, number: int | None) -> None:
@@ -95,7 +95,7 @@ class Planner:
         if self.done:
             if self.done_is_news:
                 hint = "move `Done!` to the end"
-                self.findings.error("after-done", "this comes after `Done!`", command.span, hint)
+                self.diagnostics.error("after-done", "this comes after `Done!`", command.span, hint)
             self.done_is_news = False
             return
         match command:
@@ -128,7 +128,7 @@ class Planner:
         """Adds the start and the way into the dock, and looks up where home is."""
         if self.plan.first is None and self.whole:
             hint = "give it steps such as `Check the checkpoint #14`"
-            self.findings.error("nothing-to-do", "the protocol has nothing to do", None, hint)
+            self.diagnostics.error("nothing-to-do", "the protocol has nothing to do", None, hint)
             return
         if self.start_at is None:
             self._start_unsaid()
@@ -160,7 +160,7 @@ class Planner:
             if any(item is other for other in self.steps.get(point) or ()):
                 return task.name
         message = f"there is no step {point} with a task"
-        self.findings.error("unknown-step", message, protocol.current.span, "name the task")
+        self.diagnostics.error("unknown-step", message, protocol.current.span, "name the task")
         return None
 
     # ---- where it starts and ends
@@ -169,7 +169,7 @@ class Planner:
         if self.start_at is not None:
             message = f"the starting point is already set in line {self.start_at.line}"
             hint = "leave one of the two out"
-            self.findings.error("second-start", message, command.span, hint)
+            self.diagnostics.error("second-start", message, command.span, hint)
             return
         self.start_at = command.span
         pose, area = None, None
@@ -188,7 +188,7 @@ class Planner:
             if wanted.span is not None:
                 message = f"line {wanted.span.line} says that it starts in area {wanted.area}"
                 hint = "leave one of the two out, or add `as planned` to the header line"
-            self.findings.error("area-conflict", message, command.span, hint)
+            self.diagnostics.error("area-conflict", message, command.span, hint)
             return
         self.start_area = area.number if area else None
         self.start = start_item(pose, command.span)
@@ -207,7 +207,7 @@ class Planner:
             known = alternatives(f"--start-area {a.number}" for a in self.lookup.catalog.areas)
             hint = f"write `Set a starting point in starting area 1`, or give {known}"
             message = "the protocol sets no starting point"
-            self.findings.error("no-start", message, None, hint)
+            self.diagnostics.error("no-start", message, None, hint)
 
     def _find_dock(self) -> None:
         if self.header.dock_said:
@@ -220,7 +220,7 @@ class Planner:
                 self.dock = area.dock
                 return
 
-    def _lead_home(self, leg: Leg) -> None:
+    def _lead_home(self, leg: ResolvedBranch) -> None:
         """Leads a route to the last drive into the docking station, which is added if need be."""
         home = leg.target
         assert isinstance(home, Home)
@@ -232,7 +232,7 @@ class Planner:
             if home.area is None:
                 message = "this does not say which docking station"
                 hint = "add `in starting area 1`, or a line such as `End area: 1`"
-                self.findings.error("area-choice", message, home.span, hint)
+                self.diagnostics.error("area-choice", message, home.span, hint)
             return
         last = self.plan.last
         if last is None or not last.docks or last.routes or last.pose != pose:
@@ -252,7 +252,7 @@ class Planner:
         line = docked.source.line if docked.source else 0
         message = f"the robot is back in its docking station since line {line}"
         hint = "move the return to the end, or say how it goes on: `then go to step 3`"
-        self.findings.error("after-docking", message, span, hint)
+        self.diagnostics.error("after-docking", message, span, hint)
         return False
 
     def _append(self, item: Item) -> None:
@@ -272,7 +272,7 @@ class Planner:
                 if not numbers:
                     message = "this range of checkpoints is empty"
                     hint = "write the lower number first"
-                    self.findings.error("empty-range", message, reference.span, hint)
+                    self.diagnostics.error("empty-range", message, reference.span, hint)
                     self.whole = False
             for number in numbers:
                 one = Reference(
@@ -333,13 +333,13 @@ class Planner:
         if not (limits.count or limits.duration or limits.endless):
             hint = "say how long or how often: `for 10 minutes`, `three times`"
             message = "this patrol would never end"
-            self.findings.error("endless-patrol", message, command.span, hint)
+            self.diagnostics.error("endless-patrol", message, command.span, hint)
             self.whole = False
             return []
         if limits.duration and sum(isinstance(p, FloorName) for p in command.places) > 1:
             message = "this duration can be read as that of each floor or of all together"
             hint = "write one patrol for each floor, each with its own duration"
-            self.findings.error("ambiguous-duration", message, command.span, hint)
+            self.diagnostics.error("ambiguous-duration", message, command.span, hint)
             self.whole = False
             return []
         rounds: list[tuple[str, list[Pose]]] = []
@@ -373,7 +373,7 @@ class Planner:
                 self._insert(after if after is not None else self.plan.last, item)
                 after = item if after is not None else None
             self.plan.rounds.append(
-                Round(
+                PlannedGroup(
                     base,
                     limits,
                     command.span,
@@ -388,7 +388,7 @@ class Planner:
     def _one_name(self, span: Span) -> None:
         message = "this name stands before a command with several tasks"
         hint = "give each of them a line and a name"
-        self.findings.error("one-name", message, span, hint)
+        self.diagnostics.error("one-name", message, span, hint)
 
     def _planned(self, command: Planned, items: list[Item]) -> None:
         """Takes note of the items that a command planned, and of how they are carried out."""
@@ -431,7 +431,7 @@ class Planner:
                 if item.action is Action.MEASURE:
                     message = "a measurement is about its checkpoint"
                     hint = "leave `about object` out"
-                    self.findings.error("stray-clause", message, span, hint)
+                    self.diagnostics.error("stray-clause", message, span, hint)
                 item.object_id = manner.object_id
             if pose is not None:
                 item.pose = pose
@@ -443,7 +443,7 @@ class Planner:
             if self.whole:
                 message = "there is no task before this that it could belong to"
                 hint = "write it behind the task after which it is looked at"
-                self.findings.error("no-task", message, command.span, hint)
+                self.diagnostics.error("no-task", message, command.span, hint)
             return
         if command.manner is not None:
             self._apply(command.manner, self.recent, False, command.span)
@@ -451,12 +451,12 @@ class Planner:
 
     # ---- routes
 
-    def _add_routes(self, item: Item, routes: Sequence[Route]) -> None:
+    def _add_routes(self, item: Item, routes: Sequence[Branch]) -> None:
         for route in routes:
-            found = resolve_alternatives(route.alternatives, self._compared, self.findings)
+            found = resolve_alternatives(route.alternatives, self._compared, self.diagnostics)
             if route.alternatives and not found:
                 continue
-            leg = Leg(found, Plain.GO_ON, route.span)
+            leg = ResolvedBranch(found, Plain.GO_ON, route.span)
             if item.routes is None:
                 item.routes = []
             item.routes.append(leg)
@@ -469,7 +469,7 @@ class Planner:
             elif target is Plain.END and found:
                 message = "a condition can't end the mission on the spot; it returns to the dock"
                 hint = "write `return to the docking station`"
-                self.findings.warning("end-at-dock", message, route.span, hint)
+                self.diagnostics.warning("end-at-dock", message, route.span, hint)
                 leg.target = Home(None, route.span)
                 self.homes.append(leg)
             else:
@@ -479,13 +479,13 @@ class Planner:
         if test.subject is not None:
             if test.subject.last is not None:
                 message = "a condition compares one checkpoint"
-                self.findings.error("condition", message, test.span, "join two by `and` or `or`")
+                self.diagnostics.error("condition", message, test.span, "join two by `and` or `or`")
                 return None
             return self.lookup.checkpoint(test.subject)
         if self.last_measured is None:
             message = "nothing has been measured before this, so it does not say which value"
             hint = "name the checkpoint: `if the value of checkpoint #1 is greater than 5`"
-            self.findings.error("which-checkpoint", message, test.span, hint)
+            self.diagnostics.error("which-checkpoint", message, test.span, hint)
         return self.last_measured
 
     def _detour(self, owner: Item, commands: Sequence[Command]) -> Item | Plain:
@@ -509,7 +509,7 @@ class Planner:
             else:
                 message = "this can't be done in one case only"
                 hint = "after a condition the mission can go to a step, drive or measure"
-                self.findings.error("route", message, command.span, hint)
+                self.diagnostics.error("route", message, command.span, hint)
             for items in groups:
                 if not items:
                     continue
@@ -520,7 +520,7 @@ class Planner:
                 self._furnish(command, items)
                 self._add_routes(tail, command.routes)
                 if tail.docks and not tail.routes:
-                    tail.routes = [Leg((), Plain.END, command.span)]
+                    tail.routes = [ResolvedBranch((), Plain.END, command.span)]
         self.last_measured = measured
         if first is None:
             return Plain.GO_ON
@@ -533,7 +533,7 @@ class Planner:
         if not (limits.count or limits.duration or limits.endless):
             hint = "say how long or how often: `for 10 minutes`, `three times`, `endlessly`"
             message = "this repetition would never end"
-            self.findings.error("endless-repeat", message, command.span, hint)
+            self.diagnostics.error("endless-repeat", message, command.span, hint)
             return
         steps = command.steps
         base = "Repeat"
@@ -541,7 +541,9 @@ class Planner:
             points = [str(p) for p in (steps.first, steps.last) if p is not None]
             base = f"Repeat {' to '.join(points)}".replace("/", "-")
         self.plan.rounds.append(
-            Round(base, limits, command.span, name=command.name, steps=steps, whole=steps is None)
+            PlannedGroup(
+                base, limits, command.span, name=command.name, steps=steps, whole=steps is None
+            )
         )
 
     def _react(self, command: React) -> None:
@@ -549,7 +551,7 @@ class Planner:
         if before is not None:
             message = f"line {before.line} already says what to do in this event"
             hint = "leave one of the two out"
-            self.findings.error("second-reaction", message, command.span, hint)
+            self.diagnostics.error("second-reaction", message, command.span, hint)
             return
         self.events[command.event] = command.span
         pose = None
@@ -596,7 +598,7 @@ class Planner:
     def _take_out(self, item: Item, span: Span) -> bool:
         if item.detour is not None or item.returns is not None:
             message = "this task belongs to a condition, so it can't be moved or taken out"
-            self.findings.error("bound-task", message, span, "change the line that asks for it")
+            self.diagnostics.error("bound-task", message, span, "change the line that asks for it")
             return False
         self.plan.remove(item)
         if item.object_id is not None:
@@ -612,7 +614,7 @@ class Planner:
             return
         if any(item is anchor for item in items for anchor in anchors):
             message = "this is to stand before or after itself"
-            self.findings.error("self-move", message, command.span, "name another place")
+            self.diagnostics.error("self-move", message, command.span, "name another place")
             return
         if all(self._take_out(item, command.span) for item in items):
             self._put(items, anchors, command.side)
@@ -626,7 +628,7 @@ class Planner:
         if len(items) > 1 or items[0].action is not Action.MEASURE or items[0].detour:
             message = "only a single measurement can be replaced"
             hint = "delete what is there, and add the other behind it"
-            self.findings.error("bound-task", message, command.span, hint)
+            self.diagnostics.error("bound-task", message, command.span, hint)
             return
         (item,), checkpoint = items, checkpoints[0]
         assert item.object_id is not None
@@ -655,11 +657,11 @@ class Planner:
             where = alternatives((str(line) for line in lines), "and")
             message = f"{name} is measured more than once at this point: lines {where}"
             hint = "say which of them is meant by its step: `step 3`"
-            self.findings.error("ambiguous-edit", message, thing.span, hint)
+            self.diagnostics.error("ambiguous-edit", message, thing.span, hint)
         elif self.whole:
             hint = f"ask for it before this line: `Check the {name}`"
             message = f"{name} is not in the plan at this point"
-            self.findings.error("not-planned", message, thing.span, hint)
+            self.diagnostics.error("not-planned", message, thing.span, hint)
         return None
 
     def _of_steps(self, ref: StepRef) -> list[Item] | None:
@@ -677,5 +679,5 @@ class Planner:
         if self.whole:
             message = "no task of this step is in the plan at this point"
             hint = "name a step above this line that measures or drives"
-            self.findings.error("not-planned", message, ref.span, hint)
+            self.diagnostics.error("not-planned", message, ref.span, hint)
         return None

@@ -9,15 +9,19 @@ from argo_compiler.script.resolve.assembly import assemble
 from argo_compiler.script.resolve.lookup import Lookup
 from argo_compiler.script.resolve.plan import Plan, dock_item, measure_item, start_item
 from argo_compiler.script.syntax.nodes import AreaField, Sheet, TextField
-from argo_compiler.script.syntax.source import Findings
+from argo_compiler.script.syntax.source import Diagnostics
 from argo_compiler.script.syntax.spelling import alternatives
 
 
 def sheet_mission(
-    sheet: Sheet, lookup: Lookup, findings: Findings, start_area: int | None, end_area: int | None
+    sheet: Sheet,
+    lookup: Lookup,
+    diagnostics: Diagnostics,
+    start_area: int | None,
+    end_area: int | None,
 ) -> Mission | None:
-    """The mission of the sheet; None if `findings` has an error."""
-    whole = not findings.errors
+    """The mission of the sheet; None if `diagnostics` has an error."""
+    whole = not diagnostics.errors
     checkpoints = [(step, lookup.checkpoint(step.checkpoint)) for step in sheet.steps]
     start = _choose_area("start", sheet.initial_position, start_area, lookup, whole)
     # Without the cell and the option the mission ends at its last checkpoint.
@@ -26,8 +30,8 @@ def sheet_mission(
     if ends_docked:
         end = _choose_area("end", sheet.end_of_mission, end_area, lookup, whole)
     if whole:
-        _check_fields(sheet, ends_docked, findings)
-    if findings.errors or start is None:
+        _check_fields(sheet, ends_docked, diagnostics)
+    if diagnostics.errors or start is None:
         return None
 
     plan = Plan()
@@ -37,7 +41,7 @@ def sheet_mission(
             plan.append(measure_item(checkpoint.id, step.span))
     if end is not None:
         plan.append(dock_item(end.dock, _span(sheet.end_of_mission)))
-    tasks, groups = assemble(plan, findings)
+    tasks, groups = assemble(plan, diagnostics)
     return Mission(
         designation=_text(sheet.designation),
         site=lookup.catalog.site,
@@ -74,14 +78,14 @@ def _choose_area(
 
     In a sheet that is not understood as a whole, a line may be what seems to be missing.
     """
-    findings = lookup.findings
+    diagnostics = lookup.diagnostics
     flag = f"--{which}-area"
     offered = sorted({area.value for area in field.areas}) if field else []
     span = field.areas[0].span if field and field.areas else _span(field)
     choices = alternatives(f"{flag} {number}" for number in offered)
     if option is not None and offered and option not in offered:
         message = f"{flag} {option} is not what the sheet offers"
-        findings.error("area-not-offered", message, span, f"give {choices}")
+        diagnostics.error("area-not-offered", message, span, f"give {choices}")
         return None
     if option is not None:
         return lookup.area(option, span)
@@ -90,19 +94,19 @@ def _choose_area(
     if offered:
         areas = alternatives(str(number) for number in offered)
         message = f"the sheet leaves the {which} to the preparation: starting area {areas}"
-        findings.error("area-choice", message, span, f"choose with {choices}")
+        diagnostics.error("area-choice", message, span, f"choose with {choices}")
     elif whole:
         message = f"the sheet names no starting area for the mission's {which}"
         known = alternatives(f"{flag} {area.number}" for area in lookup.catalog.areas)
-        findings.error("no-area", message, span, f"name one in the sheet, or give {known}")
+        diagnostics.error("no-area", message, span, f"name one in the sheet, or give {known}")
     return None
 
 
-def _check_fields(sheet: Sheet, ends_docked: bool, findings: Findings) -> None:
+def _check_fields(sheet: Sheet, ends_docked: bool, diagnostics: Diagnostics) -> None:
     if not sheet.steps:
         message = "the sheet has no checkpoints, so there is nothing to do"
         hint = "list them: `1. Checkpoint #1: read the value on pressure gauge 1`"
-        findings.error("nothing-to-do", message, None, hint)
+        diagnostics.error("nothing-to-do", message, None, hint)
     assumed = {
         "main mode": (sheet.mode, "autonomous is assumed"),
         "maximum total duration": (sheet.max_duration, "there is no limit"),
@@ -111,4 +115,4 @@ def _check_fields(sheet: Sheet, ends_docked: bool, findings: Findings) -> None:
     }
     for name, (field, consequence) in assumed.items():
         if field is None:
-            findings.warning("missing-field", f"the sheet has no {name}; {consequence}", None)
+            diagnostics.warning("missing-field", f"the sheet has no {name}; {consequence}", None)

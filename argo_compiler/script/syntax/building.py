@@ -10,8 +10,8 @@ from argo_compiler.catalog import CheckpointKind
 from argo_compiler.diagnostics import Span
 from argo_compiler.il import Mode, Order
 from argo_compiler.script.syntax import quantities
-from argo_compiler.script.syntax.shapes import Branch, Syntax
-from argo_compiler.script.syntax.source import Findings, Text
+from argo_compiler.script.syntax.shapes import Syntax, SyntaxNode
+from argo_compiler.script.syntax.source import Diagnostics, ScriptText
 from argo_compiler.script.syntax.terms import Duration, Name, Number, Quantity
 
 _LARGEST = 1_000_000
@@ -23,7 +23,7 @@ class Phrase(NamedTuple):
     """A rule's part of a statement: what its own parts were built to, and where it stands."""
 
     children: tuple[Any, ...]
-    statement: Text
+    statement: ScriptText
     start: int
     end: int
     """the index in the statement after its last character"""
@@ -107,23 +107,23 @@ class _Plan:
     picked from them; the positions"""
 
     @classmethod
-    def of(cls, root: Branch, builder: type["Builder"]) -> "_Plan":
+    def of(cls, root: SyntaxNode, builder: type["Builder"]) -> "_Plan":
         """The plan for trees such as this one."""
         values: list[Any] = []
-        branches: list[tuple[Branch, list[Branch | int]]] = []
+        branches: list[tuple[SyntaxNode, list[SyntaxNode | int]]] = []
 
-        def gather(branch: Branch) -> Branch | int:
+        def gather(branch: SyntaxNode) -> SyntaxNode | int:
             if branch.rule in builder.passed and len(branch.children) == 1:
                 (only,) = branch.children
-                assert isinstance(only, Branch)
+                assert isinstance(only, SyntaxNode)
                 return gather(only)
             # No rule of the grammars contains itself, so the trees are shallow.
             if branch.rule in builder.constants:
                 values.append(builder.constants[branch.rule])
                 return len(values) - 1
-            children: list[Branch | int] = []
+            children: list[SyntaxNode | int] = []
             for child in branch.children:
-                if isinstance(child, Branch):
+                if isinstance(child, SyntaxNode):
                     children.append(gather(child))
                 else:
                     values.append(child)
@@ -169,13 +169,13 @@ class Builder:
     passed: ClassVar[frozenset[str]] = frozenset()
     """rules that mean what their one part does, if they have only one"""
 
-    def __init__(self, text: Text, findings: Findings) -> None:
+    def __init__(self, text: ScriptText, diagnostics: Diagnostics) -> None:
         self.text = text
-        self.findings = findings
+        self.diagnostics = diagnostics
 
     def statement(self, tree: Syntax) -> Any:
         """The node of a statement's tree; None if it makes no sense, with an error that says so."""
-        errors = self.findings.errors
+        errors = self.diagnostics.errors
         plan = tree.made.get(type(self))
         if plan is None:
             plan = tree.made[type(self)] = _Plan.of(tree.root, type(self))
@@ -186,7 +186,7 @@ class Builder:
             parts = (values[only],) if only >= 0 else parts_of(values)
             phrase = new(Phrase, (parts, text, positions[start], positions[end]))
             values.append(build(self, phrase))
-        return values[-1] if self.findings.errors == errors else None
+        return values[-1] if self.diagnostics.errors == errors else None
 
     def number(self, phrase: Phrase) -> Figure:
         said = phrase.content
@@ -198,14 +198,14 @@ class Builder:
         if value is None:
             hint = "write it in figures"
             message = f"`{phrase.content}` is no number"
-            self.findings.error("number", message, phrase.span, hint)
+            self.diagnostics.error("number", message, phrase.span, hint)
         elif value > _LARGEST:
             hint = f"numbers go up to {_LARGEST}"
             message = f"{phrase.content} is too large a number"
-            self.findings.error("number", message, phrase.span, hint)
+            self.diagnostics.error("number", message, phrase.span, hint)
         elif value != int(value):
             message = f"`{phrase.content}` is not a whole number"
-            self.findings.error("number", message, phrase.span, "write a whole number")
+            self.diagnostics.error("number", message, phrase.span, "write a whole number")
         return Figure(int(min(value or 0, _LARGEST)), phrase)
 
     ordinal = number
@@ -226,10 +226,10 @@ class Builder:
         value = quantities.number(phrase.content)
         if value is None:
             message = f"`{phrase.content}` is no number"
-            self.findings.error("number", message, phrase.span, "write it in figures")
+            self.diagnostics.error("number", message, phrase.span, "write it in figures")
         elif value >= 1e308:
             message = f"{phrase.content} is too large a number"
-            self.findings.error("number", message, phrase.span, "write a smaller one")
+            self.diagnostics.error("number", message, phrase.span, "write a smaller one")
             return 0.0
         return value or 0
 
@@ -237,7 +237,7 @@ class Builder:
         seconds = quantities.phrase(phrase.content)
         if seconds is None:
             message = f"`{phrase.content}` is no duration"
-            self.findings.error("duration", message, phrase.span, "write, say, `90 minutes`")
+            self.diagnostics.error("duration", message, phrase.span, "write, say, `90 minutes`")
         return Time(span=phrase.span, seconds=seconds or 1.0, unit=1.0)
 
     def clock(self, phrase: Phrase) -> Time:
@@ -247,10 +247,10 @@ class Builder:
             a, b = said.split(":")
             message = f"`{said}` can be read as {a} min {b} s or as {a} h {b} min"
             hint = f"write `{a} min {b} s` or `{a} h {b} min`"
-            self.findings.error("ambiguous-duration", message, phrase.span, hint)
+            self.diagnostics.error("ambiguous-duration", message, phrase.span, hint)
         elif seconds is None:
             message = f"`{said}` has sixty or more minutes or seconds"
-            self.findings.error("duration", message, phrase.span, "write, say, `00:12:30`")
+            self.diagnostics.error("duration", message, phrase.span, "write, say, `00:12:30`")
         # Nothing may follow that is larger or the same.
         return Time(span=phrase.span, seconds=1.0 if seconds is None else seconds, unit=1.0)
 
@@ -261,10 +261,14 @@ class Builder:
         span = Span(line=start.line, column=start.column, length=length)
         seconds = sum(time.seconds for time in times)
         if seconds == 0:
-            self.findings.error("duration", "a duration of zero", span, "write, say, `10 minutes`")
+            self.diagnostics.error(
+                "duration", "a duration of zero", span, "write, say, `10 minutes`"
+            )
         elif any(a.unit <= b.unit for a, b in pairwise(times)):
             hint = "write hours before minutes before seconds, each once: `1 h 30 min`"
-            self.findings.error("duration", "the units of this duration are mixed up", span, hint)
+            self.diagnostics.error(
+                "duration", "the units of this duration are mixed up", span, hint
+            )
         return Duration(span=span, seconds=float(seconds))
 
     def identifier(self, phrase: Phrase) -> str:
@@ -277,7 +281,7 @@ class Builder:
         if text is None:
             message = "this quoted text has an escape that is none"
             hint = r"write a backslash as \\, a quotation mark as \" and any sign as, say, \u002a"
-            self.findings.error("quoted-text", message, phrase.span, hint)
+            self.diagnostics.error("quoted-text", message, phrase.span, hint)
         return text or ""
 
     def name(self, phrase: Phrase) -> Name:
@@ -294,11 +298,11 @@ class Builder:
         """Where a field's label ends; its text is taken from there."""
         return phrase.end
 
-    def field_text(self, phrase: Phrase) -> Text:
+    def field_text(self, phrase: Phrase) -> ScriptText:
         """The text of a field, as it stands after the label."""
         return self.text[phrase.the(int) :].strip()
 
-    def free_text(self, text: Text) -> str:
+    def free_text(self, text: ScriptText) -> str:
         """A field's text: as it is meant where it is quoted as a whole, else in single blanks."""
         if quantities.is_quoted(text.content):
             return self.unquote(Phrase((), text, 0, len(text.content)))

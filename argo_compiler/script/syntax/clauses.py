@@ -25,10 +25,10 @@ from argo_compiler.script.syntax.terms import (
     AreaLocation,
     Coordinates,
     DockLocation,
-    Edge,
     FloorName,
     Location,
     Name,
+    NamedFloor,
     Number,
     PlaceLocation,
     Quantity,
@@ -51,7 +51,7 @@ class Clause(NamedTuple):
 
 
 @dataclass(frozen=True, slots=True)
-class Header:
+class HeaderClause:
     """A header line: the name of the protocol's field, and the node for it."""
 
     field: str
@@ -67,7 +67,7 @@ class Statement:
 
 
 @dataclass(frozen=True, slots=True)
-class Bounds:
+class ValueTest:
     """A comparison without what is compared."""
 
     test: ConditionType | Normality
@@ -130,8 +130,8 @@ class LineBuilder(Builder):
         **Builder.constants,
         "after": Side.AFTER,
         "before": Side.BEFORE,
-        "top": Edge.TOP,
-        "bottom": Edge.BOTTOM,
+        "top": NamedFloor.TOP,
+        "bottom": NamedFloor.BOTTOM,
         "minus": Flag("minus"),
         "more": Flag("more"),
         "radians": Flag("radians"),
@@ -173,78 +173,78 @@ class LineBuilder(Builder):
 
     # ---- lines
 
-    def title(self, phrase: Phrase) -> Header:
+    def title(self, phrase: Phrase) -> HeaderClause:
         text = " ".join(phrase.content.split())
-        return Header("title", TextField(span=phrase.span, text=text))
+        return HeaderClause("title", TextField(span=phrase.span, text=text))
 
     def hint(self, phrase: Phrase) -> Hint:
         return Hint(span=phrase.span, text=self.field_text(phrase).content)
 
-    def _text(self, field: str, phrase: Phrase) -> Header:
+    def _text(self, field: str, phrase: Phrase) -> HeaderClause:
         text = self.field_text(phrase)
         span = text.span() if text.content else phrase.span
-        return Header(field, TextField(span=span, text=self.free_text(text)))
+        return HeaderClause(field, TextField(span=span, text=self.free_text(text)))
 
-    def designation(self, phrase: Phrase) -> Header:
+    def designation(self, phrase: Phrase) -> HeaderClause:
         return self._text("designation", phrase)
 
-    def site(self, phrase: Phrase) -> Header:
+    def site(self, phrase: Phrase) -> HeaderClause:
         return self._text("site", phrase)
 
-    def anomaly(self, phrase: Phrase) -> Header:
+    def anomaly(self, phrase: Phrase) -> HeaderClause:
         return self._text("anomaly_specification", phrase)
 
-    def real_time(self, phrase: Phrase) -> Header:
+    def real_time(self, phrase: Phrase) -> HeaderClause:
         return self._text("real_time_reporting", phrase)
 
-    def after_mission(self, phrase: Phrase) -> Header:
+    def after_mission(self, phrase: Phrase) -> HeaderClause:
         return self._text("after_mission_report", phrase)
 
-    def initial_position(self, phrase: Phrase) -> Header:
-        return Header("initial_position", self.field_text(phrase))
+    def initial_position(self, phrase: Phrase) -> HeaderClause:
+        return HeaderClause("initial_position", self.field_text(phrase))
 
-    def end_of_mission(self, phrase: Phrase) -> Header:
-        return Header("end_of_mission", self.field_text(phrase))
+    def end_of_mission(self, phrase: Phrase) -> HeaderClause:
+        return HeaderClause("end_of_mission", self.field_text(phrase))
 
-    def mode(self, phrase: Phrase) -> Header:
-        return Header("mode", ModeField(span=phrase.span, mode=phrase.the(Mode)))
+    def mode(self, phrase: Phrase) -> HeaderClause:
+        return HeaderClause("mode", ModeField(span=phrase.span, mode=phrase.the(Mode)))
 
-    def order(self, phrase: Phrase) -> Header:
-        return Header("order", OrderField(span=phrase.span, order=phrase.the(Order)))
+    def order(self, phrase: Phrase) -> HeaderClause:
+        return HeaderClause("order", OrderField(span=phrase.span, order=phrase.the(Order)))
 
-    def max_duration(self, phrase: Phrase) -> Header:
+    def max_duration(self, phrase: Phrase) -> HeaderClause:
         times = phrase.every(Time)
         seconds = self.duration(times).seconds if times else None
-        return Header("max_duration", DurationHeader(span=phrase.span, seconds=seconds))
+        return HeaderClause("max_duration", DurationHeader(span=phrase.span, seconds=seconds))
 
-    def _area(self, field: str, phrase: Phrase) -> Header:
+    def _area(self, field: str, phrase: Phrase) -> HeaderClause:
         number = next((c for c in phrase.children if isinstance(c, (int, float))), None)
         if number is not None and number != int(number):
             message = f"there is no area {number}"
-            self.findings.error("number", message, phrase.span, "write a whole number")
+            self.diagnostics.error("number", message, phrase.span, "write a whole number")
         area = None if number is None else int(number)
         as_planned = any(c == "as planned" for c in phrase.every(Flag))
-        return Header(field, AreaHeader(span=phrase.span, area=area, as_planned=as_planned))
+        return HeaderClause(field, AreaHeader(span=phrase.span, area=area, as_planned=as_planned))
 
-    def start_area(self, phrase: Phrase) -> Header:
+    def start_area(self, phrase: Phrase) -> HeaderClause:
         return self._area("start_area", phrase)
 
-    def end_area(self, phrase: Phrase) -> Header:
+    def end_area(self, phrase: Phrase) -> HeaderClause:
         return self._area("end_area", phrase)
 
     start_area_none, end_area_none = start_area, end_area
 
-    def dock_line(self, phrase: Phrase) -> Header:
+    def dock_line(self, phrase: Phrase) -> HeaderClause:
         found = phrase.first(Coordinates)
         for clause in phrase.every(Clause):
             assert found is not None
             found = self.placed(found, clause)
-        return Header("dock", DockHeader(span=phrase.span, dock=found))
+        return HeaderClause("dock", DockHeader(span=phrase.span, dock=found))
 
-    def current(self, phrase: Phrase) -> Header:
+    def current(self, phrase: Phrase) -> HeaderClause:
         ref = phrase.first(Clause)
         task = ref.value if ref else StepRef(span=phrase.span, first=self._points(phrase)[0])
-        return Header("current", CurrentHeader(span=phrase.span, task=task))
+        return HeaderClause("current", CurrentHeader(span=phrase.span, task=task))
 
     def step(self, phrase: Phrase) -> Statement:
         clauses = tuple([child for child in phrase.children if type(child) is Clause])
@@ -333,7 +333,7 @@ class LineBuilder(Builder):
         value = float(phrase.content)
         if not value.is_integer():
             message = f"there is no step {phrase.content}"
-            self.findings.error("number", message, phrase.span, "write a whole number")
+            self.diagnostics.error("number", message, phrase.span, "write a whole number")
             return 0
         return int(value)
 
@@ -345,8 +345,8 @@ class LineBuilder(Builder):
     # ---- places
 
     def floor(self, phrase: Phrase) -> Clause:
-        edge, number = phrase.first(Edge), phrase.first(Figure)
-        value: int | Edge = edge if edge is not None else number.value if number else 0
+        edge, number = phrase.first(NamedFloor), phrase.first(Figure)
+        value: int | NamedFloor = edge if edge is not None else number.value if number else 0
         node = FloorName(span=number.phrase.span if number else phrase.span, number=value)
         return Clause("floor", node, phrase.start, phrase.end)
 
@@ -410,7 +410,7 @@ class LineBuilder(Builder):
         name = phrase.the(Quoted).text
         if not name and "\\" not in phrase.content:  # a wrong escape has its own error
             hint = "write a name between the quotation marks, or leave them out"
-            self.findings.error("empty-name", "this name is empty", phrase.span, hint)
+            self.diagnostics.error("empty-name", "this name is empty", phrase.span, hint)
         return Clause("name", name, phrase.start, phrase.end)
 
     def set_start(self, phrase: Phrase) -> Clause:
@@ -433,7 +433,7 @@ class LineBuilder(Builder):
             return None
         at = place.name.lower().index(said)
         span = Span(line=place.span.line, column=place.span.column + at, length=len(said))
-        self.findings.warning("respelled", f"read `{said}` as `{word}`", span)
+        self.diagnostics.warning("respelled", f"read `{said}` as `{word}`", span)
         return FloorName(span=place.span, number=ORDINALS.index(word) + 1)
 
     def go(self, phrase: Phrase) -> Clause:
@@ -478,23 +478,25 @@ class LineBuilder(Builder):
         normality = phrase.first(Normality)
         bounds = None
         if normality is not None:
-            bounds = Bounds(normality)
+            bounds = ValueTest(normality)
         elif word in ("greater", "at least"):
-            bounds = Bounds(
+            bounds = ValueTest(
                 ConditionType.GREATER, values[0], inclusive=word == "at least", units=units
             )
         elif word in ("less", "at most"):
-            bounds = Bounds(ConditionType.LESS, values[0], inclusive=word == "at most", units=units)
+            bounds = ValueTest(
+                ConditionType.LESS, values[0], inclusive=word == "at most", units=units
+            )
         elif len(values) == 2:
             low, high = values
-            bounds = Bounds(ConditionType.WITHIN, low, high, word == "from", units)
+            bounds = ValueTest(ConditionType.WITHIN, low, high, word == "from", units)
         else:
             hint = (
                 "a mission can only ask for less, for greater, or for between two values: "
                 "write `is from 4.9 to 5.1`, or turn the condition and `otherwise` round"
             )
             message = f"a mission has no condition such as `{phrase.content}`"
-            self.findings.error("condition", message, phrase.span, hint)
+            self.diagnostics.error("condition", message, phrase.span, hint)
         return Clause("comparison", bounds, phrase.start, phrase.end)
 
     def measured_within(self, phrase: Phrase) -> Clause:
@@ -510,7 +512,7 @@ class LineBuilder(Builder):
             if isinstance(child, int | float) and not isinstance(child, bool):
                 if child != int(child):
                     message = f"`{phrase.content}` is not a whole number"
-                    self.findings.error("number", message, phrase.span, "write a whole number")
+                    self.diagnostics.error("number", message, phrase.span, "write a whole number")
                 return int(child)
         return None
 
@@ -521,7 +523,7 @@ class LineBuilder(Builder):
         if kind is None:
             message = "an obstacle may be positive or negative: in the way, or a part missing of it"
             hint = "write `a positive obstacle` or `a negative obstacle`"
-            self.findings.error("ambiguous-event", message, phrase.span, hint)
+            self.diagnostics.error("ambiguous-event", message, phrase.span, hint)
         return Clause("event", kind, phrase.start, phrase.end)
 
     def occasion(self, phrase: Phrase) -> Clause:
@@ -548,7 +550,7 @@ class LineBuilder(Builder):
         value = float(phrase.first(int) or phrase.first(float) or 0)
         if value <= 0:
             message = "a speed of zero"
-            self.findings.error("speed", message, phrase.span, "write, say, `at 0.3 m/s`")
+            self.diagnostics.error("speed", message, phrase.span, "write, say, `at 0.3 m/s`")
         return value / 3.6 if phrase.the(_Unit).text.lower().startswith("k") else value
 
     def speed(self, phrase: Phrase) -> Clause:
@@ -578,7 +580,7 @@ class LineBuilder(Builder):
             count = Count(rounds, more=phrase.first(Flag) is not None)
         if count.rounds == 0:
             hint = "write how often, say, `three times`"
-            self.findings.error("rounds", "a patrol of no rounds", phrase.span, hint)
+            self.diagnostics.error("rounds", "a patrol of no rounds", phrase.span, hint)
         return Clause("rounds", count, phrase.start, phrase.end)
 
     def for_(self, phrase: Phrase) -> Clause:

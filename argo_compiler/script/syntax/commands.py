@@ -46,7 +46,7 @@ class Plain(StrEnum):
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class Route(Node):
+class Branch(Node):
     """Where to go on after a task. The conditions of an alternative must all hold."""
 
     alternatives: tuple[tuple[Comparison, ...], ...] = ()
@@ -99,7 +99,7 @@ class Planned(Node):
 
     name: str | None = None
     manner: Manner | None = None
-    routes: tuple[Route, ...] = ()
+    routes: tuple[Branch, ...] = ()
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

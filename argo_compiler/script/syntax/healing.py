@@ -22,7 +22,7 @@ from collections.abc import Collection, Iterator
 from dataclasses import dataclass
 
 from argo_compiler.diagnostics import Diagnostic
-from argo_compiler.script.syntax.source import MAX_LINE, Findings, Source, Text
+from argo_compiler.script.syntax.source import MAX_LINE, Diagnostics, ScriptText, Source
 from argo_compiler.script.syntax.spelling import alternatives
 
 _PLAIN = {
@@ -49,7 +49,7 @@ _LONGEST_OVERLAP = 3
 class Healed:
     """The script's lines without noise, each character mapped to where it stood."""
 
-    lines: tuple[Text, ...]
+    lines: tuple[ScriptText, ...]
     unreadable: frozenset[int]
     """the numbers of lines with an error; their text is not to be used"""
     diagnostics: tuple[Diagnostic, ...]
@@ -58,12 +58,12 @@ class Healed:
     def text(self) -> str:
         return "\n".join(line.content for line in self.lines)
 
-    def statements(self, findings: Findings) -> Iterator[Text]:
-        """The lines to parse, until `findings` has too many errors for more to be of use."""
+    def statements(self, diagnostics: Diagnostics) -> Iterator[ScriptText]:
+        """The lines to parse, until `diagnostics` has too many errors for more to be of use."""
         for number, line in enumerate(self.lines, start=1):
-            if findings.errors > MOST_ERRORS:
+            if diagnostics.errors > MOST_ERRORS:
                 message = f"more than {MOST_ERRORS} errors; the rest is not read"
-                findings.error("too-many-errors", message, line.span(0, 1))
+                diagnostics.error("too-many-errors", message, line.span(0, 1))
                 return
             if line.content.strip() and number not in self.unreadable:
                 yield line
@@ -76,7 +76,7 @@ def heal(text: str | Source, vocabulary: Collection[str]) -> Healed:
     in the second column become one.
     """
     source = Source(text) if isinstance(text, str) else text
-    findings = Findings(source)
+    diagnostics = Diagnostics(source)
     lines = []
     unreadable = set()
     for number in range(1, len(source.lines) + 1):
@@ -86,25 +86,25 @@ def heal(text: str | Source, vocabulary: Collection[str]) -> Healed:
             continue
         if len(line.content) > MAX_LINE:
             message = f"the line has {len(line.content)} characters; at most {MAX_LINE} are read"
-            findings.error("long-line", message, line.span(0, 1), "break it into lines")
+            diagnostics.error("long-line", message, line.span(0, 1), "break it into lines")
             lines.append(line[:0])
             unreadable.add(number)
             continue
-        healed, clear = _join_cuts(_plain(line), vocabulary, findings)
+        healed, clear = _join_cuts(_plain(line), vocabulary, diagnostics)
         lines.append(healed)
         if not clear:
             unreadable.add(number)
-    return Healed(tuple(lines), frozenset(unreadable), tuple(findings.diagnostics))
+    return Healed(tuple(lines), frozenset(unreadable), tuple(diagnostics.entries))
 
 
-def _plain(line: Text) -> Text:
+def _plain(line: ScriptText) -> ScriptText:
     """The line in plain signs, without emphasis, list mark and trailing blanks."""
     content = line.content
     if not content.isascii() or "*" in content or "`" in content:
         signs = [
             (sign, at) for c, at in zip(content, line.offsets, strict=True) for sign in _sign(c)
         ]
-        line = Text("".join(s for s, _ in signs), [at for _, at in signs], line.source)
+        line = ScriptText("".join(s for s, _ in signs), [at for _, at in signs], line.source)
     if mark := _LIST_MARK.match(line.content):
         line = line[mark.end() :]
     return line[: len(line.content.rstrip())]
@@ -116,12 +116,14 @@ def _sign(character: str) -> str:
     return " " if character.isspace() and character != "\t" else character
 
 
-def _join_cuts(line: Text, vocabulary: Collection[str], findings: Findings) -> tuple[Text, bool]:
+def _join_cuts(
+    line: ScriptText, vocabulary: Collection[str], diagnostics: Diagnostics
+) -> tuple[ScriptText, bool]:
     """The line with every run of tabs read, and whether all of them could be."""
     clear = True
     done = 0
     if len(_TABS.findall(line.content)) > _MOST_CUTS:
-        return Text(line.content.replace("\t", " "), line.offsets, line.source), clear
+        return ScriptText(line.content.replace("\t", " "), line.offsets, line.source), clear
     while run := _TABS.search(line.content, done):
         start, end = run.span()
         if start == 0:
@@ -134,18 +136,18 @@ def _join_cuts(line: Text, vocabulary: Collection[str], findings: Findings) -> t
         span = line.span(start - len(left), end + len(right))
         if len(readings) > 1:
             clear = False
-            findings.error(
+            diagnostics.error(
                 "ambiguous-cut",
                 f"`{left} {right}` can be read as {alternatives(f'`{r}`' for r in readings)}",
                 span,
                 "write it without the tab as it is meant",
             )
         elif not readings:
-            findings.warning(
+            diagnostics.warning(
                 "unclear-cut", f"can't tell whether `{left} {right}` is one word; read as two", span
             )
         if len(readings) == 1 and " " not in readings[0]:
-            findings.warning("healed", f"healed `{left} {right}` to `{readings[0]}`", span)
+            diagnostics.warning("healed", f"healed `{left} {right}` to `{readings[0]}`", span)
             line = line.replace(start - len(left), end + len(right), readings[0])
             done = start - len(left) + len(readings[0])
         else:

@@ -3,7 +3,7 @@
 import re
 
 from argo_compiler.diagnostics import Diagnostic
-from argo_compiler.script.syntax.source import Findings, Text
+from argo_compiler.script.syntax.source import Diagnostics, ScriptText
 from argo_compiler.script.syntax.spelling import alternatives, nearest
 
 PROTOCOL_LABELS = (
@@ -36,10 +36,10 @@ SHEET_LABELS = (
 _LABEL = re.compile(r"[^\W\d_][\w'-]*(?:\s+[\w'-]+){0,6}\s*:")
 
 
-def name_unknown_label(text: Text, known: tuple[str, ...], findings: Findings) -> None:
-    """Makes the last finding one of an unknown label, if the statement begins with one."""
+def name_unknown_label(text: ScriptText, known: tuple[str, ...], diagnostics: Diagnostics) -> None:
+    """Makes the last diagnostic one of an unknown label, if the statement begins with one."""
     match = _LABEL.match(text.content)
-    last = findings.diagnostics[-1]
+    last = diagnostics.entries[-1]
     if match is None or last.code != "script.not-understood" or last.span is None:
         return
     span = text.span(0, match.end() - 1)
@@ -52,7 +52,7 @@ def name_unknown_label(text: Text, known: tuple[str, ...], findings: Findings) -
     hint = f"the labels are {alternatives((f'`{k}:`' for k in known), 'and')}"
     if close:
         hint = f"`{close[0]}:` is the nearest; {hint}"
-    findings.diagnostics[-1] = Diagnostic(
+    diagnostics.entries[-1] = Diagnostic(
         code="script.unknown-label",
         severity=last.severity,
         message=f"there is no field `{label}`",

@@ -4,13 +4,13 @@ import re
 from collections.abc import Collection
 from typing import Literal
 
-from argo_compiler.collecting import collector_held
 from argo_compiler.diagnostics import DiagnosticError
+from argo_compiler.garbage_collector import collector_held
 from argo_compiler.script.syntax.healing import heal
 from argo_compiler.script.syntax.nodes import Script
 from argo_compiler.script.syntax.protocol import parse_protocol, protocol_grammar
 from argo_compiler.script.syntax.sheet import parse_sheet, sheet_grammar
-from argo_compiler.script.syntax.source import Findings, Source
+from argo_compiler.script.syntax.source import Diagnostics, Source
 from argo_compiler.script.syntax.spelling import respell
 from argo_compiler.script.syntax.vocabulary import PROTOCOL_MARKS, SHEET_MARKS, SHEET_WORDS
 
@@ -49,15 +49,15 @@ def _keywords(kind: Literal["sheet", "protocol"]) -> Collection[str]:
 
 def _kind_of(source: Source) -> Literal["sheet", "protocol"]:
     """Which kind of script it is, by the words that only lines of one kind open with."""
-    findings = Findings(source)
+    diagnostics = Diagnostics(source)
     if not source.text.strip("\ufeff \t\r\n"):
-        findings.error("empty", "the script is empty", None, _UNRECOGNISED)
-        raise DiagnosticError(source.name, findings.diagnostics)
+        diagnostics.error("empty", "the script is empty", None, _UNRECOGNISED)
+        raise DiagnosticError(source.name, diagnostics.entries)
     lines = max(source.text.count("\n"), source.text.count("\r")) + 1
     if lines > MAX_LINES:
         message = f"the script has {lines} lines; at most {MAX_LINES} are read"
-        findings.error("too-long", message, None, "divide the mission")
-        raise DiagnosticError(source.name, findings.diagnostics)
+        diagnostics.error("too-long", message, None, "divide the mission")
+        raise DiagnosticError(source.name, diagnostics.entries)
 
     for understand in (_as_spelled, respell):
         votes = {"sheet": 0, "protocol": 0, "steps": 0}
@@ -79,10 +79,10 @@ def _kind_of(source: Source) -> Literal["sheet", "protocol"]:
             return "sheet" if votes["sheet"] >= votes["protocol"] else "protocol"
     message = "this is neither a mission sheet nor a mission protocol"
     opening = next(i for i, line in enumerate(source.lines, start=1) if line.strip("\ufeff \t"))
-    findings.error(
+    diagnostics.error(
         "unrecognised", message, source.line_text(opening).strip().span(0, 1), _UNRECOGNISED
     )
-    raise DiagnosticError(source.name, findings.diagnostics)
+    raise DiagnosticError(source.name, diagnostics.entries)
 
 
 def _as_spelled(word: str, known: frozenset[str]) -> str | None:

@@ -5,14 +5,14 @@ from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass, field
 from itertools import islice
 
-from argo_compiler.script.syntax.clauses import Header, LineBuilder, Statement
+from argo_compiler.script.syntax.clauses import HeaderClause, LineBuilder, Statement
 from argo_compiler.script.syntax.healing import MOST_ERRORS, Healed
 from argo_compiler.script.syntax.labels import PROTOCOL_LABELS, name_unknown_label
 from argo_compiler.script.syntax.nodes import AreaField, Hint, Protocol, ProtocolStep
 from argo_compiler.script.syntax.sentences import SentenceBuilder
 from argo_compiler.script.syntax.sheet import sheet_grammar
 from argo_compiler.script.syntax.sheet_rows import RowBuilder
-from argo_compiler.script.syntax.source import Findings, Source, Text, join
+from argo_compiler.script.syntax.source import Diagnostics, ScriptText, Source, join
 from argo_compiler.script.syntax.statements import Grammar, load_grammar, parse_statement
 from argo_compiler.script.syntax.terms import Node
 
@@ -70,10 +70,10 @@ def protocol_grammar() -> Grammar:
     return load_grammar("protocol", PROTOCOL_STARTS, FORMS)
 
 
-def _statements(lines: Iterable[Text]) -> Iterator[Text]:
+def _statements(lines: Iterable[ScriptText]) -> Iterator[ScriptText]:
     """The statements; the lines of one that goes on are joined."""
     openers = protocol_grammar().openings("line")
-    gathered: list[Text] = []
+    gathered: list[ScriptText] = []
     indent = 0
     prose = unfinished = False
     for line in lines:
@@ -121,16 +121,16 @@ class _Parts:
 def parse_protocol(healed: Healed, source: Source) -> Protocol:
     """The protocol in the healed lines; what can't be understood is in its diagnostics."""
     for batch in (_BATCH, 1):
-        findings = Findings(source, list(healed.diagnostics))
-        errors = findings.errors
+        diagnostics = Diagnostics(source, list(healed.diagnostics))
+        errors = diagnostics.errors
         parts = _Parts()
-        statements = _statements(healed.statements(findings))
+        statements = _statements(healed.statements(diagnostics))
         while texts := list(islice(statements, batch)):
-            if findings.errors > (errors if batch > 1 else MOST_ERRORS + 1):
+            if diagnostics.errors > (errors if batch > 1 else MOST_ERRORS + 1):
                 break
-            _read(texts, parts, findings)
+            _read(texts, parts, diagnostics)
         # Which error is the last one to be reported can be told one by one only.
-        if findings.errors == errors:
+        if diagnostics.errors == errors:
             break
     return Protocol.model_validate(
         {
@@ -138,13 +138,13 @@ def parse_protocol(healed: Healed, source: Source) -> Protocol:
             "source_text": source.text,
             "steps": tuple(parts.steps),
             "hints": tuple(parts.hints),
-            "diagnostics": findings.by_place(),
+            "diagnostics": diagnostics.by_place(),
             **parts.fields,
         }
     )
 
 
-def _read(texts: Sequence[Text], parts: _Parts, findings: Findings) -> None:
+def _read(texts: Sequence[ScriptText], parts: _Parts, diagnostics: Diagnostics) -> None:
     """Adds what the statements come to."""
     grammar = protocol_grammar()
     statements = []
@@ -152,42 +152,42 @@ def _read(texts: Sequence[Text], parts: _Parts, findings: Findings) -> None:
         if len(text.content) > MAX_STATEMENT:
             message = f"the statement has {len(text.content)} characters"
             hint = f"at most {MAX_STATEMENT} are read; break it into statements"
-            findings.error("long-line", message, text.span(0, 1), hint)
+            diagnostics.error("long-line", message, text.span(0, 1), hint)
             continue
-        parsed = parse_statement(grammar, "line", text, findings)
+        parsed = parse_statement(grammar, "line", text, diagnostics)
         if parsed is None:
-            name_unknown_label(text, PROTOCOL_LABELS, findings)
+            name_unknown_label(text, PROTOCOL_LABELS, diagnostics)
         else:
             statements.append(parsed)
-    nodes = [LineBuilder(parsed.text, findings).statement(parsed.tree) for parsed in statements]
+    nodes = [LineBuilder(parsed.text, diagnostics).statement(parsed.tree) for parsed in statements]
     for parsed, node in zip(statements, nodes, strict=True):
         if isinstance(node, Hint):
             parts.hints.append(node)
         elif isinstance(node, Statement):
-            commands = SentenceBuilder(parsed.text, findings).commands(node.clauses)
+            commands = SentenceBuilder(parsed.text, diagnostics).commands(node.clauses)
             span = commands[0].span if commands else parsed.text.span()
             parts.steps.append(ProtocolStep(span=span, number=node.number, commands=commands))
-        elif isinstance(node, Header):
-            _add_field(node, parts.fields, findings)
+        elif isinstance(node, HeaderClause):
+            _add_field(node, parts.fields, diagnostics)
 
 
-def _add_field(header: Header, fields: dict[str, Node], findings: Findings) -> None:
+def _add_field(header: HeaderClause, fields: dict[str, Node], diagnostics: Diagnostics) -> None:
     node = header.node
-    if isinstance(node, Text):
-        node = _areas(node, findings)
+    if isinstance(node, ScriptText):
+        node = _areas(node, diagnostics)
         if node is None:
             return
     if header.field in fields:
         message = f"a second {header.field.replace('_', ' ')}"
-        findings.error("repeated-field", message, node.span, "leave one of the two out")
+        diagnostics.error("repeated-field", message, node.span, "leave one of the two out")
     fields[header.field] = node
 
 
-def _areas(text: Text, findings: Findings) -> AreaField | None:
+def _areas(text: ScriptText, diagnostics: Diagnostics) -> AreaField | None:
     """The starting areas that a cell of free words names."""
     span = text.span()
-    parsed = parse_statement(sheet_grammar(), "areas", text, findings)
-    areas = RowBuilder(parsed.text, findings).statement(parsed.tree) if parsed else None
+    parsed = parse_statement(sheet_grammar(), "areas", text, diagnostics)
+    areas = RowBuilder(parsed.text, diagnostics).statement(parsed.tree) if parsed else None
     if parsed is None or areas is None:
         return None
     return AreaField(span=span, text=" ".join(parsed.text.content.split()), areas=areas)

@@ -10,10 +10,11 @@ from typing import Any
 
 from argo_compiler.diagnostics import Span
 from argo_compiler.il import Afterwards, EventKind, OnFailure, Response
-from argo_compiler.script.syntax.clauses import Bounds, Clause, Count, Detail, LineBuilder
+from argo_compiler.script.syntax.clauses import Clause, Count, Detail, LineBuilder, ValueTest
 from argo_compiler.script.syntax.commands import (
     Add,
     Amend,
+    Branch,
     Command,
     Comparison,
     Delete,
@@ -28,11 +29,10 @@ from argo_compiler.script.syntax.commands import (
     React,
     Repeat,
     Replace,
-    Route,
     SetStart,
     Side,
 )
-from argo_compiler.script.syntax.source import Findings, Text
+from argo_compiler.script.syntax.source import Diagnostics, ScriptText
 from argo_compiler.script.syntax.terms import (
     Coordinates,
     DockLocation,
@@ -88,9 +88,9 @@ class _Path:
 class SentenceBuilder:
     """Puts the clauses of one step together; what does not fit is an error."""
 
-    def __init__(self, text: Text, findings: Findings) -> None:
+    def __init__(self, text: ScriptText, diagnostics: Diagnostics) -> None:
         self.text = text
-        self.findings = findings
+        self.diagnostics = diagnostics
         self.drafts: list[_Draft] = []
         self.last: _Draft | None = None
         """the command that manner and limits belong to"""
@@ -112,7 +112,7 @@ class SentenceBuilder:
 
     def commands(self, clauses: Sequence[Clause]) -> tuple[Command, ...]:
         """The commands that the clauses amount to."""
-        errors = self.findings.errors
+        errors = self.diagnostics.errors
         for i, clause in enumerate(clauses):
             if clause.kind in JOINTS:
                 self.joints.add(clause.kind)
@@ -124,14 +124,14 @@ class SentenceBuilder:
                     self._close_path()
                 self._take(clause, clauses, i)
             self.joints.clear()
-            if self.findings.errors > errors:
+            if self.diagnostics.errors > errors:
                 return ()
         if self.mode != "plain" or self.path is not None or self.wanted is not None:
             self._close_path()
         if self.name is not None:
             self._misfit(self.name, "a name stands before a command")
         commands = tuple([self._command(draft) for draft in self.drafts])
-        return commands if self.findings.errors == errors else ()
+        return commands if self.diagnostics.errors == errors else ()
 
     # ---- the course of a sentence
 
@@ -198,7 +198,7 @@ class SentenceBuilder:
     def _missing(self, start: int, end: int, what: str, example: str) -> None:
         message = f"this does not say {what}"
         span = self.text.span(start, end)
-        self.findings.error("unfinished", message, span, f"add, say, {example}")
+        self.diagnostics.error("unfinished", message, span, f"add, say, {example}")
 
     # ---- conditions
 
@@ -246,7 +246,7 @@ class SentenceBuilder:
     def _compare(self, clause: Clause) -> None:
         assert self.path is not None
         assert self.path.alternatives is not None
-        bounds: Bounds = clause.value
+        bounds: ValueTest = clause.value
         alternatives = self.path.alternatives
         if self.detail.second_bound is not None and bounds.param2 is not None:
             self._misfit(clause, "this comparison has a second bound of its own")
@@ -607,7 +607,7 @@ class SentenceBuilder:
         self, clause: Clause, message: str, code: str = "stray-clause", hint: str | None = None
     ) -> None:
         span = self.text.span(clause.start, clause.end)
-        self.findings.error(code, message, span, hint)
+        self.diagnostics.error(code, message, span, hint)
 
     # ---- the commands themselves
 
@@ -666,12 +666,12 @@ class SentenceBuilder:
             priority=draft.priority,
         )
 
-    def _route(self, path: _Path) -> Route:
+    def _route(self, path: _Path) -> Branch:
         alternatives = [tuple(tests) for tests in path.alternatives or () if tests]
         target: Any = path.target
         if path.drafts:
             target = tuple(self._command(draft) for draft in path.drafts)
-        return Route(
+        return Branch(
             span=self.text.span(path.start, path.end),
             alternatives=tuple(alternatives),
             target=target,

@@ -41,7 +41,7 @@ Parse = Callable[[str, str], Tree[Token]]
 
 
 @dataclass(frozen=True, slots=True)
-class Leaf:
+class SyntaxToken:
     """A token that the grammar keeps; positions are indices in the `positions` of its `Syntax`."""
 
     type: str
@@ -50,20 +50,20 @@ class Leaf:
 
 
 @dataclass(frozen=True, slots=True)
-class Branch:
+class SyntaxNode:
     """A rule's part of a statement. One that covers no text lies at its beginning."""
 
     rule: str
     start: int
     end: int
-    children: "tuple[Branch | Leaf, ...]"
+    children: "tuple[SyntaxNode | SyntaxToken, ...]"
 
 
 @dataclass(slots=True)
 class Syntax:
     """The tree of a statement, shared by all of its shape, and where its positions lie in it."""
 
-    root: Branch
+    root: SyntaxNode
     positions: list[int]
     made: dict[type, Any] = field(default_factory=dict)
     """what readers of such trees have made for all of this shape"""
@@ -73,7 +73,7 @@ class Syntax:
 class _Found:
     """What the parser found out about a shape."""
 
-    root: Branch | Leaf
+    root: SyntaxNode | SyntaxToken
     """the tree, or the token that the parser stumbled over"""
     positions: tuple[tuple[int, int], ...]
     """each one as a piece and a place in it"""
@@ -139,7 +139,7 @@ class Shapes:
             return self._by_shape(start, text)
         starts = list(accumulate(map(len, pieces), initial=0))
         at = [starts[piece] + place for piece, place in found.positions]
-        assert isinstance(found.root, Branch)
+        assert isinstance(found.root, SyntaxNode)
         return Syntax(found.root, at, found.made)
 
     def _remember(self, key: tuple[str, ...], pieces: list[str], syntax: Syntax) -> None:
@@ -170,11 +170,11 @@ class Shapes:
         starts = list(accumulate([len(p) if p else 0 for p in pieces], initial=0))
         at = [starts[piece] + place for piece, place in found.positions]
         if found.accepted is not None:
-            assert isinstance(found.root, Leaf)
+            assert isinstance(found.root, SyntaxToken)
             first, end = at[found.root.start], at[found.root.end]
             token = Token(found.root.type, text[first:end], first, end_pos=end)
             raise StumbleError(token, found.accepted)
-        assert isinstance(found.root, Branch)
+        assert isinstance(found.root, SyntaxNode)
         return Syntax(found.root, at, found.made)
 
     def plain_tree(self, start: str, text: str) -> Syntax:
@@ -214,7 +214,7 @@ class Shapes:
             return positions.setdefault((piece, position - starts[piece]), len(positions))
 
         accepted = None
-        root: Branch | Leaf
+        root: SyntaxNode | SyntaxToken
         try:
             root = _branch(self._parse(start, text), index)
         except StumbleError as stumble:
@@ -235,7 +235,7 @@ def _stand_in(piece: str) -> str:
     return "q" if piece.isalnum() else _LETTERS.sub("q", piece)
 
 
-def _branch(tree: Tree[Token], index: Callable[[int], int]) -> Branch:
+def _branch(tree: Tree[Token], index: Callable[[int], int]) -> SyntaxNode:
     # No rule of the grammars contains itself, so the trees are shallow.
     children = tuple(
         _branch(c, index) if isinstance(c, Tree) else _leaf(c, c.start_pos or 0, index)
@@ -243,8 +243,8 @@ def _branch(tree: Tree[Token], index: Callable[[int], int]) -> Branch:
     )
     meta = tree.meta
     start, end = (0, 0) if meta.empty else (meta.start_pos, meta.end_pos)
-    return Branch(str(tree.data), index(start), index(end), children)
+    return SyntaxNode(str(tree.data), index(start), index(end), children)
 
 
-def _leaf(token: Token, at: int, index: Callable[[int], int]) -> Leaf:
-    return Leaf(token.type, index(at), index(at + len(token)))
+def _leaf(token: Token, at: int, index: Callable[[int], int]) -> SyntaxToken:
+    return SyntaxToken(token.type, index(at), index(at + len(token)))

@@ -21,7 +21,7 @@ from argo_compiler.script.syntax.nodes import (
     TextField,
 )
 from argo_compiler.script.syntax.sheet_rows import Cell, Label, RowBuilder
-from argo_compiler.script.syntax.source import MAX_LINE, Findings, Source, Text, join
+from argo_compiler.script.syntax.source import MAX_LINE, Diagnostics, ScriptText, Source, join
 from argo_compiler.script.syntax.spelling import most_alike, respell
 from argo_compiler.script.syntax.statements import Grammar, load_grammar, matches, parse_statement
 from argo_compiler.script.syntax.terms import Duration, Node
@@ -53,23 +53,23 @@ def sheet_grammar() -> Grammar:
 class _SheetParser:
     """Gathers the fields of a sheet from row to row."""
 
-    findings: Findings
+    diagnostics: Diagnostics
     fields: dict[str, Node] = field(default_factory=dict)
     cells: dict[Label, Cell] = field(default_factory=dict)
     steps: list[SheetStep] = field(default_factory=list)
     above: Cell | None = None
     """the cell that a line without a label may belong to"""
-    waiting: list[Text] = field(default_factory=list)
+    waiting: list[ScriptText] = field(default_factory=list)
     """lines without a label whose cell is not known yet"""
 
-    def line(self, text: Text) -> None:
+    def line(self, text: ScriptText) -> None:
         words = text.strip()
         rule = _rule_of(text)
         if rule is None:
             self.waiting.append(words)
             return
-        parsed = parse_statement(sheet_grammar(), rule, words, self.findings)
-        row = RowBuilder(parsed.text, self.findings).statement(parsed.tree) if parsed else None
+        parsed = parse_statement(sheet_grammar(), rule, words, self.diagnostics)
+        row = RowBuilder(parsed.text, self.diagnostics).statement(parsed.tree) if parsed else None
         cell = row if isinstance(row, Cell) else None
         self.place_waiting(cell)
         self.above = cell
@@ -93,7 +93,7 @@ class _SheetParser:
         elif lines[:split]:
             message = "this line belongs to no field of the sheet"
             hint = f"write a line such as: {most_alike(lines[0].content, FORMS)}"
-            self.findings.error("stray-text", message, lines[0].span(), hint)
+            self.diagnostics.error("stray-text", message, lines[0].span(), hint)
         if below:
             below.parts[:0] = lines[split:]
 
@@ -114,19 +114,19 @@ class _SheetParser:
 
     def repeated(self, name: str, span: Span) -> None:
         message = f"a second {name.replace('_', ' ')}"
-        self.findings.error("repeated-field", message, span, "leave one of the two out")
+        self.diagnostics.error("repeated-field", message, span, "leave one of the two out")
 
     def close_cell(self, cell: Cell) -> None:
         text = join(cell.parts) if cell.parts else cell.at[:0]
         span = text.span() if text.content else cell.at.span()
         if len(text.content) > MAX_LINE:
             message = f"the field has {len(text.content)} characters; at most {MAX_LINE} are read"
-            self.findings.error("long-line", message, cell.at.span(), "shorten it")
+            self.diagnostics.error("long-line", message, cell.at.span(), "shorten it")
         elif cell.label not in (Label.INITIAL, Label.END):
             content = " ".join(text.content.split())
             self.fields[cell.label] = TextField(span=span, text=content)
-        elif parsed := parse_statement(sheet_grammar(), "areas", text, self.findings):
-            areas = RowBuilder(parsed.text, self.findings).statement(parsed.tree)
+        elif parsed := parse_statement(sheet_grammar(), "areas", text, self.diagnostics):
+            areas = RowBuilder(parsed.text, self.diagnostics).statement(parsed.tree)
             if areas is not None:
                 content = " ".join(parsed.text.content.split())
                 self.fields[cell.label] = AreaField(span=span, text=content, areas=areas)
@@ -137,7 +137,7 @@ _LABEL = re.compile(r"[\w#'-]+(?:\s+[\w#'-]+){0,6}\s*:")
 _SENTENCE_ENDS = (".", "!", "?", ":")
 
 
-def _rule_of(line: Text) -> str | None:
+def _rule_of(line: ScriptText) -> str | None:
     """The rule that the line's shape calls for; None for a line of free words."""
     content = line.content.strip()
     if _introduces_steps(content):
@@ -161,7 +161,7 @@ def _introduces_steps(content: str) -> bool:
     )
 
 
-def _first_of_below(lines: Sequence[Text], below: Cell | None) -> int:
+def _first_of_below(lines: Sequence[ScriptText], below: Cell | None) -> int:
     """The index of the first of the `lines` that belongs to the cell below them."""
     if not lines or below is None or lines[-1].content.endswith(_SENTENCE_ENDS):
         return len(lines)
@@ -173,9 +173,9 @@ def _first_of_below(lines: Sequence[Text], below: Cell | None) -> int:
 
 def parse_sheet(healed: Healed, source: Source) -> Sheet:
     """The sheet in the healed lines; what can't be understood is in its diagnostics."""
-    findings = Findings(source, list(healed.diagnostics))
-    parser = _SheetParser(findings)
-    for line in healed.statements(findings):
+    diagnostics = Diagnostics(source, list(healed.diagnostics))
+    parser = _SheetParser(diagnostics)
+    for line in healed.statements(diagnostics):
         parser.line(line)
     parser.place_waiting(None)
     for cell in parser.cells.values():
@@ -185,7 +185,7 @@ def parse_sheet(healed: Healed, source: Source) -> Sheet:
             "source_name": source.name,
             "source_text": source.text,
             "steps": tuple(parser.steps),
-            "diagnostics": findings.by_place(),
+            "diagnostics": diagnostics.by_place(),
             **parser.fields,
         }
     )

@@ -7,7 +7,7 @@ from typing import Any, ClassVar
 from argo_compiler.il import Mode, Order
 from argo_compiler.script.syntax.building import Builder, Figure, Numbered, Phrase, Time
 from argo_compiler.script.syntax.nodes import ModeField, OrderField, SheetStep
-from argo_compiler.script.syntax.source import Text
+from argo_compiler.script.syntax.source import ScriptText
 from argo_compiler.script.syntax.terms import Duration, Name, Number, Quantity, Reference
 
 
@@ -27,9 +27,9 @@ class Cell:
     """A field of free words while its lines are gathered."""
 
     label: Label
-    at: Text
+    at: ScriptText
     """the row with the label"""
-    parts: list[Text]
+    parts: list[ScriptText]
     continues: bool = False
     """the row has the second line of a label that stands in two"""
 

@@ -1,4 +1,4 @@
-"""Text that remembers where it came from, and the findings about it."""
+"""Text that remembers where it came from, and the diagnostics about it."""
 
 import re
 from bisect import bisect_right
@@ -46,10 +46,10 @@ class Source:
     def _starts(self) -> list[int]:
         return [start for start, _ in self._bounds]
 
-    def line_text(self, number: int) -> "Text":
+    def line_text(self, number: int) -> "ScriptText":
         """Line `number`, counted from 1, without its end."""
         start, end = self._bounds[number - 1]
-        return Text(self.text[start:end], range(start, end), self)
+        return ScriptText(self.text[start:end], range(start, end), self)
 
     def span(self, start: int, end: int) -> Span:
         """The span of the characters `start` to `end`, cut at the end of its first line."""
@@ -60,30 +60,30 @@ class Source:
 
 
 @dataclass(frozen=True)
-class Text:
+class ScriptText:
     """A piece of a script, perhaps healed: each character knows its offset in the source."""
 
     content: str
     offsets: Sequence[int]
     source: Source
 
-    def __getitem__(self, part: slice) -> "Text":
-        return Text(self.content[part], self.offsets[part], self.source)
+    def __getitem__(self, part: slice) -> "ScriptText":
+        return ScriptText(self.content[part], self.offsets[part], self.source)
 
-    def strip(self) -> "Text":
+    def strip(self) -> "ScriptText":
         content = self.content
         if content and not content[0].isspace() and not content[-1].isspace():
             return self
         left = len(content) - len(content.lstrip())
         return self[left : max(left, len(self.content.rstrip()))]
 
-    def replace(self, start: int, end: int, word: str) -> "Text":
+    def replace(self, start: int, end: int, word: str) -> "ScriptText":
         """The text with `word`, not empty, in place of the characters `start` to `end`."""
         old = self.offsets[start:end]
         new = [old[min(i, len(old) - 1)] for i in range(len(word))]
         new[-1] = old[-1]
         content = self.content[:start] + word + self.content[end:]
-        return Text(content, [*self.offsets[:start], *new, *self.offsets[end:]], self.source)
+        return ScriptText(content, [*self.offsets[:start], *new, *self.offsets[end:]], self.source)
 
     def span(self, start: int = 0, end: int | None = None) -> Span:
         """Where the characters `start` to `end` stand; if there are none, the end of the text."""
@@ -97,7 +97,7 @@ class Text:
         return self.source.span(after, after + 1)
 
 
-def join(parts: Sequence[Text]) -> Text:
+def join(parts: Sequence[ScriptText]) -> ScriptText:
     """The texts, at least one, with a blank between each two."""
     content: list[str] = []
     offsets: list[int] = []
@@ -107,21 +107,21 @@ def join(parts: Sequence[Text]) -> Text:
             offsets.append(part.offsets[0])
         content.append(part.content)
         offsets.extend(part.offsets)
-    return Text("".join(content), offsets, parts[0].source)
+    return ScriptText("".join(content), offsets, parts[0].source)
 
 
 @dataclass
-class Findings:
+class Diagnostics:
     """Collects diagnostics; the one mutable thing that the stages hand on."""
 
     source: Source
-    diagnostics: list[Diagnostic] = field(default_factory=list)
+    entries: list[Diagnostic] = field(default_factory=list)
 
     errors: int = field(init=False, default=0)
     """how many of the diagnostics are errors"""
 
     def __post_init__(self) -> None:
-        self.errors = sum(d.severity is Severity.ERROR for d in self.diagnostics)
+        self.errors = sum(d.severity is Severity.ERROR for d in self.entries)
 
     def error(self, code: str, message: str, span: Span | None, hint: str | None = None) -> None:
         self._add(Severity.ERROR, code, message, span, hint)
@@ -137,7 +137,7 @@ class Findings:
             if self.errors > _MOST_KEPT:
                 return
         excerpt = _printable(self.source.lines[span.line - 1]) if span else None
-        self.diagnostics.append(
+        self.entries.append(
             Diagnostic(
                 code=f"script.{code}",
                 severity=severity,
@@ -149,8 +149,8 @@ class Findings:
         )
 
     def by_place(self) -> tuple[Diagnostic, ...]:
-        """All findings in the source's order, those without a place last."""
-        return tuple(sorted(self.diagnostics, key=_place))
+        """All diagnostics in the source's order, those without a place last."""
+        return tuple(sorted(self.entries, key=_place))
 
 
 def _place(diagnostic: Diagnostic) -> tuple[bool, int, int]:

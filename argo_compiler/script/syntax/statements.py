@@ -13,7 +13,7 @@ from lark.lexer import PatternRE, PatternStr
 from lark.parsers.lalr_interactive_parser import InteractiveParser
 
 from argo_compiler.script.syntax.shapes import Shapes, StumbleError, Syntax
-from argo_compiler.script.syntax.source import Findings, Text
+from argo_compiler.script.syntax.source import Diagnostics, ScriptText
 from argo_compiler.script.syntax.spelling import alternatives, most_alike, nearest, respell
 from argo_compiler.script.syntax.tables import load_parser
 
@@ -100,13 +100,15 @@ class Parsed:
     """A statement's tree; its positions are those of `text`, in which words may be respelled."""
 
     tree: Syntax
-    text: Text
+    text: ScriptText
 
 
-def parse_statement(grammar: Grammar, start: str, text: Text, findings: Findings) -> Parsed | None:
+def parse_statement(
+    grammar: Grammar, start: str, text: ScriptText, diagnostics: Diagnostics
+) -> Parsed | None:
     """Parses `text` by the rule `start`, misspelt words respelled with a warning each.
 
-    None if it can't be understood; `findings` then has one error more.
+    None if it can't be understood; `diagnostics` then has one error more.
     """
     original = text
     respelled: list[tuple[int, str, str]] = []
@@ -117,7 +119,7 @@ def parse_statement(grammar: Grammar, start: str, text: Text, findings: Findings
         except StumbleError as stumble:
             word = _respelling(grammar, stumble)
             if word is None:
-                _report(grammar, stumble, original, text, findings)
+                _report(grammar, stumble, original, text, diagnostics)
                 return None
             at, end = _extent(stumble.token, text)
             respelled.append((at, text.content[at:end], word))
@@ -125,11 +127,11 @@ def parse_statement(grammar: Grammar, start: str, text: Text, findings: Findings
         else:
             for at, old, new in respelled:
                 message = f"read `{old}` as `{new}`"
-                findings.warning("respelled", message, text.span(at, at + len(new)))
+                diagnostics.warning("respelled", message, text.span(at, at + len(new)))
             return Parsed(tree, text)
 
 
-def matches(grammar: Grammar, start: str, text: Text) -> bool:
+def matches(grammar: Grammar, start: str, text: ScriptText) -> bool:
     """Whether the rule `start` accepts `text` as it is spelled."""
     try:
         grammar.shapes.tree(start, lower(text.content))
@@ -152,7 +154,7 @@ def _respelling(grammar: Grammar, stumble: StumbleError) -> str | None:
     return respell(word, grammar.fitting(stumble.accepted))
 
 
-def _extent(token: Token, text: Text) -> tuple[int, int]:
+def _extent(token: Token, text: ScriptText) -> tuple[int, int]:
     if token.type == "$END":
         return len(text.content), len(text.content)
     assert token.start_pos is not None
@@ -169,7 +171,11 @@ _READABLE = {
 
 
 def _report(
-    grammar: Grammar, stumble: StumbleError, original: Text, text: Text, findings: Findings
+    grammar: Grammar,
+    stumble: StumbleError,
+    original: ScriptText,
+    text: ScriptText,
+    diagnostics: Diagnostics,
 ) -> None:
     at, end = _extent(stumble.token, text)
     accepted = stumble.accepted
@@ -192,4 +198,4 @@ def _report(
         hint = f"a word that fits here: {alternatives(f'`{w}`' for w in close)}; "
     form = most_alike(original.content, grammar.forms)
     span = text.span(at, end) if at < end else text.span(end)
-    findings.error("not-understood", message, span, f"{hint}write a line such as: {form}")
+    diagnostics.error("not-understood", message, span, f"{hint}write a line such as: {form}")

@@ -17,7 +17,7 @@ from typing import Any
 from lark import Lark, Token
 from lark.lark import PostLex
 
-from argo_compiler.collecting import collector_held
+from argo_compiler.garbage_collector import collector_held
 
 _KEY = 32
 """bytes at the beginning of the tables, by which it is told what they are of"""

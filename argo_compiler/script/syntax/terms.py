@@ -59,7 +59,7 @@ class Reference(Node):
     """`checkpoints #1 to #4`: the last number of a range"""
 
 
-class Edge(StrEnum):
+class NamedFloor(StrEnum):
     """A floor that is named by where it lies."""
 
     TOP = "top"
@@ -70,7 +70,7 @@ class Edge(StrEnum):
 class FloorName(Node):
     """A floor by its number, counted from 1 at the bottom, or as the top or the ground floor."""
 
-    number: int | Edge
+    number: int | NamedFloor
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

@@ -41,23 +41,23 @@ def format_script(mission: Mission, catalog: Catalog) -> str:
     """
     places = Places(catalog)
     steps = write_steps(mission, catalog, places)
-    findings = list(steps.findings)
+    diagnostics = list(steps.diagnostics)
     header: list[str] = []
     reactions: list[str] = []
     try:
         header = _header(mission, catalog, steps)
     except UnwritableError as error:
-        findings.append(unwritable("the header", "", None, error))
+        diagnostics.append(unwritable("the header", "", None, error))
     for reaction in mission.reactions:
         try:
             reactions += statement(_reaction(reaction, places))
         except UnwritableError as error:
             what = f"the reaction to {reaction.event}"
-            findings.append(
+            diagnostics.append(
                 unwritable(what, subject_of("reactions", reaction.event), reaction.source, error)
             )
-    if findings:
-        raise DiagnosticError("mission", findings)
+    if diagnostics:
+        raise DiagnosticError("mission", diagnostics)
     parts = [header, steps.lines, steps.rounds, reactions]
     return "\n\n".join("\n".join(part) for part in parts if part) + "\n"
 

@@ -8,11 +8,11 @@ from argo_compiler.catalog import Catalog
 from argo_compiler.diagnostics import Diagnostic, Severity, Span
 from argo_compiler.diagnostics.subject import subject_of
 from argo_compiler.il import Action, Group, Mission, Stop, Task, Transition
-from argo_compiler.il.grouping import Layout
+from argo_compiler.il.grouping import GroupNesting
 from argo_compiler.model import Pose
 from argo_compiler.script.write.tasks import (
     Places,
-    Surroundings,
+    TaskContext,
     clauses,
     command,
 )
@@ -37,7 +37,7 @@ class Steps:
     end_area: int | None = None
     starts: bool = False
     """whether there is a START"""
-    findings: list[Diagnostic] = field(default_factory=list)
+    diagnostics: list[Diagnostic] = field(default_factory=list)
 
 
 def unwritable(what: str, subject: str, span: Span | None, error: UnwritableError) -> Diagnostic:
@@ -76,7 +76,7 @@ class _Writer:
         self.tasks = mission.tasks
         self.catalog = catalog
         self.places = places
-        self.layout = Layout.of(mission)
+        self.layout = GroupNesting.of(mission)
         self.result = Steps()
         self.defaults = _default_names(mission.tasks)
         self.number = 0
@@ -103,7 +103,7 @@ class _Writer:
                 found = unwritable(
                     f"task '{task.name}'", subject_of("tasks", task.name), task.source, error
                 )
-                self.result.findings.append(found)
+                self.result.diagnostics.append(found)
             i = patrol.last + 1 if patrol is not None else i + 1
         self.result.rounds += self._repeats(len(self.mission.groups))
         return self.result
@@ -119,10 +119,10 @@ class _Writer:
                 self.steps[self.tasks[i].name] = step
             i = patrols[i].last + 1 if i in patrols else i + 1
 
-    def _around(self, i: int) -> Surroundings:
+    def _around(self, i: int) -> TaskContext:
         inner = self.layout.innermost[i]
         group = "" if inner is None else self.layout.ranges[inner].group.name
-        return Surroundings(self.following[i], group, self.steps)
+        return TaskContext(self.following[i], group, self.steps)
 
     def _write_task(self, i: int) -> None:
         task = self.tasks[i]
@@ -241,7 +241,7 @@ class _Writer:
             except UnwritableError as error:
                 at = subject_of("groups", group.name)
                 found = unwritable(f"group '{group.name}'", at, group.source, error)
-                self.result.findings.append(found)
+                self.result.diagnostics.append(found)
         self.written = end
         return lines
 

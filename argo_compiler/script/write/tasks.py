@@ -53,7 +53,7 @@ def _name(place: str) -> str:
 
 
 @dataclass(frozen=True)
-class Surroundings:
+class TaskContext:
     """What a task's clauses depend on besides the task."""
 
     following: str | None
@@ -64,7 +64,7 @@ class Surroundings:
     """the steps of those tasks that can be named by one"""
 
 
-def clauses(task: Task, around: Surroundings) -> Iterator[str]:
+def clauses(task: Task, around: TaskContext) -> Iterator[str]:
     """All that the task has besides its name and its command."""
     if task.action is Action.MEASURE and task.pose is not None:
         yield f"standing at {point(task.pose)}"
@@ -85,7 +85,7 @@ def clauses(task: Task, around: Surroundings) -> Iterator[str]:
     yield from _ways(task.transitions, around)
 
 
-def _ways(transitions: tuple[Transition, ...], around: Surroundings) -> Iterator[str]:
+def _ways(transitions: tuple[Transition, ...], around: TaskContext) -> Iterator[str]:
     """The transitions, except for what is meant if nothing is said."""
     conditional = any(t.conditions for t in transitions)
     word = "otherwise" if conditional else "then"
@@ -104,7 +104,7 @@ def _ways(transitions: tuple[Transition, ...], around: Surroundings) -> Iterator
         yield f"{word} end the mission"
 
 
-def _jump(target: str, around: Surroundings) -> str:
+def _jump(target: str, around: TaskContext) -> str:
     return f"go to {step_of(target, around.steps)}"
 
 

@@ -8,8 +8,8 @@ from argo_env.drives.tracked.belts import Traction
 from argo_env.drives.tracked.body import TIME_STEP, TrackedBody
 from argo_env.drives.tracked.flippers import CAREFUL, Flight, Flippers, find_flight
 from argo_env.drives.tracked.follower import Follower
-from argo_env.drives.tracked.recovery import ATTEMPTS, GOING_ON, Phase, phases
-from argo_env.drives.tracked.watch import WINDOW, Watch
+from argo_env.drives.tracked.recovery import ATTEMPTS, GOING_ON, RecoveryPhase, phases
+from argo_env.drives.tracked.stall_watch import WINDOW, StallWatch
 from argo_env.navigation.path import Motion, Path, wrap
 from argo_env.robot.pose import BodyPose
 from argo_env.robot.spec import RobotSpec
@@ -44,8 +44,8 @@ class TrackedDrive:
         self._follower: Follower | None = None
         self._flippers = Flippers()
         self._flight: tuple[Motion, Flight] | None = None
-        self._watch = Watch(self.time_step)
-        self._phases: deque[Phase] = deque()
+        self._watch = StallWatch(self.time_step)
+        self._phases: deque[RecoveryPhase] = deque()
         self._phase_left = 0.0
         self._attempts = 0
         self._stuck_at: BodyPose | None = None

@@ -24,7 +24,7 @@ _WILD = math.radians(20.0)  # of heading error, at which a drive waits for the h
 
 
 @dataclass(frozen=True)
-class Step:
+class FollowerCommand:
     """What to do now."""
 
     speed: float
@@ -54,13 +54,13 @@ class Follower:
         """The motion under way; None when all are done."""
         return self.motions[self.at] if self.at < len(self.motions) else None
 
-    def step(self, pose: BodyPose, velocity: tuple[float, float]) -> Step:
+    def step(self, pose: BodyPose, velocity: tuple[float, float]) -> FollowerCommand:
         """The next command from where the robot is and how it moves (m/s, rad/s)."""
         while (motion := self.motion) is not None:
             if motion.turn:
                 error = wrap(motion.end.yaw - pose.yaw)
                 if abs(error) > _ALIGNED or abs(velocity[1]) > _TURNED:
-                    return Step(0.0, self._turning(motion, error), motion)
+                    return FollowerCommand(0.0, self._turning(motion, error), motion)
             else:
                 left = self.left(motion, pose)
                 passing = self._goes_on()
@@ -69,7 +69,7 @@ class Follower:
             self.at += 1
             while self.motion is None and self._corrections:
                 self.motions += self._corrections.pop(0)(pose)
-        return Step(0.0, 0.0, None)
+        return FollowerCommand(0.0, 0.0, None)
 
     def _heading_correction(self, pose: BodyPose) -> list[Motion]:
         """A turn at the end, since the last drive may have come in from beside its line."""
@@ -124,7 +124,7 @@ class Follower:
         rate = min(self._robot.turn_rate_radians, math.sqrt(2 * _SLOWING * abs(error)))
         return math.copysign(max(rate, _TURNED), error)
 
-    def _driving(self, motion: Motion, pose: BodyPose, left: float) -> Step:
+    def _driving(self, motion: Motion, pose: BodyPose, left: float) -> FollowerCommand:
         speed = motion.speed(self._robot, self._velocity)
         if not self._goes_on():
             speed = min(speed, max(_CREEP, math.sqrt(2 * _BRAKING * left)))
@@ -138,4 +138,4 @@ class Follower:
         rate = max(-limit, min(limit, rate))
         if abs(heading) > _WILD:
             speed = 0.0
-        return Step(motion.gear * speed, rate, motion)
+        return FollowerCommand(motion.gear * speed, rate, motion)

@@ -17,7 +17,7 @@ _LEVEL = math.radians(8.0)  # of pitch, up to which it turns straight
 
 
 @dataclass(frozen=True)
-class Phase:
+class RecoveryPhase:
     """One thing that is done for a while."""
 
     duration: float
@@ -30,16 +30,16 @@ class Phase:
     """rad"""
 
 
-def phases(motion: Motion, attempt: int, pitch: float) -> tuple[Phase, ...]:
+def phases(motion: Motion, attempt: int, pitch: float) -> tuple[RecoveryPhase, ...]:
     """What to do for the attempt (0, 1, ...) to get free from where `motion` is stuck."""
     angle = _ANGLES[attempt % len(_ANGLES)]
     if motion.turn:
         side = 1 if attempt % 2 == 0 else -1
         return (
-            Phase(1.0, 0.0, -math.copysign(_TURN, motion.turn), angle),
-            Phase(_ASIDE_TIME, side * _ASIDE, 0.0, angle),
+            RecoveryPhase(1.0, 0.0, -math.copysign(_TURN, motion.turn), angle),
+            RecoveryPhase(_ASIDE_TIME, side * _ASIDE, 0.0, angle),
         )
-    back = Phase(_BACK_TIME, -motion.gear * _BACK, 0.0, angle)
+    back = RecoveryPhase(_BACK_TIME, -motion.gear * _BACK, 0.0, angle)
     if abs(pitch) > _LEVEL:
         return (back,)
-    return (back, Phase(2.0, 0.0, None, angle))
+    return (back, RecoveryPhase(2.0, 0.0, None, angle))

@@ -8,7 +8,7 @@ from PIL import Image, ImageDraw
 
 from argo_env.pictures.camera import Camera
 from argo_env.pictures.caption import BRIGHT, DIM, HEIGHT, add_bar
-from argo_env.pictures.scene import View
+from argo_env.pictures.scene import CameraView
 
 GOAL = (251, 191, 36)
 _RIM = (255, 255, 255)
@@ -19,7 +19,7 @@ _BEHIND = 0.1  # m that something may be before the head
 
 
 def draw_drive(
-    view: View,
+    view: CameraView,
     camera: Camera,
     goal: tuple[float, float, float],
     time: float,
@@ -38,7 +38,7 @@ def draw_drive(
 
 
 def _mark(
-    draw: ImageDraw.ImageDraw, view: View, camera: Camera, goal: tuple[float, float, float]
+    draw: ImageDraw.ImageDraw, view: CameraView, camera: Camera, goal: tuple[float, float, float]
 ) -> None:
     """A pole with a round head on the goal, unless all of its head is hidden."""
     x, y, z = goal

@@ -7,7 +7,7 @@ from numpy.typing import NDArray
 
 from argo_env.envs.drawing.sites import site_sheet
 from argo_env.envs.inspection_run import Inspection
-from argo_env.pictures.drawing.plan import Marker, PlanDrawing, Station, draw_plan
+from argo_env.pictures.drawing.plan import Marker, PlanDrawing, StationMark, draw_plan
 from argo_env.pictures.drawing.way import Moment
 
 _LEGEND = {
@@ -40,7 +40,7 @@ def draw_inspection(
     for k, number in enumerate(sorted(site.docks)):
         pose = site.docks[number]
         name = f"dock {number}, end" if k == end else f"dock {number}"
-        stations.append(Station(pose.x, pose.y, site.floor_at(pose.z), name))
+        stations.append(StationMark(pose.x, pose.y, site.floor_at(pose.z), name))
     used = asked | {s.floor for s in stations} | {spot.floor for spot in way}
     sheet = site_sheet(scenario, min(used), max(used), tuple(sorted(asked)))
     shown = [marker for marker in markers if marker.floor in sheet.panels]

@@ -19,7 +19,7 @@ Place = tuple[float, float, int]
 _STEP = 0.25  # m between the places of a way on a site
 
 
-class Legs(Protocol):
+class LegPaths(Protocol):
     """The ways from place to place."""
 
     footprint: Footprint | None
@@ -34,7 +34,7 @@ class Legs(Protocol):
         ...
 
 
-def legs_of(source: RouteSource) -> Legs:
+def legs_of(source: RouteSource) -> LegPaths:
     """The ways between the places of a source's instances."""
     if isinstance(source, SiteRoutes):
         return _SiteLegs(navigator_of(source.scenario))

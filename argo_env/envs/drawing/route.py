@@ -12,8 +12,8 @@ from argo_env.envs.route_aisles import DEPTH, WIDTH
 from argo_env.envs.route_instance import DOCK, RouteInstance
 from argo_env.envs.route_sources import RandomRoutes, RouteSource, SiteRoutes
 from argo_env.pictures.drawing.floors import FloorPlan, aisles, open_floors
-from argo_env.pictures.drawing.plan import Marker, PlanDrawing, Station, draw_plan
-from argo_env.pictures.drawing.sheet import Sheet, make_sheet
+from argo_env.pictures.drawing.plan import Marker, PlanDrawing, StationMark, draw_plan
+from argo_env.pictures.drawing.sheet import FloorSheet, make_sheet
 from argo_env.pictures.drawing.way import Moment
 
 _LEGEND = {
@@ -51,9 +51,9 @@ def draw_route(
         radius = 7.5 + 5.5 * float(instance.prizes[node])
         markers.append(Marker(x, y, floor, str(node), state, radius, node == route[-1]))
     together = places[DOCK] == places[start]
-    stations = [Station(*places[DOCK], "start, dock" if together else "dock")]
+    stations = [StationMark(*places[DOCK], "start, dock" if together else "dock")]
     if not together:
-        stations.append(Station(*places[start], "start"))
+        stations.append(StationMark(*places[start], "start"))
     legs = legs_of(source)
     first, heading = legs.stand(places[route[0]])
     way = [Moment(0.0, *first)]
@@ -77,7 +77,7 @@ def draw_route(
 
 def _sheet(
     source: RouteSource, places: Sequence[Place], low: int, high: int, asked: tuple[int, ...]
-) -> Sheet:
+) -> FloorSheet:
     """The floors from `low` to `high`; if some are asked for, the others are pale."""
     numbers = range(low, high + 1)
     if isinstance(source, SiteRoutes):

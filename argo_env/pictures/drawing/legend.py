@@ -5,7 +5,7 @@ from dataclasses import dataclass
 
 from PIL import ImageDraw
 
-from argo_env.pictures.drawing.sheet import FINER, FOOT, HEAD, INK, SIZE, SOFT, Sheet, font
+from argo_env.pictures.drawing.sheet import FINER, FOOT, HEAD, INK, SIZE, SOFT, FloorSheet, font
 from argo_env.pictures.drawing.style import (
     POINT,
     STAIRS,
@@ -51,7 +51,7 @@ def draw_headline(draw: ImageDraw.ImageDraw, text: str) -> None:
     draw.text((_LEFT, HEAD * FINER / 2), text, fill=INK, font=face, anchor="lm")
 
 
-def draw_legend(draw: ImageDraw.ImageDraw, sheet: Sheet, shown: Shown) -> None:
+def draw_legend(draw: ImageDraw.ImageDraw, sheet: FloorSheet, shown: Shown) -> None:
     """What the states and marks mean, and the scales of time and length."""
     x, y = _LEFT, (SIZE[1] - FOOT / 2) * FINER
     for state, meaning in shown.states.items():
@@ -81,7 +81,7 @@ def _word(draw: ImageDraw.ImageDraw, text: str, x: float, y: float) -> float:
     return x + draw.textlength(text, font=face) + 14 * FINER
 
 
-def _length(draw: ImageDraw.ImageDraw, sheet: Sheet, right: float, y: float) -> float:
+def _length(draw: ImageDraw.ImageDraw, sheet: FloorSheet, right: float, y: float) -> float:
     """A bar of some m that ends at the right; where it begins."""
     metres = max((m for m in _BARS if m * sheet.scale <= _LONGEST), default=_BARS[0])
     left, tick, face = right - metres * sheet.scale, 4 * FINER, font(12)

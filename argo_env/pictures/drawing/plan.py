@@ -8,7 +8,7 @@ from numpy.typing import NDArray
 from PIL import ImageDraw
 
 from argo_env.pictures.drawing.legend import Shown, draw_headline, draw_legend
-from argo_env.pictures.drawing.sheet import FINER, INK, PAPER, Pixel, Sheet, font
+from argo_env.pictures.drawing.sheet import FINER, INK, PAPER, FloorSheet, Pixel, font
 from argo_env.pictures.drawing.spots import Spots
 from argo_env.pictures.drawing.style import (
     POINT,
@@ -42,7 +42,7 @@ class Marker:
 
 
 @dataclass(frozen=True)
-class Station:
+class StationMark:
     """Where the robot starts, ends or charges."""
 
     x: float
@@ -57,7 +57,7 @@ class PlanDrawing:
 
     headline: str
     markers: Sequence[Marker]
-    stations: Sequence[Station]
+    stations: Sequence[StationMark]
     way: Sequence[Moment]
     """to where the robot is now"""
     heading: float
@@ -68,7 +68,7 @@ class PlanDrawing:
     """what the states of markers mean"""
 
 
-def draw_plan(sheet: Sheet, plan: PlanDrawing) -> NDArray[np.uint8]:
+def draw_plan(sheet: FloorSheet, plan: PlanDrawing) -> NDArray[np.uint8]:
     """The picture, shape (720, 1280, 3)."""
     image = sheet.image.copy()
     draw = ImageDraw.Draw(image)
@@ -113,13 +113,15 @@ def draw_plan(sheet: Sheet, plan: PlanDrawing) -> NDArray[np.uint8]:
     return np.asarray(image.reduce(FINER), dtype=np.uint8)
 
 
-def _place_disc(sheet: Sheet, spots: Spots, marker: Marker) -> Pixel:
+def _place_disc(sheet: FloorSheet, spots: Spots, marker: Marker) -> Pixel:
     """Where the disc of a checkpoint goes: on it, or beside it where something else is."""
     size = (marker.radius + 1.0) * FINER
     return spots.nearest(sheet.at(marker.x, marker.y, marker.floor), size, size, marker.floor)
 
 
-def _draw_pointer(draw: ImageDraw.ImageDraw, sheet: Sheet, marker: Marker, place: Pixel) -> None:
+def _draw_pointer(
+    draw: ImageDraw.ImageDraw, sheet: FloorSheet, marker: Marker, place: Pixel
+) -> None:
     """A line from a disc that is beside its checkpoint to where that is."""
     true = sheet.at(marker.x, marker.y, marker.floor)
     if place != true:
@@ -128,7 +130,7 @@ def _draw_pointer(draw: ImageDraw.ImageDraw, sheet: Sheet, marker: Marker, place
         disc(draw, true, 3.0 * FINER, ink)
 
 
-def _draw_name(draw: ImageDraw.ImageDraw, spots: Spots, station: Station, place: Pixel) -> None:
+def _draw_name(draw: ImageDraw.ImageDraw, spots: Spots, station: StationMark, place: Pixel) -> None:
     """The name of a station on a plate where it covers nothing."""
     face = font(12)
     wide, high = draw.textlength(station.name, font=face) / 2 + 5.0 * FINER, 9.0 * FINER

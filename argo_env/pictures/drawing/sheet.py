@@ -53,7 +53,7 @@ class Panel:
 
 
 @dataclass(frozen=True)
-class Sheet:
+class FloorSheet:
     """Floors side by side, all to the same scale, and north up."""
 
     panels: dict[int, Panel]
@@ -70,7 +70,7 @@ class Sheet:
         return panel.left + (x - x0) * self.scale, panel.top + (y1 - y) * self.scale
 
 
-def make_sheet(plans: Sequence[FloorPlan], dim: Sequence[int] = ()) -> Sheet:
+def make_sheet(plans: Sequence[FloorPlan], dim: Sequence[int] = ()) -> FloorSheet:
     """The sheet of these floors, in their order; those of `dim` are pale."""
     grid = max((_Grid.of(plans, n) for n in range(1, len(plans) + 1)), key=lambda g: g.scale)
     scale = grid.scale
@@ -87,7 +87,7 @@ def make_sheet(plans: Sequence[FloorPlan], dim: Sequence[int] = ()) -> Sheet:
     image = Image.new("RGB", (SIZE[0] * FINER, SIZE[1] * FINER), PAPER)
     for panel in panels.values():
         _draw(image, panel, scale, panel.plan.number in dim)
-    return Sheet(panels, scale, image)
+    return FloorSheet(panels, scale, image)
 
 
 def font(size: float) -> Font:

@@ -5,7 +5,7 @@ import math
 import numpy as np
 from numpy.typing import NDArray
 
-from argo_env.pictures.drawing.sheet import FINER, SIZE, Pixel, Sheet
+from argo_env.pictures.drawing.sheet import FINER, SIZE, FloorSheet, Pixel
 
 _CELL = 4  # px of the finer picture
 _AROUND = 8  # directions that are tried
@@ -16,7 +16,7 @@ _TRIES = 16
 class Spots:
     """Knows what is taken of a sheet. Holds what was placed, and where the way is."""
 
-    def __init__(self, sheet: Sheet) -> None:
+    def __init__(self, sheet: FloorSheet) -> None:
         self._sheet = sheet
         shape = SIZE[1] * FINER // _CELL, SIZE[0] * FINER // _CELL
         self._taken = np.zeros(shape, np.bool_)

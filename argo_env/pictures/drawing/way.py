@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 from PIL import ImageDraw
 
-from argo_env.pictures.drawing.sheet import FINER, PAPER, Sheet
+from argo_env.pictures.drawing.sheet import FINER, PAPER, FloorSheet
 from argo_env.pictures.drawing.spots import Spots
 from argo_env.pictures.drawing.style import STAIRS, disc, paint_stairs, turned
 from argo_env.report.track import SHADES, colour
@@ -47,7 +47,7 @@ class Line:
     """by time, 0 to SHADES - 1, shape (n,)"""
 
 
-def lines(sheet: Sheet, way: Sequence[Moment]) -> list[Line]:
+def lines(sheet: FloorSheet, way: Sequence[Moment]) -> list[Line]:
     """The way as it is drawn, on the floors that the sheet has."""
     made = []
     for floor, stretch in groupby(way, key=lambda moment: moment.floor):
@@ -95,7 +95,7 @@ def draw_thin(draw: ImageDraw.ImageDraw, way: Sequence[Line], ink: tuple[int, in
 
 
 def draw_crossings(
-    draw: ImageDraw.ImageDraw, sheet: Sheet, spots: Spots, way: Sequence[Moment]
+    draw: ImageDraw.ImageDraw, sheet: FloorSheet, spots: Spots, way: Sequence[Moment]
 ) -> bool:
     """A mark where stairs were taken, with the floor that they connect to; whether any were, on the
     floors that the sheet has."""

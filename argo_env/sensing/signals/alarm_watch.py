@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 from argo_compiler.il import EventKind
 from argo_env.robot.pose import BodyPose
 from argo_env.sensing.signals.microphone import Microphone
-from argo_env.sensing.watch import Finding, Told
+from argo_env.sensing.watch import Detection, Told
 from argo_env.surroundings.sound import ALARM_ON, ALARM_PERIOD, ALARM_TONE, RATE
 
 RECORDING = 0.05  # s
@@ -66,7 +66,7 @@ class AlarmWatch:
         self._told = bool(told) and told[-1].kind is EventKind.PLATFORM_ALARM
         self._last_tone = now if self._told else None
 
-    def look(self, now: float, pose: BodyPose) -> tuple[Finding, ...]:
+    def look(self, now: float, pose: BodyPose) -> tuple[Detection, ...]:
         # It listens less often while there is nothing to hear.
         self._idle = (self._idle + 1) % IDLE
         if self._idle != 1 and not any(on for _, on in self._heard):
@@ -77,9 +77,9 @@ class AlarmWatch:
             self._last_tone = now
         if not self._told and tone and fits_beat(self._heard):
             self._told = True
-            return (Finding(EventKind.PLATFORM_ALARM, "the general platform alarm sounds"),)
+            return (Detection(EventKind.PLATFORM_ALARM, "the general platform alarm sounds"),)
         if self._told and self._last_tone is not None and now - self._last_tone >= CLEAR_TIME:
             self._told = False
             self._heard.clear()
-            return (Finding(EventKind.ALL_CLEAR, "the general platform alarm is over"),)
+            return (Detection(EventKind.ALL_CLEAR, "the general platform alarm is over"),)
         return ()

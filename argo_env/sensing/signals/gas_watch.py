@@ -9,7 +9,7 @@ from argo_compiler.il import EventKind
 from argo_env.robot.pose import BodyPose
 from argo_env.sensing.signals.gas_sensors import GasSensor, UltrasonicMicrophone
 from argo_env.sensing.signals.site_map import SiteMap
-from argo_env.sensing.watch import Finding, Told
+from argo_env.sensing.watch import Detection, Told
 from argo_env.site.shapes import Vector
 
 GAS_ON, GAS_OFF = 40.0, 20.0
@@ -86,7 +86,7 @@ class GasWatch:
         self._here = self._leaks[-1] if self._leaks else None
         self._shown_from = now + WARMING_UP
 
-    def look(self, now: float, pose: BodyPose) -> tuple[Finding, ...]:
+    def look(self, now: float, pose: BodyPose) -> tuple[Detection, ...]:
         ppm, level = self._gas_sensor.read(now, pose), self._microphone.read(pose)
         smelt, heard = self._gas.update(ppm), self._hiss.update(level)
         if not smelt and not heard:
@@ -108,9 +108,9 @@ class GasWatch:
         near = self._map.nearest_equipment((pose.x, pose.y, pose.z + 0.5))
         signs = [f"gas, {ppm:.0f} ppm"] * smelt + [f"a hiss, {level:.0f} dB at 40 kHz"] * heard
         detail = f"{' and '.join(signs)}, near {near}"
-        return (Finding(EventKind.GAS_LEAK, detail, noticed_from=_place(pose)),)
+        return (Detection(EventKind.GAS_LEAK, detail, noticed_from=_place(pose)),)
 
-    def _all_clear(self, now: float, pose: BodyPose) -> tuple[Finding, ...]:
+    def _all_clear(self, now: float, pose: BodyPose) -> tuple[Detection, ...]:
         here = [leak for leak in self._leaks if _apart(pose, leak.worst) <= NEAR]
         if not here:
             self._quiet_since = None
@@ -120,7 +120,7 @@ class GasWatch:
             return ()
         self._leaks = [leak for leak in self._leaks if leak not in here]
         detail = "there is no gas any more where it was"
-        return (Finding(EventKind.ALL_CLEAR, detail, noticed_from=_place(pose)),)
+        return (Detection(EventKind.ALL_CLEAR, detail, noticed_from=_place(pose)),)
 
 
 def _place(pose: BodyPose) -> Vector:

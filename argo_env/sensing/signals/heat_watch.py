@@ -18,7 +18,7 @@ from argo_env.sensing.signals.thermal_camera import (
     ThermalImage,
     pixel_rays,
 )
-from argo_env.sensing.watch import Finding
+from argo_env.sensing.watch import Detection
 from argo_env.site.shapes import Vector
 from argo_env.surroundings.heat import warmest
 
@@ -68,7 +68,7 @@ class HeatWatch:
         self._candidates: tuple[Spot, ...] = ()
         self._told: list[_Told] = []
 
-    def look(self, now: float, pose: BodyPose) -> tuple[Finding, ...]:  # noqa: ARG002
+    def look(self, now: float, pose: BodyPose) -> tuple[Detection, ...]:  # noqa: ARG002
         image = self._camera.take(pose, PANS[self._turn])
         spots = find_spots(image, self._map, self._air)
         self._forget(image, spots)
@@ -77,12 +77,12 @@ class HeatWatch:
         self._candidates = tuple(s for s in new if s not in confirmed)
         if not self._candidates:
             self._turn = (self._turn + 1) % len(PANS)
-        findings = []
+        detections = []
         for spot in confirmed:
             self._told.append(_Told(spot.place))
             detail = f"a hot spot of {spot.temperature:.0f} °C on {spot.element}"
-            findings.append(Finding(EventKind.HOT_SPOT, detail, spot.place))
-        return tuple(findings)
+            detections.append(Detection(EventKind.HOT_SPOT, detail, spot.place))
+        return tuple(detections)
 
     def _forget(self, image: ThermalImage, spots: tuple[Spot, ...]) -> None:
         for told in self._told:

@@ -14,7 +14,7 @@ from argo_env.robot.pose import BodyPose
 from argo_env.seeding import generator
 from argo_env.sensing.signals.frames import NOSE, on_site, point
 from argo_env.sensing.signals.microphone import NEAREST, Microphone, hear, pump_places
-from argo_env.sensing.watch import Finding
+from argo_env.sensing.watch import Detection
 from argo_env.site import Site
 from argo_env.site.shapes import Vector
 from argo_env.surroundings.sound import BEARING_ORDER, RATE, shaft_rate
@@ -64,7 +64,7 @@ class Baseline:
 
 
 @dataclass(frozen=True)
-class Look:
+class AbnormalRecording:
     """One abnormal recording."""
 
     ear: Vector
@@ -129,11 +129,11 @@ class PumpWatch:
     def __init__(self, microphone: Microphone, site: Site) -> None:
         self._microphone = microphone
         self._places = pump_places(site)
-        self._looks: deque[Look] = deque(maxlen=LOOKS)
+        self._looks: deque[AbnormalRecording] = deque(maxlen=LOOKS)
         self._told: dict[str, int] = {}
         """how many recordings beside it have been normal since"""
 
-    def look(self, now: float, pose: BodyPose) -> tuple[Finding, ...]:
+    def look(self, now: float, pose: BodyPose) -> tuple[Detection, ...]:
         ear = point(on_site(pose, NOSE))
         if all(math.dist(ear, place) > NEAR for place in self._places.values()):
             self._looks.clear()
@@ -150,17 +150,17 @@ class PumpWatch:
             self._looks.clear()
             self._forget(ear)
             return ()
-        self._looks.append(Look(ear, normal, heard - normal, envelope(samples)))
+        self._looks.append(AbnormalRecording(ear, normal, heard - normal, envelope(samples)))
         self._told = dict.fromkeys(self._told, 0)
         if len(self._looks) < ENOUGH:
             return ()
         return tuple(
-            self._finding(name)
+            self._detection(name)
             for name in culprits(tuple(self._looks), self._places, baseline)
             if name not in self._told
         )
 
-    def _finding(self, pump: str) -> Finding:
+    def _detection(self, pump: str) -> Detection:
         alone = not self._told
         self._told[pump] = 0
         rate = BEARING_ORDER * shaft_rate(pump) * RECORDING
@@ -172,7 +172,7 @@ class PumpWatch:
         impacts = alone and swell > BEARING_SHARE
         how = "with impacts as of a bearing" if impacts else "louder over 2 kHz"
         detail = f"{pump} sounds {how}"
-        return Finding(EventKind.ABNORMAL_SOUND, detail, self._places[pump])
+        return Detection(EventKind.ABNORMAL_SOUND, detail, self._places[pump])
 
     def _forget(self, ear: Vector) -> None:
         """A normal recording was taken here: counts for the pumps that stand beside."""
@@ -181,7 +181,9 @@ class PumpWatch:
         self._told = {name: count for name, count in self._told.items() if count < QUIET}
 
 
-def culprits(looks: tuple[Look, ...], places: dict[str, Vector], baseline: Baseline) -> list[str]:
+def culprits(
+    looks: tuple[AbnormalRecording, ...], places: dict[str, Vector], baseline: Baseline
+) -> list[str]:
     """The pumps near enough to be told without whose fault the looks can't be explained."""
     ears = [look.ear for look in looks]
     away = {name: min(math.dist(ear, place) for ear in ears) for name, place in places.items()}

@@ -30,8 +30,8 @@ YAW_ERROR, PITCH_ERROR = math.radians(0.3), math.radians(0.1)
 _STEPS = 0.025 * np.arange(-3, 4)
 _RISES = 0.015 * np.arange(-1, 2)
 ELSEWHERE = np.stack(np.meshgrid(_STEPS, _STEPS, _RISES), axis=-1).reshape(-1, 3)
-"""m: where else the robot may be; what the map explains from any of these places is no finding. Up
-and down too, for rays that pass just over the edges of treads"""
+"""m: where else the robot may be; what the map explains from any of these places is no detection.
+Up and down too, for rays that pass just over the edges of treads"""
 PLANAR = 0.035  # m off the plane that the robot stands on within which the lane is as it should be
 RAISED, SUNK = 0.05, 0.08
 """m above or below all that the map lets expect from which something is wrong"""

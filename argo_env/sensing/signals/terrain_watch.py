@@ -19,7 +19,7 @@ from argo_env.sensing.signals.terrain_scanner import (
     TerrainScanner,
     make_pattern,
 )
-from argo_env.sensing.watch import Finding
+from argo_env.sensing.watch import Detection
 from argo_env.site.spec import Rect
 
 ROW, ROWS, COLUMNS = 0.12, 16, 7
@@ -32,7 +32,7 @@ TURNING_ROWS, TURNING_REACH = 9, 1.7
 CLOSE_ROW, CLOSE_ROWS, CLOSE_COLUMNS = 0.08, 25, 11
 """the second look that every suspicion gets"""
 RAISED_RAYS, SUNK_RAYS = 3, 6
-"""rays side by side in the second look that make a finding"""
+"""rays side by side in the second look that make a detection"""
 SUNK_ROWS = 2  # rows that a hole spans at least: a single one looks through the seam of two plates
 GONE = 2  # rays that show where something was that it is gone, in each of as many looks
 PADDING = 0.05  # m around what the rays have struck, as they are 8 cm apart
@@ -44,7 +44,7 @@ EIGHT = np.ones((3, 3), dtype=int)  # neighbours, diagonals included
 
 
 @dataclass(frozen=True, kw_only=True)
-class ObstacleFinding(Finding):
+class ObstacleDetection(Detection):
     """Something in the way or missing from it, with the part of the surface to keep off."""
 
     blockage: Blockage
@@ -76,7 +76,7 @@ class TerrainWatch:
         self._backwards = False
         self._seen_far = False
 
-    def look(self, now: float, pose: BodyPose) -> tuple[ObstacleFinding, ...]:
+    def look(self, now: float, pose: BodyPose) -> tuple[ObstacleDetection, ...]:
         pattern = self._pattern(now, pose)
         if pattern is None:
             return ()
@@ -86,7 +86,7 @@ class TerrainWatch:
             return ()
         close = make_pattern(self._backwards, CLOSE_ROW, CLOSE_ROWS, CLOSE_COLUMNS)
         scan = self._scanner.scan(pose, close)
-        return tuple(f for kind in _KINDS for f in self._findings(scan, kind))
+        return tuple(f for kind in _KINDS for f in self._detections(scan, kind))
 
     def _pattern(self, now: float, pose: BodyPose) -> Pattern | None:
         """Where to look: at what has come into view since the last look, if anything."""
@@ -122,12 +122,12 @@ class TerrainWatch:
                 found = found & ~_inside(places, told.rect, told.z, KNOWN)
         return found
 
-    def _findings(self, scan: Scan, kind: EventKind) -> list[ObstacleFinding]:
+    def _detections(self, scan: Scan, kind: EventKind) -> list[ObstacleDetection]:
         _, places = _evidence(scan, kind)
         new = self._new(scan, kind)
         # Grown by one ray, as what is narrow is hit in every other row only.
         parts, count = label(binary_dilation(new, EIGHT), structure=EIGHT)
-        findings = []
+        detections = []
         for part in range(1, count + 1):
             rays = new & (parts == part)
             if rays.sum() < (RAISED_RAYS if kind is EventKind.POSITIVE_OBSTACLE else SUNK_RAYS):
@@ -144,9 +144,9 @@ class TerrainWatch:
             z, height = round(z, 3), float(scan.hits[rays][:, 2].max()) - z
             if kind is EventKind.POSITIVE_OBSTACLE and height < RAISED:
                 continue  # an edge that is not quite where it is believed to be
-            findings.append(_finding(kind, (x0, y0, x1, y1), z, height))
+            detections.append(_detection(kind, (x0, y0, x1, y1), z, height))
             self._told.append(_Told(kind, (x0, y0, x1, y1), z))
-        return findings
+        return detections
 
     def _forget(self, scan: Scan) -> None:
         """Drops what was told and is gone: seen twice without a sign of it."""
@@ -182,7 +182,7 @@ def _inside(places: NDArray[np.float64], rect: Rect, z: float, margin: float) ->
     )
 
 
-def _finding(kind: EventKind, rect: Rect, z: float, height: float) -> ObstacleFinding:
+def _detection(kind: EventKind, rect: Rect, z: float, height: float) -> ObstacleDetection:
     x0, y0, x1, y1 = rect
     size = f"{x1 - x0:.2f} m by {y1 - y0:.2f} m"
     if kind is EventKind.POSITIVE_OBSTACLE:
@@ -190,4 +190,4 @@ def _finding(kind: EventKind, rect: Rect, z: float, height: float) -> ObstacleFi
     else:
         detail = f"a part of the way is missing, {size}"
     place = point(np.array([(x0 + x1) / 2, (y0 + y1) / 2, z]))
-    return ObstacleFinding(kind, detail, place, blockage=Blockage(rect, z, detail))
+    return ObstacleDetection(kind, detail, place, blockage=Blockage(rect, z, detail))

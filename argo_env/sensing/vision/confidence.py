@@ -14,7 +14,7 @@ _CEILING = 0.995  # no number of pictures makes surer than this
 
 
 @dataclass(frozen=True)
-class Reading:
+class PictureReading:
     """What one picture says."""
 
     share: float
@@ -38,7 +38,7 @@ def probability(fit: Fit, pointing: Pointing, cosine: float) -> float:
     return 1.0 / (1.0 + math.exp(-score))
 
 
-def combine(readings: Sequence[Reading]) -> Reading | None:
+def combine(readings: Sequence[PictureReading]) -> PictureReading | None:
     """The share that the readings speak for, and how probable it is; None if there are none.
 
     Bayes' rule over "this group of like readings is right and the others are wrong" and "all are
@@ -48,7 +48,7 @@ def combine(readings: Sequence[Reading]) -> Reading | None:
         return None
     best: tuple[float, float] = (-1.0, 0.0)
     total = math.prod(1.0 - r.probability for r in readings)
-    groups: list[tuple[float, list[Reading]]] = []
+    groups: list[tuple[float, list[PictureReading]]] = []
     for leader in readings:
         group = [r for r in readings if abs(r.share - leader.share) <= TOLERANCE]
         if any(leader in known for _, known in groups):
@@ -62,4 +62,4 @@ def combine(readings: Sequence[Reading]) -> Reading | None:
         share = sum(r.share * r.probability for r in group) / sum(r.probability for r in group)
         if weight / total > best[0]:
             best = (weight / total, share)
-    return Reading(best[1], min(best[0], _CEILING))
+    return PictureReading(best[1], min(best[0], _CEILING))

@@ -14,7 +14,7 @@ from argo_env.sensing.sensor import Measurement, MeasurementError, PoorViewError
 from argo_env.sensing.vision.align import FacePose, Fit, Photo
 from argo_env.sensing.vision.arm import JOINTS
 from argo_env.sensing.vision.camera import Lens, take_picture
-from argo_env.sensing.vision.confidence import Reading, combine, probability
+from argo_env.sensing.vision.confidence import PictureReading, combine, probability
 from argo_env.sensing.vision.dial import DIAL
 from argo_env.sensing.vision.indicator import find_indicator
 from argo_env.sensing.vision.instrument import Instrument
@@ -125,7 +125,7 @@ class _Look:
         self._solids = solids
         self._rng = rng
         self._used: list[NDArray[np.float64]] = []
-        self._readings: list[Reading] = []
+        self._readings: list[PictureReading] = []
         self.pictures = 0
         self.brightest = 1.0
         """of full scale, the bright parts of the brightest picture"""
@@ -154,7 +154,7 @@ class _Look:
                 break
         return best if best is not None and best.match > _FOUND else None
 
-    def read(self, found: Fit, planned: FacePose) -> Reading | None:
+    def read(self, found: Fit, planned: FacePose) -> PictureReading | None:
         """Reads the face that was found, from as many views as it takes to be sure."""
         best = found
         for _ in range(_LOOKS):
@@ -187,7 +187,7 @@ class _Look:
         pointing = find_indicator(photo, self._instrument, fit.pose)
         if pointing is not None:
             sure = probability(fit, pointing, cosine)
-            self._readings.append(Reading(pointing.share, sure))
+            self._readings.append(PictureReading(pointing.share, sure))
 
     def _is_new(self, view: ArmView, planned: FacePose) -> bool:
         """Whether it is not nearly from where the camera has looked before."""

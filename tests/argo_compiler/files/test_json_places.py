@@ -8,7 +8,7 @@ from hypothesis import strategies as st
 
 from argo_compiler.diagnostics.subject import parse_subject
 from argo_compiler.files.json_places import (
-    Text,
+    JsonText,
     find_duplicates,
     find_places,
     format_path,
@@ -35,7 +35,7 @@ def paths(data, at=()):
 def test_what_stands_at_a_place_is_the_value_of_its_path(data, layout, ascii):
     text = json.dumps(data, ensure_ascii=ascii, **layout)
     everything = dict(paths(data))
-    places = find_places(Text(text), everything)
+    places = find_places(JsonText(text), everything)
     lines = text.split("\n")
     for path, value in everything.items():
         span = places[path]
@@ -61,11 +61,11 @@ def split_key(shown):
 @settings(deadline=None, max_examples=100)
 @given(DATA, LAYOUTS)
 def test_written_data_have_no_duplicates(data, layout):
-    assert find_duplicates(Text(json.dumps(data, **layout)), 9) == {}
+    assert find_duplicates(JsonText(json.dumps(data, **layout)), 9) == {}
 
 
 def test_a_path_that_does_not_exist_is_placed_where_it_would_be():
-    text = Text('{"tasks": [\n  {"name": "A"}\n]}')
+    text = JsonText('{"tasks": [\n  {"name": "A"}\n]}')
     places = find_places(text, [("tasks", 0, "pose", "x"), ("tasks", 7), ("dock",)])
     assert (places["tasks", 0, "pose", "x"].line, places["tasks", 0, "pose", "x"].column) == (2, 4)
     assert places["tasks", 7].line == 1
@@ -73,7 +73,7 @@ def test_a_path_that_does_not_exist_is_placed_where_it_would_be():
 
 
 def test_duplicates_are_found_at_any_depth_and_in_any_spelling():
-    text = Text('{"a": 1, "b": [{"c": 1,\n "\\u0063": 2, "d": {"c": 3}}],\n"a": {"a": 0}}')
+    text = JsonText('{"a": 1, "b": [{"c": 1,\n "\\u0063": 2, "d": {"c": 3}}],\n"a": {"a": 0}}')
     found = find_duplicates(text, 9)
     assert {path: (s.line, s.column) for path, s in found.items()} == {
         ("b", 0, "c"): (1, 17),
@@ -91,5 +91,5 @@ def test_paths_are_written_and_read_back(path):
 
 
 def test_depth_costs_nothing():
-    text = Text('{"a": ' + "[" * 100_000 + "]" * 100_000 + "}")
+    text = JsonText('{"a": ' + "[" * 100_000 + "]" * 100_000 + "}")
     assert find_places(text, [("a", 0, 0)])["a", 0, 0].column == 9

@@ -7,7 +7,7 @@ from argo_compiler.hfsm import (
     ActionSucceeded,
     Executor,
     Hfsm,
-    Transition,
+    StateTransition,
     TransitionKind,
     lower,
 )
@@ -47,18 +47,18 @@ def test_hierarchy(nested):
 def test_rounds_end_from_the_inside_out(nested):
     hfsm = lower(nested)
     end = hfsm.leaves[2]
-    assert end.transitions == (Transition(kind=TransitionKind.DEFAULT, completes="group:G/H"),)
+    assert end.transitions == (StateTransition(kind=TransitionKind.DEFAULT, completes="group:G/H"),)
     _, outer, inner = hfsm.composites
     assert inner.transitions == (
-        Transition(kind=TransitionKind.REPEAT, target="task:B", domain="group:G/H"),
-        Transition(kind=TransitionKind.DEFAULT, completes="group:G"),
+        StateTransition(kind=TransitionKind.REPEAT, target="task:B", domain="group:G/H"),
+        StateTransition(kind=TransitionKind.DEFAULT, completes="group:G"),
     )
     assert inner.timeout is None
     assert outer.transitions == (
-        Transition(kind=TransitionKind.REPEAT, target="task:A", domain="group:G"),
-        Transition(kind=TransitionKind.DEFAULT, target="task:D", domain="mission"),
+        StateTransition(kind=TransitionKind.REPEAT, target="task:A", domain="group:G"),
+        StateTransition(kind=TransitionKind.DEFAULT, target="task:D", domain="mission"),
     )
-    assert outer.timeout == Transition(kind=TransitionKind.TIMEOUT, completes="group:G")
+    assert outer.timeout == StateTransition(kind=TransitionKind.TIMEOUT, completes="group:G")
 
 
 def test_task_and_group_may_have_the_same_name(build):

@@ -26,13 +26,15 @@ from argo_compiler.il import (
     Task,
     Transition,
 )
-from argo_compiler.isar import View, from_isar, read_isar, to_isar
+from argo_compiler.isar import InspectionView, from_isar, read_isar, to_isar
 from argo_compiler.model import Pose
 from tests.argo_compiler.isar.conftest import assert_isar_takes
 
 VIEWS = {
-    "1": View(pose=Pose(x=1, y=2, z=0, yaw=math.pi), target=(0.5, 2, 1.2), name="valve R25"),
-    "2": View(pose=Pose(x=3, y=2, z=2.5), target=(4, 2, 3.5)),
+    "1": InspectionView(
+        pose=Pose(x=1, y=2, z=0, yaw=math.pi), target=(0.5, 2, 1.2), name="valve R25"
+    ),
+    "2": InspectionView(pose=Pose(x=3, y=2, z=2.5), target=(4, 2, 3.5)),
 }
 CATALOG = Catalog(
     site="plant",

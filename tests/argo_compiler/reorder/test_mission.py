@@ -14,7 +14,7 @@ from argo_compiler.reorder.mission import route_problem
 from argo_compiler.reorder.requirements import Requirements
 from argo_compiler.reorder.rewriting import apply_route
 from argo_compiler.route import evaluate
-from argo_compiler.route.problem import Route
+from argo_compiler.route.problem import Tour
 from tests.argo_compiler.reorder.written import (
     OBJECTS,
     carry_out,
@@ -122,7 +122,7 @@ def test_what_is_left_out_is_not_done(mission, values, seed):
     for _, members in planned.visits.circuits:
         if not set(members) <= set(kept):
             kept = [k for k in kept if k not in members]
-    route = Route(tuple(kept))
+    route = Tour(tuple(kept))
     assume(kept and evaluate(planned.problem, route).feasible)
     changed = apply_route(planned, route)
     assert not has_errors(check(changed))

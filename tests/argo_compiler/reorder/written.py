@@ -19,8 +19,8 @@ from argo_compiler.il import (
     Transition,
 )
 from argo_compiler.model import Pose
-from argo_compiler.reorder.ways import Ways
-from argo_compiler.route import Route, evaluate
+from argo_compiler.reorder.travel_matrix import TravelMatrix
+from argo_compiler.route import Tour, evaluate
 
 HERE, DOCK = Pose(x=0, y=0, z=0), Pose(x=9, y=9, z=0)
 OBJECTS = ("1", "2", "3", "4")
@@ -181,7 +181,7 @@ def random_ways(mission, rng, most=20):
     n = len(names)
     work = np.array([float(rng.integers(0, 3)) if name.startswith("M") else 0.0 for name in names])
     time = rng.integers(1, most, (n + 1, n)) + work
-    return Ways(names, time, time / 10.0, work, unit=1.0)
+    return TravelMatrix(names, time, time / 10.0, work, unit=1.0)
 
 
 @dataclass
@@ -237,6 +237,6 @@ def shuffled(planned, rng, swaps=30):
         a, b = blocks[k], blocks[k + 1]
         swapped = order[: a[0]] + order[b[0] : b[-1] + 1] + order[a[0] : a[-1] + 1]
         swapped += order[b[-1] + 1 :]
-        if evaluate(planned.problem, Route(tuple(swapped))).feasible:
+        if evaluate(planned.problem, Tour(tuple(swapped))).feasible:
             order = swapped
-    return Route(tuple(order))
+    return Tour(tuple(order))

@@ -2,7 +2,7 @@
 
 from itertools import permutations
 
-from argo_compiler.route import Objective, Route, RouteProblem, evaluate
+from argo_compiler.route import Objective, RouteProblem, Tour, evaluate
 from argo_compiler.route.evaluation import _State, _Walk
 
 
@@ -14,7 +14,7 @@ def brute_force(problem: RouteProblem) -> tuple[int, int] | None:
 class _Search:
     def __init__(self, problem: RouteProblem) -> None:
         self._problem = problem
-        self._walk = _Walk(problem, Route(()))
+        self._walk = _Walk(problem, Tour(()))
         self.best: tuple[int, int] | None = None
         self._spans = self._outermost()
         used = 0 if problem.battery is None else problem.battery.used
@@ -71,7 +71,7 @@ class _Search:
 
         def again(order: tuple[int, ...]) -> int:
             part = tuple(visit for visit in order if visit in members)
-            walk = _Walk(self._problem, Route(()))
+            walk = _Walk(self._problem, Tour(()))
             once = walk._one_round(_State(0, 0, frozenset([part[0]])), number, part)
             return walk._one_round(_State(0, 0, once.places), number, part).time
 
@@ -91,7 +91,7 @@ class _Search:
             if made.isdisjoint(span):
                 for charger in chargers:
                     walk._violations, waiting, arrivals = [], walk._waiting, dict(walk._arrivals)
-                    walk._route = Route((), {} if charger is None else {0: charger})
+                    walk._route = Tour((), {} if charger is None else {0: charger})
                     there = walk._charge(state, 0)
                     whole = walk._outermost(span[0])
                     there = (
@@ -111,7 +111,7 @@ class _Search:
             return
         for charger in [None, *range(len(problem.chargers))]:
             last = {} if charger is None else {len(order): charger}
-            worth = evaluate(problem, Route(order, charges | last))
+            worth = evaluate(problem, Tour(order, charges | last))
             if worth.feasible:
                 cost = worth.cost(problem.objective)
                 prize = worth.prize

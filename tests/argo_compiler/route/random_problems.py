@@ -4,7 +4,7 @@ import numpy as np
 
 from argo_compiler.route import (
     NEVER,
-    Battery,
+    EnergyBudget,
     Objective,
     Precedence,
     Round,
@@ -53,7 +53,7 @@ def random_problem(rng: np.random.Generator, most: int = 8) -> RouteProblem:
     if charged:
         energy = np.minimum(travel + rng.integers(0, 30, travel.shape), NEVER)
         energy[travel == NEVER] = 0
-        battery = Battery(
+        battery = EnergyBudget(
             energy,
             int(rng.integers(150, 300)) + 30 * n,
             int(rng.integers(0, 60)),

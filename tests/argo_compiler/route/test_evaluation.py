@@ -6,12 +6,12 @@ import pytest
 from argo_compiler.errors import ArgoError
 from argo_compiler.route import (
     NEVER,
-    Battery,
+    EnergyBudget,
     Objective,
     Precedence,
     Round,
-    Route,
     RouteProblem,
+    Tour,
     Visit,
     evaluate,
 )
@@ -29,7 +29,7 @@ A, B, C = (Visit(name, service=2, prize=k + 1) for k, name in enumerate("ABC"))
 
 
 def test_travel_and_service() -> None:
-    worth = evaluate(line(A, B, C), Route((2, 0, 1)))
+    worth = evaluate(line(A, B, C), Tour((2, 0, 1)))
     assert worth.feasible
     assert worth.arrivals == (30, 52, 64)
     assert worth.duration == 30 + 2 + 20 + 2 + 10 + 2 + 20
@@ -39,7 +39,7 @@ def test_travel_and_service() -> None:
 def test_a_robot_that_is_early_waits_and_one_that_is_late_is_told() -> None:
     early = Visit("A", 2, earliest=25, latest=40)
     late = Visit("B", 2, latest=24)
-    worth = evaluate(line(early, late), Route((0, 1)))
+    worth = evaluate(line(early, late), Tour((0, 1)))
     assert worth.waiting == 15
     assert worth.arrivals == (25, 37)
     assert worth.violations == ("B is begun at 37, after 24",)
@@ -49,24 +49,24 @@ def test_a_robot_that_is_early_waits_and_one_that_is_late_is_told() -> None:
 def test_a_round_is_driven_as_often_as_asked_for() -> None:
     problem = line(A, B, C, rounds=(Round("round 1", (0, 1), repeat=3),))
     # In: 10, then A, 10, B; twice more: back 10, A, 10, B; on to C and home.
-    assert evaluate(problem, Route((0, 1, 2))).duration == 10 + 14 + 2 * (10 + 14) + 12 + 30
+    assert evaluate(problem, Tour((0, 1, 2))).duration == 10 + 14 + 2 * (10 + 14) + 12 + 30
 
 
 def test_a_round_with_a_duration_is_left_when_it_is_over() -> None:
     hard = line(A, B, C, rounds=(Round("round 1", (0, 1), repeat=0, duration=60),))
     # Wherever it then is: C is 20 from A and 10 from B, so 20 is reckoned with.
-    assert evaluate(hard, Route((0, 1, 2))).duration == 60 + 20 + 2 + 30
+    assert evaluate(hard, Tour((0, 1, 2))).duration == 60 + 20 + 2 + 30
     soft = line(A, B, C, rounds=(Round("round 1", (0, 1), repeat=0, duration=60, soft=True),))
     # Rounds end at 24, 48 and 72.
-    assert evaluate(soft, Route((0, 1, 2))).duration == 72 + 10 + 2 + 30
+    assert evaluate(soft, Tour((0, 1, 2))).duration == 72 + 10 + 2 + 30
 
 
 def test_a_charge_takes_what_it_gives_back() -> None:
     energy = np.abs(np.subtract.outer([10, 20, 0, 5], [10, 20, 0, 5])).astype(np.int64)
-    battery = Battery(energy, capacity=40, used=8, overhead=3)
+    battery = EnergyBudget(energy, capacity=40, used=8, overhead=3)
     problem = line(A, B, chargers=1, battery=battery)
-    assert evaluate(problem, Route((0, 1))).violations == ("the battery is empty",)
-    worth = evaluate(problem, Route((0, 1), {0: 0}))
+    assert evaluate(problem, Tour((0, 1))).violations == ("the battery is empty",)
+    worth = evaluate(problem, Tour((0, 1), {0: 0}))
     # To the charger 5; 13 used: charges 16 with its overhead; 5 on to A.
     assert worth.feasible
     assert worth.arrivals[0] == 5 + 3 + 13 + 5
@@ -82,21 +82,21 @@ def test_a_charge_takes_what_it_gives_back() -> None:
 )
 def test_what_a_route_breaks_is_named(order: tuple[int, ...], violation: str) -> None:
     problem = line(A, B, C, precedences=(Precedence((0, 1), "A before B"),))
-    assert violation in evaluate(problem, Route(order)).violations
+    assert violation in evaluate(problem, Tour(order)).violations
 
 
 def test_what_is_needed_must_be_made_and_what_only_comes_before_need_not() -> None:
     some = tuple(Visit(name, 2, mandatory=False) for name in "AB")
     loose = line(*some, precedences=(Precedence((0, 1), "A before B"),))
-    assert evaluate(loose, Route((1,))).feasible
+    assert evaluate(loose, Tour((1,))).feasible
     needed = line(*some, precedences=(Precedence((0, 1), "A before B", needed=True),))
-    assert evaluate(needed, Route((1,))).violations == ("A before B: the first is left out",)
-    assert evaluate(needed, Route((0,))).feasible
+    assert evaluate(needed, Tour((1,))).violations == ("A before B: the first is left out",)
+    assert evaluate(needed, Tour((0,))).feasible
 
 
 def test_a_round_is_made_as_one() -> None:
     problem = line(A, B, C, rounds=(Round("round 1", (0, 1)),))
-    assert evaluate(problem, Route((0, 2, 1))).violations == ("round 1 is not made as one",)
+    assert evaluate(problem, Tour((0, 2, 1))).violations == ("round 1 is not made as one",)
 
 
 @pytest.mark.parametrize(

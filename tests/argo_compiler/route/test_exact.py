@@ -8,19 +8,19 @@ import pytest
 
 from argo_compiler.route import (
     NEVER,
-    Route,
+    Tour,
     evaluate,
+    held_karp,
     labels,
     portfolio,
     solving,
-    subsets,
     suggest_route,
 )
-from argo_compiler.route.circuit import solve_circuit
+from argo_compiler.route.cp_sat import solve_cp_sat
+from argo_compiler.route.first_routes import first_route
 from argo_compiler.route.network import network
-from argo_compiler.route.preparing import first_route
-from argo_compiler.route.progress import Search
 from argo_compiler.route.pruning import prune
+from argo_compiler.route.search import Search
 from tests.argo_compiler.route.brute_force import brute_force
 from tests.argo_compiler.route.random_problems import random_problem
 
@@ -86,14 +86,14 @@ def _solved(solver, net, pruned):  # type: ignore[no-untyped-def]
     clock = iter(range(10**9))
     search = Search(lambda: 0.0, 60.0, 0, 1, int(net.prize.sum()))
     if solver == "circuit":
-        return solve_circuit(net, pruned, search)
+        return solve_cp_sat(net, pruned, search)
     if solver == "times" and pruned.before.any():
         search.clock = lambda: float(next(clock))
         best, _ = first_route(net, pruned, search)
         search.clock = lambda: 0.0
-        return solve_circuit(net, pruned, search, best, timed=True)
+        return solve_cp_sat(net, pruned, search, best, timed=True)
     if solver == "labels" and labels.applies(net):
-        layers = subsets.soonest_layers(net, pruned, 10**6, lambda: False)
+        layers = held_karp.soonest_layers(net, pruned, 10**6, lambda: False)
         return labels.solve_labels(net, pruned, search, layers)
     if solver == "prices" and labels.applies(net) and not net.selective and len(net.prize):
         return labels.search_labels(net, pruned, search, None)
@@ -121,7 +121,7 @@ def test_the_time_that_is_given_is_kept_to_and_something_is_always_known() -> No
 def test_a_large_problem_gets_a_route_and_a_bound() -> None:
     problem = _grid(400)
     made = suggest_route(problem, time_limit=2.0, explain=False)
-    assert evaluate(problem, Route(made.order)).feasible
+    assert evaluate(problem, Tour(made.order)).feasible
     assert 0 < made.bound < made.cost
     assert any("too many" in reason for reason in made.reasons)
 
@@ -158,7 +158,7 @@ def test_of_a_round_with_many_members_nothing_is_claimed() -> None:
     grid = _grid(12)
     problem = replace(grid, rounds=(Round("patrol", tuple(range(11)), repeat=2),))
     made = suggest_route(problem, time_limit=5.0, explain=False)
-    assert evaluate(problem, Route(made.order)).feasible
+    assert evaluate(problem, Tour(made.order)).feasible
     assert not made.proven
     assert made.bound == 0
     assert any("too many members" in reason for reason in made.reasons)

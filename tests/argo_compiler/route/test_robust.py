@@ -13,12 +13,12 @@ from scipy.stats import binom, norm
 from argo_compiler.errors import ArgoError
 from argo_compiler.route import (
     NEVER,
-    Battery,
+    EnergyBudget,
     Objective,
     Precedence,
     Round,
-    Route,
     RouteProblem,
+    Tour,
     Visit,
     evaluate,
 )
@@ -40,7 +40,7 @@ def chain(legs, service=0, **limits):
     for k, leg in enumerate(legs):
         travel[k - 1 if k else n, k] = leg
     problem = RouteProblem(tuple(Visit(f"{k}", service) for k in range(n)), travel, **limits)
-    return problem, Route(tuple(range(n)))
+    return problem, Tour(tuple(range(n)))
 
 
 def probability(problem, route, samples=SAMPLES, seed=1, **spread):
@@ -75,7 +75,7 @@ def routes(draw):
             for k in range(len(order) + 1)
             if rng.random() < 0.3
         }
-    return problem, Route(tuple(order), charges)
+    return problem, Tour(tuple(order), charges)
 
 
 @settings(deadline=None, max_examples=examples(150))
@@ -94,10 +94,10 @@ def test_what_is_torn_or_left_out_is_not_completed():
     problem = replace(problem, visits=(*problem.visits, Visit("2")), travel=np.zeros((4, 4), int))
     whole = replace(problem, rounds=(Round("round", (0, 2)),))
     for order, done in [((0, 1, 2), 0.0), ((1, 2, 0), 1.0), ((0, 1), 0.0), ((2, 2, 0, 1), 0.0)]:
-        assert probability(whole, Route(order), samples=2).probability == done
+        assert probability(whole, Tour(order), samples=2).probability == done
     ordered = replace(problem, precedences=(Precedence((2, 0), "2 before 0"),))
     for order, done in [((0, 1, 2), 0.0), ((1, 2, 0), 1.0)]:
-        assert probability(ordered, Route(order), samples=2).probability == done
+        assert probability(ordered, Tour(order), samples=2).probability == done
 
 
 @settings(deadline=None, max_examples=examples(40))
@@ -162,7 +162,7 @@ def test_waiting_takes_up_delays():
 def test_an_empty_battery_ends_a_route():
     problem, route = chain([100, 100])
     energy = np.where(problem.travel == NEVER, 0, problem.travel)
-    powered = replace(problem, battery=Battery(energy, capacity=230))
+    powered = replace(problem, battery=EnergyBudget(energy, capacity=230))
     expected = log_normal(1.15, 0.2)
     found = probability(powered, route, common=0.2).probability
     assert found == pytest.approx(expected, abs=NEAR)
@@ -239,7 +239,7 @@ def test_near_the_surest_of_all_orders(seed):
     )
     found = suggest_robust_route(problem, CAUTIOUS, time_limit=2.0, seed=seed, confidence=1.0)
     draws = Draws(CAUTIOUS, 2000, rng)
-    every = [completion(problem, Route(order), draws) for order in permutations(range(5))]
+    every = [completion(problem, Tour(order), draws) for order in permutations(range(5))]
     best = max(one.probability for one in every)
     assert 0.2 < best < 1.0
     assert completion(problem, found.route, draws).probability >= best - 0.01

@@ -10,7 +10,7 @@ from hypothesis import strategies as st
 from argo_compiler.catalog import Catalog
 from argo_compiler.script import import_script
 from argo_compiler.script.syntax.protocol import protocol_grammar
-from argo_compiler.script.syntax.shapes import Branch, Leaf, StumbleError, Syntax
+from argo_compiler.script.syntax.shapes import StumbleError, Syntax, SyntaxNode, SyntaxToken
 from argo_compiler.script.syntax.sheet import sheet_grammar
 from argo_compiler.script.syntax.statements import Grammar, lower
 
@@ -49,10 +49,10 @@ PIECES = st.sampled_from(NUMBERS + WORDS + SIGNS) | st.text(max_size=3)
 def flat(syntax: Syntax) -> list[tuple[str, int, int, int]]:
     """The tree's rules and tokens, each with its depth and place."""
     found = []
-    waiting: list[tuple[Branch | Leaf, int]] = [(syntax.root, 0)]
+    waiting: list[tuple[SyntaxNode | SyntaxToken, int]] = [(syntax.root, 0)]
     while waiting:
         node, depth = waiting.pop()
-        kind = node.rule if isinstance(node, Branch) else node.type
+        kind = node.rule if isinstance(node, SyntaxNode) else node.type
         found.append((kind, depth, syntax.positions[node.start], syntax.positions[node.end]))
         waiting += [(c, depth + 1) for c in getattr(node, "children", ())]
     return found

@@ -16,7 +16,7 @@ from argo_env.envs.route import RouteEnv
 from argo_env.envs.route_batch import RouteVectorEnv
 from argo_env.envs.route_instance import make_instance
 from argo_env.pictures.drawing.floors import aisles, open_floors, plans_of
-from argo_env.pictures.drawing.plan import Marker, PlanDrawing, Station, draw_plan
+from argo_env.pictures.drawing.plan import Marker, PlanDrawing, StationMark, draw_plan
 from argo_env.pictures.drawing.sheet import FINER, FOOT, HEAD, SIZE, make_sheet
 from argo_env.pictures.drawing.spots import Spots
 from argo_env.pictures.drawing.style import POINT, ROBOT, STYLES
@@ -211,7 +211,7 @@ def test_the_footprint_is_drawn_to_scale():
 def test_the_name_of_a_dock_is_not_covered(navigator):
     """By the robot, the way or the checkpoints: it is there as a whole, in every such picture."""
     sheet = make_sheet(aisles(30.0, 20.0, 1))
-    dock = Station(15.0, 10.0, 1, "dock")
+    dock = StationMark(15.0, 10.0, 1, "dock")
     crowd = [Marker(15.0 + dx, 10.0 + dy, 1, "9", "open") for dx in (-1, 1, 2) for dy in (-1, 0, 1)]
     way = [Moment(0.0, 15.0, 10.0, 1), Moment(5.0, 25.0, 10.0, 1), Moment(10.0, 15.0, 10.0, 1)]
     alone = draw(sheet, stations=[dock], headline="")

@@ -7,13 +7,13 @@ from argo_env.drives.powertrain import Powertrain
 from argo_env.drives.route import RouteDrive
 from argo_env.faults.kinds import FaultFile, settle
 from argo_env.faults.schedule import Schedule
-from argo_env.faults.stage import Stage
+from argo_env.faults.targets import FaultTargets
 from argo_env.robot.pose import BodyPose
 from argo_env.seeding import generator
 from argo_env.sensing.ideal import IdealSensor
-from argo_env.sensing.instrument import Instrument
+from argo_env.sensing.onboard_sensor import OnboardSensor
 from argo_env.surroundings import Surroundings
-from argo_env.surroundings.network import Network
+from argo_env.surroundings.network import RadioNetwork
 from argo_env.world.paper_world import PaperWorld
 
 POSE = BodyPose(5.0, 2.5, 0.0, 0.0)
@@ -22,9 +22,11 @@ POSE = BodyPose(5.0, 2.5, 0.0, 0.0)
 @pytest.fixture
 def stage(umad, robot):
     world, truth = PaperWorld(umad, robot), {c.id: 0.0 for c in umad.checkpoints}
-    sensor = Instrument(IdealSensor(world, robot, truth), umad, generator(0, "instrument"))
+    sensor = OnboardSensor(IdealSensor(world, robot, truth), umad, generator(0, "instrument"))
     drive = Powertrain(RouteDrive(robot))
-    return Stage(world, truth, Surroundings(umad), drive, sensor, Battery(robot), Network(umad))
+    return FaultTargets(
+        world, truth, Surroundings(umad), drive, sensor, Battery(robot), RadioNetwork(umad)
+    )
 
 
 def along(stage, look, times, *data):

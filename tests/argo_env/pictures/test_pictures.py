@@ -10,7 +10,7 @@ from argo_compiler.hfsm import lower
 from argo_compiler.il import Action, Mission, Task
 from argo_env.pictures import check_film, film, overview, write_film, write_overview
 from argo_env.pictures.camera import Camera
-from argo_env.pictures.motion import Motion
+from argo_env.pictures.motion import RecordedMotion
 from argo_env.pictures.scene import Scene, storeys
 from argo_env.robot.pose import BodyPose
 from argo_env.run.record import PathSample, Reading, Result, RunRecord
@@ -110,7 +110,7 @@ def test_the_robot_is_in_the_middle_of_the_frame(scene, robot):
 
 
 def test_the_arm_is_raised_while_measuring(record, robot):
-    motion = Motion(record, robot)
+    motion = RecordedMotion(record, robot)
     raised, stowed = robot.arm_raised["arm_elbow"], robot.arm_stowed["arm_elbow"]
     angles = [motion.joints(t)["arm_elbow"] for t in (3.9, 8.0, 12.1)]
     assert angles == pytest.approx([stowed, raised, stowed])
@@ -121,7 +121,9 @@ def test_flippers_lie_flat_on_stairs(record, robot):
     tilted = record.model_copy(
         update={"path": tuple(s.model_copy(update={"pitch": -0.5}) for s in record.path)}
     )
-    flat, stairs = (Motion(r, robot).joints(1.0)["left_flipper_joint"] for r in (record, tilted))
+    flat, stairs = (
+        RecordedMotion(r, robot).joints(1.0)["left_flipper_joint"] for r in (record, tilted)
+    )
     assert (flat, stairs) == (pytest.approx(30.0), 0.0)
 
 

@@ -9,7 +9,7 @@ from argo_compiler.il import Order
 from argo_compiler.model import Pose
 from argo_compiler.reorder.requirements import Requirements
 from argo_compiler.reorder.rewriting import apply_route
-from argo_compiler.route import Route, evaluate
+from argo_compiler.route import Tour, evaluate
 from argo_env.planning.route_matrix import mission_ways, plan_mission
 from argo_env.planning.travel import SiteTravel
 from argo_env.run.journal import JournalPlace, open_journal
@@ -47,8 +47,8 @@ def test_ways_between_places_take_as_long_as_driven(navigator):
     for written in (plain, slow):
         planned = plan_mission(written, navigator, Requirements())
         for order in ((0, 1, 2), (2, 0, 1), (1, 2, 0)):
-            predicted = evaluate(planned.problem, Route(order)).duration * planned.problem.unit
-            changed = apply_route(planned, Route(order))
+            predicted = evaluate(planned.problem, Tour(order)).duration * planned.problem.unit
+            changed = apply_route(planned, Tour(order))
             assert driven(changed, navigator) == pytest.approx(predicted, abs=len(order) * STEP)
 
 
@@ -56,8 +56,8 @@ def test_a_mission_with_checkpoints_takes_about_as_long(navigator):
     written = mission(measure(1), waypoint("A", 5.5, 2), measure(3), measure(2), order=Order.ANY)
     planned = plan_mission(written, navigator, Requirements())
     for order in ((0, 1, 2, 3), (3, 2, 1, 0), (1, 3, 0, 2)):
-        predicted = evaluate(planned.problem, Route(order)).duration * planned.problem.unit
-        assert driven(apply_route(planned, Route(order)), navigator) == pytest.approx(
+        predicted = evaluate(planned.problem, Tour(order)).duration * planned.problem.unit
+        assert driven(apply_route(planned, Tour(order)), navigator) == pytest.approx(
             predicted, rel=0.1
         )
 

@@ -7,7 +7,7 @@ from mcap.reader import make_reader
 from mcap_protobuf.decoder import DecoderFactory
 
 from argo_env.faults.checkpoints import DisplacedCheckpoint
-from argo_env.faults.way import Brick
+from argo_env.faults.walkway import Brick
 from tests.argo_env.recording.conftest import SETTINGS
 
 BRICK = Brick(floor=1, place=(6.2, 2.5), size=(0.3, 0.2, 0.1), yaw=30.0)

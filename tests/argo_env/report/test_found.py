@@ -8,7 +8,7 @@ import pytest
 
 from argo_compiler.il import Action, EventKind, Mission, Task, Transition
 from argo_compiler.model import Pose
-from argo_env.faults.process import GasLeakFault, PlatformAlarm
+from argo_env.faults.plant import GasLeakFault, PlatformAlarm
 from argo_env.report.charge import charge_curve
 from argo_env.report.html import page
 from argo_env.report.track import beside

@@ -23,8 +23,8 @@ from argo_env.run.runner import SETTLING, MissionRunner
 from argo_env.run.session import resume, simulate
 from argo_env.run.spec import RunSettings, logged
 from argo_env.sensing.sensor import Measurement, PoorViewError
-from argo_env.sensing.signals.terrain_watch import ObstacleFinding
-from argo_env.sensing.watch import Finding
+from argo_env.sensing.signals.terrain_watch import ObstacleDetection
+from argo_env.sensing.watch import Detection
 from tests.conftest import examples
 from tests.yard import fast_rig, measure, mission, waypoint, yard
 
@@ -63,7 +63,7 @@ def run(navigator, plan, *watches, values=None, events=(), announce=None):
 def obstacle(x, y, half=0.15, kind=EventKind.POSITIVE_OBSTACLE):
     rect = (x - half, y - half, x + half, y + half)
     blockage = Blockage(rect, 0.02, "a crate")
-    return ObstacleFinding(kind, "a crate", (x, y, 0.02), blockage=blockage)
+    return ObstacleDetection(kind, "a crate", (x, y, 0.02), blockage=blockage)
 
 
 class TestLooking:
@@ -81,7 +81,7 @@ class TestLooking:
                 assert b - a == pytest.approx(watch.period)
 
     def test_what_is_found_is_told_and_reported(self, navigator):
-        leak = Finding(EventKind.GAS_LEAK, "gas, 300 ppm", (2.0, 2.0, 0.5), 0.9)
+        leak = Detection(EventKind.GAS_LEAK, "gas, 300 ppm", (2.0, 2.0, 0.5), 0.9)
         told = []
         plan = mission(waypoint("A", 3.05, 2.05))
         record = run(navigator, plan, Scripted((4.0, leak)), announce=told.append)
@@ -94,7 +94,7 @@ class TestLooking:
         assert [s.t for s in record.trace if "gas, 300 ppm" in s.cause] == [4.0]
 
     def test_what_has_no_place_tells_from_where_it_was_noticed(self, navigator):
-        leak = Finding(EventKind.GAS_LEAK, "gas, 300 ppm", noticed_from=(2.0, 2.0, 0.5))
+        leak = Detection(EventKind.GAS_LEAK, "gas, 300 ppm", noticed_from=(2.0, 2.0, 0.5))
         record = run(navigator, mission(waypoint("A", 3.05, 2.05)), Scripted((4.0, leak)))
         (anomaly,) = record.anomalies
         assert (anomaly.place, anomaly.noticed_from, anomaly.floor) == (None, (2.0, 2.0, 0.5), 1)
@@ -109,7 +109,8 @@ class TestLooking:
             afterwards=Afterwards.RESUME,
         )  # fmt: skip
         watch = Scripted(
-            (4.0, Finding(EventKind.GAS_LEAK, "gas")), (40.0, Finding(EventKind.ALL_CLEAR, "none"))
+            (4.0, Detection(EventKind.GAS_LEAK, "gas")),
+            (40.0, Detection(EventKind.ALL_CLEAR, "none")),
         )
         plan = mission(waypoint("A", 5.05, 3.05), reactions=(shelter,), dock=DOCK)
         # Something that occurs later keeps the run from ending while it waits.
@@ -197,7 +198,7 @@ class TestObstacles:
     )
     def test_without_another_way_the_task_fails_with_the_reason(self, navigator, policy, outcome):
         rect = (3.4, 0.0, 3.6, 5.0)
-        wall = ObstacleFinding(
+        wall = ObstacleDetection(
             EventKind.NEGATIVE_OBSTACLE, "a trench", (3.5, 2.5, 0.02),
             blockage=Blockage(rect, 0.02, "a trench"),
         )  # fmt: skip
@@ -258,7 +259,7 @@ class TestResumed:
         return perception.look(round(now * 10), now, BodyPose(0, 0, 0, 0))
 
     def test_not_told_twice(self, navigator):
-        spot = Finding(EventKind.HOT_SPOT, "", (2.3, 2.2, 1.0))
+        spot = Detection(EventKind.HOT_SPOT, "", (2.3, 2.2, 1.0))
         told = [anomaly(EventKind.HOT_SPOT, 90.0, (2.0, 2.0, 1.0))]
         assert self.look(navigator, told, spot, 100.5) == ()
         assert self.look(navigator, told, spot, 300.0) == ()
@@ -269,16 +270,16 @@ class TestResumed:
         for kind, place in (
             (EventKind.HOT_SPOT, away), (EventKind.HOT_SPOT, None), (EventKind.GAS_LEAK, at)
         ):  # fmt: skip
-            assert len(self.look(navigator, told, Finding(kind, "", place), 100.5)) == 1
+            assert len(self.look(navigator, told, Detection(kind, "", place), 100.5)) == 1
         told = [anomaly(EventKind.HOT_SPOT, 90.0, at, source="another watch")]
-        assert len(self.look(navigator, told, Finding(EventKind.HOT_SPOT, "", at), 100.5)) == 1
+        assert len(self.look(navigator, told, Detection(EventKind.HOT_SPOT, "", at), 100.5)) == 1
 
     def test_a_watch_remembers_only_what_it_has_told_itself(self, navigator):
         class Remembering(Scripted):
             def remember(self, told, now):
                 self.told = [(each.kind, each.pose) for each in told], now
 
-        watch = Remembering((0.0, Finding(EventKind.ALL_CLEAR, "", (2.0, 2.0, 1.0))), period=0.1)
+        watch = Remembering((0.0, Detection(EventKind.ALL_CLEAR, "", (2.0, 2.0, 1.0))), period=0.1)
         perception = Perception((watch,), navigator.site, 0.1)
         pose = BodyPose(1, 2, 3, 0)
         own = anomaly(EventKind.ALL_CLEAR, 90.0, (2.0, 2.0, 1.0))

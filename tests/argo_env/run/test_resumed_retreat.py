@@ -5,7 +5,7 @@ import math
 import pytest
 
 from argo_compiler.il import Action, Mission, Task, Transition
-from argo_env.faults.way import Brick
+from argo_env.faults.walkway import Brick
 from argo_env.run.journal import JournalPlace, open_journal
 from argo_env.run.record import Anomaly
 from argo_env.run.session import resume, simulate

@@ -11,7 +11,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from argo_compiler.errors import ArgoError
-from argo_compiler.route import NEVER, Objective, Route, evaluate
+from argo_compiler.route import NEVER, Objective, Tour, evaluate
 from argo_compiler.route.suggest import suggest_route
 from benchmarks.instances import Kind, read_known_route, read_route_problem
 from benchmarks.instances.text import MAX_NODES
@@ -274,7 +274,7 @@ def test_spoilt_files_are_read_or_refused(tmp_path_factory, data):
         named = read(tmp_path_factory.mktemp("x"), text)
     except ArgoError:
         return
-    evaluate(named.problem, Route(tuple(range(named.problem.size))))
+    evaluate(named.problem, Tour(tuple(range(named.problem.size))))
 
 
 ORIGINALS = os.environ.get("ARGO_ROUTES")

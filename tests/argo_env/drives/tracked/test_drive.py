@@ -8,7 +8,7 @@ import pytest
 from argo_compiler.model import Pose
 from argo_env.drives.drive import DriveStatus, Trouble
 from argo_env.drives.tracked.drive import TrackedDrive
-from argo_env.drives.tracked.watch import WINDOW, Watch
+from argo_env.drives.tracked.stall_watch import WINDOW, StallWatch
 from argo_env.navigation.path import Motion, Path, wrap
 from argo_env.robot.pose import BodyPose
 
@@ -223,14 +223,14 @@ def look(watch, speeds, moved, rate=0.0, turned=0.0):
     ],
 )
 def test_watch_compares_ways(commanded, went, trouble):
-    assert look(Watch(0.05), commanded, went) is trouble
+    assert look(StallWatch(0.05), commanded, went) is trouble
 
 
 @pytest.mark.parametrize(
     ("turned", "trouble"), [(0.38, None), (0.1, Trouble.SLIPPING), (0.0, Trouble.STUCK)]
 )
 def test_watch_compares_turns(turned, trouble):
-    assert look(Watch(0.05), 0.0, 0.0, rate=0.4, turned=turned) is trouble
+    assert look(StallWatch(0.05), 0.0, 0.0, rate=0.4, turned=turned) is trouble
 
 
 def test_twins_drive_the_same_bit_by_bit(drive, ground, robot, navigator):

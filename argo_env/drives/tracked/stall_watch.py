@@ -27,7 +27,7 @@ class _Sample:
     """rad, the same"""
 
 
-class Watch:
+class StallWatch:
     """Looks back over the last seconds. Holds where the robot was and what was commanded."""
 
     def __init__(self, period: float) -> None:

@@ -12,7 +12,7 @@ _HEALTHY_NOISE = 0.001  # of the scale, in the picture of the test pattern
 _SHOTS = 8  # pictures of the test pattern in one self-test
 
 
-class Instrument:
+class OnboardSensor:
     """A sensor that may fail. Holds how it stands; faults change that."""
 
     def __init__(self, sensor: Sensor, site: Site, rng: np.random.Generator) -> None:

@@ -28,7 +28,7 @@ class Requirement:
 
 
 @dataclass(frozen=True)
-class Clash:
+class InfeasibleSubset:
     """Requirements that can't all be met, though each part of them can."""
 
     words: tuple[str, ...]
@@ -126,11 +126,11 @@ def reduced(problem: RouteProblem, wanted: list[Requirement]) -> RouteProblem:
     )
 
 
-def find_clash(
+def find_infeasible_subset(
     problem: RouteProblem,
     possible: Callable[[RouteProblem], bool | None],
     most_checks: int = 200,
-) -> Clash | None:
+) -> InfeasibleSubset | None:
     """As few requirements as possible that can't all be met with all that must be visited, and as
     few of those visits as possible. `possible` says whether a problem has a route, None if that is
     not known; it is called about twice `most_checks` times at most, after which there may be
@@ -139,20 +139,20 @@ def find_clash(
     visits = [one for one in asked if one.kind == "visit"]
     rest = [one for one in asked if one.kind != "visit"]
     finder = _Finder(rest, lambda some: possible(reduced(problem, visits + some)), most_checks)
-    clash = finder.clash()
-    if clash is None:
+    infeasible_subset = finder.infeasible_subset()
+    if infeasible_subset is None:
         return None
-    some, smallest = clash
+    some, smallest = infeasible_subset
     finder = _Finder(visits, lambda more: possible(reduced(problem, more + some)), most_checks)
-    clash = finder.clash()
-    if clash is None:
+    infeasible_subset = finder.infeasible_subset()
+    if infeasible_subset is None:
         return None
-    needed, fewest = clash
+    needed, fewest = infeasible_subset
     named = {visit for one in some for visit in _named(problem, one)}
     words = [
         one.words for one in [*needed, *some] if one.kind != "visit" or one.number not in named
     ]
-    return Clash(tuple(words), smallest and fewest)
+    return InfeasibleSubset(tuple(words), smallest and fewest)
 
 
 def _named(problem: RouteProblem, requirement: Requirement) -> tuple[int, ...]:
@@ -184,7 +184,7 @@ class _Finder:
         self._clashing: list[Kept] = []
         self._unknown = False
 
-    def clash(self) -> tuple[list[Requirement], bool] | None:
+    def infeasible_subset(self) -> tuple[list[Requirement], bool] | None:
         """The part, and whether there is no smaller one; None: all can be met, or it is not
         known."""
         everything = frozenset(range(len(self._asked)))
@@ -201,14 +201,14 @@ class _Finder:
             to_hit.append(everything - self._filled(smallest))
         return self._told(small), False
 
-    def _told(self, clash: Kept) -> list[Requirement]:
-        return [self._asked[k] for k in sorted(clash)]
+    def _told(self, infeasible_subset: Kept) -> list[Requirement]:
+        return [self._asked[k] for k in sorted(infeasible_subset)]
 
     def _clashes(self, kept: Kept) -> bool:
         """Whether it is known that they can't all be met."""
         if any(kept <= met for met in self._met):
             return False
-        if any(clash <= kept for clash in self._clashing):
+        if any(infeasible_subset <= kept for infeasible_subset in self._clashing):
             return True
         self._checks += 1
         answer = self._possible(self._told(kept))
@@ -219,12 +219,12 @@ class _Finder:
             self._met.append(kept)
         return answer is False
 
-    def _spared(self, clash: Kept) -> Kept:
-        """A part of a clash of which nothing more can be spared."""
-        for part in sorted(clash):
-            if part in clash and self._clashes(clash - {part}):
-                clash = clash - {part}
-        return clash
+    def _spared(self, infeasible_subset: Kept) -> Kept:
+        """A part of an infeasible subset of which nothing more can be spared."""
+        for part in sorted(infeasible_subset):
+            if part in infeasible_subset and self._clashes(infeasible_subset - {part}):
+                infeasible_subset = infeasible_subset - {part}
+        return infeasible_subset
 
     def _filled(self, met: Kept) -> Kept:
         """A largest part around one that can be met."""

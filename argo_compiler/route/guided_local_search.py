@@ -9,31 +9,31 @@ from collections.abc import Callable
 import numpy as np
 from ortools.constraint_solver import pywrapcp, routing_enums_pb2
 
-from argo_compiler.route.along import Follower
-from argo_compiler.route.found import Found, found
-from argo_compiler.route.network import Network, compose
+from argo_compiler.route.network import StepNetwork, compose
+from argo_compiler.route.path_timing import PathTiming
 from argo_compiler.route.problem import NEVER, Objective
-from argo_compiler.route.progress import Search
 from argo_compiler.route.pruning import Pruned, horizon
+from argo_compiler.route.search import Search
+from argo_compiler.route.solution import Solution, make_solution
 
 _NO_WAY = 1 << 32
 """cost of an arc that there is not"""
 
 
-def applies(network: Network) -> bool:
+def applies(network: StepNetwork) -> bool:
     """Whether the library can state the problem: it knows no charging on the way."""
     return network.problem.battery is None and network.size > 1
 
 
-def solve_routing(
-    network: Network, pruned: Pruned, search: Search, until: float, start: Found | None
-) -> Found | None:
+def solve_guided_local_search(
+    network: StepNetwork, pruned: Pruned, search: Search, until: float, start: Solution | None
+) -> Solution | None:
     """The best route that is found until then (on the search's clock); None: none is."""
     seconds = until - search.clock()
     if seconds <= 0.0:
         return start
     model = _Model(network, pruned)
-    follower = Follower(network)
+    follower = PathTiming(network)
     best = [start]
 
     def note() -> None:
@@ -42,7 +42,7 @@ def solve_routing(
         steps = {int(network.step[node]) for node in path}
         if stand is None or not all(s in steps for s in np.flatnonzero(network.mandatory).tolist()):
             return
-        one = found(network, path, {}, int(network.prize.sum()), 0)
+        one = make_solution(network, path, {}, int(network.prize.sum()), 0)
         if one.better_than(best[0]):
             best[0] = one
             search.route(one.prize, one.cost)
@@ -54,7 +54,7 @@ def solve_routing(
 class _Model:
     """The library's model of a network. Has state, as the library's has."""
 
-    def __init__(self, network: Network, pruned: Pruned) -> None:
+    def __init__(self, network: StepNetwork, pruned: Pruned) -> None:
         self._network, self._pruned = network, pruned
         m = network.size
         self._manager = pywrapcp.RoutingIndexManager(m + 1, 1, m)

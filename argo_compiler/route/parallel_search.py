@@ -5,13 +5,13 @@ import threading
 
 from ortools.sat.python import cp_model
 
-from argo_compiler.route import exchange
-from argo_compiler.route.circuit import solve_circuit
-from argo_compiler.route.found import Found, found, none_found
-from argo_compiler.route.network import Network
-from argo_compiler.route.preparing import improve, is_ordered, prepare
-from argo_compiler.route.progress import Search
+from argo_compiler.route import or_opt
+from argo_compiler.route.cp_sat import solve_cp_sat
+from argo_compiler.route.first_routes import improve, is_ordered, prepare
+from argo_compiler.route.network import StepNetwork
 from argo_compiler.route.pruning import Pruned
+from argo_compiler.route.search import Search
+from argo_compiler.route.solution import Solution, make_solution, no_solution
 
 _FROM_NOTHING = 0.2
 """share of the time for the first try where a good route will soon be known"""
@@ -22,8 +22,8 @@ _FAR = 1.15
 
 
 def raced(
-    network: Network, pruned: Pruned, search: Search, best: Found | None, method: str
-) -> tuple[Found | None, str, Found]:
+    network: StepNetwork, pruned: Pruned, search: Search, best: Solution | None, method: str
+) -> tuple[Solution | None, str, Solution]:
     """CP-SAT from nothing on one core, and on the other CP-SAT from what is known, after other
     searches where the order is tight. Gives the best route, its solver, and what CP-SAT knows."""
     return _Race(network, pruned, search).run(best, method)
@@ -32,18 +32,18 @@ def raced(
 class _Race:
     """Has state: what has been found."""
 
-    def __init__(self, network: Network, pruned: Pruned, search: Search) -> None:
+    def __init__(self, network: StepNetwork, pruned: Pruned, search: Search) -> None:
         self._network, self._pruned, self._search = network, pruned, search
         self._ordered = is_ordered(network, pruned)
-        self._plain = self._ordered and not network.selective and exchange.applies(network)
+        self._plain = self._ordered and not network.selective and or_opt.applies(network)
         self._alone = search.alone()
         self._running: list[cp_model.CpSolver] = []
-        self._known: Found | None = None
+        self._known: Solution | None = None
         self._ready = threading.Event()
-        self._beside = none_found(network, proven=False)
+        self._beside = no_solution(network, proven=False)
         self._failure: BaseException | None = None
 
-    def run(self, best: Found | None, method: str) -> tuple[Found | None, str, Found]:
+    def run(self, best: Solution | None, method: str) -> tuple[Solution | None, str, Solution]:
         """See `raced`."""
         thread = threading.Thread(target=self._run_beside)
         thread.start()
@@ -75,13 +75,15 @@ class _Race:
         if not self._plain:
             return
         self._ready.wait()
-        begun: Found | None = None
+        begun: Solution | None = None
         while not (alone.stopped or self._beside.proven or self._known is begun):
             begun = self._known
             again = self._solved(alone, begun)
             self._beside = _both(network, alone, self._beside, again)
 
-    def _run_here(self, best: Found | None, method: str) -> tuple[Found | None, str, Found | None]:
+    def _run_here(
+        self, best: Solution | None, method: str
+    ) -> tuple[Solution | None, str, Solution | None]:
         network, pruned, search = self._network, self._pruned, self._search
         if self._ordered:
             best, method = prepare(network, pruned, search, best, method)
@@ -95,11 +97,11 @@ class _Race:
             return best, method, self._solved(search, best, hinted=self._ordered)
         return self._alternated(best, method)
 
-    def _alternated(self, best: Found, method: str) -> tuple[Found, str, Found]:
+    def _alternated(self, best: Solution, method: str) -> tuple[Solution, str, Solution]:
         """CP-SAT and local search by turns: a better route makes the proof easier."""
         network, pruned, search = self._network, self._pruned, self._search
         search.say("CP-SAT with times and local search by turns, beside CP-SAT with positions")
-        exact = none_found(network, proven=False)
+        exact = no_solution(network, proven=False)
         for proving, improving in _TURNS:
             if self._known is not best:
                 self._known = best
@@ -117,10 +119,15 @@ class _Race:
         return best, method, exact
 
     def _solved(
-        self, search: Search, best: Found | None = None, *, hinted: bool = True, timed: bool = False
-    ) -> Found:
+        self,
+        search: Search,
+        best: Solution | None = None,
+        *,
+        hinted: bool = True,
+        timed: bool = False,
+    ) -> Solution:
         network, pruned, running = self._network, self._pruned, self._running
-        return solve_circuit(
+        return solve_cp_sat(
             network, pruned, search, best, hinted=hinted, timed=timed, running=running
         )
 
@@ -129,7 +136,7 @@ class _Race:
             solver.stop_search()
 
 
-def _both(network: Network, search: Search, one: Found | None, other: Found) -> Found:
+def _both(network: StepNetwork, search: Search, one: Solution | None, other: Solution) -> Solution:
     """The better path of two searches, with the better bounds of both."""
     if one is None or other.proven:
         return other
@@ -137,8 +144,8 @@ def _both(network: Network, search: Search, one: Found | None, other: Found) -> 
         return one
     best = other if other.better_than(one) else one
     if best.path is None:
-        return none_found(network, proven=False, bound=max(one.bound, other.bound))
+        return no_solution(network, proven=False, bound=max(one.bound, other.bound))
     search.route(best.prize, best.cost)
     prize_bound = min(one.prize_bound, other.prize_bound)
     search.known(prize_bound, max(one.bound, other.bound))
-    return found(network, best.path, best.charges, prize_bound, max(one.bound, other.bound))
+    return make_solution(network, best.path, best.charges, prize_bound, max(one.bound, other.bound))

@@ -7,12 +7,12 @@ from numpy.typing import NDArray
 from scipy.optimize import linprog
 
 from argo_compiler.route.assignment import least_between_steps
-from argo_compiler.route.completion import Sets, to_come
-from argo_compiler.route.masks import MOST_BITS, Bits, Masks
-from argo_compiler.route.network import Network
+from argo_compiler.route.completion_bounds import Sets, to_come
+from argo_compiler.route.held_karp import may_end
+from argo_compiler.route.network import StepNetwork
+from argo_compiler.route.order_ideals import MOST_BITS, Bits, Masks
 from argo_compiler.route.problem import NEVER
 from argo_compiler.route.pruning import Pruned
-from argo_compiler.route.subsets import may_end
 
 Vector = NDArray[np.int64]
 
@@ -20,7 +20,7 @@ _PART = 16
 """bits of a mask that are looked up at once"""
 
 
-class Guide(Protocol):
+class LowerBound(Protocol):
     """Lower bounds for sets of steps with their last nodes, for some kinds of costs of arcs."""
 
     def to_come(self, size: int, masks: Masks, last: Vector) -> NDArray[np.int64]:
@@ -39,7 +39,9 @@ class Guide(Protocol):
 class TableGuide:
     """The exact costs to come where there are no windows and no battery, for given sets."""
 
-    def __init__(self, network: Network, bits: Bits, sets: Sets, kinds: NDArray[np.int32]) -> None:
+    def __init__(
+        self, network: StepNetwork, bits: Bits, sets: Sets, kinds: NDArray[np.int32]
+    ) -> None:
         self._sets = sets
         self._least = to_come(network, bits, sets, kinds)
 
@@ -62,7 +64,7 @@ class PriceGuide:
     of the assignment problem. For any number of sets, where nothing may be left out."""
 
     def __init__(
-        self, network: Network, pruned: Pruned, bits: Bits, kinds: list[NDArray[np.int64]]
+        self, network: StepNetwork, pruned: Pruned, bits: Bits, kinds: list[NDArray[np.int64]]
     ) -> None:
         self._network, self._bits = network, bits
         prices = [_prices(least_between_steps(network, pruned, kind)) for kind in kinds]

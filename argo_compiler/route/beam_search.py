@@ -7,14 +7,14 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from argo_compiler.route.found import Found
-from argo_compiler.route.guides import Guide
-from argo_compiler.route.masks import Bits
-from argo_compiler.route.network import Network
+from argo_compiler.route.held_karp import INF, prizes
+from argo_compiler.route.lower_bounds import LowerBound
+from argo_compiler.route.network import StepNetwork
+from argo_compiler.route.order_ideals import Bits
 from argo_compiler.route.problem import NEVER, Objective
-from argo_compiler.route.progress import Search
 from argo_compiler.route.pruning import Pruned
-from argo_compiler.route.subsets import INF, prizes
+from argo_compiler.route.search import Search
+from argo_compiler.route.solution import Solution
 
 Vector = NDArray[np.int64]
 
@@ -54,7 +54,7 @@ class Space:
     """What all beams that have the same guide share: its method `beam` is one search."""
 
     def __init__(
-        self, network: Network, pruned: Pruned, bits: Bits, guide: Guide, *, level: bool
+        self, network: StepNetwork, pruned: Pruned, bits: Bits, guide: LowerBound, *, level: bool
     ) -> None:
         """`level`: whether all routes that there are win the same: then cost counts."""
         self._network, self._pruned = network, pruned
@@ -63,7 +63,7 @@ class Space:
         # The other measure: energy, or travel where that is not the time as well.
         self._travels = network.windowed and network.objective is Objective.TRAVEL
 
-    def beam(self, width: int, best: Found | None, search: Search) -> Beam:
+    def beam(self, width: int, best: Solution | None, search: Search) -> Beam:
         """The best path of a search that keeps the `width` most promising labels of a layer."""
         upper = None if best is None or best.path is None else (best.prize, best.cost)
         layers = [self._start()]

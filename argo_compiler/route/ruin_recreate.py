@@ -13,13 +13,13 @@ from itertools import pairwise
 import numpy as np
 from numpy.typing import NDArray
 
-from argo_compiler.route import exchange
-from argo_compiler.route.along import Follower, Stand
-from argo_compiler.route.found import Found, found
-from argo_compiler.route.network import Network
+from argo_compiler.route import or_opt
+from argo_compiler.route.network import StepNetwork
+from argo_compiler.route.path_timing import PathTiming, Stand
 from argo_compiler.route.problem import NEVER
-from argo_compiler.route.progress import Search
 from argo_compiler.route.pruning import Pruned, horizon, shortest
+from argo_compiler.route.search import Search
+from argo_compiler.route.solution import Solution, make_solution
 
 Path = tuple[int, ...]
 Vector = NDArray[np.int64]
@@ -40,11 +40,11 @@ _WORSE = 0.05
 class LocalSearch:
     """Builds and improves routes of one network. Has state: its generator."""
 
-    def __init__(self, network: Network, pruned: Pruned, seed: int) -> None:
+    def __init__(self, network: StepNetwork, pruned: Pruned, seed: int) -> None:
         self._network, self._pruned = network, pruned
-        self._follower = Follower(network)
+        self._follower = PathTiming(network)
         self._rng = np.random.default_rng(seed)
-        self._exchange = exchange.Exchange(network, pruned) if exchange.applies(network) else None
+        self._exchange = or_opt.Exchange(network, pruned) if or_opt.applies(network) else None
         self._near = shortest(network)
         self._step = network.step.tolist()
         self._needs = [set(np.flatnonzero(column).tolist()) for column in pruned.needs.T]
@@ -104,7 +104,7 @@ class LocalSearch:
         """Whether the end or a charger is within what the battery still has."""
         return bool(self._follower.go(stands, node, self._network.size, position))
 
-    def improve(self, path: Path, search: Search, until: float, rounds: int = 1 << 60) -> Found:
+    def improve(self, path: Path, search: Search, until: float, rounds: int = 1 << 60) -> Solution:
         """The best route found until then (on the search's clock), from the one given."""
         best = at = path
         best_worth = at_worth = self._worth(path) or (0, -NEVER)
@@ -134,7 +134,7 @@ class LocalSearch:
         stand = self._follower.follow(best)
         assert stand is not None
         network = self._network
-        return found(network, best, dict(stand.charges), int(network.prize.sum()), 0)
+        return make_solution(network, best, dict(stand.charges), int(network.prize.sum()), 0)
 
     def _changed(self, path: Path) -> Path | None:
         """Another path; None: none was found."""

@@ -12,7 +12,7 @@ from collections.abc import Callable, Iterable
 import numpy as np
 from numpy.typing import NDArray
 
-from argo_compiler.route.network import Network
+from argo_compiler.route.network import StepNetwork
 from argo_compiler.route.problem import NEVER
 from argo_compiler.route.pruning import Pruned
 
@@ -25,7 +25,7 @@ _MOST_STEPS = 300
 _TRIES = 50
 
 
-def applies(network: Network) -> bool:
+def applies(network: StepNetwork) -> bool:
     """Whether less travel is less time, and the matrices are not too large."""
     return network.plain and len(network.prize) <= _MOST_STEPS
 
@@ -33,7 +33,7 @@ def applies(network: Network) -> bool:
 class Exchange:
     """Exchanges in the routes of one network."""
 
-    def __init__(self, network: Network, pruned: Pruned) -> None:
+    def __init__(self, network: StepNetwork, pruned: Pruned) -> None:
         m = network.size
         allowed = pruned.arcs & (network.time < NEVER)
         none = int(network.time[allowed].max(initial=0)) * (m + 2) + 1

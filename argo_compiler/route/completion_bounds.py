@@ -1,7 +1,7 @@
 """The least that is still to come, for each set of steps made and each last node.
 
 Windows and the battery are left out, so these are lower bounds for problems that have them: the
-dynamic programme of `subsets`, backwards.
+dynamic programme of `held_karp`, backwards.
 """
 
 from dataclasses import dataclass
@@ -9,9 +9,9 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from argo_compiler.route.masks import MOST_BITS, Bits, Masks
-from argo_compiler.route.network import Network
-from argo_compiler.route.subsets import INF, may_end
+from argo_compiler.route.held_karp import INF, may_end
+from argo_compiler.route.network import StepNetwork
+from argo_compiler.route.order_ideals import MOST_BITS, Bits, Masks
 
 _DENSE = 22
 """steps up to which a table has the place of each set"""
@@ -48,7 +48,7 @@ def _sets(layers: list[Masks], last: list[NDArray[np.bool_]], bits: int) -> Sets
     return Sets(tuple(layers), tuple(last), places)
 
 
-def sets_of(network: Network, bits: Bits, layers: list[Masks]) -> Sets:
+def sets_of(network: StepNetwork, bits: Bits, layers: list[Masks]) -> Sets:
     """These sets of 0, 1 and so on steps."""
     last = [may_end(network, bits, size, masks) for size, masks in enumerate(layers)]
     # With bits that are shared, equal masks may stand for sets of different sizes.
@@ -71,7 +71,7 @@ def sets_towards(goals: Masks, steps: int) -> Sets:
 
 
 def to_come(
-    network: Network, bits: Bits, sets: Sets, arcs: NDArray[np.int32]
+    network: StepNetwork, bits: Bits, sets: Sets, arcs: NDArray[np.int32]
 ) -> list[NDArray[np.int32]]:
     """For each layer the least sum of arcs with which a set that may be the last is reached, and
     the end. `arcs`: some kinds of them, shape (kinds, m + 1, m + 1); shape of the result (kinds,

@@ -1,12 +1,12 @@
 """Routes to begin with, before CP-SAT: by simple rules, local search and beams."""
 
-from argo_compiler.route import exchange, labels, routing, subsets
-from argo_compiler.route.found import Found
-from argo_compiler.route.local import LocalSearch
-from argo_compiler.route.masks import Bits
-from argo_compiler.route.network import Network
-from argo_compiler.route.progress import Search
+from argo_compiler.route import guided_local_search, held_karp, labels, or_opt
+from argo_compiler.route.network import StepNetwork
+from argo_compiler.route.order_ideals import Bits
 from argo_compiler.route.pruning import Pruned, longest
+from argo_compiler.route.ruin_recreate import LocalSearch
+from argo_compiler.route.search import Search
+from argo_compiler.route.solution import Solution
 
 _FIRST = 0.002
 """s for each step to improve the first route: what more would find, CP-SAT finds sooner"""
@@ -22,7 +22,9 @@ _MANY_STEPS = 24
 """from which on routing's local search is worth its start-up"""
 
 
-def first_route(network: Network, pruned: Pruned, search: Search) -> tuple[Found | None, str]:
+def first_route(
+    network: StepNetwork, pruned: Pruned, search: Search
+) -> tuple[Solution | None, str]:
     """A first route by simple rules, and a little better."""
     local = LocalSearch(network, pruned, search.seed)
     path = local.first(lambda: search.left() <= 0.0)
@@ -33,30 +35,32 @@ def first_route(network: Network, pruned: Pruned, search: Search) -> tuple[Found
     return local.improve(path, search, until), "local search"
 
 
-def is_ordered(network: Network, pruned: Pruned) -> bool:
+def is_ordered(network: StepNetwork, pruned: Pruned) -> bool:
     """Whether the steps can't come in any order."""
     return bool(network.windowed or pruned.before.any() or network.problem.battery is not None)
 
 
 def prepare(
-    network: Network, pruned: Pruned, search: Search, best: Found | None, method: str
-) -> tuple[Found | None, str]:
+    network: StepNetwork, pruned: Pruned, search: Search, best: Solution | None, method: str
+) -> tuple[Solution | None, str]:
     """A good route for CP-SAT to begin with, where order and windows make that hard for it."""
-    if best is not None and exchange.applies(network):
+    if best is not None and or_opt.applies(network):
         search.say("stretches of the first route are exchanged")
         until = search.clock() + _EXCHANGING * search.left()
         return improve(network, pruned, search, until, best, method)
     with search.part(_PREPARING):
-        if len(network.prize) >= _MANY_STEPS and routing.applies(network):
+        if len(network.prize) >= _MANY_STEPS and guided_local_search.applies(network):
             search.say("guided local search improves the first route")
             until = search.clock() + _ROUTING * search.left()
-            better = routing.solve_routing(network, pruned, search, until, best)
+            better = guided_local_search.solve_guided_local_search(
+                network, pruned, search, until, best
+            )
             if better is not None and better.better_than(best):
                 best, method = better, "guided local search"
         if best is not None:
             until = search.clock() + _RUINING * search.left()
             best, method = improve(network, pruned, search, until, best, method)
-        small = longest(network) < subsets.INF and Bits(network, pruned).fits
+        small = longest(network) < held_karp.INF and Bits(network, pruned).fits
         if small and not network.selective and labels.applies(network):
             search.say("beams of labels, with prices for what is still to come")
             some = labels.search_labels(network, pruned, search, best)
@@ -67,8 +71,8 @@ def prepare(
 
 
 def improve(
-    network: Network, pruned: Pruned, search: Search, until: float, best: Found, method: str
-) -> tuple[Found, str]:
+    network: StepNetwork, pruned: Pruned, search: Search, until: float, best: Solution, method: str
+) -> tuple[Solution, str]:
     """The better of a route and what local search makes of it, until then on the search's clock."""
     more = LocalSearch(network, pruned, search.seed).improve(best.path or (), search, until)
     return (more, "local search") if more.better_than(best) else (best, method)

@@ -12,7 +12,7 @@ from argo_env.site.spec import Rect
 from argo_env.surroundings.network import Shadow
 
 if TYPE_CHECKING:
-    from argo_env.faults.stage import Stage
+    from argo_env.faults.targets import FaultTargets
 
 
 class LowBattery(Fault):
@@ -26,7 +26,7 @@ class LowBattery(Fault):
         drawn = round(float(rng.uniform(0.1, 0.25)), 3)
         return self._with(charge=self.charge or drawn)
 
-    def begin(self, stage: "Stage", now: float) -> None:  # noqa: ARG002
+    def begin(self, stage: "FaultTargets", now: float) -> None:  # noqa: ARG002
         assert self.charge is not None
         stage.battery.charge = self.charge
 
@@ -42,7 +42,7 @@ class WornBattery(Fault):
         drawn = round(float(rng.uniform(0.2, 0.6)), 3)
         return self._with(capacity=self.capacity or drawn)
 
-    def begin(self, stage: "Stage", now: float) -> None:  # noqa: ARG002
+    def begin(self, stage: "FaultTargets", now: float) -> None:  # noqa: ARG002
         assert self.capacity is not None
         stage.battery.wear(self.capacity)
 
@@ -63,10 +63,10 @@ class ConnectionLoss(TimedFault):
             raise ArgoError(f"site {site.name} has no floor {self.floor}")
         return super().settled(site, rng)
 
-    def begin(self, stage: "Stage", now: float) -> None:  # noqa: ARG002
+    def begin(self, stage: "FaultTargets", now: float) -> None:  # noqa: ARG002
         stage.network.shadows.append(Shadow(self.rect, self.floor))
 
-    def end(self, stage: "Stage", now: float) -> None:  # noqa: ARG002
+    def end(self, stage: "FaultTargets", now: float) -> None:  # noqa: ARG002
         stage.network.shadows.remove(Shadow(self.rect, self.floor))
 
 
@@ -75,10 +75,10 @@ class EmergencyStop(TimedFault):
 
     kind: Literal["emergency_stop"] = "emergency_stop"
 
-    def begin(self, stage: "Stage", now: float) -> None:  # noqa: ARG002
+    def begin(self, stage: "FaultTargets", now: float) -> None:  # noqa: ARG002
         stage.drive.pressed = True
 
-    def end(self, stage: "Stage", now: float) -> None:  # noqa: ARG002
+    def end(self, stage: "FaultTargets", now: float) -> None:  # noqa: ARG002
         stage.drive.pressed = False
 
 
@@ -95,13 +95,13 @@ class SensorDysfunction(TimedFault):
         drawn = "fails" if rng.uniform() < 0.5 else "noise"
         return super().settled(site, rng)._with(effect=self.effect or drawn)
 
-    def begin(self, stage: "Stage", now: float) -> None:  # noqa: ARG002
+    def begin(self, stage: "FaultTargets", now: float) -> None:  # noqa: ARG002
         if self.effect == "fails":
             stage.sensor.failed = True
         else:
             stage.sensor.noise = self.noise
 
-    def end(self, stage: "Stage", now: float) -> None:  # noqa: ARG002
+    def end(self, stage: "FaultTargets", now: float) -> None:  # noqa: ARG002
         stage.sensor.failed, stage.sensor.noise = False, 0.0
 
 
@@ -116,9 +116,9 @@ class DriveDysfunction(TimedFault):
         drawn = round(float(rng.uniform(0.0, 0.5)), 2)
         return super().settled(site, rng)._with(speed=drawn if self.speed is None else self.speed)
 
-    def begin(self, stage: "Stage", now: float) -> None:  # noqa: ARG002
+    def begin(self, stage: "FaultTargets", now: float) -> None:  # noqa: ARG002
         assert self.speed is not None
         stage.drive.share = min(stage.drive.share, self.speed)
 
-    def end(self, stage: "Stage", now: float) -> None:  # noqa: ARG002
+    def end(self, stage: "FaultTargets", now: float) -> None:  # noqa: ARG002
         stage.drive.share = 1.0

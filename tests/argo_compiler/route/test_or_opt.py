@@ -7,8 +7,8 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from argo_compiler.route import Precedence, RouteProblem, Visit
-from argo_compiler.route.exchange import Exchange
 from argo_compiler.route.network import network
+from argo_compiler.route.or_opt import Exchange
 from argo_compiler.route.problem import NEVER
 from argo_compiler.route.pruning import prune
 

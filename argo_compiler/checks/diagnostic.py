@@ -1,10 +1,10 @@
-"""Findings about tasks and reactions."""
+"""Diagnostics about tasks and reactions."""
 
 from argo_compiler.diagnostics import Diagnostic, Severity, Span
 from argo_compiler.il import Reaction, Task
 
 
-def task_finding(
+def task_diagnostic(
     at: str,
     task: Task,
     code: str,
@@ -13,11 +13,11 @@ def task_finding(
     severity: Severity = Severity.ERROR,
     field: str = "",
 ) -> Diagnostic:
-    """A finding about the task whose subject is `at`, or one of its fields."""
-    return _finding(at + field, task.source, code, message, hint, severity)
+    """A diagnostic about the task whose subject is `at`, or one of its fields."""
+    return _diagnostic(at + field, task.source, code, message, hint, severity)
 
 
-def reaction_finding(
+def reaction_diagnostic(
     at: str,
     reaction: Reaction,
     code: str,
@@ -26,11 +26,11 @@ def reaction_finding(
     severity: Severity = Severity.ERROR,
     field: str = "",
 ) -> Diagnostic:
-    """A finding about the reaction whose subject is `at`, or one of its fields."""
-    return _finding(at + field, reaction.source, code, message, hint, severity)
+    """A diagnostic about the reaction whose subject is `at`, or one of its fields."""
+    return _diagnostic(at + field, reaction.source, code, message, hint, severity)
 
 
-def _finding(
+def _diagnostic(
     subject: str, span: Span | None, code: str, message: str, hint: str, severity: Severity
 ) -> Diagnostic:
     return Diagnostic(

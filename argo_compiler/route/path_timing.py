@@ -2,7 +2,7 @@
 
 from dataclasses import dataclass
 
-from argo_compiler.route.network import Network
+from argo_compiler.route.network import StepNetwork
 from argo_compiler.route.problem import NEVER, Objective
 
 
@@ -17,11 +17,11 @@ class Stand:
     """position in the path and charger"""
 
 
-class Follower:
+class PathTiming:
     """Goes along paths of a network, charging wherever that is best. Its tables are plain lists,
     which are faster to look single numbers up in than arrays."""
 
-    def __init__(self, network: Network) -> None:
+    def __init__(self, network: StepNetwork) -> None:
         self.network = network
         self._time = network.time.tolist()
         self._energy = None if network.energy is None else network.energy.tolist()

@@ -11,11 +11,11 @@ from argo_compiler.analysis.flow import NOWHERE, Flow
 from argo_compiler.analysis.graph import components, is_loop, reached_from
 from argo_compiler.errors import ArgoError
 from argo_compiler.il import Mission
-from argo_compiler.reorder.passages import Level, Passages
+from argo_compiler.reorder.task_graph import Level, TaskGraph
 
 
 @dataclass(frozen=True)
-class Stop:
+class TaskUnit:
     """A task, and with it all that may be done between it and the next unit. Leaves of the flow."""
 
     entry: int
@@ -36,7 +36,7 @@ class Circuit:
     inside: tuple["Unit", ...]
 
 
-Unit = Stop | Circuit
+Unit = TaskUnit | Circuit
 
 
 @dataclass(frozen=True)
@@ -68,10 +68,10 @@ def find_spine(mission: Mission) -> Spine:
     return _Finder(mission).spine()
 
 
-def stops_of(units: Sequence[Unit]) -> Iterator[Stop]:
+def stops_of(units: Sequence[Unit]) -> Iterator[TaskUnit]:
     """All stops, those in circuits included, in their order."""
     for unit in units:
-        if isinstance(unit, Stop):
+        if isinstance(unit, TaskUnit):
             yield unit
         else:
             yield from stops_of(unit.inside)
@@ -87,7 +87,7 @@ class _Finder:
     """Finds the units of one mission. Collects reasons."""
 
     def __init__(self, mission: Mission) -> None:
-        self.passages = Passages(mission)
+        self.passages = TaskGraph(mission)
         self.flow = self.passages.flow
         self.reasons: list[str] = []
 
@@ -224,7 +224,7 @@ class _Finder:
         for leaf, child in level.child_of.items():
             by_child.setdefault(child, []).append(leaf)
         leaves = [leaf for child in order for leaf in by_child[child]]
-        return Stop(entry, tuple(leaves), final, group)
+        return TaskUnit(entry, tuple(leaves), final, group)
 
     def _circuit(self, group: int, around: Level, child: int, entry: int) -> Circuit | str:
         """The group as a circuit, or why it is none."""

@@ -12,7 +12,7 @@ _ROUNDING = 1e-6  # of a unit, left by sums of floats
 
 
 @dataclass(frozen=True, eq=False)
-class Ways:
+class TravelMatrix:
     """Times and energies between the n tasks of a mission and c places where the robot can charge.
 
     A row is where the robot stands: after task i, row n where the mission starts, and from n + 1 at
@@ -59,7 +59,7 @@ class Ways:
         return int(np.floor(seconds / self.unit + _ROUNDING))
 
 
-def require_ways(ways: Ways, mission: Mission) -> None:
+def require_matrix_of(ways: TravelMatrix, mission: Mission) -> None:
     """Raises ArgoError if the ways are those of another mission."""
     names = tuple(task.name for task in mission.tasks if task.action is not Action.START)
     if names != ways.tasks:

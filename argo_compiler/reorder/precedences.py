@@ -6,12 +6,14 @@ from itertools import combinations, product
 from argo_compiler.errors import ArgoError
 from argo_compiler.il import Mission
 from argo_compiler.reorder.requirements import Requirements
-from argo_compiler.reorder.spine import Stop, Unit, find_spine, leaves_of
+from argo_compiler.reorder.units import TaskUnit, Unit, find_spine, leaves_of
 from argo_compiler.reorder.visits import Visits, said
 from argo_compiler.route.problem import Precedence
 
 
-def rules(visits: Visits, precise: bool, requirements: Requirements) -> tuple[Precedence, ...]:
+def precedences(
+    visits: Visits, precise: bool, requirements: Requirements
+) -> tuple[Precedence, ...]:
     """All orders that have to be kept; `precise`: whether the mission asks for a precise one.
 
     Raises ArgoError if a requirement names something that the mission does not have.
@@ -135,14 +137,14 @@ def _last_ones(visits: Visits) -> Iterator[Precedence]:
 
 def _before_last(visits: Visits, units: tuple[Unit, ...], what: str) -> Iterator[Precedence]:
     for unit in units[:-1]:
-        if isinstance(unit, Stop) and _branches(unit):
+        if isinstance(unit, TaskUnit) and _branches(unit):
             here, last = visits.of_leaf[unit.entry], visits.numbers((units[-1],))[-1]
             words = f"{what} can't end with {visits.names[here]}, which goes on in several ways"
             yield Precedence((here, last), words)
 
 
 def _branches(unit: Unit) -> bool:
-    return isinstance(unit, Stop) and unit.final is None
+    return isinstance(unit, TaskUnit) and unit.final is None
 
 
 def speed_notes(visits: Visits) -> Iterator[str]:

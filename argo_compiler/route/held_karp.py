@@ -13,11 +13,11 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.sparse.csgraph import connected_components
 
-from argo_compiler.route.found import Found, found, none_found
-from argo_compiler.route.masks import Bits, Masks
-from argo_compiler.route.network import Network
+from argo_compiler.route.network import StepNetwork
+from argo_compiler.route.order_ideals import Bits, Masks
 from argo_compiler.route.problem import Objective
 from argo_compiler.route.pruning import Pruned, shortest
+from argo_compiler.route.solution import Solution, make_solution, no_solution
 
 INF = np.int32(1 << 29)
 """more than any time"""
@@ -33,7 +33,7 @@ class Layer:
     """the row of the set of k - 1 steps that each was reached from, shape of `times`"""
 
 
-def count_sets(network: Network, pruned: Pruned, most: int) -> int:
+def count_sets(network: StepNetwork, pruned: Pruned, most: int) -> int:
     """How many sets of steps the order allows, up to a little more than `most`."""
     bits = Bits(network, pruned)
     if not bits.fits:
@@ -62,19 +62,19 @@ def _count(bits: Bits, nodes: list[int], most: int) -> int:
     return total
 
 
-def applies(network: Network) -> bool:
+def applies(network: StepNetwork) -> bool:
     """Whether the soonest is always the best: the waiting of windows must count."""
     waits = network.objective is Objective.TRAVEL and network.windowed
     return not waits and network.problem.battery is None
 
 
-def solve_subsets(network: Network, pruned: Pruned, layers: list[Layer]) -> Found:
+def solve_held_karp(network: StepNetwork, pruned: Pruned, layers: list[Layer]) -> Solution:
     """A best path, or the proof that there is none."""
     best = best_path(network, layers, pruned)
     if best is None:
-        return none_found(network, proven=True)
-    made = found(network, best.path, {}, best.prize, 0)
-    return found(network, best.path, {}, best.prize, made.cost)
+        return no_solution(network, proven=True)
+    made = make_solution(network, best.path, {}, best.prize, 0)
+    return make_solution(network, best.path, {}, best.prize, made.cost)
 
 
 @dataclass(frozen=True)
@@ -87,7 +87,7 @@ class BestPath:
 
 
 def soonest_layers(
-    network: Network, pruned: Pruned, most: int, over: Callable[[], bool]
+    network: StepNetwork, pruned: Pruned, most: int, over: Callable[[], bool]
 ) -> list[Layer] | None:
     """The layers of a network whose battery is never empty; None if they have more than `most`
     sets, or the time is over before."""
@@ -103,7 +103,7 @@ def soonest_layers(
     return layers
 
 
-def best_path(network: Network, layers: list[Layer], pruned: Pruned) -> BestPath | None:
+def best_path(network: StepNetwork, layers: list[Layer], pruned: Pruned) -> BestPath | None:
     """The best path that the layers hold; None: there is none."""
     best = _best_end(network, Bits(network, pruned), layers)
     if best is None:
@@ -113,7 +113,7 @@ def best_path(network: Network, layers: list[Layer], pruned: Pruned) -> BestPath
     return BestPath(_path(network, arcs, layers, number, row, node), prize, end)
 
 
-def arcs_of(network: Network, pruned: Pruned, times: NDArray[np.int64]) -> NDArray[np.int32]:
+def arcs_of(network: StepNetwork, pruned: Pruned, times: NDArray[np.int64]) -> NDArray[np.int32]:
     """The arcs that are left, INF for the others; to the end from everywhere."""
     arcs = np.minimum(times, INF).astype(np.int32)
     allowed = pruned.arcs.copy()
@@ -123,7 +123,7 @@ def arcs_of(network: Network, pruned: Pruned, times: NDArray[np.int64]) -> NDArr
 
 
 def soonest(
-    network: Network,
+    network: StepNetwork,
     bits: Bits,
     arcs: NDArray[np.int32],
     earliest: Masks,
@@ -162,14 +162,14 @@ def soonest(
         onward = arcs[:m, :]
 
 
-def ends(network: Network, arcs: NDArray[np.int32], layer: Layer) -> Masks:
+def ends(network: StepNetwork, arcs: NDArray[np.int32], layer: Layer) -> Masks:
     """The soonest time at the end for each set of a layer."""
     home = arcs[: network.size, network.size]
     return np.asarray((layer.times + home).min(axis=1), np.int64)
 
 
 def _in_time(
-    network: Network,
+    network: StepNetwork,
     bits: Bits,
     latest: Masks,
     size: int,
@@ -188,7 +188,7 @@ def _in_time(
     return keep
 
 
-def prizes(network: Network, masks: Masks) -> Masks:
+def prizes(network: StepNetwork, masks: Masks) -> Masks:
     """What the steps of each set are worth; everything where nothing may be left out."""
     if not network.selective:
         return np.full(len(masks), network.prize.sum())
@@ -198,7 +198,7 @@ def prizes(network: Network, masks: Masks) -> Masks:
     return total
 
 
-def may_end(network: Network, bits: Bits, size: int, masks: Masks) -> NDArray[np.bool_]:
+def may_end(network: StepNetwork, bits: Bits, size: int, masks: Masks) -> NDArray[np.bool_]:
     """Whether sets of that size have all that must be made."""
     if not network.selective:
         return np.full(len(masks), size == len(network.prize))
@@ -207,7 +207,7 @@ def may_end(network: Network, bits: Bits, size: int, masks: Masks) -> NDArray[np
 
 
 def _best_end(
-    network: Network, bits: Bits, layers: list[Layer]
+    network: StepNetwork, bits: Bits, layers: list[Layer]
 ) -> tuple[int, int, int, int, int] | None:
     """The prize, end, layer, row and last node of the best path; layer -1: straight to the end."""
     m = network.size
@@ -226,12 +226,12 @@ def _best_end(
         pick = int(np.lexsort((end[rows], -won))[0])
         row = int(rows[pick])
         one = (int(won[pick]), -int(end[row]), number, row, int(nodes[row]))
-        best = one if best is None else max(best, one, key=lambda found: found[:2])
+        best = one if best is None else max(best, one, key=lambda make_solution: make_solution[:2])
     return None if best is None else (best[0], -best[1], *best[2:])
 
 
 def _path(
-    network: Network,
+    network: StepNetwork,
     arcs: NDArray[np.int32],
     layers: list[Layer],
     number: int,

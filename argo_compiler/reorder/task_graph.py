@@ -48,7 +48,7 @@ class Level:
         return following
 
 
-class Passages:
+class TaskGraph:
     """The levels of a mission. Collects what lies apart, and where the mission may end early."""
 
     def __init__(self, mission: Mission) -> None:

@@ -1,4 +1,4 @@
-"""Why there is no route: the requirements that clash, in the mission's words."""
+"""Why there is no route: the requirements that infeasible_subset, in the mission's words."""
 
 from itertools import combinations
 
@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from argo_compiler.route import NEVER, Precedence, Round, RouteProblem, Visit, suggest_route
-from argo_compiler.route.clash import reduced, requirements
+from argo_compiler.route.infeasible_subset import reduced, requirements
 from tests.argo_compiler.route.brute_force import brute_force
 from tests.argo_compiler.route.random_problems import random_problem
 
@@ -30,7 +30,7 @@ def test_an_order_against_another() -> None:
     made = suggest_route(problem)
     assert made.proven
     assert made.route is None
-    assert made.clash == ("precise order 4, 8", "checkpoint 8 before checkpoint 4")
+    assert made.infeasible_subset == ("precise order 4, 8", "checkpoint 8 before checkpoint 4")
 
 
 def test_the_shortest_of_several_circles() -> None:
@@ -38,16 +38,16 @@ def test_the_shortest_of_several_circles() -> None:
     problem = hall(
         5, precedences=tuple(Precedence(pair, f"{pair[0]} before {pair[1]}") for pair in around)
     )
-    assert suggest_route(problem).clash == ("0 before 1", "1 before 2", "2 before 0")
+    assert suggest_route(problem).infeasible_subset == ("0 before 1", "1 before 2", "2 before 0")
 
 
 def test_too_little_time_names_as_few_visits_as_do_not_fit() -> None:
     problem = hall(6, max_duration=50, unit=60.0)
     # Three visits take 55 units, two 40.
     made = suggest_route(problem)
-    assert len(made.clash) == 4
-    assert made.clash[-1] == "within 50:00"
-    assert all(words.endswith("is visited") for words in made.clash[:3])
+    assert len(made.infeasible_subset) == 4
+    assert made.infeasible_subset[-1] == "within 50:00"
+    assert all(words.endswith("is visited") for words in made.infeasible_subset[:3])
     assert "fewer requirements" in made.reasons[-1]
 
 
@@ -60,7 +60,7 @@ def test_windows_against_an_order_and_not_the_rest() -> None:
     problem = hall(
         3, visits=visits, precedences=(Precedence((1, 0), "checkpoint 2 before checkpoint 1"),)
     )
-    assert suggest_route(problem).clash == (
+    assert suggest_route(problem).infeasible_subset == (
         "checkpoint 2 before checkpoint 1",
         "checkpoint 1 by 0:20",
     )
@@ -69,7 +69,7 @@ def test_windows_against_an_order_and_not_the_rest() -> None:
 def test_a_checkpoint_without_a_way() -> None:
     travel = np.full((4, 4), 10, np.int64)
     travel[:, 1] = NEVER
-    assert suggest_route(hall(3, travel=travel)).clash == ("checkpoint 2 is visited",)
+    assert suggest_route(hall(3, travel=travel)).infeasible_subset == ("checkpoint 2 is visited",)
 
 
 def test_a_round_that_something_must_come_into() -> None:
@@ -78,7 +78,7 @@ def test_a_round_that_something_must_come_into() -> None:
         rounds=(Round("round of floor 2", (0, 1), repeat=2),),
         precedences=(Precedence((0, 2, 1), "precise order 1, 3, 2"),),
     )
-    assert suggest_route(problem).clash == (
+    assert suggest_route(problem).infeasible_subset == (
         "precise order 1, 3, 2",
         "round of floor 2 is made as one",
     )
@@ -90,11 +90,11 @@ def test_a_clash_can_not_be_met_and_each_part_of_it_can(seed: int) -> None:
     if brute_force(problem) is not None:
         return
     made = suggest_route(problem)
-    assert made.clash
+    assert made.infeasible_subset
     asked = requirements(problem)
     rest = [one for one in asked if one.kind != "visit"]
     visits = [one for one in asked if one.kind == "visit"]
-    some = [one for one in rest if one.words in made.clash]
+    some = [one for one in rest if one.words in made.infeasible_subset]
     assert brute_force(reduced(problem, visits + some)) is None
     # No smaller number of requirements clashes with all the visits.
     for fewer in combinations(rest, max(0, len(some) - 1)):

@@ -13,7 +13,7 @@ from argo_env.surroundings import Alarm, GasLeak, HotSpot, PumpFault, PumpSound
 from argo_env.surroundings.sources import Source
 
 if TYPE_CHECKING:
-    from argo_env.faults.stage import Stage
+    from argo_env.faults.targets import FaultTargets
 
 _BESIDE, _ABOVE, _BELOW = 5.0, 10.0, 1.0
 """m beside the ground, above the highest floor and below the ground, within which there may be
@@ -31,10 +31,10 @@ class ProcessFault(TimedFault):
         """What it puts there."""
         raise NotImplementedError
 
-    def begin(self, stage: "Stage", now: float) -> None:
+    def begin(self, stage: "FaultTargets", now: float) -> None:
         stage.surroundings.add(self.source(), now)
 
-    def end(self, stage: "Stage", now: float) -> None:
+    def end(self, stage: "FaultTargets", now: float) -> None:
         stage.surroundings.remove(self.source(), now)
 
 

@@ -13,55 +13,57 @@ from typing import Any
 import numpy as np
 from ortools.sat.python import cp_model
 
-from argo_compiler.route.found import Found, found, none_found
-from argo_compiler.route.network import Network
+from argo_compiler.route.network import StepNetwork
 from argo_compiler.route.problem import NEVER, Objective
-from argo_compiler.route.progress import Search
 from argo_compiler.route.pruning import Pruned, horizon, paths
+from argo_compiler.route.search import Search
+from argo_compiler.route.solution import Solution, make_solution, no_solution
 
 
-def solve_circuit(
-    network: Network,
+def solve_cp_sat(
+    network: StepNetwork,
     pruned: Pruned,
     search: Search,
-    start: Found | None = None,
+    start: Solution | None = None,
     *,
     hinted: bool = True,
     timed: bool = False,
     running: list[cp_model.CpSolver] | None = None,
-) -> Found:
+) -> Solution:
     """The best path that CP-SAT finds until the deadline, and its bounds. `start`: a path that it
     need not do worse than; `hinted`: it also begins there, which helps if the path is good.
     `timed`: order is stated with times instead of positions where a path is known, which shows what
     order costs. `running`: where solvers are put, for others to stop."""
     if not pruned.possible:
-        return none_found(network, proven=True)
+        return no_solution(network, proven=True)
     best = None if start is None or start.path is None else start
     prize_bound = int(network.prize[pruned.steps].sum())
     total = None
     if best is not None and not network.selective and network.objective is Objective.PRIZE:
-        return found(network, best.path or (), best.charges, prize_bound, 0)  # all are as good
+        return make_solution(
+            network, best.path or (), best.charges, prize_bound, 0
+        )  # all are as good
     if network.selective:
         model = _Model(network, pruned)
         model.maximise_prize(start)
         status, solver = _solve(model, search, start if hinted else None, running, prizes=True)
         if status == cp_model.INFEASIBLE:
-            return none_found(network, proven=True)
+            return no_solution(network, proven=True)
         if status in (cp_model.OPTIMAL, cp_model.FEASIBLE):
             path, charges = model.path(solver)
             if status == cp_model.OPTIMAL:
                 prize_bound = round(solver.objective_value)
             else:
                 prize_bound = _tighter(prize_bound, solver)
-            one = found(network, path, charges, prize_bound, 0)
+            one = make_solution(network, path, charges, prize_bound, 0)
             best = one if one.better_than(best) else best
         elif status == cp_model.UNKNOWN:
             prize_bound = _tighter(prize_bound, solver)
         search.known(prize_bound=prize_bound)
         if best is None:
-            return none_found(network, proven=False)
+            return no_solution(network, proven=False)
         if network.objective is Objective.PRIZE or best.prize < prize_bound:
-            return found(network, best.path or (), best.charges, prize_bound, 0)
+            return make_solution(network, best.path or (), best.charges, prize_bound, 0)
         total = best.prize
     # That of a prize alone is 0.
     known = best if timed and best is not None and best.cost > 0 and network.plain else None
@@ -81,11 +83,11 @@ def solve_circuit(
         search.known(bound=bound)
     if status in (cp_model.OPTIMAL, cp_model.FEASIBLE):
         path, charges = model.path(solver)
-        one = found(network, path, charges, prize_bound, bound)
+        one = make_solution(network, path, charges, prize_bound, bound)
         best = one if one.better_than(best) else best
     if best is None:
-        return none_found(network, proven=status == cp_model.INFEASIBLE, bound=bound)
-    return found(network, best.path or (), best.charges, prize_bound, bound)
+        return no_solution(network, proven=status == cp_model.INFEASIBLE, bound=bound)
+    return make_solution(network, best.path or (), best.charges, prize_bound, bound)
 
 
 def _bound(solver: cp_model.CpSolver) -> int:
@@ -103,7 +105,7 @@ def _tighter(prize_bound: int, solver: cp_model.CpSolver) -> int:
 def _solve(
     model: "_Model",
     search: Search,
-    start: Found | None,
+    start: Solution | None,
     running: list[cp_model.CpSolver] | None,
     *,
     prizes: bool,
@@ -138,7 +140,7 @@ class _Watch(cp_model.CpSolverSolutionCallback):
 class _Model:
     """The variables and constraints. Has state: the model that it builds."""
 
-    def __init__(self, network: Network, pruned: Pruned, end: int | None = None) -> None:
+    def __init__(self, network: StepNetwork, pruned: Pruned, end: int | None = None) -> None:
         """`end`: when the route must end, where order is to be stated with times; for plain
         networks only. It must be tight for the linear relaxation to see much."""
         self.model = cp_model.CpModel()
@@ -397,7 +399,7 @@ class _Model:
 
     # Objectives
 
-    def maximise_prize(self, start: Found | None) -> None:
+    def maximise_prize(self, start: Solution | None) -> None:
         """The sum of the prizes of what is made; at least that of a path that is known."""
         prize = sum(int(p) * made for p, made in zip(self._network.prize, self._made, strict=True))
         if start is not None and start.path is not None:
@@ -415,7 +417,7 @@ class _Model:
             self.model.add(self._cost <= most)
         self.model.minimize(self._cost)
 
-    def hint(self, start: Found) -> None:
+    def hint(self, start: Solution) -> None:
         """A path to begin with."""
         m = self._network.size
         path = (m, *(start.path or ()), m)

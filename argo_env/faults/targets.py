@@ -4,14 +4,14 @@ from dataclasses import dataclass, field
 
 from argo_env.drives.battery import Battery
 from argo_env.drives.powertrain import Powertrain
-from argo_env.sensing.instrument import Instrument
+from argo_env.sensing.onboard_sensor import OnboardSensor
 from argo_env.surroundings import Surroundings
-from argo_env.surroundings.network import Network
+from argo_env.surroundings.network import RadioNetwork
 from argo_env.world.paper_world import AnyWorld
 
 
 @dataclass(frozen=True)
-class Stage:
+class FaultTargets:
     """The parts of one run. They change as faults begin and end; the stage itself does not."""
 
     world: AnyWorld
@@ -19,9 +19,9 @@ class Stage:
     """what each checkpoint shows, in its unit"""
     surroundings: Surroundings
     drive: Powertrain
-    sensor: Instrument
+    sensor: OnboardSensor
     battery: Battery
-    network: Network
+    network: RadioNetwork
     usual: dict[int, float] = field(init=False)
     """what each checkpoint shows without a fault"""
 

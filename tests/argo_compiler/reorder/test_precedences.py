@@ -23,8 +23,8 @@ from argo_compiler.model import Pose
 from argo_compiler.reorder.mission import route_problem
 from argo_compiler.reorder.requirements import Requirements, parse_seconds
 from argo_compiler.reorder.rewriting import apply_route
-from argo_compiler.reorder.ways import Ways
-from argo_compiler.route import Route, evaluate
+from argo_compiler.reorder.travel_matrix import TravelMatrix
+from argo_compiler.route import Tour, evaluate
 
 HERE = Pose(x=0, y=0, z=0)
 DOCK = Pose(x=9, y=9, z=0)
@@ -60,7 +60,7 @@ def ways(mission, time=None, unit=1.0, **fields):
     n = len(names)
     time = np.full((n + 1, n), 10.0) if time is None else np.array(time, dtype=float)
     work = np.array([2.0 if name.startswith("M") else 0.0 for name in names])
-    return Ways(names, time, time / 10, work, unit=unit, **fields)
+    return TravelMatrix(names, time, time / 10, work, unit=unit, **fields)
 
 
 def planned(mission, time=None, **requirements):
@@ -75,7 +75,7 @@ def kept(found):
 def test_the_order_says_what_may_move_and_nothing_to_the_machine():
     precise, free = (row(measure(4), measure(8), order=order) for order in Order)
     assert lower(precise) == lower(free)
-    moved = Route((1, 0))
+    moved = Tour((1, 0))
     assert not evaluate(planned(precise).problem, moved).feasible
     assert [t.name for t in apply_route(planned(free), moved).tasks] == ["M8", "M4", "DOCK"]
 
@@ -107,7 +107,7 @@ def test_a_sequence_holds_without_its_middle():
     found = planned(mission, before=[(8, 4, 1)], budget=100.0)
     assert kept(found) == ["checkpoint 8 before checkpoint 4 before checkpoint 1"]
     for order, feasible in [((2, 1), False), ((1, 2), True), ((1, 0, 2), True), ((0, 1), False)]:
-        assert evaluate(found.problem, Route(order)).feasible == feasible
+        assert evaluate(found.problem, Tour(order)).feasible == feasible
 
 
 def test_a_sequence_with_a_group_holds_without_its_middle():
@@ -115,7 +115,7 @@ def test_a_sequence_with_a_group_holds_without_its_middle():
     mission = row(measure(4), measure(1), measure(2), measure(3), groups=(group,))
     found = planned(mission, before=[("G", 3, 4)], budget=100.0)
     for order, feasible in [((0, 1, 2), False), ((2, 1, 0), True), ((3, 0), True), ((0, 3), False)]:
-        assert evaluate(found.problem, Route(order)).feasible == feasible
+        assert evaluate(found.problem, Tour(order)).feasible == feasible
     with pytest.raises(ArgoError, match="'G' and checkpoint 2 have a task in common"):
         planned(mission, before=[("G", 2)])
 
@@ -155,7 +155,7 @@ def test_a_loop_moves_as_one():
     assert found.reasons == (
         "'M2' to 'M3' may be done again by a condition: kept as written, and reckoned once",
     )
-    changed = apply_route(found, Route((2, 1, 0)))
+    changed = apply_route(found, Tour((2, 1, 0)))
     assert [t.name for t in changed.tasks] == ["M4", "M2", "M3", "M1", "DOCK"]
     assert changed.task("M3").transitions[0].target == "M2"
     assert changed.task("M3").transitions[1].target == "M1"
@@ -170,7 +170,7 @@ def test_a_group_is_a_round():
     assert (one.name, one.members, one.repeat, one.duration, one.soft) == (
         "group 'G'", (0, 1), 3, 8, True,
     )  # fmt: skip
-    changed = apply_route(found, Route((2, 1, 0)))
+    changed = apply_route(found, Tour((2, 1, 0)))
     assert [t.name for t in changed.tasks] == ["M3", "M2", "M1", "DOCK"]
     assert (changed.groups[0].start, changed.groups[0].end) == ("M2", "M1")
 
@@ -180,7 +180,7 @@ def test_an_endless_group_is_kept_as_it_is_written():
     found = planned(row(measure(1), measure(2, above(2, "M3")), measure(3), groups=(group,)))
     assert found.problem.rounds == ()
     assert "group 'G' is kept as written" in found.reasons[0]
-    changed = apply_route(found, Route((1, 0)))
+    changed = apply_route(found, Tour((1, 0)))
     assert [t.name for t in changed.tasks] == ["M3", "M1", "M2", "DOCK"]
     assert changed.task("M2").transitions[0].target == "DOCK"
 
@@ -244,7 +244,7 @@ def test_a_mission_can_not_charge():
     time = np.full((5, 4), 10.0)
     found = route_problem(
         mission,
-        Ways(
+        TravelMatrix(
             ("M1", "M2", "DOCK"), time, time, np.array([2.0, 2.0, 0.0, 0.0]),
             ("docking station 1",), battery=25.0, charging=3600.0, unit=1.0,
         ),
@@ -252,7 +252,7 @@ def test_a_mission_can_not_charge():
     assert found.problem.battery.capacity == 25
     assert not evaluate(found.problem, found.written).feasible
     with pytest.raises(ArgoError, match="charges at docking station 1 when the robot has done"):
-        apply_route(found, Route((0, 1), {1: 0}))
+        apply_route(found, Tour((0, 1), {1: 0}))
 
 
 def test_a_mission_that_does_not_dock_ends_with_one_task():
@@ -277,15 +277,15 @@ def test_what_no_way_leads_to_has_no_place():
 def test_a_mission_without_tasks_is_not_written():
     found = planned(row(measure(1), measure(2), docked=False), budget=1.0)
     with pytest.raises(ArgoError, match="leaves out every task"):
-        apply_route(found, Route(()))
+        apply_route(found, Tour(()))
     docked = planned(row(measure(1), measure(2)), budget=1.0)
-    assert [t.name for t in apply_route(docked, Route(())).tasks] == ["DOCK"]
+    assert [t.name for t in apply_route(docked, Tour(())).tasks] == ["DOCK"]
 
 
 def test_an_order_that_breaks_a_rule_is_not_written():
     found = planned(row(measure(1), measure(2)), before=[(1, 2)])
     with pytest.raises(ArgoError, match="checkpoint 1 before checkpoint 2"):
-        apply_route(found, Route((1, 0)))
+        apply_route(found, Tour((1, 0)))
 
 
 @pytest.mark.parametrize(

@@ -3,7 +3,7 @@
 import math
 from dataclasses import dataclass
 
-from argo_compiler.hfsm.tables import GroupNode, LeafNode, Tables, Way
+from argo_compiler.hfsm.tables import CompiledTransition, GroupNode, LeafNode, Tables
 
 
 @dataclass(slots=True, eq=False)
@@ -15,7 +15,7 @@ class Frame:
     entered: float
 
 
-class Place:
+class Configuration:
     """The one place of a mission. It changes with each step.
 
     There are two clocks. That of the values is `now` and the durations of what was done by hand.
@@ -70,7 +70,9 @@ class Place:
         """The clock that a group goes by (s)."""
         return self._at(now, group) + self._ahead(group)
 
-    def take(self, ways: tuple[Way, ...], now: float) -> tuple[Way, GroupNode | None]:
+    def take(
+        self, ways: tuple[CompiledTransition, ...], now: float
+    ) -> tuple[CompiledTransition, GroupNode | None]:
         """Goes the first way that can be taken; returns it and the group that is repeated."""
         while True:
             for way in ways:
@@ -113,7 +115,7 @@ class Place:
         self.frames.clear()
         self.due = math.inf
 
-    def _possible(self, way: Way, now: float) -> bool:
+    def _possible(self, way: CompiledTransition, now: float) -> bool:
         group = way.repeats
         if group is not None:
             frame = self.frames[group.depth]

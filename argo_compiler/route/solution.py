@@ -4,11 +4,11 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field
 
 from argo_compiler.route.evaluation import evaluate
-from argo_compiler.route.network import Network
+from argo_compiler.route.network import StepNetwork
 
 
 @dataclass(frozen=True)
-class Found:
+class Solution:
     """A path of nodes, and what is known of all paths."""
 
     path: tuple[int, ...] | None
@@ -24,7 +24,7 @@ class Found:
     charges: Mapping[int, int] = field(default_factory=dict)
     """the charger by the position in the path before which it is used"""
 
-    def better_than(self, other: "Found | None") -> bool:
+    def better_than(self, other: "Solution | None") -> bool:
         """Whether its path wins more, or as much at less cost."""
         if self.path is None:
             return False
@@ -35,13 +35,13 @@ class Found:
         )
 
 
-def found(
-    network: Network,
+def make_solution(
+    network: StepNetwork,
     path: tuple[int, ...],
     charges: Mapping[int, int],
     prize_bound: int,
     bound: int,
-) -> Found:
+) -> Solution:
     """The path with what it is worth. Raises AssertionError if it breaks a rule: no solver may."""
     route = network.route(path, dict(charges))
     worth = evaluate(network.problem, route)
@@ -49,9 +49,9 @@ def found(
     cost = worth.cost(network.objective)
     prize = worth.prize
     proven = network.exact and prize >= prize_bound and cost <= bound
-    return Found(path, prize, cost, max(prize_bound, prize), min(bound, cost), proven, charges)
+    return Solution(path, prize, cost, max(prize_bound, prize), min(bound, cost), proven, charges)
 
 
-def none_found(network: Network, *, proven: bool, bound: int = 0) -> Found:
+def no_solution(network: StepNetwork, *, proven: bool, bound: int = 0) -> Solution:
     """No path; `proven`: there is none."""
-    return Found(None, 0, 0, int(network.prize.sum()), bound, proven)
+    return Solution(None, 0, 0, int(network.prize.sum()), bound, proven)

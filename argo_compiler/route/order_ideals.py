@@ -11,7 +11,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from argo_compiler.route.network import Network
+from argo_compiler.route.network import StepNetwork
 from argo_compiler.route.pruning import Pruned
 
 Masks = NDArray[np.int64]
@@ -49,7 +49,7 @@ class LayerRules:
 class Bits:
     """The bits of a network's steps."""
 
-    def __init__(self, network: Network, pruned: Pruned) -> None:
+    def __init__(self, network: StepNetwork, pruned: Pruned) -> None:
         self._network, self._pruned = network, pruned
         count = len(network.prize)
         self.shared = count > MOST_BITS and not network.selective

@@ -1,0 +1,81 @@
+"""One diagnostic about some input: what is wrong, how bad it is, and where."""
+
+from collections.abc import Iterable, Sequence
+
+from argo_compiler.diagnostics.codes.code import Severity
+from argo_compiler.model import Model
+
+MAX_EXCERPT = 200
+"""characters of the longest source line that is shown with a diagnostic"""
+
+
+class Span(Model):
+    """A stretch of one source line. Lines and columns count from 1, in characters."""
+
+    line: int
+    column: int
+    length: int = 1
+
+
+class Diagnostic(Model):
+    """One diagnostic. `code` is stable and explained in `docs/diagnostics.md`."""
+
+    code: str
+    severity: Severity
+    message: str
+    span: Span | None = None
+    excerpt: str | None = None
+    """the source line that the span lies in"""
+    hint: str | None = None
+    """the way out"""
+    subject: str | None = None
+    """what it is about, as a path into the mission that goes by names, such as
+    `tasks['MEASURE 4'].transitions[0]`; see `argo_compiler.diagnostics.subject`"""
+
+
+def has_errors(diagnostics: Iterable[Diagnostic]) -> bool:
+    """Whether there is an error among them."""
+    return any(diagnostic.severity is Severity.ERROR for diagnostic in diagnostics)
+
+
+def by_place(diagnostics: Iterable[Diagnostic]) -> tuple[Diagnostic, ...]:
+    """All in the source's order, at one place errors before warnings, then by code. Those without a
+    place come last, in the order in which they are given."""
+    return tuple(sorted(diagnostics, key=_place))
+
+
+def _place(diagnostic: Diagnostic) -> tuple[bool, int, int, bool, str]:
+    span = diagnostic.span
+    if span is None:
+        return (True, 0, 0, False, "")
+    warning = diagnostic.severity is Severity.WARNING
+    return (False, span.line, span.column, warning, diagnostic.code)
+
+
+def with_excerpts(
+    diagnostics: Iterable[Diagnostic], lines: Sequence[str]
+) -> tuple[Diagnostic, ...]:
+    """The diagnostics with the source's lines that they point at."""
+
+    def shown(diagnostic: Diagnostic) -> Diagnostic:
+        span = diagnostic.span
+        if span is None or span.line > len(lines):
+            return diagnostic
+        line = lines[span.line - 1]
+        excerpt = line if len(line) <= MAX_EXCERPT else None
+        return diagnostic.model_copy(update={"excerpt": excerpt})
+
+    return tuple(shown(diagnostic) for diagnostic in diagnostics)
+
+
+def count(diagnostics: Iterable[Diagnostic], severity: Severity) -> int:
+    """How many of them are of that severity."""
+    return sum(diagnostic.severity is severity for diagnostic in diagnostics)
+
+
+def summary(diagnostics: Iterable[Diagnostic]) -> str:
+    """How many there are, such as `2 errors, 5 warnings`."""
+    diagnostics = tuple(diagnostics)
+    counts = ((count(diagnostics, severity), severity) for severity in Severity)
+    parts = (f"{number} {severity}{'' if number == 1 else 's'}" for number, severity in counts)
+    return ", ".join(part for part in parts if not part.startswith("0 ")) or "no findings"

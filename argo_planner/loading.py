@@ -24,8 +24,8 @@ from argo_compiler.ros import is_bag, read_bag
 from argo_compiler.script import import_script, read_script
 from argo_compiler.script.syntax.source import Source as Script
 from argo_env.navigation import Navigator
+from argo_env.planning import open_site
 from argo_env.planning.catalog import make_catalog
-from argo_env.planning.opening import open_site
 
 
 def load_navigator(site: str) -> Navigator:

@@ -36,6 +36,7 @@ from argo_env.drives.drive import Drive, DriveStatus
 from argo_env.drives.tracked.drive import TrackedDrive
 from argo_env.navigation import Navigator, Path
 from argo_env.navigation.path import Motion
+from argo_env.planning import open_site
 from argo_env.planning.start import start_pose
 from argo_env.robot.calibration import Calibration, MotionKind
 from argo_env.robot.pose import BodyPose
@@ -43,7 +44,6 @@ from argo_env.robot.spec import RobotSpec, calibration_file, load_robot
 from argo_env.run.session import simulate
 from argo_env.run.spec import RunSettings
 from argo_env.seeding import generator
-from argo_env.site import load_site
 from argo_env.world.world import World
 from benchmarks.fitting import TimedDrive, errors, fit
 from benchmarks.options import seed_number
@@ -167,8 +167,7 @@ _navigator: Navigator | None = None
 
 def _prepare(site: str) -> None:
     global _navigator
-    _navigator = Navigator(load_site(site), load_robot())
-    _navigator.prepare()
+    _navigator = open_site(site).prepare().navigator
 
 
 def _run(job: tuple[int, str]) -> Run:

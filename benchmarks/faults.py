@@ -30,13 +30,12 @@ from argo_env.faults.reading import read_faults
 from argo_env.faults.walkway import Brick
 from argo_env.files import resources
 from argo_env.navigation import Navigator
+from argo_env.planning import open_site
 from argo_env.planning.catalog import make_catalog
-from argo_env.robot.spec import load_robot
 from argo_env.run.record import RunRecord
 from argo_env.run.session import DRIVES, simulate
 from argo_env.run.spec import RunSettings, logged
 from argo_env.seeding import generator
-from argo_env.site import load_site
 from benchmarks.options import seed_number
 
 OPERATOR = 300.0  # s, when a person lets a mission go on that waits for one
@@ -185,8 +184,7 @@ def main() -> None:
     parser.add_argument("--seed", type=seed_number, default=0, help="of the first mission")
     parser.add_argument("--drive", choices=DRIVES, default="kinematic")
     given = parser.parse_args()
-    navigator = Navigator(load_site(given.site), load_robot())
-    navigator.prepare()
+    navigator = open_site(given.site).prepare().navigator
     todo: list[Callable[[], None]] = []
     if given.clean:
         todo.append(lambda: clean(navigator, given.clean, given.seed, given.drive))

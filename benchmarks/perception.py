@@ -23,16 +23,14 @@ import numpy as np
 from numpy.typing import NDArray
 
 from argo_compiler.catalog import CheckpointKind
-from argo_env.navigation import Navigator
+from argo_env.planning import open_site
 from argo_env.robot.pose import BodyPose
-from argo_env.robot.spec import load_robot
 from argo_env.seeding import generator
 from argo_env.sensing.sensor import MeasurementError
 from argo_env.sensing.vision.align import FacePose
 from argo_env.sensing.vision.instrument import Instrument
 from argo_env.sensing.vision.sensor import INSTRUMENTS, CameraSensor
 from argo_env.sensing.vision.views import plan_views, solids_near
-from argo_env.site import load_site
 from argo_env.site.shapes import Box, Cylinder, Solid
 from argo_env.world.placement import AS_PLANNED, draw_placement
 from argo_env.world.world import World
@@ -78,8 +76,8 @@ class Setting:
     """The site with a robot before its checkpoints. Holds a world."""
 
     def __init__(self) -> None:
-        self.site = load_site("umad")
-        self.navigator = Navigator(self.site, load_robot())
+        self.navigator = open_site("umad").navigator
+        self.site = self.navigator.site
         self.world = World(self.site, self.navigator.robot)
         starts = list(self.site.docks.values())
         self.stands = {

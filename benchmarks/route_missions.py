@@ -17,10 +17,11 @@ import numpy as np
 
 from argo_compiler.catalog import Catalog
 from argo_compiler.reorder.requirements import Requirements
+from argo_env.planning import open_site
 from argo_env.planning.catalog import make_catalog
 from argo_env.run.session import DRIVES, simulate
 from argo_env.run.spec import RunSettings
-from argo_planner.loading import load_mission, load_navigator
+from argo_planner.loading import load_mission
 from argo_planner.routing import TIME_LIMIT, suggest
 from benchmarks.options import seed_number
 
@@ -53,7 +54,7 @@ def main() -> None:
     parser.add_argument("--seed", type=seed_number, default=0, help="of the first sheet")
     parser.add_argument("--drive", choices=DRIVES, default="kinematic")
     options = parser.parse_args()
-    navigator = load_navigator("umad")
+    navigator = open_site("umad").navigator
     catalog = make_catalog(navigator)
     print("| checkpoints | sheet | as written | predicted | driven | off | proven |")
     print("|---|---|---|---|---|---|---|")

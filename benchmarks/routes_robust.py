@@ -16,10 +16,8 @@ from argo_compiler.route.robust import RobustSuggestion, suggest_robust_route
 from argo_compiler.route.robust_sampling import Draws, completion
 from argo_compiler.route.robust_spread import CAUTIOUS
 from argo_compiler.route.suggest import suggest_route
-from argo_env.navigation import Navigator
-from argo_env.robot.spec import load_robot
+from argo_env.planning import open_site
 from argo_env.seeding import generator
-from argo_env.site import load_site
 
 PROBLEMS = 20
 VISITS = 6
@@ -73,7 +71,7 @@ def compare_with_all_orders() -> None:
 
 def umad() -> RouteProblem:
     """All checkpoints of UMAD in any order, from dock 1 back to it."""
-    navigator = Navigator(load_site("umad"), load_robot())
+    navigator = open_site("umad").navigator
     ids = [checkpoint.id for checkpoint in navigator.site.checkpoints]
     times = navigator.travel_times([*ids, navigator.site.docks[1]])
     visits = tuple(Visit(f"checkpoint {id}", round(READING / UNIT)) for id in ids)

@@ -42,9 +42,9 @@ class SiteMatrix:
 
 def site_matrix(name: str) -> SiteMatrix:
     """The matrix of a site."""
-    from argo_env.envs.sites import navigator_of
+    from argo_env.planning import open_site
 
-    navigator = navigator_of(name)
+    navigator = open_site(name).navigator
     site = navigator.site
     docks = [navigator.snap(site.docks[number]) for number in sorted(site.docks)]
     seconds = navigator.travel_times([*(c.id for c in site.checkpoints), *docks])

@@ -19,6 +19,7 @@ from argo_env.drives.drive import DriveStatus
 from argo_env.drives.kinematic import KinematicDrive
 from argo_env.faults.walkway import BlockedStairs, Brick, MissingPlate
 from argo_env.navigation import Navigator
+from argo_env.planning import open_site
 from argo_env.robot.pose import BodyPose
 from argo_env.robot.spec import load_robot
 from argo_env.seeding import generator
@@ -26,7 +27,7 @@ from argo_env.sensing.signals import standard_watches
 from argo_env.sensing.signals.frames import NOSE, on_site
 from argo_env.sensing.signals.microphone import pump_places
 from argo_env.sensing.watch import Detection
-from argo_env.site import Site, load_site
+from argo_env.site import Site
 from argo_env.site.shapes import Box, Cylinder, Role, Solid, Vector
 from argo_env.surroundings import Alarm, GasLeak, HotSpot, PumpFault, PumpSound, Surroundings
 from argo_env.surroundings.sources import Source
@@ -293,11 +294,12 @@ def main() -> None:
     parser.add_argument("--missions", type=int, default=100)
     parser.add_argument("--drives", type=int, default=20)
     arguments = parser.parse_args()
-    site, robot = load_site(arguments.site), load_robot()
+    navigator = open_site(arguments.site).navigator
+    site, robot = navigator.site, navigator.robot
     placements = range(arguments.placements)
     with World(site, robot) as world:
         began = time.process_time()
-        tracks = list(drives(Navigator(site, robot), world, arguments.drives, 300.0))
+        tracks = list(drives(navigator, world, arguments.drives, 300.0))
         seconds = sum(t[-1][0] for t in tracks)
         print(
             f"{len(tracks)} drives, {seconds:.0f} s, kinematic: "

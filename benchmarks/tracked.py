@@ -21,8 +21,8 @@ from argo_env.drives.drive import DriveStatus, Trouble
 from argo_env.drives.tracked.belts import Traction
 from argo_env.drives.tracked.drive import TrackedDrive
 from argo_env.navigation import Navigator, Path
+from argo_env.planning import open_site
 from argo_env.robot.pose import BodyPose
-from argo_env.robot.spec import load_robot
 from argo_env.seeding import generator
 from argo_env.site import load_site
 from argo_env.world.world import World
@@ -71,9 +71,8 @@ class ClimbOutcome:
 
 @lru_cache(maxsize=1)
 def _site() -> tuple[Navigator, World]:
-    robot = load_robot()
-    site = load_site("umad")
-    return Navigator(site, robot), World(site, robot)
+    opened = open_site("umad")
+    return opened.navigator, World(opened.site, opened.robot)
 
 
 def path_of(navigator: Navigator, tower: str, storey: int, up: bool) -> Path:

@@ -1,6 +1,9 @@
 """What the whole suite shares. Import it as `from tests.conftest import examples`."""
 
+import atexit
 import os
+import shutil
+import tempfile
 from pathlib import Path
 
 import pytest
@@ -20,6 +23,11 @@ if not EXAMPLES:
     # these are depends on the tests that ran before in the same process.
     assert providers._get_local_constants
     providers._get_local_constants = lambda: providers._local_constants
+
+if "ARGO_CACHE_DIR" not in os.environ:
+    # Of this run, for all of its processes: they inherit it from the first one.
+    os.environ["ARGO_CACHE_DIR"] = tempfile.mkdtemp(prefix="argo-cache-")
+    atexit.register(shutil.rmtree, os.environ["ARGO_CACHE_DIR"], ignore_errors=True)
 
 
 def examples(suite: int) -> int:

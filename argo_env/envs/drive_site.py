@@ -1,18 +1,16 @@
 """The site that Drive-v0 drives on: its world, the robot's body in it, and the ways there."""
 
-from dataclasses import replace
-
 from argo_compiler.errors import ArgoError
 from argo_env.closing import Closing
 from argo_env.drives.tracked.body import TrackedBody
 from argo_env.envs.guide import Guide
-from argo_env.envs.sites import navigator_of
 from argo_env.faults.kinds import AnyFault, changed_site, settle
 from argo_env.faults.robot import DriveDysfunction
 from argo_env.navigation import Navigator
 from argo_env.pictures.camera import Camera
 from argo_env.pictures.chase import ChaseCamera
 from argo_env.pictures.scene import CameraView, Scene
+from argo_env.planning import open_site
 from argo_env.robot.pose import BodyPose
 from argo_env.world.world import World
 
@@ -36,7 +34,7 @@ class DriveSite(Closing):
                     f"argo/Drive-v0 does not know the fault `{fault.kind}`; "
                     f"it knows: {', '.join((*ON_THE_WAY, DYSFUNCTION))}"
                 )
-        navigator = navigator_of(scenario)
+        navigator = open_site(scenario).prepare().navigator
         site = navigator.site
         settled = settle(faults, site, 0)
         real = changed_site(site, settled)
@@ -48,7 +46,7 @@ class DriveSite(Closing):
         self.navigator = navigator
         self.guide = Guide(navigator)
         self.dysfunctions = tuple(f for f in settled if isinstance(f, DriveDysfunction))
-        self._real = replace(site, elements=real.elements)
+        self._real = real
         self.world = World(site, self.robot, elements=real.elements)
         self.body = TrackedBody(self.world, self.robot)
         self._scene: Scene | None = None

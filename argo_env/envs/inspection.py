@@ -32,8 +32,8 @@ from argo_env.envs.options import (
     read_options,
 )
 from argo_env.envs.rendering import Rendering, check_render_mode
-from argo_env.envs.sites import navigator_of
 from argo_env.faults.kinds import AnyFault
+from argo_env.planning import open_site
 from argo_env.run.session import DRIVES, check_settings
 from argo_env.run.spec import RunSettings
 
@@ -151,7 +151,7 @@ class InspectEnv(Rendering, gym.Env[Observation, np.int64]):
         self.render_mode = render_mode
         self._scenario, self._drive, self._limit = scenario, drive, time_limit
         self._default_faults = faults
-        site = navigator_of(scenario).site
+        site = open_site(scenario).prepare().site
         self._slots = self._room("checkpoints", checkpoints, len(site.checkpoints), site.name)
         self._docks = self._room("docks", docks, len(site.docks), site.name)
         places = self._slots + self._docks
@@ -291,7 +291,7 @@ class InspectEnv(Rendering, gym.Env[Observation, np.int64]):
         """Takes the options on, and makes the site ready that they ask for; ArgoError if it does
         not fit, and then nothing has changed."""
         scenario = options.scenario or self._scenario
-        navigator = navigator_of(scenario)
+        navigator = open_site(scenario).prepare().navigator
         site = navigator.site
         if len(site.checkpoints) > self._slots or len(site.docks) > self._docks:
             raise ArgoError(

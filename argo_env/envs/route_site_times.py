@@ -10,9 +10,9 @@ from numpy.typing import NDArray
 
 from argo_compiler.errors import Unreachable
 from argo_env.envs.route_instance import Stair
-from argo_env.envs.sites import navigator_of
 from argo_env.navigation import Navigator
 from argo_env.navigation.blockage import Blockage
+from argo_env.planning import open_site
 from argo_env.site.stairs import run
 
 
@@ -32,7 +32,7 @@ class SiteTimes:
 @lru_cache(maxsize=8)
 def site_times(scenario: str) -> SiteTimes:
     """The travel times of the site of that name. Raises ArgoError if there is none."""
-    navigator = navigator_of(scenario)
+    navigator = open_site(scenario).navigator
     site = navigator.site
     number = min(site.docks)
     dock = navigator.snap(site.docks[number])
@@ -46,7 +46,7 @@ def site_times(scenario: str) -> SiteTimes:
 @lru_cache(maxsize=8)
 def stairs_of_site(scenario: str) -> tuple[Stair, ...]:
     """The stairs of a site's towers, numbered from 0."""
-    spec = navigator_of(scenario).site.spec
+    spec = open_site(scenario).site.spec
     return tuple(
         (tower, floor.number) for tower in range(len(spec.towers)) for floor in spec.floors[:-1]
     )
@@ -55,7 +55,7 @@ def stairs_of_site(scenario: str) -> tuple[Stair, ...]:
 @lru_cache(maxsize=64)
 def times_without(scenario: str, blocked: tuple[Stair, ...]) -> NDArray[np.float64] | None:
     """`SiteTimes.times` with some stairs blocked in their middle; None if there is no other way."""
-    navigator = navigator_of(scenario)
+    navigator = open_site(scenario).navigator
     site = navigator.site
     places = [navigator.snap(site.docks[min(site.docks)])]
     places += [navigator.viewing_pose(c.id) for c in site.checkpoints]

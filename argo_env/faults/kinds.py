@@ -1,7 +1,6 @@
 """All kinds of faults, and what a file of faults may say."""
 
 from collections.abc import Sequence
-from dataclasses import replace
 from typing import Annotated
 
 from pydantic import Field
@@ -103,5 +102,5 @@ def _settled(fault: AnyFault, number: int, site: Site, seed: int) -> AnyFault:
 def changed_site(site: Site, faults: Sequence[AnyFault]) -> Site:
     """The site as it really is with settled faults: bricks lie on it, and plates are missing."""
     for fault in faults:
-        site = replace(site, elements=fault.changed(site))
+        site = site.with_elements(fault.changed(site))
     return site

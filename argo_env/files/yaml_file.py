@@ -50,12 +50,31 @@ def read_yaml(
 
     Raises ArgoError if the file can't be read, and DiagnosticError if it is no such thing.
     """
+    text = read_text(path)
+    return parse_yaml(text, path, model, things, not_yaml, duplicate_key, wrong_field, no_field)
+
+
+def read_text(path: Path) -> str:
+    """The text of a file; ArgoError if it can't be read."""
     try:
-        text = path.read_text(encoding="utf-8")
+        return path.read_text(encoding="utf-8")
     except OSError as error:
         raise ArgoError(f"{path}: can't be read: {error.strerror}") from error
     except ValueError as error:  # bytes that are no text, a NUL in the path
         raise ArgoError(f"{path}: is not UTF-8 text: {error}") from error
+
+
+def parse_yaml(
+    text: str,
+    path: Path,
+    model: type[ModelT],
+    things: str,
+    not_yaml: str,
+    duplicate_key: str,
+    wrong_field: str,
+    no_field: Mapping[str, str] | None = None,
+) -> ModelT:
+    """The model in the text of a YAML file, which messages call `path`: see `read_yaml`."""
     try:
         tree, repeated, data = _compose(text)
     except NotYamlError as error:

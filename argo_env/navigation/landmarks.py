@@ -11,6 +11,8 @@ from numpy.typing import NDArray
 from scipy.sparse import csr_array
 from scipy.sparse.csgraph import dijkstra
 
+from argo_env.files.parts import NOWHERE, Parts
+
 _SIDES, _AWAY = 8, 8  # landmarks at the outermost places, and far away from all others
 _ACTIVE = 6  # bounds that one search uses
 _WORTH_IT = 100_000  # states; a search through fewer is short, and landmarks take memory
@@ -29,6 +31,9 @@ class Landmarks:
     ahead: csr_array
     back: csr_array
     places: NDArray[np.float64]
+    parts: Parts = NOWHERE
+    name: str = ""
+    """of the part with their ways"""
 
     def bounds(
         self, source: int, ends: NDArray[np.int64], extra: NDArray[np.float64]
@@ -68,6 +73,10 @@ class Landmarks:
     def _distances(self) -> tuple[NDArray[np.float32], NDArray[np.float32]]:
         """The costs (s) from all states to each landmark, and from each landmark to all states,
         shape (landmarks, n)."""
+        ways = self.parts.made(self.name, self._find_distances)
+        return ways["onto"], ways["away"]
+
+    def _find_distances(self) -> dict[str, NDArray[np.float32]]:
         chosen = _outermost(self.places)
         onto, away = self._to_and_from(chosen)
         nearest = (onto + away).min(axis=0)
@@ -76,7 +85,7 @@ class Landmarks:
             more = self._to_and_from([int(np.argmax(nearest))])
             onto, away = np.vstack([onto, more[0]]), np.vstack([away, more[1]])
             nearest = np.minimum(nearest, (more[0] + more[1])[0])
-        return onto, away
+        return {"onto": onto, "away": away}
 
     def _to_and_from(self, states: list[int]) -> tuple[NDArray[np.float32], NDArray[np.float32]]:
         onto, away = (dijkstra(graph, indices=states) for graph in (self.back, self.ahead))

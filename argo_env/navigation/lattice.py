@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 from scipy.sparse import coo_array, csr_array
 from scipy.sparse.csgraph import connected_components
 
+from argo_env.files.parts import Arrays
 from argo_env.navigation.raster import CELL
 from argo_env.navigation.stencil import HEADINGS, Stencil, heading_angle, standing, turning
 from argo_env.navigation.surface import Surface
@@ -62,6 +63,38 @@ class Lattice:
         x, y = self.surface.grid.centers(self.surface.i[cell], self.surface.j[cell])
         yaw = self.heading[states] * heading_angle(1)
         return np.column_stack([x, y, self.surface.z[cell], yaw])
+
+
+def lattice_arrays(lattice: Lattice) -> Arrays:
+    """A lattice as arrays, its surface and robot apart."""
+    return {
+        "cell": lattice.cell,
+        "heading": lattice.heading,
+        "rise": lattice.rise,
+        "roomy": lattice.roomy,
+        "state_of": lattice.state_of,
+        "costs": lattice.costs.data,
+        "targets": lattice.costs.indices,
+        "starts": lattice.costs.indptr,
+    }
+
+
+def lattice_of(surface: Surface, robot: RobotSpec, arrays: Arrays) -> Lattice:
+    """The lattice that `lattice_arrays` was given."""
+    moves = csr_array(
+        (arrays["costs"], arrays["targets"], arrays["starts"]),
+        shape=(len(arrays["cell"]), len(arrays["cell"])),
+    )
+    return Lattice(
+        surface,
+        robot,
+        arrays["cell"],
+        arrays["heading"],
+        arrays["rise"],
+        arrays["roomy"],
+        arrays["state_of"],
+        moves,
+    )
 
 
 def build_lattice(surface: Surface, robot: RobotSpec) -> Lattice:

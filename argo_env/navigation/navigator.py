@@ -3,7 +3,7 @@
 import math
 from collections.abc import Sequence
 from dataclasses import replace
-from functools import cached_property
+from functools import cached_property, lru_cache
 from itertools import pairwise
 
 import numpy as np
@@ -11,15 +11,24 @@ from numpy.typing import NDArray
 
 from argo_compiler.errors import ArgoError, Unreachable
 from argo_compiler.model import Pose
+from argo_env.files.parts import NOWHERE, Parts
 from argo_env.navigation.blockage import Blockage, close, closed_cells, turns_over
-from argo_env.navigation.lattice import DRIVING_LEVEL, LEVEL, Lattice, build_lattice, connected_part
+from argo_env.navigation.lattice import (
+    DRIVING_LEVEL,
+    LEVEL,
+    Lattice,
+    build_lattice,
+    connected_part,
+    lattice_arrays,
+    lattice_of,
+)
 from argo_env.navigation.path import Motion, Path, merge, wrap
 from argo_env.navigation.raster import Grid
 from argo_env.navigation.regions import find_cuts, make_partition, repartition
 from argo_env.navigation.routes import Routes
 from argo_env.navigation.smoothing import FlatMap, smooth
 from argo_env.navigation.stencil import HEADINGS, heading_angle
-from argo_env.navigation.surface import Surface, find_surface
+from argo_env.navigation.surface import Surface, find_surface, surface_arrays
 from argo_env.navigation.views import find_views
 from argo_env.robot.spec import RobotSpec
 from argo_env.site import Site
@@ -31,15 +40,23 @@ Views = tuple[NDArray[np.int64], NDArray[np.float64]]
 
 
 class Navigator:
-    """Finds the fastest paths on a site. Holds the site's lattice and what it knows of the ways."""
+    """Finds the fastest paths on a site. Holds the site's lattice, what it knows of the ways, and
+    the paths that it planned last."""
 
-    def __init__(self, site: Site, robot: RobotSpec) -> None:
+    def __init__(
+        self, site: Site, robot: RobotSpec, parts: Parts = NOWHERE, remembered: int = 0
+    ) -> None:
+        """What takes long to find is looked up in `parts`, and kept there. The last `remembered`
+        paths are not planned again."""
         self.site = site
         self.robot = robot
+        self.parts = parts
         self.blockages: tuple[Blockage, ...] = ()
         self._found_views: dict[tuple[int, float], Views] = {}
         self._viewing_states: dict[int, int] = {}
         self._flat_maps: dict[float, FlatMap] = {}
+        self._path = lru_cache(remembered)(self._find_path)
+        self._path_to_view = lru_cache(remembered)(self._find_path_to_view)
 
     def avoiding(self, blockages: Sequence[Blockage]) -> "Navigator":
         """A navigator of the same site that also keeps clear of `blockages`.
@@ -59,6 +76,15 @@ class Navigator:
         other._routes = Routes(other.lattice, partition)
         return other
 
+    def take_over(self, other: "Navigator") -> None:
+        """Takes over what a navigator of the same site and robot has found."""
+        if "surface" in other.__dict__:
+            self.surface = other.surface
+            self.parts.keep("surface", surface_arrays(self.surface))
+        if "lattice" in other.__dict__:
+            self.lattice = other.lattice
+            self.parts.keep("lattice", lattice_arrays(self.lattice))
+
     def prepare(self) -> None:
         """Finds out now what all queries share, so that no later call takes the time for it."""
         self._routes.prepare()
@@ -67,9 +93,15 @@ class Navigator:
     def surface(self) -> Surface:
         """All walkable cells of the site."""
         grid = Grid.over(self.site.spec.ground)
-        return find_surface(
-            self.site.elements, grid, self.robot.driving_height, self.robot.max_step
+        arrays = self.parts.made(
+            "surface",
+            lambda: surface_arrays(
+                find_surface(
+                    self.site.elements, grid, self.robot.driving_height, self.robot.max_step
+                )
+            ),
         )
+        return Surface(grid, **arrays)
 
     @cached_property
     def lattice(self) -> Lattice:
@@ -77,6 +109,10 @@ class Navigator:
 
         Raises ArgoError if the robot can't stand in a docking station, or not all are connected.
         """
+        arrays = self.parts.made("lattice", lambda: lattice_arrays(self._build_lattice()))
+        return lattice_of(self.surface, self.robot, arrays)
+
+    def _build_lattice(self) -> Lattice:
         everything = build_lattice(self.surface, self.robot)
         docks = {n: _nearest(everything, p) for n, p in self.site.docks.items()}
         for number, state in docks.items():
@@ -107,6 +143,9 @@ class Navigator:
         The end is on the lattice, within SNAP_DISTANCE of the goal (5 cm where there is room), and
         turned as the goal asks where there is room to turn. Raises Unreachable.
         """
+        return self._path(start, goal)
+
+    def _find_path(self, start: Pose, goal: Pose) -> Path:
         source = self._state_at(start)
         target = self._state_at(goal)
         states = self._routes.find(source, (np.array([target]), np.zeros(1)))
@@ -119,8 +158,11 @@ class Navigator:
         """The path to the best place to read the checkpoint from: near in time, and a good view.
         Its face may be taken to be `turned` (rad) against the plan.
 
-        Raises Unreachable if there is no such place, KeyError if there is no such checkpoint.
+        Raises Unreachable if there is no such place, NotFound if there is no such checkpoint.
         """
+        return self._path_to_view(start, checkpoint_id, turned)
+
+    def _find_path_to_view(self, start: Pose, checkpoint_id: int, turned: float) -> Path:
         return self._smoothed(self._way_to_view(start, checkpoint_id, turned), start)
 
     def travel_times(self, places: Sequence[Pose | int]) -> NDArray[np.float64]:
@@ -133,7 +175,7 @@ class Navigator:
         the lowest number. Where there is no way the time is inf; from a place to itself it is 0.
 
         Raises Unreachable for a pose where the robot can't stand and a checkpoint that it
-        can't see, KeyError if there is no such checkpoint.
+        can't see, NotFound if there is no such checkpoint.
         """
         return self._routes.times(self._states(places))
 
@@ -145,7 +187,7 @@ class Navigator:
     def viewing_pose(self, checkpoint_id: int) -> Pose:
         """The pose that `travel_times` counts with for a checkpoint.
 
-        Raises Unreachable if it can't be seen, KeyError if there is no such checkpoint.
+        Raises Unreachable if it can't be seen, NotFound if there is no such checkpoint.
         """
         return _poses(self.lattice, [self._viewing_state(checkpoint_id)])[0]
 
@@ -172,11 +214,16 @@ class Navigator:
 
     @cached_property
     def _from_first_dock(self) -> NDArray[np.float64]:
-        return self._routes.costs_from(self._state_at(self._first_dock))
+        arrays = self.parts.made(
+            "first-dock",
+            lambda: {"costs": self._routes.costs_from(self._state_at(self._first_dock))},
+        )
+        return arrays["costs"]
 
     def turning_places(self, floor: int) -> NDArray[np.float64]:
-        """Poses (x, y, z, yaw) on a floor's deck in each of which the robot can turn all round."""
-        floor_z = next(f.z for f in self.site.spec.floors if f.number == floor)
+        """Poses (x, y, z, yaw) on a floor's deck in each of which the robot can turn all round.
+        NotFound if there is no such floor."""
+        floor_z = self.site.floor(floor).z
         places = self._turning_places
         return places[np.abs(places[:, 2] - floor_z) <= 0.01]
 
@@ -228,7 +275,7 @@ class Navigator:
     @cached_property
     def _routes(self) -> Routes:
         cuts = find_cuts(self.lattice, [f.z for f in self.site.spec.floors])
-        return Routes(self.lattice, make_partition(self.lattice, cuts))
+        return Routes(self.lattice, make_partition(self.lattice, cuts, self.parts), self.parts)
 
     def _views(self, checkpoint_id: int, turned: float = 0.0) -> Views:
         key = checkpoint_id, turned

@@ -7,6 +7,7 @@ from numpy.typing import NDArray
 from scipy.sparse import coo_array, csr_array
 from scipy.sparse.csgraph import dijkstra
 
+from argo_env.files.parts import Arrays
 from argo_env.navigation.lattice import Lattice
 from argo_env.navigation.regions import Partition, Region, Trees
 
@@ -28,6 +29,16 @@ class Portals:
     def exits(self, area: Region) -> NDArray[np.int64]:
         """The rows of the region's exits."""
         return np.searchsorted(self.states, area.members[area.exits])
+
+
+def portals_arrays(portals: Portals) -> Arrays:
+    """Portals as arrays."""
+    return {
+        "states": portals.states,
+        "costs": portals.costs,
+        "times": portals.times,
+        "before": portals.before,
+    }
 
 
 def find_portals(lattice: Lattice, part: Partition) -> Portals:

@@ -6,7 +6,7 @@ ways found are as cheap as those of one search over the whole lattice.
 """
 
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 from itertools import pairwise
 
@@ -15,6 +15,7 @@ from numpy.typing import NDArray
 from scipy.sparse import csr_array
 from scipy.sparse.csgraph import dijkstra
 
+from argo_env.files.parts import NOWHERE, Arrays, Parts
 from argo_env.navigation.landmarks import Landmarks
 from argo_env.navigation.lattice import Lattice
 
@@ -37,6 +38,9 @@ class Region:
     entries: NDArray[np.int64]
     exits: NDArray[np.int64]
     landmarks: Landmarks
+    parts: Parts = NOWHERE
+    name: str = ""
+    """of what is kept of it in `parts`"""
 
     @cached_property
     def heads(self) -> NDArray[np.intp]:
@@ -46,12 +50,20 @@ class Region:
     @cached_property
     def from_entries(self) -> Trees:
         """The cheapest ways from each entry; what is next to a state is the state before it."""
-        return search(self.ahead, self.entries)
+        return self._trees("entries", self.ahead, self.entries)
 
     @cached_property
     def to_exits(self) -> Trees:
         """The cheapest ways to each exit; what is next to a state is the state after it."""
-        return search(self.back, self.exits)
+        return self._trees("exits", self.back, self.exits)
+
+    def _trees(self, kind: str, graph: csr_array, sources: NDArray[np.int64]) -> Trees:
+        def find() -> Arrays:
+            costs, following = search(graph, sources)
+            return {"costs": costs, "following": following}
+
+        trees = self.parts.made(f"{self.name}-{kind}", find)
+        return trees["costs"], trees["following"]
 
 
 def search(graph: csr_array, sources: NDArray[np.int64], limit: float = np.inf) -> Trees:
@@ -100,15 +112,21 @@ class Partition:
     crossings: tuple[NDArray[np.int64], NDArray[np.int64], NDArray[np.float64]]
 
 
-def make_partition(lattice: Lattice, cuts: Sequence[float]) -> Partition:
-    """The partition of the lattice at the heights `cuts` (m)."""
+def make_partition(lattice: Lattice, cuts: Sequence[float], parts: Parts = NOWHERE) -> Partition:
+    """The partition of the lattice at the heights `cuts` (m). What takes long to find of its
+    regions is kept in `parts`."""
     region = np.searchsorted(np.array(cuts), lattice.surface.z[lattice.cell])
     members = [np.flatnonzero(region == r) for r in range(len(cuts) + 1)]
     local = np.empty(lattice.size, dtype=np.int64)
     for states in members:
         local[states] = np.arange(len(states))
     crossings = _crossings(lattice, region)
-    regions = [_region(lattice, states, local, crossings) for states in members]
+    regions = []
+    for number, states in enumerate(members):
+        found = _region(lattice, states, local, crossings)
+        name = f"region-{number}"
+        landmarks = replace(found.landmarks, parts=parts, name=f"{name}-landmarks")
+        regions.append(replace(found, landmarks=landmarks, parts=parts, name=name))
     return Partition(region, local, tuple(regions), crossings)
 
 

@@ -7,9 +7,16 @@ from itertools import pairwise
 import numpy as np
 from numpy.typing import NDArray
 
+from argo_env.files.parts import NOWHERE, Parts
 from argo_env.navigation.inside import find_inside
 from argo_env.navigation.lattice import Lattice
-from argo_env.navigation.portals import Portals, costs_and_times, find_portals, tree_times
+from argo_env.navigation.portals import (
+    Portals,
+    costs_and_times,
+    find_portals,
+    portals_arrays,
+    tree_times,
+)
 from argo_env.navigation.regions import Partition, Region, search, walk
 
 Goals = tuple[NDArray[np.int64], NDArray[np.float64]]
@@ -32,8 +39,9 @@ class _Crossing:
 class Routes:
     """Finds the cheapest ways from state to state of a lattice. Keeps the ways between portals."""
 
-    def __init__(self, lattice: Lattice, partition: Partition) -> None:
+    def __init__(self, lattice: Lattice, partition: Partition, parts: Parts = NOWHERE) -> None:
         self.partition = partition
+        self._parts = parts
         self._lattice = lattice
 
     def prepare(self) -> None:
@@ -178,4 +186,8 @@ class Routes:
 
     @cached_property
     def _portals(self) -> Portals:
-        return find_portals(self._lattice, self.partition)
+        return Portals(
+            **self._parts.made(
+                "portals", lambda: portals_arrays(find_portals(self._lattice, self.partition))
+            )
+        )

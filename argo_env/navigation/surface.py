@@ -11,6 +11,7 @@ from functools import cached_property
 import numpy as np
 from numpy.typing import NDArray
 
+from argo_env.files.parts import Arrays
 from argo_env.navigation.raster import CELL, Columns, Grid, rasterise
 from argo_env.site.shapes import Element
 
@@ -53,6 +54,11 @@ class Surface:
         first = np.searchsorted(self._columns, rows + min(max(j0, 0), self.grid.ny))
         last = np.searchsorted(self._columns, rows + min(max(j1 + 1, 0), self.grid.ny))
         return np.concatenate([np.arange(a, b) for a, b in zip(first, last, strict=True)] or [rows])
+
+
+def surface_arrays(surface: Surface) -> Arrays:
+    """A surface as arrays, its grid apart."""
+    return {"i": surface.i, "j": surface.j, "z": surface.z, "links": surface.links}
 
 
 def find_surface(

@@ -45,6 +45,22 @@ def patrol(navigator: Navigator, floor: int) -> tuple[Pose, ...]:
 
     Raises ArgoError if fewer than three of them are apart from each other.
     """
+    corners = navigator.parts.made(
+        f"patrol-{floor}", lambda: {"corners": np.array(_corners(navigator, floor))}
+    )["corners"].tolist()
+    following = corners[1:] + corners[:1]
+    return tuple(
+        Pose(
+            x=round(x, 6),
+            y=round(y, 6),
+            z=round(z, 6),
+            yaw=math.atan2(next_y - y, next_x - x),
+        )
+        for (x, y, z), (next_x, next_y, _) in zip(corners, following, strict=True)
+    )
+
+
+def _corners(navigator: Navigator, floor: int) -> list[tuple[float, float, float]]:
     places = navigator.turning_places(floor)
     x0, y0, x1, y1 = _bounds(navigator.site, floor)
     # The whole robot stays on the floor, wherever it turns.
@@ -63,19 +79,10 @@ def patrol(navigator: Navigator, floor: int) -> tuple[Pose, ...]:
         raise ArgoError(
             f"site {navigator.site.name}: floor {floor} has no three places to patrol between"
         )
-    following = corners[1:] + corners[:1]
-    return tuple(
-        Pose(
-            x=round(x, 6),
-            y=round(y, 6),
-            z=round(z, 6),
-            yaw=math.atan2(next_y - y, next_x - x),
-        )
-        for (x, y, z), (next_x, next_y, _) in zip(corners, following, strict=True)
-    )
+    return corners
 
 
 def _bounds(site: Site, floor: int) -> tuple[float, float, float, float]:
-    rects = np.array(list(site.spec.floors[floor - 1].walkways.values()))
+    rects = np.array(list(site.floor(floor).walkways.values()))
     low, high = rects[:, :2].min(axis=0), rects[:, 2:].max(axis=0)
     return float(low[0]), float(low[1]), float(high[0]), float(high[1])

@@ -1,7 +1,5 @@
 """Generated sites that have been checked: what can't be driven is drawn again."""
 
-from functools import lru_cache
-
 from argo_compiler.errors import ArgoError
 from argo_env.navigation.navigator import Navigator
 from argo_env.planning.checking import unseen_checkpoints, unserved_floors
@@ -14,9 +12,9 @@ _LAYOUTS = 5  # that are drawn before giving up
 _ROUNDS = 8  # of moving checkpoints that can't be read, for each layout
 
 
-@lru_cache(maxsize=4)
 def generate(family: Family, robot: RobotSpec | None = None) -> Navigator:
-    """The navigator of the site that the family's parameters give.
+    """The navigator of the site that the family's parameters give: `open_site` keeps what this
+    draws anew each time.
 
     The robot (the tracker, unless told otherwise) gets from every docking station to every floor,
     and to a view of every checkpoint, and back. Where a draw does not give that, its checkpoints

@@ -1,27 +1,58 @@
 """A site that is ready for work: the one way to get geometry, paths, names and travel times."""
 
-from functools import cached_property, lru_cache
+import hashlib
+from collections import OrderedDict
+from collections.abc import Callable
+from dataclasses import dataclass, field
+from functools import cached_property, partial
 from pathlib import Path
+from threading import Lock
+from typing import Any
 
 from argo_compiler.catalog import Catalog
+from argo_compiler.errors import Conflict
+from argo_env.files import cache
+from argo_env.files.yaml_file import read_text
 from argo_env.navigation import Navigator
 from argo_env.planning.catalog import make_catalog
+from argo_env.planning.code import digest_of_code
 from argo_env.planning.generated import generate
 from argo_env.planning.travel import SiteTravel
 from argo_env.robot.spec import RobotSpec, load_robot
-from argo_env.site import Site, load_site
+from argo_env.site import Site, make_site
 from argo_env.site.family import is_family, parse_family
+from argo_env.site.reading import parse_spec
+from argo_env.site.site import site_file
+from argo_env.site.spec import SiteSpec
 
-_KEPT = 8  # a navigator holds some 100 MB
+_KEPT = 8  # sites in memory; each holds some 100 MB
+_PATHS = 1024  # of a site; simulations go the same ways again and again
 
 
 class OpenedSite:
-    """A site with all that planning and driving on it need. Keeps what it has worked out."""
+    """A site with all that planning and driving on it need. Keeps what it has worked out.
 
-    def __init__(self, reference: str, navigator: Navigator) -> None:
-        self.reference = reference
-        """what opens it again: the site's name, the whole path of its file, or its parameters"""
+    All who open a site share one, and so do its copies. It is pickled by its reference, or by its
+    description where it was made in memory: who unpickles it opens the site again.
+    """
+
+    def __init__(self, reference: str | None, navigator: Navigator) -> None:
+        self._reference = reference
         self.navigator = navigator
+
+    @staticmethod
+    def of(site: Site, robot: RobotSpec | None = None) -> "OpenedSite":
+        """A site that was made in memory, for the tracker unless told otherwise."""
+        robot = robot or load_robot()
+        if site.altered is None:
+            return _make_again(site.spec, robot)
+        return OpenedSite(None, Navigator(site, robot))
+
+    @property
+    def reference(self) -> str:
+        """What opens it again: the site's name, the whole path of its file, or its parameters. Of a
+        site made in memory just its name."""
+        return self._reference or self.name
 
     @property
     def site(self) -> Site:
@@ -45,21 +76,119 @@ class OpenedSite:
         """Travel times and energy, for the analysis and for routes."""
         return SiteTravel(self.navigator)
 
+    @cached_property
+    def digest(self) -> str:
+        """A digest of the site's description and the robot's."""
+        text = self.site.spec.model_dump_json() + self.robot.model_dump_json()
+        return hashlib.blake2b(text.encode(), digest_size=16).hexdigest()
 
-def open_site(reference: str = "umad") -> OpenedSite:
+    def prepare(self) -> "OpenedSite":
+        """Finds out now what all paths share, so that no later call takes the time for it.
+
+        Raises ArgoError if the robot can't drive on the site.
+        """
+        self.navigator.prepare()
+        return self
+
+    def __copy__(self) -> "OpenedSite":
+        return self
+
+    def __deepcopy__(self, _: dict[int, Any]) -> "OpenedSite":
+        return self
+
+    def __reduce__(self) -> tuple[Any, ...]:
+        if self._reference is not None:
+            return _open_again, (self._reference, self.robot, self.digest)
+        if self.site.altered is not None:
+            raise Conflict(
+                f"site {self.name} is not as its description says, and can't be sent to another "
+                "process; send the faults that have changed it, and apply them there"
+            )
+        return _make_again, (self.site.spec, self.robot)
+
+
+def open_site(reference: str = "umad", robot: RobotSpec | None = None) -> OpenedSite:
     """The site of that name, the one that the file `reference` describes, or a generated one such
-    as `generated:floors=3,seed=7`, ready for work.
+    as `generated:floors=3,seed=7`, ready for work by the `robot` (the tracker).
 
-    Raises ArgoError if there is no such site, it makes no sense, or the robot can't drive there.
+    Equal calls give the same object, also from several threads at once; of a file that has changed
+    a new one is made. What takes long to find is kept on disk from process to process.
+
+    Raises NotFound if there is no such site, and ArgoError, with the place in the file, if it makes
+    no sense. That the robot can't drive there shows with the first path: see `prepare`.
     """
-    path = Path(reference)
-    if path.suffix in {".yaml", ".yml"}:
-        return _opened(str(path.resolve()))
-    return _opened(reference)
-
-
-@lru_cache(maxsize=_KEPT)
-def _opened(reference: str) -> OpenedSite:
+    robot = robot or load_robot()
     if is_family(reference):
-        return OpenedSite(reference, generate(parse_family(reference)))
-    return OpenedSite(reference, Navigator(load_site(reference), load_robot()))
+        family = parse_family(reference)
+        return _open(reference, family.model_dump_json(), robot, partial(generate, family, robot))
+    path = site_file(reference)
+    text = read_text(path)
+    if path == Path(reference):
+        reference = str(path.resolve())
+    return _open(
+        reference, text, robot, lambda: Navigator(make_site(parse_spec(text, path)), robot)
+    )
+
+
+def forget_sites() -> None:
+    """Lets go of the sites in memory; those who use them keep them."""
+    with _lock:
+        _slots.clear()
+
+
+@dataclass
+class _Slot:
+    """Room for an opened site. Filled once, by whoever is first."""
+
+    lock: Lock = field(default_factory=Lock)
+    opened: OpenedSite | None = None
+
+
+_lock = Lock()
+_slots: OrderedDict[tuple[str | None, ...], _Slot] = OrderedDict()
+
+
+def _open(
+    reference: str | None, text: str, robot: RobotSpec, make: Callable[[], Navigator]
+) -> OpenedSite:
+    """The site that is opened by `reference` and made from `text`, by `make` if it is new."""
+    key = reference, text, robot.model_dump_json()
+    with _lock:
+        slot = _slots.setdefault(key, _Slot())
+        _slots.move_to_end(key)
+        while len(_slots) > _KEPT:
+            _slots.popitem(last=False)
+    with slot.lock:
+        if slot.opened is None:
+            slot.opened = OpenedSite(reference, _navigator(text, robot, make))
+        return slot.opened
+
+
+def _navigator(text: str, robot: RobotSpec, make: Callable[[], Navigator]) -> Navigator:
+    """The navigator of the site that is made from `text`, with what is on disk of it."""
+    parts = cache.entry((digest_of_code(), text, robot.model_dump_json()))
+    known = parts.find_text("site")
+    if known is not None:
+        site = make_site(SiteSpec.model_validate_json(known))
+        return Navigator(site, robot, parts, remembered=_PATHS)
+    new = make()
+    cache.make_room()
+    parts.keep_text("site", new.site.spec.model_dump_json())
+    navigator = Navigator(new.site, robot, parts, remembered=_PATHS)
+    navigator.take_over(new)
+    return navigator
+
+
+def _open_again(reference: str, robot: RobotSpec, digest: str) -> OpenedSite:
+    opened = open_site(reference, robot)
+    if opened.digest != digest:
+        raise Conflict(
+            f"site {reference} has changed since it was opened where this comes from; open it "
+            "again there"
+        )
+    return opened
+
+
+def _make_again(spec: SiteSpec, robot: RobotSpec) -> OpenedSite:
+    make = partial(Navigator, make_site(spec), robot)
+    return _open(None, spec.model_dump_json(), robot, make)

@@ -1,12 +1,13 @@
 """Travel times and energy of a robot on a site, for the analysis of missions."""
 
 from argo_compiler.analysis import Leg, NoWay, Standing
-from argo_compiler.errors import ArgoError
+from argo_compiler.errors import ArgoError, Unreachable
 from argo_compiler.il import Action, Mission, Task
 from argo_compiler.model import Pose
 from argo_env.drives.timetable import steps
 from argo_env.navigation import Navigator, Path
 from argo_env.navigation.path import Motion
+from argo_env.planning.kept_ways import as_data, kept_way
 from argo_env.planning.start import start_pose
 from argo_env.robot.calibration import MotionKind
 
@@ -14,13 +15,15 @@ from argo_env.robot.calibration import MotionKind
 class SiteTravel:
     """The ways that the navigator plans, with the times of a drive that follows them.
 
-    A standing is a pose. Keeps every way that it was asked for. With the `time_step` (s) of the
-    drive that is meant, times are rounded up to whole steps, as the drive's are.
+    A standing is a pose. Keeps every way that it was asked for, on an opened site also on disk.
+    With the `time_step` (s) of the drive that is meant, times are rounded up to whole steps, as the
+    drive's are.
     """
 
     def __init__(self, navigator: Navigator, time_step: float = 0.1) -> None:
         self._navigator = navigator
         self._robot = navigator.robot
+        self._parts = navigator.parts
         self.time_step = time_step
         self._ways: dict[tuple[Pose, str | Pose | None], Path | NoWay] = {}
         self._legs: dict[tuple[Pose, str | Pose | None, float | None], Leg | NoWay] = {}
@@ -40,7 +43,13 @@ class SiteTravel:
 
         Raises Unreachable if the robot can't stand there.
         """
-        return self._navigator.snap(start_pose(mission, self._navigator.site.docks))
+        pose = start_pose(mission, self._navigator.site.docks)
+        standing = kept_way(
+            self._parts, ["stand", as_data(pose)], lambda: Path(self._navigator.snap(pose), ())
+        )
+        if isinstance(standing, NoWay):
+            raise Unreachable(standing.reason)
+        return standing.start
 
     def work(self, task: Task) -> float:
         """s of a task's action that the robot takes even if it is there already."""
@@ -68,10 +77,10 @@ class SiteTravel:
     def _way(self, origin: Pose, place: str | Pose | None) -> Path | NoWay:
         key = origin, place
         if key not in self._ways:
-            try:
-                self._ways[key] = self._plan(origin, place)
-            except ArgoError as error:
-                self._ways[key] = NoWay(str(error))
+            asked = as_data(place) if isinstance(place, Pose) else place
+            self._ways[key] = kept_way(
+                self._parts, ["way", as_data(origin), asked], lambda: self._plan(origin, place)
+            )
         return self._ways[key]
 
     def _plan(self, origin: Pose, place: str | Pose | None) -> Path:

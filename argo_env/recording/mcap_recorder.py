@@ -1,7 +1,6 @@
 """The recorder: all that Foxglove shows of a run, and all that a report is made from."""
 
 import math
-from dataclasses import replace
 from pathlib import Path
 
 from foxglove_schemas_protobuf.Log_pb2 import Log
@@ -220,7 +219,7 @@ def _as_it_is(rig: Rig) -> Site:
     site, world = rig.navigator.site, rig.world
     if not isinstance(world, World):
         return site
-    return replace(site, elements=tuple(e for e in world.solids if e.solids))
+    return site.with_elements(tuple(e for e in world.solids if e.solids))
 
 
 def _limbs(rig: Rig) -> Limbs:

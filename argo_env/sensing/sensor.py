@@ -32,6 +32,6 @@ class Sensor(Protocol):
     def measure(self, checkpoint_id: int, pose: BodyPose) -> Measurement:
         """Reads the checkpoint with the robot at `pose`, its arm raised.
 
-        Raises MeasurementError if that is not possible from there, KeyError for an unknown id.
+        Raises MeasurementError if that is not possible from there, NotFound for an unknown id.
         """
         ...

@@ -2,7 +2,7 @@
 
 from pathlib import Path
 
-from argo_env.files.yaml_file import read_yaml
+from argo_env.files.yaml_file import parse_yaml, read_text
 from argo_env.site.spec import SiteSpec
 
 
@@ -11,7 +11,16 @@ def read_spec(path: Path) -> SiteSpec:
 
     Raises ArgoError if the file can't be read, and DiagnosticError if it describes no site.
     """
-    return read_yaml(
+    return parse_spec(read_text(path), path)
+
+
+def parse_spec(text: str, path: Path) -> SiteSpec:
+    """The description of a site in the text of a YAML file, which messages call `path`.
+
+    Raises DiagnosticError if it describes no site.
+    """
+    return parse_yaml(
+        text,
         path,
         SiteSpec,
         "sites",

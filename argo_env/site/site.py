@@ -1,20 +1,21 @@
 """A site that is ready to use: its description, its elements and its checkpoints in place."""
 
 import math
-from dataclasses import dataclass
+from collections.abc import Iterable
+from dataclasses import dataclass, replace
 from functools import cached_property
 from pathlib import Path
 
 from argo_compiler.catalog import CheckpointKind, Interval
-from argo_compiler.errors import ArgoError
+from argo_compiler.errors import Invalid, NotFound
 from argo_compiler.model import Pose
 from argo_env.files import resources
 from argo_env.site.build import build_site
-from argo_env.site.family import PREFIX, is_family, parse_family
+from argo_env.site.family import PREFIX, is_family
 from argo_env.site.index import SolidIndex
 from argo_env.site.reading import read_spec
 from argo_env.site.shapes import Element, Vector
-from argo_env.site.spec import SiteSpec
+from argo_env.site.spec import FloorSpec, SiteSpec
 
 SCALES: dict[CheckpointKind, tuple[str, Interval]] = {
     CheckpointKind.PRESSURE_GAUGE: ("bar", Interval(low=0.0, high=10.0)),
@@ -50,38 +51,68 @@ class Site:
     """A site: what was written, the solids made from it, and the poses and checkpoints in it."""
 
     spec: SiteSpec
-    elements: tuple[Element, ...]
     checkpoints: tuple[SiteCheckpoint, ...]
     docks: dict[int, Pose]
     """pose of the docked robot for each starting area"""
     places: dict[str, Pose]
+    altered: tuple[Element, ...] | None = None
+    """the elements, where they are others than the description gives"""
 
     @property
     def name(self) -> str:
         return self.spec.name
 
     @cached_property
+    def elements(self) -> tuple[Element, ...]:
+        """The named parts that its solids belong to."""
+        return build_site(self.spec) if self.altered is None else self.altered
+
+    @cached_property
     def solids(self) -> SolidIndex:
         """All solids of the site, to be found by where they are."""
         return SolidIndex(self.elements)
 
+    def with_elements(self, elements: tuple[Element, ...]) -> "Site":
+        """The same site with other elements, as where something lies about on it."""
+        return self if elements == self.elements else replace(self, altered=elements)
+
     def checkpoint(self, id: int) -> SiteCheckpoint:
-        """The checkpoint with this id; KeyError if there is none."""
+        """The checkpoint with this id; NotFound if there is none."""
         for checkpoint in self.checkpoints:
             if checkpoint.id == id:
                 return checkpoint
-        raise KeyError(id)
+        numbers = (checkpoint.id for checkpoint in self.checkpoints)
+        raise NotFound(f"site {self.name} has no checkpoint {id}; {_there_are(numbers)}")
 
     def measured_by(self, object_id: str | None) -> SiteCheckpoint:
-        """The checkpoint that tasks call `object_id`; ArgoError if there is none."""
+        """The checkpoint that tasks call `object_id`; NotFound if there is none."""
         for checkpoint in self.checkpoints:
             if str(checkpoint.id) == object_id:
                 return checkpoint
-        raise ArgoError(f"site {self.name} has no checkpoint {object_id}")
+        raise NotFound(f"site {self.name} has no checkpoint {object_id}")
+
+    def floor(self, number: int) -> FloorSpec:
+        """The floor of that number; NotFound if there is none."""
+        for floor in self.spec.floors:
+            if floor.number == number:
+                return floor
+        numbers = (floor.number for floor in self.spec.floors)
+        raise NotFound(f"site {self.name} has no floor {number}; {_there_are(numbers)}")
 
     def floor_at(self, z: float) -> int:
         """The number of the floor whose storey holds the height z (m)."""
         return max([f.number for f in self.spec.floors if f.z <= z + 0.1], default=1)
+
+
+def _there_are(numbers: Iterable[int]) -> str:
+    """Which numbers there are, runs of them in short."""
+    runs: list[list[int]] = []
+    for number in sorted(numbers):
+        if runs and number == runs[-1][-1] + 1:
+            runs[-1][1:] = [number]
+        else:
+            runs.append([number])
+    return f"there are: {', '.join(' to '.join(map(str, run)) for run in runs) or 'none'}"
 
 
 def site_names() -> tuple[str, ...]:
@@ -90,26 +121,30 @@ def site_names() -> tuple[str, ...]:
 
 
 def load_site(name: str) -> Site:
-    """The site of that name, the one that the file `name` describes, or a generated one such as
-    `generated:floors=3,seed=7`.
+    """The site of that name, or the one that the file `name` describes.
 
     Raises ArgoError, with the place in the file, if there is no such site or it makes no sense.
     """
-    if is_family(name):
-        # Navigation is about sites, and only what it has checked is given out.
-        from argo_env.planning.generated import generate
+    return make_site(read_spec(site_file(name)))
 
-        return generate(parse_family(name)).site
+
+def site_file(name: str) -> Path:
+    """The file that describes the site of that name, or is named itself.
+
+    Raises NotFound if there is none, Invalid for the parameters of a generated site.
+    """
+    if is_family(name):
+        raise Invalid(f"site `{name}` is drawn and not read from a file: `open_site` gives it")
     path = Path(name)
-    if path.suffix not in {".yaml", ".yml"}:
-        if name not in site_names():
-            known = ", ".join(site_names())
-            raise ArgoError(
-                f"no site `{name}`; there are: {known}, or a path to a site's .yaml, or"
-                f" {PREFIX}floors=3,seed=7"
-            )
-        path = resources.scenarios() / name / "site.yaml"
-    return make_site(read_spec(path))
+    if path.suffix in {".yaml", ".yml"}:
+        return path
+    if name not in site_names():
+        known = ", ".join(site_names())
+        raise NotFound(
+            f"no site `{name}`; there are: {known}, or a path to a site's .yaml, or"
+            f" {PREFIX}floors=3,seed=7"
+        )
+    return resources.scenarios() / name / "site.yaml"
 
 
 def make_site(spec: SiteSpec) -> Site:
@@ -129,7 +164,6 @@ def make_site(spec: SiteSpec) -> Site:
     )
     return Site(
         spec,
-        build_site(spec),
         tuple(sorted(checkpoints, key=lambda c: c.id)),
         {a.number: _ground_pose(a.dock, spec) for a in spec.areas},
         {p.name: _ground_pose(p.pose, spec) for p in spec.places},

@@ -2,7 +2,7 @@
 
 from dataclasses import dataclass
 
-from argo_compiler.errors import ArgoError
+from argo_compiler.errors import ArgoError, NotFound
 from argo_env.site import Site
 from argo_env.site.shapes import Vector
 from argo_env.surroundings.sources import GasLeak, PumpSound, Source
@@ -68,11 +68,11 @@ class Surroundings:
     def remove(self, source: Source, now: float = 0.0) -> None:
         """From time `now` (s) on the source is gone, of equal ones that which came first.
 
-        Raises KeyError if it is not there.
+        Raises NotFound if it is not there.
         """
         first = next((k for k, (there, _) in enumerate(self._there) if there == source), None)
         if first is None:
-            raise KeyError(source)
+            raise NotFound(f"site {self.site.name} has no such source: {source}")
         _, start = self._there.pop(first)
         if isinstance(source, GasLeak):
             self._ended.append(Release(source, start, now))

@@ -93,7 +93,7 @@ class Bodies(Connection):
         pybullet.resetJointState(body, joint, position, physicsClientId=self._client)
 
     def displace(self, checkpoint_id: int, placement: Placement) -> None:
-        """Puts a checkpoint elsewhere than planned; KeyError if there is no such checkpoint."""
+        """Puts a checkpoint elsewhere than planned; NotFound if there is no such checkpoint."""
         planned = self.site.checkpoint(checkpoint_id)
         self._placements[checkpoint_id] = placement
         actual = self.in_place(checkpoint_id)
@@ -107,7 +107,7 @@ class Bodies(Connection):
         return self._placements.get(checkpoint_id, AS_PLANNED)
 
     def in_place(self, checkpoint_id: int) -> SiteCheckpoint:
-        """The checkpoint where it really is; KeyError if there is no such checkpoint."""
+        """The checkpoint where it really is; NotFound if there is no such checkpoint."""
         return displaced(self.site.checkpoint(checkpoint_id), self.placement(checkpoint_id))
 
     def add_screen(self, name: str, solid: Solid, colour: Vector) -> int:

@@ -70,7 +70,7 @@ class PaperWorld:
         self._placements[checkpoint_id] = placement
 
     def in_place(self, checkpoint_id: int) -> SiteCheckpoint:
-        """The checkpoint where it really is; KeyError if there is no such checkpoint."""
+        """The checkpoint where it really is; NotFound if there is no such checkpoint."""
         planned = self.site.checkpoint(checkpoint_id)
         return displaced(planned, self._placements.get(checkpoint_id, AS_PLANNED))
 

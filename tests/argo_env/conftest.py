@@ -8,6 +8,7 @@ import argo_env.world.world
 from argo_compiler.script import import_script, read_script
 from argo_env.files import resources
 from argo_env.navigation import Navigator
+from argo_env.planning import open_site
 from argo_env.planning.catalog import make_catalog
 from argo_env.robot.spec import load_robot
 from argo_env.run.session import simulate
@@ -90,7 +91,8 @@ def umad():
 
 @pytest.fixture(scope="session")
 def navigator(umad, robot):
-    navigator = Navigator(umad, robot)
+    # With what others have found, in this run of the tests or in another process of it.
+    navigator = Navigator(umad, robot, open_site("umad").navigator.parts)
     assert navigator.lattice.size > 0
     return navigator
 

@@ -2,13 +2,13 @@ import pytest
 
 from argo_compiler.catalog import Catalog
 from argo_env.navigation import Navigator
+from argo_env.planning import open_site
 from argo_env.planning.catalog import make_catalog
-from argo_planner.loading import load_navigator
 
 
 @pytest.fixture(scope="session")
 def navigator() -> Navigator:
-    return load_navigator("umad")
+    return open_site("umad").navigator
 
 
 @pytest.fixture(scope="session")

@@ -9,10 +9,9 @@ from typer.testing import CliRunner
 
 from argo_compiler.diagnostics import has_errors
 from argo_env.files import resources
-from argo_env.navigation import Navigator
+from argo_env.planning import open_site
 from argo_env.planning.catalog import make_catalog
 from argo_env.planning.travel import SiteTravel
-from argo_env.robot.spec import load_robot
 from argo_env.site import load_site
 from argo_planner.cli import app
 from argo_planner.commands.check import find_all
@@ -57,7 +56,7 @@ def test_a_generated_site_is_written_under_the_name_of_its_file(tmp_path):
     result = argo("sites", DRAWN, "-o", file)
     assert result.exit_code == 0
     (use,) = re.findall(r"`(argo check .*)`", result.output)
-    written, drawn = load_site(str(file)), load_site(DRAWN)
+    written, drawn = load_site(str(file)), open_site(DRAWN).site
     assert written.name == "my site"
     assert written.elements == drawn.elements
     assert written.checkpoints == drawn.checkpoints
@@ -144,7 +143,7 @@ def test_a_site_that_can_not_be_driven(tmp_path, hall_yaml):
 
 
 def test_the_shipped_mission_of_the_test_site_has_no_findings():
-    navigator = Navigator(load_site("darmstadt"), load_robot())
+    navigator = open_site("darmstadt").navigator
     script = resources.scenarios() / "darmstadt" / "missions" / "mission_1.txt"
     findings = find_all(script, make_catalog(navigator), 1, 2, SiteTravel(navigator))
     assert not has_errors(findings)

@@ -9,19 +9,17 @@ from argo_compiler.model import Pose
 from argo_env.drives.drive import DriveStatus
 from argo_env.drives.route import RouteDrive
 from argo_env.drives.timetable import Timetable
-from argo_env.navigation import Navigator
+from argo_env.planning import open_site
 from argo_env.planning.catalog import make_catalog
 from argo_env.robot.calibration import Calibration, Pace
 from argo_env.robot.pose import BodyPose
-from argo_env.robot.spec import load_robot
-from argo_env.site import load_site
 from benchmarks.drives import Run, compare, drive_along, random_mission, run
 from benchmarks.fitting import errors, fit
 
 
 @pytest.fixture(scope="module")
 def navigator():
-    return Navigator(load_site("umad"), load_robot())
+    return open_site("umad").navigator
 
 
 def test_missions_are_sound_and_drawn_from_their_seed(navigator):

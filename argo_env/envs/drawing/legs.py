@@ -9,8 +9,8 @@ from argo_env.envs.route_aisles import WIDTH
 from argo_env.envs.route_instance import Stair
 from argo_env.envs.route_site_times import navigator_without
 from argo_env.envs.route_sources import RandomRoutes, RouteSource, SiteRoutes
-from argo_env.envs.sites import navigator_of
 from argo_env.navigation import Navigator
+from argo_env.planning import open_site
 from argo_env.robot.spec import Footprint
 
 Place = tuple[float, float, int]
@@ -37,7 +37,7 @@ class LegPaths(Protocol):
 def legs_of(source: RouteSource) -> LegPaths:
     """The ways between the places of a source's instances."""
     if isinstance(source, SiteRoutes):
-        return _SiteLegs(navigator_of(source.scenario))
+        return _SiteLegs(open_site(source.scenario).navigator)
     return _AisleLegs(source.ends) if isinstance(source, RandomRoutes) else _StraightLegs()
 
 

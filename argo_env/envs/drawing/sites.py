@@ -2,9 +2,9 @@
 
 from functools import lru_cache
 
-from argo_env.envs.sites import navigator_of
 from argo_env.pictures.drawing.floors import FloorPlan, plans_of
 from argo_env.pictures.drawing.sheet import FloorSheet, make_sheet
+from argo_env.planning import open_site
 
 
 @lru_cache(maxsize=4)  # a sheet takes 11 MB
@@ -17,4 +17,4 @@ def site_sheet(scenario: str, low: int, high: int, asked: tuple[int, ...]) -> Fl
 # By name, as a navigator would be kept alive for its plans.
 @lru_cache(maxsize=8)
 def _plans(scenario: str) -> tuple[FloorPlan, ...]:
-    return plans_of(navigator_of(scenario).site)
+    return plans_of(open_site(scenario).site)

@@ -3,13 +3,13 @@
 import pytest
 import yaml
 
-from argo_env.envs.sites import navigator_of
+from argo_env.planning import open_site
 from tests.yard import SITE
 
 
 @pytest.fixture(scope="session")
 def navigator():
-    return navigator_of("umad")
+    return open_site("umad").prepare().navigator
 
 
 @pytest.fixture(scope="session")

@@ -17,9 +17,8 @@ from argo_env.envs.inspection import InspectEnv
 from argo_env.envs.inspection_options import draw_faults
 from argo_env.envs.route import RouteEnv
 from argo_env.envs.route_batch import RouteVectorEnv
-from argo_env.envs.sites import navigator_of
 from argo_env.faults.kinds import settle
-from argo_env.site import load_site
+from argo_env.planning.opening import forget_sites, open_site
 from tests.argo_env.envs import rollouts
 
 ONE_FLOOR = "generated:floors=1,seed=3"
@@ -45,7 +44,7 @@ def an_action(env, observation):
 
 
 def test_faults_that_are_drawn_fit_the_site():
-    site = load_site(ONE_FLOOR)
+    site = open_site(ONE_FLOOR).site
     for seed in range(30):
         faults = draw_faults(8, "kinematic", site, np.random.default_rng(seed))
         assert len({fault.kind for fault in faults}) == 8
@@ -58,9 +57,9 @@ def test_observations_do_not_depend_on_what_the_process_has_kept(yard_file):
         env = InspectEnv(yard_file, faults=0, render_mode="rgb_array")
         observation, _ = env.reset(seed=1)
         env.render()
-        kept = weakref.ref(navigator_of(yard_file))
+        kept = weakref.ref(open_site(yard_file).navigator)
         if forget:  # as when other environments have been on many other sites
-            navigator_of.cache_clear()
+            forget_sites()
         heard.append(rollouts.digest(rollouts.rollout(env, 1, 3, observation)))
         env.close()
     assert heard[0] == heard[1]

@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 from scipy.sparse.csgraph import dijkstra
 
-from argo_compiler.errors import ArgoError, Unreachable
+from argo_compiler.errors import ArgoError, NotFound, Unreachable
 from argo_compiler.model import Pose
 from argo_env.navigation import Navigator
 from argo_env.navigation.navigator import SNAP_DISTANCE
@@ -208,7 +208,7 @@ def test_every_checkpoint_is_seen_from_the_end_of_its_path(views, umad, umad_wor
 
 
 def test_checkpoint_that_does_not_exist(navigator, umad):
-    with pytest.raises(KeyError):
+    with pytest.raises(NotFound):
         navigator.plan_to_view(umad.docks[1], 99)
 
 

@@ -6,6 +6,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from scipy.sparse.csgraph import dijkstra
 
+from argo_compiler.errors import NotFound
 from argo_compiler.model import Pose
 from argo_env.navigation import Blockage
 from argo_env.navigation.regions import find_cuts, make_partition
@@ -162,7 +163,7 @@ def test_travel_times_of_checkpoints_and_poses(hall, robot):
 
 def test_travel_times_of_nothing_and_of_what_is_not_there(hall):
     assert hall.travel_times([]).shape == (0, 0)
-    with pytest.raises(KeyError):
+    with pytest.raises(NotFound):
         hall.travel_times([1, 99])
     with pytest.raises(Exception, match="no place that the robot can reach"):
         hall.travel_times([Pose(x=50.0, y=0.0, z=0.0)])

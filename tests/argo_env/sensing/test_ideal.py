@@ -5,6 +5,7 @@ import math
 import numpy as np
 import pytest
 
+from argo_compiler.errors import NotFound
 from argo_env.robot.pose import BodyPose
 from argo_env.sensing.ideal import IdealSensor, draw_values
 from argo_env.sensing.sensor import MeasurementError
@@ -79,7 +80,7 @@ def test_planned_view_is_a_view(navigator, sensor, truth, umad, id):
 
 
 def test_unknown_checkpoint(sensor):
-    with pytest.raises(KeyError):
+    with pytest.raises(NotFound):
         sensor.measure(99, BodyPose(0.0, 0.0, 0.0, 0.0))
 
 

@@ -8,8 +8,9 @@ from hypothesis import strategies as st
 
 from argo_compiler.errors import ArgoError
 from argo_compiler.model import Pose
+from argo_env.planning import open_site
 from argo_env.planning.generated import generate
-from argo_env.site import load_site, make_site
+from argo_env.site import make_site
 from argo_env.site.families import draw_site
 from argo_env.site.family import TEST_SEEDS, Family, Stairs, parse_family
 from argo_env.site.norms import breaches, false_ends
@@ -59,7 +60,7 @@ def test_a_draw_keeps_the_norms_and_has_what_was_asked_for(family):
 def test_every_place_is_reached_from_every_dock_and_back(family, robot, tmp_path_factory):
     navigator = generate(family)
     site = navigator.site
-    assert generate.__wrapped__(family).site.spec == site.spec
+    assert generate(family).site.spec == site.spec
     file = tmp_path_factory.mktemp("generated") / "site.yaml"
     file.write_text(to_yaml(site.spec), encoding="utf-8")
     assert read_spec(file) == site.spec
@@ -108,7 +109,7 @@ def test_checkpoints_that_can_not_be_read_are_moved(monkeypatch):
     family = Family(floors=1, size=(12, 12), clutter=0.0, checkpoints=3, seed=6)
     first_slot = draw_site(family)[1][1]
     monkeypatch.setattr("argo_env.planning.generated.draw_site", raised)
-    navigator = generate.__wrapped__(family)
+    navigator = generate(family)
     assert all(navigator.can_view(id) for id in (1, 2, 3))
     moved = draw_site(family, refused={first_slot})[0]
     assert navigator.site.spec == moved
@@ -136,7 +137,7 @@ def test_text_form_with_defaults():
 )  # fmt: skip
 def test_wrong_parameters_get_one_clear_message(text):
     with pytest.raises(ArgoError) as caught:
-        load_site("generated:" + text)
+        open_site("generated:" + text)
     message = str(caught.value)
     assert text.split("=", maxsplit=1)[0].split(",")[0] in message
     assert "floors=1..12" in message
@@ -146,7 +147,7 @@ def test_wrong_parameters_get_one_clear_message(text):
 
 def test_more_checkpoints_than_places():
     with pytest.raises(ArgoError, match="500 checkpoints do not fit"):
-        load_site("generated:floors=1,size=12x12,checkpoints=500")
+        open_site("generated:floors=1,size=12x12,checkpoints=500")
 
 
 def test_norms_find_what_is_wrong():

@@ -6,6 +6,7 @@ from itertools import pairwise
 import numpy as np
 import pytest
 
+from argo_compiler.errors import NotFound
 from argo_env.site.equipment import DOCK_DISTANCE
 from argo_env.site.shapes import Role
 from argo_env.site.site import site_names
@@ -196,7 +197,7 @@ def test_checkpoints(umad):
     listed = [(c.id, c.kind.value, c.name, c.floor) for c in umad.checkpoints]
     assert listed == CHECKPOINTS
     assert umad.checkpoint(14).name == "valve R18"
-    with pytest.raises(KeyError):
+    with pytest.raises(NotFound):
         umad.checkpoint(21)
 
 

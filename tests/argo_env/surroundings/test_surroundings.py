@@ -2,7 +2,7 @@
 
 import pytest
 
-from argo_compiler.errors import ArgoError
+from argo_compiler.errors import ArgoError, NotFound
 from argo_env.surroundings import Alarm, GasLeak, HotSpot, PumpSound, Surroundings
 from argo_env.surroundings.surroundings import Release
 
@@ -19,7 +19,7 @@ def test_sources_come_and_go(umad):
     around.remove(Alarm(), 5.0)
     around.remove(spot, 5.5)
     assert around.sources == (spot,)
-    with pytest.raises(KeyError):
+    with pytest.raises(NotFound):
         around.remove(Alarm(), 6.0)
 
 

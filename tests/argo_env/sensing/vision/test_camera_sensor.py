@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 
 from argo_compiler.catalog import CheckpointKind
+from argo_compiler.errors import NotFound
 from argo_env.robot.pose import BodyPose
 from argo_env.sensing.sensor import MeasurementError
 from argo_env.sensing.vision.faces import draw_face, face_file
@@ -115,7 +116,7 @@ def test_from_too_far_away(stage):
 
 
 def test_unknown_checkpoint(stage):
-    with pytest.raises(KeyError):
+    with pytest.raises(NotFound):
         CameraSensor(stage.world).measure(99, stage(DIAL, 3.0))
 
 

@@ -1,0 +1,110 @@
+"""Where Argo keeps on disk what took long to find: one folder for each site with its robot."""
+
+import hashlib
+import logging
+import os
+import re
+import shutil
+from collections.abc import Iterable
+from contextlib import suppress
+from dataclasses import dataclass
+from pathlib import Path
+
+from argo_env.files.parts import NOWHERE, Parts
+
+VARIABLE = "ARGO_CACHE_DIR"
+"""The environment variable that names another folder."""
+MOST = 2 * 1024**3
+"""bytes that the cache may take; what was not used for longest makes room"""
+_MOST_FILES = 50_000
+_NAME = re.compile("[0-9a-f]{32}")  # of an entry: what else lies there is not Argo's
+_log = logging.getLogger(__name__)
+
+
+@dataclass(frozen=True)
+class Contents:
+    """What is in the cache."""
+
+    entries: int
+    files: int
+    size: int
+    """bytes"""
+
+
+def cache_folder() -> Path:
+    """Where the cache is: the folder that ARGO_CACHE_DIR names, or the user's own for caches."""
+    chosen = os.environ.get(VARIABLE)
+    if chosen:
+        return Path(chosen)
+    # Slow to import, and rarely needed twice.
+    from platformdirs import user_cache_path
+
+    return user_cache_path("argo", appauthor=False)
+
+
+def entry(content: Iterable[str]) -> Parts:
+    """The parts that belong to what `content` says, all that they depend on."""
+    sink = hashlib.blake2b(digest_size=16)
+    for piece in content:
+        sink.update(f"{len(piece)} ".encode() + piece.encode())
+    key = sink.hexdigest()
+    try:
+        folder = _sites() / key
+        with suppress(FileNotFoundError):
+            os.utime(folder)  # used now
+    except (OSError, RuntimeError, ValueError) as error:  # no home, not mine, no name of a file
+        _log.debug("the cache can't be used: %s", error)
+        return NOWHERE
+    return Parts(folder, key)
+
+
+def make_room(most: int = MOST, files: int = _MOST_FILES) -> None:
+    """Takes away the entries that were not used for longest, until the others take at most `most`
+    bytes in `files` files."""
+    kept, count = 0, 0
+    for _, folder in sorted(((_used(f), f) for f in _entries()), reverse=True):
+        sizes = _sizes(folder)
+        kept, count = kept + sum(sizes), count + len(sizes)
+        if kept > most or count > files:
+            shutil.rmtree(folder, ignore_errors=True)
+
+
+def contents() -> Contents:
+    """What is in the cache now."""
+    sizes = [_sizes(folder) for folder in _entries()]
+    return Contents(len(sizes), sum(map(len, sizes)), sum(map(sum, sizes)))
+
+
+def empty() -> None:
+    """Takes all entries away; whoever uses them just then makes them anew."""
+    for folder in _entries():
+        shutil.rmtree(folder, ignore_errors=True)
+
+
+def _sites() -> Path:
+    return cache_folder() / "sites"
+
+
+def _entries() -> list[Path]:
+    try:
+        return [path for path in _sites().iterdir() if _NAME.fullmatch(path.name)]
+    except (OSError, RuntimeError, ValueError):
+        return []
+
+
+def _used(folder: Path) -> float:
+    try:
+        return folder.stat().st_mtime
+    except OSError:
+        return 0.0
+
+
+def _sizes(folder: Path) -> list[int]:
+    sizes = []
+    try:
+        for file in os.scandir(folder):
+            with suppress(OSError):
+                sizes.append(file.stat().st_size)
+    except OSError:
+        pass
+    return sizes

@@ -26,7 +26,6 @@ import numpy as np
 import argo_env  # noqa: F401
 from argo_env.envs import ENVIRONMENTS
 from argo_env.envs.expert import Expert
-from argo_env.world.pybullet_client import quiet
 
 WINDOWS, WINDOW = 5, 1.0  # s
 NODES = 20
@@ -213,16 +212,14 @@ def peers() -> None:
 
     def panda(name: str) -> Stepper:
         importlib.import_module("panda_gym")
-        with quiet():
-            env = gym.make(name, disable_env_checker=True).unwrapped
+        env = gym.make(name, disable_env_checker=True).unwrapped
         env.action_space.seed(0)
         return single(env, lambda _: env.action_space.sample())
 
     def drones() -> Stepper:
         from gym_pybullet_drones.envs.HoverAviary import HoverAviary
 
-        with quiet():
-            env = HoverAviary()
+        env = HoverAviary()
         env.action_space.seed(0)
         return single(env, lambda _: env.action_space.sample())
 

@@ -1,5 +1,6 @@
 """The kinematic drive: the robot follows its path on the surface at the planned speeds."""
 
+from argo_env.closing import NonCopyable
 from argo_env.drives.drive import DriveStatus
 from argo_env.drives.flipper_motion import FLAT, RAISED, RATE
 from argo_env.drives.support import resting_poses
@@ -10,7 +11,7 @@ from argo_env.robot.spec import RobotSpec
 from argo_env.world.world import World
 
 
-class KinematicDrive(TimedDrive):
+class KinematicDrive(NonCopyable, TimedDrive):
     """Follows paths by the timetable, without forces, and shows the robot in the world.
 
     Height and pitch come from how the tracks rest on the geometry; nothing stops the robot from

@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 from argo_compiler.errors import ArgoError
 from argo_env.drives.tracked.body import FLIPPER_LIMITS, TIME_STEP
 from argo_env.envs import lidar
+from argo_env.envs.copying import Copying
 from argo_env.envs.drawing.drive import draw_drive
 from argo_env.envs.drive_site import DriveSite
 from argo_env.envs.drive_sites import NEAREST, DriveOptions, DriveSites
@@ -42,7 +43,7 @@ _STATE: Parts = {
 }  # fmt: skip
 
 
-class DriveEnv(Rendering, gym.Env[Observation, NDArray[np.float32]]):
+class DriveEnv(Copying, Rendering, gym.Env[Observation, NDArray[np.float32]]):
     """## Description
     A tracked robot of 60 kg or so has to get to a goal somewhere on a site with several floors. Its
     dynamics are those of the drive `tracked`: rigid bodies at 240 Hz, belts by contact-surface
@@ -269,6 +270,16 @@ class DriveEnv(Rendering, gym.Env[Observation, NDArray[np.float32]]):
         observation = self._observe()
         self._over = self._success or self._tipped or len(self._actions) >= self._limit
         return observation
+
+    def _copied_state(self) -> tuple[DriveOptions, dict[str, Any] | None]:
+        return self._sites.options, None if self._over is None else self.get_state()
+
+    def _go_on_from(self, state: tuple[DriveOptions, dict[str, Any] | None]) -> None:
+        options, episode = state
+        if episode is not None:
+            self.set_state(episode)
+        elif options != self._sites.options:
+            self._sites.choose(options)
 
     # -- inside
 

@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 from argo_compiler.errors import ArgoError
 from argo_compiler.il import EventKind
 from argo_env.drives.route import RouteDrive
+from argo_env.envs.copying import Copying
 from argo_env.envs.drawing.inspection import draw_inspection
 from argo_env.envs.episode import (
     Parts,
@@ -47,7 +48,7 @@ _EVENTS = tuple(EventKind)
 _STATE: Parts = {"begun": dict, "options": dict, "actions": (tuple, list), "generator": dict}
 
 
-class InspectEnv(Rendering, gym.Env[Observation, np.int64]):
+class InspectEnv(Copying, Rendering, gym.Env[Observation, np.int64]):
     """## Description
     A robot reads the checkpoints of a site and has to be docked in time. The agent chooses where to
     go next; the robot plans its path, drives and measures as it does in a mission, and on the way
@@ -278,6 +279,16 @@ class InspectEnv(Rendering, gym.Env[Observation, np.int64]):
         finally:
             self.render_mode = mode
         return observation
+
+    def _copied_state(self) -> tuple[InspectOptions, dict[str, Any] | None]:
+        return self._options, None if self._over is None else self.get_state()
+
+    def _go_on_from(self, state: tuple[InspectOptions, dict[str, Any] | None]) -> None:
+        options, episode = state
+        if episode is not None:
+            self.set_state(episode)
+        else:
+            self._prepare(options)
 
     # -- inside
 

@@ -43,9 +43,9 @@ class FigureWindow:
         """Shows a picture, shape (height, width, 3), and lets the window react."""
         if self._figure is None:
             height, width, _ = picture.shape
-            self._figure = self._pyplot.figure(
-                self._title, figsize=(width / _DPI, height / _DPI), dpi=_DPI
-            )
+            # Named afterwards: a figure that is made by a name may be another one's window.
+            self._figure = self._pyplot.figure(figsize=(width / _DPI, height / _DPI), dpi=_DPI)
+            self._figure.canvas.manager.set_window_title(self._title)
             axes = self._figure.add_axes((0, 0, 1, 1))
             axes.set_axis_off()
             self._image = axes.imshow(picture)

@@ -8,6 +8,7 @@ import numpy as np
 from gymnasium import spaces
 from numpy.typing import NDArray
 
+from argo_env.envs.copying import Copying
 from argo_env.envs.drawing.route import draw_route
 from argo_env.envs.episode import (
     Parts,
@@ -35,7 +36,7 @@ _STATE: Parts = {
 }  # fmt: skip
 
 
-class RouteEnv(Rendering, gym.Env[Observation, np.int64]):
+class RouteEnv(Copying, Rendering, gym.Env[Observation, np.int64]):
     """## Description
     A robot has some minutes to visit checkpoints of different worth and to be docked again. Some
     checkpoints must be visited before others. This is the orienteering problem with precedence;
@@ -239,6 +240,17 @@ budget; 1 also where it is longer |
         finally:
             self.render_mode = mode
         return observation
+
+    def _copied_state(self) -> tuple[dict[str, Any], dict[str, Any] | None]:
+        return self._options, None if self._over is None else self.get_state()
+
+    def _go_on_from(self, state: tuple[dict[str, Any], dict[str, Any] | None]) -> None:
+        options, episode = state
+        if episode is not None:
+            self.set_state(episode)
+        elif options:
+            self._episodes.choose(read_route_options(options, self._episodes))
+            self._options = options
 
     def _observe(self) -> Observation:
         instance, place = self._known, self._place

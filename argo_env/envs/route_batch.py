@@ -12,6 +12,7 @@ from gymnasium.vector.utils import batch_space
 from numpy.typing import NDArray
 
 from argo_compiler.errors import ArgoError
+from argo_env.envs.copying import Copying
 from argo_env.envs.drawing.route import draw_route
 from argo_env.envs.episode import no_state
 from argo_env.envs.observations import Observation
@@ -32,7 +33,7 @@ _NAME = "argo/Route-v0"
 _MOST = 1_000_000  # routes
 
 
-class RouteVectorEnv(VectorEnv[Observation, NDArray[np.int64], NDArray[Any]]):
+class RouteVectorEnv(Copying, VectorEnv[Observation, NDArray[np.int64], NDArray[Any]]):
     """Many routes at once, as `gymnasium.make_vec("argo/Route-v0", num_envs=1024,
     vectorization_mode="vector_entry_point")` makes them.
 
@@ -204,6 +205,16 @@ class RouteVectorEnv(VectorEnv[Observation, NDArray[np.int64], NDArray[Any]]):
         for name, array in state["arrays"].items():
             getattr(self, name)[...] = array
         return self._observe()
+
+    def _copied_state(self) -> tuple[RouteOptions, dict[str, Any] | None]:
+        return self._episodes.options, None if self._mask is None else self.get_state()
+
+    def _go_on_from(self, state: tuple[RouteOptions, dict[str, Any] | None]) -> None:
+        options, episodes = state
+        if episodes is not None:
+            self.set_state(episodes)
+        elif options != self._episodes.options:
+            self._episodes.choose(options)
 
     @property
     def _legal(self) -> NDArray[np.bool_]:

@@ -17,7 +17,7 @@ from argo_env.robot.spec import RobotSpec, robot_folder
 from argo_env.site import Site
 from argo_env.site.shapes import Box, Cylinder, Element, Role, Solid, Vector, half_extents
 from argo_env.site.urdf import to_urdf
-from argo_env.world.pybullet_client import Connection, pybullet, quiet
+from argo_env.world.pybullet_client import Connection, pybullet
 
 _UNDER_DECK = 0.25  # m below a floor that belongs to it: its plates and beams
 _HIDDEN: Vector = (0.0, 0.0, -1000.0)
@@ -42,21 +42,20 @@ class Scene(Connection):
         super().__init__()
         self.site = site
         self.robot = robot
-        with quiet():
-            self._floors: dict[int, list[int]] = {}
-            self._decks: dict[int, list[int]] = {}
-            for number, elements in storeys(site).items():
-                decks = tuple(e for e in elements if number > 1 and e.role in _DECK_ROLES)
-                others = tuple(e for e in elements if e not in decks)
-                self._floors[number] = [self._load_storey(number, others)]
-                self._decks[number] = [self._load_storey(number, decks)] if decks else []
-            self._origins: dict[int, tuple[Vector, Vector]] = {}
-            for checkpoint in site.checkpoints:
-                name = checkpoint.kind.value.replace(" ", "_")
-                body = self._load(resources.urdf() / "checkpoints" / f"{name}.urdf", fixed=True)
-                self._floors[checkpoint.floor].append(body)
-                self._origins[body] = (checkpoint.position, (0.0, 0.0, checkpoint.yaw))
-            self._robot_body = self._load(robot_folder() / robot.urdf, fixed=False)
+        self._floors: dict[int, list[int]] = {}
+        self._decks: dict[int, list[int]] = {}
+        for number, elements in storeys(site).items():
+            decks = tuple(e for e in elements if number > 1 and e.role in _DECK_ROLES)
+            others = tuple(e for e in elements if e not in decks)
+            self._floors[number] = [self._load_storey(number, others)]
+            self._decks[number] = [self._load_storey(number, decks)] if decks else []
+        self._origins: dict[int, tuple[Vector, Vector]] = {}
+        for checkpoint in site.checkpoints:
+            name = checkpoint.kind.value.replace(" ", "_")
+            body = self._load(resources.urdf() / "checkpoints" / f"{name}.urdf", fixed=True)
+            self._floors[checkpoint.floor].append(body)
+            self._origins[body] = (checkpoint.position, (0.0, 0.0, checkpoint.yaw))
+        self._robot_body = self._load(robot_folder() / robot.urdf, fixed=False)
         for body in chain.from_iterable((*self._floors.values(), *self._decks.values())):
             self._origins.setdefault(body, ((0.0, 0.0, 0.0), (0.0, 0.0, 0.0)))
         self._joints = {name: k for k, (name, _) in self._parts(self._robot_body).items()}
@@ -80,8 +79,7 @@ class Scene(Connection):
                 for body in bodies:
                     origin, rpy = self._origins[body]
                     self._place(body, origin if first <= number <= top else _HIDDEN, rpy)
-        # Rays are tested against where bodies were at the last collision detection.
-        pybullet.performCollisionDetection(physicsClientId=self._client)
+        self._detect()
 
     def place_robot(self, pose: BodyPose, joints: Mapping[str, float]) -> None:
         """Puts the robot there, with joints at positions in degrees, by name."""

@@ -15,7 +15,7 @@ from argo_env.site.index import ElementIndex
 from argo_env.site.shapes import WALKING_ROLES, Box, Element, Solid, Vector
 from argo_env.site.urdf import to_urdf
 from argo_env.world.placement import AS_PLANNED, Placement, displaced
-from argo_env.world.pybullet_client import Connection, pybullet, quiet
+from argo_env.world.pybullet_client import Connection, pybullet
 
 _ROBOT_BIT = 2
 SITE_BIT = 1
@@ -38,10 +38,9 @@ class Bodies(Connection):
         self._solids = elements
         self._placements: dict[int, Placement] = {}
         self._screens: dict[int, str] = {}
-        with quiet():
-            self._site_body = self._load_site()
-            self._checkpoints = {c.id: self._load_checkpoint(c) for c in site.checkpoints}
-            self._robot_body = self._load(robot_folder() / robot.urdf, fixed=False)
+        self._site_body = self._load_site()
+        self._checkpoints = {c.id: self._load_checkpoint(c) for c in site.checkpoints}
+        self._robot_body = self._load(robot_folder() / robot.urdf, fixed=False)
         self._site_links = self._links(self._site_body)
         self._robot_links = self._links(self._robot_body)
         self._joints = self._joint_indices(self._robot_body)
@@ -99,8 +98,7 @@ class Bodies(Connection):
         actual = self.in_place(checkpoint_id)
         rpy = (placement.roll, 0.0, planned.yaw + placement.turn)
         self._place(self._checkpoints[checkpoint_id], actual.position, rpy)
-        # Rays are tested against where bodies were at the last collision detection.
-        pybullet.performCollisionDetection(physicsClientId=self._client)
+        self._detect()
 
     def placement(self, checkpoint_id: int) -> Placement:
         """How a checkpoint stands against the plan."""
@@ -135,14 +133,14 @@ class Bodies(Connection):
         )
         self._filter(body, SITE_BIT, SITE_BIT | _ROBOT_BIT)
         self._screens[body] = name
-        pybullet.performCollisionDetection(physicsClientId=client)
+        self._detect()
         return body
 
     def remove_screen(self, number: int) -> None:
         """Takes away what `add_screen` has put there; KeyError if it is not there."""
         del self._screens[number]
         pybullet.removeBody(number, physicsClientId=self._client)
-        pybullet.performCollisionDetection(physicsClientId=self._client)
+        self._detect()
 
     def _name(self, body: int, link: int, point: Vector) -> str:
         """What a link of a body is called, at a point of it (m)."""

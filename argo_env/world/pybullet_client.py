@@ -3,6 +3,8 @@
 import ctypes
 import os
 import sys
+import threading
+import weakref
 from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
 from pathlib import Path
@@ -13,46 +15,85 @@ from numpy.typing import NDArray
 from argo_env.closing import Closing
 from argo_env.site.shapes import Vector
 
+_one = threading.Lock()
+"""held by whoever sets what PyBullet has once only, for all connections and threads"""
+
 
 @contextmanager
-def quiet() -> Iterator[None]:
-    """Sends what native code prints to nowhere. PyBullet greets, warns and reports on stdout."""
-    sys.stdout.flush()
-    sys.stderr.flush()
-    saved = os.dup(1), os.dup(2)
-    nowhere = os.open(os.devnull, os.O_WRONLY)
-    try:
-        os.dup2(nowhere, 1)
-        os.dup2(nowhere, 2)
+def _unheard() -> Iterator[None]:
+    """What native code prints by C's streams is not heard. File descriptors stay as they are, so
+    nothing is lost of what Python prints meanwhile, in whatever thread.
+
+    For the greeting of PyBullet when it is imported, on stderr, and those of its window. Without a
+    window it prints nothing: what it loads lacks nothing that it would warn about.
+    """
+    if not sys.platform.startswith("linux"):
         yield
-    finally:
-        # What C has buffered would else come out at the end of the process.
-        ctypes.CDLL(None).fflush(None)
-        for target, copy in enumerate(saved, start=1):
-            os.dup2(copy, target)
-            os.close(copy)
-        os.close(nowhere)
+        return
+    libc = ctypes.CDLL(None)
+    libc.fopen.restype = ctypes.c_void_p
+    streams = [ctypes.c_void_p.in_dll(libc, name) for name in ("stdout", "stderr")]
+    with _one:
+        kept = [stream.value for stream in streams]
+        # Never closed: another thread may still be writing to it.
+        nowhere = libc.fopen(os.fsencode(os.devnull), b"we")
+        try:
+            for stream in streams:
+                stream.value = nowhere or stream.value
+            yield
+        finally:
+            for stream, value in zip(streams, kept, strict=True):
+                stream.value = value
 
 
-with quiet():
+with _unheard():
     import pybullet
 
-__all__ = ["SUN", "Connection", "pybullet", "quiet"]
+__all__ = ["SUN", "Connection", "pybullet"]
 
 SUN: Vector = (0.55, -0.75, 1.25)
 """direction towards the light of all pictures"""
 
 
 class Connection(Closing):
-    """A world of bodies in PyBullet. Holds a connection; close it, or use it as a context."""
+    """A world of bodies in PyBullet. Holds a connection; close it, or use it as a context.
+
+    Connections do not disturb each other, in one thread or several.
+    """
+
+    contact_breaking = 0.02
+    """m between two bodies from where on PyBullet keeps no contact of theirs"""
 
     def __init__(self, gui: bool = False) -> None:
-        with quiet():
-            self._client: int = pybullet.connect(pybullet.GUI if gui else pybullet.DIRECT)
+        if gui:
+            with _unheard():
+                self._client: int = pybullet.connect(pybullet.GUI)
+        else:
+            self._client = pybullet.connect(pybullet.DIRECT)
+        # There are no more than 1,024 connections, and not all that holds one gets closed.
+        self._end = weakref.finalize(self, _disconnect, self._client)
 
     def close(self) -> None:
         """Ends the connection; the object is of no use afterwards."""
-        pybullet.disconnect(physicsClientId=self._client)
+        self._end()
+
+    @contextmanager
+    def _in_contact(self) -> Iterator[None]:
+        """For all that looks for contacts: PyBullet has one `contact_breaking` for all connections,
+        so it is set each time, and no other thread gets in between."""
+        with _one:
+            self._set_breaking()
+            yield
+
+    def _set_breaking(self) -> None:
+        pybullet.setPhysicsEngineParameter(
+            contactBreakingThreshold=self.contact_breaking, physicsClientId=self._client
+        )
+
+    def _detect(self) -> None:
+        """Looks for collisions; rays are tested against where bodies were at the last time."""
+        with self._in_contact():
+            pybullet.performCollisionDetection(physicsClientId=self._client)
 
     def _render(
         self, view: Sequence[float], projection: Sequence[float], size: tuple[int, int]
@@ -97,3 +138,7 @@ class Connection(Closing):
         count = pybullet.getNumJoints(body, physicsClientId=self._client)
         infos = [pybullet.getJointInfo(body, k, physicsClientId=self._client) for k in range(count)]
         return {k: (info[1].decode(), info[12].decode()) for k, info in enumerate(infos)}
+
+
+def _disconnect(client: int) -> None:
+    pybullet.disconnect(physicsClientId=client)

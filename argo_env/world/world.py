@@ -88,7 +88,7 @@ class World(Bodies):
 
     def touches(self) -> tuple[Touch, ...]:
         """Where the robot touches what it must not: all but tracks and flippers on the ground."""
-        pybullet.performCollisionDetection(physicsClientId=self._client)
+        self._detect()
         found = []
         for contact in pybullet.getContactPoints(
             bodyA=self._robot_body, physicsClientId=self._client
@@ -151,14 +151,15 @@ class World(Bodies):
         self, link: int, body: int, distance: float, **options: int
     ) -> list[tuple[Any, ...]]:
         """Where a link of the robot is nearer to a body than `distance` (m)."""
-        found: list[tuple[Any, ...]] = pybullet.getClosestPoints(
-            self._robot_body,
-            body,
-            distance,
-            linkIndexA=link,
-            physicsClientId=self._client,
-            **options,
-        )
+        with self._in_contact():
+            found: list[tuple[Any, ...]] = pybullet.getClosestPoints(
+                self._robot_body,
+                body,
+                distance,
+                linkIndexA=link,
+                physicsClientId=self._client,
+                **options,
+            )
         return found
 
     def heights(

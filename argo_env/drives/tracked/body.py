@@ -2,7 +2,6 @@
 
 import math
 import tempfile
-import weakref
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -15,7 +14,7 @@ from argo_env.drives.tracked.terrain import Terrain
 from argo_env.robot.pose import BodyPose
 from argo_env.robot.spec import RobotSpec, robot_folder
 from argo_env.site.shapes import Vector
-from argo_env.world.pybullet_client import Connection, pybullet, quiet
+from argo_env.world.pybullet_client import Connection, pybullet
 from argo_env.world.world import Touch, World
 
 TIME_STEP = 1 / 240  # s
@@ -27,7 +26,6 @@ SWING = 3.0  # rad/s², of the turning rate
 _YAW_GAIN = 4.0  # 1/s: belts that slip in a turn are sped up until the turning rate is met
 _YAW_REACH = 1.5  # the integral may add this much of the turning rate commanded
 _ITERATIONS = 6  # of the contact solver
-_BREAKING = 0.003  # m; fewer contacts that carry nothing than with PyBullet's 0.02
 _DROP = 0.002  # m above the ground at which the robot is put down
 _SETTLING = 60  # steps until it rests
 FLIPPERS = ("left_flipper_joint", "right_flipper_joint")
@@ -58,9 +56,14 @@ class Command:
 class TrackedBody(Connection):
     """The robot among the solids of a world. Holds a physics server of its own and the belts.
 
+    Whoever makes drives closes the world only; the server ends with this object, or when closed.
+
     The server has the same solids as the world and nothing else that could move, so that steps are
     cheap and a snapshot is whole. The world is shown the robot's pose after each `advance`.
     """
+
+    contact_breaking = 0.003
+    """m; fewer contacts that carry nothing than with PyBullet's 0.02"""
 
     def __init__(
         self,
@@ -71,12 +74,12 @@ class TrackedBody(Connection):
     ) -> None:
         """`mass_scale` multiplies the masses of the robot's model."""
         super().__init__()
-        # Whoever makes drives closes the world only; the server ends with this object.
-        self._end = weakref.finalize(self, _disconnect, self._client)
+        # Both look for contacts in the same way.
+        world.contact_breaking = self.contact_breaking
         self._world = world
         self._robot = robot
         self._terrain = Terrain(world)
-        with quiet(), tempfile.TemporaryDirectory() as folder:
+        with tempfile.TemporaryDirectory() as folder:
             self._ground = self._load(self._terrain.write(folder), fixed=True)
             model = Path(folder) / "robot.urdf"
             text = lumped(robot_folder() / robot.urdf, robot.arm_stowed, FLIPPERS, mass_scale)
@@ -105,10 +108,6 @@ class TrackedBody(Connection):
         self._presses = Presses(self._terrain, self._grounds, self._names)
         self._drive_flippers()
         self._home = pybullet.saveState(physicsClientId=self._client)
-
-    def close(self) -> None:
-        """Ends the connection; the object is of no use afterwards."""
-        self._end()
 
     def reset(self, pose: BodyPose, flipper: float = 0.0) -> None:
         """Puts the robot down there, at rest, with its arm stowed; forgets all that was."""
@@ -150,7 +149,8 @@ class TrackedBody(Connection):
             )
             if strange:
                 self._presses.note(strange, *self._frame())
-            pybullet.stepSimulation(physicsClientId=client)
+            with self._in_contact():
+                pybullet.stepSimulation(physicsClientId=client)
             self._contacts = pybullet.getContactPoints(bodyA=body, physicsClientId=client)
         self._show()
 
@@ -235,7 +235,6 @@ class TrackedBody(Connection):
         pybullet.setPhysicsEngineParameter(
             fixedTimeStep=TIME_STEP,
             numSolverIterations=_ITERATIONS,
-            contactBreakingThreshold=_BREAKING,
             deterministicOverlappingPairs=1,
             enableFileCaching=0,
             physicsClientId=client,
@@ -256,7 +255,7 @@ class TrackedBody(Connection):
     def _return_to(self, state: int) -> None:
         """Restores a state of PyBullet's, without anything that it remembers of contacts."""
         self._place(self._body, _FAR, (0.0, 0.0, 0.0))
-        pybullet.performCollisionDetection(physicsClientId=self._client)
+        self._detect()
         pybullet.restoreState(state, physicsClientId=self._client)
         self._drive_flippers()
 
@@ -321,7 +320,3 @@ class TrackedBody(Connection):
     def _links(self, body: int) -> dict[int, str]:
         base = pybullet.getBodyInfo(body, physicsClientId=self._client)[0].decode()
         return {-1: base} | {k: link for k, (_, link) in self._parts(body).items()}
-
-
-def _disconnect(client: int) -> None:
-    pybullet.disconnect(physicsClientId=client)

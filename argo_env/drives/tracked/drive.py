@@ -3,6 +3,7 @@
 import math
 from collections import deque
 
+from argo_env.closing import NonCopyable
 from argo_env.drives.drive import DriveStatus, Incident, Trouble
 from argo_env.drives.tracked.belts import Traction
 from argo_env.drives.tracked.body import TIME_STEP, TrackedBody
@@ -23,7 +24,7 @@ _ALIGNING = 1.5  # 1/s
 _MOST_ALIGNING = 0.3  # rad/s
 
 
-class TrackedDrive:
+class TrackedDrive(NonCopyable):
     """Follows paths with the tracked body. Holds the body, the path and what went wrong on it."""
 
     name = "tracked"

@@ -5,9 +5,9 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.sparse import csr_array
 
 from argo_compiler.model import Pose
+from argo_env.navigation.graphs import graph_of
 from argo_env.navigation.lattice import MARGIN, Lattice
 from argo_env.navigation.path import Path
 from argo_env.navigation.raster import CELL
@@ -72,9 +72,7 @@ def close(lattice: Lattice, blockages: Sequence[Blockage]) -> Lattice:
     kept = ~(shut[source] | shut[target] | (turns & stuck[before]))
     lost = np.bincount(source[~kept], minlength=lattice.size)
     start = lattice.costs.indptr - np.concatenate([[0], np.cumsum(lost)])
-    costs = csr_array(
-        (lattice.costs.data[kept], lattice.costs.indices[kept], start), shape=lattice.costs.shape
-    )
+    costs = graph_of(lattice.costs.data[kept], lattice.costs.indices[kept], start)
     return replace(lattice, state_of=state_of, costs=costs)
 
 

@@ -2,9 +2,9 @@
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.sparse import csr_array
 
-from argo_env.navigation.regions import Region, search, walk
+from argo_env.navigation.graphs import Graph, graph_of, search
+from argo_env.navigation.regions import Region, walk
 
 _STEP = 4.0  # s more than the least that the way may cost, in each attempt
 _ATTEMPTS = 7  # before the whole region is searched
@@ -48,10 +48,10 @@ def find_inside(
     return None
 
 
-def _towards(area: Region, bounds: NDArray[np.float64]) -> csr_array:
+def _towards(area: Region, bounds: NDArray[np.float64]) -> Graph:
     """The moves ahead, each cheaper by what the bounds fall along it."""
     graph = area.ahead
     costs = bounds.take(area.heads, mode="clip")  # in range, and so twice as fast
     costs -= np.repeat(bounds, np.diff(graph.indptr))
     costs += graph.data
-    return csr_array((costs, graph.indices, graph.indptr), graph.shape)
+    return graph_of(costs, graph.indices, graph.indptr)

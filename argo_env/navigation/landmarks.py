@@ -8,10 +8,9 @@ from functools import cached_property
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.sparse import csr_array
-from scipy.sparse.csgraph import dijkstra
 
 from argo_env.files.parts import NOWHERE, Parts
+from argo_env.navigation.graphs import Graph, costs_of
 
 _SIDES, _AWAY = 8, 8  # landmarks at the outermost places, and far away from all others
 _ACTIVE = 6  # bounds that one search uses
@@ -28,8 +27,8 @@ class Landmarks:
     The bounds hold as well for a graph that has lost some of the moves.
     """
 
-    ahead: csr_array
-    back: csr_array
+    ahead: Graph
+    back: Graph
     places: NDArray[np.float64]
     parts: Parts = NOWHERE
     name: str = ""
@@ -88,7 +87,7 @@ class Landmarks:
         return {"onto": onto, "away": away}
 
     def _to_and_from(self, states: list[int]) -> tuple[NDArray[np.float32], NDArray[np.float32]]:
-        onto, away = (dijkstra(graph, indices=states) for graph in (self.back, self.ahead))
+        onto, away = (costs_of(graph, states) for graph in (self.back, self.ahead))
         return onto.astype(np.float32), away.astype(np.float32)
 
 

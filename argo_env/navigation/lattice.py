@@ -9,10 +9,9 @@ from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.sparse import coo_array, csr_array
-from scipy.sparse.csgraph import connected_components
 
 from argo_env.files.parts import Arrays
+from argo_env.navigation.graphs import Graph, graph_of, graph_of_moves, part_of, strong_parts
 from argo_env.navigation.raster import CELL
 from argo_env.navigation.stencil import HEADINGS, Stencil, heading_angle, standing, turning
 from argo_env.navigation.surface import Surface
@@ -45,7 +44,7 @@ class Lattice:
     rise: NDArray[np.float64]
     roomy: NDArray[np.bool_]
     state_of: NDArray[np.int64]
-    costs: csr_array
+    costs: Graph
 
     @property
     def size(self) -> int:
@@ -81,10 +80,6 @@ def lattice_arrays(lattice: Lattice) -> Arrays:
 
 def lattice_of(surface: Surface, robot: RobotSpec, arrays: Arrays) -> Lattice:
     """The lattice that `lattice_arrays` was given."""
-    moves = csr_array(
-        (arrays["costs"], arrays["targets"], arrays["starts"]),
-        shape=(len(arrays["cell"]), len(arrays["cell"])),
-    )
     return Lattice(
         surface,
         robot,
@@ -93,7 +88,7 @@ def lattice_of(surface: Surface, robot: RobotSpec, arrays: Arrays) -> Lattice:
         arrays["rise"],
         arrays["roomy"],
         arrays["state_of"],
-        moves,
+        graph_of(arrays["costs"], arrays["targets"], arrays["starts"]),
     )
 
 
@@ -116,7 +111,7 @@ def build_lattice(surface: Surface, robot: RobotSpec) -> Lattice:
     ]
     source, target, seconds = (np.concatenate(parts) for parts in zip(*edges, strict=True))
     costs = seconds * _factor(roomy, source, target)
-    matrix = coo_array((costs, (source, target)), shape=(len(cell), len(cell))).tocsr()
+    matrix = graph_of_moves(costs, source, target, len(cell))
     return Lattice(surface, robot, cell, heading_of, rise, roomy, state_of, matrix)
 
 
@@ -129,7 +124,7 @@ def _factor(
 
 def connected_part(lattice: Lattice, state: int) -> Lattice:
     """The lattice of the states that can be reached from `state` and from which it is reached."""
-    _, label = connected_components(lattice.costs, directed=True, connection="strong")
+    label = strong_parts(lattice.costs)
     kept = label == label[state]
     number = np.cumsum(kept) - 1
     state_of = np.where(
@@ -143,7 +138,7 @@ def connected_part(lattice: Lattice, state: int) -> Lattice:
         lattice.rise[kept],
         lattice.roomy[kept],
         state_of,
-        csr_array(lattice.costs[kept][:, kept]),
+        part_of(lattice.costs, kept),
     )
 
 

@@ -4,12 +4,11 @@ from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.sparse import coo_array, csr_array
-from scipy.sparse.csgraph import dijkstra
 
 from argo_env.files.parts import Arrays
+from argo_env.navigation.graphs import Trees, graph_of_moves, search
 from argo_env.navigation.lattice import Lattice
-from argo_env.navigation.regions import Partition, Region, Trees
+from argo_env.navigation.regions import Partition, Region
 
 
 @dataclass(frozen=True)
@@ -60,9 +59,7 @@ def find_portals(lattice: Lattice, part: Partition) -> Portals:
         return Portals(states, np.empty(shape), np.empty(shape), np.empty(shape, np.int32))
     hop = np.zeros(shape)
     hop[a, b] = seconds
-    total, before = dijkstra(
-        csr_array(coo_array((costs, (a, b)), shape=shape)), return_predecessors=True
-    )
+    total, before = search(graph_of_moves(costs, a, b, len(states)), np.arange(len(states)))
     times = np.zeros(shape)
     row, end = np.nonzero(before >= 0)
     here = end.copy()

@@ -12,16 +12,11 @@ from itertools import pairwise
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.sparse import csr_array
-from scipy.sparse.csgraph import dijkstra
 
 from argo_env.files.parts import NOWHERE, Arrays, Parts
+from argo_env.navigation.graphs import Graph, Trees, against, part_of, search
 from argo_env.navigation.landmarks import Landmarks
 from argo_env.navigation.lattice import Lattice
-
-Trees = tuple[NDArray[np.float64], NDArray[np.int32]]
-"""Costs in s, inf where there is no way, and the state next to each on the way, both of shape
-(trees, states)."""
 
 
 @dataclass(frozen=True)
@@ -33,8 +28,8 @@ class Region:
     """
 
     members: NDArray[np.int64]
-    ahead: csr_array
-    back: csr_array
+    ahead: Graph
+    back: Graph
     entries: NDArray[np.int64]
     exits: NDArray[np.int64]
     landmarks: Landmarks
@@ -57,20 +52,13 @@ class Region:
         """The cheapest ways to each exit; what is next to a state is the state after it."""
         return self._trees("exits", self.back, self.exits)
 
-    def _trees(self, kind: str, graph: csr_array, sources: NDArray[np.int64]) -> Trees:
+    def _trees(self, kind: str, graph: Graph, sources: NDArray[np.int64]) -> Trees:
         def find() -> Arrays:
             costs, following = search(graph, sources)
             return {"costs": costs, "following": following}
 
         trees = self.parts.made(f"{self.name}-{kind}", find)
         return trees["costs"], trees["following"]
-
-
-def search(graph: csr_array, sources: NDArray[np.int64], limit: float = np.inf) -> Trees:
-    """The cheapest ways from each of `sources` that cost up to `limit` (s)."""
-    if not len(sources):
-        return np.empty((0, graph.shape[0])), np.empty((0, graph.shape[0]), dtype=np.int32)
-    return dijkstra(graph, indices=sources, return_predecessors=True, limit=limit)
 
 
 def walk(following: NDArray[np.int32], start: int) -> Iterator[int]:
@@ -158,13 +146,13 @@ def _region(
     crossings: tuple[NDArray[np.int64], NDArray[np.int64], NDArray[np.float64]],
     landmarks: Landmarks | None = None,
 ) -> Region:
-    ahead = csr_array(lattice.costs[members][:, members])
+    ahead = part_of(lattice.costs, members)
     # scipy searches with 32-bit numbers and would convert them for every search.
     ahead.indices, ahead.indptr = ahead.indices.astype(np.int32), ahead.indptr.astype(np.int32)
     inside = np.zeros(lattice.size, dtype=bool)
     inside[members] = True
     sources, targets, _ = crossings
-    back = csr_array(ahead.T.tocsr())
+    back = against(ahead)
     return Region(
         members,
         ahead,

@@ -8,6 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from argo_env.files.parts import NOWHERE, Parts
+from argo_env.navigation.graphs import search
 from argo_env.navigation.inside import find_inside
 from argo_env.navigation.lattice import Lattice
 from argo_env.navigation.portals import (
@@ -17,7 +18,7 @@ from argo_env.navigation.portals import (
     portals_arrays,
     tree_times,
 )
-from argo_env.navigation.regions import Partition, Region, search, walk
+from argo_env.navigation.regions import Partition, Region, walk
 
 Goals = tuple[NDArray[np.int64], NDArray[np.float64]]
 """States to go to, and what arriving at each costs besides, in s."""

@@ -8,7 +8,6 @@ from itertools import pairwise
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.ndimage import distance_transform_edt
 
 from argo_compiler.model import Pose
 from argo_env.navigation.lattice import DRIVING_LEVEL, MARGIN, TURNING_LEVEL
@@ -83,6 +82,9 @@ class FlatMap:
     def _room(self) -> NDArray[np.float64]:
         """How far the centre of each cell is from that of the nearest cell of the border (m), of
         the grid with two more cells on each side; 0 where it is not free."""
+        # With the first path only: see `graphs`.
+        from scipy.ndimage import distance_transform_edt
+
         room = distance_transform_edt(~self._beside_free) * CELL
         return np.where(np.pad(self.free, 2), room, 0.0)
 

@@ -7,7 +7,7 @@ from dataclasses import dataclass, field
 from functools import cached_property, partial
 from pathlib import Path
 from threading import Lock
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from argo_compiler.catalog import Catalog
 from argo_compiler.errors import Conflict
@@ -16,14 +16,15 @@ from argo_env.files.yaml_file import read_text
 from argo_env.navigation import Navigator
 from argo_env.planning.catalog import make_catalog
 from argo_env.planning.code import digest_of_code
-from argo_env.planning.generated import generate
-from argo_env.planning.travel import SiteTravel
 from argo_env.robot.spec import RobotSpec, load_robot
 from argo_env.site import Site, make_site
 from argo_env.site.family import is_family, parse_family
 from argo_env.site.reading import parse_spec
 from argo_env.site.site import site_file
 from argo_env.site.spec import SiteSpec
+
+if TYPE_CHECKING:
+    from argo_env.planning.travel import SiteTravel
 
 _KEPT = 8  # sites in memory; each holds some 100 MB
 _PATHS = 1024  # of a site; simulations go the same ways again and again
@@ -72,8 +73,10 @@ class OpenedSite:
         return make_catalog(self.navigator)
 
     @cached_property
-    def travel(self) -> SiteTravel:
+    def travel(self) -> "SiteTravel":
         """Travel times and energy, for the analysis and for routes."""
+        from argo_env.planning.travel import SiteTravel
+
         return SiteTravel(self.navigator)
 
     @cached_property
@@ -119,6 +122,8 @@ def open_site(reference: str = "umad", robot: RobotSpec | None = None) -> Opened
     """
     robot = robot or load_robot()
     if is_family(reference):
+        from argo_env.planning.generated import generate
+
         family = parse_family(reference)
         return _open(reference, family.model_dump_json(), robot, partial(generate, family, robot))
     path = site_file(reference)

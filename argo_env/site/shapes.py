@@ -6,7 +6,6 @@ from functools import lru_cache
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.spatial.transform import Rotation
 
 Vector = tuple[float, float, float]
 
@@ -61,6 +60,9 @@ Solid = Box | Cylinder
 @lru_cache(maxsize=1024)
 def _rotation(rpy: Vector) -> NDArray[np.float64]:
     # A site has thousands of solids, but few ways to turn them.
+    # Few of those who open a site look at them, and scipy takes long to import.
+    from scipy.spatial.transform import Rotation
+
     matrix = Rotation.from_euler("xyz", rpy).as_matrix()
     matrix.setflags(write=False)
     return np.asarray(matrix)

@@ -10,7 +10,6 @@ from argo_compiler.catalog import CheckpointKind, Interval
 from argo_compiler.errors import Invalid, NotFound
 from argo_compiler.model import Pose
 from argo_env.files import resources
-from argo_env.site.build import build_site
 from argo_env.site.family import PREFIX, is_family
 from argo_env.site.index import SolidIndex
 from argo_env.site.reading import read_spec
@@ -65,6 +64,8 @@ class Site:
     @cached_property
     def elements(self) -> tuple[Element, ...]:
         """The named parts that its solids belong to."""
+        from argo_env.site.build import build_site
+
         return build_site(self.spec) if self.altered is None else self.altered
 
     @cached_property

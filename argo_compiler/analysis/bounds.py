@@ -35,13 +35,15 @@ def too_many_cuts(flow: Flow) -> bool:
 
 
 def measure(flow: Flow, paths: Paths, legs: Legs, endless: bool) -> Extent:
-    """The bounds of a mission and its loops; none above if some path is `endless`. Raises
-    TooLargeError."""
+    """The bounds of a mission and its loops; none above if some path is `endless`, or has a loop
+    that no time limits: also one that no way leads out of, so that no end comes after it. Raises
+    BoundsTooLargeError."""
     levels = Levels(flow, paths, legs)
     level = levels.mission()
     duration = energy = None
     ends = [way for way in level.outs if way[1][1] == flow.done]
     if ends and legs.travel is not None:
+        endless = endless or bool(levels.loops)
         duration = _bounds(flow, legs, level, "time", endless)
         energy = _bounds(flow, legs, level, "energy", endless)
     return Extent(duration, energy, tuple(levels.loops.values()))

@@ -64,7 +64,7 @@ def _tasks(study: Study, leaves: tuple[int, ...]) -> str:
 
 
 def _unbounded(study: Study, trapped: set[int]) -> Iterator[Diagnostic]:
-    """Loops that are left at some time, but nobody knows when."""
+    """Loops of which nobody knows when they are left, or whether they are."""
     extent = study.extent
     if extent is None:
         return
@@ -78,12 +78,17 @@ def _unbounded(study: Study, trapped: set[int]) -> Iterator[Diagnostic]:
             *([f"group{'s' if len(groups) > 1 else ''} {listed(groups)}"] if groups else []),
         ]
         single = len(loop.leaves) + len(loop.groups) == 1
+        they = "it" if single else "they"
+        way_out = (
+            f"{they} can be left, but no count and no duration says when"
+            if loop.left
+            else f"what leads out of {'it' if single else 'them'} comes too late for a hard stop"
+        )
         yield study.diagnostic(
             "unbounded-loop",
             Severity.WARNING,
             f"{' and '.join(parts)} may be repeated without limit: "
-            f"{'it' if single else 'they'} can be left, but no count and no duration says when, "
-            "so no duration of the mission can be promised",
+            f"{way_out}, so no duration of the mission can be promised",
             "make it a group with max_repeat_count or max_repeat_duration that goes on in any case",
             first,
         )

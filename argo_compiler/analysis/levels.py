@@ -62,6 +62,9 @@ class Loop:
 
     leaves: tuple[int, ...]
     groups: tuple[int, ...]
+    left: bool
+    """whether some way leads out of it; a way that would be taken too late for a hard stop does not
+    count"""
 
 
 class Levels:
@@ -119,7 +122,7 @@ class Levels:
         rounds = combine(group, flow, first, later)
         timed = flow.parent >= 0 and self.flow.timed[flow.parent]
         if rounds.unlimited and not timed:
-            self._note_loop((), (group,))
+            self._note_loop((), (group,), left=bool(rounds.outs))
         return rounds
 
     def _round(self, group: int, level: LevelGraph) -> GroupRound:
@@ -221,17 +224,23 @@ class Levels:
                     looping[node] = True
                 if not timed:
                     keys = [graph.keys[node] for node in part]
+                    inside = set(part)
                     self._note_loop(
                         tuple(sorted(k for k in keys if isinstance(k, int))),
                         tuple(sorted({k[0] for k in keys if not isinstance(k, int)})),
+                        left=any(out[0] in inside for out in graph.outs)
+                        or any(t not in inside for node in part for t in successors[node]),
                     )
         order = [node for part in reversed(parts) for node in part]
         for measure in ("time", "energy"):
             _least(graph, measure)
             _most(graph, measure, order, looping)
 
-    def _note_loop(self, leaves: tuple[int, ...], groups: tuple[int, ...]) -> None:
-        self.loops.setdefault((leaves, groups), Loop(leaves, groups))
+    def _note_loop(self, leaves: tuple[int, ...], groups: tuple[int, ...], *, left: bool) -> None:
+        known = self.loops.get((leaves, groups))
+        # The same loop may be entered in several ways, in time or not.
+        left = left or (known is not None and known.left)
+        self.loops[leaves, groups] = Loop(leaves, groups, left)
 
 
 def _spans(level: LevelGraph, node: int) -> Cost:

@@ -4,12 +4,22 @@ from hypothesis import HealthCheck, assume, event, given, settings
 from hypothesis import strategies as st
 
 from argo_compiler.analysis import Verdict, analyse
+from argo_compiler.catalog import Area, Catalog
 from argo_compiler.checks import check
 from argo_compiler.diagnostics import has_errors
 from argo_compiler.hfsm import Cause, lower
 from argo_compiler.hfsm.conditions import words
-from tests.argo_compiler.analysis.worlds import MadeUpTravel, catalogs, missions, run
+from argo_compiler.il import Action, Group, Stop
+from tests.argo_compiler.analysis.building import mission, task, way
+from tests.argo_compiler.analysis.worlds import (
+    MadeUpTravel,
+    catalogs,
+    checkpoint,
+    missions,
+    run,
+)
 from tests.conftest import examples
+from tests.mission_parts import HERE
 
 SOON = 1e-6
 STEPS = (Cause.START, Cause.CONDITION, Cause.REPEAT, Cause.DEFAULT, Cause.TIMEOUT, Cause.FAILURE)
@@ -101,3 +111,39 @@ def test_nothing_impossible_happens(mission, catalog, seed, clean_up):
             within(analysis.energy, done.energy, done.finished)
         done = run(mission, hfsm, catalog, travel, seed + k, failures=True)
         require_allowed(mission, analysis, done, failures=True)
+
+
+def measurement(name, *ways):
+    return task(name, *ways).model_copy(
+        update={"action": Action.MEASURE, "object_id": "1", "pose": None}
+    )
+
+
+def test_a_loop_whose_way_out_always_comes_too_late_is_never_over():
+    """From W3 the way back to the group takes longer than the group lasts, so that the value which
+    would lead out of it is not measured any more."""
+    group = Group(name="0", start="M1x0", end="M1x1", max_repeat_duration=1, stop=Stop.HARD)
+    plan = mission(
+        measurement("M1x0", "M1x1"),
+        measurement("M1x1", "W2", way("M1x0", "1 < 0"), way("W4", "1 > 0")),
+        task("W2", "W3"),
+        task("W3", "M1x0"),
+        task("W4", "W5"),
+        task("W5"),
+        groups=[group],
+        dock=HERE,
+    )
+    catalog = Catalog(
+        site="made up",
+        checkpoints=(checkpoint(1, 0, 1),),
+        areas=(Area(number=1, dock=HERE),),
+        floors=(),
+    )
+    travel = MadeUpTravel(244)
+    analysis = analyse(plan, catalog, travel)
+    done = run(plan, lower(plan), catalog, travel, 244)
+    assert not done.finished
+    assert analysis.duration.most.value is None
+    assert done.now > 10 * analysis.duration.least.value
+    (loop,) = [d for d in analysis.diagnostics if d.code == "analysis.unbounded-loop"]
+    assert "what leads out of them comes too late for a hard stop" in loop.message

@@ -6,6 +6,7 @@ it, and so are the tables in `docs/diagnostics.md`, which `make generated` write
 
 from argo_compiler.diagnostics.codes.analysis import ANALYSIS
 from argo_compiler.diagnostics.codes.code import Code
+from argo_compiler.diagnostics.codes.edit import EDIT
 from argo_compiler.diagnostics.codes.export import EXPORT
 from argo_compiler.diagnostics.codes.faults import FAULTS
 from argo_compiler.diagnostics.codes.file import FILE
@@ -29,6 +30,7 @@ CODES: dict[str, Code] = {
     **FAULTS,
     **HANDOVER,
     **ROUTE,
+    **EDIT,
 }
 """by the code's name"""
 

@@ -1,12 +1,13 @@
 """The plan while a script's commands are carried out: what is to be done, in order.
 
-A plan is mutable. Its items are linked, so that any of thousands of changes takes the same time.
+A plan is mutable. Its order is edited as that of a mission is (`argo_compiler.editing`); the tasks
+get their names and transitions at the end, when their order is known.
 """
 
-from collections.abc import Iterator
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 
 from argo_compiler.diagnostics import Span
+from argo_compiler.editing.linked import Linked, LinkedList
 from argo_compiler.il import Action, Condition, JointState, OnFailure
 from argo_compiler.model import Pose
 from argo_compiler.script.syntax.commands import Limits, Plain
@@ -14,7 +15,7 @@ from argo_compiler.script.syntax.terms import StepRef
 
 
 @dataclass(eq=False, slots=True)
-class Item:
+class Item(Linked):
     """One task to be."""
 
     base: str
@@ -43,9 +44,6 @@ class Item:
     """the last item of those that are carried out only if a route of this one leads there"""
     returns: "Item | None" = None
     """the item of whose detours this one is the last; after it the mission goes on behind them"""
-    before: "Item | None" = None
-    after: "Item | None" = None
-    planned: bool = False
 
 
 @dataclass(eq=False, slots=True)
@@ -80,47 +78,12 @@ class PlannedGroup:
     """over all tasks but START"""
 
 
-@dataclass
-class Plan:
+class Plan(LinkedList[Item]):
     """Items in order, and rounds in the order in which they were asked for."""
 
-    rounds: list[PlannedGroup] = field(default_factory=list)
-    first: Item | None = None
-    last: Item | None = None
-
-    def __iter__(self) -> Iterator[Item]:
-        item = self.first
-        while item is not None:
-            yield item
-            item = item.after
-
-    def append(self, item: Item) -> None:
-        self.insert_after(self.last, item)
-
-    def insert_after(self, anchor: Item | None, item: Item) -> None:
-        """Puts the item behind the anchor; None: before all."""
-        after = anchor.after if anchor is not None else self.first
-        item.before, item.after, item.planned = anchor, after, True
-        if anchor is not None:
-            anchor.after = item
-        else:
-            self.first = item
-        if after is not None:
-            after.before = item
-        else:
-            self.last = item
-
-    def remove(self, item: Item) -> None:
-        if item.before is not None:
-            item.before.after = item.after
-        else:
-            self.first = item.after
-        if item.after is not None:
-            item.after.before = item.before
-        else:
-            self.last = item.before
-        item.before = item.after = None
-        item.planned = False
+    def __init__(self) -> None:
+        super().__init__()
+        self.rounds: list[PlannedGroup] = []
 
 
 def start_item(pose: Pose | None, source: Span | None) -> Item:

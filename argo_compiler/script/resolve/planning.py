@@ -132,7 +132,7 @@ class Planner:
             return
         if self.start_at is None:
             self._start_unsaid()
-        if self.start is not None and not self.start.planned:
+        if self.start is not None and not self.start.listed:
             self.plan.insert_after(None, self.start)
         if self.header.start.as_planned:
             self.start_area = self.header.start.area
@@ -245,7 +245,7 @@ class Planner:
 
     def _may_go_on(self, span: Span) -> bool:
         docked = self.docked
-        if docked is None or not docked.planned:
+        if docked is None or not docked.listed:
             return True
         if any(not leg.alternatives for leg in docked.routes or ()):
             return True
@@ -258,10 +258,11 @@ class Planner:
     def _append(self, item: Item) -> None:
         self._insert(self.plan.last, item)
 
-    def _insert(self, anchor: Item | None, item: Item) -> None:
-        self.plan.insert_after(anchor, item)
-        if item.object_id is not None:
-            self.measurements.setdefault(item.object_id, {})[id(item)] = item
+    def _insert(self, anchor: Item | None, *items: Item) -> None:
+        self.plan.put(items, anchor)
+        for item in items:
+            if item.object_id is not None:
+                self.measurements.setdefault(item.object_id, {})[id(item)] = item
 
     def _checkpoints(self, references: Sequence[Reference]) -> list[CheckpointInfo]:
         found: list[CheckpointInfo] = []
@@ -439,7 +440,7 @@ class Planner:
             items[-1].leaving = manner.leaving
 
     def _amend(self, command: Amend) -> None:
-        if not self.recent or (not self.recent[-1].planned and self.recent[-1] is not self.start):
+        if not self.recent or (not self.recent[-1].listed and self.recent[-1] is not self.start):
             if self.whole:
                 message = "there is no task before this that it could belong to"
                 hint = "write it behind the task after which it is looked at"
@@ -586,9 +587,7 @@ class Planner:
         before = anchors[0].before
         if side is Side.AFTER:
             before = anchors[-1].detour or anchors[-1]
-        for item in items:
-            self._insert(before, item)
-            before = item
+        self._insert(before, *items)
 
     def _delete(self, command: Delete) -> None:
         for thing in command.things:
@@ -667,13 +666,13 @@ class Planner:
     def _of_steps(self, ref: StepRef) -> list[Item] | None:
         if isinstance(ref.first, str):
             item = self.named.get(ref.first)
-            if item is not None and item.planned and ref.last is None:
+            if item is not None and item.listed and ref.last is None:
                 return [item]
         elif isinstance(ref.last, int | None):
             last = ref.first if ref.last is None else ref.last
             found: list[Item] = []
             for number in range(ref.first, min(last, ref.first + len(self.steps)) + 1):
-                found += [item for item in self.steps.get(number) or () if item.planned]
+                found += [item for item in self.steps.get(number) or () if item.listed]
             if found:
                 return found
         if self.whole:

@@ -1,4 +1,4 @@
-"""What findings are about goes by name, whatever the names are, and leads back to its place."""
+"""What diagnostics are about goes by name, whatever the names are, and leads back to its place."""
 
 import json
 
@@ -44,7 +44,7 @@ def test_what_is_not_there_leads_to_the_list():
     assert Subjects(Mission()).path("tasks['A'].pose") == ("tasks",)
 
 
-def test_findings_about_odd_and_repeated_names_point_into_the_file(tmp_path):
+def test_diagnostics_about_odd_and_repeated_names_point_into_the_file(tmp_path):
     odd = 'a\'].b["0"]\n\\'
     tasks = (
         Task(name="same", action=Action.MEASURE, object_id="1"),

@@ -1,0 +1,308 @@
+"""The edits as data, so that they can be sent, kept and made again.
+
+Each is the call of a function of this package: its `kind` is the function's name, its other fields
+are the function's parameters. As JSON an edit has only what was given: in a header `null` takes a
+value away, and what is not there stays.
+"""
+
+from collections.abc import Callable
+from typing import Annotated, Any, Literal
+
+from pydantic import (
+    Field,
+    SerializerFunctionWrapHandler,
+    TypeAdapter,
+    ValidationError,
+    model_serializer,
+)
+
+from argo_compiler.editing.edited import Edited
+from argo_compiler.editing.groups import change_group, dissolve_group, rename_group, wrap_tasks
+from argo_compiler.editing.header import set_header, wrong_values
+from argo_compiler.editing.reactions import add_reaction, change_reaction, remove_reaction
+from argo_compiler.editing.refusals import EditInvalid
+from argo_compiler.editing.removal import remove_task
+from argo_compiler.editing.tasks import add_task, move_task, rename_task, replace_task
+from argo_compiler.editing.transitions import (
+    add_condition,
+    add_transition,
+    remove_condition,
+    remove_transition,
+    set_conditions,
+    set_target,
+    set_transitions,
+)
+from argo_compiler.il import (
+    Condition,
+    EventKind,
+    Group,
+    Mission,
+    Mode,
+    Order,
+    Reaction,
+    Stop,
+    Task,
+    Transition,
+)
+from argo_compiler.model import Model, Pose
+
+
+class EditCommand(Model):
+    """The call of one function of `argo_compiler.editing` on a mission."""
+
+    kind: str
+
+    @model_serializer(mode="wrap")
+    def _as_given(self, write: SerializerFunctionWrapHandler) -> dict[str, Any]:
+        written: dict[str, Any] = write(self)
+        return {k: v for k, v in written.items() if k == "kind" or k in self.model_fields_set}
+
+
+class AddTask(EditCommand):
+    """See `add_task`."""
+
+    kind: Literal["add_task"] = "add_task"
+    task: Task
+    before: str | None = None
+    after: str | None = None
+    first: bool = False
+    into: str | None = None
+
+
+class RemoveTask(EditCommand):
+    """See `remove_task`."""
+
+    kind: Literal["remove_task"] = "remove_task"
+    name: str
+
+
+class ReplaceTask(EditCommand):
+    """See `replace_task`."""
+
+    kind: Literal["replace_task"] = "replace_task"
+    name: str
+    task: Task
+
+
+class MoveTask(EditCommand):
+    """See `move_task`."""
+
+    kind: Literal["move_task"] = "move_task"
+    name: str
+    before: str | None = None
+    after: str | None = None
+    first: bool = False
+    into: str | None = None
+
+
+class RenameTask(EditCommand):
+    """See `rename_task`."""
+
+    kind: Literal["rename_task"] = "rename_task"
+    name: str
+    new_name: str
+
+
+class WrapTasks(EditCommand):
+    """See `wrap_tasks`."""
+
+    kind: Literal["wrap_tasks"] = "wrap_tasks"
+    group: Group
+
+
+class DissolveGroup(EditCommand):
+    """See `dissolve_group`."""
+
+    kind: Literal["dissolve_group"] = "dissolve_group"
+    name: str
+
+
+class RenameGroup(EditCommand):
+    """See `rename_group`."""
+
+    kind: Literal["rename_group"] = "rename_group"
+    name: str
+    own_name: str
+
+
+class ChangeGroup(EditCommand):
+    """See `change_group`. What is not given stays."""
+
+    kind: Literal["change_group"] = "change_group"
+    name: str
+    start: str = ""
+    end: str = ""
+    max_repeat_count: int = 0
+    max_repeat_duration: float = 0.0
+    count_interruptions: bool = False
+    stop: Stop = Stop.HARD
+
+
+class SetTransitions(EditCommand):
+    """See `set_transitions`."""
+
+    kind: Literal["set_transitions"] = "set_transitions"
+    task: str
+    transitions: tuple[Transition, ...]
+
+
+class AddTransition(EditCommand):
+    """See `add_transition`."""
+
+    kind: Literal["add_transition"] = "add_transition"
+    task: str
+    transition: Transition
+    at: int | None = None
+
+
+class RemoveTransition(EditCommand):
+    """See `remove_transition`."""
+
+    kind: Literal["remove_transition"] = "remove_transition"
+    task: str
+    at: int
+
+
+class SetTarget(EditCommand):
+    """See `set_target`."""
+
+    kind: Literal["set_target"] = "set_target"
+    task: str
+    at: int
+    target: str
+
+
+class SetConditions(EditCommand):
+    """See `set_conditions`."""
+
+    kind: Literal["set_conditions"] = "set_conditions"
+    task: str
+    at: int
+    conditions: tuple[Condition, ...]
+
+
+class AddCondition(EditCommand):
+    """See `add_condition`."""
+
+    kind: Literal["add_condition"] = "add_condition"
+    task: str
+    at: int
+    condition: Condition
+
+
+class RemoveCondition(EditCommand):
+    """See `remove_condition`."""
+
+    kind: Literal["remove_condition"] = "remove_condition"
+    task: str
+    at: int
+    condition: int
+
+
+class AddReaction(EditCommand):
+    """See `add_reaction`."""
+
+    kind: Literal["add_reaction"] = "add_reaction"
+    reaction: Reaction
+
+
+class ChangeReaction(EditCommand):
+    """See `change_reaction`."""
+
+    kind: Literal["change_reaction"] = "change_reaction"
+    event: EventKind
+    reaction: Reaction
+
+
+class RemoveReaction(EditCommand):
+    """See `remove_reaction`."""
+
+    kind: Literal["remove_reaction"] = "remove_reaction"
+    event: EventKind
+
+
+class SetHeader(EditCommand):
+    """See `set_header`. What is not given stays."""
+
+    kind: Literal["set_header"] = "set_header"
+    designation: str = ""
+    site: str = ""
+    mode: Mode = Mode.AUTONOMOUS
+    max_duration: float | None = None
+    start_area: int | None = None
+    end_area: int | None = None
+    dock: Pose | None = None
+    order: Order = Order.PRECISE
+    anomaly_specification: str = ""
+    real_time_reporting: str = ""
+    after_mission_report: str = ""
+    current: str | None = None
+
+
+Edit = Annotated[
+    AddTask
+    | RemoveTask
+    | ReplaceTask
+    | MoveTask
+    | RenameTask
+    | WrapTasks
+    | DissolveGroup
+    | RenameGroup
+    | ChangeGroup
+    | SetTransitions
+    | AddTransition
+    | RemoveTransition
+    | SetTarget
+    | SetConditions
+    | AddCondition
+    | RemoveCondition
+    | AddReaction
+    | ChangeReaction
+    | RemoveReaction
+    | SetHeader,
+    Field(discriminator="kind"),
+]
+"""all edits there are, told apart by `kind`"""
+
+FUNCTIONS: dict[str, Callable[..., Edited]] = {
+    function.__name__: function
+    for function in (
+        add_task,
+        remove_task,
+        replace_task,
+        move_task,
+        rename_task,
+        wrap_tasks,
+        dissolve_group,
+        rename_group,
+        change_group,
+        set_transitions,
+        add_transition,
+        remove_transition,
+        set_target,
+        set_conditions,
+        add_condition,
+        remove_condition,
+        add_reaction,
+        change_reaction,
+        remove_reaction,
+        set_header,
+    )
+}
+"""what makes the edit of each kind"""
+
+_EDIT: TypeAdapter[Edit] = TypeAdapter(Edit)
+
+
+def apply(mission: Mission, edit: Edit) -> Edited:
+    """The mission after the edit. Raises what the function of the edit's kind raises."""
+    given = {name: getattr(edit, name) for name in edit.model_fields_set if name != "kind"}
+    return FUNCTIONS[edit.kind](mission, **given)
+
+
+def read_edit(text: str | bytes) -> Edit:
+    """The edit that a JSON text holds. Raises EditInvalid."""
+    try:
+        return _EDIT.validate_json(text)
+    except ValidationError as error:
+        raise EditInvalid(wrong_values(error)) from None

@@ -1,0 +1,252 @@
+"""A mission while it is edited: tasks know their neighbours, and groups their tasks, not names."""
+
+from dataclasses import dataclass
+
+from argo_compiler.checks.groups import check_groups
+from argo_compiler.diagnostics import Severity
+from argo_compiler.diagnostics.subject import subject_of
+from argo_compiler.editing.linked import Linked, LinkedList
+from argo_compiler.editing.refusals import conflict, unknown
+from argo_compiler.editing.ways import default_target, defaults, with_default
+from argo_compiler.il import Action, Group, Mission, Task
+from argo_compiler.il.grouping import GroupNesting
+
+
+@dataclass(eq=False, slots=True)
+class DraftTask(Linked):
+    """A task of the draft."""
+
+    task: Task
+    goes_on: bool = True
+    """whether its unconditional transition leads to what follows it in the list, whatever that is;
+    where nothing follows, the mission ends there"""
+    shown: bool = False
+    """whether it is displayed with the group around it, whichever that is"""
+
+
+@dataclass(eq=False, slots=True)
+class DraftGroup:
+    """A group of the draft. Without a first and last task it stays as it is: they are not there, or
+    not in order."""
+
+    group: Group
+    first: DraftTask | None
+    last: DraftTask | None
+
+
+class MissionDraft:
+    """A mission while it is edited. Has state; `mission` gives what has become of it.
+
+    What nobody touched is shared with the mission that it began with.
+    """
+
+    def __init__(self, mission: Mission) -> None:
+        self.before = mission
+        self.nested = _nest(mission)
+        self.tasks: LinkedList[DraftTask] = LinkedList()
+        self.renamed: dict[str, str] = {}
+        self.current = mission.current
+        self._found: dict[str, DraftTask] = {}
+        self._repeated: set[str] = set()
+        self._read_tasks()
+        self.groups = self._read_groups()
+
+    def _read_tasks(self) -> None:
+        tasks = self.before.tasks
+        layout = GroupNesting.of(self.before) if self.nested and self.before.groups else None
+        following = following_names(tasks)
+        for i, task in enumerate(tasks):
+            inner = None if layout is None else layout.innermost[i]
+            around = "" if layout is None or inner is None else layout.ranges[inner].group.name
+            entry = DraftTask(
+                task, _goes_on(task, following[i]), self.nested and task.group == around
+            )
+            self.tasks.append(entry)
+            if self._found.setdefault(task.name, entry) is not entry:
+                self._repeated.add(task.name)
+
+    def _read_groups(self) -> list[DraftGroup]:
+        position = {task.name: i for i, task in reversed(list(enumerate(self.before.tasks)))}
+        found = []
+        for group in self.before.groups:
+            first, last = position.get(group.start), position.get(group.end)
+            sound = first is not None and last is not None and first <= last
+            ends = (self._found[group.start], self._found[group.end]) if sound else (None, None)
+            found.append(DraftGroup(group, *ends))
+        return found
+
+    # ---- what is named
+
+    def find(self, name: str) -> DraftTask:
+        """The task of this name. Raises EditNotFound, or EditConflict if several have it."""
+        if name in self._repeated:
+            message = f"more than one task is named '{name}'"
+            hint = "write the mission with a name for each task first"
+            raise conflict("edit.ambiguous-task", message, hint, subject_of("tasks", name))
+        entry = self._found.get(name)
+        if entry is None:
+            raise unknown("task", name, self._found)
+        return entry
+
+    def has_task(self, name: str) -> bool:
+        """Whether a task has this name."""
+        return name in self._found
+
+    def find_group(self, name: str) -> DraftGroup:
+        """The group of this name. Raises EditNotFound."""
+        found = next((g for g in self.groups if g.group.name == name), None)
+        if found is None:
+            raise unknown("group", name, [g.group.name for g in self.groups])
+        return found
+
+    def positions(self) -> dict[int, int]:
+        """The place of each task in the list, by the identity of its entry."""
+        return {id(entry): i for i, entry in enumerate(self.tasks)}
+
+    # ---- changes
+
+    def take_out(self, entry: DraftTask) -> None:
+        """Takes a task out of the list. The groups that it began or ended begin or end with its
+        neighbour, and what has no task left is no group any more."""
+        for g in self.groups:
+            if g.first is entry and g.last is entry:
+                continue
+            if g.first is entry:
+                g.first = entry.after
+            if g.last is entry:
+                g.last = entry.before
+        self.groups = [g for g in self.groups if g.first is not entry or g.last is not entry]
+        self.tasks.remove(entry)
+
+    def put(self, entry: DraftTask, behind: DraftTask | None, into: str | None) -> None:
+        """Puts a task behind another one; None: before all.
+
+        At a group's border it stands outside; with `into` it stands in that group. Where it ends
+        the group it leads to where the group led.
+        Raises EditNotFound or EditConflict if it can't stand in it there.
+        """
+        self.tasks.insert_after(behind, entry)
+        if into is not None:
+            self._widen(entry, into)
+
+    def rename(self, entry: DraftTask, name: str) -> None:
+        """Gives a task another name, wherever it is named."""
+        self.renamed[entry.task.name] = name
+        entry.task = entry.task.model_copy(update={"name": name})
+
+    def _widen(self, entry: DraftTask, into: str) -> None:
+        self.find_group(into)
+        position = self.positions()
+        at = position[id(entry)]
+        for g in self.groups:
+            if g.first is None or g.last is None:
+                continue
+            name = g.group.name
+            inside = position[id(g.first)] < at < position[id(g.last)]
+            wanted = into == name or into.startswith(f"{name}/")
+            if inside and not wanted:
+                message = f"this place lies in group '{name}', which lies not around '{into}'"
+            elif not wanted or inside:
+                continue
+            elif g.last is entry.before:
+                if g.last.goes_on is False and entry.goes_on:
+                    _hand_on(g.last, entry)
+                g.last = entry
+                continue
+            elif g.first is entry.after:
+                g.first = entry
+                continue
+            else:
+                message = f"group '{name}' does not reach to this place"
+            hint = f"choose a place beside a task of group '{into}'"
+            raise conflict("edit.not-beside-group", message, hint, subject_of("groups", name))
+
+    # ---- the mission
+
+    def mission(self) -> Mission:
+        """The mission that the draft has become."""
+        entries = list(self.tasks)
+        tasks: list[Task] = []
+        following: str | None = None
+        for entry in reversed(entries):
+            task = self._retargeted(entry.task) if self.renamed else entry.task
+            if entry.goes_on and not _goes_on(task, following):
+                task = with_default(task, following)
+            if task.action is not Action.START:
+                following = task.name
+            tasks.append(task)
+        tasks.reverse()
+        made = self.before.model_copy(
+            update={
+                "tasks": tuple(tasks),
+                "groups": tuple(map(self._frozen, self.groups)),
+                "current": self._name_now(self.current) if self.current is not None else None,
+            }
+        )
+        return self._displayed(made, entries) if self.nested else made
+
+    def _name_now(self, name: str) -> str:
+        return self.renamed.get(name, name)
+
+    def _retargeted(self, task: Task) -> Task:
+        if all(way.target not in self.renamed for way in task.transitions):
+            return task
+        ways = (
+            way.model_copy(update={"target": self._name_now(way.target)})
+            for way in task.transitions
+        )
+        return task.model_copy(update={"transitions": tuple(ways)})
+
+    def _frozen(self, g: DraftGroup) -> Group:
+        start = self._name_now(g.group.start) if g.first is None else g.first.task.name
+        end = self._name_now(g.group.end) if g.last is None else g.last.task.name
+        if (start, end) == (g.group.start, g.group.end):
+            return g.group
+        return g.group.model_copy(update={"start": start, "end": end})
+
+    def _displayed(self, made: Mission, entries: list[DraftTask]) -> Mission:
+        """The mission with the tasks shown in the groups that are around them now."""
+        layout = GroupNesting.of(made) if made.groups else None
+        tasks = list(made.tasks)
+        for i, entry in enumerate(entries):
+            if not entry.shown:
+                continue
+            inner = None if layout is None else layout.innermost[i]
+            around = "" if layout is None or inner is None else layout.ranges[inner].group.name
+            if tasks[i].group != around:
+                tasks[i] = tasks[i].model_copy(update={"group": around})
+        return made.model_copy(update={"tasks": tuple(tasks)})
+
+
+def _hand_on(last: DraftTask, entry: DraftTask) -> None:
+    """Lets a task that ends a group in place of another one lead to where that one led."""
+    entry.task = with_default(entry.task, default_target(last.task))
+    entry.goes_on = False
+    last.goes_on = True
+
+
+def following_names(tasks: tuple[Task, ...]) -> list[str | None]:
+    """For each task, the next one of the list that is not START."""
+    following: list[str | None] = []
+    name = None
+    for task in reversed(tasks):
+        following.append(name)
+        if task.action is not Action.START:
+            name = task.name
+    following.reverse()
+    return following
+
+
+def _goes_on(task: Task, following: str | None) -> bool:
+    ways = task.transitions
+    if len(ways) == 1 and not ways[0].conditions:
+        return ways[0].target == following
+    return len(defaults(task)) < 2 and default_target(task) == following
+
+
+def _nest(mission: Mission) -> bool:
+    """Whether names and ranges of the mission's groups tell the same story."""
+    return all(
+        f.severity is not Severity.ERROR or f.code == "il.endless-group"
+        for f in check_groups(mission)
+    )

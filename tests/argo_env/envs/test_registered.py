@@ -184,6 +184,7 @@ def test_resets_leak_no_memory(id, make):
         gc.collect()
         return int(Path("/proc/self/statm").read_text().split()[1]) * PAGE
 
+    env.reset(seed=SEED)
     for _ in range(count):
         env.reset()
     before = resident()

@@ -20,6 +20,8 @@ from argo_env.run.session import simulate
 from argo_env.run.spec import RunSettings
 from argo_env.run.verdict import is_docked
 
+pytestmark = pytest.mark.xdist_group("missions on UMAD")  # they share its runs
+
 FRONT = Pose(x=8.05, y=-2.05, z=-0.03, yaw=0.0)
 
 

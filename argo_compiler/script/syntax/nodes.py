@@ -9,7 +9,6 @@ from typing import Literal
 
 from argo_compiler.diagnostics import Diagnostic
 from argo_compiler.il import Mode, Order
-from argo_compiler.model import Model
 from argo_compiler.script.syntax.commands import Command
 from argo_compiler.script.syntax.terms import (
     Coordinates,
@@ -59,7 +58,8 @@ class SheetStep(Node):
     checkpoint: Reference
 
 
-class Sheet(Model):
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Sheet:
     """A mission sheet. A field that the sheet does not have is None."""
 
     kind: Literal["sheet"] = "sheet"
@@ -123,7 +123,8 @@ class Hint(Node):
     text: str
 
 
-class Protocol(Model):
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Protocol:
     """A mission protocol: commands that plan a mission, carried out one after the other."""
 
     kind: Literal["protocol"] = "protocol"

@@ -4,6 +4,7 @@ import re
 from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass, field
 from itertools import islice
+from typing import Any
 
 from argo_compiler.script.syntax.clauses import HeaderClause, LineBuilder, Statement
 from argo_compiler.script.syntax.healing import MOST_ERRORS, Healed
@@ -113,7 +114,7 @@ def _goes_on(content: str, openers: frozenset[str], prose: bool) -> bool:
 class _Parts:
     """What the lines of a protocol come to."""
 
-    fields: dict[str, Node] = field(default_factory=dict)
+    fields: dict[str, Any] = field(default_factory=dict)
     steps: list[ProtocolStep] = field(default_factory=list)
     hints: list[Hint] = field(default_factory=list)
 
@@ -132,15 +133,13 @@ def parse_protocol(healed: Healed, source: Source) -> Protocol:
         # Which error is the last one to be reported can be told one by one only.
         if diagnostics.errors == errors:
             break
-    return Protocol.model_validate(
-        {
-            "source_name": source.name,
-            "source_text": source.text,
-            "steps": tuple(parts.steps),
-            "hints": tuple(parts.hints),
-            "diagnostics": diagnostics.by_place(),
-            **parts.fields,
-        }
+    return Protocol(
+        source_name=source.name,
+        source_text=source.text,
+        steps=tuple(parts.steps),
+        hints=tuple(parts.hints),
+        diagnostics=diagnostics.by_place(),
+        **parts.fields,
     )
 
 

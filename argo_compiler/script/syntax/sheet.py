@@ -9,6 +9,7 @@ end the sentence, and the text beside the label does not open one of its own.
 import re
 from collections.abc import Sequence
 from dataclasses import dataclass, field
+from typing import Any
 
 from argo_compiler.diagnostics import Span
 from argo_compiler.script.syntax.healing import Healed
@@ -54,7 +55,7 @@ class _SheetParser:
     """Gathers the fields of a sheet from row to row."""
 
     diagnostics: Diagnostics
-    fields: dict[str, Node] = field(default_factory=dict)
+    fields: dict[str, Any] = field(default_factory=dict)
     cells: dict[Label, Cell] = field(default_factory=dict)
     steps: list[SheetStep] = field(default_factory=list)
     above: Cell | None = None
@@ -180,12 +181,10 @@ def parse_sheet(healed: Healed, source: Source) -> Sheet:
     parser.place_waiting(None)
     for cell in parser.cells.values():
         parser.close_cell(cell)
-    return Sheet.model_validate(
-        {
-            "source_name": source.name,
-            "source_text": source.text,
-            "steps": tuple(parser.steps),
-            "diagnostics": diagnostics.by_place(),
-            **parser.fields,
-        }
+    return Sheet(
+        source_name=source.name,
+        source_text=source.text,
+        steps=tuple(parser.steps),
+        diagnostics=diagnostics.by_place(),
+        **parser.fields,
     )

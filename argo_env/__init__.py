@@ -3,7 +3,7 @@
 What common jobs need is here by name, and imported when it is first used:
 
 - a site that is ready for work: `open_site`;
-- a run on it: `simulate` a mission with `RunSettings`, which gives a `RunRecord`;
+- a run on it: `simulate` a `RunSpec`, which gives a `RunRecord`; or step and steer a `Simulation`;
 - what is left of it: `write_report`, `write_overview`, `write_film`, `read_recording`;
 - faults from a file: `read_faults`.
 
@@ -19,7 +19,8 @@ __all__ = [
     "Navigator",
     "OpenedSite",
     "RunRecord",
-    "RunSettings",
+    "RunSpec",
+    "Simulation",
     "Site",
     "open_site",
     "read_faults",
@@ -40,7 +41,8 @@ if TYPE_CHECKING:
     from argo_env.report import write_report
     from argo_env.run.record import RunRecord
     from argo_env.run.session import simulate
-    from argo_env.run.spec import RunSettings
+    from argo_env.run.simulation import Simulation
+    from argo_env.run.spec import RunSpec
     from argo_env.site import Site, site_names
 else:
     __getattr__, __dir__ = lazy_names(
@@ -54,7 +56,8 @@ else:
             "report": ["write_report"],
             "run.record": ["RunRecord"],
             "run.session": ["simulate"],
-            "run.spec": ["RunSettings"],
+            "run.simulation": ["Simulation"],
+            "run.spec": ["RunSpec"],
             "site": ["Site", "site_names"],
         },
     )

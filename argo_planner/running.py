@@ -8,18 +8,21 @@ from rich.console import Console
 from rich.markup import escape
 from rich.progress import BarColumn, Progress, TextColumn, TimeElapsedColumn
 
-from argo_compiler.il import Task
 from argo_env.closing import Closing
 from argo_env.faults.kinds import changed_site
 from argo_env.formatting import where
 from argo_env.navigation import Navigator
 from argo_env.pictures import write_film, write_overview
 from argo_env.report import write_report
+from argo_env.run.action import ActionUnderWay
+from argo_env.run.log import Entry
+from argo_env.run.machine import Machine
+from argo_env.run.observer import Observer
 from argo_env.run.record import Anomaly, Reading, RunRecord
 from argo_planner.summary import show_record
 
 
-class RunDisplay(Closing):
+class RunDisplay(Observer, Closing):
     """The progress on standard error. Holds the bar; use it as a context."""
 
     def __init__(self, total: float | None) -> None:
@@ -27,9 +30,15 @@ class RunDisplay(Closing):
         self._progress = _progress()
         self._bar = self._progress.add_task("setting off", total=total)
 
-    def observe(self, now: float, task: Task | None) -> None:
+    def on_step(self, now: float, action: ActionUnderWay | None) -> None:
         """Shows the time (s) and the task under way."""
-        self._progress.update(self._bar, completed=now, description=task.name if task else "waits")
+        task = action.task.name if action else "waits"
+        self._progress.update(self._bar, completed=now, description=task)
+
+    def on_change(self, entry: Entry, machine: Machine) -> None:  # noqa: ARG002
+        """Shows what was sensed."""
+        for news in entry.news:
+            self.announce(news)
 
     def announce(self, news: Reading | Anomaly) -> None:
         """Shows a reading or a finding in a line of its own, which stays."""

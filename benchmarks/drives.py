@@ -36,13 +36,13 @@ from argo_env.drives.drive import Drive, DriveStatus
 from argo_env.drives.tracked.drive import TrackedDrive
 from argo_env.navigation import Navigator, Path
 from argo_env.navigation.path import Motion
-from argo_env.planning import open_site
+from argo_env.planning import OpenedSite, open_site
 from argo_env.planning.start import start_pose
 from argo_env.robot.calibration import Calibration, MotionKind
 from argo_env.robot.pose import BodyPose
 from argo_env.robot.spec import RobotSpec, calibration_file, load_robot
 from argo_env.run.session import simulate
-from argo_env.run.spec import RunSettings
+from argo_env.run.spec import RunSpec
 from argo_env.seeding import generator
 from argo_env.world.world import World
 from benchmarks.fitting import TimedDrive, errors, fit
@@ -98,7 +98,9 @@ def run(navigator: Navigator, seed: int, drive: str) -> Run:
     """Runs a random mission."""
     mission = random_mission(navigator, seed)
     began = time.perf_counter()
-    result = simulate(mission, navigator, settings=RunSettings(drive=drive, seed=seed)).result
+    result = simulate(
+        RunSpec(mission=mission, drive=drive, seed=seed), OpenedSite(navigator.site.name, navigator)
+    ).result
     wall = time.perf_counter() - began
     return Run(seed, drive, None if result.success else result.verdict, result.duration, wall)
 

@@ -26,15 +26,16 @@ from pathlib import Path
 from argo_compiler.hfsm import Resume
 from argo_compiler.il import Action, EventKind, Mission, Task, Transition
 from argo_compiler.script import import_script, read_script
+from argo_env.drives.registry import DRIVES
 from argo_env.faults.reading import read_faults
 from argo_env.faults.walkway import Brick
 from argo_env.files import resources
 from argo_env.navigation import Navigator
-from argo_env.planning import open_site
+from argo_env.planning import OpenedSite, open_site
 from argo_env.planning.catalog import make_catalog
 from argo_env.run.record import RunRecord
-from argo_env.run.session import DRIVES, simulate
-from argo_env.run.spec import RunSettings, logged
+from argo_env.run.session import simulate
+from argo_env.run.spec import RunSpec, logged
 from argo_env.seeding import generator
 from benchmarks.options import seed_number
 
@@ -68,7 +69,10 @@ def clean(navigator: Navigator, count: int, first_seed: int, drive: str) -> None
             print(f"{done} missions, {simulated:.0f} s, {sum(alarms.values())} alarms", flush=True)
         mission = random_mission(navigator, seed)
         began = time.perf_counter()
-        record = simulate(mission, navigator, settings=RunSettings(seed=seed, drive=drive))
+        record = simulate(
+            RunSpec(mission=mission, seed=seed, drive=drive),
+            OpenedSite(navigator.site.name, navigator),
+        )
         wall += time.perf_counter() - began
         simulated += record.result.duration
         for anomaly in record.anomalies:
@@ -97,13 +101,14 @@ def scenarios(navigator: Navigator, seeds: int, drive: str) -> None:
         usual: set[str] = set()
         delays, good = [], 0
         for seed in range(seeds):
-            settings = RunSettings(
+            spec = RunSpec(
+                mission=mission,
                 seed=seed,
                 drive=drive,
                 faults=read_faults(path),
                 events=logged((OPERATOR, Resume())),
             )
-            record = simulate(mission, navigator, settings=settings)
+            record = simulate(spec, OpenedSite(navigator.site.name, navigator))
             kinds = {str(a.kind) for a in record.anomalies}
             usual = usual or kinds
             good += kinds == usual and len(record.anomalies) <= 2 and record.contacts == ()
@@ -138,8 +143,8 @@ def bricks(navigator: Navigator, count: int, first_seed: int, drive: str) -> Non
             Task(name="MEASURE", action=Action.MEASURE, object_id=checkpoint),
             Task(name="DOCK", action=Action.WAYPOINT, pose=dock),
         )
-        settings = RunSettings(seed=seed, drive=drive, faults=(brick,))
-        record = simulate(mission, navigator, settings=settings)
+        spec = RunSpec(mission=mission, seed=seed, drive=drive, faults=(brick,))
+        record = simulate(spec, OpenedSite(navigator.site.name, navigator))
         found += any(a.kind is EventKind.POSITIVE_OBSTACLE for a in record.anomalies)
         touched += bool(record.contacts)
         reached += record.result.success

@@ -17,10 +17,11 @@ import numpy as np
 
 from argo_compiler.catalog import Catalog
 from argo_compiler.reorder.requirements import Requirements
+from argo_env.drives.registry import DRIVES
 from argo_env.planning import open_site
 from argo_env.planning.catalog import make_catalog
-from argo_env.run.session import DRIVES, simulate
-from argo_env.run.spec import RunSettings
+from argo_env.run.session import simulate
+from argo_env.run.spec import RunSpec
 from argo_planner.loading import load_mission
 from argo_planner.routing import TIME_LIMIT, suggest
 from benchmarks.options import seed_number
@@ -68,7 +69,7 @@ def main() -> None:
                 found = suggest(path, mission, navigator, Requirements(), TIME_LIMIT, seed)
             predicted = found.reordering.duration
             record = simulate(
-                found.mission, navigator, settings=RunSettings(drive=options.drive, seed=seed)
+                RunSpec(mission=found.mission, drive=options.drive, seed=seed),
             )
             if not record.result.success:
                 raise SystemExit(f"sheet {seed} of {size}: {record.result.verdict}")

@@ -2,13 +2,19 @@
 
 from itertools import pairwise
 
+from argo_compiler.hfsm import Executor, lower
 from argo_compiler.il import Action, Mission, Task, Transition
 from argo_compiler.model import Pose
 from argo_env.drives.drive import DriveStatus
 from argo_env.navigation import Navigator
+from argo_env.planning.opening import OpenedSite
 from argo_env.robot.pose import BodyPose
 from argo_env.robot.spec import load_robot
-from argo_env.run.action import Rig
+from argo_env.run.observer import Observer
+from argo_env.run.rig import Rig
+from argo_env.run.session import simulate
+from argo_env.run.simulation import Simulation
+from argo_env.run.spec import RunSpec
 from argo_env.sensing.sensor import Measurement
 from argo_env.site import make_site
 from argo_env.site.spec import SiteSpec
@@ -135,3 +141,42 @@ class Oracle:
 def fast_rig(navigator, values=None):
     """All that a mission is carried out with, without physics."""
     return Rig(EmptyWorld(), navigator, GlidingDrive(navigator.robot), Oracle(values))
+
+
+class Watching(Observer):
+    """Calls a function with the time and the task after each step, another with what is sensed."""
+
+    def __init__(self, observe=None, announce=None):
+        self._observe, self._announce = observe, announce
+
+    def on_change(self, entry, _):
+        for news in entry.news if self._announce else ():
+            self._announce(news)
+
+    def on_step(self, now, action):
+        if self._observe:
+            self._observe(now, action.task if action else None)
+
+
+def opened(navigator):
+    """The navigator's site as an opened one."""
+    return OpenedSite(navigator.site.name, navigator)
+
+
+def simulated(plan, navigator, *, observers=(), journal=None, gui=False, pace=None, **fields):
+    """The record of a whole run of the plan on the navigator's site; `fields` of its spec."""
+    site = opened(navigator)
+    spec = RunSpec(mission=plan, site=site.reference, **fields)
+    return simulate(spec, site, observers=observers, journal=journal, gui=gui, pace=pace)
+
+
+def run_with(plan, rig, *, observers=(), journal=None, **fields):
+    """The record of a run with such a rig: of all of it, or from where a journal ends."""
+    spec = RunSpec(mission=plan, site=rig.navigator.site.name, **fields)
+    past = journal.entries if journal else ()
+    if journal:
+        observers = (journal, *observers)
+    with Simulation(
+        Executor(lower(plan)), opened(rig.navigator), spec, past=past, observers=observers, rig=rig
+    ) as simulation:
+        return simulation.run()

@@ -2,12 +2,14 @@
 
 import math
 from collections import deque
+from collections.abc import Iterable
 
 from argo_compiler.hfsm.configuration import Configuration
 from argo_compiler.hfsm.events import Outcome
 from argo_compiler.hfsm.model import RETURN
 from argo_compiler.hfsm.progress import ByHand, Phase
 from argo_compiler.hfsm.reactions import Pending, Reactions
+from argo_compiler.hfsm.restoring import queues
 from argo_compiler.hfsm.tables import CompiledTransition, LeafNode, Tables
 from argo_compiler.hfsm.trace import Cause, RawEntry
 from argo_compiler.il import Afterwards, EventKind, Response
@@ -249,11 +251,19 @@ class Control:
 
     # Persons
 
-    def pause(self, event: EventKind | None = None, failure: str | None = None) -> None:
+    def pause(
+        self, event: EventKind | None = None, failure: str | None = None, detail: str = ""
+    ) -> None:
         """Stands still until a person resumes, who may have paused it, or a reaction did."""
         self.paused = True
         self.place.interrupt(self.now)
-        self.note(Cause.PAUSE, event=event, failure=failure)
+        self.note(Cause.PAUSE, event=event, failure=failure, detail=detail)
+
+    def give_back(self, by_hand: Iterable[ByHand]) -> None:
+        """A person lets the mission go on, and has done these meanwhile."""
+        for task, done in queues(by_hand).items():
+            self.by_hand.setdefault(task, deque()).extend(done)
+        self.resume()
 
     def resume(self) -> None:
         if self.paused:

@@ -2,8 +2,12 @@
 
 from dataclasses import dataclass
 from enum import StrEnum
+from typing import TYPE_CHECKING
 
 from argo_compiler.il import EventKind, Task
+
+if TYPE_CHECKING:  # progress tells an outcome, which is defined here
+    from argo_compiler.hfsm.progress import ByHand
 
 
 @dataclass(frozen=True, slots=True)
@@ -54,12 +58,26 @@ class Resume:
 
 
 @dataclass(frozen=True, slots=True)
+class TakeOver:
+    """A person takes the robot over: the mission pauses under supervision."""
+
+
+@dataclass(frozen=True, slots=True)
+class GiveBack:
+    """A person gives the robot back, and the mission goes on as it would from a progress that was
+    handed over with this."""
+
+    by_hand: "tuple[ByHand, ...]" = ()
+    """what they did or skipped, in this order"""
+
+
+@dataclass(frozen=True, slots=True)
 class Cancel:
     """A person ends the mission."""
 
 
 ActionEnded = ActionSucceeded | ActionFailed | ActionStopped
-Event = ActionEnded | Tick | Occurred | Pause | Resume | Cancel
+Event = ActionEnded | Tick | Occurred | Pause | Resume | TakeOver | GiveBack | Cancel
 
 
 @dataclass(frozen=True, slots=True)

@@ -14,11 +14,13 @@ from argo_compiler.hfsm.events import (
     CancelAction,
     Command,
     Event,
+    GiveBack,
     Occurred,
     Outcome,
     Pause,
     Resume,
     StartAction,
+    TakeOver,
 )
 from argo_compiler.hfsm.model import DONE, MISSION, Hfsm
 from argo_compiler.hfsm.progress import EndedTask, Phase, Progress
@@ -36,6 +38,7 @@ from argo_compiler.hfsm.trace import Cause, TraceEntry, entry
 from argo_compiler.il import EventKind, Task
 
 _ENDS = (ActionSucceeded, ActionFailed, ActionStopped)
+_ABOUT_ACTIONS = (*_ENDS, GiveBack)
 
 MAX_TIME_S = 1e12
 """The range of the mission's clock: some 30,000 years."""
@@ -57,10 +60,12 @@ class Executor:
     so a driver that comes late gets the same machine.
 
     Calls that can't be right raise ValueError and change nothing: before `start`, at an earlier
-    time than the call before, and the end of an action that does not run.
+    time than the call before, the end of an action that does not run, and what a person did by hand
+    while an action still runs.
     """
 
     def __init__(self, hfsm: Hfsm) -> None:
+        self.hfsm = hfsm
         self._control = Control(tables(hfsm))
         self._started = False
         self._fresh = True
@@ -124,8 +129,7 @@ class Executor:
     def handle(self, event: Event, now: float) -> tuple[Command, ...]:
         """Takes note of an event at time `now` (s); returns the one thing to do next, if any."""
         self._require_order(now)
-        ended = isinstance(event, _ENDS)
-        if not self._started or ended:
+        if not self._started or isinstance(event, _ABOUT_ACTIONS):
             self._require_running(event)
         control = self._control
         place = control.place
@@ -141,8 +145,12 @@ class Executor:
                     control.occur(kind, detail)
                 case Pause() if not control.paused:
                     control.pause()
+                case TakeOver() if not control.paused:
+                    control.pause(detail="a person takes over")
                 case Resume():
                     control.resume()
+                case GiveBack(by_hand):
+                    control.give_back(by_hand)
                 case Cancel():
                     control.end(Outcome.CANCELLED, Cause.CANCEL)
         control.settle()
@@ -316,6 +324,8 @@ class Executor:
         running = self._running
         if not self._started:
             raise ValueError("the executor has not been started: call start first")
+        if isinstance(event, GiveBack) and event.by_hand and running is not None:
+            raise ValueError(f"{event} comes while the action of '{running.name}' still runs")
         if not isinstance(event, _ENDS):
             return
         if running is None:

@@ -1,7 +1,7 @@
 """From where a machine stands to progress, and back."""
 
 from collections import deque
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 
 from argo_compiler.errors import ArgoError
 from argo_compiler.hfsm.configuration import Configuration, Frame
@@ -102,7 +102,7 @@ def reaction_progress(reactions: Reactions) -> tuple[Reacting | None, tuple[Wait
     )
 
 
-def queues(done: tuple[ByHand, ...]) -> dict[str, deque[ByHand]]:
+def queues(done: Iterable[ByHand]) -> dict[str, deque[ByHand]]:
     """What was done by hand, by task."""
     found: dict[str, deque[ByHand]] = {}
     for one in done:

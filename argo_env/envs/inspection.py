@@ -1,6 +1,7 @@
 """`argo/Inspect-v0`: choose the next checkpoint; the simulator drives there and reads it."""
 
 from collections.abc import Mapping
+from dataclasses import replace
 from typing import Any
 
 import gymnasium as gym
@@ -10,7 +11,7 @@ from numpy.typing import NDArray
 
 from argo_compiler.errors import ArgoError
 from argo_compiler.il import EventKind
-from argo_env.drives.route import RouteDrive
+from argo_env.drives.registry import DRIVES, ROUTE
 from argo_env.envs.copying import Copying
 from argo_env.envs.drawing.inspection import draw_inspection
 from argo_env.envs.episode import (
@@ -22,7 +23,8 @@ from argo_env.envs.episode import (
     read_choice,
 )
 from argo_env.envs.inspection_options import MOST_FAULTS, InspectOptions, draw_faults
-from argo_env.envs.inspection_run import Deed, Inspection, travel_times
+from argo_env.envs.inspection_run import Deed, Inspection, beginning
+from argo_env.envs.inspection_travel import travel_times
 from argo_env.envs.observations import Observation, dict_space
 from argo_env.envs.options import (
     LONGEST,
@@ -35,8 +37,9 @@ from argo_env.envs.options import (
 from argo_env.envs.rendering import Rendering, check_render_mode
 from argo_env.faults.kinds import AnyFault
 from argo_env.planning import open_site
-from argo_env.run.session import DRIVES, check_settings
-from argo_env.run.spec import RunSettings
+from argo_env.run.record import RunRecord
+from argo_env.run.rig import check_spec
+from argo_env.run.spec import RunSpec
 
 READING, ABNORMAL, FINDING, CONTACT, DOCKED, DEAD = 10.0, 10.0, 5.0, -1.0, 20.0, -20.0
 """points: see the description of the environment"""
@@ -88,8 +91,8 @@ class InspectEnv(Copying, Rendering, gym.Env[Observation, np.int64]):
     | `docked` | 20 for the end dock |
     | `dead` | -20 if the battery is empty |
 
-    `info` also tells `time` (s), `failure` (in words, or empty), the kinds of what was `found`, and
-    the value of the `reading` if there is one.
+    `info` also tells `time` (s), `failure` (in words, or empty), the kinds of what was `found`, what
+    `trouble` the drive had (in words), and the value of the `reading` if there is one.
 
     ## Starting State
     In one of the docks, drawn, with a full battery and all checkpoints to be read. The end dock is
@@ -135,7 +138,7 @@ class InspectEnv(Copying, Rendering, gym.Env[Observation, np.int64]):
     def __init__(
         self,
         scenario: str = "umad",
-        drive: str = RouteDrive.name,
+        drive: str = ROUTE,
         time_limit: float = 1800.0,
         faults: int = 1,
         checkpoints: int | None = None,
@@ -184,19 +187,21 @@ class InspectEnv(Copying, Rendering, gym.Env[Observation, np.int64]):
         # Until the new episode has begun there is none.
         self._over = None
         self._begun = self.np_random.bit_generator.state
-        rng, site = self.np_random, self._navigator.site
+        rng, site = self.np_random, self._site.site
         drawn = int(rng.integers(2**31))
         docks = sorted(site.docks)
         start, self._end = (int(rng.choice(len(docks))) for _ in range(2))
-        settings = RunSettings(
+        spec = RunSpec(
+            mission=beginning(self._site, site.docks[docks[start]]),
+            site=self._site.reference,
             drive=self._drive,
             seed=drawn if self._options.seed is None else self._options.seed,
             faults=self._faults(rng),
         )
-        check_settings(settings, site)
+        check_spec(spec, site)
         if self._run:
             self._run.close()
-        self._run = Inspection(self._navigator, settings, site.docks[docks[start]], self._limit)
+        self._run = Inspection(self._site, spec, self._limit)
         self._read = np.zeros(self._slots, np.bool_)
         self._abnormal = np.zeros(self._slots, np.bool_)
         self._failed = np.zeros(self._slots + self._docks, np.int64)
@@ -204,7 +209,7 @@ class InspectEnv(Copying, Rendering, gym.Env[Observation, np.int64]):
         self._over = False
         observation = self._observe()
         self._show()
-        return observation, {"settings": settings.model_dump(mode="json")}
+        return observation, {"settings": spec.settings}
 
     def step(self, action: np.int64 | int) -> tuple[Observation, float, bool, bool, dict[str, Any]]:
         check_under_way(self._over, self._title)
@@ -224,12 +229,15 @@ class InspectEnv(Copying, Rendering, gym.Env[Observation, np.int64]):
         }
         self._actions.append(place)
         terminated = docked or run.dead
+        if terminated:
+            run.finish()
         info: dict[str, Any] = {
             "terms": terms,
             "time": run.now,
             "illegal": illegal,
             "failure": deed.failure or "",
             "found": tuple(anomaly.kind.value for anomaly in deed.found),
+            "trouble": tuple(f"{m.trouble}: {m.detail}" for m in deed.trouble),
         }
         if deed.reading:
             info["reading"] = deed.reading.value
@@ -243,6 +251,10 @@ class InspectEnv(Copying, Rendering, gym.Env[Observation, np.int64]):
         """Which actions are legal now, shape (n + d,)."""
         check_begun(self._over, self._title)
         return self._mask.copy()
+
+    def record(self) -> RunRecord:
+        """The record of the episode as it stands, as of a run whose mission were these actions."""
+        return self._running.record()
 
     def close(self) -> None:
         if self._run:
@@ -302,8 +314,8 @@ class InspectEnv(Copying, Rendering, gym.Env[Observation, np.int64]):
         """Takes the options on, and makes the site ready that they ask for; ArgoError if it does
         not fit, and then nothing has changed."""
         scenario = options.scenario or self._scenario
-        navigator = open_site(scenario).prepare().navigator
-        site = navigator.site
+        opened = open_site(scenario).prepare()
+        site = opened.site
         if len(site.checkpoints) > self._slots or len(site.docks) > self._docks:
             raise ArgoError(
                 f"site {site.name} has {len(site.checkpoints)} checkpoints and {len(site.docks)} "
@@ -313,9 +325,11 @@ class InspectEnv(Copying, Rendering, gym.Env[Observation, np.int64]):
         floors = [floor.number for floor in site.spec.floors]
         check_floors(scenario, floors, options.floors)
         if isinstance(options.faults, tuple):
-            check_settings(RunSettings(drive=self._drive, faults=options.faults), site)
+            dock = site.docks[min(site.docks)]
+            mission = beginning(opened, dock)
+            check_spec(RunSpec(mission=mission, drive=self._drive, faults=options.faults), site)
         asked = options.floors or floors
-        self._options, self._navigator = options, navigator
+        self._options, self._site = options, opened
         self._travel_times = travel_times(navigator)
         self._asked = np.zeros(self._slots, np.bool_)
         self._asked[: len(site.checkpoints)] = [c.floor in asked for c in site.checkpoints]
@@ -333,11 +347,11 @@ class InspectEnv(Copying, Rendering, gym.Env[Observation, np.int64]):
         if isinstance(given, tuple):
             return given
         count = self._default_faults if given is None else given
-        return draw_faults(count, self._drive, self._navigator.site, rng)
+        return draw_faults(count, self._drive, self._site.site, rng)
 
     def _go(self, place: int) -> tuple[Deed, bool]:
         """Carries the action out; whether the robot is in its end dock then."""
-        run, site = self._running, self._navigator.site
+        run, site = self._running, self._site.site
         if place < self._slots:
             deed = run.read(site.checkpoints[place].id)
             if deed.reading:
@@ -351,11 +365,11 @@ class InspectEnv(Copying, Rendering, gym.Env[Observation, np.int64]):
         arrived = place >= self._slots and deed.failure is None and not (run.time_up or run.dead)
         if arrived and place != self._slots + self._end:
             stay = run.stand(_PATIENCE, charging=True)
-            return Deed(found=deed.found + stay.found, contacts=deed.contacts), False
+            return replace(deed, found=deed.found + stay.found), False
         return deed, arrived
 
     def _observe(self) -> Observation:
-        run, site, n = self._running, self._navigator.site, self._slots
+        run, site, n = self._running, self._site.site, self._slots
         travel = self._travel()
         alarm = EventKind.PLATFORM_ALARM in run.noticed
         mask = np.zeros(n + self._docks, np.bool_)
@@ -383,7 +397,7 @@ class InspectEnv(Copying, Rendering, gym.Env[Observation, np.int64]):
 
     def _travel(self) -> NDArray[np.float64]:
         """Estimated s to each place, infinite for empty slots and where there is no way."""
-        run, site, n = self._running, self._navigator.site, self._slots
+        run, site, n = self._running, self._site.site, self._slots
         docks = len(site.docks)
         times = self._travel_times.row(run.pose, run.navigator)
         travel = np.full(n + self._docks, np.inf)
@@ -398,7 +412,7 @@ class InspectEnv(Copying, Rendering, gym.Env[Observation, np.int64]):
         return draw_inspection(
             self._options.scenario or self._scenario,
             run,
-            [self._state_of(k) for k in range(len(self._navigator.site.checkpoints))],
+            [self._state_of(k) for k in range(len(self._site.site.checkpoints))],
             last,
             self._end,
             f"{run.now:.0f} s of {self._limit:.0f} s    battery {run.charge:.0%}    "

@@ -1,31 +1,26 @@
-"""One inspection under way: what missions are carried out with, driven action by action."""
+"""One inspection under way: a simulation whose tasks are given one by one."""
 
 import math
-import weakref
-from contextlib import ExitStack
-from dataclasses import dataclass, replace
-from weakref import WeakKeyDictionary
+from dataclasses import dataclass
 
-import numpy as np
-from numpy.typing import NDArray
-
-from argo_compiler.errors import Unreachable
 from argo_compiler.hfsm import ActionFailed
-from argo_compiler.il import Action, EventKind, Task
+from argo_compiler.il import Action, EventKind, Mission, Task
 from argo_compiler.model import Pose
+from argo_env.closing import Closing
 from argo_env.drives.battery import estimated_charge
 from argo_env.navigation import Navigator
+from argo_env.planning.opening import OpenedSite
 from argo_env.robot.pose import BodyPose
-from argo_env.run.action import ActionUnderWay
-from argo_env.run.odometry import Odometry
-from argo_env.run.perception import Perception, blockage
-from argo_env.run.record import Anomaly, Reading
-from argo_env.run.session import outfit
-from argo_env.run.spec import RunSettings
+from argo_env.run.log import Entry
+from argo_env.run.machine import Machine, OpenMachine
+from argo_env.run.observer import Observer
+from argo_env.run.record import Anomaly, Contact, Mishap, Reading, RunRecord
+from argo_env.run.simulation import Simulation
+from argo_env.run.spec import RunSpec
+from argo_env.run.steering import StopRun
 
 FULL = 0.999  # charge from where on the battery counts as full
 _TRAIL = 0.15  # m between poses that are kept
-_NEAR = 1.0  # m from a dock or view within which the robot is taken to be there
 
 
 @dataclass(frozen=True)
@@ -35,38 +30,33 @@ class Deed:
     reading: Reading | None = None
     failure: str | None = None
     found: tuple[Anomaly, ...] = ()
+    trouble: tuple[Mishap, ...] = ()
     contacts: int = 0
 
 
-class Inspection:
-    """A robot on a site with all that may go wrong. Holds the run; close it."""
+class Inspection(Closing):
+    """A robot on a site with all that may go wrong. Holds the simulation; close it."""
 
-    def __init__(
-        self, navigator: Navigator, settings: RunSettings, start: Pose, limit: float
-    ) -> None:
-        """The run is over after `limit` s."""
-        self._stack = ExitStack()
-        self._rig = outfit(settings, navigator, False, self._stack)
+    def __init__(self, site: OpenedSite, spec: RunSpec, limit: float) -> None:
+        """The spec's mission begins where the robot is, and has no other task. The run is over
+        after `limit` s."""
+        self._machine = OpenMachine(spec.mission)
+        self._told = _Told()
+        self._simulation = Simulation(self._machine, site, spec, observers=[self._told])
         self._limit = limit
-        self._steps = 0
-        self._odometry = Odometry(navigator.robot, self._rig.battery, navigator.site)
-        self._perception = Perception(self._rig.watches, navigator.site, self._rig.drive.time_step)
+        self._tasks: dict[str, int] = {}
         self._noticed: list[EventKind] = []
         self._trail: list[tuple[float, BodyPose]] = []
-        here = navigator.snap(start)
-        self._rig.drive.place(BodyPose(here.x, here.y, here.z, here.yaw))
         self._mark()
-        if self._rig.schedule:
-            self._rig.schedule.advance(0.0)
 
     def close(self) -> None:
-        """Ends the run; nothing can be asked of it afterwards."""
-        self._stack.close()
+        """Ends the run; only its record can be asked for afterwards."""
+        self._simulation.close()
 
     @property
     def now(self) -> float:
         """s since the start."""
-        return round(self._steps * self._rig.drive.time_step, 6)
+        return self._simulation.now
 
     @property
     def time_up(self) -> bool:
@@ -75,17 +65,18 @@ class Inspection:
     @property
     def dead(self) -> bool:
         """Whether the battery is empty."""
-        return self._odometry.empty
+        battery = self._simulation.rig.battery
+        return battery is not None and battery.empty
 
     @property
     def charge(self) -> float:
         """0 to 1, as the robot makes it out of the battery's voltage and current."""
-        battery = self._rig.battery
+        battery = self._simulation.rig.battery
         return 1.0 if battery is None else estimated_charge(battery.voltage, battery.current)
 
     @property
     def pose(self) -> BodyPose:
-        return self._rig.drive.pose
+        return self._simulation.pose
 
     @property
     def trail(self) -> tuple[tuple[float, BodyPose], ...]:
@@ -95,51 +86,75 @@ class Inspection:
     @property
     def navigator(self) -> Navigator:
         """The site as the robot knows it, less what it has found to be closed."""
-        return self._rig.navigator
+        return self._simulation.rig.navigator
 
     @property
     def noticed(self) -> tuple[EventKind, ...]:
         """The kinds of what was found so far."""
         return tuple(self._noticed)
 
+    def record(self) -> RunRecord:
+        """The record of the run as it stands."""
+        return self._simulation.record()
+
     def read(self, checkpoint: int) -> Deed:
         """Drives to where the checkpoint can be read, and reads it."""
-        task = Task(name=f"read {checkpoint}", action=Action.MEASURE, object_id=str(checkpoint))
-        return self._carry_out(task)
+        name, id = self._name(f"read {checkpoint}"), str(checkpoint)
+        return self._carry_out(Task(name=name, action=Action.MEASURE, object_id=id))
 
     def drive(self, pose: Pose) -> Deed:
         """Drives there."""
-        return self._carry_out(Task(name="drive", action=Action.WAYPOINT, pose=pose))
+        return self._carry_out(Task(name=self._name("drive"), action=Action.WAYPOINT, pose=pose))
 
     def stand(self, seconds: float, charging: bool = False) -> Deed:
         """Stands still for so long, and with `charging` until the battery is full."""
-        found: list[Anomaly] = []
+        self._told.clear()
         end = self.now + seconds
         while not self._over and (self.now < end or (charging and self.charge < FULL)):
-            found += self._advance(None)[1]
-        return Deed(found=tuple(found))
+            self._step()
+        if self.time_up:
+            self._stop()
+        return self._deed()
+
+    def finish(self) -> None:
+        """No task will follow: the run ends with the last one."""
+        self._machine.close()
+        self._simulation.settle()
 
     @property
     def _over(self) -> bool:
-        return self.time_up or self.dead
+        return self._simulation.over or self.time_up
 
     def _carry_out(self, task: Task) -> Deed:
-        odometry = self._odometry
-        action = ActionUnderWay(
-            task, None, self._rig, self.now, odometry.distance, odometry.climbed
-        )
-        found: list[Anomaly] = []
-        end = None
-        while end is None and not self._over:
-            end, noticed = self._advance(action)
-            found += noticed
-        odometry.close()
-        contacts = len(odometry.over)
-        odometry.over.clear()
-        if end is None:
-            self._rig.drive.halt()
-        failure = end.reason if isinstance(end, ActionFailed) else None
-        return Deed(action.reading(self.now), failure, tuple(found), contacts)
+        self._told.clear()
+        began = self.now
+        self._simulation.give(task)
+        while self._simulation.task is not None and not self._over:
+            self._step()
+        if self.time_up:
+            self._stop()
+        return self._deed(began)
+
+    def _stop(self) -> None:
+        if not self._simulation.over:
+            self._simulation.handle(StopRun(f"the time limit of {self._limit:g} s was reached"))
+
+    def _step(self) -> None:
+        self._simulation.step()
+        self._mark()
+
+    def _deed(self, began: float = math.inf) -> Deed:
+        """What came since the clearing; contacts are those with a touch after time `began` (s)."""
+        told = self._told
+        found = tuple(n for n in told.news if isinstance(n, Anomaly))
+        self._noticed += [anomaly.kind for anomaly in found]
+        touched = {(c.start, c.link, c.element) for c in told.contacts() if c.end > began}
+        return Deed(told.reading, told.failure, found, tuple(told.mishaps), len(touched))
+
+    def _name(self, what: str) -> str:
+        """A name that no task has yet."""
+        self._tasks[what] = count = self._tasks.get(what, 0) + 1
+        return what if count == 1 else f"{what} ({count})"
 
     def _mark(self) -> None:
         """Keeps the pose if the robot is far enough from the last one kept."""
@@ -150,84 +165,38 @@ class Inspection:
                 return
         self._trail.append((self.now, pose))
 
-    def _advance(self, action: ActionUnderWay | None) -> tuple[object, tuple[Anomaly, ...]]:
-        """One step of simulated time; the end of the action, if that is it, and what was found."""
-        self._steps += 1
-        rig, now = self._rig, self.now
-        if rig.schedule:
-            rig.schedule.advance(now)
-        before = rig.drive.pose
-        end = action.step() if action else None
-        if action:
-            self._odometry.moved(before, rig.drive.pose, rig.world.touches(), now)
-        measuring = action is not None and action.measuring
-        self._odometry.spend(before, rig.drive.pose, rig.drive.time_step, measuring)
-        self._mark()
-        noticed = self._perception.look(self._steps, now, rig.drive.pose)
-        self._noticed += [anomaly.kind for anomaly in noticed]
-        if closed := [b for anomaly in noticed if (b := blockage(anomaly))]:
-            self._rig = replace(rig, navigator=rig.navigator.avoiding(closed))
-            if action and end is None:
-                action.detour(self._rig)
-        return end, noticed
+
+class _Told(Observer):
+    """Holds what was told of the run since it was cleared."""
+
+    def __init__(self) -> None:
+        self.clear()
+
+    def clear(self) -> None:
+        self.news: list[Reading | Anomaly] = []
+        self.reading: Reading | None = None
+        self.failure: str | None = None
+        self.mishaps: list[Mishap] = []
+        self._over: list[Contact] = []
+        self._open: tuple[Contact, ...] = ()
+
+    def contacts(self) -> tuple[Contact, ...]:
+        """Those that are over, then those that may go on."""
+        return (*self._over, *self._open)
+
+    def on_change(self, entry: Entry, machine: Machine) -> None:  # noqa: ARG002
+        self.news += entry.news
+        self.reading = entry.reading or self.reading
+        self.mishaps += entry.mishaps
+        self._over += entry.contacts
+        self._open = entry.touching
+        for event in entry.events:
+            original = event.original()
+            if isinstance(original, ActionFailed):
+                self.failure = original.reason
 
 
-class TravelTimes:
-    """What the ways between docks and checkpoints of a site take. Holds what it has worked out."""
-
-    def __init__(self, navigator: Navigator) -> None:
-        self._navigator = weakref.ref(navigator)
-        site = navigator.site
-        docks = [site.docks[number] for number in sorted(site.docks)]
-        self._places = [*docks, *(_view(navigator, c.id) for c in site.checkpoints)]
-        known = [k for k, place in enumerate(self._places) if place is not None]
-        self._times = np.full((len(self._places), len(self._places)), np.inf)
-        self._times[np.ix_(known, known)] = navigator.travel_times(
-            [place for place in self._places if place is not None]
-        )
-
-    def row(self, pose: BodyPose, navigator: Navigator) -> NDArray[np.float64]:
-        """Estimated s from a pose to the docks and then to the checkpoints, in the order of their
-        numbers, infinite where there is no way: as the site is known to `navigator`."""
-        if navigator is self._navigator():
-            apart = [
-                np.inf
-                if place is None
-                else math.dist((place.x, place.y, place.z), (pose.x, pose.y, pose.z))
-                for place in self._places
-            ]
-            nearest = int(np.argmin(apart))
-            if apart[nearest] <= _NEAR:
-                return np.asarray(self._times[nearest])
-        here = Pose(x=pose.x, y=pose.y, z=pose.z, yaw=pose.yaw)
-        known = [k for k, place in enumerate(self._places) if place and _free(navigator, place)]
-        row = np.full(len(self._places), np.inf)
-        if _free(navigator, here):
-            places = [place for k in known if (place := self._places[k])]
-            row[known] = navigator.travel_times_from(here, places)
-        return row
-
-
-def _view(navigator: Navigator, checkpoint: int) -> Pose | None:
-    try:
-        return navigator.viewing_pose(checkpoint)
-    except Unreachable:
-        return None
-
-
-def _free(navigator: Navigator, pose: Pose) -> bool:
-    try:
-        navigator.snap(pose)
-    except Unreachable:
-        return False
-    return True
-
-
-_found: WeakKeyDictionary[Navigator, TravelTimes] = WeakKeyDictionary()
-
-
-def travel_times(navigator: Navigator) -> TravelTimes:
-    """The travel times of a navigator's site, found once and kept as long as the navigator."""
-    if navigator not in _found:
-        _found[navigator] = TravelTimes(navigator)
-    return _found[navigator]
+def beginning(site: OpenedSite, start: Pose) -> Mission:
+    """The mission of an inspection before its first task: the robot stands at `start`."""
+    task = Task(name="START", action=Action.START, pose=start)
+    return Mission(site=site.name, tasks=(task,))

@@ -79,6 +79,13 @@ def settle(faults: Sequence[AnyFault], site: Site, seed: int) -> tuple[AnyFault,
     return tuple(_settled(fault, number, site, seed) for number, fault in enumerate(faults))
 
 
+def settle_one(fault: AnyFault, number: int, site: Site, seed: int) -> AnyFault:
+    """The fault as `settle` would have it at that place of a list."""
+    own = seed if fault.seed is None else fault.seed
+    rng = generator(own, "fault", fault.kind, number if fault.seed is None else 0)
+    return fault.settled(site, rng)
+
+
 def misfits(faults: Sequence[AnyFault], site: Site, seed: int) -> dict[int, str]:
     """What the site does not have of each fault, by its number in the list."""
     found = {}
@@ -91,10 +98,8 @@ def misfits(faults: Sequence[AnyFault], site: Site, seed: int) -> dict[int, str]
 
 
 def _settled(fault: AnyFault, number: int, site: Site, seed: int) -> AnyFault:
-    own = seed if fault.seed is None else fault.seed
     try:
-        rng = generator(own, "fault", fault.kind, number if fault.seed is None else 0)
-        return fault.settled(site, rng)
+        return settle_one(fault, number, site, seed)
     except ArgoError as error:
         raise ArgoError(f"faults[{number}] ({fault.kind}): {error}") from None
 

@@ -14,10 +14,7 @@ class Schedule:
         """The faults must be settled."""
         self.faults = tuple(faults)
         self._stage = stage
-        moments = [(f.begins, True, f) for f in faults]
-        moments += [(f.ends, False, f) for f in faults if f.ends is not None]
-        # Of one time, ends come first; else they are in the order of the list.
-        self._moments = sorted(moments, key=lambda m: (m[0], m[1]))
+        self._moments = _moments(faults)
         self._next = 0
         self._active: list[AnyFault] = []  # in the order in which they began
 
@@ -30,6 +27,12 @@ class Schedule:
     def last_change(self) -> float:
         """When something began or ended last (s); 0 if nothing has."""
         return self._moments[self._next - 1][0] if self._next else 0.0
+
+    def add(self, fault: AnyFault) -> None:
+        """One more, settled, of which nothing is over yet."""
+        self.faults = (*self.faults, fault)
+        ahead = [*self._moments[self._next :], *_moments([fault])]
+        self._moments[self._next :] = sorted(ahead, key=_order)
 
     def advance(self, now: float) -> None:
         """Carries out all that is due at time `now` (s)."""
@@ -49,3 +52,18 @@ class Schedule:
         for fault in self._active:
             if type(fault) is kind and not kind.adds_up:
                 fault.begin(self._stage, now)
+
+
+_Moment = tuple[float, bool, AnyFault]
+"""When (s), whether it begins then rather than ends, and what."""
+
+
+def _moments(faults: Sequence[AnyFault]) -> list[_Moment]:
+    moments: list[_Moment] = [(f.begins, True, f) for f in faults]
+    moments += [(f.ends, False, f) for f in faults if f.ends is not None]
+    return sorted(moments, key=_order)
+
+
+def _order(moment: _Moment) -> tuple[float, bool]:
+    # Of one time, ends come first; else they are in the order of the list.
+    return moment[:2]

@@ -8,7 +8,7 @@ from pathlib import Path
 
 from argo_compiler.errors import ArgoError
 from argo_env.recording.output import RecordingFile
-from argo_env.run.recorder import Recorder
+from argo_env.run.observer import Observer
 
 VERSION = "1"
 """of what a recording of Argo's holds"""
@@ -43,7 +43,7 @@ def check_recording(file: Path) -> None:
 
 
 @contextmanager
-def recording_to(file: Path, source: Path | None = None) -> Iterator[Recorder]:
+def recording_to(file: Path, source: Path | None = None) -> Iterator[Observer]:
     """A recorder that writes to the file, and the text of the mission's `source` with it.
 
     A recording that was there is replaced. What has been recorded stays, and can be read, if the

@@ -1,5 +1,6 @@
 """The recorder: all that Foxglove shows of a run, and all that a report is made from."""
 
+import json
 import math
 from pathlib import Path
 
@@ -7,8 +8,7 @@ from foxglove_schemas_protobuf.Log_pb2 import Log
 
 from argo_compiler import __version__
 from argo_compiler.errors import ArgoError
-from argo_compiler.hfsm import Executor, Occurred
-from argo_compiler.il import Mission
+from argo_compiler.hfsm import Occurred
 from argo_env.navigation import Path as Way
 from argo_env.recording import messages, scene
 from argo_env.recording.files import VERSION
@@ -20,10 +20,13 @@ from argo_env.recording.topics import BatteryState, MissionState, mission_state
 from argo_env.recording.writer import RecordingWriter, media_type
 from argo_env.report.files import to_json
 from argo_env.robot.spec import robot_folder
-from argo_env.run.action import ActionUnderWay, Rig
+from argo_env.run.action import ActionUnderWay
 from argo_env.run.log import Entry
+from argo_env.run.machine import Machine
+from argo_env.run.observer import Observer
 from argo_env.run.record import Anomaly, Contact, Reading, RunRecord, TaskRun, TraceStep
-from argo_env.run.spec import RunSettings
+from argo_env.run.rig import Rig
+from argo_env.run.spec import RunSpec
 from argo_env.site import Site, SiteCheckpoint
 from argo_env.world.world import Shot, World
 
@@ -31,7 +34,7 @@ SAMPLE_PERIOD = 0.1
 """s between recorded poses, at least; a drive with longer steps has one at each"""
 
 
-class McapRecorder:
+class McapRecorder(Observer):
     """Writes one run to a file. Holds what was last written, to write what is new only."""
 
     def __init__(self, stream: RecordingFile, source: Path | None = None) -> None:
@@ -53,7 +56,7 @@ class McapRecorder:
         self._latest: dict[int, Reading] = {}
         self._drawn: list[SiteCheckpoint] = []
 
-    def begin(self, rig: Rig, mission: Mission, settings: RunSettings) -> None:
+    def on_begin(self, rig: Rig, spec: RunSpec) -> None:
         """Writes what does not change: what the run is made from, the site and the robot."""
         site, robot = rig.navigator.site, rig.navigator.robot
         path = robot_folder() / robot.urdf
@@ -69,14 +72,14 @@ class McapRecorder:
                 "robot": robot.name,
                 "drive": rig.drive.name,
                 "sensor": rig.sensor.name,
-                "seed": str(settings.seed),
+                "seed": str(spec.seed),
             },
         )
         attach = self._writer.attach
         if self._source is not None:
             attach(f"source/{self._source.name}", media_type(self._source), _content(self._source))
-        attach("mission.json", "application/json", mission.model_dump_json(indent=2))
-        attach("settings.json", "application/json", settings.model_dump_json(indent=2))
+        attach("mission.json", "application/json", spec.mission.model_dump_json(indent=2))
+        attach("settings.json", "application/json", json.dumps(spec.settings, indent=2))
         attach("site.json", "application/json", site.spec.model_dump_json(indent=2))
         attach(path.name, "application/xml", model.text)
         for number, update in scene.site_scenes(_as_it_is(rig), 0.0).items():
@@ -90,7 +93,7 @@ class McapRecorder:
             rig.world.on_shot = self._shots.append
         self._writer.flush(0.0)
 
-    def step(self, now: float, action: ActionUnderWay | None) -> None:
+    def on_step(self, now: float, action: ActionUnderWay | None) -> None:
         """Writes the robot's motion, and the way ahead when there is a new one."""
         self._now = now
         for shot in self._shots:
@@ -107,8 +110,10 @@ class McapRecorder:
             self._writer.put("/path", messages.path(poses, now), now)
         self._writer.flush_if_due(now)
 
-    def note(self, entry: Entry, executor: Executor) -> None:
+    def on_change(self, entry: Entry, machine: Machine) -> None:
         """Writes what has happened, and how the mission stands now."""
+        if self._sampled == -math.inf:
+            self.on_step(entry.t, None)
         now = self._now = entry.t
         for event in entry.events:
             original = event.original()
@@ -133,9 +138,9 @@ class McapRecorder:
         if entry.stopped:
             self._log(entry.stopped, Log.ERROR, "run", now)
         if entry.events or entry.resumed or entry.ended or self._state is None:
-            self._mission(executor, now)
+            self._mission(machine, now)
 
-    def finish(self, record: RunRecord) -> None:
+    def on_end(self, record: RunRecord) -> None:
         """Writes the end of the run and its record."""
         result, now = record.result, self._now
         if now != self._sampled:
@@ -149,7 +154,7 @@ class McapRecorder:
         self._writer.close()
 
     def _sample(self, now: float) -> None:
-        assert self._rig is not None, "begin comes first"
+        assert self._rig is not None, "on_begin comes first"
         assert self._motion is not None
         self._sampled = now
         self._motion.sample(self._rig.drive.pose, now)
@@ -167,13 +172,13 @@ class McapRecorder:
         update = scene.checkpoint_scene(self._drawn, self._latest, now)
         self._writer.put("/checkpoints", update, now)
 
-    def _mission(self, executor: Executor, now: float) -> None:
-        for e in executor.trace[self._traced :]:
+    def _mission(self, machine: Machine, now: float) -> None:
+        for e in machine.trace[self._traced :]:
             self._traced += 1
             step = TraceStep(t=e.time, source=e.source, target=e.target, cause=e.why)
             self._writer.put_json("/trace", step, now)
         abnormal = sum(not reading.normal for reading in self._readings)
-        state = mission_state(executor, self._done, len(self._readings), abnormal)
+        state = mission_state(machine, self._done, len(self._readings), abnormal)
         if state != self._state:
             self._state = state
             self._writer.put_json("/mission", state, now)

@@ -1,8 +1,8 @@
 """What is recorded as JSON, beside Foxglove's own messages and the parts of the run record."""
 
-from argo_compiler.hfsm import Executor
 from argo_compiler.il import Action, EventKind
 from argo_compiler.model import Model
+from argo_env.run.machine import Machine
 
 
 class MissionState(Model):
@@ -41,19 +41,19 @@ class BatteryState(Model):
     """A; less than 0 while it is charged"""
 
 
-def mission_state(executor: Executor, done: int, readings: int, abnormal: int) -> MissionState:
-    """How the mission stands, as its executor tells it, with what has been done."""
-    running = executor.running
+def mission_state(machine: Machine, done: int, readings: int, abnormal: int) -> MissionState:
+    """How the mission stands, as its machine tells it, with what has been done."""
+    running = machine.running
     return MissionState(
         task=running.name if running else None,
         action=running.action if running else None,
         object_id=running.object_id if running else None,
-        states=executor.configuration,
-        groups=tuple(executor.rounds),
-        rounds=tuple(executor.rounds.values()),
-        paused=executor.paused,
-        reaction=executor.reaction,
-        outcome=executor.outcome,
+        states=machine.configuration,
+        groups=tuple(machine.rounds),
+        rounds=tuple(machine.rounds.values()),
+        paused=machine.paused,
+        reaction=machine.reaction,
+        outcome=machine.outcome,
         done=done,
         readings=readings,
         abnormal=abnormal,

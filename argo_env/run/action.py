@@ -2,23 +2,19 @@
 
 import math
 from collections.abc import Callable
-from dataclasses import dataclass
 
 from argo_compiler.errors import ArgoError, Unreachable
 from argo_compiler.hfsm import ActionFailed, ActionStopped, ActionSucceeded
 from argo_compiler.il import Action, Task
 from argo_compiler.model import Pose
-from argo_env.drives.battery import Battery
-from argo_env.drives.drive import Drive, DriveStatus
-from argo_env.faults.schedule import Schedule
+from argo_env.drives.drive import DriveStatus
 from argo_env.navigation import Navigator, Path
 from argo_env.navigation.blockage import leads_through
 from argo_env.navigation.retreat import way_back
 from argo_env.robot.pose import BodyPose
 from argo_env.run.record import DIGITS, Reading, TaskRun
-from argo_env.sensing.sensor import Measurement, MeasurementError, PoorViewError, Sensor
-from argo_env.sensing.watch import Watch
-from argo_env.world.paper_world import AnyWorld
+from argo_env.run.rig import Rig
+from argo_env.sensing.sensor import Measurement, MeasurementError, PoorViewError
 
 ActionEnd = ActionSucceeded | ActionFailed | ActionStopped
 
@@ -29,22 +25,6 @@ _NEAR = 0.15  # m: a cell's diagonal
 TURNS = (0.0, math.radians(55.0), math.radians(-55.0))
 """rad that the face of a checkpoint is taken to be turned against the plan, one view after the
 other: it may be turned by up to 90 degrees, and is read at up to 60 degrees"""
-
-
-@dataclass(frozen=True)
-class Rig:
-    """What a mission is carried out with."""
-
-    world: AnyWorld
-    navigator: Navigator
-    drive: Drive
-    sensor: Sensor
-    watches: tuple[Watch, ...] = ()
-    """what notices things by itself"""
-    battery: Battery | None = None
-    """None: the robot has power without end"""
-    schedule: Schedule | None = None
-    """what goes wrong, and when; None: nothing does"""
 
 
 class ActionUnderWay:

@@ -1,7 +1,7 @@
-"""When the mission was interrupted, and by what: seen from the executor as it goes on."""
+"""When the mission was interrupted, and by what: seen from the machine as it goes on."""
 
-from argo_compiler.hfsm import Executor
 from argo_compiler.il import EventKind
+from argo_env.run.machine import Machine
 from argo_env.run.record import Interruption
 
 
@@ -13,10 +13,10 @@ class InterruptionWatch:
         self._by: EventKind | None = None
         self._since: float | None = None
 
-    def look(self, executor: Executor, now: float) -> None:
-        """Takes note of how the executor stands at time `now` (s), after each of its steps."""
-        interrupted = not executor.finished and (executor.paused or executor.reaction is not None)
-        by = None if executor.paused else executor.reaction
+    def look(self, machine: Machine, now: float) -> None:
+        """Takes note of how the machine stands at time `now` (s), after each of its steps."""
+        interrupted = not machine.finished and (machine.paused or machine.reaction is not None)
+        by = None if machine.paused else machine.reaction
         if self._since is not None and (not interrupted or by is not self._by):
             self._over.append(Interruption(start=self._since, end=now, event=self._by))
             self._since = None

@@ -1,8 +1,8 @@
 """The journal: a run on disk, so that it can go on after its process has died.
 
-A file of lines, each a checksum and an entry as JSON. The first line holds all that the run is made
-from. It is there as a whole or not at all; of what follows only the last line can be torn, and is
-cut off then. One process at a time has the journal.
+A file of lines, each a checksum and an entry as JSON. The first line holds the spec of the run. It
+is there as a whole or not at all; of what follows only the last line can be torn, and is cut off
+then. One process at a time has the journal.
 """
 
 import fcntl
@@ -11,25 +11,22 @@ import json
 import os
 import zlib
 from collections.abc import Sequence
-from dataclasses import dataclass
 from pathlib import Path
-from typing import Literal, NoReturn, TypeVar
+from typing import Literal, NoReturn, Self, TypeVar
 
 from pydantic import ValidationError
 
 from argo_compiler import __version__
-from argo_compiler.diagnostics import Diagnostic
-from argo_compiler.errors import ArgoError
-from argo_compiler.il import Mission
+from argo_compiler.errors import ArgoError, Conflict
 from argo_compiler.model import Model
 from argo_env.closing import Closing
 from argo_env.files.yaml_messages import message_of
-from argo_env.navigation import Navigator
+from argo_env.planning.opening import OpenedSite
 from argo_env.run.log import Entry
-from argo_env.run.record import Reordering
-from argo_env.run.spec import RunSettings
+from argo_env.run.observer import Observer
+from argo_env.run.spec import RunSpec
 
-VERSION = 2
+VERSION = 3
 """of the journal's format"""
 MAX_BYTES = 1_000_000_000  # of a journal; the longest run takes some 20 MB
 _MARK = "argo journal"
@@ -41,30 +38,20 @@ class Header(Model):
     """The first line: what the run is made from."""
 
     format: Literal["argo journal"] = "argo journal"
-    version: Literal[2] = 2
-    site: str
-    """name of the site, or path of the file that describes it"""
-    source: str | None = None
-    """the file that the mission was read from"""
+    version: Literal[3] = 3
+    spec: RunSpec
     fingerprints: dict[str, str]
     """of all that must be the same when the run goes on, by what it is"""
-    settings: RunSettings
-    mission: Mission
-    diagnostics: tuple[Diagnostic, ...]
-    reordering: Reordering | None = None
+
+    @classmethod
+    def of(cls, site: OpenedSite, spec: RunSpec) -> Self:
+        """That of a run of the spec on the site. Raises ArgoError if its source can't be read."""
+        return cls(spec=spec, fingerprints=fingerprints(site, spec))
 
 
-@dataclass(frozen=True)
-class JournalPlace:
-    """Where to keep a journal, and where a later process finds site and mission again."""
-
-    path: Path
-    site: str
-    source: Path | None = None
-
-
-class Journal(Closing):
-    """An open journal. Holds the file and its lock; close it, or use it as a context."""
+class Journal(Observer, Closing):
+    """An open journal, which writes down the run that it observes. Holds the file and its lock;
+    close it, or use it as a context."""
 
     def __init__(self, path: Path, file: int, header: Header, entries: Sequence[Entry], size: int):
         self.path = path
@@ -80,7 +67,7 @@ class Journal(Closing):
         """Whether the run had ended when the journal was opened."""
         return bool(self.entries) and self.entries[-1].ended
 
-    def append(self, entry: Entry) -> None:
+    def on_entry(self, entry: Entry) -> None:
         """Writes an entry. When this returns, a process that dies does not lose it; a machine that
         loses its power keeps what is precious.
 
@@ -100,12 +87,12 @@ class Journal(Closing):
         self._size += len(line)
         self._lines += 1
 
-    def require_unchanged(self, navigator: Navigator) -> None:
+    def require_unchanged(self, site: OpenedSite) -> None:
         """Raises ArgoError if the run would not go on with what it began with."""
         before = self.header.fingerprints
-        source = Path(self.header.source) if self.header.source else None
-        now = fingerprints(navigator, self.header.mission, source)
-        if source is not None and not source.exists():
+        source = self.header.spec.source
+        now = fingerprints(site, self.header.spec)
+        if source is not None and not Path(source).exists():
             now["mission file"] = before.get("mission file", "")
         changed = [
             f"{what} (was {before.get(what, 'absent')}, is {now.get(what, 'absent')})"
@@ -113,7 +100,7 @@ class Journal(Closing):
             if before.get(what) != now.get(what)
         ]
         if changed:
-            raise ArgoError(
+            raise Conflict(
                 f"{self.path}: the run can't go on, as something has changed since it began: "
                 f"{', '.join(changed)}. Put it back as it was, or begin anew with `argo run`"
             )
@@ -122,12 +109,13 @@ class Journal(Closing):
         os.close(self._file)
 
 
-def fingerprints(navigator: Navigator, mission: Mission, source: Path | None) -> dict[str, str]:
+def fingerprints(site: OpenedSite, spec: RunSpec) -> dict[str, str]:
     """Short digests of all that a run depends on, by what it is."""
-    found = {"Argo": __version__, "mission": _digest(mission.model_dump_json())}
-    for what, model in (("site", navigator.site.spec), ("robot", navigator.robot)):
+    found = {"Argo": __version__, "mission": _digest(spec.mission.model_dump_json())}
+    for what, model in (("site", site.site.spec), ("robot", site.robot)):
         for field, value in model.model_dump(mode="json").items():
             found[f"{what}'s {field}"] = _digest(json.dumps(value))
+    source = None if spec.source is None else Path(spec.source)
     if source is not None and source.exists():
         try:
             found["mission file"] = _digest(source.read_bytes())

@@ -11,17 +11,30 @@ from argo_compiler.hfsm import (
     ActionFailed,
     ActionStopped,
     ActionSucceeded,
+    ByHand,
     Cancel,
     Event,
+    GiveBack,
     Occurred,
     Pause,
     Resume,
+    TakeOver,
     Tick,
 )
 from argo_compiler.il import EventKind
 from argo_compiler.model import Model
+from argo_env.faults.kinds import AnyFault
 from argo_env.robot.pose import BodyPose
-from argo_env.run.record import DIGITS, Anomaly, Contact, Mishap, PathSample, Reading, TaskRun
+from argo_env.run.record import (
+    DIGITS,
+    FROM_READING,
+    Anomaly,
+    Contact,
+    Mishap,
+    PathSample,
+    Reading,
+    TaskRun,
+)
 from argo_env.site import Site
 
 _EVENTS: dict[str, type[Event]] = {
@@ -32,20 +45,28 @@ _EVENTS: dict[str, type[Event]] = {
     "occurred": Occurred,
     "pause": Pause,
     "resume": Resume,
+    "take_over": TakeOver,
+    "give_back": GiveBack,
     "cancel": Cancel,
 }
 _NAMES = {cls: name for name, cls in _EVENTS.items()}
+FROM_OUTSIDE = frozenset({"occurred", "pause", "resume", "take_over", "give_back", "cancel"})
+"""The kinds of events that a run may be told; the others it makes itself."""
 
 
 class LoggedEvent(Model):
     """An event as data; the fields that its kind has not are left out."""
 
-    kind: Literal["succeeded", "failed", "stopped", "tick", "occurred", "pause", "resume", "cancel"]
+    kind: Literal[
+        "succeeded", "failed", "stopped", "tick", "occurred", "pause", "resume", "take_over",
+        "give_back", "cancel",
+    ]  # fmt: skip
     task: str | None = None
     value: float | None = None
     reason: str | None = None
     event: EventKind | None = None
     detail: str | None = None
+    by_hand: tuple[ByHand, ...] | None = None
 
     @classmethod
     def of(cls, event: Event) -> "LoggedEvent":
@@ -53,13 +74,11 @@ class LoggedEvent(Model):
 
     def original(self) -> Event:
         """The event; ValueError if fields are missing or too many."""
-        fields = self.model_dump(exclude={"kind"}, exclude_none=True)
-        if "event" in fields:
-            fields["event"] = EventKind(fields["event"])
+        given = {name: value for name, value in self if name != "kind" and value is not None}
         try:
-            return _EVENTS[self.kind](**fields)
+            return _EVENTS[self.kind](**given)
         except TypeError as error:
-            raise ValueError(f"no event of kind {self.kind} has {sorted(fields)}") from error
+            raise ValueError(f"no event of kind {self.kind} has {sorted(given)}") from error
 
 
 class Entry(Model):
@@ -79,6 +98,8 @@ class Entry(Model):
     """how many of the events that the run was given had occurred"""
     added: tuple[tuple[float, LoggedEvent], ...] = ()
     """events that the run is given from here on, and when (s)"""
+    faults: tuple[AnyFault, ...] = ()
+    """what goes wrong from here on beside that"""
     running: str | None = None
     """the task whose action ran before the events"""
     events: tuple[LoggedEvent, ...] = ()
@@ -110,7 +131,14 @@ class Entry(Model):
     @property
     def precious(self) -> bool:
         """Whether it tells more than where the robot was."""
-        return bool(self.events) or self.resumed or self.ended
+        return bool(self.events) or bool(self.faults) or self.resumed or self.ended
+
+    @property
+    def news(self) -> tuple[Reading | Anomaly, ...]:
+        """What was sensed: things noticed, then the reading."""
+        # An abnormal reading is found as well; it is told as the reading.
+        noticed = tuple(anomaly for anomaly in self.found if anomaly.source != FROM_READING)
+        return (*noticed, *((self.reading,) if self.reading else ()))
 
 
 class RunLog:
@@ -144,6 +172,15 @@ class RunLog:
             self.resumed.append(entry.t)
         if entry.sample:
             self.path.append(self._sample(entry))
+
+    def with_entry(self, entry: Entry) -> "RunLog":
+        """Another log, with one more entry; this one stays as it is."""
+        other = RunLog(self._site)
+        for name in ("tasks", "readings", "anomalies", "mishaps", "contacts", "path", "resumed"):
+            setattr(other, name, list(getattr(self, name)))
+        other.last_event = self.last_event
+        other.add(entry)
+        return other
 
     def _sample(self, entry: Entry) -> PathSample:
         x, y, z, yaw, pitch = (round(v, DIGITS) for v in entry.pose)

@@ -1,16 +1,13 @@
-"""What the robot's way adds up to: metres, contacts with the site, mishaps, and charge."""
+"""What the robot's way adds up to: metres, contacts with the site, and mishaps."""
 
 import math
 from collections.abc import Iterable, Sequence
 
-from argo_env.drives.battery import Battery, load
 from argo_env.drives.drive import Incident
 from argo_env.robot.pose import BodyPose
-from argo_env.robot.spec import RobotSpec
 from argo_env.run.contacts import ContactWatch
 from argo_env.run.log import Entry
 from argo_env.run.record import DIGITS, Contact, Mishap
-from argo_env.run.verdict import at_dock
 from argo_env.site import Site
 from argo_env.world.world import Touch
 
@@ -18,8 +15,7 @@ from argo_env.world.world import Touch
 class Odometry:
     """Adds up step by step. Holds the sums and the contacts that may still go on."""
 
-    def __init__(self, robot: RobotSpec, battery: Battery | None, site: Site) -> None:
-        """With a `battery` (changed here) its charge goes down, and up in a dock of the site."""
+    def __init__(self, site: Site) -> None:
         self.distance = 0.0
         """m, driven since the mission's start"""
         self.climbed = 0.0
@@ -29,9 +25,6 @@ class Odometry:
         self.mishaps: list[Mishap] = []
         """those that are not yet told"""
         self._seen = 0  # of the drive's incidents
-        self.charging = False
-        self._robot = robot
-        self._battery = battery
         self._site = site
         self._contacts = ContactWatch()
 
@@ -40,24 +33,10 @@ class Odometry:
         """Contacts that may still go on."""
         return self._contacts.open
 
-    @property
-    def charge(self) -> float | None:
-        """Of the battery, 0 to 1."""
-        return self._battery.charge if self._battery else None
-
-    @property
-    def empty(self) -> bool:
-        """Whether the battery is."""
-        return self._battery is not None and self._battery.empty
-
     def restore(self, entry: Entry) -> None:
         """Goes on from an entry."""
         self.distance, self.climbed = entry.distance, entry.climbed
         self._contacts.restore(entry.touching)
-        if self._battery and entry.charge is not None:
-            self._battery.charge = entry.charge
-            # If it does not stand there, the next step shows it.
-            self.charging = entry.charge < 1.0 and self._docked(entry.body_pose)
 
     def close(self) -> None:
         """No contact goes on any longer."""
@@ -86,20 +65,3 @@ class Odometry:
                 )
             )
         self._seen = len(incidents)
-
-    def spend(self, before: BodyPose, after: BodyPose, seconds: float, measuring: bool) -> None:
-        """Draws from the battery what that took, or charges it while the robot stands docked."""
-        if self._battery is None:
-            return
-        power = self._robot.power
-        watts = load(power, before, after, seconds, measuring)
-        stands = watts in (power.standing, power.measuring)
-        docked = stands and self._docked(after)
-        self.charging = docked and self._battery.charge < 1.0
-        if docked:
-            # The station powers the robot, and what it gives besides goes into the battery.
-            watts = -power.charging if self.charging else 0.0
-        self._battery.use(watts, seconds)
-
-    def _docked(self, pose: BodyPose) -> bool:
-        return any(at_dock(pose, dock) for dock in self._site.docks.values())

@@ -7,7 +7,7 @@ from collections.abc import Sequence
 from argo_compiler.il import EventKind
 from argo_env.navigation import Blockage
 from argo_env.robot.pose import BodyPose
-from argo_env.run.record import DIGITS, Anomaly, Reading
+from argo_env.run.record import DIGITS, FROM_READING, Anomaly, Reading
 from argo_env.sensing.signals.terrain_watch import KNOWN, ObstacleDetection
 from argo_env.sensing.watch import Detection, RememberingWatch, Told, Watch
 from argo_env.site import Site
@@ -97,7 +97,7 @@ def abnormal_reading(reading: Reading, site: Site) -> Anomaly:
         t=reading.t,
         kind=EventKind.ABNORMAL_READING,
         detail=f"{reading.name} shows {reading.value:g} {reading.unit}",
-        source="reading",
+        source=FROM_READING,
         place=_rounded(site.checkpoint(reading.checkpoint).position),
         floor=reading.floor,
     )

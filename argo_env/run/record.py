@@ -16,6 +16,8 @@ from argo_env.site.spec import Rect
 
 DIGITS = 4
 """of recorded lengths and angles: below what the geometry means"""
+FROM_READING = "reading"
+"""the source of an anomaly that a value measured at a checkpoint is"""
 _OVER = frozenset({EventKind.ALL_CLEAR, EventKind.BATTERY_CHARGED, EventKind.CONNECTION_RESTORED})
 
 

@@ -1,16 +1,29 @@
-"""What a run is made with, apart from its mission and its site: data that a journal keeps."""
+"""What a run is made from: all that it depends on, as data."""
 
-from pydantic import Field
+from typing import Any
 
+from pydantic import Field, ValidationError, field_validator
+
+from argo_compiler.diagnostics import Diagnostic
+from argo_compiler.errors import Invalid
+from argo_compiler.files.json_places import format_path
 from argo_compiler.hfsm import Event
+from argo_compiler.il import Mission
 from argo_compiler.model import Model
 from argo_env.faults.kinds import AnyFault
-from argo_env.run.log import LoggedEvent
+from argo_env.files.yaml_messages import message_of
+from argo_env.run.log import FROM_OUTSIDE, LoggedEvent
+from argo_env.run.record import Reordering
+
+_SETTINGS = {"drive", "sensor", "seed", "values", "events", "faults"}
 
 
-class RunSettings(Model):
-    """How a run is carried out. Equal settings give equal runs."""
+class RunSpec(Model):
+    """All that a run depends on. Equal specs give equal runs, on any machine and in any process."""
 
+    mission: Mission
+    site: str = "umad"
+    """what opens the site: its name, the path of its file, or its parameters"""
     drive: str = "kinematic"
     """name of the drive"""
     sensor: str = "ideal"
@@ -23,8 +36,44 @@ class RunSettings(Model):
     """what the run is told, and when (s)"""
     faults: tuple[AnyFault, ...] = ()
     """what goes wrong; the robot finds out by sensing"""
+    diagnostics: tuple[Diagnostic, ...] = ()
+    """what the mission's import had to say, for the record"""
+    reordering: Reordering | None = None
+    """for the record, where the mission is in another order than it was written"""
+    source: str | None = None
+    """the whole path of the file that the mission was read from, which must not change while the
+    run is to go on from a journal"""
+
+    @field_validator("events")
+    @classmethod
+    def _from_outside(
+        cls, events: tuple[tuple[float, LoggedEvent], ...]
+    ) -> tuple[tuple[float, LoggedEvent], ...]:
+        for t, event in events:
+            event.original()
+            if event.kind not in FROM_OUTSIDE:
+                raise ValueError(f"the robot itself tells that an action has {event.kind}")
+            if t < 0:
+                raise ValueError(f"nothing occurs at {t:g} s, before the run")
+        return events
+
+    @property
+    def settings(self) -> dict[str, Any]:
+        """How the run is carried out, without what and where, as plain data."""
+        return self.model_dump(mode="json", include=_SETTINGS)
+
+
+def read_spec(content: str | bytes, name: str = "the run's spec") -> RunSpec:
+    """The spec in a JSON text; Invalid, with its `name` and the place in it, if it is none."""
+    try:
+        return RunSpec.model_validate_json(content)
+    except ValidationError as error:
+        fault = error.errors(include_url=False)[0]
+        place = format_path(fault["loc"])
+        said = message_of(fault, fault["loc"])
+        raise Invalid(f"{name}: {place + ': ' if place else ''}{said}") from None
 
 
 def logged(*events: tuple[float, Event]) -> tuple[tuple[float, LoggedEvent], ...]:
-    """Events and their times (s) as settings hold them."""
+    """Events and their times (s) as specs hold them."""
     return tuple((t, LoggedEvent.of(event)) for t, event in events)

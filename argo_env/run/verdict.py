@@ -52,14 +52,16 @@ def judge(
 ) -> Result:
     """How the mission ended: the machine with `outcome`, the tasks `failed` for good.
 
-    An `outcome` of None is that of a run that was stopped before.
+    An `outcome` of None is that of a run that was stopped before, or is still under way.
     """
     last = log.last
     assert last is not None
     now, limit, area = last.t, mission.max_duration, mission.end_area
     docked = None if area is None else is_docked(last.body_pose, docks, area)
     missing = []
-    if outcome is None:
+    if outcome is None and not last.ended:
+        missing.append(f"it is under way, {now:.0f} s so far")
+    elif outcome is None:
         missing.append(last.stopped or f"it was stopped after {now:.0f} s")
     elif outcome is not Outcome.COMPLETED:
         missing.append(_ENDINGS[outcome])

@@ -9,12 +9,13 @@ import typer
 from rich.console import Console
 
 from argo_env.files.folders import make_folder
+from argo_env.planning import open_site
 from argo_env.recording.files import check_recording, recording_to
 from argo_env.run.journal import open_journal
+from argo_env.run.observer import Observer
 from argo_env.run.session import resume
 from argo_env.run.spec import logged
 from argo_planner.commands.run import KINDS, parse_events
-from argo_planner.loading import load_navigator
 from argo_planner.running import RunDisplay, conclude
 
 
@@ -46,8 +47,10 @@ def resume_run(
     events = logged(*parse_events(event or []))
     console = Console(stderr=True, highlight=False)
     with open_journal(journal) as book:
-        navigator = load_navigator(book.header.site)
-        book.require_unchanged(navigator)
+        spec = book.header.spec
+        site = open_site(spec.site)
+        navigator = site.navigator
+        book.require_unchanged(site)
         at = book.entries[-1].t if book.entries else 0.0
         if book.ended:
             console.print(f"The run had ended already, at {at:g} s; these are its results.")
@@ -55,19 +58,12 @@ def resume_run(
             navigator.prepare()
             console.print(f"The run goes on at {at:g} s.")
         begun = time.monotonic()
-        source = Path(book.header.source) if book.header.source else None
+        source = Path(spec.source) if spec.source else None
         with ExitStack() as stack:
-            display = stack.enter_context(RunDisplay(book.header.mission.max_duration))
-            record = resume(
-                book,
-                navigator,
-                observe=display.observe,
-                announce=display.announce,
-                events=events,
-                recorder=stack.enter_context(recording_to(recording, source))
-                if recording
-                else None,
-            )
+            observers: list[Observer] = [stack.enter_context(RunDisplay(spec.mission.max_duration))]
+            if recording:
+                observers.append(stack.enter_context(recording_to(recording, source)))
+            record = resume(book, site, observers=observers, events=events)
     seconds = time.monotonic() - begun
     speed = (record.result.duration - at) / max(1e-9, seconds)
     took = f"The rest took {seconds:.1f} s: {speed:.0f} times real time."

@@ -10,20 +10,27 @@ import typer
 
 from argo_compiler.errors import ArgoError
 from argo_compiler.hfsm import Cancel, Event, Occurred, Pause, Resume, lower
-from argo_compiler.il import EventKind
+from argo_compiler.il import EventKind, Mission
+from argo_env.drives.registry import DRIVES
 from argo_env.faults.reading import read_faults, require_fit
 from argo_env.files.folders import make_folder
 from argo_env.pictures import check_film
+from argo_env.planning import open_site
 from argo_env.recording.files import check_recording, recording_to
-from argo_env.run.journal import JournalPlace, require_free
-from argo_env.run.session import DRIVES, SENSORS, check_settings, simulate
-from argo_env.run.spec import RunSettings, logged
-from argo_planner.loading import keep_input, load_mission, load_navigator
+from argo_env.run.journal import require_free
+from argo_env.run.observer import Observer
+from argo_env.run.rig import check_spec
+from argo_env.run.session import simulate
+from argo_env.run.spec import RunSpec, logged
+from argo_env.sensing.registry import SENSORS
+from argo_planner.loading import keep_input, load_mission
 from argo_planner.options import EndArea, Optimise, SiteOption, Source, StartArea
 from argo_planner.routing import optimised
 from argo_planner.running import RunDisplay, conclude
 
 DEFAULT_PACE = 5.0
+_NONE = Mission(tasks=())
+"""until the mission is read"""
 
 _BY_A_PERSON: dict[str, Event] = {"pause": Pause(), "resume": Resume(), "cancel": Cancel()}
 
@@ -96,7 +103,10 @@ def run(
         keep_input(source, recording)
     if report:
         make_folder(report)
-    settings = RunSettings(
+    spec = RunSpec(
+        mission=_NONE,
+        site=site_reference(site),
+        source=str(source.resolve()),
         drive=drive,
         sensor=sensor,
         seed=seed,
@@ -107,31 +117,31 @@ def run(
     if journal:
         require_free(journal)
     started = time.monotonic()
-    navigator = load_navigator(site)
+    opened = open_site(site)
+    navigator = opened.navigator
     if faults:
-        require_fit(settings.faults, faults, navigator.site, seed)
-    check_settings(settings, navigator.site)  # before it is long
+        require_fit(spec.faults, faults, navigator.site, seed)
+    check_spec(spec, navigator.site)  # before it is long
     mission, diagnostics = load_mission(source, navigator, start_area, end_area)
     reordering = None
     if optimise:
         mission, reordering = optimised(source, mission, navigator)
+    known = {"mission": mission, "diagnostics": diagnostics, "reordering": reordering}
+    spec = spec.model_copy(update=known)
     lower(mission, source_name=str(source))
     navigator.prepare()
     loaded = time.monotonic()
     with ExitStack() as stack:
-        display = stack.enter_context(RunDisplay(mission.max_duration))
+        observers: list[Observer] = [stack.enter_context(RunDisplay(mission.max_duration))]
+        if recording:
+            observers.append(stack.enter_context(recording_to(recording, source)))
         record = simulate(
-            mission,
-            navigator,
-            settings=settings,
-            diagnostics=diagnostics,
-            observe=display.observe,
-            announce=display.announce,
+            spec,
+            opened,
+            observers=observers,
+            journal=journal,
             gui=gui,
             pace=(pace or DEFAULT_PACE) if gui else None,
-            journal=JournalPlace(journal, site_reference(site), source) if journal else None,
-            recorder=stack.enter_context(recording_to(recording, source)) if recording else None,
-            reordering=reordering,
         )
     ended = time.monotonic()
     took = (

@@ -11,10 +11,9 @@ from argo_env.navigation import Navigator
 from argo_env.planning import open_site
 from argo_env.planning.catalog import make_catalog
 from argo_env.robot.spec import load_robot
-from argo_env.run.session import simulate
-from argo_env.run.spec import RunSettings
 from argo_env.site import load_site
 from argo_env.site.urdf import to_urdf
+from tests.yard import Watching, simulated
 
 
 class World:
@@ -139,8 +138,8 @@ def sheet_run(shipped, navigator):
     """Mission #1, run from area 1 to area 2: the mission's record and what the observer saw."""
     seen = []
     mission = shipped("mission_1.txt", start_area=1, end_area=2).mission
-    record = simulate(
-        mission, navigator, settings=RunSettings(seed=3), observe=lambda *now: seen.append(now)
+    record = simulated(
+        mission, navigator, seed=3, observers=[Watching(lambda *now: seen.append(now))]
     )
     return record, seen
 
@@ -148,4 +147,4 @@ def sheet_run(shipped, navigator):
 @pytest.fixture(scope="session")
 def protocol_record(shipped, navigator):
     """The record of protocol #2."""
-    return simulate(shipped("protocol_2.txt").mission, navigator, settings=RunSettings(seed=3))
+    return simulated(shipped("protocol_2.txt").mission, navigator, seed=3)

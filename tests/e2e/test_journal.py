@@ -11,6 +11,7 @@ import subprocess
 import sys
 from itertools import count
 from pathlib import Path
+from typing import Any
 
 import pytest
 import yaml
@@ -21,9 +22,9 @@ from argo_compiler.il import Afterwards, EventKind, Group, Reaction, Response
 from argo_compiler.model import Pose
 from argo_env.run.journal import open_journal
 from argo_env.run.record import RunRecord
-from argo_env.run.session import resume, simulate
-from argo_env.run.spec import RunSettings, logged
-from tests.yard import SITE, measure, mission, waypoint, yard
+from argo_env.run.session import resume
+from argo_env.run.spec import logged
+from tests.yard import SITE, measure, mission, simulated, waypoint, yard
 
 ROOT = Path(__file__).parents[2]
 KILLS = int(os.environ.get("ARGO_KILLS", "8"))
@@ -99,8 +100,8 @@ def require_complete(record: RunRecord, reference: RunRecord, told) -> None:
     assert list(record.path) == sorted(record.path, key=lambda sample: sample.t)
 
 
-def settings(seed: int) -> RunSettings:
-    return RunSettings(seed=seed, events=logged(*EVENTS), values={2: 7.25})
+def settings(seed: int) -> dict[str, Any]:
+    return {"seed": seed, "events": logged(*EVENTS), "values": {2: 7.25}}
 
 
 @pytest.mark.long
@@ -109,7 +110,7 @@ def test_runs_that_are_killed_lose_nothing(argo, folder, navigator, record_prope
     kills, done, silent, seeds = 0, 0, 0, count()
     while kills < KILLS:
         seed = next(seeds)
-        reference = simulate(PLAN, navigator, settings=settings(seed))
+        reference = simulated(PLAN, navigator, **settings(seed))
         journal = folder / f"{seed}.journal"
         begin = (
             "run", folder / "plan.json", "--site", folder / "yard.yaml", "--seed", seed,
@@ -171,7 +172,7 @@ def test_kill_and_resume_by_the_command(
         (float(t), task, int(id), float(value))
         for t, task, id, value in ANNOUNCED.findall(line + result.stderr)
     ]
-    reference = simulate(PLAN, navigator, settings=settings(3))
+    reference = simulated(PLAN, navigator, **settings(3))
     require_complete(record, reference, told)
     assert len(record.resumed) == 1
     again = argo_process("resume", journal, "--report", tmp_path / "again")

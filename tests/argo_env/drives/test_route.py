@@ -20,12 +20,11 @@ from argo_env.planning.travel import SiteTravel
 from argo_env.robot.calibration import Calibration, Pace
 from argo_env.robot.pose import BodyPose
 from argo_env.robot.spec import load_robot
-from argo_env.run.session import simulate
-from argo_env.run.spec import RunSettings
 from argo_env.world.paper_world import PaperWorld
 from benchmarks.drives import random_mission
 from tests import yard
 from tests.conftest import examples
+from tests.yard import simulated
 
 ROBOT = load_robot()
 
@@ -130,8 +129,7 @@ def test_a_mission_goes_as_with_the_kinematic_drive(small):
         yard.measure(1), yard.waypoint("A", 5.05, 2.05, velocity=0.2), yard.measure(3)
     )
     route, kinematic = (
-        simulate(mission, small, settings=RunSettings(drive=drive, seed=2))
-        for drive in ("route", "kinematic")
+        simulated(mission, small, drive=drive, seed=2) for drive in ("route", "kinematic")
     )
     assert route.drive == "route"
     assert route.tasks[-1].outcome == "done"
@@ -147,7 +145,7 @@ def test_a_mission_goes_as_with_the_kinematic_drive(small):
 def test_a_mission_takes_exactly_as_long_as_planned(navigator, catalog, seed):
     mission = random_mission(navigator, seed)
     planned = analyse(mission, catalog, SiteTravel(navigator)).duration
-    record = simulate(mission, navigator, settings=RunSettings(drive="route", seed=seed))
+    record = simulated(mission, navigator, drive="route", seed=seed)
     assert record.result.success
     assert record.result.docked
     assert planned.least.value == planned.most.value
@@ -159,9 +157,9 @@ def test_a_mission_takes_exactly_as_long_as_planned(navigator, catalog, seed):
 def test_there_is_nothing_to_show_or_to_photograph(small):
     mission = yard.mission(yard.measure(1))
     with pytest.raises(ArgoError, match="no world to show"):
-        simulate(mission, small, settings=RunSettings(drive="route"), gui=True)
+        simulated(mission, small, drive="route", gui=True)
     with pytest.raises(ArgoError, match="no world that the sensor `camera`"):
-        simulate(mission, small, settings=RunSettings(drive="route", sensor="camera"))
+        simulated(mission, small, drive="route", sensor="camera")
 
 
 def test_lines_of_sight_are_those_of_the_world(umad, robot, simulation):

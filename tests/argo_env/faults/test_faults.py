@@ -16,13 +16,13 @@ from argo_compiler.schemas.generate import schema_of
 from argo_env.faults.kinds import KINDS, FaultFile, changed_site, settle
 from argo_env.faults.reading import read_faults, require_fit
 from argo_env.files import resources
-from argo_env.run.spec import RunSettings
+from argo_env.run.spec import RunSpec
 from argo_env.site import make_site
 from argo_env.site.shapes import Box, Role
 from argo_env.site.spec import SiteSpec
 from argo_env.world.world import World
 from tests.conftest import examples
-from tests.yard import SITE
+from tests.yard import SITE, measure, mission
 
 SCENARIOS = sorted((resources.scenarios() / "umad" / "faults").glob("*.yaml"))
 
@@ -212,10 +212,12 @@ class TestDrawing:
         assert not checkpoint.nominal.contains(fault.value)
 
     def test_settings_go_through_json(self):
-        given = RunSettings(faults=faults_of(*({"kind": kind} for kind in KINDS)))
-        assert RunSettings.model_validate_json(given.model_dump_json()) == given
+        given = RunSpec(
+            mission=mission(measure(1)), faults=faults_of(*({"kind": kind} for kind in KINDS))
+        )
+        assert RunSpec.model_validate_json(given.model_dump_json()) == given
         with pytest.raises(ValidationError):
-            RunSettings.model_validate({"faults": [{"kind": "flood"}]})
+            RunSpec.model_validate({"mission": given.mission, "faults": [{"kind": "flood"}]})
 
 
 def area(elements, role):

@@ -10,10 +10,10 @@ from argo_compiler.il import EventKind
 from argo_env.faults.kinds import KINDS
 from argo_env.faults.reading import read_faults
 from argo_env.files import resources
-from argo_env.run.session import simulate
-from argo_env.run.spec import RunSettings, logged
+from argo_env.run.spec import logged
 from benchmarks.faults import random_mission
 from tests.conftest import examples
+from tests.yard import Watching, simulated
 
 FOLDER = resources.scenarios() / "umad" / "faults"
 SEED = 3
@@ -97,10 +97,7 @@ def missions(shipped):
 @pytest.fixture(scope="module")
 def clean(missions, navigator):
     """The missions' runs without a fault."""
-    return {
-        name: simulate(mission, navigator, settings=RunSettings(seed=SEED))
-        for name, mission in missions.items()
-    }
+    return {name: simulated(mission, navigator, seed=SEED) for name, mission in missions.items()}
 
 
 @pytest.mark.parametrize("name", ["ground", "upstairs"])
@@ -121,11 +118,13 @@ def test_found_and_answered(missions, navigator, clean, kind):
     events = () if answer.operator is None else logged((answer.operator, Resume()))
     faults = read_faults(FOLDER / f"{kind}.yaml")
     told = []
-    record = simulate(
+    record = simulated(
         missions[answer.mission],
         navigator,
-        settings=RunSettings(seed=SEED, faults=faults, events=events),
-        announce=told.append,
+        seed=SEED,
+        faults=faults,
+        events=events,
+        observers=[Watching(announce=told.append)],
     )
     usual = clean[answer.mission]
     assert tuple(a.kind for a in record.anomalies) == answer.found
@@ -163,6 +162,6 @@ def test_found_and_answered(missions, navigator, clean, kind):
 def test_no_false_alarm_in_a_random_mission(navigator, seed):
     """One of those that `python -m benchmarks.faults --clean 100` runs."""
     mission = random_mission(navigator, 100 + seed)
-    record = simulate(mission, navigator, settings=RunSettings(seed=100 + seed))
+    record = simulated(mission, navigator, seed=100 + seed)
     assert record.anomalies == ()
     assert record.result.success

@@ -12,12 +12,10 @@ from argo_compiler.reorder.rewriting import apply_route
 from argo_compiler.route import Tour, evaluate
 from argo_env.planning.route_matrix import mission_ways, plan_mission
 from argo_env.planning.travel import SiteTravel
-from argo_env.run.journal import JournalPlace, open_journal
+from argo_env.run.journal import open_journal
 from argo_env.run.record import Reordering
-from argo_env.run.runner import MissionRunner
-from argo_env.run.session import resume, simulate
-from argo_env.run.spec import RunSettings
-from tests.yard import fast_rig, measure, mission, waypoint, yard
+from argo_env.run.session import resume
+from tests.yard import fast_rig, measure, mission, opened, run_with, simulated, waypoint, yard
 
 STEP = 0.1  # s of the drive
 
@@ -29,7 +27,7 @@ def navigator():
 
 def driven(changed, navigator):
     """How long a mission takes, s."""
-    return MissionRunner(changed, fast_rig(navigator), RunSettings()).run().result.duration
+    return run_with(changed, fast_rig(navigator)).result.duration
 
 
 def around(**fields):
@@ -105,11 +103,10 @@ def test_a_resumed_run_still_says_in_what_order_it_is(navigator, tmp_path):
         proven=True,
     )  # fmt: skip
     written = mission(waypoint("B", 5.5, 3.5), waypoint("A", 2, 2))
-    place = JournalPlace(tmp_path / "run.journal", "yard")
-    settings = RunSettings(drive="route")
-    whole = simulate(written, navigator, settings=settings, journal=place, reordering=said)
+    place = tmp_path / "run.journal"
+    whole = simulated(written, navigator, drive="route", journal=place, reordering=said)
     assert whole.reordering == said
-    lines = place.path.read_bytes().splitlines(keepends=True)
-    place.path.write_bytes(b"".join(lines[: len(lines) // 2]))
-    with open_journal(place.path) as journal:
-        assert resume(journal, navigator).reordering == said
+    lines = place.read_bytes().splitlines(keepends=True)
+    place.write_bytes(b"".join(lines[: len(lines) // 2]))
+    with open_journal(place) as journal:
+        assert resume(journal, opened(navigator)).reordering == said

@@ -6,7 +6,7 @@ from argo_compiler.analysis import Leg, NoWay, analyse
 from argo_compiler.il import Action, Mission, Task, Transition
 from argo_compiler.model import Pose
 from argo_env.planning.travel import SiteTravel
-from argo_env.run.session import simulate
+from tests.yard import simulated
 
 pytestmark = pytest.mark.xdist_group("missions on UMAD")  # they share its runs
 
@@ -62,7 +62,7 @@ def test_velocities_count_for_the_way_to_the_next_task(navigator, catalog, trave
     start = Task(name="S", action=Action.START, velocity=0.2)
     mission = chain(start, measure(1, velocity=0.8), measure(4), start_area=1)
     found = analyse(mission, catalog, travel)
-    record = simulate(mission, navigator)
+    record = simulated(mission, navigator)
     assert found.duration.most.value == pytest.approx(record.result.duration, abs=STEP)
 
 

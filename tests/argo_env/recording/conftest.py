@@ -10,8 +10,8 @@ from argo_compiler.model import Pose
 from argo_env.recording.files import recording_to
 from argo_env.recording.reader import read_recording
 from argo_env.run.session import simulate
-from argo_env.run.spec import RunSettings, logged
-from tests.yard import measure, mission, waypoint, yard
+from argo_env.run.spec import RunSpec, logged
+from tests.yard import measure, mission, opened, waypoint, yard
 
 PLAN = mission(
     measure(1),
@@ -30,7 +30,9 @@ PLAN = mission(
         ),
     ),
 )
-SETTINGS = RunSettings(
+SPEC = RunSpec(
+    mission=PLAN,
+    site="yard",
     seed=3,
     values={2: 7.25},
     events=logged(
@@ -51,9 +53,9 @@ def yard_navigator():
 def record_run(yard_navigator):
     """Runs the plan and records it to a file; returns the run's record."""
 
-    def run(file, settings=SETTINGS, source=None):
+    def run(file, spec=SPEC, source=None):
         with recording_to(file, source) as recorder:
-            return simulate(PLAN, yard_navigator, settings=settings, recorder=recorder)
+            return simulate(spec, opened(yard_navigator), observers=[recorder])
 
     return run
 

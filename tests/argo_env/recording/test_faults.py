@@ -8,7 +8,7 @@ from mcap_protobuf.decoder import DecoderFactory
 
 from argo_env.faults.checkpoints import DisplacedCheckpoint
 from argo_env.faults.walkway import Brick
-from tests.argo_env.recording.conftest import SETTINGS
+from tests.argo_env.recording.conftest import SPEC
 
 BRICK = Brick(floor=1, place=(6.2, 2.5), size=(0.3, 0.2, 0.1), yaw=30.0)
 MOVED = DisplacedCheckpoint(checkpoint=3, at=10.0, until=20.0, offset=(0.0, 0.05, 0.02), turn=90.0)
@@ -18,7 +18,7 @@ MOVED = DisplacedCheckpoint(checkpoint=3, at=10.0, until=20.0, offset=(0.0, 0.05
 def drawn(record_run, yard_navigator, tmp_path_factory):
     """The scenes of a run with the faults, with their times (s), and where gauge 3 was planned."""
     file = tmp_path_factory.mktemp("faults") / "run.mcap"
-    record_run(file, SETTINGS.model_copy(update={"faults": (BRICK, MOVED)}))
+    record_run(file, SPEC.model_copy(update={"faults": (BRICK, MOVED)}))
     with file.open("rb") as stream:
         reader = make_reader(stream, decoder_factories=[DecoderFactory()])
         said = [

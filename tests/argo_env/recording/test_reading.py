@@ -1,5 +1,6 @@
 """Recordings read back: the same report, and what is left of files that are cut or damaged."""
 
+import json
 import os
 from pathlib import Path
 
@@ -14,10 +15,12 @@ from argo_env.recording import files
 from argo_env.recording.files import check_recording, recording_to
 from argo_env.recording.reader import read_recording
 from argo_env.report import write_report
-from argo_env.run.journal import JournalPlace, open_journal
+from argo_env.run.journal import open_journal
 from argo_env.run.session import resume, simulate
-from tests.argo_env.recording.conftest import PLAN, SETTINGS
+from argo_env.run.spec import RunSpec
+from tests.argo_env.recording.conftest import PLAN, SPEC
 from tests.conftest import examples
+from tests.yard import Watching, opened
 
 EMPTY = b"\x89MCAP0\r\n"
 
@@ -40,7 +43,8 @@ def test_the_mission_is_in_it(recorded) -> None:
         attached = {a.name: a.data for a in make_reader(stream).iter_attachments()}
     assert attached["source/plan.txt"] == b"the plan as a person wrote it"
     assert type(PLAN).model_validate_json(attached["mission.json"]) == PLAN
-    assert type(SETTINGS).model_validate_json(attached["settings.json"]) == SETTINGS
+    settings = json.loads(attached["settings.json"])
+    assert RunSpec.model_validate({"mission": PLAN, "site": "yard"} | settings) == SPEC
     assert b"<robot" in attached["tracker.urdf"]
 
 
@@ -48,26 +52,26 @@ def test_equal_runs_give_equal_files(recorded, record_run, tmp_path: Path) -> No
     source = recorded.file.parent / "plan.txt"
     record_run(tmp_path / "again.mcap", source=source)
     assert (tmp_path / "again.mcap").read_bytes() == recorded.content
-    record_run(tmp_path / "other.mcap", SETTINGS.model_copy(update={"seed": 4}), source=source)
+    record_run(tmp_path / "other.mcap", SPEC.model_copy(update={"seed": 4}), source=source)
     assert (tmp_path / "other.mcap").read_bytes() != recorded.content
 
 
 def test_a_recorded_run_is_the_run_without_a_recorder(recorded, yard_navigator) -> None:
-    assert simulate(PLAN, yard_navigator, settings=SETTINGS) == recorded.record
+    assert simulate(SPEC, opened(yard_navigator)) == recorded.record
 
 
 def test_a_resumed_run_is_recorded_with_the_record_of_all_of_it(
     recorded, yard_navigator, tmp_path: Path
 ) -> None:
-    place = JournalPlace(tmp_path / "run.journal", "yard")
-    whole = simulate(PLAN, yard_navigator, settings=SETTINGS, journal=place)
+    place = tmp_path / "run.journal"
+    whole = simulate(SPEC, opened(yard_navigator), journal=place)
     assert whole == recorded.record
-    lines = place.path.read_bytes().splitlines(keepends=True)
-    place.path.write_bytes(b"".join(lines[: len(lines) // 2]))
+    lines = place.read_bytes().splitlines(keepends=True)
+    place.write_bytes(b"".join(lines[: len(lines) // 2]))
     file = tmp_path / "rest.mcap"
-    with open_journal(place.path) as journal, recording_to(file) as recorder:
+    with open_journal(place) as journal, recording_to(file) as recorder:
         gone_on_at = journal.entries[-1].t
-        record = resume(journal, yard_navigator, recorder=recorder)
+        record = resume(journal, opened(yard_navigator), observers=[recorder])
     found = read_recording(file)
     assert found.record == record
     assert record.resumed == (gone_on_at,)
@@ -216,7 +220,7 @@ def test_a_full_disk_is_said(yard_navigator, tmp_path: Path) -> None:
         pytest.raises(ArgoError, match=r"full\.mcap: the recording can't be written: No space"),
         recording_to(full) as recorder,
     ):
-        simulate(PLAN, yard_navigator, settings=SETTINGS, recorder=recorder)
+        simulate(SPEC, opened(yard_navigator), observers=[recorder])
 
 
 def test_a_run_that_fails_leaves_what_was_recorded(yard_navigator, tmp_path: Path) -> None:
@@ -226,7 +230,7 @@ def test_a_run_that_fails_leaves_what_was_recorded(yard_navigator, tmp_path: Pat
 
     file = tmp_path / "failed.mcap"
     with pytest.raises(RuntimeError, match="plug"), recording_to(file) as recorder:
-        simulate(PLAN, yard_navigator, settings=SETTINGS, recorder=recorder, observe=fail)
+        simulate(SPEC, opened(yard_navigator), observers=[recorder, Watching(fail)])
     found = read_recording(file)
     assert (found.flaw, found.record) == (None, None)
     assert found.until == pytest.approx(30.1)

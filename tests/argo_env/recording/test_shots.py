@@ -13,9 +13,9 @@ from scipy.spatial.transform import Rotation
 from argo_env.drives.kinematic import KinematicDrive
 from argo_env.recording.files import recording_to
 from argo_env.robot.pose import BodyPose
-from argo_env.run.action import Rig
+from argo_env.run.rig import Rig
 from argo_env.world.world import World
-from tests.argo_env.recording.conftest import PLAN, SETTINGS
+from tests.argo_env.recording.conftest import SPEC
 
 pytest.importorskip("cv2")
 
@@ -35,9 +35,9 @@ def taken(yard_navigator, tmp_path_factory):
         world.show_value(1, 3.0)
         sensor = CameraSensor(world, 1)
         with recording_to(file) as recorder:
-            recorder.begin(Rig(world, yard_navigator, drive, sensor), PLAN, SETTINGS)
+            recorder.on_begin(Rig(world, yard_navigator, drive, sensor), SPEC)
             sensor.measure(1, drive.pose)
-            recorder.step(4.2, None)
+            recorder.on_step(4.2, None)
     messages = defaultdict(list)
     with file.open("rb") as stream:
         reader = make_reader(stream, decoder_factories=[DecoderFactory()])

@@ -12,12 +12,10 @@ from argo_compiler.il import Afterwards, EventKind, Group, OnFailure, Reaction, 
 from argo_compiler.model import Pose
 from argo_env.report import write_report
 from argo_env.run.record import RunRecord
-from argo_env.run.runner import MissionRunner
-from argo_env.run.session import simulate
-from argo_env.run.spec import RunSettings, logged
+from argo_env.run.spec import logged
 from argo_env.sensing.sensor import MeasurementError
 from tests.conftest import examples
-from tests.yard import fast_rig, measure, mission, waypoint, yard
+from tests.yard import fast_rig, measure, mission, run_with, simulated, waypoint, yard
 
 DOCK = Pose(x=1.05, y=1.05, z=0.02)
 SHELTER = Pose(x=3.05, y=1.55, z=0.02)
@@ -30,9 +28,7 @@ def navigator():
 
 
 def run(navigator, plan, *events, values=None):
-    return MissionRunner(
-        plan, fast_rig(navigator, values), RunSettings(events=logged(*events))
-    ).run()
+    return run_with(plan, fast_rig(navigator, values), events=logged(*events))
 
 
 def react(event, response, **fields):
@@ -89,7 +85,7 @@ class TestCleanUp:
         )
         rig = fast_rig(navigator)
         events = ((arrival + 4.0, Occurred(EventKind.GAS_LEAK)),)
-        record = MissionRunner(plan, rig, RunSettings(events=logged(*events))).run()
+        record = run_with(plan, rig, events=logged(*events))
         first, second = record.tasks
         assert first.outcome == "interrupted"
         assert second.start == first.end
@@ -229,8 +225,7 @@ class TestReactions:
         a, b = waypoint("A", 3.05, 2.05, velocity=0.2), waypoint("B", 4.55, 2.05, velocity=0.3)
         plan = mission(a, b, waypoint("C", 2.05, 2.05), reactions=(shelter,))
         rig = fast_rig(navigator)
-        leak = RunSettings(events=logged((16.0, Occurred(EventKind.GAS_LEAK))))
-        MissionRunner(plan, rig, leak).run()
+        run_with(plan, rig, events=logged((16.0, Occurred(EventKind.GAS_LEAK))))
         assert rig.drive.velocities == [None, 0.2, None, 0.2, 0.3]
 
 
@@ -238,7 +233,7 @@ def test_velocity_of_a_way_back_to_the_same_task(navigator):
     again = Group(name="Twice", start="A", end="A", max_repeat_count=2)
     plan = mission(waypoint("A", 3.05, 2.05, velocity=0.2), groups=(again,))
     rig = fast_rig(navigator)
-    MissionRunner(plan, rig, RunSettings()).run()
+    run_with(plan, rig)
     assert rig.drive.velocities == [None, 0.2]
 
 
@@ -261,7 +256,7 @@ class TestFailures:
         rig = fast_rig(navigator)
         moody = self.Moody(failures, rig.sensor)
         rig = type(rig)(rig.world, rig.navigator, rig.drive, moody)
-        return MissionRunner(plan, rig, RunSettings()).run()
+        return run_with(plan, rig)
 
     def test_a_retry_that_succeeds_is_a_success(self, navigator):
         record = self.run(navigator, mission(measure(1, retries=2)), 2)
@@ -356,8 +351,8 @@ def test_in_the_world(navigator):
     plan = mission(
         measure(1), dock=DOCK, reactions=(react(EventKind.LOW_BATTERY, Response.RETURN),)
     )
-    settings = RunSettings(events=logged((8.0, Occurred(EventKind.LOW_BATTERY))))
-    record = simulate(plan, navigator, settings=settings)
+    events = logged((8.0, Occurred(EventKind.LOW_BATTERY)))
+    record = simulated(plan, navigator, events=events)
     assert names(record) == [("MEASURE 1", "interrupted"), ("react to low_battery", "done")]
     assert record.result.outcome is Outcome.RETURNED
     assert math.dist((record.path[-1].x, record.path[-1].y), (DOCK.x, DOCK.y)) < 0.1

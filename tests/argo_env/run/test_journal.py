@@ -6,6 +6,7 @@ import signal
 from dataclasses import replace
 from itertools import pairwise
 from pathlib import Path
+from types import SimpleNamespace
 
 import pytest
 from hypothesis import given, settings
@@ -29,20 +30,30 @@ from argo_compiler.model import Pose
 from argo_env.navigation import Navigator
 from argo_env.run.journal import (
     Header,
-    JournalPlace,
     create_journal,
-    fingerprints,
     open_journal,
 )
 from argo_env.run.log import LoggedEvent
-from argo_env.run.runner import SAMPLE_PERIOD, MissionRunner
-from argo_env.run.session import resume, simulate
-from argo_env.run.spec import RunSettings, logged
+from argo_env.run.session import resume
+from argo_env.run.simulation import SAMPLE_PERIOD
+from argo_env.run.spec import RunSpec, logged
 from argo_env.site import make_site
 from argo_env.site.spec import SiteSpec
 from argo_env.world.world import Touch
 from tests.conftest import examples
-from tests.yard import SITE, EmptyWorld, fast_rig, measure, mission, waypoint, yard
+from tests.yard import (
+    SITE,
+    EmptyWorld,
+    Watching,
+    fast_rig,
+    measure,
+    mission,
+    opened,
+    run_with,
+    simulated,
+    waypoint,
+    yard,
+)
 
 CAMPAIGN = examples(1) > 1
 """whether to try all cuts, and not only some"""
@@ -80,19 +91,26 @@ def navigator():
 
 
 def header(navigator, plan=PLAN, events=EVENTS, source=None):
-    return Header(
-        site="yard",
-        source=None if source is None else str(source),
-        fingerprints=fingerprints(navigator, plan, source),
-        settings=RunSettings(seed=1, events=logged(*events)),
+    spec = RunSpec(
         mission=plan,
-        diagnostics=(),
+        site="yard",
+        seed=1,
+        events=logged(*events),
+        source=None if source is None else str(source),
     )
+    return Header.of(opened(navigator), spec)
 
 
 def runner(navigator, journal, plan=PLAN, events=EVENTS, values=None):
     rig = fast_rig(navigator, values or {2: 5.5})
-    return MissionRunner(plan, rig, RunSettings(seed=1, events=logged(*events)), (), journal)
+
+    def go_on(observe=None, announce=None):
+        watching = [Watching(observe, announce)]
+        return run_with(
+            plan, rig, journal=journal, observers=watching, seed=1, events=logged(*events)
+        )
+
+    return SimpleNamespace(run=go_on)
 
 
 def resumed(navigator, path):
@@ -284,7 +302,7 @@ def test_contacts_go_on_as_well(navigator, tmp_path):
     def run(journal):
         rig = fast_rig(navigator)
         rig = replace(rig, world=Scraping(rig.drive))
-        return MissionRunner(plan, rig, RunSettings(seed=1), (), journal).run()
+        return run_with(plan, rig, journal=journal, seed=1)
 
     plan = mission(waypoint("A", 3.05, 1.05), waypoint("B", 1.05, 1.05))
     path = tmp_path / "run.journal"
@@ -308,16 +326,14 @@ def test_contacts_go_on_as_well(navigator, tmp_path):
 def test_simulate_and_resume_in_the_world(navigator, tmp_path):
     plan = mission(measure(1), measure(2), end_area=1)
     path = tmp_path / "run.journal"
-    place = JournalPlace(path, "yard")
-    settings = RunSettings(seed=4, values={2: 4.0})
-    reference = simulate(plan, navigator, settings=settings, journal=place)
-    assert simulate(plan, navigator, settings=settings) == reference
+    reference = simulated(plan, navigator, seed=4, values={2: 4.0}, journal=path)
+    assert simulated(plan, navigator, seed=4, values={2: 4.0}) == reference
     content = path.read_bytes()
     lines = content.splitlines(keepends=True)
     path.write_bytes(b"".join(lines[: len(lines) // 2])[:-3])
     with open_journal(path) as journal:
         at = journal.entries[-1].t
-        record = resume(journal, navigator)
+        record = resume(journal, opened(navigator))
     assert 0.0 < at < reference.result.duration
     assert record.resumed == (at,)
     assert record.seed == 4
@@ -434,7 +450,7 @@ class TestRefusals:
         create_journal(path, header(navigator)).close()
         other = make_site(SiteSpec.model_validate({**SITE, "title": "Yard 2", "storey": 3.0}))
         with open_journal(path) as journal, pytest.raises(ArgoError) as refused:
-            resume(journal, Navigator(other, navigator.robot))
+            resume(journal, opened(Navigator(other, navigator.robot)))
         assert "site's storey" in str(refused.value)
         assert "site's title" in str(refused.value)
         assert "floors" not in str(refused.value)
@@ -444,20 +460,20 @@ class TestRefusals:
         create_journal(path, header(navigator)).close()
         monkeypatch.setattr(argo_env.run.journal, "__version__", "99.9")
         with open_journal(path) as journal, pytest.raises(ArgoError, match=r"Argo .*is 99\.9"):
-            resume(journal, navigator)
+            resume(journal, opened(navigator))
 
     def test_a_changed_mission_file(self, navigator, tmp_path):
         path, source = tmp_path / "run.journal", tmp_path / "mission.json"
         source.write_text("first")
         create_journal(path, header(navigator, source=source)).close()
         with open_journal(path) as journal:
-            journal.require_unchanged(navigator)
+            journal.require_unchanged(opened(navigator))
             source.write_text("second")
             with pytest.raises(ArgoError, match="mission file"):
-                resume(journal, navigator)
+                resume(journal, opened(navigator))
             # The journal holds the mission itself.
             source.unlink()
-            journal.require_unchanged(navigator)
+            journal.require_unchanged(opened(navigator))
 
     def test_entries_of_another_mission(self, navigator, whole, tmp_path):
         content = whole.content

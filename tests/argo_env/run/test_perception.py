@@ -15,18 +15,29 @@ from argo_env.faults.kinds import FaultFile
 from argo_env.faults.schedule import Schedule
 from argo_env.navigation import Blockage
 from argo_env.robot.pose import BodyPose
-from argo_env.run.action import TURNS, Rig
-from argo_env.run.journal import JournalPlace, open_journal
+from argo_env.run.action import TURNS
+from argo_env.run.ending import SETTLING
+from argo_env.run.journal import open_journal
 from argo_env.run.perception import Perception, blockage
 from argo_env.run.record import Anomaly
-from argo_env.run.runner import SETTLING, MissionRunner
-from argo_env.run.session import resume, simulate
-from argo_env.run.spec import RunSettings, logged
+from argo_env.run.rig import Rig
+from argo_env.run.session import resume
+from argo_env.run.spec import logged
 from argo_env.sensing.sensor import Measurement, PoorViewError
 from argo_env.sensing.signals.terrain_watch import ObstacleDetection
 from argo_env.sensing.watch import Detection
 from tests.conftest import examples
-from tests.yard import fast_rig, measure, mission, waypoint, yard
+from tests.yard import (
+    Watching,
+    fast_rig,
+    measure,
+    mission,
+    opened,
+    run_with,
+    simulated,
+    waypoint,
+    yard,
+)
 
 DOCK = Pose(x=1.05, y=1.05, z=0.02)
 
@@ -56,8 +67,7 @@ class Scripted:
 def run(navigator, plan, *watches, values=None, events=(), announce=None):
     rig = fast_rig(navigator, values)
     rig = Rig(rig.world, rig.navigator, rig.drive, rig.sensor, watches)
-    given = RunSettings(events=logged(*events))
-    return MissionRunner(plan, rig, given).run(announce=announce)
+    return run_with(plan, rig, events=logged(*events), observers=[Watching(announce=announce)])
 
 
 def obstacle(x, y, half=0.15, kind=EventKind.POSITIVE_OBSTACLE):
@@ -177,7 +187,7 @@ class TestObstacles:
         rig = fast_rig(navigator)
         watch = OnTheWay(period=0.1)
         rig = replace(rig, sensor=Turned(), watches=(watch,))
-        record = MissionRunner(mission(measure(1)), rig, RunSettings()).run()
+        record = run_with(mission(measure(1)), rig)
         (found,), (reading,) = record.anomalies, record.readings
         assert record.result.success
         assert len(looks) == reading.views == 2
@@ -244,10 +254,8 @@ FAULTS = FaultFile.model_validate(
 @pytest.fixture(scope="module")
 def whole(navigator, tmp_path_factory):
     path = tmp_path_factory.mktemp("whole") / "run.journal"
-    place = JournalPlace(path, "yard")
-    settings = RunSettings(seed=4, faults=FAULTS)
     plan = mission(waypoint("A", 5.05, 2.55), measure(3), waypoint("B", 1.55, 1.55))
-    return path, simulate(plan, navigator, settings=settings, journal=place)
+    return path, simulated(plan, navigator, seed=4, faults=FAULTS, journal=path)
 
 
 class TestResumed:
@@ -305,8 +313,7 @@ class TestResumed:
 
     def test_the_same_again(self, navigator, whole):
         _, record = whole
-        settings = RunSettings(seed=4, faults=FAULTS)
-        assert simulate(record.mission, navigator, settings=settings) == record
+        assert simulated(record.mission, navigator, seed=4, faults=FAULTS) == record
 
     @pytest.mark.parametrize("share", [0.1, 0.3, 0.5, 0.8, 0.97])
     def test_a_run_that_was_cut_short(self, navigator, whole, tmp_path, share):
@@ -315,7 +322,7 @@ class TestResumed:
         cut = tmp_path / "cut.journal"
         cut.write_bytes(b"".join(lines[: max(2, round(share * len(lines)))]))
         with open_journal(cut) as journal:
-            again = resume(journal, navigator)
+            again = resume(journal, opened(navigator))
         assert again.result.success
         assert [r.value for r in again.readings] == [r.value for r in record.readings]
         assert sorted(a.kind for a in again.anomalies) == sorted(a.kind for a in record.anomalies)
@@ -331,7 +338,7 @@ class TestResumed:
         events = logged((2.0, Occurred(EventKind.HOT_SPOT)), (40.0, Occurred(EventKind.ALL_CLEAR)))
         with open_journal(cut) as journal:
             began = journal.entries[-1].t
-            first = resume(journal, navigator, events=events)
+            first = resume(journal, opened(navigator), events=events)
         reported = {s.cause: s.t for s in first.trace if s.cause.startswith(Cause.REPORT)}
         hot = [s.t for s in first.trace if "hot spot" in s.cause]
         assert hot == [pytest.approx(began + 0.1)], reported
@@ -342,7 +349,7 @@ class TestResumed:
         third = len(lines) // 3 + 2
         later.write_bytes(b"".join(lines[: third + 3]))
         with open_journal(later) as journal:
-            second = resume(journal, navigator)
+            second = resume(journal, opened(navigator))
         assert 40.0 in [s.t for s in second.trace if "all clear" in s.cause]
         assert [s.t for s in second.trace if "hot spot" in s.cause] == hot
 
@@ -363,15 +370,14 @@ class TestResumedWhileItWaits:
         """The record of the whole run, and of one that is cut at the wanted entry and resumed."""
         faults = FaultFile.model_validate({"faults": faults}).faults
         plan = mission(waypoint("A", 5.05, 2.55), reactions=(reaction,), dock=DOCK)
-        settings = RunSettings(drive="route", faults=faults)
-        whole = simulate(plan, navigator, settings=settings, journal=JournalPlace(path, "yard"))
+        whole = simulated(plan, navigator, drive="route", faults=faults, journal=path)
         assert whole.result.success
         lines = path.read_bytes().splitlines(keepends=True)
         with open_journal(path) as journal:
             at = next(k for k, entry in enumerate(journal.entries) if wanted(entry))
         path.write_bytes(b"".join(lines[: at + 2]))
         with open_journal(path) as journal:
-            return whole, resume(journal, navigator)
+            return whole, resume(journal, opened(navigator))
 
     @pytest.mark.parametrize("charge", [0.3, 0.7, 0.98])
     def test_charging(self, navigator, tmp_path, charge):
@@ -420,10 +426,10 @@ class TestStandingStill:
         )  # fmt: skip
         plan = mission(waypoint("A", 5.05, 2.55), reactions=(pause,))
         faults = self.schedule({"kind": "connection_loss", "at": 2, "until": 200})
-        record = simulate(plan, navigator, settings=RunSettings(faults=faults))
+        record = simulated(plan, navigator, faults=faults)
         assert record.result.success
         forever = self.schedule({"kind": "connection_loss", "at": 2})
-        record = simulate(plan, navigator, settings=RunSettings(faults=forever))
+        record = simulated(plan, navigator, faults=forever)
         assert not record.result.success
         assert "nothing more occurs" in record.result.verdict
         assert record.result.duration == pytest.approx(record.anomalies[0].t + SETTLING, abs=0.2)
@@ -431,7 +437,7 @@ class TestStandingStill:
     def test_held_by_the_emergency_stop(self, navigator):
         faults = self.schedule({"kind": "emergency_stop", "at": 3})
         plan = mission(waypoint("A", 5.05, 2.55))
-        record = simulate(plan, navigator, settings=RunSettings(faults=faults))
+        record = simulated(plan, navigator, faults=faults)
         assert "held by its emergency stop" in record.result.verdict
         held = [s for s in record.path if s.t >= 3]
         assert len({(s.x, s.y) for s in held}) == 1
@@ -442,7 +448,7 @@ class TestStandingStill:
             {"kind": "low_battery", "charge": 0.01}, {"kind": "worn_battery", "capacity": 0.04}
         )
         plan = mission(waypoint("A", 5.05, 2.55), waypoint("B", 1.55, 1.55))
-        record = simulate(plan, navigator, settings=RunSettings(faults=faults))
+        record = simulated(plan, navigator, faults=faults)
         assert "the battery was empty" in record.result.verdict
         assert record.path[-1].charge == 0.0
         assert record.anomalies[0].kind is EventKind.LOW_BATTERY
@@ -451,7 +457,7 @@ class TestStandingStill:
     def test_a_drive_that_stops_fails_the_task(self, navigator):
         faults = self.schedule({"kind": "drive_dysfunction", "at": 3, "speed": 0})
         plan = mission(waypoint("A", 5.05, 2.55))
-        record = simulate(plan, navigator, settings=RunSettings(faults=faults))
+        record = simulated(plan, navigator, faults=faults)
         assert [a.kind for a in record.anomalies] == [EventKind.DYSFUNCTION]
         assert "has not moved for 30 s" in record.tasks[0].reason
 

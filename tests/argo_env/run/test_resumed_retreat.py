@@ -6,10 +6,10 @@ import pytest
 
 from argo_compiler.il import Action, Mission, Task, Transition
 from argo_env.faults.walkway import Brick
-from argo_env.run.journal import JournalPlace, open_journal
+from argo_env.run.journal import open_journal
 from argo_env.run.record import Anomaly
-from argo_env.run.session import resume, simulate
-from argo_env.run.spec import RunSettings
+from argo_env.run.session import resume
+from tests.yard import Watching, opened, simulated
 
 BRICK = Brick(floor=2, place=(12.2958, 5.05), yaw=22.05)
 """on the walkway behind the east tower: before it the robot has no room to turn"""
@@ -27,17 +27,23 @@ def test_goes_back_along_the_way_that_it_came(navigator, tmp_path):
         transitions=(Transition(target="MEASURE"),),
     )
     plan = Mission(tasks=(start, Task(name="MEASURE", action=Action.MEASURE, object_id="15")))
-    place = JournalPlace(tmp_path / "run.journal", "umad")
-    settings = RunSettings(seed=11, faults=(BRICK,))
+    place = tmp_path / "run.journal"
 
     def die(news):
         if isinstance(news, Anomaly):
             raise KilledError
 
     with pytest.raises(KilledError):
-        simulate(plan, navigator, settings=settings, journal=place, announce=die)
-    with open_journal(place.path) as journal:
-        record = resume(journal, navigator)
+        simulated(
+            plan,
+            navigator,
+            seed=11,
+            faults=(BRICK,),
+            journal=place,
+            observers=[Watching(announce=die)],
+        )
+    with open_journal(place) as journal:
+        record = resume(journal, opened(navigator))
     (found,) = record.anomalies
     assert record.resumed == (found.t,)
     assert record.result.success

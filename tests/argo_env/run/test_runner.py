@@ -7,7 +7,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-import argo_env.run.runner
+import argo_env.run.ending
 from argo_compiler.errors import ArgoError
 from argo_compiler.il import Action, Condition, ConditionType, Group, Mission, Task, Transition
 from argo_compiler.model import Pose
@@ -16,9 +16,9 @@ from argo_env.navigation.path import Motion
 from argo_env.robot.calibration import MotionKind
 from argo_env.robot.pose import BodyPose
 from argo_env.run.record import RunRecord
-from argo_env.run.session import simulate
-from argo_env.run.spec import RunSettings
+from argo_env.run.simulation import SAMPLE_PERIOD
 from argo_env.run.verdict import is_docked
+from tests.yard import simulated
 
 pytestmark = pytest.mark.xdist_group("missions on UMAD")  # they share its runs
 
@@ -82,7 +82,7 @@ class TestSheet:
         record, _ = sheet_run
         times = [s.t for s in record.path]
         assert all(a < b for a, b in pairwise(times))
-        assert max(b - a for a, b in pairwise(times)) <= argo_env.run.runner.SAMPLE_PERIOD + 1e-6
+        assert max(b - a for a, b in pairwise(times)) <= SAMPLE_PERIOD + 1e-6
         assert all(-math.pi < s.yaw <= math.pi + 1e-4 for s in record.path)
         assert {s.floor for s in record.path} == {1, 2}
         for a, b in pairwise(record.path):
@@ -167,9 +167,9 @@ def short():
 
 
 def test_same_seed_same_record(short, navigator):
-    first, second = (simulate(short, navigator, settings=RunSettings(seed=5)) for _ in range(2))
+    first, second = (simulated(short, navigator, seed=5) for _ in range(2))
     assert first.model_dump_json() == second.model_dump_json()
-    other = simulate(short, navigator, settings=RunSettings(seed=6))
+    other = simulated(short, navigator, seed=6)
     assert other.readings[0].value != first.readings[0].value
     assert other.path == first.path
 
@@ -190,8 +190,7 @@ def test_branches_on_the_measured_value(navigator, value, branch, normal):
     ends = (waypoint("HIGH", 7.05, 1.55, 0.0), waypoint("LOW", 5.05, 1.55, 0.0))
     # The two ends do not lead to each other.
     joined = mission(*tasks, ends[0]).tasks[:2] + ends
-    settings = RunSettings(values={1: value})
-    record = simulate(Mission(site="umad", tasks=joined), navigator, settings=settings)
+    record = simulated(Mission(site="umad", tasks=joined), navigator, values={1: value})
     assert record.result.success
     assert names(record) == ["MEASURE 1", branch]
     assert record.readings[0].value == value
@@ -199,7 +198,7 @@ def test_branches_on_the_measured_value(navigator, value, branch, normal):
 
 
 def test_unreachable_waypoint_fails_with_a_reason(navigator):
-    record = simulate(
+    record = simulated(
         mission(start(), waypoint("ROOF", 8.0, 6.0, 20.0), waypoint("BACK", 8.55, -2.05)), navigator
     )
     failed = record.tasks[0]
@@ -211,7 +210,7 @@ def test_unreachable_waypoint_fails_with_a_reason(navigator):
 
 
 def test_unknown_checkpoint_fails_with_a_reason(navigator):
-    record = simulate(mission(start(), measure(99)), navigator)
+    record = simulated(mission(start(), measure(99)), navigator)
     assert record.tasks[0].outcome == "failed"
     assert record.tasks[0].reason == "site umad has no checkpoint 99"
     assert not record.result.success
@@ -225,7 +224,7 @@ def test_measurement_that_is_not_possible_fails(navigator):
         def plan_to_view(self, start, *_):
             return Path(start, ())
 
-    record = simulate(mission(start(), measure(1)), Dreamer(navigator))
+    record = simulated(mission(start(), measure(1)), Dreamer(navigator))
     assert record.tasks[0].outcome == "failed"
     assert "pressure gauge 1 is" in record.tasks[0].reason
     # It arrives in the first step and then takes its time to look.
@@ -234,18 +233,18 @@ def test_measurement_that_is_not_possible_fails(navigator):
 
 def test_start_that_can_not_be_reached(navigator):
     with pytest.raises(ArgoError, match="no place that the robot can reach"):
-        simulate(mission(start(Pose(x=8.0, y=6.0, z=20.0)), measure(1)), navigator)
+        simulated(mission(start(Pose(x=8.0, y=6.0, z=20.0)), measure(1)), navigator)
 
 
 @pytest.mark.parametrize("areas", [{"start_area": 7}, {"start_area": 1, "end_area": 7}])
 def test_area_that_the_site_does_not_have(navigator, areas):
     with pytest.raises(ArgoError, match="umad has no starting area 7; there are: 1, 2"):
-        simulate(mission(waypoint("A", 8.05, -2.05), **areas), navigator)
+        simulated(mission(waypoint("A", 8.05, -2.05), **areas), navigator)
 
 
 @pytest.mark.rule("T6")
 def test_velocity_is_that_of_the_way_to_the_next_task(navigator):
-    record = simulate(
+    record = simulated(
         mission(
             start(velocity=0.2),
             waypoint("A", 11.05, -2.05, velocity=0.3),
@@ -262,7 +261,7 @@ def test_velocity_is_that_of_the_way_to_the_next_task(navigator):
 
 
 def test_too_long_is_no_success(navigator):
-    record = simulate(mission(start(), waypoint("A", 11.05, -2.05), max_duration=5.0), navigator)
+    record = simulated(mission(start(), waypoint("A", 11.05, -2.05), max_duration=5.0), navigator)
     assert record.tasks[0].outcome == "done"
     assert not record.result.within_max_duration
     assert not record.result.success
@@ -270,17 +269,17 @@ def test_too_long_is_no_success(navigator):
 
 
 def test_not_docked_is_no_success(navigator):
-    record = simulate(mission(start(), waypoint("A", 9.05, -2.05), end_area=1), navigator)
+    record = simulated(mission(start(), waypoint("A", 9.05, -2.05), end_area=1), navigator)
     assert record.result.docked is False
     assert not record.result.success
     assert "not docked in starting area 1" in record.result.verdict
 
 
 def test_endless_round_is_stopped(navigator, monkeypatch):
-    monkeypatch.setattr(argo_env.run.runner, "TIME_LIMIT", 30.0)
+    monkeypatch.setattr(argo_env.run.ending, "TIME_LIMIT", 30.0)
     there, back = waypoint("A", 9.05, -2.05), waypoint("B", 8.05, -2.05)
     group = Group(name="Round", start="A", end="B", max_repeat_duration=1e6)
-    record = simulate(mission(start(), there, back, groups=(group,)), navigator)
+    record = simulated(mission(start(), there, back, groups=(group,)), navigator)
     assert record.result.duration == pytest.approx(30.0)
     assert not record.result.success
     assert "stopped after 30 s" in record.result.verdict
@@ -291,7 +290,7 @@ def test_endless_round_is_stopped(navigator, monkeypatch):
 def test_round_that_is_counted(navigator):
     there, back = waypoint("A", 9.05, -2.05), waypoint("B", 8.05, -2.05)
     group = Group(name="Round", start="A", end="B", max_repeat_count=2)
-    record = simulate(mission(start(), there, back, groups=(group,)), navigator)
+    record = simulated(mission(start(), there, back, groups=(group,)), navigator)
     assert names(record) == ["A", "B", "A", "B"]
     assert record.result.success
 
@@ -320,7 +319,7 @@ def test_contacts_are_counted(navigator):
         start(Pose(x=3.05, y=1.55, z=0.0, yaw=down)),
         waypoint("OUT", 3.05, -1.45, -0.03, -90),
     )
-    record = simulate(mission(*tasks), Blind(navigator))
+    record = simulated(mission(*tasks), Blind(navigator))
     assert record.tasks[0].outcome == "done"
     assert {c.element for c in record.contacts} == {"floor 1 fence south-west"}
     assert [c.start for c in record.contacts] == sorted(c.start for c in record.contacts)
@@ -347,7 +346,7 @@ def test_contacts_at_two_times_are_two(navigator):
         waypoint("OUT", 3.05, -1.45, -0.03, -90),
         waypoint("IN", 3.05, 1.55, 0.0, -90),
     )
-    record = simulate(mission(*tasks), Blind(navigator))
+    record = simulated(mission(*tasks), Blind(navigator))
     hull = [c for c in record.contacts if c.link == "base_link"]
     assert len(hull) == 2
     assert hull[0].end < hull[1].start
@@ -365,7 +364,7 @@ def test_docked_within_a_tolerance(umad):
 @settings(max_examples=3, deadline=None, derandomize=True)
 @given(st.lists(st.integers(1, 8), min_size=1, max_size=3, unique=True))
 def test_any_order_of_checkpoints_succeeds(navigator, ids):
-    record = simulate(mission(*(measure(id) for id in ids), start_area=1), navigator)
+    record = simulated(mission(*(measure(id) for id in ids), start_area=1), navigator)
     assert record.result.success
     assert [r.checkpoint for r in record.readings] == ids
     assert record.contacts == ()

@@ -5,8 +5,9 @@ import pytest
 from argo_compiler.errors import ArgoError
 from argo_compiler.il import Action, Mission, Task, Transition
 from argo_compiler.model import Pose
-from argo_env.run.session import DRIVES, simulate, true_values
-from argo_env.run.spec import RunSettings
+from argo_env.drives.registry import DRIVES
+from argo_env.run.rig import true_values
+from tests.yard import Watching, simulated
 
 
 @pytest.fixture(scope="module")
@@ -23,7 +24,7 @@ def short():
 
 
 def test_record_says_what_it_was_made_with(short, navigator):
-    record = simulate(short, navigator, settings=RunSettings(seed=11))
+    record = simulated(short, navigator, seed=11)
     assert (record.site, record.robot) == ("umad", "tracker")
     assert (record.drive, record.sensor) == ("kinematic", "ideal")
     assert record.seed == 11
@@ -32,13 +33,13 @@ def test_record_says_what_it_was_made_with(short, navigator):
 
 def test_unknown_drive(short, navigator):
     with pytest.raises(ArgoError, match="no drive `rocket`; there are: route, kinematic, tracked"):
-        simulate(short, navigator, settings=RunSettings(drive="rocket"))
+        simulated(short, navigator, drive="rocket")
     assert set(DRIVES) >= {"kinematic"}
 
 
 def test_unknown_sensor(short, navigator):
     with pytest.raises(ArgoError, match="no sensor `nose`; there are: ideal"):
-        simulate(short, navigator, settings=RunSettings(sensor="nose"))
+        simulated(short, navigator, sensor="nose")
 
 
 @pytest.mark.parametrize(
@@ -51,7 +52,7 @@ def test_unknown_sensor(short, navigator):
 )
 def test_values_that_make_no_sense(short, navigator, values, message):
     with pytest.raises(ArgoError, match=message):
-        simulate(short, navigator, settings=RunSettings(values=values))
+        simulated(short, navigator, values=values)
 
 
 def test_given_values_replace_drawn_ones(umad):
@@ -62,13 +63,16 @@ def test_given_values_replace_drawn_ones(umad):
 def test_window_without_a_display(short, navigator, monkeypatch):
     monkeypatch.delenv("DISPLAY", raising=False)
     with pytest.raises(ArgoError, match="DISPLAY"):
-        simulate(short, navigator, gui=True)
+        simulated(short, navigator, gui=True)
 
 
 def test_pace_changes_nothing_but_the_time_it_takes(short, navigator):
     seen = []
-    paced = simulate(
-        short, navigator, pace=1000.0, observe=lambda now, task: seen.append((now, task))
+    paced = simulated(
+        short,
+        navigator,
+        pace=1000.0,
+        observers=[Watching(lambda now, task: seen.append((now, task)))],
     )
-    assert paced == simulate(short, navigator)
+    assert paced == simulated(short, navigator)
     assert seen[-1] == (paced.result.duration, None)

@@ -1,12 +1,11 @@
 """A whole mission with the tracked drive."""
 
-from argo_env.run.session import simulate
-from argo_env.run.spec import RunSettings
+from tests.yard import simulated
 
 
 def test_mission_1_is_carried_out_without_a_contact(shipped, navigator):
     mission = shipped("mission_1.txt", start_area=1, end_area=2).mission
-    record = simulate(mission, navigator, settings=RunSettings(seed=3, drive="tracked"))
+    record = simulated(mission, navigator, seed=3, drive="tracked")
     assert record.drive == "tracked"
     assert record.result.success, record.result.verdict
     assert record.result.docked

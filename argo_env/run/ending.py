@@ -1,0 +1,36 @@
+"""Why a run ends before its mission does."""
+
+from argo_env.drives.powertrain import Powertrain
+from argo_env.run.log import RunLog
+from argo_env.run.machine import Machine
+from argo_env.run.power import PowerSupply
+from argo_env.run.rig import Rig
+
+TIME_LIMIT = 4 * 3600.0  # s of simulated time after which a run is stopped
+SETTLING = 120.0  # s that a robot which stands still waits for what faults may lead to
+
+
+def exhausted(now: float, supply: PowerSupply) -> str | None:
+    """Why nothing can go on at time `now` (s), whatever is told; None: it can."""
+    if now >= TIME_LIMIT:
+        return f"it was stopped after {now:.0f} s"
+    if supply.empty:
+        return f"the battery was empty after {now:.0f} s"
+    return None
+
+
+def standstill(now: float, machine: Machine, rig: Rig, log: RunLog) -> str | None:
+    """Why nothing goes on by itself at time `now` (s), if nothing is to occur any more."""
+    waits = machine.running is None and machine.next_deadline is None
+    held = isinstance(rig.drive, Powertrain) and rig.drive.pressed
+    if not (waits or held):
+        return None
+    since, schedule = log.last_event, rig.schedule
+    if schedule is not None and schedule.faults:
+        # What has begun or ended may still be found.
+        since = max(since, schedule.last_change)
+        if schedule.pending or now < since + SETTLING:
+            return None
+    why = "held by its emergency stop" if held else "waiting for an event"
+    why = "paused" if machine.paused else why
+    return f"the robot stands still since {since:.0f} s, {why}, and nothing more occurs"

@@ -1,0 +1,28 @@
+"""What is told of a run to whoever observes it: a journal, a recording, a display."""
+
+from argo_env.run.action import ActionUnderWay
+from argo_env.run.log import Entry
+from argo_env.run.machine import Machine
+from argo_env.run.record import RunRecord
+from argo_env.run.rig import Rig
+from argo_env.run.spec import RunSpec
+
+
+class Observer:
+    """Observes one run. Does nothing: override what is of interest."""
+
+    def on_begin(self, rig: Rig, spec: RunSpec) -> None:
+        """The run is about to begin, or to go on from its journal."""
+
+    def on_entry(self, entry: Entry) -> None:
+        """Something is to be known, and nobody has acted on it yet. What is raised here keeps it
+        from having happened."""
+
+    def on_change(self, entry: Entry, machine: Machine) -> None:
+        """The same, now that the machine has been told."""
+
+    def on_step(self, now: float, action: ActionUnderWay | None) -> None:
+        """A step of simulated time has ended at `now` (s), `action` under way."""
+
+    def on_end(self, record: RunRecord) -> None:
+        """The run has ended, and this is its record."""

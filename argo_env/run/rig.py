@@ -1,0 +1,127 @@
+"""The rig: all that a mission is carried out with, and how it is fitted out for a run."""
+
+from collections.abc import Mapping
+from contextlib import ExitStack
+from dataclasses import dataclass
+
+import numpy as np
+
+from argo_compiler.errors import Invalid, NotFound
+from argo_env.drives.battery import Battery
+from argo_env.drives.drive import Drive
+from argo_env.drives.powertrain import Powertrain
+from argo_env.drives.registry import DRIVES, ROUTE, WORLD_DRIVES
+from argo_env.drives.route import RouteDrive
+from argo_env.faults.kinds import changed_site, settle
+from argo_env.faults.schedule import Schedule
+from argo_env.faults.targets import FaultTargets
+from argo_env.navigation import Navigator
+from argo_env.run.spec import RunSpec
+from argo_env.seeding import generator
+from argo_env.sensing.ideal import IdealSensor, draw_values
+from argo_env.sensing.onboard import onboard_watches
+from argo_env.sensing.onboard_sensor import OnboardSensor
+from argo_env.sensing.registry import IDEAL, SENSORS
+from argo_env.sensing.sensor import Sensor
+from argo_env.sensing.signals import standard_watches
+from argo_env.sensing.watch import Watch
+from argo_env.site import Site
+from argo_env.surroundings import Surroundings
+from argo_env.surroundings.network import RadioNetwork
+from argo_env.world.paper_world import AnyWorld, PaperWorld
+from argo_env.world.world import World
+
+
+@dataclass(frozen=True)
+class Rig:
+    """What a mission is carried out with."""
+
+    world: AnyWorld
+    navigator: Navigator
+    drive: Drive
+    sensor: Sensor
+    watches: tuple[Watch, ...] = ()
+    """what notices things by itself"""
+    battery: Battery | None = None
+    """None: the robot has power without end"""
+    schedule: Schedule | None = None
+    """what goes wrong, and when; None: nothing does"""
+
+    @property
+    def watches_world(self) -> bool:
+        """Whether there is a world of bodies and signals that watches look at."""
+        return isinstance(self.world, World)
+
+
+def fit_out(spec: RunSpec, navigator: Navigator, gui: bool, stack: ExitStack) -> Rig:
+    """The rig of a run; `stack` closes it. With `gui` its world is shown in a window.
+
+    Raises ArgoError as `check_spec` does, and if there can be no window.
+    """
+    site, robot, seed = navigator.site, navigator.robot, spec.seed
+    check_spec(spec, site)
+    truth = true_values(site, seed, spec.values)
+    faults = settle(spec.faults, site, seed)
+    surroundings = Surroundings(site)
+    world: AnyWorld
+    watches: tuple[Watch, ...] = ()
+    if spec.drive == ROUTE:
+        if gui:
+            raise Invalid(f"the drive `{spec.drive}` has no world to show in a window")
+        world = PaperWorld(site, robot)
+        inner: Drive = RouteDrive(robot)
+        camera: Sensor = IdealSensor(world, robot, truth)
+    else:
+        real = changed_site(site, faults).elements
+        world = stack.enter_context(World(site, robot, gui, real))
+        inner = WORLD_DRIVES[spec.drive](world, robot)
+        camera = SENSORS[spec.sensor](world, truth, seed)
+        watches = standard_watches(world, surroundings, seed)
+        for id, value in truth.items():
+            world.show_value(id, value)
+    drive, network, battery = Powertrain(inner), RadioNetwork(site), Battery(robot)
+    sensor = OnboardSensor(camera, site, generator(seed, "instrument"))
+    targets = FaultTargets(world, truth, surroundings, drive, sensor, battery, network)
+    watches += onboard_watches(robot, battery, network, drive, sensor)
+    return Rig(world, navigator, drive, sensor, watches, battery, Schedule(faults, targets))
+
+
+def check_spec(spec: RunSpec, site: Site) -> None:
+    """Raises ArgoError for a spec that no run on the site can have."""
+    if spec.drive not in DRIVES:
+        raise Invalid(f"no drive `{spec.drive}`; there are: {', '.join(DRIVES)}")
+    if spec.sensor not in SENSORS:
+        raise Invalid(f"no sensor `{spec.sensor}`; there are: {', '.join(SENSORS)}")
+    if spec.drive == ROUTE and spec.sensor != IDEAL:
+        raise Invalid(
+            f"the drive `{spec.drive}` has no world that the sensor `{spec.sensor}` could "
+            f"look at; take the sensor `{IDEAL}` or another drive"
+        )
+    true_values(site, spec.seed, spec.values)
+    settle(spec.faults, site, spec.seed)
+    unseen = [f.kind for f in spec.faults if f.needs_world]
+    if spec.drive == ROUTE and unseen:
+        raise Invalid(
+            f"the drive `{spec.drive}` has no world in which a fault like `{unseen[0]}` could "
+            "be found; take another drive"
+        )
+
+
+def true_values(site: Site, seed: int, given: Mapping[int, float]) -> dict[int, float]:
+    """What each checkpoint shows, in its unit: drawn by the seed, or as given.
+
+    Raises NotFound for a checkpoint that the site does not have, Invalid for a value beyond its
+    scale.
+    """
+    truth = draw_values(site, np.random.default_rng(seed))
+    for id, value in given.items():
+        if id not in truth:
+            raise NotFound(f"site {site.name} has no checkpoint {id} to give a value to")
+        checkpoint = site.checkpoint(id)
+        if not checkpoint.range.contains(value):
+            raise Invalid(
+                f"checkpoint {id} ({checkpoint.name}) shows {checkpoint.range.low:g} to "
+                f"{checkpoint.range.high:g} {checkpoint.unit}, not {value:g}"
+            )
+        truth[id] = value
+    return truth

@@ -1,0 +1,97 @@
+"""What a run may be told from outside while it goes on, and what of that makes no sense."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+from argo_compiler.errors import ArgoError, Conflict, Invalid
+from argo_compiler.handover import hand_over, match
+from argo_compiler.hfsm import (
+    ByHand,
+    Cancel,
+    Event,
+    GiveBack,
+    Occurred,
+    Pause,
+    Resume,
+    TakeOver,
+)
+from argo_compiler.il import EventKind, Mission
+from argo_env.faults.fault import TimedFault
+from argo_env.faults.kinds import AnyFault, settle_one
+from argo_env.run.machine import Machine
+from argo_env.run.rig import Rig
+
+
+@dataclass(frozen=True, slots=True)
+class ReachIn:
+    """Something goes wrong from now on, as long as the fault says."""
+
+    fault: AnyFault
+
+
+@dataclass(frozen=True, slots=True)
+class StopRun:
+    """The run ends here, whatever it is doing; the record says why."""
+
+    reason: str = "it was stopped by a person"
+
+
+Steering = Pause | Resume | TakeOver | GiveBack | Cancel | Occurred | ReachIn | StopRun
+
+_TO_THE_MACHINE = (Pause, Resume, TakeOver, GiveBack, Cancel, Occurred)
+
+
+def check_event(event: Steering) -> Event:
+    """The event as one for the machine; Invalid if nobody outside can tell it."""
+    if not isinstance(event, _TO_THE_MACHINE):
+        raise Invalid(f"{event!r} is nothing that a run can be told from outside")
+    if isinstance(event, Occurred) and event.event is EventKind.TIME_UP:
+        raise Invalid("`time_up` occurs by itself, at the mission's max_duration")
+    return event
+
+
+def check_by_hand(done: Sequence[ByHand], machine: Machine, mission: Mission) -> None:
+    """Raises Invalid for what a person can't have done by hand in the mission, Conflict while an
+    action still runs."""
+    if running := machine.running:
+        raise Conflict(
+            f"the action of task '{running.name}' has not ended yet: take over, and let time pass "
+            "until no action runs"
+        )
+    _, findings = match(hand_over(machine.progress(), done), mission)
+    for finding in findings:
+        if finding.code.startswith("handover.by-hand"):
+            raise Invalid(f"{finding.message}: {finding.hint}")
+
+
+def from_now(fault: AnyFault, rig: Rig, seed: int, now: float) -> AnyFault:
+    """The fault, settled, as it begins at time `now` (s), or later if it says so.
+
+    Raises Conflict for one that can't begin while a run goes on, ArgoError for what the site does
+    not have.
+    """
+    kind = f"a fault of kind `{fault.kind}`"
+    if rig.schedule is None:
+        raise Conflict(f"{kind} finds nothing to act on: this run has no parts that go wrong")
+    if not isinstance(fault, TimedFault):
+        raise Conflict(
+            f"{kind} is there from the run's start or not at all: give it in the faults of the "
+            "run's spec"
+        )
+    if fault.needs_world and not rig.watches_world:
+        raise Conflict(
+            f"the drive `{rig.drive.name}` has no world in which {kind} could be found; "
+            "take another drive"
+        )
+    if fault.until is not None and fault.until <= now:
+        raise Invalid(f"{kind} would end at {fault.until:g} s, and it is {now:g} s already")
+    begins = now if fault.at is None else max(now, fault.at)
+    try:
+        return settle_one(
+            fault.model_copy(update={"at": begins}),
+            len(rig.schedule.faults),
+            rig.navigator.site,
+            seed,
+        )
+    except ArgoError as error:
+        raise type(error)(f"{kind}: {error}") from None

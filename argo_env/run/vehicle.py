@@ -1,0 +1,104 @@
+"""The robot under way: step by step it moves, spends power, and notices things."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+from typing import Any
+
+from argo_compiler.model import Pose
+from argo_env.navigation import Blockage, Path
+from argo_env.navigation.retreat import driven, recent
+from argo_env.robot.pose import BodyPose
+from argo_env.run.action import RETREAT, ActionEnd, ActionUnderWay
+from argo_env.run.log import Entry, RunLog
+from argo_env.run.odometry import Odometry
+from argo_env.run.perception import Perception, abnormal_reading
+from argo_env.run.power import PowerSupply
+from argo_env.run.record import Anomaly, Reading
+from argo_env.run.rig import Rig
+
+
+@dataclass(frozen=True)
+class Sensed:
+    """What came of one time step."""
+
+    end: ActionEnd | None = None
+    """of the action, if it has ended"""
+    reading: Reading | None = None
+    found: tuple[Anomaly, ...] = ()
+
+
+class Vehicle:
+    """What a run is carried out with. Holds the rig and all that adds up on the way."""
+
+    def __init__(self, rig: Rig) -> None:
+        site, robot = rig.navigator.site, rig.navigator.robot
+        self.rig = rig
+        """its navigator knows of what was found in the way"""
+        self.odometry = Odometry(site)
+        self.supply = PowerSupply(rig.battery, robot, site)
+        self._perception = Perception(rig.watches, site, rig.drive.time_step)
+
+    def place(self, pose: BodyPose, now: float) -> None:
+        """Puts the robot there, at time `now` (s)."""
+        self.rig.drive.place(pose)
+        self.let_faults_happen(now)
+
+    def restore(self, last: Entry, past: Sequence[Entry], now: float) -> None:
+        """Goes on at time `now` (s) after the `past` entries, the last of them `last`."""
+        self.odometry.restore(last)
+        self.supply.restore(last)
+        self._perception.remember([(a, e.body_pose) for e in past for a in e.found], now)
+
+    def let_faults_happen(self, now: float) -> None:
+        """Lets all begin and end that is due at time `now` (s)."""
+        if self.rig.schedule:
+            self.rig.schedule.advance(now)
+
+    def avoid(self, blockages: Sequence[Blockage]) -> None:
+        """From now on paths keep clear of these as well."""
+        navigator = self.rig.navigator.avoiding(blockages)
+        self.rig = replace(self.rig, navigator=navigator)
+
+    def advance(self, step: int, now: float, action: ActionUnderWay | None) -> Sensed:
+        """Lets the time step of that number pass, up to time `now` (s), with `action` under way."""
+        rig, odometry = self.rig, self.odometry
+        self.let_faults_happen(now)
+        before = rig.drive.pose
+        end = action.step() if action else None
+        after = rig.drive.pose
+        if action:
+            odometry.moved(before, after, rig.world.touches(), now)
+            odometry.trouble(rig.drive.incidents, now)
+        measuring = action is not None and action.measuring
+        self.supply.spend(before, after, rig.drive.time_step, measuring)
+        found = self._perception.look(step, now, after)
+        reading = action.reading(now) if action and end else None
+        if reading and not reading.normal:
+            found = (*found, abnormal_reading(reading, rig.navigator.site))
+        return Sensed(end, reading, found)
+
+    def state(self) -> dict[str, Any]:
+        """What an entry tells of it."""
+        pose, odometry = self.rig.drive.pose, self.odometry
+        return {
+            "pose": (pose.x, pose.y, pose.z, pose.yaw, pose.pitch),
+            "distance": odometry.distance,
+            "climbed": odometry.climbed,
+            "charge": self.supply.charge,
+            "mishaps": tuple(odometry.mishaps),
+            "contacts": tuple(odometry.over),
+            "touching": odometry.touching,
+        }
+
+    def told(self) -> None:
+        """What the last `state` told is not told again."""
+        self.odometry.over.clear()
+        self.odometry.mishaps.clear()
+
+
+def way_come(log: RunLog) -> Path | None:
+    """The last piece of the path that the robot came by, from where the log has seen it."""
+    if not log.path:
+        return None
+    seen = (Pose(x=s.x, y=s.y, z=s.z, yaw=s.yaw) for s in reversed(log.path))
+    return driven(recent(seen, 2 * RETREAT))

@@ -330,7 +330,7 @@ class InspectEnv(Copying, Rendering, gym.Env[Observation, np.int64]):
             check_spec(RunSpec(mission=mission, drive=self._drive, faults=options.faults), site)
         asked = options.floors or floors
         self._options, self._site = options, opened
-        self._travel_times = travel_times(navigator)
+        self._travel_times = travel_times(opened.navigator)
         self._asked = np.zeros(self._slots, np.bool_)
         self._asked[: len(site.checkpoints)] = [c.floor in asked for c in site.checkpoints]
 

@@ -18,8 +18,7 @@ from argo_compiler.route.evaluation import Evaluation, evaluate
 from argo_compiler.route.problem import NEVER, RouteProblem, Tour
 from argo_compiler.route.robust import suggest_robust_route
 from argo_compiler.route.robust_spread import TravelSpread
-from argo_compiler.route.suggest import suggest_route
-from argo_compiler.route.suggestion import RouteSuggestion
+from argo_compiler.route.suggestion import RouteSuggestion, suggest_route
 from argo_env.files.yaml_file import read_yaml
 from argo_env.formatting import clock
 from argo_env.navigation import Navigator

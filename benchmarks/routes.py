@@ -31,7 +31,7 @@ from pathlib import Path
 
 from argo_compiler.errors import ArgoError
 from argo_compiler.route import Tour, evaluate
-from argo_compiler.route.suggest import suggest_route
+from argo_compiler.route.suggestion import suggest_route
 from benchmarks import peer_pyvrp
 from benchmarks.instances import Kind, NamedProblem, read_known_route, read_route_problem
 from benchmarks.options import seed_number

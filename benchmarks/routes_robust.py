@@ -15,7 +15,7 @@ from argo_compiler.route import RouteProblem, Tour, Visit, evaluate
 from argo_compiler.route.robust import RobustSuggestion, suggest_robust_route
 from argo_compiler.route.robust_sampling import Draws, completion
 from argo_compiler.route.robust_spread import CAUTIOUS
-from argo_compiler.route.suggest import suggest_route
+from argo_compiler.route.suggestion import suggest_route
 from argo_env.planning import open_site
 from argo_env.seeding import generator
 

@@ -28,8 +28,6 @@ class GroupFlow:
     """the leaf that a round begins with"""
     onward: int
     """the node after the last round"""
-    onward_domain: int
-    """the group that stays active then, or NOWHERE"""
     count: int
     duration: float
     hard: bool
@@ -56,7 +54,6 @@ class LeafFlow:
     conditional: tuple[tuple[tuple[Condition, ...], int], ...]
     tail: int
     """the node if no condition holds"""
-    tail_domain: int
     failure: int | None
     """the node after a failure for good, where that is not the same as any other end"""
     measures: str | None
@@ -141,9 +138,6 @@ class _Builder:
             return len(self.hfsm.leaves) + self.groups[transition.completes]
         return self.number.get(transition.target or "", self.done)
 
-    def _domain(self, transition: StateTransition) -> int:
-        return self.groups[transition.domain or MISSION]
-
     def _leaf_flow(self, leaf: Leaf) -> LeafFlow:
         *conditional, last = leaf.transitions
         return LeafFlow(
@@ -151,7 +145,6 @@ class _Builder:
             parent=self.groups[leaf.parent],
             conditional=tuple((t.conditions, self._node(t)) for t in conditional),
             tail=self._node(last),
-            tail_domain=self._domain(last),
             failure=None if leaf.failure is None else self._node(leaf.failure),
             measures=leaf.task.object_id if leaf.task.action is Action.MEASURE else None,
         )
@@ -182,7 +175,6 @@ class _Builder:
                     last=last[at],
                     start=self.number[composite.initial],
                     onward=self._node(onward),
-                    onward_domain=self._domain(onward),
                     count=repeat.count,
                     duration=repeat.duration,
                     hard=repeat.duration > 0 and repeat.stop is Stop.HARD,

@@ -3,7 +3,7 @@
 from collections.abc import Iterator
 from dataclasses import dataclass
 
-from argo_compiler.checks.diagnostic import task_diagnostic
+from argo_compiler.checks.diagnostic import diagnostic_about
 from argo_compiler.diagnostics import Diagnostic, Severity
 from argo_compiler.il import Condition, ConditionType, Task
 
@@ -23,7 +23,7 @@ class ConditionChecks:
         """What is wrong with a condition of the task whose subject is `at`, in that field."""
         yield from _check_bounds(at, task, condition, field)
         if self.known is not None and condition.object_id not in self.known:
-            yield task_diagnostic(
+            yield diagnostic_about(
                 at,
                 task,
                 "il.unknown-object",
@@ -33,7 +33,7 @@ class ConditionChecks:
                 field=field + ".object_id",
             )
         elif condition.object_id not in self.measured:
-            yield task_diagnostic(
+            yield diagnostic_about(
                 at,
                 task,
                 "il.never-measured",
@@ -50,7 +50,7 @@ def _check_bounds(at: str, task: Task, condition: Condition, field: str) -> Iter
     which = f"a {condition.type} condition of task '{task.name}'"
     if condition.type is not ConditionType.WITHIN:
         if high is not None:
-            yield task_diagnostic(
+            yield diagnostic_about(
                 at,
                 task,
                 "il.unused-field",
@@ -60,7 +60,7 @@ def _check_bounds(at: str, task: Task, condition: Condition, field: str) -> Iter
                 field + ".param2",
             )
     elif high is None:
-        yield task_diagnostic(
+        yield diagnostic_about(
             at,
             task,
             "il.within-bounds",
@@ -69,7 +69,7 @@ def _check_bounds(at: str, task: Task, condition: Condition, field: str) -> Iter
             field=field,
         )
     elif low > high or (low == high and not condition.inclusive):
-        yield task_diagnostic(
+        yield diagnostic_about(
             at,
             task,
             "il.within-bounds",

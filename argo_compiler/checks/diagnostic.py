@@ -1,38 +1,24 @@
 """Diagnostics about tasks and reactions."""
 
-from argo_compiler.diagnostics import Diagnostic, Severity, Span
+from argo_compiler.diagnostics import Diagnostic, Severity
 from argo_compiler.il import Reaction, Task
 
 
-def task_diagnostic(
+def diagnostic_about(
     at: str,
-    task: Task,
+    part: Task | Reaction,
     code: str,
     message: str,
     hint: str,
     severity: Severity = Severity.ERROR,
     field: str = "",
 ) -> Diagnostic:
-    """A diagnostic about the task whose subject is `at`, or one of its fields."""
-    return _diagnostic(at + field, task.source, code, message, hint, severity)
-
-
-def reaction_diagnostic(
-    at: str,
-    reaction: Reaction,
-    code: str,
-    message: str,
-    hint: str,
-    severity: Severity = Severity.ERROR,
-    field: str = "",
-) -> Diagnostic:
-    """A diagnostic about the reaction whose subject is `at`, or one of its fields."""
-    return _diagnostic(at + field, reaction.source, code, message, hint, severity)
-
-
-def _diagnostic(
-    subject: str, span: Span | None, code: str, message: str, hint: str, severity: Severity
-) -> Diagnostic:
+    """What is wrong with the task or reaction whose subject is `at`, or with one of its fields."""
     return Diagnostic(
-        code=code, severity=severity, message=message, span=span, hint=hint, subject=subject
+        code=code,
+        severity=severity,
+        message=message,
+        span=part.source,
+        hint=hint,
+        subject=at + field,
     )

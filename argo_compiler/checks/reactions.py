@@ -2,7 +2,7 @@
 
 from collections.abc import Iterator
 
-from argo_compiler.checks.diagnostic import reaction_diagnostic
+from argo_compiler.checks.diagnostic import diagnostic_about
 from argo_compiler.diagnostics import Diagnostic, Severity
 from argo_compiler.il import Afterwards, EventKind, Mission, Reaction, Response
 from argo_compiler.il.subjects import Subjects
@@ -20,7 +20,7 @@ def check_reactions(mission: Mission) -> Iterator[Diagnostic]:
     for i, reaction in enumerate(mission.reactions):
         at = subjects.reaction(i)
         if first[reaction.event] is not reaction:
-            yield reaction_diagnostic(
+            yield diagnostic_about(
                 at,
                 reaction,
                 "il.duplicate-reaction",
@@ -34,7 +34,7 @@ def check_reactions(mission: Mission) -> Iterator[Diagnostic]:
             yield from _check_until(at, reaction, first)
         for field, event in (("event", reaction.event), ("until", reaction.until)):
             if event is EventKind.TIME_UP and mission.max_duration is None:
-                yield reaction_diagnostic(
+                yield diagnostic_about(
                     at,
                     reaction,
                     "il.time-up-without-limit",
@@ -48,7 +48,7 @@ def check_reactions(mission: Mission) -> Iterator[Diagnostic]:
 
 def _check_places(at: str, reaction: Reaction, mission: Mission) -> Iterator[Diagnostic]:
     if reaction.response is Response.SAFE_AREA and reaction.pose is None:
-        yield reaction_diagnostic(
+        yield diagnostic_about(
             at,
             reaction,
             "il.safe-area-without-pose",
@@ -57,7 +57,7 @@ def _check_places(at: str, reaction: Reaction, mission: Mission) -> Iterator[Dia
             field=".response",
         )
     if reaction.response is Response.RETURN and mission.dock is None:
-        yield reaction_diagnostic(
+        yield diagnostic_about(
             at,
             reaction,
             "il.no-dock",
@@ -78,7 +78,7 @@ def _check_unused(at: str, reaction: Reaction) -> Iterator[Diagnostic]:
         and not (response is Response.PAUSE and reaction.afterwards is Afterwards.RESUME),
     }
     for field in (field for field, given in unused.items() if given):
-        yield reaction_diagnostic(
+        yield diagnostic_about(
             at,
             reaction,
             "il.unused-field",
@@ -94,7 +94,7 @@ def _check_until(
     at: str, reaction: Reaction, first: dict[EventKind, Reaction]
 ) -> Iterator[Diagnostic]:
     if reaction.until is reaction.event:
-        yield reaction_diagnostic(
+        yield diagnostic_about(
             at,
             reaction,
             "il.until-itself",
@@ -106,7 +106,7 @@ def _check_until(
         return
     other = first.get(reaction.until) if reaction.until else None
     if other and other.response is not Response.REPORT and other.priority > reaction.priority:
-        yield reaction_diagnostic(
+        yield diagnostic_about(
             at,
             reaction,
             "il.until-answered",

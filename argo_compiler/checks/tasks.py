@@ -3,7 +3,7 @@
 from collections.abc import Iterable, Iterator
 
 from argo_compiler.checks.conditions import ConditionChecks
-from argo_compiler.checks.diagnostic import task_diagnostic
+from argo_compiler.checks.diagnostic import diagnostic_about
 from argo_compiler.diagnostics import Diagnostic, Severity
 from argo_compiler.il import Action, Mission, OnFailure, Task
 from argo_compiler.il.reserved import RESERVED_NAMES
@@ -75,7 +75,7 @@ class TaskChecks:
         yield from _check_returns(self.mission, self.subjects)
 
     def _second_start(self, at: str, task: Task) -> Diagnostic:
-        return task_diagnostic(
+        return diagnostic_about(
             at,
             task,
             "il.many-starts",
@@ -94,7 +94,7 @@ class TaskChecks:
                 field = f".transitions[{k}].conditions[{n}]"
                 yield from self.conditions.diagnostics(at, task, condition, field)
         if unconditional > 1:
-            yield task_diagnostic(
+            yield diagnostic_about(
                 at,
                 task,
                 "il.many-unconditional",
@@ -103,7 +103,7 @@ class TaskChecks:
                 field=".transitions",
             )
         if task.action is Action.START and unconditional < len(task.transitions):
-            yield task_diagnostic(
+            yield diagnostic_about(
                 at,
                 task,
                 "il.start-condition",
@@ -114,7 +114,7 @@ class TaskChecks:
                 ".transitions",
             )
         elif task.transitions and not unconditional:
-            yield task_diagnostic(
+            yield diagnostic_about(
                 at,
                 task,
                 "il.no-unconditional",
@@ -128,7 +128,7 @@ class TaskChecks:
         target = task.transitions[k].target
         field = f".transitions[{k}].target"
         if target in self.names:
-            return task_diagnostic(
+            return diagnostic_about(
                 at,
                 task,
                 "il.start-as-target",
@@ -138,7 +138,7 @@ class TaskChecks:
                 field=field,
             )
         near = self._nearest(target)
-        return task_diagnostic(
+        return diagnostic_about(
             at,
             task,
             "il.unknown-target",
@@ -159,7 +159,7 @@ def _check_names(tasks: Iterable[Task], subjects: Subjects) -> Iterator[Diagnost
     seen: set[str] = set()
     for i, task in enumerate(tasks):
         if task.name in seen:
-            yield task_diagnostic(
+            yield diagnostic_about(
                 subjects.task(i),
                 task,
                 "il.duplicate-task",
@@ -168,7 +168,7 @@ def _check_names(tasks: Iterable[Task], subjects: Subjects) -> Iterator[Diagnost
                 field=".name",
             )
         if task.name in RESERVED_NAMES:
-            yield task_diagnostic(
+            yield diagnostic_about(
                 subjects.task(i),
                 task,
                 "il.reserved-name",
@@ -181,14 +181,14 @@ def _check_names(tasks: Iterable[Task], subjects: Subjects) -> Iterator[Diagnost
 
 def _wrong_object(at: str, task: Task) -> Diagnostic:
     if task.object_id is None:
-        return task_diagnostic(
+        return diagnostic_about(
             at,
             task,
             "il.measure-without-object",
             f"the MEASURE task '{task.name}' has no object_id",
             "say which checkpoint it measures",
         )
-    return task_diagnostic(
+    return diagnostic_about(
         at,
         task,
         "il.unknown-object",
@@ -199,7 +199,7 @@ def _wrong_object(at: str, task: Task) -> Diagnostic:
 
 
 def _no_pose(at: str, task: Task) -> Diagnostic:
-    return task_diagnostic(
+    return diagnostic_about(
         at,
         task,
         "il.waypoint-without-pose",
@@ -211,7 +211,7 @@ def _no_pose(at: str, task: Task) -> Diagnostic:
 def _unused_by_start(at: str, task: Task) -> Iterator[Diagnostic]:
     unused = {"retries": task.retries != 0, "on_failure": task.on_failure != OnFailure.CONTINUE}
     for field in (field for field, given in unused.items() if given):
-        yield task_diagnostic(
+        yield diagnostic_about(
             at,
             task,
             "il.unused-field",
@@ -224,7 +224,7 @@ def _unused_by_start(at: str, task: Task) -> Iterator[Diagnostic]:
 
 
 def _many_retries(at: str, task: Task) -> Diagnostic:
-    return task_diagnostic(
+    return diagnostic_about(
         at,
         task,
         "il.many-retries",
@@ -245,7 +245,7 @@ def _check_joints(at: str, task: Task) -> Iterator[Diagnostic]:
         fault = "names a joint twice"
     else:
         return
-    yield task_diagnostic(
+    yield diagnostic_about(
         at,
         task,
         "il.joint-states",
@@ -263,7 +263,7 @@ def _check_returns(mission: Mission, subjects: Subjects) -> Iterator[Diagnostic]
     if returning:
         task = mission.tasks[returning[0]]
         others = f" (and {len(returning) - 1} more)" if len(returning) > 1 else ""
-        yield task_diagnostic(
+        yield diagnostic_about(
             subjects.task(returning[0]),
             task,
             "il.no-dock",

@@ -94,7 +94,7 @@ class Control:
         way, repeated = place.take(ways, self.now)
         target = place.leaf
         self.trace.append(
-            (
+            RawEntry(
                 self.now,
                 None if source is None else source.name,
                 None if target is None else target.name,
@@ -103,9 +103,7 @@ class Control:
                 timed_out,
                 None if repeated is None else repeated.name,
                 failure,
-                None,
-                by_hand,
-                "",
+                by_hand=by_hand,
             )
         )
 
@@ -300,9 +298,7 @@ class Control:
     ) -> None:
         """An entry of the trace; without a source it stays where it is."""
         target = self.active
+        origin = target if source == "" else source
         self.trace.append(
-            (
-                self.now, target if source == "" else source, target, cause, (), None, None,
-                failure, event, False, detail,
-            )
-        )  # fmt: skip
+            RawEntry(self.now, origin, target, cause, failure=failure, event=event, detail=detail)
+        )

@@ -286,7 +286,8 @@ class Executor:
             return f"reaction to {self.reaction.replace('_', ' ')}"
         if self.paused:
             return "the mission is paused"
-        timed_out = next((e[5] for e in reversed(self._control.trace) if e[5] is not None), "")
+        trace = reversed(self._control.trace)
+        timed_out = next((one.timed_out for one in trace if one.timed_out is not None), "")
         return f"the time of '{timed_out}' is up"
 
     def _end_action(self, event: ActionEnded) -> None:

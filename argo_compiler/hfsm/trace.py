@@ -2,6 +2,7 @@
 
 from dataclasses import dataclass
 from enum import StrEnum
+from typing import NamedTuple
 
 from argo_compiler.hfsm.conditions import words
 from argo_compiler.il import Condition, EventKind
@@ -88,35 +89,23 @@ class TraceEntry:
         return f"{self.time:g} s: {self.source or 'start'} -> {self.target or 'end'} ({self.why})"
 
 
-RawEntry = tuple[
-    float,
-    str | None,
-    str | None,
-    Cause,
-    tuple[Condition, ...],
-    str | None,
-    str | None,
-    str | None,
-    EventKind | None,
-    bool,
-    str,
-]
-"""The fields of a `TraceEntry` as an executor keeps them: conditions are put in words later."""
+class RawEntry(NamedTuple):
+    """The fields of a `TraceEntry` as an executor keeps them: conditions are put in words later."""
+
+    time: float
+    source: str | None
+    target: str | None
+    cause: Cause
+    conditions: tuple[Condition, ...] = ()
+    timed_out: str | None = None
+    repeated: str | None = None
+    failure: str | None = None
+    event: EventKind | None = None
+    by_hand: bool = False
+    detail: str = ""
 
 
 def entry(raw: RawEntry) -> TraceEntry:
     """The entry that a person reads."""
-    time, source, target, cause, conditions, timed_out, repeated, failure, event, hand, detail = raw
-    return TraceEntry(
-        time,
-        source,
-        target,
-        cause,
-        tuple(map(words, conditions)),
-        timed_out,
-        repeated,
-        failure,
-        event,
-        hand,
-        detail,
-    )
+    fields = raw._asdict() | {"conditions": tuple(map(words, raw.conditions))}
+    return TraceEntry(**fields)

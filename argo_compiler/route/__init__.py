@@ -11,8 +11,7 @@ from argo_compiler.route.problem import (
     Tour,
     Visit,
 )
-from argo_compiler.route.suggest import suggest_route
-from argo_compiler.route.suggestion import Point, RouteSuggestion
+from argo_compiler.route.suggestion import Point, RouteSuggestion, suggest_route
 
 __all__ = [
     "NEVER",

@@ -40,28 +40,14 @@ def solve_cp_sat(
     prize_bound = int(network.prize[pruned.steps].sum())
     total = None
     if best is not None and not network.selective and network.objective is Objective.PRIZE:
-        return make_solution(
-            network, best.path or (), best.charges, prize_bound, 0
-        )  # all are as good
+        # All are as good.
+        return make_solution(network, best.path or (), best.charges, prize_bound, 0)
     if network.selective:
-        model = _Model(network, pruned)
-        model.maximise_prize(start)
-        status, solver = _solve(model, search, start if hinted else None, running, prizes=True)
-        if status == cp_model.INFEASIBLE:
-            return no_solution(network, proven=True)
-        if status in (cp_model.OPTIMAL, cp_model.FEASIBLE):
-            path, charges = model.path(solver)
-            if status == cp_model.OPTIMAL:
-                prize_bound = round(solver.objective_value)
-            else:
-                prize_bound = _tighter(prize_bound, solver)
-            one = make_solution(network, path, charges, prize_bound, 0)
-            best = one if one.better_than(best) else best
-        elif status == cp_model.UNKNOWN:
-            prize_bound = _tighter(prize_bound, solver)
-        search.known(prize_bound=prize_bound)
+        best, prize_bound, proven = _most_prize(
+            network, pruned, search, start, best, hinted=hinted, running=running
+        )
         if best is None:
-            return no_solution(network, proven=False)
+            return no_solution(network, proven=proven)
         if network.objective is Objective.PRIZE or best.prize < prize_bound:
             return make_solution(network, best.path or (), best.charges, prize_bound, 0)
         total = best.prize
@@ -88,6 +74,38 @@ def solve_cp_sat(
     if best is None:
         return no_solution(network, proven=status == cp_model.INFEASIBLE, bound=bound)
     return make_solution(network, best.path or (), best.charges, prize_bound, bound)
+
+
+def _most_prize(
+    network: StepNetwork,
+    pruned: Pruned,
+    search: Search,
+    start: Solution | None,
+    best: Solution | None,
+    *,
+    hinted: bool,
+    running: list[cp_model.CpSolver] | None,
+) -> tuple[Solution | None, int, bool]:
+    """The path that wins the most, or `best`; the bound on the prize; and whether it is proven that
+    there is no path."""
+    prize_bound = int(network.prize[pruned.steps].sum())
+    model = _Model(network, pruned)
+    model.maximise_prize(start)
+    status, solver = _solve(model, search, start if hinted else None, running, prizes=True)
+    if status == cp_model.INFEASIBLE:
+        return None, prize_bound, True
+    if status in (cp_model.OPTIMAL, cp_model.FEASIBLE):
+        path, charges = model.path(solver)
+        if status == cp_model.OPTIMAL:
+            prize_bound = round(solver.objective_value)
+        else:
+            prize_bound = _tighter(prize_bound, solver)
+        one = make_solution(network, path, charges, prize_bound, 0)
+        best = one if one.better_than(best) else best
+    elif status == cp_model.UNKNOWN:
+        prize_bound = _tighter(prize_bound, solver)
+    search.known(prize_bound=prize_bound)
+    return best, prize_bound, False
 
 
 def _bound(solver: cp_model.CpSolver) -> int:

@@ -19,8 +19,8 @@ from argo_env.planning.code import digest_of_code
 from argo_env.robot.spec import RobotSpec, load_robot
 from argo_env.site import Site, make_site
 from argo_env.site.family import is_family, parse_family
-from argo_env.site.reading import parse_spec
 from argo_env.site.site import site_file
+from argo_env.site.site_file import parse_spec
 from argo_env.site.spec import SiteSpec
 
 if TYPE_CHECKING:

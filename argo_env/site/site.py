@@ -12,8 +12,8 @@ from argo_compiler.model import Pose
 from argo_env.files import resources
 from argo_env.site.family import PREFIX, is_family
 from argo_env.site.index import SolidIndex
-from argo_env.site.reading import read_spec
 from argo_env.site.shapes import Element, Vector
+from argo_env.site.site_file import read_spec
 from argo_env.site.spec import FloorSpec, SiteSpec
 
 SCALES: dict[CheckpointKind, tuple[str, Interval]] = {

@@ -12,7 +12,7 @@ from argo_env.planning.checking import unseen_checkpoints, unserved_floors
 from argo_env.site import load_site, site_names
 from argo_env.site.family import PREFIX, is_family
 from argo_env.site.norms import breaches, false_ends
-from argo_env.site.writing import to_yaml
+from argo_env.site.site_file import to_yaml
 from argo_planner.loading import keep_input, load_navigator, write_text
 
 

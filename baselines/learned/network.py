@@ -95,11 +95,7 @@ def features(observation: Mapping[str, Tensor]) -> tuple[Tensor, Tensor, Tensor,
     dock = torch.zeros(size, dtype=torch.bool, device=prize.device)
     dock[DOCK] = True
     waiting = (prize > 0) & ~dock
-    open_ = waiting & (here + home <= 1.0 + 1e-5)
-    for _ in range(2):  # what waits for a checkpoint that is out of reach is so too
-        lost = (waiting & ~open_).float()
-        open_ = open_ & ((lost[:, None] @ before)[:, 0] == 0)
-    open_ = open_ | (legal & ~dock)
+    open_ = _still_open(waiting, here + home, before) | (legal & ~dock)
     share = open_.float()
     worth = prize * share
     count = share.sum(dim=1, keepdim=True).clamp_min(1.0)
@@ -107,17 +103,7 @@ def features(observation: Mapping[str, Tensor]) -> tuple[Tensor, Tensor, Tensor,
 
     choices = legal & ~dock
     won, spare = look_ahead(choices, waiting, prize, here, home, between, before)
-    best = won.amax(dim=2)
-    ahead = torch.cat(
-        [
-            (won - won.amax(dim=1, keepdim=True)) / mean[:, :, None],
-            spare,
-            ((best - best.amax(dim=1, keepdim=True)) / mean)[:, :, None],
-            (best / worth.sum(dim=1, keepdim=True).clamp_min(1e-6))[:, :, None],
-        ],
-        dim=2,
-    )
-    ahead = ahead.clamp(-_FAR, _FAR) * choices[:, :, None]
+    ahead = _ahead(won, spare, worth, mean) * choices[:, :, None]
 
     here, home, between = here.clamp_max(_FAR), home.clamp_max(_FAR), between.clamp_max(_FAR)
     itself = torch.eye(size, dtype=torch.bool, device=prize.device)
@@ -154,8 +140,37 @@ def features(observation: Mapping[str, Tensor]) -> tuple[Tensor, Tensor, Tensor,
         dim=2,
     )
     nodes = torch.cat([nodes, ahead], dim=2) * (open_ | dock)[:, :, None]
+    return nodes, _pairs(here, home, between, before), open_ | dock, worth
+
+
+def _still_open(waiting: Tensor, there_and_home: Tensor, before: Tensor) -> Tensor:
+    """Which of those that wait can be made within what is left, with what comes before them."""
+    open_ = waiting & (there_and_home <= 1.0 + 1e-5)
+    for _ in range(2):  # what waits for a checkpoint that is out of reach is so too
+        lost = (waiting & ~open_).float()
+        open_ = open_ & ((lost[:, None] @ before)[:, 0] == 0)
+    return open_
+
+
+def _ahead(won: Tensor, spare: Tensor, worth: Tensor, mean: Tensor) -> Tensor:
+    """What looking ahead says of each node."""
+    best = won.amax(dim=2)
+    ahead = torch.cat(
+        [
+            (won - won.amax(dim=1, keepdim=True)) / mean[:, :, None],
+            spare,
+            ((best - best.amax(dim=1, keepdim=True)) / mean)[:, :, None],
+            (best / worth.sum(dim=1, keepdim=True).clamp_min(1e-6))[:, :, None],
+        ],
+        dim=2,
+    )
+    return ahead.clamp(-_FAR, _FAR)
+
+
+def _pairs(here: Tensor, home: Tensor, between: Tensor, before: Tensor) -> Tensor:
+    """What is seen of each pair of nodes."""
     back = between.transpose(1, 2)
-    pairs = torch.stack(
+    return torch.stack(
         [
             between * 2,
             back * 2,
@@ -168,4 +183,3 @@ def features(observation: Mapping[str, Tensor]) -> tuple[Tensor, Tensor, Tensor,
         ],
         dim=3,
     )
-    return nodes, pairs, open_ | dock, worth

@@ -94,13 +94,6 @@ class Count:
 
 
 @dataclass(frozen=True, slots=True)
-class Until:
-    """`until the connection is restored`."""
-
-    event: EventKind
-
-
-@dataclass(frozen=True, slots=True)
 class _Unit:
     text: str
 

@@ -23,16 +23,6 @@ PROTOCOL_LABELS = (
     "Current",
     "Hint",
 )
-SHEET_LABELS = (
-    "Mission's designation",
-    "Main mode",
-    "Maximum mission total duration",
-    "Anomaly specification",
-    "Real-time reporting",
-    "After-mission report",
-    "Initial position",
-    "End of the mission",
-)
 _LABEL = re.compile(r"[^\W\d_][\w'-]*(?:\s+[\w'-]+){0,6}\s*:")
 
 

@@ -38,7 +38,6 @@ _SMALL = {
     **{word: value for value, word in zip(range(20, 100, 10), _TENS, strict=True)},
     **{word: value for value, word in enumerate(ORDINALS, start=1)},
 }
-NUMBER_WORDS = frozenset([*_UNITS, *_TEENS, *_TENS, "hundred", "thousand"])
 
 _PIECE = re.compile(r"\"(?:[^\"\\]|\\.)*\"", re.DOTALL)
 _SECONDS = {"hour": 3600.0, "minute": 60.0, "second": 1.0}

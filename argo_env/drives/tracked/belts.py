@@ -82,6 +82,21 @@ class Belts:
         are those of the body at `place`, its centre of mass; `dt` (s) is the time since the last
         call.
         """
+        sums, total, strange = self._summed(contacts, walking, speeds, place, axes, velocity, spin)
+        return self._joined(sums, total, axes, spin, dt), strange
+
+    def _summed(
+        self,
+        contacts: list[Contact],
+        walking: int,
+        speeds: tuple[float, float],
+        place: tuple[float, float, float],
+        axes: tuple[float, ...],
+        velocity: tuple[float, float, float],
+        spin: tuple[float, float, float],
+    ) -> tuple[list[list[float]], float, list[Contact]]:
+        """What `_SUMS` says of each belt, over its contacts; the force (N) of all in the order of
+        the contacts; and the contacts of no belt."""
         # Plain floats: this runs 240 times a simulated second.
         px, py, pz = place
         fx, lx, ux, fy, ly, uy, fz, lz, uz = axes
@@ -141,6 +156,19 @@ class Belts:
             on[12] += force * y
             on[13] += force * z
             total += force
+        return sums, total, strange
+
+    def _joined(
+        self,
+        sums: list[list[float]],
+        total: float,
+        axes: tuple[float, ...],
+        spin: tuple[float, float, float],
+        dt: float,
+    ) -> Wrench:
+        """The wrench of all belts."""
+        _, lx, ux, _, ly, uy, _, lz, uz = axes
+        wx, wy, wz = spin
         scale = self._cap / total if total > self._cap else 1.0
         turning = wx * ux + wy * uy + wz * uz
         ox = oy = oz = mx = my = mz = 0.0
@@ -159,7 +187,7 @@ class Belts:
             mx += along * on[8] + across * (y * lz - z * ly) + twist * ux
             my += along * on[9] + across * (z * lx - x * lz) + twist * uy
             mz += along * on[10] + across * (x * ly - y * lx) + twist * uz
-        return (ox, oy, oz, mx, my, mz), strange
+        return ox, oy, oz, mx, my, mz
 
     def _push(
         self, belt: int, on: list[float], turning: float, dt: float

@@ -12,9 +12,8 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from argo_env.sensing.vision.arm import CameraPose
-from argo_env.sensing.vision.camera import Lens
 from argo_env.sensing.vision.instrument import Template
+from argo_env.sensing.vision.photo import Photo
 
 _STEPS = np.array([0.0005, 0.0005, 0.0005, 0.005, 0.005])  # m and rad, of the derivatives
 _TOLERANCE = 0.30  # of the contrast of the face: a point that differs by less matches
@@ -47,26 +46,6 @@ class FacePose:
         c, s = math.cos(self.roll), math.sin(self.roll)
         rotation = np.array([[cos, -sin * c, sin * s], [sin, cos * c, -cos * s], [0.0, s, c]])
         return np.asarray(points @ rotation.T + self.center)
-
-
-@dataclass(frozen=True)
-class Photo:
-    """A picture to read in: its brightness and its redness (both 0 to 1, shape (size, size)), and
-    what it was taken with."""
-
-    brightness: NDArray[np.float32]
-    redness: NDArray[np.float32]
-    lens: Lens
-    pose: CameraPose
-
-    def blurred(self, sigma: float) -> "Photo":
-        """The picture blurred by `sigma` (px)."""
-        import cv2
-
-        if sigma < 0.4:
-            return self
-        soft = cv2.GaussianBlur(self.brightness, (0, 0), sigma)
-        return Photo(np.asarray(soft), self.redness, self.lens, self.pose)
 
 
 @dataclass(frozen=True)

@@ -8,9 +8,10 @@ from itertools import product
 import numpy as np
 from numpy.typing import NDArray
 
-from argo_env.sensing.vision.align import FacePose, Photo
+from argo_env.sensing.vision.align import FacePose
 from argo_env.sensing.vision.faces import PIXELS_PER_METRE
 from argo_env.sensing.vision.instrument import Instrument, blurred_texture, texture
+from argo_env.sensing.vision.photo import Photo
 from argo_env.world.placement import MAX_OFFSET
 
 _HALF = 11.0  # px, half the width of a face in the picture that is searched

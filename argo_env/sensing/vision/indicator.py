@@ -4,8 +4,9 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from argo_env.sensing.vision.align import FacePose, Photo, sample
+from argo_env.sensing.vision.align import FacePose, sample
 from argo_env.sensing.vision.instrument import Instrument
+from argo_env.sensing.vision.photo import Photo
 
 _MARGIN = 0.04  # of the scale beyond either end that is looked at too
 _STEPS = 541  # positions that are tried: 0.2 % of the scale each

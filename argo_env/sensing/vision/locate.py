@@ -6,10 +6,11 @@ from dataclasses import replace
 import numpy as np
 from numpy.typing import NDArray
 
-from argo_env.sensing.vision.align import FacePose, Fit, Photo, compare, refine
+from argo_env.sensing.vision.align import FacePose, Fit, compare, refine
 from argo_env.sensing.vision.candidates import find_candidates
 from argo_env.sensing.vision.instrument import Instrument, make_template
 from argo_env.sensing.vision.outlines import find_outlines
+from argo_env.sensing.vision.photo import Photo
 from argo_env.sensing.vision.rolls import likely_rolls, spacing
 from argo_env.world.placement import MAX_OFFSET, MAX_TURN
 

@@ -5,8 +5,9 @@ import math
 import numpy as np
 from numpy.typing import NDArray
 
-from argo_env.sensing.vision.align import FacePose, Photo
+from argo_env.sensing.vision.align import FacePose
 from argo_env.sensing.vision.instrument import Instrument
+from argo_env.sensing.vision.photo import Photo
 
 _THRESHOLDS = 10  # levels of brightness at which patches are cut out
 _SMALLEST = 0.06  # of the area that the face would cover seen from the front

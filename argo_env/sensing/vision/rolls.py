@@ -7,7 +7,7 @@ from functools import cache
 import numpy as np
 from numpy.typing import NDArray
 
-from argo_env.sensing.vision.align import FacePose, Photo, sample
+from argo_env.sensing.vision.align import FacePose, sample
 from argo_env.sensing.vision.faces import PIXELS_PER_METRE
 from argo_env.sensing.vision.instrument import (
     Instrument,
@@ -15,6 +15,7 @@ from argo_env.sensing.vision.instrument import (
     blurred_texture,
     make_template,
 )
+from argo_env.sensing.vision.photo import Photo
 
 _ROLLS = np.radians(np.arange(-93, 94, 3))
 _DARKEST = 0.03  # of full scale: white that is darker is not looked at

@@ -11,7 +11,7 @@ from argo_compiler.errors import ArgoError
 from argo_env.robot.pose import BodyPose
 from argo_env.seeding import generator
 from argo_env.sensing.sensor import Measurement, MeasurementError, PoorViewError
-from argo_env.sensing.vision.align import FacePose, Fit, Photo
+from argo_env.sensing.vision.align import FacePose, Fit
 from argo_env.sensing.vision.arm import JOINTS
 from argo_env.sensing.vision.camera import Lens, take_picture
 from argo_env.sensing.vision.confidence import PictureReading, combine, probability
@@ -20,7 +20,7 @@ from argo_env.sensing.vision.indicator import find_indicator
 from argo_env.sensing.vision.instrument import Instrument
 from argo_env.sensing.vision.level import LEVEL
 from argo_env.sensing.vision.locate import find_face, look_closer
-from argo_env.sensing.vision.photo import make_photo
+from argo_env.sensing.vision.photo import Photo, make_photo
 from argo_env.sensing.vision.valve import VALVE
 from argo_env.sensing.vision.views import ArmView, plan_views, solids_near
 from argo_env.site import SiteCheckpoint

@@ -10,10 +10,10 @@ from argo_compiler.route import (
     NEVER,
     Tour,
     evaluate,
+    find_route,
     held_karp,
     labels,
     portfolio,
-    solving,
     suggest_route,
 )
 from argo_compiler.route.cp_sat import solve_cp_sat
@@ -74,7 +74,7 @@ def test_each_solver_agrees_with_brute_force(solver: str, monkeypatch: pytest.Mo
 @pytest.mark.parametrize("workers", [1, 2])
 def test_searches_agree_with_brute_force(workers: int, monkeypatch: pytest.MonkeyPatch) -> None:
     # Problems as small as these would not be searched otherwise.
-    monkeypatch.setattr(solving, "solve", portfolio._searched)
+    monkeypatch.setattr(find_route, "solve", portfolio._searched)
     for seed in range(3000, 3000 + PROBLEMS // 20):
         problem = random_problem(np.random.default_rng(seed), 5)
         made = suggest_route(problem, 6.0, workers=workers, explain=False)

@@ -14,8 +14,7 @@ from argo_env.site import make_site
 from argo_env.site.families import draw_site
 from argo_env.site.family import TEST_SEEDS, Family, Stairs, parse_family
 from argo_env.site.norms import breaches, false_ends
-from argo_env.site.reading import read_spec
-from argo_env.site.writing import to_yaml
+from argo_env.site.site_file import read_spec, to_yaml
 from tests.conftest import examples
 
 families = st.builds(

@@ -12,7 +12,7 @@ from hypothesis import strategies as st
 
 from argo_compiler.errors import ArgoError
 from argo_compiler.route import NEVER, Objective, Tour, evaluate
-from argo_compiler.route.suggest import suggest_route
+from argo_compiler.route.suggestion import suggest_route
 from benchmarks.instances import Kind, read_known_route, read_route_problem
 from benchmarks.instances.text import MAX_NODES
 from tests.conftest import examples

@@ -1,6 +1,8 @@
-"""Reads a site's description from its YAML file, with errors that say where it is wrong."""
+"""A site's description as YAML: read, with errors that say where it is wrong, and written."""
 
 from pathlib import Path
+
+import yaml
 
 from argo_env.files.yaml_file import parse_yaml, read_text
 from argo_env.site.spec import SiteSpec
@@ -27,4 +29,15 @@ def parse_spec(text: str, path: Path) -> SiteSpec:
         not_yaml="site.not-yaml",
         duplicate_key="site.duplicate-key",
         wrong_field="site.wrong-field",
+    )
+
+
+def to_yaml(spec: SiteSpec) -> str:
+    """The description as `read_spec` reads it; fields that have their defaults are left out."""
+    return yaml.safe_dump(
+        spec.model_dump(mode="json", exclude_defaults=True),
+        sort_keys=False,
+        allow_unicode=True,
+        default_flow_style=None,
+        width=100,
     )

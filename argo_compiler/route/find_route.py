@@ -25,7 +25,7 @@ _CHECK = 2.0
 def find_route(
     problem: RouteProblem, time_limit: float, seed: int, workers: int, *, explain: bool
 ) -> RouteSuggestion:
-    """See `argo_compiler.route.suggest.suggest_route`."""
+    """See `argo_compiler.route.suggestion.suggest_route`."""
     net, search, best, method = _solved(problem, time_limit, seed, workers)
     infeasible_subset: tuple[str, ...] = ()
     if explain and best.path is None and best.proven:

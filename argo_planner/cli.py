@@ -84,6 +84,12 @@ class ArgoCommands(LazyGroup):
             "Print the JSON Schema of a mission, a machine, a mission's progress or a file of "
             "faults.",
         ),
+        _command(
+            "doctor",
+            "doctor",
+            "show_health",
+            "Show the version, the cache on disk, and which optional parts are installed.",
+        ),
     )
 
 

@@ -13,7 +13,6 @@ from argo_compiler.errors import ArgoError
 from argo_compiler.il import EventKind
 from argo_env.drives.registry import DRIVES, ROUTE
 from argo_env.envs.copying import Copying
-from argo_env.envs.drawing.inspection import draw_inspection
 from argo_env.envs.episode import (
     Parts,
     check_begun,
@@ -22,6 +21,7 @@ from argo_env.envs.episode import (
     no_state,
     read_choice,
 )
+from argo_env.envs.inspection_drawing import draw_inspection
 from argo_env.envs.inspection_options import MOST_FAULTS, InspectOptions, draw_faults
 from argo_env.envs.inspection_run import Deed, Inspection, beginning
 from argo_env.envs.inspection_travel import travel_times

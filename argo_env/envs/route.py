@@ -9,7 +9,6 @@ from gymnasium import spaces
 from numpy.typing import NDArray
 
 from argo_env.envs.copying import Copying
-from argo_env.envs.drawing.route import draw_route
 from argo_env.envs.episode import (
     Parts,
     check_begun,
@@ -20,6 +19,7 @@ from argo_env.envs.episode import (
 )
 from argo_env.envs.observations import Observation
 from argo_env.envs.rendering import Rendering, check_render_mode
+from argo_env.envs.route_drawing import draw_route
 from argo_env.envs.route_episodes import (
     FPS,
     Episodes,

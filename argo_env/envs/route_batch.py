@@ -13,11 +13,11 @@ from numpy.typing import NDArray
 
 from argo_compiler.errors import ArgoError
 from argo_env.envs.copying import Copying
-from argo_env.envs.drawing.route import draw_route
 from argo_env.envs.episode import no_state
 from argo_env.envs.observations import Observation
 from argo_env.envs.options import check_whole
 from argo_env.envs.rendering import check_render_mode
+from argo_env.envs.route_drawing import draw_route
 from argo_env.envs.route_episodes import (
     FPS,
     Episodes,

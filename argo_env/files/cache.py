@@ -9,6 +9,7 @@ from collections.abc import Iterable
 from contextlib import suppress
 from dataclasses import dataclass
 from pathlib import Path
+from tempfile import TemporaryFile
 
 from argo_env.files.parts import NOWHERE, Parts
 
@@ -73,6 +74,18 @@ def contents() -> Contents:
     """What is in the cache now."""
     sizes = [_sizes(folder) for folder in _entries()]
     return Contents(len(sizes), sum(map(len, sizes)), sum(map(sum, sizes)))
+
+
+def flaw() -> str | None:
+    """Why nothing can be kept in the cache; None if it can."""
+    try:
+        folder = _sites()
+        folder.mkdir(parents=True, exist_ok=True)
+        with TemporaryFile(dir=folder) as file:
+            file.write(b"?")
+    except (OSError, RuntimeError, ValueError) as error:
+        return getattr(error, "strerror", None) or str(error)
+    return None
 
 
 def empty() -> None:

@@ -12,6 +12,7 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import NDArray
 
+from argo_compiler.errors import Unavailable
 from argo_env.closing import Closing
 from argo_env.site.shapes import Vector
 
@@ -70,6 +71,8 @@ class Connection(Closing):
                 self._client: int = pybullet.connect(pybullet.GUI)
         else:
             self._client = pybullet.connect(pybullet.DIRECT)
+        if self._client < 0:
+            raise Unavailable("PyBullet gives no connection: it has 1,024 at most")
         # There are no more than 1,024 connections, and not all that holds one gets closed.
         self._end = weakref.finalize(self, _disconnect, self._client)
 

@@ -9,7 +9,6 @@ from hypothesis import example, given, settings
 from hypothesis import strategies as st
 from PIL import ImageColor, ImageDraw
 
-from argo_env.envs.drawing.drive import GOAL
 from argo_env.envs.drive import DriveEnv
 from argo_env.envs.inspection import InspectEnv
 from argo_env.envs.route import RouteEnv
@@ -21,6 +20,7 @@ from argo_env.pictures.drawing.sheet import FINER, FOOT, HEAD, SIZE, make_sheet
 from argo_env.pictures.drawing.spots import Spots
 from argo_env.pictures.drawing.style import POINT, ROBOT, STYLES
 from argo_env.pictures.drawing.way import Moment, draw_lines, lines
+from argo_env.pictures.drive import GOAL
 from argo_env.report.track import colour
 from argo_env.robot.spec import Footprint
 from argo_env.site.shapes import Role

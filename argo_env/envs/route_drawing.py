@@ -6,14 +6,14 @@ from itertools import pairwise
 import numpy as np
 from numpy.typing import NDArray
 
-from argo_env.envs.drawing.legs import Place, legs_of
-from argo_env.envs.drawing.sites import site_sheet
 from argo_env.envs.route_aisles import DEPTH, WIDTH
 from argo_env.envs.route_instance import DOCK, RouteInstance
+from argo_env.envs.route_legs import Place, legs_of
 from argo_env.envs.route_sources import RandomRoutes, RouteSource, SiteRoutes
 from argo_env.pictures.drawing.floors import FloorPlan, aisles, open_floors
 from argo_env.pictures.drawing.plan import Marker, PlanDrawing, StationMark, draw_plan
 from argo_env.pictures.drawing.sheet import FloorSheet, make_sheet
+from argo_env.pictures.drawing.site_sheets import site_sheet
 from argo_env.pictures.drawing.way import Moment
 
 _LEGEND = {

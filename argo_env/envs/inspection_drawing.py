@@ -5,9 +5,9 @@ from collections.abc import Sequence
 import numpy as np
 from numpy.typing import NDArray
 
-from argo_env.envs.drawing.sites import site_sheet
 from argo_env.envs.inspection_run import Inspection
 from argo_env.pictures.drawing.plan import Marker, PlanDrawing, StationMark, draw_plan
+from argo_env.pictures.drawing.site_sheets import site_sheet
 from argo_env.pictures.drawing.way import Moment
 
 _LEGEND = {

@@ -1,1 +1,0 @@
-"""Drawings of plans: where the robot of an environment was, and what it still has to see."""

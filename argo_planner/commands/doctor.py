@@ -1,0 +1,41 @@
+"""`argo doctor`: what this installation has and lacks."""
+
+from typing import Annotated
+
+import typer
+
+from argo_env.files import cache
+from argo_planner.doctor import examine
+
+
+def show_health(
+    empty_cache: Annotated[
+        bool,
+        typer.Option("--empty-cache", help="take away what is kept of sites; it is made again"),
+    ] = False,
+) -> None:
+    """Show the version, the cache on disk, and which optional parts are installed."""
+    if empty_cache:
+        freed = cache.contents().size
+        cache.empty()
+        print(f"cache: emptied, {_megabytes(freed)} freed")
+    found = examine()
+    print(f"argo {found.version}, Python {found.python}, {found.system}")
+    kept = found.cache
+    print(
+        f"cache: {kept.folder}, {kept.entries} sites, {_megabytes(kept.size)} of at most "
+        f"{_megabytes(kept.limit)}"
+    )
+    if kept.flaw:
+        print(f"  nothing can be kept there, so each command builds its site anew: {kept.flaw}")
+    for extra in found.extras:
+        if extra.missing:
+            lacks = ", ".join(extra.missing)
+            print(f"{extra.name} ({extra.purpose}): not installed, {lacks}; {extra.remedy}")
+        else:
+            print(f"{extra.name} ({extra.purpose}): installed")
+    print(f"PyBullet: {'works' if found.physics is None else f'does not work: {found.physics}'}")
+
+
+def _megabytes(size: int) -> str:
+    return f"{size / 1e6:.1f} MB"

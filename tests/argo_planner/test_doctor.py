@@ -1,0 +1,61 @@
+"""`argo doctor`: what it says of the installation, and that it empties the cache."""
+
+import tomllib
+from importlib.util import find_spec
+from pathlib import Path
+
+from typer.testing import CliRunner
+
+import argo_planner.doctor
+from argo_compiler import __version__
+from argo_env.files import cache
+from argo_env.planning.opening import forget_sites, open_site
+from argo_planner.cli import app
+from argo_planner.doctor import examine
+
+PROJECT = Path(__file__).parents[2] / "pyproject.toml"
+
+
+def argo(*arguments):
+    result = CliRunner().invoke(app, ["doctor", *arguments])
+    assert result.exit_code == 0, result.output
+    return result.output
+
+
+def test_what_it_shows(tmp_path, monkeypatch):
+    monkeypatch.setenv(cache.VARIABLE, str(tmp_path))
+    forget_sites()
+    assert f"cache: {tmp_path}, 0 sites, 0.0 MB" in argo()
+    assert open_site("darmstadt").catalog
+    said = argo()
+    assert said.startswith(f"argo {__version__}, Python 3.11")
+    size = sum(path.stat().st_size for path in tmp_path.rglob("*") if path.is_file())
+    assert f"cache: {tmp_path}, 1 sites, {size / 1e6:.1f} MB of at most" in said
+    assert "PyBullet: works" in said
+    emptied = argo("--empty-cache")
+    assert f"cache: emptied, {size / 1e6:.1f} MB freed" in emptied
+    assert f"cache: {tmp_path}, 0 sites, 0.0 MB" in emptied
+    assert not [path for path in tmp_path.rglob("*") if path.is_file()]
+
+
+def test_what_is_missing_comes_with_its_remedy(monkeypatch):
+    def without(name):
+        return None if name in {"cv2", "mcap"} else find_spec(name)
+
+    monkeypatch.setattr(argo_planner.doctor, "find_spec", without)
+    said = argo()
+    assert "vision (reading gauges from pictures): not installed, cv2; pip install" in said
+    assert "recording (recordings of runs): not installed, mcap; pip install" in said
+    assert "pip install 'argo-mission[vision]'" in said
+
+
+def test_a_folder_that_can_not_be_used_is_named_with_the_reason(tmp_path, monkeypatch):
+    (tmp_path / "file").write_text("", encoding="utf-8")
+    monkeypatch.setenv(cache.VARIABLE, str(tmp_path / "file"))
+    assert "nothing can be kept there, so each command builds its site anew: " in argo()
+    assert examine().cache.flaw == "Not a directory"
+
+
+def test_all_extras_for_users_are_looked_at():
+    extras = tomllib.loads(PROJECT.read_text("utf-8"))["project"]["optional-dependencies"]
+    assert {extra.name for extra in examine().extras} == set(extras) - {"bench", "dev"}

@@ -81,7 +81,7 @@ if TYPE_CHECKING:
         Progress,
         Resume,
     )
-    from argo_compiler.hfsm.lower import lower
+    from argo_compiler.hfsm.lowering import lower
     from argo_compiler.il import Condition, Group, Mission, Reaction, Task, Transition
     from argo_compiler.route import Precedence, RouteProblem, Visit, suggest_route
     from argo_compiler.script import format_script, import_script
@@ -113,7 +113,7 @@ else:
                 "Progress",
                 "Resume",
             ],
-            "hfsm.lower": ["lower"],
+            "hfsm.lowering": ["lower"],
             "il": ["Condition", "Group", "Mission", "Reaction", "Task", "Transition"],
             "route": ["Precedence", "RouteProblem", "Visit", "suggest_route"],
             "script": ["format_script", "import_script"],

@@ -16,7 +16,7 @@ from argo_compiler.analysis.transitions import transitions
 from argo_compiler.analysis.travel import Travel
 from argo_compiler.analysis.values import find_paths, make_fields
 from argo_compiler.catalog import Catalog
-from argo_compiler.hfsm.lower import lower
+from argo_compiler.hfsm.lowering import lower
 from argo_compiler.il import Mission
 
 

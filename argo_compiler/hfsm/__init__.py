@@ -1,36 +1,8 @@
 """The executable form of a mission: a hierarchical state machine, and what drives it."""
 
-from argo_compiler.hfsm.conditions import Measured
-from argo_compiler.hfsm.events import (
-    ActionFailed,
-    ActionStopped,
-    ActionSucceeded,
-    Cancel,
-    CancelAction,
-    Command,
-    Event,
-    GiveBack,
-    Occurred,
-    Outcome,
-    Pause,
-    Resume,
-    StartAction,
-    TakeOver,
-    Tick,
-)
-from argo_compiler.hfsm.executor import Executor
-from argo_compiler.hfsm.lower import lower
-from argo_compiler.hfsm.model import (
-    Composite,
-    Hfsm,
-    Leaf,
-    ReactionState,
-    RepeatRule,
-    StateTransition,
-    TransitionKind,
-)
-from argo_compiler.hfsm.progress import ByHand, Progress
-from argo_compiler.hfsm.trace import Cause, TraceEntry
+from typing import TYPE_CHECKING
+
+from argo_compiler.lazy_names import lazy_names
 
 __all__ = [
     "ActionFailed",
@@ -63,3 +35,73 @@ __all__ = [
     "TransitionKind",
     "lower",
 ]
+
+if TYPE_CHECKING:
+    from argo_compiler.hfsm.conditions import Measured
+    from argo_compiler.hfsm.events import (
+        ActionFailed,
+        ActionStopped,
+        ActionSucceeded,
+        Cancel,
+        CancelAction,
+        Command,
+        Event,
+        GiveBack,
+        Occurred,
+        Outcome,
+        Pause,
+        Resume,
+        StartAction,
+        TakeOver,
+        Tick,
+    )
+    from argo_compiler.hfsm.executor import Executor
+    from argo_compiler.hfsm.lowering import lower
+    from argo_compiler.hfsm.model import (
+        Composite,
+        Hfsm,
+        Leaf,
+        ReactionState,
+        RepeatRule,
+        StateTransition,
+        TransitionKind,
+    )
+    from argo_compiler.hfsm.progress import ByHand, Progress
+    from argo_compiler.hfsm.trace import Cause, TraceEntry
+else:
+    __getattr__, __dir__ = lazy_names(
+        __name__,
+        {
+            "conditions": ["Measured"],
+            "events": [
+                "ActionFailed",
+                "ActionStopped",
+                "ActionSucceeded",
+                "Cancel",
+                "CancelAction",
+                "Command",
+                "Event",
+                "GiveBack",
+                "Occurred",
+                "Outcome",
+                "Pause",
+                "Resume",
+                "StartAction",
+                "TakeOver",
+                "Tick",
+            ],
+            "executor": ["Executor"],
+            "lowering": ["lower"],
+            "model": [
+                "Composite",
+                "Hfsm",
+                "Leaf",
+                "ReactionState",
+                "RepeatRule",
+                "StateTransition",
+                "TransitionKind",
+            ],
+            "progress": ["ByHand", "Progress"],
+            "trace": ["Cause", "TraceEntry"],
+        },
+    )

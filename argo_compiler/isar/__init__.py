@@ -4,7 +4,20 @@ What it reads is the `StartMissionDefinition` of its API, version 1.34: inspecti
 order. `docs/exchange.md` says what that can hold.
 """
 
-from argo_compiler.isar.reading import Imported, from_isar, read_isar
-from argo_compiler.isar.writing import InspectionView, to_isar
+from typing import TYPE_CHECKING
+
+from argo_compiler.lazy_names import lazy_names
 
 __all__ = ["Imported", "InspectionView", "from_isar", "read_isar", "to_isar"]
+
+if TYPE_CHECKING:
+    from argo_compiler.isar.reading import Imported, from_isar, read_isar
+    from argo_compiler.isar.writing import InspectionView, to_isar
+else:
+    __getattr__, __dir__ = lazy_names(
+        __name__,
+        {
+            "reading": ["Imported", "from_isar", "read_isar"],
+            "writing": ["InspectionView", "to_isar"],
+        },
+    )

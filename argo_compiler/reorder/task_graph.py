@@ -6,7 +6,7 @@ from dataclasses import dataclass, field
 from argo_compiler.analysis.flow import NOWHERE, Flow
 from argo_compiler.analysis.graph import leading_to, reached_from
 from argo_compiler.errors import ArgoError
-from argo_compiler.hfsm.lower import lower
+from argo_compiler.hfsm.lowering import lower
 from argo_compiler.il import Action, Mission
 
 

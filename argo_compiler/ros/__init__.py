@@ -4,11 +4,9 @@
 means.
 """
 
-from argo_compiler.ros.bags import Storage, is_bag, read_bag, to_ros1_bag, to_ros2_bag
-from argo_compiler.ros.package import message_package
-from argo_compiler.ros.reading import from_message
-from argo_compiler.ros.types import RosTypes, ros1_types, ros2_types
-from argo_compiler.ros.writing import to_message
+from typing import TYPE_CHECKING
+
+from argo_compiler.lazy_names import lazy_names
 
 __all__ = [
     "RosTypes",
@@ -23,3 +21,21 @@ __all__ = [
     "to_ros1_bag",
     "to_ros2_bag",
 ]
+
+if TYPE_CHECKING:
+    from argo_compiler.ros.bags import Storage, is_bag, read_bag, to_ros1_bag, to_ros2_bag
+    from argo_compiler.ros.package import message_package
+    from argo_compiler.ros.reading import from_message
+    from argo_compiler.ros.types import RosTypes, ros1_types, ros2_types
+    from argo_compiler.ros.writing import to_message
+else:
+    __getattr__, __dir__ = lazy_names(
+        __name__,
+        {
+            "bags": ["Storage", "is_bag", "read_bag", "to_ros1_bag", "to_ros2_bag"],
+            "package": ["message_package"],
+            "reading": ["from_message"],
+            "types": ["RosTypes", "ros1_types", "ros2_types"],
+            "writing": ["to_message"],
+        },
+    )

@@ -13,6 +13,7 @@ from typing import Any
 import numpy as np
 from ortools.sat.python import cp_model
 
+from argo_compiler.route.cp_solver import new_solver, run_solver
 from argo_compiler.route.network import StepNetwork
 from argo_compiler.route.problem import NEVER, Objective
 from argo_compiler.route.pruning import Pruned, horizon, paths
@@ -128,7 +129,7 @@ def _solve(
     *,
     prizes: bool,
 ) -> tuple[int, cp_model.CpSolver]:
-    solver = cp_model.CpSolver()
+    solver = new_solver()
     solver.parameters.max_time_in_seconds = max(search.left(), 0.01)
     solver.parameters.num_workers = 1
     solver.parameters.linearization_level = 2
@@ -137,8 +138,7 @@ def _solve(
         model.hint(start)
     if running is not None:
         running.append(solver)
-    status = solver.solve(model.model, _Watch(model, search, prizes))
-    return int(status), solver
+    return run_solver(solver, model.model, _Watch(model, search, prizes)), solver
 
 
 class _Watch(cp_model.CpSolverSolutionCallback):

@@ -13,6 +13,7 @@ from itertools import chain
 import numpy as np
 from ortools.sat.python import cp_model
 
+from argo_compiler.route.cp_solver import new_solver, run_solver
 from argo_compiler.route.problem import RouteProblem
 
 Kept = frozenset[int]
@@ -241,7 +242,7 @@ def _hitting_set(sets: list[Kept], count: int) -> Kept:
     for one in sets:
         model.add_bool_or([picked[k] for k in sorted(one)])
     model.minimize(sum(picked))
-    solver = cp_model.CpSolver()
+    solver = new_solver()
     solver.parameters.num_workers = 1
-    solver.solve(model)
+    run_solver(solver, model)
     return frozenset(k for k in range(count) if solver.boolean_value(picked[k]))

@@ -53,7 +53,10 @@ class _Race:
             self._alone.stop()
             self._stop_solvers()
             self._ready.set()
-            thread.join()
+            while thread.is_alive():
+                # A solver that was only just about to begin has not heard it.
+                self._stop_solvers()
+                thread.join(0.1)
         if self._failure is not None:
             raise self._failure
         return best, method, _both(self._network, self._search, exact, self._beside)

@@ -87,19 +87,23 @@ Shape = tuple[str, tuple[str, ...], tuple[str, ...], tuple[str, ...]]
 
 
 class _StandIns(dict[str | None, str]):
-    """What stands for a piece, remembered for the words of the language and the latest others."""
+    """What stands for a piece, remembered for the words of the language and the latest others.
+
+    Threads share it, so what it has of the words is never taken out.
+    """
 
     def __init__(self, words: Collection[str], make: Callable[[str], str]) -> None:
         super().__init__({word: word for word in words})
-        self.make = make
-        self.most = len(self) + _MOST
-        self.words = words
         self[None] = ""
+        self.make = make
+        self.always = frozenset(self)
+        self.most = len(self) + _MOST
 
     def __missing__(self, piece: str) -> str:
         if len(self) > self.most:
-            self.clear()
-            self.__init__(self.words, self.make)  # type: ignore[misc]
+            for other in list(self):
+                if other not in self.always:
+                    self.pop(other, None)
         found = self.make(piece)
         if len(piece) < _LONGEST:
             self[piece] = found

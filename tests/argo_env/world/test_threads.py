@@ -1,0 +1,191 @@
+"""Simulations beside each other: each is as it is alone, and the process is left as it was."""
+
+import gc
+import math
+import subprocess
+import sys
+import threading
+from concurrent.futures import ThreadPoolExecutor
+from pathlib import Path
+
+import pytest
+import yaml
+
+from argo_compiler.collecting import collector_held
+from argo_compiler.script import import_script
+from argo_env.drives.tracked.body import TrackedBody
+from argo_env.planning.opening import open_site
+from argo_env.robot.pose import BodyPose
+from argo_env.run.record import RunRecord
+from argo_env.run.session import simulate
+from argo_env.run.spec import RunSettings
+from argo_env.world.world import World, pybullet
+from tests.yard import SITE
+
+THREADS = 8
+DRIVES = ("kinematic", "tracked", "kinematic", "route") * 2
+SCRIPT = """Mission Protocol #{k}
+Maximum duration: 20 min
+If the battery is low, return to the docking station.
+1. Set the starting point in starting area 1.
+2. Check checkpoint #{first}.
+3. Check checkpoint #{second}, retry twice. If the value is above 4 bar, skip to step 5.
+4. Check chekpoint #{third}.
+5. Return to the docking station in starting area 1.
+"""
+
+
+def run(file: str, k: int) -> RunRecord:
+    """The record of the k-th mission: from the script on."""
+    opened = open_site(file)
+    first, second, third = (1 + (k + part) % 3 for part in range(3))
+    script = SCRIPT.format(k=k, first=first, second=second, third=third)
+    imported = import_script(script, opened.catalog)
+    settings = RunSettings.model_validate(
+        {
+            "drive": DRIVES[k],
+            "sensor": "camera" if k % 4 == 2 else "ideal",
+            "seed": k,
+            "faults": [{"kind": "low_battery", "seed": k}],
+        }
+    )
+    return simulate(
+        imported.mission,
+        opened.navigator,
+        settings=settings,
+        diagnostics=imported.diagnostics,
+    )
+
+
+@pytest.fixture
+def site(tmp_path):
+    file = tmp_path / "yard.yaml"
+    file.write_text(yaml.safe_dump(SITE), encoding="utf-8")
+    return str(file)
+
+
+@pytest.fixture
+def hasty():
+    """Threads take turns a hundred times as often as they do otherwise."""
+    before = sys.getswitchinterval()
+    sys.setswitchinterval(5e-5)
+    yield
+    sys.setswitchinterval(before)
+
+
+@pytest.mark.usefixtures("hasty")
+def test_eight_threads_give_the_records_that_they_give_alone(site):
+    alone = [run(site, k) for k in range(THREADS)]
+    assert len({record.model_dump_json() for record in alone}) == THREADS
+    with ThreadPoolExecutor(THREADS) as pool:
+        assert list(pool.map(run, [site] * THREADS, range(THREADS))) == alone
+    assert gc.isenabled()
+
+
+def near(world, x, y):
+    """The contacts that PyBullet keeps where the robot stands, those that are still apart too."""
+    world.place_robot(BodyPose(x, y, 0.02, math.radians(-90)))
+    world.touches()
+    client = world._client
+    body = next(
+        number
+        for number in range(pybullet.getNumBodies(physicsClientId=client))
+        if pybullet.getBodyInfo(number, physicsClientId=client)[1] == b"tracker"
+    )
+    contacts = pybullet.getContactPoints(bodyA=body, physicsClientId=client)
+    return sorted((c[2:5], round(c[8], 6)) for c in contacts)
+
+
+def test_a_tracked_body_changes_nothing_for_other_worlds(site):
+    """PyBullet has one threshold of contacts for all of its connections."""
+    opened = open_site(site)
+    places = [(1.0 + 0.2 * k, 0.9 + 0.01 * k) for k in range(12)]
+    with World(opened.site, opened.robot) as world, World(opened.site, opened.robot) as other:
+        before = [near(world, *place) for place in places]
+        with TrackedBody(other, opened.robot) as body:
+            body.reset(BodyPose(2.0, 2.0, 0.02, 0.0))
+            assert [near(world, *place) for place in places] == before
+            body.advance(5)
+            assert [near(world, *place) for place in places] == before
+
+
+_BESIDE = """
+import os, sys, threading
+
+written, over = 0, threading.Event()
+
+def write():
+    global written
+    while not over.is_set():
+        os.write(1, b"out\\n")
+        os.write(2, b"err\\n")
+        written += 1
+        over.wait(0.0002)
+
+before = [os.fstat(fd) for fd in (1, 2)]
+thread = threading.Thread(target=write, daemon=True)
+thread.start()
+from concurrent.futures import ThreadPoolExecutor
+from pathlib import Path
+from argo_env.pictures.film import write_film
+from argo_env.pictures.overview import write_overview
+from argo_env.planning.opening import open_site
+from tests.argo_env.world import test_threads
+
+file = sys.argv[1]
+with ThreadPoolExecutor(8) as pool:
+    records = list(pool.map(test_threads.run, [file] * 8, range(8)))
+opened, folder = open_site(file), Path(file).parent
+write_film(records[0], opened.site, opened.robot, folder / "film.gif", speed=60.0, size=(64, 64))
+write_overview(records[1], opened.site, opened.robot, folder / "site.png")
+over.set()
+thread.join()
+assert [os.fstat(fd)[:3] for fd in (1, 2)] == [one[:3] for one in before]
+import ctypes
+libc = ctypes.CDLL(None)
+libc.puts(b"from C")
+libc.fflush(None)
+print(written, flush=True)
+"""
+
+
+def test_what_others_print_meanwhile_is_not_lost(site):
+    """From the first import on; and nothing is printed besides."""
+    done = subprocess.run(
+        [sys.executable, "-c", _BESIDE, site],
+        capture_output=True,
+        text=True,
+        check=True,
+        cwd=Path(__file__).parents[3],
+    )
+    *lines, from_c, count = done.stdout.splitlines()
+    assert from_c == "from C"
+    assert lines == ["out"] * int(count)
+    assert done.stderr.splitlines() == ["err"] * int(count)
+
+
+def test_the_collector_comes_back():
+    """However the threads that hold it off overlap."""
+    meet, part = threading.Barrier(4), threading.Barrier(4)
+    seen = []
+
+    def hold():
+        for _ in range(50):
+            meet.wait()
+            with collector_held(), collector_held():
+                seen.append(gc.isenabled())
+            part.wait()
+            if not gc.isenabled():
+                raise AssertionError("the collector is still off")
+
+    with ThreadPoolExecutor(4) as pool:
+        for done in [pool.submit(hold) for _ in range(4)]:
+            done.result()
+    assert False in seen
+    gc.disable()
+    try:
+        with collector_held():
+            assert not gc.isenabled()
+        assert not gc.isenabled()
+    finally:
+        gc.enable()

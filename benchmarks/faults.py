@@ -26,13 +26,13 @@ from pathlib import Path
 from argo_compiler.hfsm import Resume
 from argo_compiler.il import Action, EventKind, Mission, Task, Transition
 from argo_compiler.script import import_script, read_script
-from argo_env.drives.registry import DRIVES
 from argo_env.faults.reading import read_faults
 from argo_env.faults.walkway import Brick
 from argo_env.files import resources
 from argo_env.navigation import Navigator
 from argo_env.planning import OpenedSite, open_site
 from argo_env.planning.catalog import make_catalog
+from argo_env.run.drives_and_sensors import DRIVES
 from argo_env.run.record import RunRecord
 from argo_env.run.session import simulate
 from argo_env.run.spec import RunSpec, logged

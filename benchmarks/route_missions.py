@@ -17,9 +17,9 @@ import numpy as np
 
 from argo_compiler.catalog import Catalog
 from argo_compiler.reorder.requirements import Requirements
-from argo_env.drives.registry import DRIVES
 from argo_env.planning import open_site
 from argo_env.planning.catalog import make_catalog
+from argo_env.run.drives_and_sensors import DRIVES
 from argo_env.run.session import simulate
 from argo_env.run.spec import RunSpec
 from argo_planner.loading import load_mission

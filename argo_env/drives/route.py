@@ -2,7 +2,6 @@
 
 import math
 
-from argo_env.drives.registry import ROUTE
 from argo_env.drives.timed_drive import TimedDrive
 from argo_env.navigation.path import Motion, wrap
 from argo_env.robot.pose import BodyPose
@@ -16,7 +15,7 @@ class RouteDrive(TimedDrive):
     are those of the straight motions; whether the robot touches anything, nobody asks.
     """
 
-    name = ROUTE
+    name = "route"
 
     def __init__(self, robot: RobotSpec, time_step: float = 0.1) -> None:
         super().__init__(robot, time_step)

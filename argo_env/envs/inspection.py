@@ -11,7 +11,6 @@ from numpy.typing import NDArray
 
 from argo_compiler.errors import ArgoError
 from argo_compiler.il import EventKind
-from argo_env.drives.registry import DRIVES, ROUTE
 from argo_env.envs.copying import Copying
 from argo_env.envs.episode import (
     Parts,
@@ -37,6 +36,7 @@ from argo_env.envs.options import (
 from argo_env.envs.rendering import Rendering, check_render_mode
 from argo_env.faults.kinds import AnyFault
 from argo_env.planning import open_site
+from argo_env.run.drives_and_sensors import DRIVES, ROUTE
 from argo_env.run.record import RunRecord
 from argo_env.run.rig import check_spec
 from argo_env.run.spec import RunSpec

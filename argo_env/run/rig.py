@@ -10,18 +10,17 @@ from argo_compiler.errors import Invalid, NotFound
 from argo_env.drives.battery import Battery
 from argo_env.drives.drive import Drive
 from argo_env.drives.powertrain import Powertrain
-from argo_env.drives.registry import DRIVES, ROUTE, WORLD_DRIVES
 from argo_env.drives.route import RouteDrive
 from argo_env.faults.kinds import changed_site, settle
 from argo_env.faults.schedule import Schedule
 from argo_env.faults.targets import FaultTargets
 from argo_env.navigation import Navigator
+from argo_env.run.drives_and_sensors import DRIVES, IDEAL, ROUTE, SENSORS, WORLD_DRIVES
 from argo_env.run.spec import RunSpec
 from argo_env.seeding import generator
 from argo_env.sensing.ideal import IdealSensor, draw_values
 from argo_env.sensing.onboard import onboard_watches
 from argo_env.sensing.onboard_sensor import OnboardSensor
-from argo_env.sensing.registry import IDEAL, SENSORS
 from argo_env.sensing.sensor import Sensor
 from argo_env.sensing.signals import standard_watches
 from argo_env.sensing.watch import Watch

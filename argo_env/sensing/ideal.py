@@ -7,7 +7,6 @@ import numpy as np
 from argo_env.navigation.views import camera_positions, face_normal, sight_target
 from argo_env.robot.pose import BodyPose
 from argo_env.robot.spec import RobotSpec
-from argo_env.sensing.registry import IDEAL
 from argo_env.sensing.sensor import Measurement, MeasurementError, PoorViewError
 from argo_env.site import Site
 from argo_env.world.paper_world import AnyWorld
@@ -16,7 +15,7 @@ from argo_env.world.paper_world import AnyWorld
 class IdealSensor:
     """Reads true values where the face is in range, turned to the camera and in sight."""
 
-    name = IDEAL
+    name = "ideal"
 
     def __init__(self, world: AnyWorld, robot: RobotSpec, truth: Mapping[int, float]) -> None:
         self._world = world

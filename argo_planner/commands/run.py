@@ -11,18 +11,17 @@ import typer
 from argo_compiler.errors import ArgoError
 from argo_compiler.hfsm import Cancel, Event, Occurred, Pause, Resume, lower
 from argo_compiler.il import EventKind, Mission
-from argo_env.drives.registry import DRIVES
 from argo_env.faults.reading import read_faults, require_fit
 from argo_env.files.folders import make_folder
 from argo_env.pictures import check_film
 from argo_env.planning import open_site
 from argo_env.recording.files import check_recording, recording_to
+from argo_env.run.drives_and_sensors import DRIVES, SENSORS
 from argo_env.run.journal import require_free
 from argo_env.run.observer import Observer
 from argo_env.run.rig import check_spec
 from argo_env.run.session import simulate
 from argo_env.run.spec import RunSpec, logged
-from argo_env.sensing.registry import SENSORS
 from argo_planner.loading import keep_input, load_mission
 from argo_planner.options import EndArea, Optimise, SiteOption, Source, StartArea
 from argo_planner.routing import optimised

@@ -5,7 +5,7 @@ import pytest
 from argo_compiler.errors import ArgoError
 from argo_compiler.il import Action, Mission, Task, Transition
 from argo_compiler.model import Pose
-from argo_env.drives.registry import DRIVES
+from argo_env.run.drives_and_sensors import DRIVES
 from argo_env.run.rig import true_values
 from tests.yard import Watching, simulated
 

@@ -1,11 +1,38 @@
-"""The sensors for checkpoints by name. What a sensor needs is imported when one is made."""
+"""The drives and the sensors by name. What one of them needs is imported when it is made."""
 
 from collections.abc import Callable, Mapping
 from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
+    from argo_env.drives.drive import Drive
+    from argo_env.robot.spec import RobotSpec
     from argo_env.sensing.sensor import Sensor
     from argo_env.world.world import World
+
+ROUTE = "route"
+"""The drive that goes by travel times alone, and has no world."""
+
+
+def _kinematic(world: "World", robot: "RobotSpec") -> "Drive":
+    from argo_env.drives.kinematic import KinematicDrive
+
+    return KinematicDrive(world, robot)
+
+
+def _tracked(world: "World", robot: "RobotSpec") -> "Drive":
+    from argo_env.drives.tracked.drive import TrackedDrive
+
+    return TrackedDrive(world, robot)
+
+
+WORLD_DRIVES: dict[str, Callable[["World", "RobotSpec"], "Drive"]] = {
+    "kinematic": _kinematic,
+    "tracked": _tracked,
+}
+"""What makes the drives that move the robot in PyBullet's world."""
+
+DRIVES = (ROUTE, *WORLD_DRIVES)
+"""The names of all drives."""
 
 IDEAL = "ideal"
 """The sensor that knows the true values; the only one that needs no world to look at."""

@@ -3,38 +3,23 @@
 from collections.abc import Sequence
 from contextlib import ExitStack
 
-from argo_compiler.errors import Conflict, Invalid, NotFound
-from argo_compiler.hfsm import (
-    ActionStopped,
-    CancelAction,
-    Command,
-    Event,
-    GiveBack,
-    Occurred,
-    StartAction,
-    Tick,
-)
+from argo_compiler.errors import Conflict, NotFound
+from argo_compiler.hfsm import Event, GiveBack, Occurred, Tick
 from argo_compiler.il import Task
 from argo_env.closing import Closing
-from argo_env.navigation import Path
 from argo_env.planning.opening import OpenedSite
 from argo_env.planning.start import start_pose
 from argo_env.robot.pose import BodyPose
-from argo_env.run.action import ActionEnd, ActionUnderWay
+from argo_env.run.course import Course
 from argo_env.run.ending import exhausted, standstill
-from argo_env.run.interruptions import InterruptionWatch
-from argo_env.run.log import Entry, LoggedEvent, RunLog
+from argo_env.run.log import Entry, LoggedEvent
 from argo_env.run.machine import Machine, OpenMachine
 from argo_env.run.observer import Observer
-from argo_env.run.perception import blockage
-from argo_env.run.record import RunRecord, TaskRun
+from argo_env.run.record import RunRecord
 from argo_env.run.rig import Rig, fit_out
-from argo_env.run.scheduled_events import GivenEvents
 from argo_env.run.spec import RunSpec
 from argo_env.run.steering import ReachIn, Steering, StopRun, check_by_hand, check_event, from_now
-from argo_env.run.summary import make_record
-from argo_env.run.vehicle import Vehicle, way_come
-from argo_env.run.velocity import WayVelocity
+from argo_env.run.vehicle import Vehicle
 
 SAMPLE_PERIOD = 0.5  # s between recorded places of the robot
 
@@ -71,20 +56,13 @@ class Simulation(Closing):
         or the past is not this run's.
         """
         self._spec = spec
-        self._machine = machine
         self._observers = tuple(observers)
         self._more = tuple(events)
-        self._given = GivenEvents(spec.events)
-        self._log = RunLog(site.site)
-        self._interruptions = InterruptionWatch()
-        self._velocity = WayVelocity(spec.mission)
-        self._action: ActionUnderWay | None = None
-        self._came: Path | None = None
-        self._steps = 0
         self._opened = False
         self._record: RunRecord | None = None
         with ExitStack() as stack:
             self._vehicle = Vehicle(rig or fit_out(spec, site.navigator, gui, stack))
+            self._course = Course(machine, self._vehicle, spec)
             for observer in self._observers:
                 observer.on_begin(self.rig, spec)
             self._set_up(past)
@@ -92,8 +70,8 @@ class Simulation(Closing):
 
     @property
     def now(self) -> float:
-        """s of simulated time; counted in steps, so that nothing adds up."""
-        return round(self._steps * self.rig.drive.time_step, 6)
+        """s of simulated time."""
+        return self._course.now
 
     @property
     def over(self) -> bool:
@@ -106,7 +84,7 @@ class Simulation(Closing):
 
     @property
     def machine(self) -> Machine:
-        return self._machine
+        return self._course.machine
 
     @property
     def rig(self) -> Rig:
@@ -121,17 +99,16 @@ class Simulation(Closing):
     @property
     def task(self) -> Task | None:
         """The task whose action is under way."""
-        return self._action.task if self._action else None
+        return self._course.action.task if self._course.action else None
 
     def record(self) -> RunRecord:
         """The record of the run: of the whole of it, or as it stands now."""
         if self._record is not None:
             return self._record
-        present = self._entry(sample=self._unsampled)
+        present = self._course.entry(sample=self._course.unsampled)
         contacts = (*present.contacts, *present.touching)
-        return self._record_of(
-            self._log.with_entry(present.model_copy(update={"contacts": contacts}))
-        )
+        present = present.model_copy(update={"contacts": contacts})
+        return self._course.record(self._spec, present)
 
     def step(self) -> None:
         """Lets one time step of the drive pass: the robot moves, and the machine hears what
@@ -144,7 +121,7 @@ class Simulation(Closing):
             return
         self._advance()
         for observer in self._observers:
-            observer.on_step(self.now, self._action)
+            observer.on_step(self.now, self._course.action)
         self.settle()
 
     def handle(self, event: Steering) -> None:
@@ -161,14 +138,14 @@ class Simulation(Closing):
                 self._end(reason)
             case ReachIn(fault):
                 settled = from_now(fault, self.rig, self._spec.seed, self.now)
-                self._tell(self._entry().model_copy(update={"faults": (settled,)}))
+                self._tell(self._course.entry().model_copy(update={"faults": (settled,)}))
                 self._vehicle.let_faults_happen(self.now)
             case GiveBack(by_hand):
                 if by_hand:
-                    check_by_hand(by_hand, self._machine, self._spec.mission)
-                self._tell(self._entry([event]))
+                    check_by_hand(by_hand, self.machine, self._spec.mission)
+                self._tell(self._course.entry([event]))
             case _:
-                self._tell(self._entry([check_event(event)]))
+                self._tell(self._course.entry([check_event(event)]))
         self.settle()
 
     def give(self, task: Task) -> None:
@@ -177,11 +154,12 @@ class Simulation(Closing):
         Raises Conflict if the run has ended, the machine is another, or an action runs.
         """
         self._require_going_on()
-        if not isinstance(self._machine, OpenMachine):
+        machine = self.machine
+        if not isinstance(machine, OpenMachine):
             raise Conflict("the tasks of this run are those of its mission")
-        commands = self._machine.give(task)
-        self._spec = self._spec.model_copy(update={"mission": self._machine.mission})
-        self._obey(commands)
+        commands = machine.give(task)
+        self._spec = self._spec.model_copy(update={"mission": machine.mission})
+        self._course.obey(commands)
 
     def run(self) -> RunRecord:
         """Goes on to the end of the run; returns its record. A robot that stands still and waits
@@ -197,30 +175,26 @@ class Simulation(Closing):
         """Ends the run if its machine has come to its end, or nothing can go on."""
         if self.over:
             return
-        why = None if self._machine.finished else exhausted(self.now, self._vehicle.supply)
-        if why or self._machine.finished:
+        why = None if self.machine.finished else exhausted(self.now, self._vehicle.supply)
+        if why or self.machine.finished:
             self._end(why)
 
     def close(self) -> None:
         """Gives back what the run was carried out with. The record can still be asked for."""
         self._stack.close()
 
-    # -- how it begins
-
     def _set_up(self, past: Sequence[Entry]) -> None:
         """Puts everything to where the run begins, or goes on."""
-        self._obey(self._machine.start(self.now))
+        course = self._course
+        course.obey(course.machine.start(self.now))
         for entry in past:
-            self._replay(entry)
-        last = self._log.last
+            course.replay(entry)
+        last = course.log.last
         self._vehicle.place(last.body_pose if last else self._start_pose(), self.now)
         if last is None:
             return
         self._vehicle.restore(last, past, self.now)
-        if came := way_come(self._log):
-            self._came = came
-            if self._action:
-                self._action.came = came
+        course.look_back()
         if last.ended:
             self._conclude()
 
@@ -236,148 +210,65 @@ class Simulation(Closing):
         pose = navigator.snap(start_pose(mission, docks))
         return BodyPose(pose.x, pose.y, pose.z, pose.yaw)
 
-    def _replay(self, entry: Entry) -> None:
-        """Does again what led to an entry, but for what the robot did."""
-        self._steps = round(entry.t / self.rig.drive.time_step)
-        self._vehicle.odometry.restore(entry)
-        self._given.occurred = entry.given
-        try:
-            if entry.events and entry.running != self._running:
-                raise ValueError(f"{entry.running} is said to run, and {self._running} does")
-            self._take(entry)
-        except ValueError as error:
-            raise Invalid(
-                f"the journal does not fit its mission at {entry.t:g} s: {error}; "
-                "begin anew with `argo run`"
-            ) from error
-
     def _open(self) -> bool:
         """Makes the first entry, if there is none yet of this process; whether the run is over."""
         if not self._opened:
             self._opened = True
-            resumed = self._log.last is not None and not self._machine.finished
+            course = self._course
+            resumed = course.log.last is not None and not course.machine.finished
             first = {"resumed": resumed, "added": self._more}
-            self._tell(self._entry(sample=self._unsampled).model_copy(update=first))
+            self._tell(course.entry(sample=course.unsampled).model_copy(update=first))
             self.settle()
         return self.over
 
-    # -- how it goes on
-
     def _advance(self) -> None:
         """One step of simulated time."""
-        self._steps += 1
-        now, action = self.now, self._action
-        sensed = self._vehicle.advance(self._steps, now, action)
+        course = self._course
+        course.steps += 1
+        now = self.now
+        sensed = self._vehicle.advance(course.steps, now, course.action)
         # Before the end, so that a reaction to it comes first and no next task is begun.
         events: list[Event] = [Occurred(a.kind, a.detail) for a in sensed.found]
         run = None
-        if action and sensed.end:
+        if sensed.end:
             events.append(sensed.end)
-            run = self._run_of(action, sensed.end)
-        events += self._given.due(now)
-        due = self._steps % max(1, round(SAMPLE_PERIOD / self.rig.drive.time_step)) == 0
+            run = course.run_of(sensed.end)
+        events += course.given.due(now)
+        due = course.steps % max(1, round(SAMPLE_PERIOD / self.rig.drive.time_step)) == 0
         if events or due:
-            entry = self._entry(events, sample=due, task=run)
+            entry = course.entry(events, sample=due, task=run)
             self._tell(entry.model_copy(update={"found": sensed.found, "reading": sensed.reading}))
-        deadline = self._machine.next_deadline
-        if not self._machine.finished and deadline is not None and deadline <= now:
-            self._tell(self._entry([Tick()]))
-
-    def _entry(
-        self, events: Sequence[Event] = (), *, sample: bool = False, task: TaskRun | None = None
-    ) -> Entry:
-        """An entry of the present moment."""
-        return Entry(
-            t=self.now,
-            given=self._given.occurred,
-            running=self._running,
-            events=tuple(LoggedEvent.of(event) for event in events),
-            task=task,
-            sample=sample,
-            **self._vehicle.state(),
-        )
+        deadline = self.machine.next_deadline
+        if not self.machine.finished and deadline is not None and deadline <= now:
+            self._tell(course.entry([Tick()]))
 
     def _tell(self, entry: Entry) -> None:
         """Tells an entry of the present moment, and acts on it."""
         for observer in self._observers:
             observer.on_entry(entry)
         self._vehicle.told()
-        self._take(entry)
+        self._course.take(entry)
         for observer in self._observers:
-            observer.on_change(entry, self._machine)
-
-    def _take(self, entry: Entry) -> None:
-        """Adds an entry to the log and tells the machine its events."""
-        self._log.add(entry)
-        self._given.add(entry.added)
-        if self.rig.schedule:
-            for fault in entry.faults:
-                self.rig.schedule.add(fault)
-        if closed := [b for anomaly in entry.found if (b := blockage(anomaly))]:
-            self._vehicle.avoid(closed)
-        if entry.task:
-            self._came = (self._action and self._action.path) or self._came
-            self._action = None
-            if entry.task.outcome == "done":
-                self._velocity.arrived(entry.task.task)
-        for event in entry.events:
-            if not self._machine.finished:
-                self._obey(self._machine.handle(event.original(), self.now))
-                self._interruptions.look(self._machine, self.now)
-        if closed and self._action:
-            self._action.detour(self.rig)
-
-    def _obey(self, commands: Sequence[Command]) -> None:
-        odometry = self._vehicle.odometry
-        for command in commands:
-            match command:
-                case StartAction(task):
-                    self._action = ActionUnderWay(
-                        task, self._velocity.to(task), self.rig,
-                        self.now, odometry.distance, odometry.climbed, self._came,
-                    )  # fmt: skip
-                case CancelAction(_, reason):
-                    if self._action:
-                        goes_on = self._machine.paused or self._machine.reaction is not None
-                        self._action.cancel(reason, interrupted=goes_on)
-
-    def _run_of(self, action: ActionUnderWay, end: ActionEnd) -> TaskRun:
-        odometry = self._vehicle.odometry
-        return action.run(end, self.now, odometry.distance, odometry.climbed)
-
-    @property
-    def _running(self) -> str | None:
-        return self._action.task.name if self._action else None
-
-    @property
-    def _unsampled(self) -> bool:
-        return not self._log.path or self._log.path[-1].t < self.now
-
-    # -- how it ends
+            observer.on_change(entry, self.machine)
 
     def _require_going_on(self) -> None:
         if self.over:
             raise Conflict(f"the run has ended, at {self.now:g} s: make another simulation")
 
     def _standstill(self) -> str | None:
-        if self._given.pending or self._vehicle.supply.charging:
+        if self._course.given.pending or self._vehicle.supply.charging:
             return None
-        return standstill(self.now, self._machine, self.rig, self._log)
+        return standstill(self.now, self.machine, self.rig, self._course.log)
 
     def _end(self, stopped: str | None) -> None:
-        action, run = self._action, None
-        if action:
-            action.cancel("the run was stopped", interrupted=False)
-            run = self._run_of(action, ActionStopped(action.task.name))
+        course = self._course
+        run = course.break_off()
         self._vehicle.odometry.close()
-        last = self._entry(sample=self._unsampled, task=run)
+        last = course.entry(sample=course.unsampled, task=run)
         self._tell(last.model_copy(update={"ended": True, "stopped": stopped}))
         self._conclude()
 
     def _conclude(self) -> None:
-        self._record = self._record_of(self._log)
+        self._record = self._course.record(self._spec)
         for observer in self._observers:
             observer.on_end(self._record)
-
-    def _record_of(self, log: RunLog) -> RunRecord:
-        return make_record(self._spec, self.rig, self._machine, log, self._interruptions)

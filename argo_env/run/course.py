@@ -1,0 +1,143 @@
+"""The course of a run: what its entries add up to, and the machine that they are told to."""
+
+from collections.abc import Sequence
+
+from argo_compiler.errors import Invalid
+from argo_compiler.hfsm import ActionStopped, CancelAction, Command, Event, StartAction
+from argo_env.navigation import Path
+from argo_env.run.action import ActionEnd, ActionUnderWay
+from argo_env.run.interruptions import InterruptionWatch
+from argo_env.run.log import Entry, LoggedEvent, RunLog
+from argo_env.run.machine import Machine
+from argo_env.run.perception import blockage
+from argo_env.run.record import RunRecord, TaskRun
+from argo_env.run.scheduled_events import GivenEvents
+from argo_env.run.spec import RunSpec
+from argo_env.run.summary import make_record
+from argo_env.run.vehicle import Vehicle, way_come
+from argo_env.run.velocity import WayVelocity
+
+
+class Course:
+    """Where a run stands. Holds the machine, the log and the action under way, which change with
+    the entries that it takes: equal entries lead to the same place, made now or read again."""
+
+    def __init__(self, machine: Machine, vehicle: Vehicle, spec: RunSpec) -> None:
+        self.machine = machine
+        self.action: ActionUnderWay | None = None
+        """the one under way"""
+        self.log = RunLog(vehicle.rig.navigator.site)
+        self.given = GivenEvents(spec.events)
+        self.steps = 0
+        """time steps of the drive since the run began"""
+        self._vehicle = vehicle
+        self._interruptions = InterruptionWatch()
+        self._velocity = WayVelocity(spec.mission)
+        self._came: Path | None = None
+
+    @property
+    def now(self) -> float:
+        """s of simulated time; counted in steps, so that nothing adds up."""
+        return round(self.steps * self._vehicle.rig.drive.time_step, 6)
+
+    @property
+    def unsampled(self) -> bool:
+        """Whether the present place is no point of the recorded path yet."""
+        return not self.log.path or self.log.path[-1].t < self.now
+
+    def entry(
+        self, events: Sequence[Event] = (), *, sample: bool = False, task: TaskRun | None = None
+    ) -> Entry:
+        """An entry of the present moment."""
+        return Entry(
+            t=self.now,
+            given=self.given.occurred,
+            running=self._running,
+            events=tuple(LoggedEvent.of(event) for event in events),
+            task=task,
+            sample=sample,
+            **self._vehicle.state(),
+        )
+
+    def take(self, entry: Entry) -> None:
+        """Adds an entry to the log and tells the machine its events."""
+        self.log.add(entry)
+        self.given.add(entry.added)
+        if schedule := self._vehicle.rig.schedule:
+            for fault in entry.faults:
+                schedule.add(fault)
+        if closed := [b for anomaly in entry.found if (b := blockage(anomaly))]:
+            self._vehicle.avoid(closed)
+        if entry.task:
+            self._came = (self.action and self.action.path) or self._came
+            self.action = None
+            if entry.task.outcome == "done":
+                self._velocity.arrived(entry.task.task)
+        for event in entry.events:
+            if not self.machine.finished:
+                self.obey(self.machine.handle(event.original(), self.now))
+                self._interruptions.look(self.machine, self.now)
+        if closed and self.action:
+            self.action.detour(self._vehicle.rig)
+
+    def obey(self, commands: Sequence[Command]) -> None:
+        """Does what the machine asks for."""
+        odometry = self._vehicle.odometry
+        for command in commands:
+            match command:
+                case StartAction(task):
+                    self.action = ActionUnderWay(
+                        task, self._velocity.to(task), self._vehicle.rig,
+                        self.now, odometry.distance, odometry.climbed, self._came,
+                    )  # fmt: skip
+                case CancelAction(_, reason):
+                    if self.action:
+                        goes_on = self.machine.paused or self.machine.reaction is not None
+                        self.action.cancel(reason, interrupted=goes_on)
+
+    def replay(self, entry: Entry) -> None:
+        """Does again what led to an entry, but for what the robot did.
+
+        Raises Invalid if it is one of another run.
+        """
+        self.steps = round(entry.t / self._vehicle.rig.drive.time_step)
+        self._vehicle.odometry.restore(entry)
+        self.given.occurred = entry.given
+        try:
+            if entry.events and entry.running != self._running:
+                raise ValueError(f"{entry.running} is said to run, and {self._running} does")
+            self.take(entry)
+        except ValueError as error:
+            raise Invalid(
+                f"the journal does not fit its mission at {entry.t:g} s: {error}; "
+                "begin anew with `argo run`"
+            ) from error
+
+    def look_back(self) -> None:
+        """After a replay: by what path the robot came is what the log has seen of it."""
+        if came := way_come(self.log):
+            self._came = came
+            if self.action:
+                self.action.came = came
+
+    def run_of(self, end: ActionEnd) -> TaskRun:
+        """The action under way as it goes into the record, now that it ends."""
+        assert self.action is not None
+        odometry = self._vehicle.odometry
+        return self.action.run(end, self.now, odometry.distance, odometry.climbed)
+
+    def break_off(self) -> TaskRun | None:
+        """Ends the action under way, if there is one, as the run ends."""
+        if self.action is None:
+            return None
+        self.action.cancel("the run was stopped", interrupted=False)
+        return self.run_of(ActionStopped(self.action.task.name))
+
+    def record(self, spec: RunSpec, present: Entry | None = None) -> RunRecord:
+        """The record of the run as far as its log goes, or up to the `present` entry."""
+        log = self.log if present is None else self.log.with_entry(present)
+        return make_record(spec, self._vehicle.rig, self.machine, log, self._interruptions)
+
+    @property
+    def _running(self) -> str | None:
+        return self.action.task.name if self.action else None

@@ -143,6 +143,16 @@ def fast_rig(navigator, values=None):
     return Rig(EmptyWorld(), navigator, GlidingDrive(navigator.robot), Oracle(values))
 
 
+class Entries(Observer):
+    """Keeps the entries of a run."""
+
+    def __init__(self):
+        self.all = []
+
+    def on_entry(self, entry):
+        self.all.append(entry)
+
+
 class Watching(Observer):
     """Calls a function with the time and the task after each step, another with what is sensed."""
 
@@ -176,7 +186,12 @@ def run_with(plan, rig, *, observers=(), journal=None, **fields):
     past = journal.entries if journal else ()
     if journal:
         observers = (journal, *observers)
-    with Simulation(
-        Executor(lower(plan)), opened(rig.navigator), spec, past=past, observers=observers, rig=rig
+    with simulation_of(
+        spec, opened(rig.navigator), past=past, observers=observers, rig=rig
     ) as simulation:
         return simulation.run()
+
+
+def simulation_of(spec, site, **arguments):
+    """A simulation of the spec's mission."""
+    return Simulation(Executor(lower(spec.mission)), site, spec, **arguments)

@@ -1,6 +1,7 @@
 """One inspection under way: a simulation whose tasks are given one by one."""
 
 import math
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 from argo_compiler.hfsm import ActionFailed
@@ -37,12 +38,18 @@ class Deed:
 class Inspection(Closing):
     """A robot on a site with all that may go wrong. Holds the simulation; close it."""
 
-    def __init__(self, site: OpenedSite, spec: RunSpec, limit: float) -> None:
+    def __init__(
+        self,
+        site: OpenedSite,
+        spec: RunSpec,
+        limit: float,
+        observers: Sequence[Observer] = (),
+    ) -> None:
         """The spec's mission begins where the robot is, and has no other task. The run is over
         after `limit` s."""
         self._machine = OpenMachine(spec.mission)
         self._told = _Told()
-        self._simulation = Simulation(self._machine, site, spec, observers=[self._told])
+        self._simulation = Simulation(self._machine, site, spec, observers=[self._told, *observers])
         self._limit = limit
         self._tasks: dict[str, int] = {}
         self._noticed: list[EventKind] = []

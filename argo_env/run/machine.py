@@ -5,6 +5,8 @@ from typing import Protocol
 
 from argo_compiler.errors import Conflict
 from argo_compiler.hfsm import (
+    ActionStopped,
+    CancelAction,
     Command,
     Event,
     Executor,
@@ -74,9 +76,16 @@ class OpenMachine:
         mission = self.mission.model_copy(update={"tasks": (*before, joined, task)})
         executor = Executor(lower(mission))
         executor.start(self._began)
+        told: list[tuple[Event, float]] = []
         for event, at in self._told:
-            executor.handle(event, at)
-        self.mission, self._executor = mission, executor
+            told.append((event, at))
+            if any(isinstance(c, CancelAction) for c in executor.handle(event, at)) and (
+                executor.running is not None and executor.running.name == task.name
+            ):
+                # In truth it has not begun yet.
+                told.append((ActionStopped(task.name), at))
+                executor.handle(*told[-1])
+        self.mission, self._executor, self._told = mission, executor, told
         return () if executor.running is None else (StartAction(executor.running),)
 
     def close(self) -> None:

@@ -1,0 +1,433 @@
+"""A simulation stepped and steered: by hand, by `simulate` and by an environment it is the same."""
+
+import json
+import pickle
+from concurrent.futures import ThreadPoolExecutor
+from threading import Barrier
+
+import pytest
+import yaml
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from argo_compiler.errors import ArgoError, Conflict, Invalid, NotFound
+from argo_compiler.hfsm import (
+    ActionSucceeded,
+    ByHand,
+    Cancel,
+    GiveBack,
+    Occurred,
+    Outcome,
+    Pause,
+    Resume,
+    TakeOver,
+)
+from argo_compiler.il import EventKind, Reaction, Response
+from argo_env.envs.inspection_run import Inspection, beginning
+from argo_env.faults.checkpoints import AbnormalValue
+from argo_env.faults.plant import GasLeakFault
+from argo_env.faults.robot import ConnectionLoss, DriveDysfunction, LowBattery, SensorDysfunction
+from argo_env.faults.walkway import Brick
+from argo_env.run.journal import Header, create_journal, open_journal
+from argo_env.run.machine import OpenMachine
+from argo_env.run.record import RunRecord
+from argo_env.run.session import resume, run, simulate
+from argo_env.run.simulation import Simulation
+from argo_env.run.spec import RunSpec, logged, read_spec
+from argo_env.run.steering import ReachIn, StopRun
+from tests.conftest import examples
+from tests.yard import SITE, Entries, measure, mission, opened, simulation_of, waypoint, yard
+
+PLAN = mission(measure(1), waypoint("A", 4.05, 2.05), measure(2), measure(3), end_area=1)
+SHORT = mission(waypoint("A", 2.05, 1.55), measure(1))
+PLANS = {"route": PLAN, "kinematic": PLAN, "tracked": SHORT}
+FAULTS = (
+    AbnormalValue(checkpoint=2, value=9.0, at=3.0),
+    DriveDysfunction(at=2.0, until=15.0, speed=0.4),
+    ConnectionLoss(at=4.0, until=9.0),
+)
+EVENTS = logged((6.0, Pause()), (8.5, Resume()), (10.0, Occurred(EventKind.HOT_SPOT, "told")))
+
+
+@pytest.fixture(scope="module")
+def site():
+    return opened(yard())
+
+
+@pytest.fixture(params=["route", "kinematic", "tracked"])
+def drive(request):
+    return request.param
+
+
+def spec_of(drive, **fields):
+    return RunSpec(mission=PLANS[drive], site="yard", drive=drive, seed=5, **fields)
+
+
+def steps(simulation, count):
+    for _ in range(count):
+        simulation.step()
+
+
+def until(simulation, reached):
+    while not reached():
+        simulation.step()
+
+
+def read(record):
+    return [(r.task, r.value, r.normal) for r in record.readings]
+
+
+class TestTheSameWhoeverSteps:
+    def test_by_hand_and_by_simulate(self, site, drive):
+        spec = spec_of(drive, faults=FAULTS, events=EVENTS)
+        whole, single = Entries(), Entries()
+        record = simulate(spec, site, observers=[whole])
+        with simulation_of(spec, site, observers=[single]) as simulation:
+            while not simulation.over:
+                simulation.step()
+        assert single.all == whole.all
+        assert simulation.record() == record
+        assert record.result.outcome is Outcome.COMPLETED
+        assert len(record.interruptions) == 1
+
+    def test_by_tasks_given_one_by_one(self, site, drive):
+        """As environments give them: each when the one before it has ended."""
+        start = PLAN.tasks[0].pose
+        spec = RunSpec(
+            mission=beginning(site, start), site="yard", drive=drive, seed=5, faults=FAULTS
+        )
+        given, whole = Entries(), Entries()
+        with Inspection(site, spec, 600.0, [given]) as inspection:
+            deeds = [inspection.read(1)]
+            if drive != "tracked":
+                deeds += [inspection.read(2), inspection.read(2), inspection.drive(start)]
+            inspection.finish()
+            record = inspection.record()
+        names = [task.name for task in record.mission.tasks]
+        assert names == ["START", "read 1", "read 2", "read 2 (2)", "drive"][: 1 + len(deeds)]
+        planned = spec.model_copy(update={"mission": record.mission})
+        assert simulate(planned, site, observers=[whole]) == record
+        assert given.all == whole.all
+        assert record.result.success
+        assert [d.reading for d in deeds if d.reading] == list(record.readings)
+        noticed = [a for a in record.anomalies if a.kind is not EventKind.ABNORMAL_READING]
+        assert [a for d in deeds for a in d.found] == noticed
+
+
+@pytest.fixture(scope="module")
+def whole(site):
+    """The readings of the runs without a pause, and how many steps the runs take."""
+    found = {}
+    for drive in PLANS:
+        with simulation_of(spec_of(drive), site) as simulation:
+            record = simulation.run()
+            found[drive] = read(record), round(simulation.now / simulation.rig.drive.time_step)
+            assert record.readings
+    return found
+
+
+class TestPausing:
+    def pause(self, site, drive, at, pause):
+        with simulation_of(spec_of(drive), site) as simulation:
+            steps(simulation, at)
+            simulation.handle(Pause())
+            until(simulation, lambda: simulation.task is None)
+            stood = simulation.pose
+            steps(simulation, pause)
+            assert simulation.pose == stood or drive == "tracked"
+            simulation.handle(Resume())
+            return simulation.run()
+
+    @settings(max_examples=examples(8))
+    @given(drive=st.sampled_from(["route", "kinematic"]), data=st.data())
+    def test_at_any_step(self, site, whole, drive, data):
+        readings, most = whole[drive]
+        at, pause = data.draw(st.integers(0, most - 1)), data.draw(st.integers(1, 40))
+        record = self.pause(site, drive, at, pause)
+        assert read(record) == readings
+        assert record.result.outcome is Outcome.COMPLETED
+        assert [i.event for i in record.interruptions] == [None]
+
+    @pytest.mark.parametrize("share", [0.3, 0.9])
+    def test_with_the_tracked_drive(self, site, whole, share):
+        readings, most = whole["tracked"]
+        assert read(self.pause(site, "tracked", int(share * most), 5)) == readings
+
+
+def test_eight_threads_give_what_each_gives_alone(site):
+    drives = ["route", "kinematic"] * 3 + ["tracked", "tracked"]
+    specs = [
+        spec_of(drive, faults=FAULTS).model_copy(update={"seed": seed})
+        for seed, drive in enumerate(drives)
+    ]
+    alone = [simulate(spec, site) for spec in specs]
+    together = Barrier(len(specs))
+
+    def one(spec):
+        together.wait()
+        return simulate(spec, site)
+
+    with ThreadPoolExecutor(len(specs)) as pool:
+        assert list(pool.map(one, specs)) == alone
+
+
+class TestRecordAtAnyMoment:
+    def test_it_tells_what_has_been_and_changes_nothing(self, site):
+        spec = spec_of("route", faults=FAULTS)
+        reference = simulate(spec, site)
+        with simulation_of(spec, site) as simulation:
+            first = simulation.record()
+            assert (first.result.duration, first.tasks) == (0.0, ())
+            while not simulation.over:
+                steps(simulation, 1)
+                if round(simulation.now * 10) % 7:
+                    continue
+                record = simulation.record()
+                assert record.result.duration == simulation.now
+                for name in ("tasks", "readings", "anomalies", "trace"):
+                    so_far = getattr(record, name)
+                    assert so_far == getattr(reference, name)[: len(so_far)]
+                if not simulation.over:
+                    assert "under way" in record.result.verdict
+                    assert (record.result.success, record.result.outcome) == (False, None)
+            assert simulation.record() == reference
+        assert RunRecord.model_validate_json(record.model_dump_json()) == record
+
+
+class TestSteering:
+    @pytest.fixture
+    def simulation(self, site):
+        with simulation_of(spec_of("route"), site) as simulation:
+            yield simulation
+
+    def test_a_fault_from_now_on(self, simulation):
+        steps(simulation, 30)
+        simulation.handle(ReachIn(SensorDysfunction(effect="fails")))
+        record = simulation.run()
+        assert record.readings == ()
+        (fault,) = record.faults
+        assert (fault.kind, fault.at) == ("sensor_dysfunction", 3.0)
+        assert [a.kind for a in record.anomalies] == [EventKind.DYSFUNCTION]
+        assert "failed: MEASURE 1, MEASURE 2, MEASURE 3" in record.result.verdict
+
+    def test_a_fault_that_comes_later_and_ends(self, simulation):
+        steps(simulation, 10)
+        simulation.handle(ReachIn(ConnectionLoss(at=5.0, until=9.0)))
+        lost, restored = simulation.run().anomalies
+        assert (lost.kind, restored.kind) == (
+            EventKind.CONNECTION_LOST, EventKind.CONNECTION_RESTORED,
+        )  # fmt: skip
+        assert 5.0 < lost.t < 9.0 <= restored.t
+
+    @pytest.mark.parametrize(
+        ("fault", "kind", "says"),
+        [
+            (Brick(floor=1), Conflict, "from the run's start or not at all"),
+            (LowBattery(charge=0.3), Conflict, "from the run's start or not at all"),
+            (GasLeakFault(place=(2.0, 2.0, 1.0)), Conflict, "`route` has no world"),
+            (ConnectionLoss(until=0.5), Invalid, r"would end at 0.5 s, and it is 1 s already"),
+            (AbnormalValue(checkpoint=99), ArgoError, "has no checkpoint 99"),
+        ],
+    )
+    def test_faults_that_can_not_be(self, simulation, fault, kind, says):
+        steps(simulation, 10)
+        before = simulation.record()
+        with pytest.raises(kind, match=says):
+            simulation.handle(ReachIn(fault))
+        assert simulation.record() == before
+
+    def test_a_person_takes_over_and_gives_back(self, simulation):
+        steps(simulation, 40)
+        simulation.handle(TakeOver())
+        done = (ByHand(task="MEASURE 1", value=4.25), ByHand(task="MEASURE 3", skipped=True))
+        with pytest.raises(Conflict, match="'MEASURE 1' has not ended yet"):
+            simulation.handle(GiveBack(done))
+        until(simulation, lambda: simulation.task is None)
+        steps(simulation, 100)
+        simulation.handle(GiveBack(done))
+        record = simulation.run()
+        assert record.result.outcome is Outcome.COMPLETED
+        assert [(t.task, t.outcome) for t in record.tasks] == [
+            ("MEASURE 1", "interrupted"), ("A", "done"), ("MEASURE 2", "done"),
+        ]  # fmt: skip
+        assert [r.task for r in record.readings] == ["MEASURE 2"]
+        causes = [step.cause for step in record.trace]
+        assert "pause (a person takes over)" in causes
+        assert sum("done by hand" in cause for cause in causes) == 2
+        (pause,) = record.interruptions
+        assert (pause.start, pause.event) == (4.0, None)
+        assert simulation.machine.progress().values[0].value == 4.25
+
+    @pytest.mark.parametrize(
+        ("done", "says"),
+        [
+            (ByHand(task="MEASURE 9"), "'MEASURE 9' was done by hand, but the plan does not"),
+            (ByHand(task="A", value=3.0), "'A', which measures nothing"),
+        ],
+    )
+    def test_what_nobody_can_have_done(self, simulation, done, says):
+        steps(simulation, 40)
+        simulation.handle(TakeOver())
+        until(simulation, lambda: simulation.task is None)
+        with pytest.raises(Invalid, match=says):
+            simulation.handle(GiveBack((done,)))
+
+    def test_stopping(self, simulation):
+        steps(simulation, 25)
+        simulation.handle(StopRun("the tide came in"))
+        record = simulation.record()
+        assert (record.result.verdict, record.result.outcome) == (
+            "the tide came in; the robot is not docked in starting area 1", None,
+        )  # fmt: skip
+        assert (record.result.duration, record.tasks[-1].outcome) == (2.5, "cancelled")
+        for after in (simulation.step, lambda: simulation.handle(Pause())):
+            with pytest.raises(Conflict, match=r"the run has ended, at 2\.5 s"):
+                after()
+        assert simulation.run() is record
+
+    def test_cancelling(self, simulation):
+        steps(simulation, 25)
+        simulation.handle(Cancel())
+        assert not simulation.over
+        assert simulation.run().result.outcome is Outcome.CANCELLED
+
+    def test_what_occurs_is_reacted_to(self, site):
+        answer = Reaction(event=EventKind.GAS_LEAK, response=Response.ABORT)
+        plan = PLAN.model_copy(update={"reactions": (answer,)})
+        spec = spec_of("route").model_copy(update={"mission": plan})
+        with simulation_of(spec, site) as simulation:
+            steps(simulation, 25)
+            simulation.handle(Occurred(EventKind.GAS_LEAK, "a nose"))
+            assert simulation.run().result.outcome is Outcome.ABORTED
+
+    @pytest.mark.parametrize(
+        "event", [ActionSucceeded("MEASURE 1"), Occurred(EventKind.TIME_UP), "pause", None]
+    )
+    def test_what_nobody_can_tell(self, simulation, event):
+        with pytest.raises(Invalid, match=r"outside|occurs by itself"):
+            simulation.handle(event)
+
+    def test_a_paused_robot_waits_as_long_as_it_is_stepped(self, simulation):
+        steps(simulation, 25)
+        simulation.handle(Pause())
+        steps(simulation, 3000)
+        assert not simulation.over
+        assert "nothing more occurs" in simulation.run().result.verdict
+
+    def test_tasks_are_not_given_to_a_mission(self, simulation):
+        with pytest.raises(Conflict, match="are those of its mission"):
+            simulation.give(waypoint("B", 2.0, 2.0))
+
+
+class TestOpenMachine:
+    def test_a_task_at_a_time(self, site):
+        spec = spec_of("route").model_copy(update={"mission": beginning(site, PLAN.tasks[0].pose)})
+        machine = OpenMachine(spec.mission)
+        with Simulation(machine, site, spec) as simulation:
+            steps(simulation, 20)
+            assert (simulation.task, simulation.over) == (None, False)
+            simulation.give(measure(2))
+            with pytest.raises(Conflict, match="'MEASURE 2' is still under way"):
+                simulation.give(measure(3))
+            until(simulation, lambda: simulation.task is None)
+            simulation.handle(Pause())
+            simulation.give(measure(3))
+            assert simulation.task is None
+            simulation.handle(Resume())
+            assert simulation.task.name == "MEASURE 3"
+            machine.close()
+            record = simulation.run()
+        assert [r.checkpoint for r in record.readings] == [2, 3]
+        assert record.tasks[0].start == 2.0
+        assert record.result.outcome is Outcome.COMPLETED
+
+
+@pytest.fixture(scope="module")
+def steered(site, tmp_path_factory):
+    """The journal of a run that was told things from outside, and its record."""
+    path = tmp_path_factory.mktemp("steered") / "run.journal"
+    spec = spec_of("route")
+    with (
+        create_journal(path, Header.of(site, spec)) as journal,
+        simulation_of(spec, site, observers=[journal]) as simulation,
+    ):
+        steps(simulation, 20)
+        simulation.handle(ReachIn(AbnormalValue(checkpoint=3, value=8.0)))
+        steps(simulation, 10)
+        simulation.handle(TakeOver())
+        until(simulation, lambda: simulation.task is None)
+        steps(simulation, 30)
+        simulation.handle(GiveBack((ByHand(task="MEASURE 1", value=3.0),)))
+        record = simulation.run()
+        return path.read_bytes(), record, path
+
+
+class TestJournalOfASteeredRun:
+    def test_it_ends_as_it_has_ended(self, site, steered):
+        _, record, path = steered
+        with open_journal(path) as journal:
+            assert journal.ended
+            assert resume(journal, site) == record
+        assert record.readings[-1].value == 8.0
+
+    @pytest.mark.parametrize("share", [0.1, 0.2, 0.25, 0.3, 0.5, 0.8])
+    def test_it_goes_on_from_anywhere(self, site, steered, tmp_path, share):
+        content, record, _ = steered
+        path = tmp_path / "run.journal"
+        lines = content.splitlines(keepends=True)
+        path.write_bytes(b"".join(lines[: int(share * len(lines))]))
+        with open_journal(path) as journal:
+            told = journal.entries
+            events = () if any(e.events and e.events[0].kind == "give_back" for e in told) else (
+                logged((0.0, GiveBack((ByHand(task="MEASURE 1", value=3.0),))))
+            )  # fmt: skip
+            taken_over = any(e.events and e.events[0].kind == "take_over" for e in told)
+            again = resume(journal, site, events=events if taken_over else ())
+        assert again.result.outcome is Outcome.COMPLETED
+        assert again.resumed == (told[-1].t,)
+        reached_in = any(e.faults for e in told)
+        assert again.faults == (record.faults if reached_in else ())
+        known = {r.task: r.value for r in again.readings}
+        assert set(known) == {"MEASURE 2", "MEASURE 3"} | (set() if taken_over else {"MEASURE 1"})
+        assert (known["MEASURE 3"] == 8.0) is reached_in
+
+
+class TestSpec:
+    def test_it_goes_through_json(self):
+        spec = spec_of("kinematic", faults=FAULTS, events=EVENTS, values={2: 4.5})
+        assert read_spec(spec.model_dump_json()) == spec
+        assert pickle.loads(pickle.dumps(spec)) == spec
+
+    @pytest.mark.parametrize(
+        ("change", "says"),
+        [
+            ({"seed": -1}, "spec.json: seed: `seed` has to be at least 0"),
+            ({"speed": 3}, "spec.json: speed: "),
+            ({"mission": None}, "spec.json: mission: "),
+            ({"events": [[3.0, {"kind": "succeeded", "task": "A"}]]}, "spec.json: events: "),
+            ({"events": [[-3.0, {"kind": "pause"}]]}, "before the run"),
+            ({"events": [[3.0, {"kind": "pause", "value": 3}]]}, "no event of kind pause has"),
+            ({"faults": [{"kind": "flood"}]}, r"spec.json: faults\[0\]: "),
+        ],
+    )
+    def test_what_is_none(self, change, says):
+        data = json.loads(spec_of("route").model_dump_json()) | change
+        with pytest.raises(Invalid, match=says):
+            read_spec(json.dumps(data), "spec.json")
+
+    def test_no_json(self):
+        with pytest.raises(Invalid, match=r"spec\.json: Invalid JSON"):
+            read_spec(b"{", "spec.json")
+
+    def test_a_worker_runs_it(self, site, tmp_path):
+        """What a worker process is sent opens the site by its reference."""
+        file = tmp_path / "yard.yaml"
+        file.write_text(yaml.safe_dump(SITE), encoding="utf-8")
+        spec = spec_of("route").model_copy(update={"site": str(file)})
+        sent = pickle.loads(pickle.dumps((run, spec)))
+        assert sent[0](sent[1]) == simulate(spec, site)
+
+    def test_an_area_that_is_not_there(self, site):
+        plan = mission(waypoint("A", 2.05, 2.05), end_area=7)
+        with pytest.raises(NotFound, match="no starting area 7; there are: 1"):
+            simulate(RunSpec(mission=plan, drive="route"), site)

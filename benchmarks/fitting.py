@@ -8,7 +8,7 @@ from numpy.typing import NDArray
 from scipy.optimize import lsq_linear
 
 from argo_env.navigation.path import Motion
-from argo_env.robot.calibration import Calibration, MotionKind, Pace
+from argo_env.robot.calibration import Calibration, MotionKind, MotionPace
 from argo_env.robot.spec import RobotSpec
 
 _DIGITS = 4
@@ -50,7 +50,7 @@ def fit(drives: Iterable[TimedDrive], robot: RobotSpec) -> Calibration:
     values[driven] = found.x
     return Calibration(
         **{
-            kind: Pace(share=round(1.0 / slower, _DIGITS), lost=round(lost, _DIGITS))
+            kind: MotionPace(share=round(1.0 / slower, _DIGITS), lost=round(lost, _DIGITS))
             for kind, (slower, lost) in zip(kinds, values.reshape(-1, 2).tolist(), strict=True)
         }
     )

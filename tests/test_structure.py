@@ -91,3 +91,12 @@ def test_only_packages_offer_what_they_import():
         for name in set(ast.literal_eval(node.value)) & imported_into(module)
     }
     assert not offered
+
+
+def test_each_public_class_has_a_name_of_its_own():
+    homes = {}
+    for module, tree in TREES.items():
+        for node in tree.body:
+            if isinstance(node, ast.ClassDef) and not node.name.startswith("_"):
+                homes.setdefault(node.name, []).append(module)
+    assert not {name: modules for name, modules in homes.items() if len(modules) > 1}

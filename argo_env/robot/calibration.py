@@ -29,7 +29,7 @@ def drive_kind(gear: int, on_stairs: bool) -> MotionKind:
     return MotionKind.AHEAD if gear > 0 else MotionKind.REVERSE
 
 
-class Pace(Model):
+class MotionPace(Model):
     """What one kind of motion takes: its length over the real speed, and a time for each motion."""
 
     share: float = Field(1.0, gt=0)
@@ -41,12 +41,12 @@ class Pace(Model):
 class Calibration(Model):
     """The pace of each kind of motion. Without a measurement a robot does as it is told."""
 
-    ahead: Pace = Pace()
-    reverse: Pace = Pace()
-    up: Pace = Pace()
-    down: Pace = Pace()
-    turn: Pace = Pace()
+    ahead: MotionPace = MotionPace()
+    reverse: MotionPace = MotionPace()
+    up: MotionPace = MotionPace()
+    down: MotionPace = MotionPace()
+    turn: MotionPace = MotionPace()
 
-    def pace(self, kind: MotionKind) -> Pace:
-        pace: Pace = getattr(self, kind)
+    def pace(self, kind: MotionKind) -> MotionPace:
+        pace: MotionPace = getattr(self, kind)
         return pace

@@ -11,7 +11,7 @@ from argo_env.drives.route import RouteDrive
 from argo_env.drives.timetable import Timetable
 from argo_env.planning import open_site
 from argo_env.planning.catalog import make_catalog
-from argo_env.robot.calibration import Calibration, Pace
+from argo_env.robot.calibration import Calibration, MotionPace
 from argo_env.robot.pose import BodyPose
 from benchmarks.drives import Run, compare, drive_along, random_mission, run
 from benchmarks.fitting import errors, fit
@@ -90,11 +90,11 @@ def standing(drive, pose):
 
 
 PACES = Calibration(
-    ahead=Pace(share=0.9, lost=1.0),
-    reverse=Pace(share=0.8),
-    up=Pace(share=0.7, lost=2.0),
-    down=Pace(share=0.85, lost=1.5),
-    turn=Pace(share=0.95, lost=0.5),
+    ahead=MotionPace(share=0.9, lost=1.0),
+    reverse=MotionPace(share=0.8),
+    up=MotionPace(share=0.7, lost=2.0),
+    down=MotionPace(share=0.85, lost=1.5),
+    turn=MotionPace(share=0.95, lost=0.5),
 )
 
 

@@ -12,14 +12,14 @@ from argo_env.drives.route import RouteDrive
 from argo_env.files import resources
 from argo_env.navigation import Path
 from argo_env.navigation.path import Motion, wrap
-from argo_env.robot.calibration import Calibration, MotionKind, Pace
+from argo_env.robot.calibration import Calibration, MotionKind, MotionPace
 from argo_env.robot.spec import load_robot
 from benchmarks.fitting import TimedDrive, errors, fit
 from tests.conftest import examples
 
 ROBOT = load_robot().model_copy(update={"calibration": Calibration()})
 
-paces = st.builds(Pace, share=st.floats(0.4, 1.3), lost=st.floats(0.0, 4.0))
+paces = st.builds(MotionPace, share=st.floats(0.4, 1.3), lost=st.floats(0.0, 4.0))
 calibrations = st.builds(Calibration, ahead=paces, reverse=paces, up=paces, down=paces, turn=paces)
 
 
@@ -64,11 +64,11 @@ def test_finds_them_through_noise(true, seed):
 
 
 def test_what_is_never_driven_goes_as_told():
-    true = Calibration(ahead=Pace(share=0.8, lost=1.0))
+    true = Calibration(ahead=MotionPace(share=0.8, lost=1.0))
     kinds = (MotionKind.AHEAD,)
     found = fit(drives(true, np.random.default_rng(1), 20, kinds=kinds), ROBOT)
     close(found, true)
-    assert found.up == Pace()
+    assert found.up == MotionPace()
 
 
 def test_errors_are_what_is_left_over():
@@ -86,7 +86,7 @@ def test_nothing_driven_is_nothing_to_fit():
 
 def test_a_drive_and_its_fit_agree():
     """From the steps of a drive alone: its time step is all that is lost of it."""
-    true = Calibration(ahead=Pace(share=0.9, lost=1.0), turn=Pace(share=0.8, lost=0.5))
+    true = Calibration(ahead=MotionPace(share=0.9, lost=1.0), turn=MotionPace(share=0.8, lost=0.5))
     robot, rng, timed = ROBOT.model_copy(update={"calibration": true}), np.random.default_rng(3), []
     for _ in range(100):
         motion = random_motion(rng, (MotionKind.AHEAD, MotionKind.TURN)[rng.integers(2)])
@@ -109,7 +109,7 @@ def test_a_robot_comes_with_its_calibration(tmp_path, monkeypatch):
     calibrated = folder / "other.calibration.yaml"
     calibrated.write_text("ahead: {share: 0.5, lost: 2.0}\n", encoding="utf-8")
     robot = load_robot("other")
-    assert robot.calibration == Calibration(ahead=Pace(share=0.5, lost=2.0))
+    assert robot.calibration == Calibration(ahead=MotionPace(share=0.5, lost=2.0))
     assert robot.seconds(MotionKind.AHEAD, 4.0) == pytest.approx(4.0 / (robot.speed / 2) + 2.0)
     with pytest.raises(ArgoError, match=r"there are: other$"):
         load_robot("another")

@@ -17,7 +17,7 @@ from argo_env.navigation import Path
 from argo_env.navigation.path import Motion, wrap
 from argo_env.navigation.views import in_sight
 from argo_env.planning.travel import SiteTravel
-from argo_env.robot.calibration import Calibration, Pace
+from argo_env.robot.calibration import Calibration, MotionPace
 from argo_env.robot.pose import BodyPose
 from argo_env.robot.spec import load_robot
 from argo_env.world.paper_world import PaperWorld
@@ -66,7 +66,7 @@ def paths(draw):
     return Path(motions[0].start if motions else here, tuple(motions))
 
 
-paces = st.builds(Pace, share=st.floats(0.5, 1.2), lost=st.floats(0.0, 3.0))
+paces = st.builds(MotionPace, share=st.floats(0.5, 1.2), lost=st.floats(0.0, 3.0))
 robots = st.builds(Calibration, ahead=paces, reverse=paces, up=paces, down=paces, turn=paces).map(
     lambda calibration: ROBOT.model_copy(update={"calibration": calibration})
 )

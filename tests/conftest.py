@@ -10,6 +10,9 @@ import pytest
 from hypothesis import HealthCheck, settings
 from hypothesis.internal.conjecture import providers
 
+# As many workers run as there are cores: threads of numerical libraries would wait for each other.
+os.environ |= {"OMP_NUM_THREADS": "1", "OPENBLAS_NUM_THREADS": "1"}
+
 EXAMPLES = os.environ.get("ARGO_EXAMPLES")
 
 # How long an example takes depends on what else the machine does: no answer may depend on that.

@@ -1,5 +1,6 @@
 """The command `argo`: its name, its version, and the commands that it has."""
 
+import gc
 import sys
 from typing import Annotated
 
@@ -127,6 +128,8 @@ def main() -> None:
     except ArgoError as error:
         print(_said(error), file=sys.stderr)
         raise SystemExit(2) from None
+    finally:
+        gc.freeze()  # the process ends: all goes, and needs no search for what can go
 
 
 def _said(error: ArgoError) -> str:

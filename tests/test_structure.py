@@ -1,6 +1,8 @@
-"""How the packages hang together: one direction of imports, one home for each name."""
+"""How the packages hang together: one direction of imports, no circles, one home for each name."""
 
 import ast
+from collections import defaultdict
+from graphlib import CycleError, TopologicalSorter
 from pathlib import Path
 
 import pytest
@@ -13,6 +15,7 @@ KNOWS = {
     "baselines": {"argo_compiler", "argo_env"},
 }
 """What each package may import of the others."""
+FRONT_DOORS = {"argo_compiler", "argo_env"}
 # Written into exported behaviours, and imported by FlexBE only.
 EXPORTED = ROOT / "argo_compiler" / "export" / "flexbe_states"
 
@@ -45,6 +48,14 @@ def imports_of(module):
     return (found & set(TREES)) - {module}
 
 
+def room_of(module):
+    """The folder that a module lies in; one that lies loose in a package's root is its own."""
+    if module in PACKAGES:
+        return module
+    folder = module.rpartition(".")[0]
+    return module if folder in KNOWS else folder
+
+
 @pytest.mark.parametrize("package", KNOWS)
 def test_packages_import_in_one_direction(package):
     imported = {
@@ -55,6 +66,28 @@ def test_packages_import_in_one_direction(package):
         if other.split(".")[0] not in {package, *KNOWS[package]}
     }
     assert not imported
+
+
+def test_folders_import_each_other_in_no_circle():
+    rooms = defaultdict(set)
+    for module in set(TREES) - FRONT_DOORS:
+        for other in imports_of(module) - FRONT_DOORS:
+            if room_of(other) != room_of(module):
+                rooms[room_of(module)].add(room_of(other))
+    try:
+        list(TopologicalSorter(rooms).static_order())
+    except CycleError as error:
+        pytest.fail(" imports ".join(reversed(error.args[1])))
+
+
+def test_no_two_public_classes_have_one_name():
+    homes = defaultdict(list)
+    for module, tree in TREES.items():
+        if module.split(".")[0] in {"argo_compiler", "argo_env"}:
+            for node in tree.body:
+                if isinstance(node, ast.ClassDef) and not node.name.startswith("_"):
+                    homes[node.name].append(module)
+    assert not {name: found for name, found in homes.items() if len(found) > 1}
 
 
 def imported_into(module):

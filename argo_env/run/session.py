@@ -85,7 +85,7 @@ def resume(
         return simulation.run()
 
 
-class Pace(Observer):
+class PacedRun(Observer):
     """Lets a run go on no faster than so many simulated seconds a second. Holds when it began."""
 
     def __init__(self, pace: float, sleep: Callable[[float], None] = time.sleep) -> None:
@@ -101,4 +101,4 @@ class Pace(Observer):
 
 
 def _paced(pace: float | None) -> tuple[Observer, ...]:
-    return () if pace is None else (Pace(pace),)
+    return () if pace is None else (PacedRun(pace),)

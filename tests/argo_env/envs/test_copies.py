@@ -227,10 +227,16 @@ def test_elsewhere(make, tmp_path):
 # -- batches
 
 
+FEW = {"instance": [3, 1, 4, 1, 5], "faults": {"closed": 2}}
+"""options, so that there are fewer instances to be made than the 4,096 of training"""
+
+
 @pytest.fixture
 def batch(closing):
     return closing(
-        gym.make_vec("argo/Route-v0", num_envs=5, vectorization_mode="vector_entry_point")
+        gym.make_vec(
+            "argo/Route-v0", num_envs=5, vectorization_mode="vector_entry_point", checkpoints=6
+        )
     )
 
 
@@ -246,7 +252,7 @@ def steps_of(batch, observation, steps=30):
 @pytest.mark.parametrize("steps", [0, 4, 25])
 def test_batch_goes_on_the_same(batch, duplicate, steps):
     batch.action_space.seed(SEED)
-    observation, _ = batch.reset(seed=SEED, options={"faults": {"closed": 2}})
+    observation, _ = batch.reset(seed=SEED, options=FEW)
     for _ in range(steps):
         observation, *_ = batch.step(observation["mask"].argmax(axis=1))
     before = rollouts.digest(batch.get_state()["arrays"])
@@ -264,7 +270,7 @@ def test_batch_before_a_reset(batch, duplicate):
 
 
 def test_batch_after_close(batch, duplicate):
-    batch.reset(seed=SEED)
+    batch.reset(seed=SEED, options=FEW)
     batch.close()
     other = duplicate(batch)
     assert other.closed
@@ -282,7 +288,7 @@ def test_batches_of_gymnasium(id, yard_file, closing):
     actions = several.action_space.sample()
     # What Gymnasium tells in `info` are arrays of objects, which are not compared bit by bit.
     assert rollouts.digest(other.step(actions)[:4]) == rollouts.digest(several.step(actions)[:4])
-    apart = closing(gym.make_vec(id, 2, "async", vector_kwargs={"context": "spawn"}, **small))
+    apart = closing(gym.make_vec(id, 2, "async", **small))
     first = closing(gym.make_vec(id, 2, "sync", **small))
     assert rollouts.digest(apart.reset(seed=SEED)[0]) == rollouts.digest(first.reset(seed=SEED)[0])
 

@@ -3,6 +3,10 @@
 import gc
 from collections.abc import Iterator
 from contextlib import contextmanager
+from threading import Lock
+
+_holding = Lock()
+"""held by the one thread that holds the collector off"""
 
 
 @contextmanager
@@ -10,17 +14,25 @@ def collector_held() -> Iterator[None]:
     """No collection inside; a large mission is built in half the time.
 
     The collector looks through all that lives each time that enough was added, and finds nothing,
-    for the compiler's data refers in one direction only.
+    for the compiler's data refers in one direction only. It is the process' own, so one thread at a
+    time holds it off; what others build meanwhile may see it come back before they are done.
     """
-    if not gc.isenabled():
+    if not _holding.acquire(blocking=False):
         yield
         return
-    gc.disable()
     try:
-        yield
+        if not gc.isenabled():
+            yield
+            return
+        gc.disable()
+        try:
+            yield
+        finally:
+            if not gc.get_freeze_count():
+                # What was built counts as old at once: the next collection need not look through
+                # it.
+                gc.freeze()
+                gc.unfreeze()
+            gc.enable()
     finally:
-        if not gc.get_freeze_count():
-            # What was built counts as old at once: the next collection need not look through it.
-            gc.freeze()
-            gc.unfreeze()
-        gc.enable()
+        _holding.release()

@@ -3,7 +3,7 @@
 from argo_compiler.export import EXPORTERS, Exporter
 from argo_compiler.isar import to_isar
 from argo_env.navigation import Navigator
-from argo_env.planning.reading_places import find_views
+from argo_env.planning.reading_places import inspection_views
 
 
 def exporters(navigator: Navigator) -> dict[str, Exporter]:
@@ -11,6 +11,6 @@ def exporters(navigator: Navigator) -> dict[str, Exporter]:
     isar = Exporter(
         "isar mission definition",
         (".json",),
-        lambda mission, hfsm: to_isar(mission, hfsm, find_views(mission, navigator)),
+        lambda mission, hfsm: to_isar(mission, hfsm, inspection_views(mission, navigator)),
     )
     return EXPORTERS | {"isar": isar}

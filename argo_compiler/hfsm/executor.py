@@ -30,7 +30,7 @@ from argo_compiler.hfsm.restoring import (
     queues,
     reaction_progress,
     reactions_of,
-    remaining,
+    remaining_by_hand,
     value_progress,
 )
 from argo_compiler.hfsm.tables import LeafNode, tables
@@ -179,7 +179,7 @@ class Executor:
             reaction=reaction,
             waiting=waiting,
             outcome=control.outcome,
-            by_hand=remaining(control.by_hand),
+            by_hand=remaining_by_hand(control.by_hand),
         )
 
     @property

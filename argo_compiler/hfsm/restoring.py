@@ -110,7 +110,7 @@ def queues(done: Iterable[ByHand]) -> dict[str, deque[ByHand]]:
     return found
 
 
-def remaining(queues: Mapping[str, deque[ByHand]]) -> tuple[ByHand, ...]:
+def remaining_by_hand(queues: Mapping[str, deque[ByHand]]) -> tuple[ByHand, ...]:
     """What was done by hand and has not been come to."""
     return tuple(one for queue in queues.values() for one in queue)
 

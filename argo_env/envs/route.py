@@ -27,7 +27,7 @@ from argo_env.envs.route_episodes import (
     observation_space,
     read_route_options,
 )
-from argo_env.envs.route_instance import DOCK, evaluate
+from argo_env.envs.route_instance import DOCK, score_route
 from argo_env.envs.route_sources import RouteSource
 
 _NOTHING = np.zeros(1, np.int16)
@@ -67,8 +67,8 @@ budget; 1 also where it is longer |
     sb3-contrib asks for. An illegal action does what action 0 does, and `info["illegal"]` is true.
 
     ## Rewards
-    The prize of the checkpoint, 0 for the dock. The return is `evaluate(instance, route).prize`, to
-    the bit. `info["terms"]` has the terms of the reward. With noise there is one more, `late`: a
+    The prize of the checkpoint, 0 for the dock. The return is `score_route(instance, route).prize`,
+    to the bit. `info["terms"]` has the terms of the reward. With noise there is one more, `late`: a
     robot that is docked after the budget is over gives back all that it has won, so that the return
     is exactly 0. This can only happen where stairs were found blocked after it had set off to its
     last checkpoint; `info["late"]` says so.
@@ -286,7 +286,7 @@ budget; 1 also where it is longer |
             self._episodes.options.floors,
             self.instance,
             (self.instance.start, *self._route),
-            evaluate(self.instance, self._route).visited,
+            score_route(self.instance, self._route).visited,
             self._mask,
             self._time(),
         )

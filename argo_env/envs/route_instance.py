@@ -14,7 +14,7 @@ DOCK = 0
 """the node where every route ends"""
 TICK = 1 / 64
 """s. Times are whole ticks, and below 2^18 s: so their sums are exact in single precision, in
-whatever order they are made, and the environment, its batch and `evaluate` agree to the bit."""
+whatever order they are made, and the environment, its batch and `score_route` agree to the bit."""
 _LONGEST = 2.0**18  # s
 MOST_CHECKPOINTS = 500
 VISITED = MOST_CHECKPOINTS + 1
@@ -228,7 +228,7 @@ class Score:
     """whether the robot is docked after the budget is over: only blocked stairs can do that"""
 
 
-def evaluate(instance: RouteInstance, route: Sequence[int]) -> Score:
+def score_route(instance: RouteInstance, route: Sequence[int]) -> Score:
     """What the route, nodes in order, is worth. The robot goes to the dock at its end, and already
     where it would break a rule: visit a node again or before its time, or be docked too late by
     what it knows when it sets off there.

@@ -13,7 +13,7 @@ from argo_env.envs.route_instance import Stair
 from argo_env.navigation import Navigator
 from argo_env.navigation.blockage import Blockage
 from argo_env.planning import open_site
-from argo_env.site.stairs import run
+from argo_env.site.stairs import flight_run
 
 
 @dataclass(frozen=True)
@@ -74,7 +74,7 @@ def navigator_without(navigator: Navigator, blocked: tuple[Stair, ...]) -> Navig
     for tower, floor in blocked:
         flight = min(spec.towers[tower].flights, key=lambda f: f.foot[2])
         x, y, z = flight.foot
-        along, half = run(flight) / 2, flight.width / 4
+        along, half = flight_run(flight) / 2, flight.width / 4
         x += along * math.cos(math.radians(flight.yaw))
         y += along * math.sin(math.radians(flight.yaw))
         z += base[floor] + flight.risers * flight.rise / 2

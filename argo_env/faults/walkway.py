@@ -17,7 +17,7 @@ from argo_env.faults.fault import Fault
 from argo_env.site import Site
 from argo_env.site.shapes import Box, Element, Role, Solid
 from argo_env.site.spec import FlightSpec, FloorSpec, Point, Rect, TowerSpec
-from argo_env.site.stairs import run as flight_run
+from argo_env.site.stairs import flight_run
 
 PLATE = 0.6  # m, edge of a ground plate
 BARRIER = (0.06, 1.0)  # m, thickness and height of what blocks stairs

@@ -20,7 +20,7 @@ from argo_env.robot.spec import RobotSpec, load_robot
 from argo_env.site import Site, make_site
 from argo_env.site.family import is_family, parse_family
 from argo_env.site.site import site_file
-from argo_env.site.site_file import parse_spec
+from argo_env.site.site_file import parse_site_spec
 from argo_env.site.spec import SiteSpec
 
 if TYPE_CHECKING:
@@ -131,7 +131,7 @@ def open_site(reference: str = "umad", robot: RobotSpec | None = None) -> Opened
     if path == Path(reference):
         reference = str(path.resolve())
     return _open(
-        reference, text, robot, lambda: Navigator(make_site(parse_spec(text, path)), robot)
+        reference, text, robot, lambda: Navigator(make_site(parse_site_spec(text, path)), robot)
     )
 
 

@@ -6,7 +6,7 @@ from argo_compiler.model import Pose
 from argo_env.navigation import Navigator
 
 
-def find_views(mission: Mission, navigator: Navigator) -> dict[str, InspectionView]:
+def inspection_views(mission: Mission, navigator: Navigator) -> dict[str, InspectionView]:
     """For each checkpoint that the mission measures, by its `object_id`, the place that a robot
     reads it from that does the tasks in list order. Checkpoints that the site has not are left out.
 

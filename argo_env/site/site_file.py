@@ -8,15 +8,15 @@ from argo_env.files.yaml_file import parse_yaml, read_text
 from argo_env.site.spec import SiteSpec
 
 
-def read_spec(path: Path) -> SiteSpec:
+def read_site_spec(path: Path) -> SiteSpec:
     """The description of a site in a YAML file.
 
     Raises ArgoError if the file can't be read, and DiagnosticError if it describes no site.
     """
-    return parse_spec(read_text(path), path)
+    return parse_site_spec(read_text(path), path)
 
 
-def parse_spec(text: str, path: Path) -> SiteSpec:
+def parse_site_spec(text: str, path: Path) -> SiteSpec:
     """The description of a site in the text of a YAML file, which messages call `path`.
 
     Raises DiagnosticError if it describes no site.
@@ -33,7 +33,7 @@ def parse_spec(text: str, path: Path) -> SiteSpec:
 
 
 def to_yaml(spec: SiteSpec) -> str:
-    """The description as `read_spec` reads it; fields that have their defaults are left out."""
+    """As `read_site_spec` reads it; fields that have their defaults are left out."""
     return yaml.safe_dump(
         spec.model_dump(mode="json", exclude_defaults=True),
         sort_keys=False,

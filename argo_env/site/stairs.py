@@ -13,7 +13,7 @@ STRINGER_DEPTH = 0.2  # m
 MOUTH_DEPTH = 0.3  # m across the first and the last nosing that stay free of railings
 
 
-def run(flight: FlightSpec) -> float:
+def flight_run(flight: FlightSpec) -> float:
     """m from the lowest to the highest nosing in plan; the last riser is the rim of the deck."""
     return (flight.risers - 1) * flight.going
 
@@ -35,8 +35,8 @@ def build_flight(flight: FlightSpec, prefix: str, base_z: float) -> tuple[Elemen
         )
         for i in range(flight.risers - 1)
     )
-    length = math.hypot(run(flight), (flight.risers - 1) * flight.rise)
-    middle, rise_to_middle = run(flight) / 2, (flight.risers - 1) * flight.rise / 2
+    length = math.hypot(flight_run(flight), (flight.risers - 1) * flight.rise)
+    middle, rise_to_middle = flight_run(flight) / 2, (flight.risers - 1) * flight.rise / 2
     tilt = (0.0, -slope, yaw)
     sides: list[Solid] = []
     for side in (-1.0, 1.0):
@@ -63,7 +63,7 @@ def mouths(flight: FlightSpec, base_z: float) -> tuple[tuple[float, Rect], tuple
     """Where the flight joins the decks at its foot and head: height and area without railing."""
     place = _placer(flight, base_z)
     result = []
-    for along, height in ((0.0, 0.0), (run(flight), flight.risers * flight.rise)):
+    for along, height in ((0.0, 0.0), (flight_run(flight), flight.risers * flight.rise)):
         corners = [
             place(along + a, b, height)
             for a in (-MOUTH_DEPTH / 2, MOUTH_DEPTH / 2)

@@ -5,7 +5,7 @@ import pytest
 
 from argo_compiler.errors import ArgoError
 from argo_compiler.route import suggest_route
-from argo_env.envs.route_instance import evaluate
+from argo_env.envs.route_instance import score_route
 from argo_env.envs.route_noise import RouteNoise
 from baselines import portfolio
 from baselines.episodes import play
@@ -44,7 +44,7 @@ def test_policies_keep_to_the_rules(name, kind):
     outcomes = list(play(policy, tests, count, seed=1))
     for outcome in outcomes:
         instance = tests.family.source.draw(outcome.instance)
-        score = evaluate(instance, outcome.route)
+        score = score_route(instance, outcome.route)
         assert score.illegal is None
         assert (score.prize, score.time) == (outcome.prize, outcome.time)
         assert outcome.feasible == (not score.late)

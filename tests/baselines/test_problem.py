@@ -6,10 +6,9 @@ import numpy as np
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from argo_compiler.route import Objective, Tour, suggest_route
-from argo_compiler.route import evaluate as evaluate_problem
+from argo_compiler.route import Objective, Tour, evaluate, suggest_route
 from argo_env.envs.route import RouteEnv
-from argo_env.envs.route_instance import DOCK, TICK, evaluate
+from argo_env.envs.route_instance import DOCK, TICK, score_route
 from argo_env.envs.route_noise import RouteNoise
 from argo_env.envs.route_sources import TEST, TRAINING, RandomRoutes
 from baselines.heuristics.insertion import insert_and_improve
@@ -53,12 +52,12 @@ def test_optimum_is_that_of_brute_force(number, checkpoints, budget, precedence)
         assert suggestion.proven
         assert suggestion.prize == suggestion.prize_bound == best
         route = found.order_of(suggestion.order)
-        assert round(100 * evaluate(instance, route).prize) == best
+        assert round(100 * score_route(instance, route).prize) == best
     # Never better than the best, and what it claims is so.
     found = problem_of(seen, budget)
     order = insert_and_improve(found.problem)
-    assert evaluate_problem(found.problem, Tour(order)).feasible
-    score = evaluate(instance, found.order_of(order))
+    assert evaluate(found.problem, Tour(order)).feasible
+    score = score_route(instance, found.order_of(order))
     assert score.illegal is None
     assert round(100 * score.prize) == sum(found.problem.visits[v].prize for v in order) <= best
 
@@ -118,6 +117,6 @@ def test_nobody_beats_hindsight(number, checkpoints, seed):
         for node in found.order_of(bound.order)
         for _ in range(1 + instance.hidden.failing[node])
     ]
-    score = evaluate(open_stairs, route)
+    score = score_route(open_stairs, route)
     assert score.illegal is None
     assert round(100 * score.prize) == bound.prize

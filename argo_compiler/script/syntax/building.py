@@ -242,7 +242,7 @@ class Builder:
 
     def clock(self, phrase: Phrase) -> Time:
         said = phrase.content
-        seconds = quantities.clock(said)
+        seconds = quantities.parse_clock(said)
         if seconds is None and said.count(":") == 1:
             a, b = said.split(":")
             message = f"`{said}` can be read as {a} min {b} s or as {a} h {b} min"

@@ -74,7 +74,7 @@ def number(text: str) -> float | int | None:
     return total + part
 
 
-def clock(text: str) -> float | None:
+def parse_clock(text: str) -> float | None:
     """Seconds of `00:12:30`; None for two parts, which could be minutes or hours first, and for
     sixty and more minutes or seconds."""
     parts = [int(part) for part in text.split(":")]

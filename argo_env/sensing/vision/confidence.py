@@ -38,7 +38,7 @@ def probability(fit: Fit, pointing: Pointing, cosine: float) -> float:
     return 1.0 / (1.0 + math.exp(-score))
 
 
-def combine(readings: Sequence[PictureReading]) -> PictureReading | None:
+def combine_readings(readings: Sequence[PictureReading]) -> PictureReading | None:
     """The share that the readings speak for, and how probable it is; None if there are none.
 
     Bayes' rule over "this group of like readings is right and the others are wrong" and "all are

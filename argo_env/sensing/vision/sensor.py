@@ -14,7 +14,7 @@ from argo_env.sensing.sensor import Measurement, MeasurementError, PoorViewError
 from argo_env.sensing.vision.align import FacePose, Fit
 from argo_env.sensing.vision.arm import JOINTS
 from argo_env.sensing.vision.camera import Lens, take_picture
-from argo_env.sensing.vision.confidence import PictureReading, combine, probability
+from argo_env.sensing.vision.confidence import PictureReading, combine_readings, probability
 from argo_env.sensing.vision.dial import DIAL
 from argo_env.sensing.vision.indicator import find_indicator
 from argo_env.sensing.vision.instrument import Instrument
@@ -169,10 +169,10 @@ class _Look:
             if fit.match > best.match:
                 best = fit
             self._read(photo, fit)
-            total = combine(self._readings)
+            total = combine_readings(self._readings)
             if total is not None and len(self._readings) > 1 and total.probability >= _ENOUGH:
                 break
-        return combine(self._readings)
+        return combine_readings(self._readings)
 
     def _read(self, photo: Photo, fit: Fit) -> None:
         """Notes what the indicator shows, the face being found there."""

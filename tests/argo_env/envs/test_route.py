@@ -9,7 +9,7 @@ from hypothesis import strategies as st
 
 from argo_compiler.errors import ArgoError
 from argo_env.envs.route import RouteEnv
-from argo_env.envs.route_instance import DOCK, evaluate, make_instance
+from argo_env.envs.route_instance import DOCK, make_instance, score_route
 from argo_env.envs.route_sources import TEST, TRAINING, RandomRoutes, RouteFaults, SiteRoutes
 from tests.conftest import examples
 
@@ -48,7 +48,7 @@ def test_return_is_the_evaluators_score(number, checkpoints, seed, legal):
         assert sum(info["terms"].values()) == reward
         route.append(node)
         total += reward
-    score = evaluate(env.instance, route)
+    score = score_route(env.instance, route)
     assert (total, info["time"]) == (score.prize, score.time)
     assert info["illegal"] == (score.illegal is not None)
     assert score.time <= env.instance.budget
@@ -65,7 +65,7 @@ def test_mask_is_what_the_evaluator_allows(number, seed):
     route, over = [], False
     while not over:
         allowed = [
-            node == DOCK or evaluate(env.instance, [*route, node]).illegal is None
+            node == DOCK or score_route(env.instance, [*route, node]).illegal is None
             for node in range(13)
         ]
         assert env.action_masks().tolist() == allowed
@@ -232,8 +232,8 @@ def test_bad_instances_are_refused():
         } | changed
         return make_instance(**given_parts)
 
-    assert evaluate(make(), [1, 2]).prize == 1.5
-    assert evaluate(make(), [2, 1]).illegal == 2
+    assert score_route(make(), [1, 2]).prize == 1.5
+    assert score_route(make(), [2, 1]).illegal == 2
     for changed in (
         {"times": np.ones((3, 3))},
         {"times": -np.ones((4, 3))},

@@ -8,7 +8,7 @@ from hypothesis import strategies as st
 
 from argo_compiler.errors import ArgoError
 from argo_env.envs.route import RouteEnv
-from argo_env.envs.route_instance import DOCK, TICK, evaluate
+from argo_env.envs.route_instance import DOCK, TICK, score_route
 from argo_env.envs.route_noise import RouteNoise
 from argo_env.envs.route_sources import TEST, TRAINING, RandomRoutes, RouteFaults, SiteRoutes
 from tests.argo_env.envs.test_route import equal, make_batch
@@ -46,7 +46,7 @@ def test_return_is_the_evaluators_score(number, checkpoints, noise, seed, batter
         assert sum(info["terms"].values()) == reward
         assert env.observation_space.contains(observation)
         total += reward
-    score = evaluate(env.instance, route)
+    score = score_route(env.instance, route)
     assert (total, info["time"], info["late"]) == (score.prize, score.time, score.late)
     assert info["illegal"] == (score.illegal is not None)
     assert score.late == (score.time > env.instance.budget)
@@ -78,7 +78,7 @@ def test_mask_is_what_the_evaluator_allows(number, seed):
     route, over = [], False
     while not over:
         allowed = [
-            node == DOCK or evaluate(env.instance, [*route, node]).illegal is None
+            node == DOCK or score_route(env.instance, [*route, node]).illegal is None
             for node in range(11)
         ]
         assert env.action_masks().tolist() == allowed

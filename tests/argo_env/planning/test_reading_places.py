@@ -8,12 +8,12 @@ import pytest
 from argo_compiler.hfsm import lower
 from argo_compiler.il import Action, Mission, Task
 from argo_compiler.isar import from_isar, to_isar
-from argo_env.planning.reading_places import find_views
+from argo_env.planning.reading_places import inspection_views
 
 
 def test_views_are_places_that_the_robot_reads_from(shipped, navigator):
     mission = shipped("mission_1.txt", start_area=1, end_area=2).mission
-    views = find_views(mission, navigator)
+    views = inspection_views(mission, navigator)
     measured = [task.object_id for task in mission.tasks if task.action is Action.MEASURE]
     assert list(views) == measured
     for id, view in views.items():
@@ -28,4 +28,4 @@ def test_views_are_places_that_the_robot_reads_from(shipped, navigator):
 
 def test_unknown_checkpoints_have_no_view(navigator):
     task = Task(name="A", action=Action.MEASURE, object_id="none")
-    assert find_views(Mission(tasks=(task,)), navigator) == {}
+    assert inspection_views(Mission(tasks=(task,)), navigator) == {}

@@ -14,7 +14,7 @@ from argo_env.site import make_site
 from argo_env.site.families import draw_site
 from argo_env.site.family import TEST_SEEDS, Family, Stairs, parse_family
 from argo_env.site.norms import breaches, false_ends
-from argo_env.site.site_file import read_spec, to_yaml
+from argo_env.site.site_file import read_site_spec, to_yaml
 from tests.conftest import examples
 
 families = st.builds(
@@ -62,7 +62,7 @@ def test_every_place_is_reached_from_every_dock_and_back(family, robot, tmp_path
     assert generate(family).site.spec == site.spec
     file = tmp_path_factory.mktemp("generated") / "site.yaml"
     file.write_text(to_yaml(site.spec), encoding="utf-8")
-    assert read_spec(file) == site.spec
+    assert read_site_spec(file) == site.spec
     assert breaches(site.spec) == false_ends(site.spec) == []
     for dock in site.docks.values():
         for floor in site.spec.floors:

@@ -11,14 +11,14 @@ from pathlib import Path
 import pytest
 import yaml
 
-from argo_compiler.collecting import collector_held
+from argo_compiler.garbage_collector import collector_held
 from argo_compiler.script import import_script
 from argo_env.drives.tracked.body import TrackedBody
 from argo_env.planning.opening import open_site
 from argo_env.robot.pose import BodyPose
 from argo_env.run.record import RunRecord
 from argo_env.run.session import simulate
-from argo_env.run.spec import RunSettings
+from argo_env.run.spec import RunSpec
 from argo_env.world.world import World, pybullet
 from tests.yard import SITE
 
@@ -41,20 +41,18 @@ def run(file: str, k: int) -> RunRecord:
     first, second, third = (1 + (k + part) % 3 for part in range(3))
     script = SCRIPT.format(k=k, first=first, second=second, third=third)
     imported = import_script(script, opened.catalog)
-    settings = RunSettings.model_validate(
+    spec = RunSpec.model_validate(
         {
+            "mission": imported.mission,
+            "site": file,
             "drive": DRIVES[k],
             "sensor": "camera" if k % 4 == 2 else "ideal",
             "seed": k,
             "faults": [{"kind": "low_battery", "seed": k}],
+            "diagnostics": imported.diagnostics,
         }
     )
-    return simulate(
-        imported.mission,
-        opened.navigator,
-        settings=settings,
-        diagnostics=imported.diagnostics,
-    )
+    return simulate(spec, opened)
 
 
 @pytest.fixture

@@ -6,7 +6,7 @@ import numpy as np
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from argo_env.envs.route_instance import RouteInstance, evaluate
+from argo_env.envs.route_instance import RouteInstance, score_route
 from argo_env.envs.route_sources import RandomRoutes
 from baselines.learned.imitation import lessons
 from baselines.learned.oracle import Oracle, Remainder
@@ -37,7 +37,7 @@ def test_values_are_those_of_the_best_order(
     start, left = instance.arrival[-1, 1:], instance.budget
     actions = oracle.legal(0, 0, start, left)
     if not len(actions):
-        assert all(evaluate(instance, [k]).illegal for k in range(1, size + 1))
+        assert all(score_route(instance, [k]).illegal for k in range(1, size + 1))
         return
     prizes, times = oracle.values(0, 0, start, left, actions)
     for action in range(1, size + 1):
@@ -45,7 +45,7 @@ def test_values_are_those_of_the_best_order(
             score
             for length in range(size)
             for rest in permutations([k for k in range(1, size + 1) if k != action], length)
-            if (score := evaluate(instance, (action, *rest))).illegal is None
+            if (score := score_route(instance, (action, *rest))).illegal is None
         ]
         assert bool(scores) == (action - 1 in actions)
         if scores:

@@ -13,7 +13,7 @@ from sb3_contrib.common.maskable.utils import get_action_masks  # noqa: E402
 
 from argo_compiler.errors import ArgoError  # noqa: E402
 from argo_env.envs import route_episodes  # noqa: E402
-from argo_env.envs.route_instance import evaluate  # noqa: E402
+from argo_env.envs.route_instance import score_route  # noqa: E402
 from argo_env.envs.route_sources import TEST, RandomRoutes  # noqa: E402
 from baselines.learned import curve  # noqa: E402
 from baselines.learned.agent import LearnedPolicy  # noqa: E402
@@ -139,7 +139,7 @@ def test_returns_of_the_batch_are_those_of_the_routes() -> None:
             routes[k].append(int(chosen[k]))
             if chosen[k] == 0:
                 assert over[k]
-                best = evaluate(source.draw(int(numbers[k])), routes[k])
+                best = score_route(source.draw(int(numbers[k])), routes[k])
                 assert infos[k]["episode"] == {"r": best.prize, "l": len(routes[k])}
                 fresh[k], ended = False, ended + 1
             else:

@@ -1,17 +1,47 @@
 """What goes wrong by the input or the request, in kinds that a program can tell apart.
 
-Every message names the thing, the place and the way out; the command prints it and exits with
-status 2. Anything else that is raised is a defect of Argo.
+Every message names the thing, the place and the way out, in no front end's words; the command adds
+its own, prints it and exits with status 2. Anything else that is raised is a defect of Argo.
 """
 
+from enum import StrEnum
 from typing import ClassVar
 
 
+class Remedy(StrEnum):
+    """What can be done about an error, for a front end that says in its own words how."""
+
+    CHECK_MISSION = "check-mission"
+    CHOOSE_AREAS = "choose-areas"
+    CHOOSE_START = "choose-start"
+    CHOOSE_END = "choose-end"
+    CHOOSE_SITE = "choose-site"
+    FILM_INSTEAD = "film-instead"
+    GIVE_BUDGET = "give-budget"
+    SEARCH_LONGER = "search-longer"
+    KEEP_JOURNAL = "keep-journal"
+    RESUME = "resume"
+    RUN_ANEW = "run-anew"
+    RECORD = "record"
+    SHOW_REST = "show-rest"
+
+
 class ArgoError(Exception):
-    """Bad input or an impossible request: what all the others are kinds of."""
+    """Bad input or an impossible request: what all the others are kinds of.
+
+    The `remedies` are for front ends; the message makes sense without. `about` is what they need,
+    such as the file that the remedy works on.
+    """
 
     code: ClassVar[str] = "error"
     """the kind, as programs and services name it; stable"""
+
+    def __init__(
+        self, *message: object, remedies: tuple[Remedy, ...] = (), about: str = ""
+    ) -> None:
+        super().__init__(*message)
+        self.remedies = remedies
+        self.about = about
 
 
 class NotFound(ArgoError):
@@ -43,3 +73,10 @@ class Unavailable(ArgoError):
     """This machine lacks what it takes: an optional package, a display, room on the disk."""
 
     code = "unavailable"
+
+
+def located(error: ArgoError, name: str) -> ArgoError:
+    """An error of the same kind whose message begins with the name of what it is about."""
+    kinds = (NotFound, Invalid, Unreachable, Conflict, Unavailable)
+    kind = next((kind for kind in kinds if isinstance(error, kind)), ArgoError)
+    return kind(f"{name}: {error}", remedies=error.remedies, about=error.about)

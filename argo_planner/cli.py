@@ -126,16 +126,12 @@ def main() -> None:
     try:
         app()
     except ArgoError as error:
-        print(_said(error), file=sys.stderr)
+        from argo_planner.terminal.words import said
+
+        print(said(error, "argo: "), file=sys.stderr)
         raise SystemExit(2) from None
     finally:
         gc.freeze()  # the process ends: all goes, and needs no search for what can go
-
-
-def _said(error: ArgoError) -> str:
-    from argo_compiler.diagnostics import DiagnosticError
-
-    return str(error) if isinstance(error, DiagnosticError) else f"argo: {error}"
 
 
 if __name__ == "__main__":

@@ -10,20 +10,16 @@ driven in it.
 """
 
 import argparse
-import tempfile
-from pathlib import Path
 
 import numpy as np
 
 from argo_compiler.catalog import Catalog
-from argo_compiler.reorder.requirements import Requirements
 from argo_env.planning import open_site
-from argo_env.planning.catalog import make_catalog
 from argo_env.run.drives_and_sensors import DRIVES
 from argo_env.run.session import simulate
 from argo_env.run.spec import RunSpec
-from argo_planner.loading import load_mission
-from argo_planner.routing import TIME_LIMIT, suggest
+from argo_planner.use_cases.importing import Upload, import_mission
+from argo_planner.use_cases.routing import suggest_order
 from benchmarks.options import seed_number
 
 SIZES = (4, 8, 20)
@@ -55,18 +51,14 @@ def main() -> None:
     parser.add_argument("--seed", type=seed_number, default=0, help="of the first sheet")
     parser.add_argument("--drive", choices=DRIVES, default="kinematic")
     options = parser.parse_args()
-    navigator = open_site("umad").navigator
-    catalog = make_catalog(navigator)
+    site = open_site("umad")
     print("| checkpoints | sheet | as written | predicted | driven | off | proven |")
     print("|---|---|---|---|---|---|---|")
     worst = 0.0
     for size in SIZES:
         for seed in range(options.seed, options.seed + options.sheets):
-            with tempfile.TemporaryDirectory() as folder:
-                path = Path(folder) / "sheet.txt"
-                path.write_text(sheet(catalog, size, seed), encoding="utf-8")
-                mission, _ = load_mission(path, navigator, None, None)
-                found = suggest(path, mission, navigator, Requirements(), TIME_LIMIT, seed)
+            upload = Upload("sheet.txt", sheet(site.catalog, size, seed).encode())
+            found = suggest_order(import_mission(upload, site), site, seed=seed)
             predicted = found.reordering.duration
             record = simulate(
                 RunSpec(mission=found.mission, drive=options.drive, seed=seed),

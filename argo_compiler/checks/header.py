@@ -4,6 +4,7 @@ from collections.abc import Iterator
 
 from argo_compiler.catalog import Catalog
 from argo_compiler.diagnostics import Diagnostic, Severity
+from argo_compiler.errors import Remedy
 from argo_compiler.il import Mission
 
 
@@ -24,7 +25,8 @@ def check_header(mission: Mission, catalog: Catalog | None) -> Iterator[Diagnost
             code="il.other-site",
             severity=Severity.ERROR,
             message=f"the mission was planned for site `{mission.site}`, not for `{catalog.site}`",
-            hint=f"choose it with --site {mission.site}",
+            hint=f"choose the site {mission.site}",
+            remedies=(Remedy.CHOOSE_SITE,),
             subject="site",
         )
         return

@@ -2,7 +2,10 @@
 
 from collections.abc import Iterable, Sequence
 
+from pydantic import Field
+
 from argo_compiler.diagnostics.codes.code import Severity
+from argo_compiler.errors import Remedy
 from argo_compiler.model import Model
 
 MAX_EXCERPT = 200
@@ -31,6 +34,8 @@ class Diagnostic(Model):
     subject: str | None = None
     """what it is about, as a path into the mission that goes by names, such as
     `tasks['MEASURE 4'].transitions[0]`; see `argo_compiler.diagnostics.subject`"""
+    remedies: tuple[Remedy, ...] = Field(default=(), exclude=True)
+    """how to take the way out, for front ends that add their own words"""
 
 
 def has_errors(diagnostics: Iterable[Diagnostic]) -> bool:

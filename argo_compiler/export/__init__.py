@@ -26,7 +26,7 @@ EXPORTERS: dict[str, Exporter] = {
     "dot": Exporter("Graphviz graph", (".dot", ".gv"), lambda _, hfsm: to_dot(hfsm)),
     **ROS_EXPORTERS,
 }
-"""By the name that `argo export --to` takes."""
+"""By the names of the formats."""
 
 __all__ = [
     "EXPORTERS",

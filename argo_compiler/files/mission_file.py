@@ -27,6 +27,13 @@ from argo_compiler.files.mission_data import (
     too_deep,
     unplaced,
 )
+from argo_compiler.files.reading import (
+    FileError,
+    FileProblem,
+    decode_text,
+    read_bytes,
+    require_size,
+)
 from argo_compiler.files.writing import write_whole
 from argo_compiler.il import Mission
 from argo_compiler.il.subjects import Subjects
@@ -63,23 +70,36 @@ def read_mission(path: Path) -> Mission:
     Raises:
         DiagnosticError: the file can't be read or is no mission; says where, by line and column.
     """
-    return read_mission_file(path).mission
+    return decode_mission(read_mission_bytes(path), str(path)).mission
 
 
-def read_mission_file(path: Path) -> MissionFile:
-    """The same, with the file's text, in which the places of later diagnostics can be looked up."""
-    text = _read_text(path)
-    data, repeats = _parse(path, text)
+def read_mission_bytes(path: Path) -> bytes:
+    """What a mission's file holds. Raises DiagnosticError if it can't be read."""
+    try:
+        return read_bytes(path, "mission file", MAX_BYTES)
+    except FileError as error:
+        _refuse_file(str(path), error)
+
+
+def decode_mission(content: bytes, source_name: str) -> MissionFile:
+    """The mission in JSON, with its text, in which the places of later diagnostics can be looked
+    up. Messages call it `source_name`. Raises DiagnosticError as `read_mission` does."""
+    try:
+        require_size(content, source_name, "mission file", MAX_BYTES)
+        text = decode_text(content, source_name, "mission file")
+    except FileError as error:
+        _refuse_file(source_name, error)
+    data, repeats = _parse(source_name, text)
     faults = [*_duplicate_keys(text)] if repeats else []
     if not isinstance(data, dict):
-        _refuse(path, text, [*faults, _not_a_mission()])
+        _refuse(source_name, text, [*faults, _not_a_mission()])
     present = migrate(data)
     version = present.get("version", VERSION)
     if version != VERSION or isinstance(version, bool):
-        _refuse(path, text, [*faults, _unsupported(version)])
+        _refuse(source_name, text, [*faults, _unsupported(version)])
     result = to_mission(present)
     if isinstance(result, list) or faults:
-        _refuse(path, text, faults + (result if isinstance(result, list) else []))
+        _refuse(source_name, text, faults + (result if isinstance(result, list) else []))
     return MissionFile(result, text)
 
 
@@ -95,7 +115,7 @@ def write_mission(mission: Mission, path: Path) -> None:
         write_whole(path, mission_text(mission))
     except OSError as error:
         message = f"can't be written: {error.strerror}"
-        _refuse(path, "", [unplaced("file.unwritable", message, "choose another place")])
+        _refuse(str(path), "", [unplaced("file.unwritable", message, "choose another place")])
 
 
 def mission_text(mission: Mission) -> str:
@@ -104,8 +124,25 @@ def mission_text(mission: Mission) -> str:
     return json.dumps(data, indent=2, ensure_ascii=False) + "\n"
 
 
-def _refuse(path: Path, text: str, faults: Iterable[UnplacedDiagnostic]) -> NoReturn:
-    raise DiagnosticError(str(path), _placed(text, faults)) from None
+def _refuse(source_name: str, text: str, faults: Iterable[UnplacedDiagnostic]) -> NoReturn:
+    raise DiagnosticError(source_name, _placed(text, faults)) from None
+
+
+def _refuse_file(source_name: str, error: FileError) -> NoReturn:
+    def refuse(code: str, message: str = error.message) -> NoReturn:
+        _refuse(source_name, "", [unplaced(code, message, error.hint)])
+
+    match error.problem:
+        case FileProblem.MISSING:
+            refuse("file.missing")
+        case FileProblem.DIRECTORY:
+            refuse("file.directory")
+        case FileProblem.TOO_LARGE:
+            refuse("file.too-large", f"is larger than {MAX_BYTES // 1_000_000} MB")
+        case FileProblem.NOT_TEXT:
+            refuse("file.not-text")
+        case FileProblem.UNREADABLE:
+            refuse("file.unreadable")
 
 
 def _placed(text: str, faults: Iterable[UnplacedDiagnostic]) -> list[Diagnostic]:
@@ -123,39 +160,7 @@ def _at(lines: JsonText, diagnostic: Diagnostic, span: Span | None) -> Diagnosti
     return diagnostic.model_copy(update={"span": span, "excerpt": excerpt})
 
 
-def _read_text(path: Path) -> str:
-    def refuse(code: str, message: str, hint: str) -> NoReturn:
-        _refuse(path, "", [unplaced(code, message, hint)])
-
-    if path.is_dir():
-        refuse("file.directory", "is a directory", "name the mission file in it")
-    try:
-        with path.open("rb") as file:
-            content = file.read(MAX_BYTES + 1)
-    except FileNotFoundError:
-        refuse("file.missing", "there is no such file", "check the path")
-    except (OSError, ValueError) as error:  # ValueError: a NUL in the path
-        refuse("file.unreadable", f"can't be read: {error}", "check the file")
-    if len(content) > MAX_BYTES:
-        refuse(
-            "file.too-large",
-            f"is larger than {MAX_BYTES // 1_000_000} MB",
-            "a mission file is far smaller: is this the right file?",
-        )
-    try:
-        text = content.decode("utf-8-sig")
-    except UnicodeDecodeError as error:
-        refuse(
-            "file.not-text",
-            f"is not UTF-8 text: byte {error.start} is 0x{content[error.start]:02x}",
-            "save it as UTF-8, or name the mission's JSON file",
-        )
-    if "\0" in text:
-        refuse("file.not-text", "is a binary file", "name the mission's JSON file")
-    return text
-
-
-def _parse(path: Path, text: str) -> tuple[Any, bool]:
+def _parse(source_name: str, text: str) -> tuple[Any, bool]:
     """The data in a JSON text, and whether any of its objects has a key twice."""
     repeats = False
 
@@ -173,12 +178,12 @@ def _parse(path: Path, text: str) -> tuple[Any, bool]:
             "file.not-json", f"is not JSON: {error.msg}", "correct it at the mark"
         )
         span = lines.span(error.pos, error.pos + 1)
-        raise DiagnosticError(str(path), [_at(lines, diagnostic, span)]) from None
+        raise DiagnosticError(source_name, [_at(lines, diagnostic, span)]) from None
     except RecursionError:
-        _refuse(path, text, [too_deep()])
+        _refuse(source_name, text, [too_deep()])
     except ValueError as error:  # an integer of thousands of digits
         message = f"is not usable JSON: {error}"
-        _refuse(path, text, [unplaced("file.not-json", message, "correct the number")])
+        _refuse(source_name, text, [unplaced("file.not-json", message, "correct the number")])
 
 
 def _not_a_mission() -> UnplacedDiagnostic:

@@ -8,16 +8,16 @@ from typing import TYPE_CHECKING
 
 from argo_compiler.lazy_names import lazy_names
 
-__all__ = ["Imported", "InspectionView", "from_isar", "read_isar", "to_isar"]
+__all__ = ["Imported", "InspectionView", "find_definition", "from_isar", "read_isar", "to_isar"]
 
 if TYPE_CHECKING:
-    from argo_compiler.isar.reading import Imported, from_isar, read_isar
+    from argo_compiler.isar.reading import Imported, find_definition, from_isar, read_isar
     from argo_compiler.isar.writing import InspectionView, to_isar
 else:
     __getattr__, __dir__ = lazy_names(
         __name__,
         {
-            "reading": ["Imported", "from_isar", "read_isar"],
+            "reading": ["Imported", "find_definition", "from_isar", "read_isar"],
             "writing": ["InspectionView", "to_isar"],
         },
     )

@@ -3,7 +3,6 @@
 import json
 from dataclasses import dataclass, field
 from itertools import pairwise
-from pathlib import Path
 from typing import Any
 
 from pydantic import ValidationError
@@ -37,23 +36,27 @@ class Imported:
     diagnostics: tuple[Diagnostic, ...]
 
 
-def read_isar(path: Path, catalog: Catalog | None = None) -> Imported | None:
+def read_isar(content: bytes, source_name: str, catalog: Catalog | None = None) -> Imported | None:
     """The mission of a file with an isar definition; None if it is no such file.
 
     Raises DiagnosticError as `from_isar` does.
     """
+    data = find_definition(content)
+    return None if data is None else from_isar(data, source_name, catalog)
+
+
+def find_definition(content: bytes) -> dict[str, Any] | None:
+    """The data of a file with an isar definition; None if it is no such file."""
+    # Argo's own missions can be large: they are not read twice for having these words in them.
+    if len(content) > MAX_BYTES or not any(
+        f'"{word}"'.encode() in content for word in ("inspection", RETURN_TO_HOME, _WRAPPED)
+    ):
+        return None
     try:
-        with path.open("rb") as file:
-            content = file.read(MAX_BYTES + 1)
-        # Argo's own missions can be large: they are not read twice for having these words in them.
-        if len(content) > MAX_BYTES or not any(
-            f'"{word}"'.encode() in content for word in ("inspection", RETURN_TO_HOME, _WRAPPED)
-        ):
-            return None
         data = json.loads(content)
-    except (OSError, ValueError, RecursionError):
+    except (ValueError, RecursionError):
         return None  # the reader of missions says what is wrong with the file
-    return from_isar(data, str(path), catalog) if _is_definition(data) else None
+    return data if _is_definition(data) else None
 
 
 def _is_definition(data: Any) -> bool:

@@ -10,6 +10,9 @@ from argo_compiler.reorder.units import TaskUnit, Unit, find_spine, leaves_of
 from argo_compiler.reorder.visits import Visits, said
 from argo_compiler.route.problem import Precedence
 
+AS_WRITTEN = "the order as written"
+"""in words, that this order is kept"""
+
 
 def precedences(
     visits: Visits, precise: bool, requirements: Requirements
@@ -23,7 +26,7 @@ def precedences(
     kept = precise or requirements.keep_order
     if kept and len(everything) > 1:
         shown = ", ".join(visits.short(k) for k in everything)
-        words = f"precise order {shown}" if precise else "the order as written (--keep-order)"
+        words = f"precise order {shown}" if precise else AS_WRITTEN
         found.append(Precedence(everything, words))
     found += _asked_for(visits, requirements)
     # Also in a precise order: what a decision needs must not be left out.

@@ -5,7 +5,7 @@ from dataclasses import dataclass, field
 
 from argo_compiler.analysis.flow import NOWHERE, Flow
 from argo_compiler.analysis.graph import leading_to, reached_from
-from argo_compiler.errors import ArgoError
+from argo_compiler.errors import ArgoError, Remedy
 from argo_compiler.hfsm.lowering import lower
 from argo_compiler.il import Action, Mission
 
@@ -95,10 +95,14 @@ class TaskGraph:
             if not reached[i]:
                 raise ArgoError(
                     f"no way leads to task '{flow.leaves[i].name}', so there is no place for it in "
-                    "an order: remove it, or lead a transition to it (`argo check` says more)"
+                    "an order: remove it, or lead a transition to it; a check says more",
+                    remedies=(Remedy.CHECK_MISSION,),
                 )
         if not reached[flow.done]:
-            raise ArgoError("nothing leads to the end of this mission: see `argo check`")
+            raise ArgoError(
+                "nothing leads to the end of this mission: a check says why",
+                remedies=(Remedy.CHECK_MISSION,),
+            )
 
     def level(self, group: int) -> Level:
         """The graph of the mission (NOWHERE) or of a round of a group."""

@@ -11,8 +11,10 @@ from argo_compiler.lazy_names import lazy_names
 __all__ = [
     "RosTypes",
     "Storage",
+    "decode_bag",
     "from_message",
     "is_bag",
+    "is_bag_content",
     "message_package",
     "read_bag",
     "ros1_types",
@@ -23,7 +25,15 @@ __all__ = [
 ]
 
 if TYPE_CHECKING:
-    from argo_compiler.ros.bags import Storage, is_bag, read_bag, to_ros1_bag, to_ros2_bag
+    from argo_compiler.ros.bags import (
+        Storage,
+        decode_bag,
+        is_bag,
+        is_bag_content,
+        read_bag,
+        to_ros1_bag,
+        to_ros2_bag,
+    )
     from argo_compiler.ros.package import message_package
     from argo_compiler.ros.reading import from_message
     from argo_compiler.ros.types import RosTypes, ros1_types, ros2_types
@@ -32,7 +42,15 @@ else:
     __getattr__, __dir__ = lazy_names(
         __name__,
         {
-            "bags": ["Storage", "is_bag", "read_bag", "to_ros1_bag", "to_ros2_bag"],
+            "bags": [
+                "Storage",
+                "decode_bag",
+                "is_bag",
+                "is_bag_content",
+                "read_bag",
+                "to_ros1_bag",
+                "to_ros2_bag",
+            ],
             "package": ["message_package"],
             "reading": ["from_message"],
             "types": ["RosTypes", "ros1_types", "ros2_types"],

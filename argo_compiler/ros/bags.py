@@ -1,13 +1,14 @@
 """Missions in bags: ROS 1 bags, rosbag2 folders, and the files of their storages."""
 
 import tempfile
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from contextlib import contextmanager
 from enum import StrEnum
 from pathlib import Path
 from typing import Any, NoReturn
 
 from argo_compiler.diagnostics import Diagnostic, DiagnosticError, Severity
+from argo_compiler.errors import Invalid
 from argo_compiler.il import Mission
 from argo_compiler.ros.compression import (
     TooLargeError,
@@ -47,10 +48,13 @@ class Storage(StrEnum):
 
 def is_bag(path: Path) -> bool:
     """Whether the path is meant as a bag: a folder, a bag's first bytes, or a bag's suffix."""
-    return (
-        path.is_dir()
-        or path.suffix.lower() in {".bag", ".mcap", ".db3"}
-        or _first_bytes(path).startswith((_ROS1, _MCAP, _SQLITE))
+    return path.is_dir() or is_bag_content(path.name, _first_bytes(path))
+
+
+def is_bag_content(name: str, content: bytes) -> bool:
+    """Whether a file is meant as a bag, by its name or its first bytes."""
+    return Path(name).suffix.lower() in {".bag", ".mcap", ".db3"} or content.startswith(
+        (_ROS1, _MCAP, _SQLITE)
     )
 
 
@@ -114,39 +118,60 @@ def _latched() -> Any:
     )
 
 
-def read_bag(path: Path) -> Mission:
+def read_bag(path: Path, source_name: str | None = None) -> Mission:
     """The mission on the topic /mission of a ROS 1 bag, a rosbag2 folder, or one of its files.
 
     The same mission may be there several times, as it is when a latched topic is recorded.
+    Messages call the bag `source_name`, or else by its path.
 
     Raises:
         DiagnosticError: the file is no such bag, or holds no mission or different ones.
         ArgoError: `rosbags` is not installed.
     """
+    name = str(path) if source_name is None else source_name
     if not path.exists():
-        _refuse(path, "file.missing", "there is no such file", "check the path")
+        _refuse(name, "file.missing", "there is no such file", "check the path")
     first = _first_bytes(path)
     if path.is_dir() and not (path / "metadata.yaml").is_file():
-        _refuse(path, "file.directory", "is a directory", "name the mission file in it")
+        _refuse(name, "file.directory", "is a directory", "name the mission file in it")
     if not path.is_dir() and not first.startswith((_ROS1, _MCAP, _SQLITE)):
-        _refuse(path, "ros.not-a-bag", "is no bag", "name a ROS 1 bag or a rosbag2 folder")
+        _refuse(name, "ros.not-a-bag", "is no bag", "name a ROS 1 bag or a rosbag2 folder")
     types = ros1_types() if first.startswith(_ROS1) else ros2_types()
     # rosbags raises whatever the broken bytes lead to: errors of its own, of SQLite, of struct, of
     # YAML, of the decompressors, KeyError, AssertionError.
     try:
         with _open(path, first) as reader:
-            content = _read(path, reader, types)
+            content = _read(name, reader, types)
         message = types.decode(content)
     except DiagnosticError:
         raise
     except TooLargeError as error:
-        _refuse(path, "ros.compressed", f"is not unpacked: {error}", _UNPACK)
+        _refuse(name, "ros.compressed", f"is not unpacked: {error}", _UNPACK)
     except Exception as error:
         reason = " ".join(str(error).split())[:200] or type(error).__name__
         _refuse(
-            path, "ros.broken-bag", f"can't be read as a bag: {reason}", "record or copy it anew"
+            name, "ros.broken-bag", f"can't be read as a bag: {reason}", "record or copy it anew"
         )
-    return from_message(message, types, str(path))
+    return from_message(message, types, name)
+
+
+def decode_bag(content: bytes | Mapping[str, bytes], source_name: str) -> Mission:
+    """The same of a bag's bytes, or of the files of a rosbag2 folder by their names. Raises as
+    `read_bag`, and Invalid for names that lead out of the folder."""
+    with tempfile.TemporaryDirectory() as folder:
+        if isinstance(content, bytes):
+            # The suffix matters to rosbags: it picks the storage.
+            first = content[: len(_SQLITE)]
+            suffix = ".bag" if first.startswith(_ROS1) else ".mcap"
+            suffix = ".db3" if first.startswith(_SQLITE) else suffix
+            path = Path(folder) / f"bag{suffix}"
+            path.write_bytes(content)
+            return read_bag(path, source_name)
+        for name, part in content.items():
+            if Path(name).name != name or name in {"", ".", ".."} or "\0" in name:
+                raise Invalid(f"{source_name}: `{name}` is no name of a file in a rosbag2 folder")
+            (Path(folder) / name).write_bytes(part)
+        return read_bag(Path(folder), source_name)
 
 
 @contextmanager
@@ -170,17 +195,17 @@ def _open(path: Path, first: bytes) -> Iterator[Any]:
             yield reader
 
 
-def _read(path: Path, reader: Any, types: RosTypes) -> bytes:
+def _read(name: str, reader: Any, types: RosTypes) -> bytes:
     connections = [c for c in reader.connections if c.topic == TOPIC]
     if not connections:
         topics = sorted({c.topic for c in reader.connections})
         more = ", ..." if len(topics) > _SHOWN else ""
         listed = f"only {', '.join(topics[:_SHOWN])}{more}" if topics else "no topic at all"
-        _refuse(path, "ros.no-mission", f"has no topic {TOPIC}, {listed}", f"record {TOPIC}")
+        _refuse(name, "ros.no-mission", f"has no topic {TOPIC}, {listed}", f"record {TOPIC}")
     for connection in connections:
         if connection.msgtype != SPECIFICATION:
             _refuse(
-                path,
+                name,
                 "ros.wrong-type",
                 f"has messages of the type {connection.msgtype} on {TOPIC}",
                 f"a mission is a {SPECIFICATION}",
@@ -188,7 +213,7 @@ def _read(path: Path, reader: Any, types: RosTypes) -> bytes:
         # Bags from before ROS 2 Iron, and MCAP files by themselves, hold no type hash.
         if connection.digest and connection.digest != types.digest():
             _refuse(
-                path,
+                name,
                 "ros.other-definitions",
                 f"was written with other definitions of {SPECIFICATION}: {connection.digest}",
                 f"this Argo's are {types.digest()}: build its ros-package and record anew",
@@ -197,7 +222,7 @@ def _read(path: Path, reader: Any, types: RosTypes) -> bytes:
     for count, (_, _, raw) in enumerate(reader.messages(connections=connections), 1):
         if len(raw) > MAX_BYTES:
             _refuse(
-                path,
+                name,
                 "file.too-large",
                 f"has a message larger than {MAX_BYTES // 1_000_000} MB",
                 "a mission is far smaller: is this the right bag?",
@@ -205,13 +230,13 @@ def _read(path: Path, reader: Any, types: RosTypes) -> bytes:
         found.add(bytes(raw))
         if len(found) > 1 or count > _MAX_MESSAGES:
             _refuse(
-                path,
+                name,
                 "ros.several-missions",
                 f"holds more than one mission on {TOPIC}",
                 "keep one of them: rosbag filter, or ros2 bag convert",
             )
     if not found:
-        _refuse(path, "ros.no-mission", f"has no message on {TOPIC}", f"record {TOPIC} again")
+        _refuse(name, "ros.no-mission", f"has no message on {TOPIC}", f"record {TOPIC} again")
     return found.pop()
 
 
@@ -223,6 +248,6 @@ def _first_bytes(path: Path) -> bytes:
         return b""  # reading it in earnest says what is wrong
 
 
-def _refuse(path: Path, code: str, message: str, hint: str) -> NoReturn:
+def _refuse(source_name: str, code: str, message: str, hint: str) -> NoReturn:
     diagnostic = Diagnostic(code=code, severity=Severity.ERROR, message=message, hint=hint)
-    raise DiagnosticError(str(path), [diagnostic]) from None
+    raise DiagnosticError(source_name, [diagnostic]) from None

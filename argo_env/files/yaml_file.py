@@ -1,14 +1,12 @@
-"""Reads a model from a YAML file, with errors that say where the file is wrong."""
+"""Reads a model from the text of a YAML file, with errors that say where the file is wrong."""
 
 from collections.abc import Hashable, Iterator, Mapping
-from pathlib import Path
 from typing import Any, NamedTuple, TypeVar
 
 import yaml
 from pydantic import ValidationError
 
 from argo_compiler.diagnostics import Diagnostic, DiagnosticError, Severity, Span, with_excerpts
-from argo_compiler.errors import ArgoError
 from argo_compiler.files.fields import field_hint
 from argo_compiler.files.json_places import JsonPath, format_path
 from argo_compiler.model import Model
@@ -36,37 +34,9 @@ class NotYamlError(Exception):
         self.flaw = flaw
 
 
-def read_yaml(
-    path: Path,
-    model: type[ModelT],
-    things: str,
-    not_yaml: str,
-    duplicate_key: str,
-    wrong_field: str,
-    no_field: Mapping[str, str] | None = None,
-) -> ModelT:
-    """The model in a YAML file. `things` names what the file holds, such as `sites`; the next
-    three are the codes of diagnostics. `no_field` has hints for fields that only some things have.
-
-    Raises ArgoError if the file can't be read, and DiagnosticError if it is no such thing.
-    """
-    text = read_text(path)
-    return parse_yaml(text, path, model, things, not_yaml, duplicate_key, wrong_field, no_field)
-
-
-def read_text(path: Path) -> str:
-    """The text of a file; ArgoError if it can't be read."""
-    try:
-        return path.read_text(encoding="utf-8")
-    except OSError as error:
-        raise ArgoError(f"{path}: can't be read: {error.strerror}") from error
-    except ValueError as error:  # bytes that are no text, a NUL in the path
-        raise ArgoError(f"{path}: is not UTF-8 text: {error}") from error
-
-
 def parse_yaml(
     text: str,
-    path: Path,
+    source_name: str,
     model: type[ModelT],
     things: str,
     not_yaml: str,
@@ -74,11 +44,16 @@ def parse_yaml(
     wrong_field: str,
     no_field: Mapping[str, str] | None = None,
 ) -> ModelT:
-    """The model in the text of a YAML file, which messages call `path`: see `read_yaml`."""
+    """The model in the text of a YAML file, which messages call `source_name`. `things` names what
+    it holds, such as `sites`; the next three are the codes of diagnostics. `no_field` has hints for
+    fields that only some things have.
+
+    Raises DiagnosticError, with all that was found, if it is no such thing.
+    """
     try:
         tree, repeated, data = _compose(text)
     except NotYamlError as error:
-        raise _error(path, text, [_diagnostic(not_yaml, error.flaw)]) from None
+        raise _error(source_name, text, [_diagnostic(not_yaml, error.flaw)]) from None
     diagnostics = [_diagnostic(duplicate_key, flaw) for flaw in repeated]
     try:
         found = model.model_validate(data)
@@ -86,17 +61,17 @@ def parse_yaml(
         for flaw in _wrong_fields(error, model, things, no_field or {}, tree, data):
             diagnostics.append(_diagnostic(wrong_field, flaw))
     if diagnostics:
-        raise _error(path, text, diagnostics)
+        raise _error(source_name, text, diagnostics)
     return found
 
 
-def placed(path: Path, code: str, found: Mapping[JsonPath, str]) -> DiagnosticError:
-    """What was found wrong, with all of the file known, at these places of a YAML file that has
-    been read."""
-    text = path.read_text(encoding="utf-8") if path.is_file() else ""  # a pipe is read only once
+def placed(
+    text: str, source_name: str, code: str, found: Mapping[JsonPath, str]
+) -> DiagnosticError:
+    """What was found wrong, with all of the file known, at these places of a YAML file's text."""
     tree, _, _ = _compose(text)
     flaws = [_Flaw(said, None, format_path(at), _place(tree, at)) for at, said in found.items()]
-    return _error(path, text, [_diagnostic(code, flaw) for flaw in flaws])
+    return _error(source_name, text, [_diagnostic(code, flaw) for flaw in flaws])
 
 
 def _compose(text: str) -> tuple[yaml.Node | None, list[_Flaw], Any]:
@@ -121,8 +96,8 @@ def _compose(text: str) -> tuple[yaml.Node | None, list[_Flaw], Any]:
         raise NotYamlError(_Flaw(f"is not YAML: {why}", "check the file", None, None)) from None
 
 
-def _error(path: Path, text: str, diagnostics: list[Diagnostic]) -> DiagnosticError:
-    return DiagnosticError(str(path), with_excerpts(diagnostics, text.splitlines()))
+def _error(source_name: str, text: str, diagnostics: list[Diagnostic]) -> DiagnosticError:
+    return DiagnosticError(source_name, with_excerpts(diagnostics, text.splitlines()))
 
 
 def _diagnostic(code: str, flaw: _Flaw) -> Diagnostic:

@@ -12,7 +12,6 @@ from typing import TYPE_CHECKING, Any
 from argo_compiler.catalog import Catalog
 from argo_compiler.errors import Conflict
 from argo_env.files import cache
-from argo_env.files.yaml_file import read_text
 from argo_env.navigation import Navigator
 from argo_env.planning.catalog import make_catalog
 from argo_env.planning.code import digest_of_code
@@ -20,7 +19,7 @@ from argo_env.robot.spec import RobotSpec, load_robot
 from argo_env.site import Site, make_site
 from argo_env.site.family import is_family, parse_family
 from argo_env.site.site import site_file
-from argo_env.site.site_file import parse_site_spec
+from argo_env.site.site_file import parse_site_spec, read_spec_text
 from argo_env.site.spec import SiteSpec
 
 if TYPE_CHECKING:
@@ -127,11 +126,11 @@ def open_site(reference: str = "umad", robot: RobotSpec | None = None) -> Opened
         family = parse_family(reference)
         return _open(reference, family.model_dump_json(), robot, partial(generate, family, robot))
     path = site_file(reference)
-    text = read_text(path)
+    text = read_spec_text(path)
     if path == Path(reference):
         reference = str(path.resolve())
     return _open(
-        reference, text, robot, lambda: Navigator(make_site(parse_site_spec(text, path)), robot)
+        reference, text, robot, lambda: Navigator(make_site(parse_site_spec(text, str(path))), robot)
     )
 
 

@@ -7,8 +7,9 @@ from typing import TYPE_CHECKING, NoReturn
 
 from pydantic import ValidationError
 
-from argo_compiler.errors import ArgoError
+from argo_compiler.errors import ArgoError, Invalid, NotFound, Remedy
 from argo_compiler.files.json_places import format_path
+from argo_compiler.files.reading import FileError, FileProblem, read_bytes
 from argo_env.files.yaml_messages import message_of
 from argo_env.recording.files import MAGIC, VERSION, require_libraries
 from argo_env.recording.sections import Content, data_section, is_sound_end, trailing, unreadable
@@ -19,14 +20,17 @@ from argo_env.site.spec import SiteSpec
 if TYPE_CHECKING:  # what the extra brings
     from mcap.records import McapRecord
 
-_HINT = "name a file that `argo run --record` has written"
+MAX_BYTES = 16 * 1024**3
+"""of a recording; one with a camera's pictures takes some 100 MB an hour"""
+_HINT = "name a file that a run was recorded in"
 
 
 @dataclass(frozen=True)
 class Recording:
     """What a recording holds beside its pictures of the run."""
 
-    path: Path
+    name: str
+    """what the file is called"""
     facts: dict[str, str]
     """site, robot, drive, sensor and seed of the run, as texts"""
     site: Site
@@ -45,9 +49,9 @@ class Recording:
         """The run's record; ArgoError if the run did not come to its end."""
         if self.record is None:
             raise ArgoError(
-                f"{self.path}: has no record of the run, which is written at its end: {self.loss}. "
-                "No report and no film can be made of it; without options `argo replay` shows "
-                "what is there"
+                f"{self.name}: has no record of the run, which is written at its end: {self.loss}. "
+                "No report and no film can be made of it; what is there can be shown",
+                remedies=(Remedy.SHOW_REST,),
             )
         return self.record
 
@@ -65,24 +69,28 @@ def read_recording(path: Path) -> Recording:
     What it returns has the checksums that it was written with. Raises ArgoError if the file can't
     be read, is damaged before its end, is no .mcap file or none of Argo's.
     """
+    return decode_recording(_content(path), str(path))
+
+
+def decode_recording(content: bytes, name: str) -> Recording:
+    """The same of a recording's bytes, which messages call `name`."""
     require_libraries()
-    content = _content(path)
-    parts = _Parts(path)
-    flaw = _read(path, content, parts)
+    parts = _Parts()
+    flaw = _read(name, content, parts)
     if parts.facts is None:
-        _refuse(path, f"is no recording of Argo's: {_HINT}")
+        _refuse(name, f"is no recording of Argo's: {_HINT}", Remedy.RECORD)
     if parts.facts.get("version") != VERSION:
         _refuse(
-            path,
+            name,
             f"has version {parts.facts.get('version')} of Argo's recordings, and this Argo reads "
             f"{VERSION}: replay it with the Argo that made it",
         )
     if "site.json" not in parts.attachments:
-        _refuse(path, "breaks off before the run's first step: there is nothing to replay")
+        _refuse(name, "breaks off before the run's first step: there is nothing to replay")
     try:
         record = parts.attachments.get("record.json")
         return Recording(
-            path,
+            name,
             parts.facts,
             make_site(SiteSpec.model_validate_json(parts.attachments["site.json"])),
             None if record is None else RunRecord.model_validate_json(record),
@@ -95,14 +103,13 @@ def read_recording(path: Path) -> Recording:
     except ValidationError as error:
         fault = error.errors(include_url=False)[0]
         place, said = format_path(fault["loc"]), message_of(fault, fault["loc"])
-        _refuse(path, f"does not fit this Argo: {place}: {said}")
+        _refuse(name, f"does not fit this Argo: {place}: {said}")
 
 
 class _Parts:
     """What has been read of a file so far."""
 
-    def __init__(self, path: Path) -> None:
-        self.path = path
+    def __init__(self) -> None:
         self.facts: dict[str, str] | None = None
         self.attachments: dict[str, bytes] = {}
         self.messages: Counter[str] = Counter()
@@ -132,14 +139,14 @@ class _Parts:
                     self.tasks.append(record.data)
 
 
-def _read(path: Path, content: bytes, parts: _Parts) -> str | None:
+def _read(name: str, content: bytes, parts: _Parts) -> str | None:
     """Reads as far as there is anything; what is wrong with the file's end, if anything is."""
     from mcap.exceptions import EndOfFile, RecordLengthLimitExceeded
 
     if not content:
-        _refuse(path, f"is empty: {_HINT}")
+        _refuse(name, f"is empty: {_HINT}", Remedy.RECORD)
     if not MAGIC.startswith(content[: len(MAGIC)]):
-        _refuse(path, f"is no .mcap file: {_HINT}")
+        _refuse(name, f"is no .mcap file: {_HINT}", Remedy.RECORD)
     stream = Content(content)
     try:
         for record in data_section(stream):
@@ -147,7 +154,7 @@ def _read(path: Path, content: bytes, parts: _Parts) -> str | None:
     except unreadable() as error:
         until, why = f"after {parts.until / 1e9:g} s", f"({str(error) or type(error).__name__})"
         if len(content) > len(MAGIC) and content.endswith(MAGIC):
-            _refuse(path, f"is damaged {until} {why}: take it from a copy")
+            _refuse(name, f"is damaged {until} {why}: take it from a copy")
         # A part that reaches beyond the end of the file is the last one of a file that breaks off.
         if isinstance(error, EndOfFile | RecordLengthLimitExceeded):
             return f"breaks off {until}, as if its process had been killed"
@@ -161,15 +168,17 @@ def _read(path: Path, content: bytes, parts: _Parts) -> str | None:
 
 
 def _content(path: Path) -> bytes:
-    if path.is_dir():
-        _refuse(path, f"is a folder: {_HINT}")
     try:
-        return path.read_bytes()
-    except FileNotFoundError:
-        _refuse(path, "there is no such recording: `argo run --record` makes one")
-    except OSError as error:
-        _refuse(path, f"can't be read: {error.strerror}")
+        return read_bytes(path, "recording", MAX_BYTES)
+    except FileError as error:
+        match error.problem:
+            case FileProblem.MISSING:
+                message = "there is no such recording: a run makes one"
+                raise NotFound(f"{path}: {message}", remedies=(Remedy.RECORD,)) from None
+            case FileProblem.DIRECTORY:
+                _refuse(str(path), f"is a folder: {_HINT}", Remedy.RECORD)
+        raise
 
 
-def _refuse(path: Path, message: str) -> NoReturn:
-    raise ArgoError(f"{path}: {message}") from None
+def _refuse(name: str, message: str, *remedies: Remedy) -> NoReturn:
+    raise Invalid(f"{name}: {message}", remedies=remedies) from None

@@ -2,7 +2,7 @@
 
 from collections.abc import Sequence
 
-from argo_compiler.errors import Invalid
+from argo_compiler.errors import Invalid, Remedy
 from argo_compiler.hfsm import ActionStopped, CancelAction, Command, Event, StartAction
 from argo_env.navigation import Path
 from argo_env.run.action import ActionEnd, ActionUnderWay
@@ -109,8 +109,8 @@ class Course:
             self.take(entry)
         except ValueError as error:
             raise Invalid(
-                f"the journal does not fit its mission at {entry.t:g} s: {error}; "
-                "begin anew with `argo run`"
+                f"the journal does not fit its mission at {entry.t:g} s: {error}; begin a new run",
+                remedies=(Remedy.RUN_ANEW,),
             ) from error
 
     def look_back(self) -> None:

@@ -17,7 +17,7 @@ from typing import Literal, NoReturn, Self, TypeVar
 from pydantic import ValidationError
 
 from argo_compiler import __version__
-from argo_compiler.errors import ArgoError, Conflict
+from argo_compiler.errors import ArgoError, Conflict, NotFound, Remedy
 from argo_compiler.model import Model
 from argo_env.closing import Closing
 from argo_env.files.yaml_messages import message_of
@@ -82,7 +82,9 @@ class Journal(Observer, Closing):
             _cut(self._file, self._size)
             raise ArgoError(
                 f"{self.path}: the journal can't be written any further: {error.strerror}; what "
-                f"was written stays, and `argo resume {self.path}` goes on from there"
+                "was written stays, and the run can be resumed from there",
+                remedies=(Remedy.RESUME,),
+                about=str(self.path),
             ) from error
         self._size += len(line)
         self._lines += 1
@@ -102,7 +104,8 @@ class Journal(Observer, Closing):
         if changed:
             raise Conflict(
                 f"{self.path}: the run can't go on, as something has changed since it began: "
-                f"{', '.join(changed)}. Put it back as it was, or begin anew with `argo run`"
+                f"{', '.join(changed)}. Put it back as it was, or begin a new run",
+                remedies=(Remedy.RUN_ANEW,),
             )
 
     def close(self) -> None:
@@ -127,7 +130,11 @@ def fingerprints(site: OpenedSite, spec: RunSpec) -> dict[str, str]:
 def require_free(path: Path) -> None:
     """Raises ArgoError if no new journal can be written there."""
     if path.exists():
-        _refuse(path, f"is there already: `argo resume {path}` goes on with it; or choose another")
+        raise Conflict(
+            f"{path}: is there already: resume that run, or choose another",
+            remedies=(Remedy.RESUME,),
+            about=str(path),
+        )
     if not path.parent.is_dir():
         _refuse(path, "its folder does not exist: make it, or choose another")
     if not os.access(path.parent, os.W_OK):
@@ -170,7 +177,7 @@ def open_journal(path: Path) -> Journal:
     Raises ArgoError if it is none, is damaged, or another process has it.
     """
     if path.is_dir() or (path.exists() and not path.is_file()):
-        _refuse(path, "is no file: name a journal that `argo run --journal` has written")
+        _refuse(path, "is no file: name a journal that a run has written", Remedy.KEEP_JOURNAL)
     file = _open(path)
     try:
         _lock(file, path)
@@ -249,7 +256,9 @@ def _open(path: Path, flags: int = 0) -> int:
     try:
         return os.open(path, flags | os.O_RDWR | os.O_APPEND | os.O_CLOEXEC, 0o644)
     except FileNotFoundError:
-        _refuse(path, "there is no such journal: `argo run --journal` begins one")
+        raise NotFound(
+            f"{path}: there is no such journal: a run begins one", remedies=(Remedy.KEEP_JOURNAL,)
+        ) from None
     except OSError as error:
         _refuse(path, f"can't be opened: {error.strerror}")
 
@@ -297,5 +306,5 @@ def _digest(content: str | bytes) -> str:
     return hashlib.sha256(data).hexdigest()[:12]
 
 
-def _refuse(path: Path, message: str) -> NoReturn:
-    raise ArgoError(f"{path}: {message}") from None
+def _refuse(path: Path, message: str, *remedies: Remedy) -> NoReturn:
+    raise ArgoError(f"{path}: {message}", remedies=remedies) from None

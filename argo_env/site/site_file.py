@@ -4,8 +4,12 @@ from pathlib import Path
 
 import yaml
 
-from argo_env.files.yaml_file import parse_yaml, read_text
+from argo_compiler.files.reading import read_text
+from argo_env.files.yaml_file import parse_yaml
 from argo_env.site.spec import SiteSpec
+
+MAX_BYTES = 50_000_000
+"""of a site's file; one with hundreds of checkpoints takes some 100 kB"""
 
 
 def read_site_spec(path: Path) -> SiteSpec:
@@ -13,17 +17,22 @@ def read_site_spec(path: Path) -> SiteSpec:
 
     Raises ArgoError if the file can't be read, and DiagnosticError if it describes no site.
     """
-    return parse_site_spec(read_text(path), path)
+    return parse_site_spec(read_spec_text(path), str(path))
 
 
-def parse_site_spec(text: str, path: Path) -> SiteSpec:
-    """The description of a site in the text of a YAML file, which messages call `path`.
+def read_spec_text(path: Path) -> str:
+    """The text of a site's file; ArgoError if it can't be read."""
+    return read_text(path, "site", MAX_BYTES)
+
+
+def parse_site_spec(text: str, source_name: str) -> SiteSpec:
+    """The description of a site in the text of a YAML file, which messages call `source_name`.
 
     Raises DiagnosticError if it describes no site.
     """
     return parse_yaml(
         text,
-        path,
+        source_name,
         SiteSpec,
         "sites",
         not_yaml="site.not-yaml",

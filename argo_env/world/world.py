@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from argo_compiler.errors import ArgoError
+from argo_compiler.errors import Remedy, Unavailable
 from argo_env.robot.spec import RobotSpec
 from argo_env.site import Site
 from argo_env.site.shapes import Element, Vector
@@ -71,7 +71,10 @@ class World(Bodies):
         Raises ArgoError if a window is asked for where there is no display.
         """
         if gui and not os.environ.get("DISPLAY"):
-            raise ArgoError("--gui needs a display, and DISPLAY is not set; use --render instead")
+            raise Unavailable(
+                "a window needs a display, and DISPLAY is not set; make a film instead",
+                remedies=(Remedy.FILM_INSTEAD,),
+            )
         super().__init__(site, robot, gui, site.elements if elements is None else elements)
         self.light = 1.0
         """how bright it is, from 0 to 1: full daylight"""

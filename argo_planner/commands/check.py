@@ -1,45 +1,22 @@
 """`argo check`: all that is wrong or odd about a mission, without running it."""
 
-from enum import StrEnum
 from pathlib import Path
 from typing import Annotated
 
 import typer
 
-from argo_compiler.analysis import Travel, analyse
-from argo_compiler.catalog import Catalog
-from argo_compiler.checks import check
-from argo_compiler.diagnostics import (
-    Diagnostic,
-    DiagnosticError,
-    Severity,
-    by_place,
-    has_errors,
-    summary,
-    to_json,
-    to_sarif,
-    to_text,
-)
+from argo_compiler.diagnostics import Diagnostic, has_errors, summary
 from argo_compiler.errors import ArgoError
-from argo_env.planning.catalog import make_catalog
-from argo_env.planning.travel import SiteTravel
-from argo_planner.loading import (
-    is_mission_file,
-    keep_input,
-    load_navigator,
-    load_source,
-    refuse_areas,
-    write_text,
+from argo_env.planning.opening import open_site
+from argo_planner.terminal.files import keep_input, read_upload, write_text
+from argo_planner.terminal.options import EndArea, SiteOption, Source, StartArea
+from argo_planner.terminal.words import with_options
+from argo_planner.use_cases.checking import (
+    Format,
+    check_source,
+    diagnostics_of,
+    write_diagnostics,
 )
-from argo_planner.options import EndArea, SiteOption, Source, StartArea
-
-
-class Format(StrEnum):
-    """How diagnostics are written."""
-
-    TEXT = "text"
-    JSON = "json"
-    SARIF = "sarif"
 
 
 def check_mission(
@@ -60,17 +37,11 @@ def check_mission(
     """Say all that is wrong or odd about a mission; exits with status 2 if there are errors."""
     if output:
         keep_input(source, output)
-    if is_mission_file(source):
-        refuse_areas(source, start_area, end_area)
-    navigator = load_navigator(site)
-    diagnostics = find_all(
-        source, make_catalog(navigator), start_area, end_area, SiteTravel(navigator)
-    )
-    written = _WRITERS[format](diagnostics, str(source))
-    count = f"{source}: {summary(diagnostics)}"
+    diagnostics = with_options(_diagnostics(source, site, start_area, end_area))
+    written = write_diagnostics(diagnostics, str(source), format)
     if output:
         write_text(output, written + "\n")
-        print(count)
+        print(f"{source}: {summary(diagnostics)}")
     else:
         print(written)
     if has_errors(diagnostics):
@@ -79,32 +50,12 @@ def check_mission(
         raise typer.Exit(1)
 
 
-def find_all(
-    source: Path,
-    catalog: Catalog,
-    start_area: int | None = None,
-    end_area: int | None = None,
-    travel: Travel | None = None,
+def _diagnostics(
+    source: Path, site: str, start_area: int | None, end_area: int | None
 ) -> tuple[Diagnostic, ...]:
-    """The diagnostics of every stage that the mission gets through, by place."""
+    opened = open_site(site)
     try:
-        loaded = load_source(source, catalog, start_area, end_area)
-    except DiagnosticError as error:
-        return error.diagnostics
+        upload = read_upload(source)
     except ArgoError as error:
-        return (Diagnostic(code="script.unreadable", severity=Severity.ERROR, message=str(error)),)
-    found = check(loaded.mission, catalog)
-    if not has_errors(found):
-        found += analyse(loaded.mission, catalog, travel).diagnostics
-    return by_place((*loaded.diagnostics, *loaded.placed(found)))
-
-
-def _to_text(diagnostics: tuple[Diagnostic, ...], source_name: str) -> str:
-    text = to_text(diagnostics, source_name)
-    # Of several diagnostics it says by itself how many there are.
-    return (
-        text if len(diagnostics) > 1 else f"{text}\n{source_name}: {summary(diagnostics)}".lstrip()
-    )
-
-
-_WRITERS = {Format.TEXT: _to_text, Format.JSON: to_json, Format.SARIF: to_sarif}
+        return diagnostics_of(error)
+    return check_source(upload, opened.catalog, start_area, end_area, opened.travel)

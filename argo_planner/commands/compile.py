@@ -7,11 +7,11 @@ import typer
 from rich.console import Console
 from rich.markup import escape
 
-from argo_compiler.export import to_mermaid
-from argo_compiler.hfsm import lower
-from argo_planner.loading import keep_input, load_mission, load_navigator, write_text
-from argo_planner.options import EndArea, Optimise, SiteOption, Source, StartArea
-from argo_planner.routing import optimised
+from argo_env.planning.opening import open_site
+from argo_planner.terminal.files import keep_input, read_upload, write_text
+from argo_planner.terminal.importing import import_shown
+from argo_planner.terminal.options import EndArea, Optimise, SiteOption, Source, StartArea
+from argo_planner.use_cases.compiling import compile_mission as compile_imported
 
 
 def compile_mission(
@@ -27,14 +27,17 @@ def compile_mission(
 ) -> None:
     """Lower a mission to its state machine and write it as JSON."""
     keep_input(source, output)
-    navigator = load_navigator(site)
-    mission, _ = load_mission(source, navigator, start_area, end_area)
+    opened = open_site(site)
+    imported = import_shown(read_upload(source), opened, start_area, end_area)
     if optimise:
-        mission, _ = optimised(source, mission, navigator)
-    machine = lower(mission, source_name=str(source))
-    write_text(output, machine.model_dump_json(indent=2) + "\n")
+        from argo_planner.terminal.reordering import optimise_shown  # brings the solvers
+
+        imported, _ = optimise_shown(imported, opened)
+    compiled = compile_imported(imported)
+    write_text(output, compiled.json)
     if mermaid:
-        write_text(mermaid, to_mermaid(machine))
+        write_text(mermaid, compiled.mermaid)
+    machine = compiled.machine
     Console(highlight=False).print(
         f"{escape(str(output))}: {len(machine.leaves)} tasks, {len(machine.composites) - 1} groups",
         soft_wrap=True,

@@ -5,7 +5,7 @@ from typing import Annotated
 import typer
 
 from argo_env.files import cache
-from argo_planner.doctor import examine
+from argo_planner.use_cases.doctor import examine
 
 
 def show_health(

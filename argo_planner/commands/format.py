@@ -6,11 +6,11 @@ from typing import Annotated
 
 import typer
 
-from argo_compiler.diagnostics import DiagnosticError
-from argo_compiler.script import format_script
-from argo_env.planning.catalog import make_catalog
-from argo_planner.loading import keep_input, load_mission, load_navigator, write_text
-from argo_planner.options import EndArea, SiteOption, Source, StartArea
+from argo_env.planning.opening import open_site
+from argo_planner.terminal.files import keep_input, read_upload, write_text
+from argo_planner.terminal.importing import import_shown
+from argo_planner.terminal.options import EndArea, SiteOption, Source, StartArea
+from argo_planner.use_cases.exporting import as_script
 
 
 def format_mission(
@@ -25,12 +25,8 @@ def format_mission(
     """Write a mission as a script, in one canonical form; importing that gives the same mission."""
     if output:
         keep_input(source, output)
-    navigator = load_navigator(site)
-    mission, _ = load_mission(source, navigator, start_area, end_area)
-    try:
-        script = format_script(mission, make_catalog(navigator))
-    except DiagnosticError as error:
-        raise DiagnosticError(str(source), error.diagnostics) from None
+    opened = open_site(site)
+    script = as_script(import_shown(read_upload(source), opened, start_area, end_area), opened)
     if output:
         write_text(output, script)
     else:

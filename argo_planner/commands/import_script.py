@@ -9,13 +9,11 @@ from rich.markup import escape
 
 from argo_compiler.errors import ArgoError
 from argo_compiler.files.mission_file import write_mission
-from argo_planner.loading import (
-    is_own_mission,
-    load_mission,
-    load_navigator,
-    require_mission_output,
-)
-from argo_planner.options import EndArea, SiteOption, StartArea
+from argo_env.planning.opening import open_site
+from argo_planner.terminal.files import read_upload, require_mission_output
+from argo_planner.terminal.importing import import_shown
+from argo_planner.terminal.options import EndArea, SiteOption, StartArea
+from argo_planner.use_cases.importing import SourceKind, kind_of
 
 
 def import_script(
@@ -28,10 +26,11 @@ def import_script(
     end_area: EndArea = None,
 ) -> None:
     """Read a mission script, a bag or an isar mission, and write the mission as JSON."""
-    if is_own_mission(script):
+    upload = read_upload(script)
+    if kind_of(upload) is SourceKind.MISSION:
         raise ArgoError(f"{script} is no script: `argo run` and `argo compile` take missions")
     require_mission_output(script, output)
-    mission, _ = load_mission(script, load_navigator(site), start_area, end_area)
+    mission = import_shown(upload, open_site(site), start_area, end_area).mission
     write_mission(mission, output)
     names = ", ".join(task.name for task in mission.tasks)
     Console(highlight=False).print(f"{escape(str(output))}: {escape(names)}", soft_wrap=True)

@@ -10,11 +10,10 @@ from rich.markup import escape
 
 from argo_env.files.folders import make_folder
 from argo_env.formatting import clock
-from argo_env.navigation import Navigator
 from argo_env.pictures import check_film
 from argo_env.recording.reader import Recording, read_recording
 from argo_env.robot.spec import load_robot
-from argo_planner.running import conclude
+from argo_planner.terminal.run_display import conclude
 
 
 def replay(
@@ -48,7 +47,7 @@ def replay(
         )
     count = sum(found.messages.values())
     took = f"Reading {count} messages took {time.monotonic() - begun:.1f} s."
-    conclude(record, Navigator(found.site, load_robot(record.robot)), took, report, render)
+    conclude(record, found.site, load_robot(record.robot), took, report, render)
 
 
 def _show_rest(recording: Recording) -> None:

@@ -9,14 +9,16 @@ import typer
 from rich.console import Console
 
 from argo_env.files.folders import make_folder
-from argo_env.planning import open_site
+from argo_env.planning.opening import OpenedSite, open_site
 from argo_env.recording.files import check_recording, recording_to
-from argo_env.run.journal import open_journal
+from argo_env.run.journal import Journal, open_journal
 from argo_env.run.observer import Observer
+from argo_env.run.record import RunRecord
 from argo_env.run.session import resume
+from argo_env.run.simulation import LoggedEvents
 from argo_env.run.spec import logged
-from argo_planner.commands.run import KINDS, parse_events
-from argo_planner.running import RunDisplay, conclude
+from argo_planner.terminal.events import KINDS, parse_events
+from argo_planner.terminal.run_display import RunDisplay, conclude
 
 
 def resume_run(
@@ -47,26 +49,32 @@ def resume_run(
     events = logged(*parse_events(event or []))
     console = Console(stderr=True, highlight=False)
     with open_journal(journal) as book:
-        spec = book.header.spec
-        site = open_site(spec.site)
-        navigator = site.navigator
+        site = open_site(book.header.spec.site)
         book.require_unchanged(site)
         at = book.entries[-1].t if book.entries else 0.0
         if book.ended:
             console.print(f"The run had ended already, at {at:g} s; these are its results.")
         else:
-            navigator.prepare()
+            site.prepare()
             console.print(f"The run goes on at {at:g} s.")
         begun = time.monotonic()
-        source = Path(spec.source) if spec.source else None
-        with ExitStack() as stack:
-            observers: list[Observer] = [stack.enter_context(RunDisplay(spec.mission.max_duration))]
-            if recording:
-                observers.append(stack.enter_context(recording_to(recording, source)))
-            record = resume(book, site, observers=observers, events=events)
+        record = _go_on(book, site, events, recording)
     seconds = time.monotonic() - begun
     speed = (record.result.duration - at) / max(1e-9, seconds)
     took = f"The rest took {seconds:.1f} s: {speed:.0f} times real time."
     if book.ended:
         took = f"Reading the journal took {seconds:.1f} s."
-    conclude(record, navigator, took, report)
+    conclude(record, site.site, site.robot, took, report)
+
+
+def _go_on(
+    book: Journal, site: OpenedSite, events: LoggedEvents, recording: Path | None
+) -> RunRecord:
+    """The rest of the run, with its progress shown."""
+    spec = book.header.spec
+    with ExitStack() as stack:
+        observers: list[Observer] = [stack.enter_context(RunDisplay(spec.mission.max_duration))]
+        if recording:
+            source = Path(spec.source) if spec.source else None
+            observers.append(stack.enter_context(recording_to(recording, source)))
+        return resume(book, site, observers=observers, events=events)

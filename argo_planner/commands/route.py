@@ -8,31 +8,30 @@ import typer
 from pydantic import ValidationError
 from rich.console import Console
 
-from argo_compiler.errors import ArgoError
+from argo_compiler.errors import ArgoError, Conflict
 from argo_compiler.files.mission_file import write_mission
+from argo_compiler.files.reading import read_bytes
 from argo_compiler.reorder.requirements import Requirements, What
 from argo_compiler.route.robust_spread import CAUTIOUS, SIMULATED
 from argo_env.files.folders import make_folder
 from argo_env.files.yaml_messages import message_of
-from argo_env.pictures.route import write_route
-from argo_planner.loading import (
-    is_mission_file,
-    load_mission,
-    load_navigator,
-    refuse_areas,
-    require_mission_output,
-)
-from argo_planner.options import EndArea, SiteOption, Source, StartArea
-from argo_planner.route_shown import show, show_risk
-from argo_planner.routing import (
+from argo_env.planning.opening import OpenedSite, open_site
+from argo_planner.terminal.files import read_upload, require_mission_output
+from argo_planner.terminal.importing import import_shown
+from argo_planner.terminal.options import EndArea, SiteOption, Source, StartArea
+from argo_planner.terminal.order_tables import show, show_risk
+from argo_planner.terminal.words import order_said, said
+from argo_planner.use_cases.importing import SourceKind, kind_of, refuse_areas
+from argo_planner.use_cases.no_order import require_order
+from argo_planner.use_cases.routing import (
+    MAX_BYTES,
     TIME_LIMIT,
     Suggested,
-    read_requirements,
+    parse_requirements,
     require_limit,
-    suggest,
     suggest_robust,
-    why_none,
 )
+from argo_planner.use_cases.routing import suggest_order as suggest
 
 
 class Spread(StrEnum):
@@ -91,17 +90,17 @@ def suggest_order(
     """Suggest the best order of a mission's tasks; exits with status 2 if there is none."""
     if output:
         require_mission_output(source, output)
-    wanted = read_requirements(requirements) if requirements else Requirements()
-    wanted = with_options(wanted, budget, keep_order, before or [])
-    if is_mission_file(source):
-        refuse_areas(source, start_area, end_area)
+    wanted = with_options(_read(requirements), budget, keep_order, before or [])
+    upload = read_upload(source)
+    if kind_of(upload) is not SourceKind.SCRIPT:
+        refuse_areas(upload.name, start_area, end_area)
     if pictures:
         make_folder(pictures)
-    navigator = load_navigator(site)
-    mission, _ = load_mission(source, navigator, start_area, end_area)
+    opened = open_site(site)
+    imported = import_shown(upload, opened, start_area, end_area)
     if robust:
-        require_limit(mission, wanted)
-    found = suggest(source, mission, navigator, wanted, time_limit, seed)
+        require_limit(imported.mission, wanted)
+    found = suggest(imported, opened, wanted, time_limit=time_limit, seed=seed)
     console = Console(highlight=False)
     spread = SPREADS[risk or Spread.CAUTIOUS]
     _require_order(source, found, console)
@@ -116,14 +115,29 @@ def suggest_order(
         write_mission(reordered, output)
         console.print(f"Mission: {output}", soft_wrap=True, markup=False)
     if pictures:
-        for path in write_route(found.planned, found.route, navigator, found.travel, pictures):
-            console.print(f"Picture: {path}", soft_wrap=True, markup=False)
+        _draw(found, opened, pictures, console)
+
+
+def _read(requirements: Path | None) -> Requirements:
+    if requirements is None:
+        return Requirements()
+    content = read_bytes(requirements, "file of requirements", MAX_BYTES)
+    return parse_requirements(content, str(requirements))
+
+
+def _draw(found: Suggested, site: OpenedSite, folder: Path, console: Console) -> None:
+    from argo_env.pictures.route import write_route
+
+    for path in write_route(found.planned, found.route, site.navigator, found.travel, folder):
+        console.print(f"Picture: {path}", soft_wrap=True, markup=False)
 
 
 def _require_order(source: Path, found: Suggested, console: Console) -> None:
-    if why := why_none(found):
-        console.print(f"{source}: {why}", soft_wrap=True, markup=False)
-        raise typer.Exit(2)
+    try:
+        require_order(found, str(source))
+    except Conflict as error:
+        console.print(order_said(said(error)), soft_wrap=True, markup=False)
+        raise typer.Exit(2) from None
 
 
 def with_options(

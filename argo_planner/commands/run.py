@@ -1,39 +1,63 @@
 """`argo run`: a mission is driven through its site."""
 
-import math
 import time
 from contextlib import ExitStack
+from dataclasses import dataclass
 from pathlib import Path
 from typing import Annotated
 
 import typer
 
 from argo_compiler.errors import ArgoError
-from argo_compiler.hfsm import Cancel, Event, Occurred, Pause, Resume, lower
-from argo_compiler.il import EventKind, Mission
-from argo_env.faults.reading import read_faults, require_fit
+from argo_compiler.files.reading import read_bytes
+from argo_env.faults.reading import MAX_BYTES, FaultText, decode_faults
 from argo_env.files.folders import make_folder
 from argo_env.pictures import check_film
-from argo_env.planning import open_site
+from argo_env.planning.opening import OpenedSite, open_site
 from argo_env.recording.files import check_recording, recording_to
 from argo_env.run.drives_and_sensors import DRIVES, SENSORS
 from argo_env.run.journal import require_free
 from argo_env.run.observer import Observer
-from argo_env.run.rig import check_spec
+from argo_env.run.record import RunRecord
 from argo_env.run.session import simulate
 from argo_env.run.spec import RunSpec, logged
-from argo_planner.loading import keep_input, load_mission
-from argo_planner.options import EndArea, Optimise, SiteOption, Source, StartArea
-from argo_planner.routing import optimised
-from argo_planner.running import RunDisplay, conclude
+from argo_planner.terminal.events import KINDS, parse_events, parse_values
+from argo_planner.terminal.files import keep_input, read_upload
+from argo_planner.terminal.importing import import_shown
+from argo_planner.terminal.options import EndArea, Optimise, SiteOption, Source, StartArea
+from argo_planner.terminal.reordering import optimise_shown
+from argo_planner.terminal.run_display import RunDisplay, conclude
+from argo_planner.use_cases.running import NO_MISSION, require_possible, with_mission
 
 DEFAULT_PACE = 5.0
-_NONE = Mission(tasks=())
-"""until the mission is read"""
 
-_BY_A_PERSON: dict[str, Event] = {"pause": Pause(), "resume": Resume(), "cancel": Cancel()}
 
-KINDS = ", ".join(["pause", "resume", "cancel", *EventKind])
+@dataclass(frozen=True)
+class _Outputs:
+    """Where a run is shown and kept."""
+
+    source: Path
+    report: Path | None
+    render: Path | None
+    recording: Path | None
+    journal: Path | None
+    gui: bool
+    pace: float | None
+    """simulated seconds a second"""
+
+    def check(self) -> None:
+        """Raises ArgoError where something can't be written; folders are made now."""
+        if self.pace is not None and not self.gui:
+            raise ArgoError("--pace is how fast the window shows the run: give --gui as well")
+        if self.render:
+            check_film(self.render)
+        if self.recording:
+            check_recording(self.recording)
+            keep_input(self.source, self.recording)
+        if self.report:
+            make_folder(self.report)
+        if self.journal:
+            require_free(self.journal)
 
 
 def run(
@@ -93,55 +117,32 @@ def run(
     ] = None,
 ) -> None:
     """Run a mission on a site, show what was measured, and write a report."""
-    if pace is not None and not gui:
-        raise ArgoError("--pace is how fast the window shows the run: give --gui as well")
-    if render:
-        check_film(render)
-    if recording:
-        check_recording(recording)
-        keep_input(source, recording)
-    if report:
-        make_folder(report)
+    outputs = _Outputs(source, report, render, recording, journal, gui, pace)
+    outputs.check()
+    said = _read_faults(faults) if faults else None
     spec = RunSpec(
-        mission=_NONE,
-        site=site_reference(site),
+        mission=NO_MISSION,
         source=str(source.resolve()),
         drive=drive,
         sensor=sensor,
         seed=seed,
         values=parse_values(value or []),
         events=logged(*parse_events(event or [])),
-        faults=read_faults(faults) if faults else (),
+        faults=said.faults if said else (),
     )
-    if journal:
-        require_free(journal)
     started = time.monotonic()
+    upload = read_upload(source)
     opened = open_site(site)
-    navigator = opened.navigator
-    if faults:
-        require_fit(spec.faults, faults, navigator.site, seed)
-    check_spec(spec, navigator.site)  # before it is long
-    mission, diagnostics = load_mission(source, navigator, start_area, end_area)
+    spec = spec.model_copy(update={"site": opened.reference})
+    require_possible(spec, opened, said)  # before it is long
+    imported = import_shown(upload, opened, start_area, end_area)
     reordering = None
     if optimise:
-        mission, reordering = optimised(source, mission, navigator)
-    known = {"mission": mission, "diagnostics": diagnostics, "reordering": reordering}
-    spec = spec.model_copy(update=known)
-    lower(mission, source_name=str(source))
-    navigator.prepare()
+        imported, reordering = optimise_shown(imported, opened)
+    spec = with_mission(spec, imported, reordering)
+    opened.prepare()
     loaded = time.monotonic()
-    with ExitStack() as stack:
-        observers: list[Observer] = [stack.enter_context(RunDisplay(mission.max_duration))]
-        if recording:
-            observers.append(stack.enter_context(recording_to(recording, source)))
-        record = simulate(
-            spec,
-            opened,
-            observers=observers,
-            journal=journal,
-            gui=gui,
-            pace=(pace or DEFAULT_PACE) if gui else None,
-        )
+    record = _carry_out(spec, opened, outputs)
     ended = time.monotonic()
     took = (
         f"Loading took {loaded - started:.1f} s, the run {ended - loaded:.1f} s: "
@@ -149,47 +150,24 @@ def run(
     )
     if recording:
         took += f"\nRecording: {recording}"
-    conclude(record, navigator, took, report, render)
+    conclude(record, opened.site, opened.robot, took, report, render)
 
 
-def site_reference(site: str) -> str:
-    """What finds the site again from any folder: its name, or the whole path of its file."""
-    return str(Path(site).resolve()) if Path(site).suffix in {".yaml", ".yml"} else site
+def _read_faults(path: Path) -> FaultText:
+    return decode_faults(read_bytes(path, "file of faults", MAX_BYTES), str(path))
 
 
-def parse_events(options: list[str]) -> list[tuple[float, Event]]:
-    """What `--event TIME=KIND` says, by time; ArgoError if it is said otherwise."""
-    kinds = {str(kind): Occurred(kind) for kind in EventKind if kind is not EventKind.TIME_UP}
-    known: dict[str, Event] = {**kinds, **_BY_A_PERSON}
-    events = []
-    for option in options:
-        at, _, name = option.partition("=")
-        try:
-            time_s = float(at)
-        except ValueError:
-            time_s = math.nan
-        if not 0.0 <= time_s < math.inf:
-            raise ArgoError(f"--event {option}: write TIME=KIND in s, such as 60=gas_leak")
-        if name == EventKind.TIME_UP:
-            raise ArgoError(f"--event {option}: it occurs by itself, at the mission's max_duration")
-        if name not in known:
-            raise ArgoError(f"--event {option}: no event `{name}`; there are: {', '.join(known)}")
-        events.append((time_s, known[name]))
-    return sorted(events, key=lambda event: event[0])
-
-
-def parse_values(options: list[str]) -> dict[int, float]:
-    """What `--value ID=VALUE` says; ArgoError if it is said otherwise, or twice of one id."""
-    values: dict[int, float] = {}
-    for option in options:
-        id, _, value = option.partition("=")
-        try:
-            number, shown = int(id), float(value)
-            if not math.isfinite(shown):
-                raise ValueError(value)
-        except ValueError:
-            raise ArgoError(f"--value {option}: write ID=VALUE, such as 8=4.2") from None
-        if number in values:
-            raise ArgoError(f"--value {option}: checkpoint {number} has been given a value already")
-        values[number] = shown
-    return values
+def _carry_out(spec: RunSpec, site: OpenedSite, outputs: _Outputs) -> RunRecord:
+    """The run, with its progress shown."""
+    with ExitStack() as stack:
+        observers: list[Observer] = [stack.enter_context(RunDisplay(spec.mission.max_duration))]
+        if outputs.recording:
+            observers.append(stack.enter_context(recording_to(outputs.recording, outputs.source)))
+        return simulate(
+            spec,
+            site,
+            observers=observers,
+            journal=outputs.journal,
+            gui=outputs.gui,
+            pace=(outputs.pace or DEFAULT_PACE) if outputs.gui else None,
+        )

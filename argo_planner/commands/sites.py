@@ -6,14 +6,10 @@ from typing import Annotated
 
 import typer
 
-from argo_compiler.errors import ArgoError
-from argo_env.navigation import Navigator
-from argo_env.planning.checking import unseen_checkpoints, unserved_floors
-from argo_env.site import load_site, site_names
-from argo_env.site.family import PREFIX, is_family
-from argo_env.site.norms import breaches, false_ends
-from argo_env.site.site_file import to_yaml
-from argo_planner.loading import keep_input, load_navigator, write_text
+from argo_compiler.errors import ArgoError, located
+from argo_env.planning.opening import OpenedSite, open_site
+from argo_planner.terminal.files import keep_input, write_text
+from argo_planner.use_cases.sites import check_site, describe_site, list_sites, require_free_name
 
 
 def show_sites(
@@ -30,28 +26,21 @@ def show_sites(
     if site is None:
         if output:
             raise ArgoError("--output writes the description of one site: say which")
-        for name in site_names():
-            spec = load_site(name).spec
-            count = sum(len(floor.checkpoints) for floor in spec.floors)
-            print(f"{name}: {spec.title}, floors: {len(spec.floors)}, checkpoints: {count}")
+        for one in list_sites():
+            print(f"{one.name}: {one.title}, floors: {one.floors}, checkpoints: {one.checkpoints}")
         return
     if output:
         keep_input(Path(site), output)
         _check_name(output)
-    navigator = load_navigator(site)
+    opened = open_site(site)
     if output:
-        # The name that it has stands for another site, and this one is there to be changed.
-        spec = navigator.site.spec.model_copy(update={"name": output.stem})
-        write_text(output, to_yaml(spec))
-        use = f"argo check MISSION --site {shlex.quote(str(output))}"
-        print(f"{output}: written, site `{spec.name}`; use it with `{use}`")
-    navigator.prepare()  # says what is wrong with its docking stations
-    for breach in breaches(navigator.site.spec):
-        print(f"{site}: note: {breach}")
-    faults = _faults(navigator)
-    for fault in faults:
-        print(f"{site}: error: {fault}")
-    if faults:
+        _write(opened, output)
+    report = check_site(opened)
+    for note in report.notes:
+        print(f"{site}: note: {note}")
+    for error in report.errors:
+        print(f"{site}: error: {error}")
+    if report.errors:
         raise typer.Exit(2)
     print(f"{site}: every floor and every checkpoint can be reached from every dock, and back")
 
@@ -63,24 +52,14 @@ def _check_name(output: Path) -> None:
         raise ArgoError(
             f"{output}: a site is found in a file that ends in .yaml or .yml; name it so"
         )
-    if is_family(str(output)) or is_family(output.stem):
-        raise ArgoError(f"{output}: {PREFIX}… is no file to Argo but a site; choose another name")
-    if output.stem in site_names():
-        raise ArgoError(
-            f"{output}: the site would be called {output.stem}, as the one that Argo ships; choose "
-            "another name"
-        )
+    try:
+        require_free_name(str(output))
+        require_free_name(output.stem)
+    except ArgoError as error:
+        raise located(error, str(output)) from None
 
 
-def _faults(navigator: Navigator) -> list[str]:
-    if ends := false_ends(navigator.site.spec):
-        return ends  # what can't be reached for that is found again once they are mended
-    floors = [
-        f"floor {number} can't be reached and patrolled; give its corners 1.4 m by 1.4 m to turn in"
-        for number in unserved_floors(navigator)
-    ]
-    return floors + [
-        f"checkpoint {id} ({navigator.site.checkpoint(id).name}) can't be read from anywhere that"
-        " the robot can reach; move or turn it"
-        for id in unseen_checkpoints(navigator)
-    ]
+def _write(opened: OpenedSite, output: Path) -> None:
+    write_text(output, describe_site(opened, output.stem))
+    use = f"argo check MISSION --site {shlex.quote(str(output))}"
+    print(f"{output}: written, site `{output.stem}`; use it with `{use}`")

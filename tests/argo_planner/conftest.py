@@ -2,15 +2,19 @@ import pytest
 
 from argo_compiler.catalog import Catalog
 from argo_env.navigation import Navigator
-from argo_env.planning import open_site
-from argo_env.planning.catalog import make_catalog
+from argo_env.planning.opening import OpenedSite, open_site
 
 
 @pytest.fixture(scope="session")
-def navigator() -> Navigator:
-    return open_site("umad").navigator
+def umad() -> OpenedSite:
+    return open_site("umad")
 
 
 @pytest.fixture(scope="session")
-def catalog(navigator: Navigator) -> Catalog:
-    return make_catalog(navigator)
+def navigator(umad: OpenedSite) -> Navigator:
+    return umad.navigator
+
+
+@pytest.fixture(scope="session")
+def catalog(umad: OpenedSite) -> Catalog:
+    return umad.catalog

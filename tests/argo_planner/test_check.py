@@ -9,8 +9,8 @@ from typer.testing import CliRunner
 from argo_compiler.diagnostics import has_errors
 from argo_compiler.errors import ArgoError
 from argo_planner.cli import app
-from argo_planner.commands import check as check_command
-from argo_planner.commands.check import find_all
+from argo_planner.terminal.files import read_upload
+from argo_planner.use_cases.checking import check_source
 
 MISSIONS = Path(__file__).parents[2] / "scenarios" / "umad" / "missions"
 
@@ -18,7 +18,7 @@ MISSIONS = Path(__file__).parents[2] / "scenarios" / "umad" / "missions"
 def found(catalog, tmp_path: Path, name: str, text: str, **areas):
     path = tmp_path / name
     path.write_text(text, encoding="utf-8")
-    return find_all(path, catalog, **areas)
+    return check_source(read_upload(path), catalog, **areas)
 
 
 def places(findings):
@@ -27,7 +27,7 @@ def places(findings):
 
 def test_missions_that_are_shipped_have_no_errors(catalog):
     for script in sorted(MISSIONS.glob("*.txt")):
-        findings = find_all(script, catalog, 1, 1)
+        findings = check_source(read_upload(script), catalog, 1, 1)
         codes = [f.code for f in findings if f.severity == "error"]
         # Areas are chosen for the scripts that leave them open only.
         assert set(codes) <= {"script.area-conflict"}, script
@@ -82,9 +82,11 @@ def test_the_paths_of_a_sound_mission_are_analysed(catalog, tmp_path: Path):
 @pytest.mark.parametrize(
     ("name", "code"), [("none.txt", "script.unreadable"), ("none.json", "file.missing")]
 )
-def test_a_file_that_is_not_there_is_a_finding(catalog, tmp_path: Path, name, code):
-    (finding,) = find_all(tmp_path / name, catalog)
-    assert finding.code == code
+def test_a_file_that_is_not_there_is_a_finding(argo, tmp_path: Path, name, code):
+    (finding,) = json.loads(argo("check", tmp_path / name, "--format", "json").stdout)[
+        "diagnostics"
+    ]
+    assert finding["code"] == code
 
 
 SOUND = {"tasks": [{"name": "A", "action": "MEASURE", "object_id": "1"}]}
@@ -93,11 +95,10 @@ WRONG = {"tasks": [{"name": "A", "action": "MEASURE", "object_id": "77"}]}
 
 
 @pytest.fixture
-def argo(monkeypatch, navigator, tmp_path: Path):
-    """Runs a command of `argo` in this process, with a site that is loaded once."""
-    monkeypatch.setattr(check_command, "load_navigator", lambda _: navigator)
+def argo(monkeypatch, tmp_path: Path):
+    """Runs a command of `argo` in this process."""
     monkeypatch.chdir(tmp_path)
-    return lambda *arguments: CliRunner().invoke(app, [*arguments])
+    return lambda *arguments: CliRunner().invoke(app, [*map(str, arguments)])
 
 
 @pytest.mark.parametrize(

@@ -6,12 +6,12 @@ from pathlib import Path
 
 from typer.testing import CliRunner
 
-import argo_planner.doctor
+import argo_planner.use_cases.doctor
 from argo_compiler import __version__
 from argo_env.files import cache
 from argo_env.planning.opening import forget_sites, open_site
 from argo_planner.cli import app
-from argo_planner.doctor import examine
+from argo_planner.use_cases.doctor import examine
 
 PROJECT = Path(__file__).parents[2] / "pyproject.toml"
 
@@ -42,7 +42,7 @@ def test_what_is_missing_comes_with_its_remedy(monkeypatch):
     def without(name):
         return None if name in {"cv2", "mcap"} else find_spec(name)
 
-    monkeypatch.setattr(argo_planner.doctor, "find_spec", without)
+    monkeypatch.setattr(argo_planner.use_cases.doctor, "find_spec", without)
     said = argo()
     assert "vision (reading gauges from pictures): not installed, cv2; pip install" in said
     assert "recording (recordings of runs): not installed, mcap; pip install" in said

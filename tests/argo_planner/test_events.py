@@ -5,7 +5,7 @@ import pytest
 from argo_compiler.errors import ArgoError
 from argo_compiler.hfsm import Cancel, Occurred, Pause, Resume
 from argo_compiler.il import EventKind
-from argo_planner.commands.run import parse_events
+from argo_planner.terminal.events import parse_events
 
 
 def test_events_come_in_the_order_of_time():

@@ -12,8 +12,10 @@ from argo_compiler.il import Action, Mission, Task, Transition
 from argo_compiler.isar import InspectionView, to_isar
 from argo_compiler.model import Pose
 from argo_compiler.ros import Storage, to_ros1_bag, to_ros2_bag
-from argo_planner.exporters import exporters
-from argo_planner.loading import is_mission_file, is_own_mission, load_source
+from argo_planner.terminal.files import read_upload
+from argo_planner.use_cases.exporting import exporters
+from argo_planner.use_cases.importing import SourceKind, kind_of
+from argo_planner.use_cases.importing import load as load_upload
 from tests.argo_compiler.script.conftest import CATALOG
 
 PLAN = Mission(
@@ -27,7 +29,7 @@ VIEWS = {id: InspectionView(pose=Pose(x=1, y=2, z=0), target=(0, 2, 1)) for id i
 
 
 def load(path):
-    return load_source(path, CATALOG, None, None)
+    return load_upload(read_upload(path), CATALOG)
 
 
 @pytest.fixture
@@ -48,8 +50,9 @@ def sources(tmp_path):
 def test_each_form_of_a_mission_is_read(sources):
     own, _, isar, *_ = sources
     for source in sources:
-        assert is_mission_file(source)
-        assert is_own_mission(source) == (source == own)
+        kind = kind_of(read_upload(source))
+        assert kind is not SourceKind.SCRIPT
+        assert (kind is SourceKind.MISSION) == (source == own)
         if source != isar:
             assert load(source).mission == PLAN
     imported = load(isar).mission
@@ -70,7 +73,7 @@ def test_findings_about_them_are_shown_without_a_place(sources):
 def test_areas_are_not_chosen_for_them(sources):
     for source in sources:
         with pytest.raises(ArgoError, match="has its areas already"):
-            load_source(source, CATALOG, 1, None)
+            load_upload(read_upload(source), CATALOG, 1)
 
 
 def test_warnings_of_the_import_are_kept(tmp_path):
@@ -82,8 +85,8 @@ def test_warnings_of_the_import_are_kept(tmp_path):
     assert finding.message.startswith("tasks[1].zoom: ")
 
 
-def test_isar_is_told_where_the_checkpoints_of_the_site_are(navigator):
-    exported = exporters(navigator)["isar"].export(PLAN, lower(PLAN))
+def test_isar_is_told_where_the_checkpoints_of_the_site_are(umad, navigator):
+    exported = exporters(umad)["isar"].export(PLAN, lower(PLAN))
     targets = [task["inspection"]["inspection_target"] for task in json.loads(exported)["tasks"]]
     assert [(t["x"], t["y"], t["z"]) for t in targets] == [
         navigator.site.checkpoint(id).position for id in (1, 4)

@@ -19,9 +19,7 @@ TASKS = (
 
 
 @pytest.fixture
-def export(tmp_path, navigator, monkeypatch):
-    monkeypatch.setattr("argo_planner.commands.export.load_navigator", lambda _site: navigator)
-
+def export(tmp_path):
     def export(mission, to, output="out"):
         source = tmp_path / "mission.json"
         write_mission(mission, source)

@@ -11,6 +11,7 @@ from argo_compiler.files.mission_file import read_mission, write_mission
 from argo_compiler.hfsm import Hfsm
 from argo_compiler.il import Group, Order
 from argo_compiler.model import Pose
+from argo_env.planning.opening import OpenedSite
 from argo_env.run.record import RunRecord
 from argo_planner.cli import app
 from tests.yard import measure, mission, waypoint, yard
@@ -20,14 +21,14 @@ DOCK = Pose(x=1.05, y=1.05, z=0.02)
 
 @pytest.fixture(scope="module")
 def built():
-    return yard()
+    return OpenedSite("yard", yard())
 
 
 @pytest.fixture
 def argo(built, monkeypatch):
     """Runs `argo` in this process, on the yard."""
     for command in ("route", "compile", "run"):
-        monkeypatch.setattr(f"argo_planner.commands.{command}.load_navigator", lambda _: built)
+        monkeypatch.setattr(f"argo_planner.commands.{command}.open_site", lambda _: built)
     monkeypatch.setenv("COLUMNS", "120")
 
     def call(*arguments):
@@ -173,7 +174,9 @@ def test_a_mission_is_compiled_in_its_best_order(argo, source, tmp_path):
 
 
 def test_a_run_in_its_best_order_says_so_in_its_report(argo, source, tmp_path, monkeypatch):
-    monkeypatch.setattr("argo_planner.running.write_overview", lambda *_: None)  # takes long
+    monkeypatch.setattr(
+        "argo_planner.use_cases.reporting.write_overview", lambda *_: None
+    )  # takes long
     report = tmp_path / "report"
     result = argo("run", source, "--optimise", "--drive", "route", "--report", report)
     assert "Predicted:" in result.text

@@ -10,11 +10,10 @@ from typer.testing import CliRunner
 from argo_compiler.diagnostics import has_errors
 from argo_env.files import resources
 from argo_env.planning import open_site
-from argo_env.planning.catalog import make_catalog
-from argo_env.planning.travel import SiteTravel
 from argo_env.site import load_site
 from argo_planner.cli import app
-from argo_planner.commands.check import find_all
+from argo_planner.terminal.files import read_upload
+from argo_planner.use_cases.checking import check_source
 
 
 def argo(*arguments):
@@ -143,8 +142,8 @@ def test_a_site_that_can_not_be_driven(tmp_path, hall_yaml):
 
 
 def test_the_shipped_mission_of_the_test_site_has_no_findings():
-    navigator = open_site("darmstadt").navigator
+    site = open_site("darmstadt")
     script = resources.scenarios() / "darmstadt" / "missions" / "mission_1.txt"
-    findings = find_all(script, make_catalog(navigator), 1, 2, SiteTravel(navigator))
+    findings = check_source(read_upload(script), site.catalog, 1, 2, site.travel)
     assert not has_errors(findings)
     assert findings == ()

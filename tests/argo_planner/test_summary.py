@@ -12,7 +12,7 @@ from argo_env.faults.plant import GasLeakFault
 from argo_env.faults.robot import ConnectionLoss
 from argo_env.formatting import clock
 from argo_env.run.record import Contact, Interruption, Reading, Result, RunRecord, TaskRun
-from argo_planner.summary import show_record
+from argo_planner.terminal.record_tables import show_record
 
 
 def shown(record: RunRecord) -> str:

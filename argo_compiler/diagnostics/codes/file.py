@@ -12,7 +12,7 @@ FILE = {
     "file.missing": error("There is no such file.", "Check the path."),
     "file.not-a-mission": error(
         "The file is JSON, but not an object with a mission's fields.",
-        "Name a file that `argo import` or the planner has written.",
+        "Name a file that an import or the planner has written.",
     ),
     "file.not-json": error(
         "The file is no JSON: a comma, quote or bracket is missing, or a number or text is not "
@@ -36,6 +36,6 @@ FILE = {
     "file.unwritable": error("The file can't be written.", "Choose another place to write to."),
     "file.wrong-field": error(
         "A field of the mission is unknown, missing, or has a value of the wrong kind.",
-        "Correct the field; the JSON Schema (`argo schema mission`) says what it may hold.",
+        "Correct the field; the JSON Schema of missions says what it may hold.",
     ),
 }

@@ -84,7 +84,7 @@ IL = {
     ),
     "il.other-site": error(
         "The mission was planned for another site, so its poses and checkpoints mean others here.",
-        "Choose the mission's site with `--site`.",
+        "Choose the mission's site.",
     ),
     "il.reserved-name": error(
         "A task has a name that the machine needs for the drives of failures and reactions.",

@@ -35,7 +35,7 @@ SCRIPT = {
     ),
     "script.area-choice": error(
         "The script leaves the starting area to be chosen during preparation.",
-        "Choose with `--start-area` and `--end-area`.",
+        "Choose the areas to start and to end in.",
     ),
     "script.area-conflict": error(
         "Two statements, or a statement and an option, choose different starting areas.",
@@ -106,7 +106,7 @@ SCRIPT = {
     ),
     "script.no-area": error(
         "The sheet names no starting area.",
-        "Name one in the sheet, or give `--start-area` and `--end-area`.",
+        "Name one in the sheet, or choose the areas to start and to end in.",
     ),
     "script.no-start": error(
         "The protocol does not say where the robot starts.", "Set a starting point."
@@ -135,7 +135,7 @@ SCRIPT = {
     ),
     "script.other-site": warning(
         "The script says that it is for another site than the one that it is read with.",
-        "Check `--site`, or the script's site.",
+        "Check the chosen site, or the script's.",
     ),
     "script.overlap": error(
         "Two repetitions have some of their steps in common.",

@@ -4,6 +4,7 @@ from collections.abc import Sequence
 
 from argo_compiler.catalog import CheckpointInfo
 from argo_compiler.diagnostics import Span
+from argo_compiler.errors import Remedy
 from argo_compiler.il import Action, JointState, Reaction, Task
 from argo_compiler.model import Pose
 from argo_compiler.script.resolve.conditions import resolve_alternatives
@@ -183,12 +184,14 @@ class Planner:
             and not wanted.as_planned
             and (area is None or area.number != wanted.area)
         ):
-            message = f"--start-area {wanted.area} contradicts the script's starting point"
-            hint = "leave --start-area out, or take the starting point out of the script"
+            message = f"the starting area {wanted.area} contradicts the script's starting point"
+            hint = "choose none, or take the starting point out of the script"
+            remedies: tuple[Remedy, ...] = (Remedy.CHOOSE_START,)
             if wanted.span is not None:
+                remedies = ()
                 message = f"line {wanted.span.line} says that it starts in area {wanted.area}"
                 hint = "leave one of the two out, or add `as planned` to the header line"
-            self.diagnostics.error("area-conflict", message, command.span, hint)
+            self.diagnostics.error("area-conflict", message, command.span, hint, remedies)
             return
         self.start_area = area.number if area else None
         self.start = start_item(pose, command.span)
@@ -204,10 +207,10 @@ class Planner:
                 self.start_area = area.number
                 self.start = start_item(area.dock, wanted.span)
         elif self.whole and not wanted.said:
-            known = alternatives(f"--start-area {a.number}" for a in self.lookup.catalog.areas)
-            hint = f"write `Set a starting point in starting area 1`, or give {known}"
+            known = alternatives(str(a.number) for a in self.lookup.catalog.areas)
+            hint = f"write `Set a starting point in starting area 1`, or choose area {known}"
             message = "the protocol sets no starting point"
-            self.diagnostics.error("no-start", message, None, hint)
+            self.diagnostics.error("no-start", message, None, hint, (Remedy.CHOOSE_START,))
 
     def _find_dock(self) -> None:
         if self.header.dock_said:

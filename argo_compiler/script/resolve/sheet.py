@@ -4,6 +4,7 @@ from typing import Literal
 
 from argo_compiler.catalog import Area
 from argo_compiler.diagnostics import Span
+from argo_compiler.errors import Remedy
 from argo_compiler.il import Mission, Mode, Order
 from argo_compiler.script.resolve.assembly import assemble
 from argo_compiler.script.resolve.lookup import Lookup
@@ -79,26 +80,26 @@ def _choose_area(
     In a sheet that is not understood as a whole, a line may be what seems to be missing.
     """
     diagnostics = lookup.diagnostics
-    flag = f"--{which}-area"
+    remedies = (Remedy.CHOOSE_START if which == "start" else Remedy.CHOOSE_END,)
     offered = sorted({area.value for area in field.areas}) if field else []
     span = field.areas[0].span if field and field.areas else _span(field)
-    choices = alternatives(f"{flag} {number}" for number in offered)
+    areas = alternatives(str(number) for number in offered)
     if option is not None and offered and option not in offered:
-        message = f"{flag} {option} is not what the sheet offers"
-        diagnostics.error("area-not-offered", message, span, f"give {choices}")
+        message = f"the {which} in area {option} is not what the sheet offers"
+        diagnostics.error("area-not-offered", message, span, f"choose area {areas}", remedies)
         return None
     if option is not None:
         return lookup.area(option, span)
     if len(offered) == 1:
         return lookup.area(offered[0], span)
     if offered:
-        areas = alternatives(str(number) for number in offered)
         message = f"the sheet leaves the {which} to the preparation: starting area {areas}"
-        diagnostics.error("area-choice", message, span, f"choose with {choices}")
+        diagnostics.error("area-choice", message, span, f"choose area {areas}", remedies)
     elif whole:
         message = f"the sheet names no starting area for the mission's {which}"
-        known = alternatives(f"{flag} {area.number}" for area in lookup.catalog.areas)
-        diagnostics.error("no-area", message, span, f"name one in the sheet, or give {known}")
+        known = alternatives(str(area.number) for area in lookup.catalog.areas)
+        hint = f"name one in the sheet, or choose area {known}"
+        diagnostics.error("no-area", message, span, hint, remedies)
     return None
 
 

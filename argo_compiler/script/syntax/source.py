@@ -7,6 +7,7 @@ from dataclasses import dataclass, field
 from functools import cached_property
 
 from argo_compiler.diagnostics import Diagnostic, Severity, Span
+from argo_compiler.errors import Remedy
 
 MAX_LINE = 2000
 """characters in a line; a longer one is refused unread"""
@@ -123,14 +124,27 @@ class Diagnostics:
     def __post_init__(self) -> None:
         self.errors = sum(d.severity is Severity.ERROR for d in self.entries)
 
-    def error(self, code: str, message: str, span: Span | None, hint: str | None = None) -> None:
-        self._add(Severity.ERROR, code, message, span, hint)
+    def error(
+        self,
+        code: str,
+        message: str,
+        span: Span | None,
+        hint: str | None = None,
+        remedies: tuple[Remedy, ...] = (),
+    ) -> None:
+        self._add(Severity.ERROR, code, message, span, hint, remedies)
 
     def warning(self, code: str, message: str, span: Span | None, hint: str | None = None) -> None:
-        self._add(Severity.WARNING, code, message, span, hint)
+        self._add(Severity.WARNING, code, message, span, hint, ())
 
     def _add(
-        self, severity: Severity, code: str, message: str, span: Span | None, hint: str | None
+        self,
+        severity: Severity,
+        code: str,
+        message: str,
+        span: Span | None,
+        hint: str | None,
+        remedies: tuple[Remedy, ...],
     ) -> None:
         if severity is Severity.ERROR:
             self.errors += 1
@@ -145,6 +159,7 @@ class Diagnostics:
                 span=span,
                 excerpt=excerpt,
                 hint=hint,
+                remedies=remedies,
             )
         )
 

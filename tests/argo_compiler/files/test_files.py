@@ -3,7 +3,7 @@ import pytest
 from argo_compiler.checks import check
 from argo_compiler.diagnostics import DiagnosticError, Span
 from argo_compiler.files import mission_file as files
-from argo_compiler.files.mission_file import read_mission, read_mission_file, write_mission
+from argo_compiler.files.mission_file import decode_mission, read_mission, write_mission
 from argo_compiler.il import Action, Group, Mission, Stop, Task, Transition
 
 
@@ -165,7 +165,7 @@ def test_findings_about_a_mission_point_into_its_file(tmp_path):
     ).model_copy(update={"groups": (Group(name="G", start="A", end="Y", source=script),)})
     path = tmp_path / "plan.json"
     write_mission(mission, path)
-    file = read_mission_file(path)
+    file = decode_mission(path.read_bytes(), str(path))
     findings = file.placed(check(file.mission))
     assert [f.excerpt.strip() for f in findings] == ['"target": "Z"', '"end": "Y",']
     lines = path.read_text(encoding="utf-8").split("\n")

@@ -7,7 +7,7 @@ from hypothesis import strategies as st
 
 from argo_compiler.checks import check
 from argo_compiler.diagnostics.subject import Named, parse_subject, subject_of
-from argo_compiler.files.mission_file import mission_text, read_mission_file
+from argo_compiler.files.mission_file import decode_mission, mission_text
 from argo_compiler.il import Action, Group, Mission, Task, Transition
 from argo_compiler.il.subjects import Subjects
 from tests.missions_all import missions
@@ -54,7 +54,7 @@ def test_diagnostics_about_odd_and_repeated_names_point_into_the_file(tmp_path):
     groups = (Group(name="G", start=odd, end="gone", max_repeat_count=1),)
     path = tmp_path / "plan.json"
     path.write_text(mission_text(Mission(tasks=tasks, groups=groups)), encoding="utf-8")
-    read = read_mission_file(path)
+    read = decode_mission(path.read_bytes(), str(path))
     lines = read.text.split("\n")
     found = {(f.code, lines[f.span.line - 1].strip()) for f in read.placed(check(read.mission))}
     assert found == {

@@ -296,7 +296,9 @@ def test_a_definition_is_read():
 def test_the_body_of_a_request_is_read_too(tmp_path):
     path = tmp_path / "isar.json"
     path.write_text(json.dumps({"mission_definition": definition()}))
-    assert read_isar(path, CATALOG) == from_isar(definition(), str(path), CATALOG)
+    assert read_isar(path.read_bytes(), str(path), CATALOG) == from_isar(
+        definition(), str(path), CATALOG
+    )
 
 
 def test_what_is_not_taken_over_is_a_warning():
@@ -366,5 +368,5 @@ def test_what_argo_can_not_do_is_refused(data, code, said):
 def test_other_files_are_left_to_the_reader_of_missions(tmp_path, content):
     path = tmp_path / "plan.json"
     path.write_bytes(content if isinstance(content, bytes) else content.encode())
-    assert read_isar(path) is None
-    assert read_isar(tmp_path / "missing.json") is None
+    assert read_isar(path.read_bytes(), str(path)) is None
+    assert read_isar(b"", "empty.json") is None

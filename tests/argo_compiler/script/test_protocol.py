@@ -4,6 +4,7 @@ import pytest
 
 from argo_compiler.catalog import Catalog
 from argo_compiler.diagnostics import Diagnostic, DiagnosticError
+from argo_compiler.errors import Remedy
 from argo_compiler.il import Action
 from argo_compiler.script import Protocol, catalog_words, import_script, parse
 from argo_compiler.script.resolve.importing import Resolved
@@ -155,7 +156,8 @@ def test_the_start_option(catalog: Catalog) -> None:
     (error,) = findings(without, catalog)
     assert error.code == "script.no-start"
     assert error.hint is not None
-    assert "--start-area 1 or --start-area 2" in error.hint
+    assert "choose area 1 or 2" in error.hint
+    assert error.remedies == (Remedy.CHOOSE_START,)
 
 
 # ---- errors

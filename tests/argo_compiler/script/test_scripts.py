@@ -6,6 +6,7 @@ import pytest
 
 from argo_compiler.catalog import Catalog
 from argo_compiler.diagnostics import DiagnosticError, Severity
+from argo_compiler.errors import Remedy
 from argo_compiler.il import Action, Group, Mission, Mode, Order, Stop, Transition
 from argo_compiler.script import import_script, read_script
 
@@ -117,7 +118,7 @@ def test_a_choice_left_open_needs_the_options(missions: Path, catalog: Catalog) 
         import_script(text, catalog, source_name="sheet")
     errors = [d for d in caught.value.diagnostics if d.severity is Severity.ERROR]
     assert [d.code for d in errors] == ["script.area-choice"] * 2
-    assert errors[0].hint == "choose with --start-area 1 or --start-area 2"
-    assert errors[1].hint == "choose with --end-area 1 or --end-area 2"
+    assert [d.hint for d in errors] == ["choose area 1 or 2"] * 2
+    assert [d.remedies for d in errors] == [(Remedy.CHOOSE_START,), (Remedy.CHOOSE_END,)]
     assert [d.span.line for d in errors if d.span] == [10, 13]
     assert "script.healed" in {d.code for d in caught.value.diagnostics}

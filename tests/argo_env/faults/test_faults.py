@@ -14,7 +14,7 @@ from argo_compiler.diagnostics import DiagnosticError
 from argo_compiler.errors import ArgoError
 from argo_compiler.schemas.generate import schema_of
 from argo_env.faults.kinds import KINDS, FaultFile, changed_site, settle
-from argo_env.faults.reading import read_faults, require_fit
+from argo_env.faults.reading import decode_faults, read_faults
 from argo_env.files import resources
 from argo_env.run.spec import RunSpec
 from argo_env.site import make_site
@@ -135,13 +135,13 @@ class TestFiles:
         text = "faults:\n  - kind: brick\n    floor: 9\n  - kind: brick\n\n"
         path = written(tmp_path, text + "  - {kind: brick, floor: 8}\n")
         with pytest.raises(DiagnosticError) as caught:
-            require_fit(read_faults(path), path, umad, 1)
+            decode_faults(path.read_bytes(), str(path)).require_fit(umad, 1)
         assert f"{path}:2:5: error: faults[0] (brick): site umad has no floor 9" in str(
             caught.value
         )
         assert [d.span.line for d in caught.value.diagnostics] == [2, 6]
         path.write_text("faults: [{kind: brick}]", encoding="utf-8")
-        require_fit(read_faults(path), path, umad, 1)
+        decode_faults(path.read_bytes(), str(path)).require_fit(umad, 1)
 
     def test_no_brick_lies_over_a_dock(self):
         """In the yard the robot is docked on the slab."""

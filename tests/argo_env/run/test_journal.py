@@ -13,7 +13,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 import argo_env.run.journal
-from argo_compiler.errors import ArgoError
+from argo_compiler.errors import ArgoError, Conflict, Remedy
 from argo_compiler.hfsm import (
     ActionFailed,
     ActionStopped,
@@ -372,8 +372,9 @@ class TestRefusals:
         path = tmp_path / "run.journal"
         create_journal(path, header(navigator)).close()
         before = path.read_bytes()
-        with pytest.raises(ArgoError, match=r"argo resume .*run\.journal"):
+        with pytest.raises(Conflict, match=r"run\.journal: is there already") as caught:
             create_journal(path, header(navigator))
+        assert (caught.value.remedies, caught.value.about) == ((Remedy.RESUME,), str(path))
         assert path.read_bytes() == before
         assert list(tmp_path.iterdir()) == [path]
 
@@ -494,8 +495,9 @@ def test_a_full_disk(navigator, whole, tmp_path):
         ignored = signal.signal(signal.SIGXFSZ, signal.SIG_IGN)
         try:
             resource.setrlimit(resource.RLIMIT_FSIZE, (20_000, limits[1]))
-            with pytest.raises(ArgoError, match=r"can't be written any further.*argo resume"):
+            with pytest.raises(ArgoError, match=r"can't be written any further") as caught:
                 runner(navigator, journal).run()
+            assert caught.value.remedies == (Remedy.RESUME,)
         finally:
             resource.setrlimit(resource.RLIMIT_FSIZE, limits)
             signal.signal(signal.SIGXFSZ, ignored)

@@ -3,7 +3,7 @@
 import numpy as np
 
 from argo_compiler.route import EnergyBudget, RouteProblem, Tour, Visit, evaluate
-from argo_planner.route_pauses import TourPause, pauses
+from argo_compiler.route.tour_pauses import TourPause, pauses
 
 TRAVEL = np.full((4, 4), 10)
 

@@ -11,15 +11,16 @@ from rich.progress import BarColumn, Progress, TextColumn, TimeElapsedColumn
 from argo_env.closing import Closing
 from argo_env.faults.kinds import changed_site
 from argo_env.formatting import where
-from argo_env.navigation import Navigator
-from argo_env.pictures import write_film, write_overview
-from argo_env.report import write_report
+from argo_env.robot.spec import RobotSpec
 from argo_env.run.action import ActionUnderWay
 from argo_env.run.log import Entry
 from argo_env.run.machine import Machine
 from argo_env.run.observer import Observer
 from argo_env.run.record import Anomaly, Reading, RunRecord
-from argo_planner.summary import show_record
+from argo_env.site import Site
+from argo_planner.terminal.files import write_content
+from argo_planner.terminal.record_tables import show_record
+from argo_planner.use_cases.reporting import PAGE, report_files
 
 
 class RunDisplay(Observer, Closing):
@@ -66,33 +67,38 @@ class RunDisplay(Observer, Closing):
 
 def conclude(
     record: RunRecord,
-    navigator: Navigator,
+    site: Site,
+    robot: RobotSpec,
     took: str,
     report: Path | None,
     render: Path | None = None,
 ) -> None:
     """Shows the results and writes what was asked for; exits with status 1 if it is no success."""
     console = Console()
-    real = changed_site(navigator.site, record.faults)
     show_record(record, console)
     console.print(took, soft_wrap=True)
     if report:
-        page = write_report(record, navigator.site, report)
-        write_overview(record, real, navigator.robot, report / "site.png")
-        console.print(f"Report: {escape(str(page))}", soft_wrap=True)
+        write_content(report, report_files(record, site, robot))
+        console.print(f"Report: {escape(str(report / PAGE))}", soft_wrap=True)
     if render:
-        with _progress() as progress:
-            bar = progress.add_task("filming", total=1.0)
-            write_film(
-                record,
-                real,
-                navigator.robot,
-                render,
-                progress=lambda share: progress.update(bar, completed=share),
-            )
+        _film(record, site, robot, render)
         console.print(f"Film: {escape(str(render))}", soft_wrap=True)
     if not record.result.success:
         raise typer.Exit(1)
+
+
+def _film(record: RunRecord, site: Site, robot: RobotSpec, file: Path) -> None:
+    from argo_env.pictures import write_film
+
+    with _progress() as progress:
+        bar = progress.add_task("filming", total=1.0)
+        write_film(
+            record,
+            changed_site(site, record.faults),
+            robot,
+            file,
+            progress=lambda share: progress.update(bar, completed=share),
+        )
 
 
 def _progress() -> Progress:

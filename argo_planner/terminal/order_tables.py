@@ -9,14 +9,12 @@ from rich.table import Table
 
 from argo_compiler.il import Order
 from argo_compiler.route.evaluation import evaluate
-from argo_compiler.route.robust_sampling import Draws, completion
 from argo_compiler.route.robust_spread import TravelSpread
+from argo_compiler.route.tour_pauses import TourPause, pauses
 from argo_env.formatting import clock
-from argo_env.seeding import generator
-from argo_planner.route_pauses import TourPause, pauses
-from argo_planner.routing import Suggested
+from argo_planner.terminal.words import order_said
+from argo_planner.use_cases.routing import Suggested, completions
 
-_SAMPLES = 10_000  # of a mission, to tell how probable it is that it is in time
 _BROKEN = 3  # requirements that the written order does not keep to, as far as they are shown
 _SHOWN = 12  # orders to keep that are shown
 
@@ -24,8 +22,8 @@ _SHOWN = 12  # orders to keep that are shown
 def show_risk(found: Suggested, spread: TravelSpread, seed: int, console: Console) -> None:
     """Prints how probable it is that both orders keep to all limits."""
     problem = found.planned.problem
-    for name, route in (("As written", found.planned.written), ("Suggested", found.route)):
-        done = completion(problem, route, Draws(spread, _SAMPLES, generator(seed, "route risk")))
+    both = completions(found, spread, seed)
+    for name, done in zip(("As written", "Suggested"), both, strict=True):
         text = f"{name}: within all limits with {done.probability:.1%}"
         if done.duration < float("inf"):
             mean, most = (clock(x * problem.unit) for x in (done.duration, done.duration_95))
@@ -100,7 +98,7 @@ def _lines(found: Suggested) -> Iterator[str]:
         yield f"Note: the time of {name} is over before {members}: the way there counts"
     kept = list(dict.fromkeys(p.words for p in problem.precedences))
     for words in kept[:_SHOWN]:
-        yield f"Kept: {words}"
+        yield f"Kept: {order_said(words)}"
     if len(kept) > _SHOWN:
         yield f"Kept: {len(kept) - _SHOWN} more"
     for reason in planned.reasons:

@@ -1,0 +1,118 @@
+"""Reads files: what is no readable file is refused with a message, and never by the library."""
+
+import os
+from enum import StrEnum
+from pathlib import Path
+from typing import BinaryIO
+
+from argo_compiler.errors import ArgoError, Invalid, NotFound
+
+_PART = 1 << 20
+
+
+class FileProblem(StrEnum):
+    """Why a file is of no use."""
+
+    MISSING = "missing"
+    DIRECTORY = "directory"
+    UNREADABLE = "unreadable"
+    TOO_LARGE = "too-large"
+    NOT_TEXT = "not-text"
+
+
+class FileError(ArgoError):
+    """A file can't be read: `problem` says why, `message` in words, and `hint` what to do."""
+
+    def __init__(self, name: object, problem: FileProblem, message: str, hint: str) -> None:
+        super().__init__(f"{name}: {message}; {hint}")
+        self.problem = problem
+        self.message = message
+        self.hint = hint
+
+    def __reduce__(self) -> tuple[object, ...]:
+        name = str(self).removesuffix(f": {self.message}; {self.hint}")
+        return type(self), (name, self.problem, self.message, self.hint)
+
+
+class NoFile(FileError, NotFound):
+    """There is no file of that name."""
+
+
+class UnreadableFile(FileError, Invalid):
+    """There is something of that name, but it can't be read, or is no such thing."""
+
+
+def read_bytes(path: Path, thing: str, max_bytes: int) -> bytes:
+    """What the file holds that is meant as a `thing`, such as `script`.
+
+    Raises FileError if there is no such file, it can't be read, or it is too large.
+    """
+    if path.is_dir():
+        raise UnreadableFile(
+            path, FileProblem.DIRECTORY, "can't be read: is a directory", f"name the {thing} in it"
+        )
+    try:
+        with path.open("rb") as file:
+            size = os.fstat(file.fileno()).st_size
+            # What is asked for is allocated at once, and pipes have no size.
+            content = file.read() if 0 < size <= max_bytes else _read_at_most(file, max_bytes + 1)
+    except FileNotFoundError:
+        raise NoFile(
+            path,
+            FileProblem.MISSING,
+            f"can't be read: there is no such {thing}, the file does not exist",
+            "check its name",
+        ) from None
+    except OSError as error:
+        message = f"can't be read: {error.strerror}"
+        raise UnreadableFile(path, FileProblem.UNREADABLE, message, "check the file") from error
+    except ValueError as error:  # a NUL in the path
+        message = f"can't be read: {error}"
+        raise UnreadableFile(path, FileProblem.UNREADABLE, message, "check its name") from error
+    require_size(content, path, thing, max_bytes)
+    return content
+
+
+def _read_at_most(file: BinaryIO, count: int) -> bytes:
+    parts = []
+    while count > 0 and (part := file.read(min(count, _PART))):
+        parts.append(part)
+        count -= len(part)
+    return b"".join(parts)
+
+
+def read_text(path: Path, thing: str, max_bytes: int) -> str:
+    """The text of the file that is meant as a `thing`; raises FileError if there is none."""
+    return decode_text(read_bytes(path, thing, max_bytes), path, thing)
+
+
+def require_size(content: bytes, name: object, thing: str, max_bytes: int) -> None:
+    """Raises UnreadableFile if there is more of it than of any `thing`."""
+    if len(content) > max_bytes:
+        raise UnreadableFile(
+            name,
+            FileProblem.TOO_LARGE,
+            f"is larger than {max_bytes} bytes",
+            f"a {thing} is far smaller: is it the right file?",
+        )
+
+
+def decode_text(content: bytes, name: object, thing: str) -> str:
+    """The text of a file that is meant as a `thing`: UTF-8, with or without a byte order mark.
+
+    Raises UnreadableFile if it is binary or in another encoding.
+    """
+    if b"\0" in content:
+        raise UnreadableFile(
+            name, FileProblem.NOT_TEXT, "is a binary file", f"a {thing} is plain text"
+        )
+    try:
+        return content.decode("utf-8-sig")
+    except UnicodeDecodeError as error:
+        line = content.count(b"\n", 0, error.start) + 1
+        raise UnreadableFile(
+            name,
+            FileProblem.NOT_TEXT,
+            f"is not UTF-8 (byte {error.start + 1}, line {line})",
+            "save it as UTF-8",
+        ) from error

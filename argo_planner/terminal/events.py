@@ -1,0 +1,46 @@
+"""What the options of `argo run` and `argo resume` say of events and values."""
+
+import math
+
+from argo_compiler.errors import ArgoError
+from argo_compiler.hfsm import Event
+from argo_compiler.il import EventKind
+from argo_planner.use_cases.running import event_named
+
+KINDS = ", ".join(["pause", "resume", "cancel", *EventKind])
+"""what may stand for KIND in `--event TIME=KIND`"""
+
+
+def parse_events(options: list[str]) -> list[tuple[float, Event]]:
+    """What `--event TIME=KIND` says, by time; ArgoError if it is said otherwise."""
+    events = []
+    for option in options:
+        at, _, name = option.partition("=")
+        try:
+            time_s = float(at)
+        except ValueError:
+            time_s = math.nan
+        if not 0.0 <= time_s < math.inf:
+            raise ArgoError(f"--event {option}: write TIME=KIND in s, such as 60=gas_leak")
+        try:
+            events.append((time_s, event_named(name)))
+        except ArgoError as error:
+            raise ArgoError(f"--event {option}: {error}") from None
+    return sorted(events, key=lambda event: event[0])
+
+
+def parse_values(options: list[str]) -> dict[int, float]:
+    """What `--value ID=VALUE` says; ArgoError if it is said otherwise, or twice of one id."""
+    values: dict[int, float] = {}
+    for option in options:
+        id, _, value = option.partition("=")
+        try:
+            number, shown = int(id), float(value)
+            if not math.isfinite(shown):
+                raise ValueError(value)
+        except ValueError:
+            raise ArgoError(f"--value {option}: write ID=VALUE, such as 8=4.2") from None
+        if number in values:
+            raise ArgoError(f"--value {option}: checkpoint {number} has been given a value already")
+        values[number] = shown
+    return values

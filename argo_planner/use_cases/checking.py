@@ -1,0 +1,74 @@
+"""All that is wrong or odd about a mission, without running it."""
+
+from enum import StrEnum
+
+from argo_compiler.analysis import Travel, analyse
+from argo_compiler.catalog import Catalog
+from argo_compiler.checks import check
+from argo_compiler.diagnostics import (
+    Diagnostic,
+    DiagnosticError,
+    Severity,
+    by_place,
+    has_errors,
+    summary,
+    to_json,
+    to_sarif,
+    to_text,
+)
+from argo_compiler.errors import ArgoError
+from argo_planner.use_cases.importing import SourceKind, Upload, kind_of, load, refuse_areas
+
+
+class Format(StrEnum):
+    """How diagnostics are written."""
+
+    TEXT = "text"
+    JSON = "json"
+    SARIF = "sarif"
+
+
+def check_source(
+    upload: Upload,
+    catalog: Catalog,
+    start_area: int | None = None,
+    end_area: int | None = None,
+    travel: Travel | None = None,
+) -> tuple[Diagnostic, ...]:
+    """The diagnostics of every stage that the mission gets through, by place.
+
+    Without `travel`, nothing is said about times. Raises Invalid where areas are chosen for what
+    has them already.
+    """
+    if kind_of(upload) is not SourceKind.SCRIPT:
+        refuse_areas(upload.name, start_area, end_area)
+    try:
+        loaded = load(upload, catalog, start_area, end_area)
+    except ArgoError as error:
+        return diagnostics_of(error)
+    found = check(loaded.mission, catalog)
+    if not has_errors(found):
+        found += analyse(loaded.mission, catalog, travel).diagnostics
+    return by_place((*loaded.diagnostics, *loaded.placed(found)))
+
+
+def diagnostics_of(error: ArgoError) -> tuple[Diagnostic, ...]:
+    """What is wrong with a mission that could not be read, as diagnostics."""
+    if isinstance(error, DiagnosticError):
+        return error.diagnostics
+    return (Diagnostic(code="script.unreadable", severity=Severity.ERROR, message=str(error)),)
+
+
+def write_diagnostics(diagnostics: tuple[Diagnostic, ...], source_name: str, format: Format) -> str:
+    """The diagnostics as text for people, or as JSON or SARIF."""
+    match format:
+        case Format.JSON:
+            return to_json(diagnostics, source_name)
+        case Format.SARIF:
+            return to_sarif(diagnostics, source_name)
+        case Format.TEXT:
+            text = to_text(diagnostics, source_name)
+            # Of several diagnostics it says by itself how many there are.
+            if len(diagnostics) > 1:
+                return text
+            return f"{text}\n{source_name}: {summary(diagnostics)}".lstrip()

@@ -1,0 +1,148 @@
+"""Missions from what someone hands in: scripts, missions, bags and other tools' missions."""
+
+import logging
+from collections.abc import Iterable, Mapping
+from dataclasses import dataclass
+from enum import StrEnum
+from pathlib import Path
+
+from argo_compiler.catalog import Catalog
+from argo_compiler.checks import check
+from argo_compiler.diagnostics import (
+    Diagnostic,
+    DiagnosticError,
+    by_place,
+    has_errors,
+    with_excerpts,
+)
+from argo_compiler.errors import Invalid, Remedy
+from argo_compiler.files.mission_file import MissionFile, decode_mission
+from argo_compiler.il import Mission
+from argo_compiler.isar import find_definition, from_isar
+from argo_compiler.ros import decode_bag, is_bag_content, read_bag
+from argo_compiler.script.syntax.source import Source as Script
+from argo_env.planning.opening import OpenedSite
+
+logger = logging.getLogger(__name__)
+
+
+class SourceKind(StrEnum):
+    """What a mission is read from."""
+
+    SCRIPT = "script"
+    MISSION = "mission"
+    ISAR = "isar"
+    BAG = "bag"
+
+
+@dataclass(frozen=True)
+class Upload:
+    """What someone hands in, and what it is called."""
+
+    name: str
+    content: bytes | Mapping[str, bytes] | Path
+    """of a file, or of the files of a rosbag2 folder by their names; a Path is a bag on this
+    machine, which may be larger than its memory"""
+
+
+@dataclass(frozen=True)
+class Loaded:
+    """A mission, what its import had to say, and the text of the file that it was read from."""
+
+    mission: Mission
+    diagnostics: tuple[Diagnostic, ...]
+    file: MissionFile | Script | None
+    """None: a bag or another tool's file, whose lines say nothing to people"""
+
+    def placed(self, diagnostics: Iterable[Diagnostic]) -> tuple[Diagnostic, ...]:
+        """Diagnostics about the mission, with the lines of the file that they point at."""
+        if self.file is None:
+            return tuple(f.model_copy(update={"span": None}) for f in diagnostics)
+        if isinstance(self.file, Script):
+            return with_excerpts(diagnostics, self.file.lines)
+        return self.file.placed(diagnostics)
+
+
+@dataclass(frozen=True)
+class ImportedMission:
+    """A mission without errors."""
+
+    mission: Mission
+    source_name: str
+    diagnostics: tuple[Diagnostic, ...]
+    """what the import had to say: goes into the record of a run"""
+    warnings: tuple[Diagnostic, ...]
+    """these and what `check` warns of, by place"""
+
+
+def kind_of(upload: Upload) -> SourceKind:
+    """What an upload is, by its name and its content. What is nothing else is meant as a script."""
+    if not isinstance(upload.content, bytes) or is_bag_content(upload.name, upload.content):
+        return SourceKind.BAG
+    if Path(upload.name).suffix.lower() != ".json":
+        return SourceKind.SCRIPT
+    return SourceKind.MISSION if find_definition(upload.content) is None else SourceKind.ISAR
+
+
+def load(
+    upload: Upload, catalog: Catalog, start_area: int | None = None, end_area: int | None = None
+) -> Loaded:
+    """The mission in an upload; whether it makes sense is for `check`.
+
+    Raises DiagnosticError, or Invalid where areas are chosen for what has them already.
+    """
+    kind, name = kind_of(upload), upload.name
+    logger.info("%s is read as a %s", name, kind)
+    if kind is not SourceKind.SCRIPT:
+        refuse_areas(name, start_area, end_area)
+    if isinstance(upload.content, Path):
+        return Loaded(read_bag(upload.content, name), (), None)
+    if not isinstance(upload.content, bytes):
+        return Loaded(decode_bag(upload.content, name), (), None)
+    match kind:
+        case SourceKind.BAG:
+            return Loaded(decode_bag(upload.content, name), (), None)
+        case SourceKind.ISAR:
+            imported = from_isar(find_definition(upload.content), name, catalog)
+            return Loaded(imported.mission, imported.diagnostics, None)
+        case SourceKind.MISSION:
+            file = decode_mission(upload.content, name)
+            return Loaded(file.mission, (), file)
+        case SourceKind.SCRIPT:
+            return _load_script(upload.content, name, catalog, start_area, end_area)
+
+
+def _load_script(
+    content: bytes, name: str, catalog: Catalog, start_area: int | None, end_area: int | None
+) -> Loaded:
+    from argo_compiler.script import decode_script, import_script  # missions need no grammars
+
+    text = decode_script(content, name)
+    resolved = import_script(
+        text, catalog, source_name=name, start_area=start_area, end_area=end_area
+    )
+    return Loaded(resolved.mission, resolved.diagnostics, Script(text, name))
+
+
+def import_mission(
+    upload: Upload, site: OpenedSite, start_area: int | None = None, end_area: int | None = None
+) -> ImportedMission:
+    """The mission in an upload, for a site. Areas are for scripts that leave them open.
+
+    Raises DiagnosticError if there is none, or `check` finds errors in it, and Invalid where the
+    areas make no sense.
+    """
+    loaded = load(upload, site.catalog, start_area, end_area)
+    found = by_place((*loaded.diagnostics, *loaded.placed(check(loaded.mission, site.catalog))))
+    if has_errors(found):
+        raise DiagnosticError(upload.name, found)
+    return ImportedMission(loaded.mission, upload.name, loaded.diagnostics, found)
+
+
+def refuse_areas(name: str, start_area: int | None, end_area: int | None) -> None:
+    """Raises Invalid where areas are chosen for a mission, which has them already."""
+    if start_area is not None or end_area is not None:
+        raise Invalid(
+            f"{name}: areas are chosen when a script is imported; a mission has its areas already",
+            remedies=(Remedy.CHOOSE_AREAS,),
+        )

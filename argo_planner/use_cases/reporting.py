@@ -1,0 +1,30 @@
+"""What is made of the record of a run."""
+
+import tempfile
+from pathlib import Path
+
+from argo_env.faults.kinds import changed_site
+from argo_env.pictures import write_overview
+from argo_env.report import write_report
+from argo_env.robot.spec import RobotSpec
+from argo_env.run.record import RunRecord
+from argo_env.site import Site
+
+PAGE = "report.html"
+"""the file of a report that a person opens"""
+
+
+def report_files(record: RunRecord, site: Site, robot: RobotSpec) -> dict[str, bytes]:
+    """The report of a run with a picture of its site, as files by their names.
+
+    `site` is the one that the robot knew; what was changed on it is in the record.
+    """
+    with tempfile.TemporaryDirectory() as name:
+        folder = Path(name)
+        write_report(record, site, folder)
+        write_overview(record, changed_site(site, record.faults), robot, folder / "site.png")
+        return {
+            path.relative_to(folder).as_posix(): path.read_bytes()
+            for path in sorted(folder.rglob("*"))
+            if path.is_file()
+        }

@@ -1,0 +1,57 @@
+"""Runs of missions: what they are told, and the spec that `argo_env.run.session` carries out."""
+
+import logging
+
+from argo_compiler.errors import Invalid, NotFound
+from argo_compiler.hfsm import Cancel, Event, Occurred, Pause, Resume, lower
+from argo_compiler.il import EventKind, Mission
+from argo_env.faults.reading import FaultText
+from argo_env.planning.opening import OpenedSite
+from argo_env.run.record import Reordering
+from argo_env.run.rig import check_spec
+from argo_env.run.spec import RunSpec
+from argo_planner.use_cases.importing import ImportedMission
+
+logger = logging.getLogger(__name__)
+
+NO_MISSION = Mission(tasks=())
+"""stands in a spec until its mission is known"""
+
+EVENTS: dict[str, Event] = {
+    **{str(kind): Occurred(kind) for kind in EventKind if kind is not EventKind.TIME_UP},
+    "pause": Pause(),
+    "resume": Resume(),
+    "cancel": Cancel(),
+}
+"""What a run can be told, by name."""
+
+
+def event_named(name: str) -> Event:
+    """The event of that name. Raises NotFound if there is none, Invalid if it can't be told."""
+    if name == EventKind.TIME_UP:
+        raise Invalid("it occurs by itself, at the mission's max_duration")
+    if name not in EVENTS:
+        raise NotFound(f"no event `{name}`; there are: {', '.join(EVENTS)}")
+    return EVENTS[name]
+
+
+def require_possible(spec: RunSpec, site: OpenedSite, faults: FaultText | None) -> None:
+    """Raises ArgoError for what no run on the site can have, whatever its mission is. The `faults`
+    are those of the spec, as they were read."""
+    if faults:
+        faults.require_fit(site.site, spec.seed)
+    check_spec(spec, site.site)
+
+
+def with_mission(
+    spec: RunSpec, imported: ImportedMission, reordering: Reordering | None = None
+) -> RunSpec:
+    """The spec of a run of that mission. Raises DiagnosticError for one that makes no sense."""
+    lower(imported.mission, source_name=imported.source_name)
+    known = {
+        "mission": imported.mission,
+        "diagnostics": imported.diagnostics,
+        "reordering": reordering,
+    }
+    logger.info("%s: %d tasks to run", imported.source_name, len(imported.mission.tasks))
+    return spec.model_copy(update=known)

@@ -1,0 +1,79 @@
+"""Which sites there are, whether one can be driven, and their descriptions."""
+
+from dataclasses import dataclass
+
+from argo_compiler.errors import Conflict
+from argo_env.planning.checking import unseen_checkpoints, unserved_floors
+from argo_env.planning.opening import OpenedSite
+from argo_env.site import load_site, site_names
+from argo_env.site.family import PREFIX, is_family
+from argo_env.site.norms import breaches, false_ends
+from argo_env.site.site_file import to_yaml
+
+
+@dataclass(frozen=True)
+class SiteSummary:
+    """What there is to know of a site before it is opened."""
+
+    name: str
+    title: str
+    floors: int
+    checkpoints: int
+
+
+@dataclass(frozen=True)
+class SiteReport:
+    """Whether a site can be driven."""
+
+    notes: tuple[str, ...]
+    """what is unlike real sites, but does no harm"""
+    errors: tuple[str, ...]
+    """what can't be reached, and what to do about it"""
+
+
+def list_sites() -> tuple[SiteSummary, ...]:
+    """The sites that Argo ships."""
+    return tuple(
+        SiteSummary(
+            name, spec.title, len(spec.floors), sum(len(floor.checkpoints) for floor in spec.floors)
+        )
+        for name in site_names()
+        for spec in (load_site(name).spec,)
+    )
+
+
+def check_site(site: OpenedSite) -> SiteReport:
+    """Looks for what the robot can't reach. Raises ArgoError if a dock is of no use."""
+    site.navigator.prepare()
+    return SiteReport(tuple(breaches(site.site.spec)), tuple(_errors(site)))
+
+
+def _errors(site: OpenedSite) -> list[str]:
+    if ends := false_ends(site.site.spec):
+        return ends  # what can't be reached for that is found again once they are mended
+    floors = [
+        f"floor {number} can't be reached and patrolled; give its corners 1.4 m by 1.4 m to turn in"
+        for number in unserved_floors(site.navigator)
+    ]
+    return floors + [
+        f"checkpoint {id} ({site.site.checkpoint(id).name}) can't be read from anywhere that"
+        " the robot can reach; move or turn it"
+        for id in unseen_checkpoints(site.navigator)
+    ]
+
+
+def describe_site(site: OpenedSite, name: str) -> str:
+    """The YAML that describes the site, under another name: its own stands for another site, and
+    this one is there to be changed. Raises Conflict as `require_free_name`."""
+    require_free_name(name)
+    return to_yaml(site.site.spec.model_copy(update={"name": name}))
+
+
+def require_free_name(name: str) -> None:
+    """Raises Conflict if a site of that name would be taken for another one."""
+    if is_family(name):
+        raise Conflict(f"{PREFIX}… is no file to Argo but a site; choose another name")
+    if name in site_names():
+        raise Conflict(
+            f"the site would be called {name}, as the one that Argo ships; choose another name"
+        )

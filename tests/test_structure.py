@@ -1,6 +1,7 @@
 """How the packages hang together: one direction of imports, no circles, one home for each name."""
 
 import ast
+import re
 from collections import defaultdict
 from graphlib import CycleError, TopologicalSorter
 from pathlib import Path
@@ -133,3 +134,73 @@ def test_each_public_class_has_a_name_of_its_own():
             if isinstance(node, ast.ClassDef) and not node.name.startswith("_"):
                 homes.setdefault(node.name, []).append(module)
     assert not {name: modules for name, modules in homes.items() if len(modules) > 1}
+
+
+def is_script(module):
+    """Whether a module is there to be run, and not to be imported."""
+    return module.endswith(".__main__") or any(
+        isinstance(node, ast.If) and "__name__" in ast.unparse(node.test)
+        for node in TREES[module].body
+    )
+
+
+def test_libraries_do_not_print():
+    """Nor do the use cases; what a person sees is printed by commands, the terminal and scripts."""
+    prints = {
+        module
+        for module, tree in TREES.items()
+        if not module.startswith(("argo_planner.commands", "argo_planner.terminal"))
+        if module != "argo_planner.cli" and not is_script(module)
+        for node in ast.walk(tree)
+        if isinstance(node, ast.Call) and ast.unparse(node.func) in {"print", "sys.stdout.write"}
+    }
+    assert not prints
+
+
+def test_no_command_imports_another():
+    for module in TREES:
+        if module.startswith("argo_planner.commands."):
+            others = {m for m in imports_of(module) if m.startswith("argo_planner.commands")}
+            assert not others, module
+
+
+def test_use_cases_know_no_terminal():
+    for module, tree in TREES.items():
+        if module.startswith("argo_planner.use_cases"):
+            assert not {
+                m
+                for m in imports_of(module)
+                if m.startswith(("argo_planner.commands", "argo_planner.terminal"))
+            }, module
+            names = {
+                alias.name if isinstance(node, ast.Import) else node.module
+                for node in ast.walk(tree)
+                if isinstance(node, ast.Import | ast.ImportFrom)
+                for alias in node.names
+            }
+            assert not {n for n in names if n.split(".")[0] in {"typer", "rich", "click"}}, module
+
+
+OPTION = re.compile(r"(^|[\s(`])--[a-z]|`argo ")
+
+
+def test_messages_of_the_libraries_name_the_thing_and_no_option():
+    """The command line adds its own words; scripts of the libraries are command lines."""
+    for module, tree in TREES.items():
+        library = module.startswith(("argo_compiler", "argo_env", "argo_planner.use_cases"))
+        if not library or is_script(module):
+            continue
+        docstrings = {
+            id(node.value)
+            for node in ast.walk(tree)
+            if isinstance(node, ast.Expr) and isinstance(node.value, ast.Constant)
+        }
+        said = [
+            node.value
+            for node in ast.walk(tree)
+            if isinstance(node, ast.Constant)
+            and isinstance(node.value, str)
+            and id(node) not in docstrings
+            and OPTION.search(node.value)
+        ]
+        assert not said, module

@@ -130,7 +130,10 @@ def open_site(reference: str = "umad", robot: RobotSpec | None = None) -> Opened
     if path == Path(reference):
         reference = str(path.resolve())
     return _open(
-        reference, text, robot, lambda: Navigator(make_site(parse_site_spec(text, str(path))), robot)
+        reference,
+        text,
+        robot,
+        lambda: Navigator(make_site(parse_site_spec(text, str(path))), robot),
     )
 
 

@@ -6,7 +6,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from argo_compiler.errors import ArgoError
+from argo_compiler.errors import ArgoError, Invalid
 from argo_env.envs.route import RouteEnv
 from baselines.families import InstanceSet
 from baselines.policy import Policy
@@ -61,7 +61,7 @@ def _drive(policy: Policy, env: RouteEnv, number: int, seed: int, clock: Clock) 
         try:
             observation, reward, over, _, info = env.step(np.int64(action))
         except (ArgoError, TypeError, ValueError) as error:
-            raise ArgoError(f"policy {policy.name}, instance {number}: {error}") from None
+            raise Invalid(f"policy {policy.name}, instance {number}: {error}") from None
         route.append(int(action))
         total += reward
         illegal = illegal or info["illegal"]

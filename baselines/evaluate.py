@@ -19,7 +19,7 @@ from pathlib import Path
 from rich.console import Console
 from rich.table import Table
 
-from argo_compiler.errors import ArgoError
+from argo_compiler.errors import ArgoError, Invalid
 from argo_env.files.folders import make_folder
 from baselines.comparison import PolicyComparison, compare
 from baselines.episodes import play
@@ -154,9 +154,9 @@ def _evaluate(given: argparse.Namespace) -> None:
     sets = [find_set(name) for name in dict.fromkeys(given.family)]
     most = min(len(tests.numbers) for tests in sets)
     if not 1 <= given.instances <= most:
-        raise ArgoError(f"--instances is {given.instances}, and has to be 1 to {most}")
+        raise Invalid(f"--instances is {given.instances}, and has to be 1 to {most}")
     if given.seed < 0:
-        raise ArgoError(f"--seed is {given.seed}, and has to be at least 0")
+        raise Invalid(f"--seed is {given.seed}, and has to be at least 0")
     best = {tests.name: references(tests.name)[: given.instances] for tests in sets}
     policies = {name: make_policy(name) for name in dict.fromkeys(given.policy)}
     if given.out is not None:

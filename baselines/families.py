@@ -5,7 +5,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cached_property
 
-from argo_compiler.errors import ArgoError
+from argo_compiler.errors import NotFound
 from argo_env.envs.route_instance import RouteInstance
 from argo_env.envs.route_noise import NO_NOISE, RouteNoise
 from argo_env.envs.route_sources import (
@@ -133,5 +133,5 @@ TEST_SETS = {
 def find_set(name: str) -> InstanceSet:
     """The test set of that name; ArgoError if there is none."""
     if name not in TEST_SETS:
-        raise ArgoError(f"no test set `{name}`; there are: {', '.join(TEST_SETS)}")
+        raise NotFound(f"no test set `{name}`; there are: {', '.join(TEST_SETS)}")
     return TEST_SETS[name]

@@ -16,7 +16,7 @@ import matplotlib.pyplot as plt
 import numpy as np
 from PIL import Image
 
-from argo_compiler.errors import ArgoError
+from argo_compiler.errors import ArgoError, Invalid, Unavailable
 from argo_compiler.route import RouteProblem, suggest_route
 from argo_env.envs.route import RouteEnv
 from argo_env.files.folders import make_folder
@@ -34,9 +34,9 @@ def plot_gaps(results: Path, folder: Path) -> list[Path]:
         comparisons = json.loads(results.read_text(encoding="utf-8"))
         gaps = {one["test_set"]: _gaps(one) for one in comparisons}
     except OSError as error:
-        raise ArgoError(f"{results} can't be read: {error.strerror}") from None
+        raise Unavailable(f"{results} can't be read: {error.strerror}") from None
     except (ValueError, KeyError, TypeError):
-        raise ArgoError(
+        raise Invalid(
             f"{results} has no results of `python -m baselines.evaluate --out DIR`: give the "
             "results.json that it writes"
         ) from None
@@ -79,7 +79,7 @@ def plot_convergence(name: str, problem: RouteProblem, time_limit: float, pictur
     suggestion = suggest_route(problem, time_limit)
     history = suggestion.history
     if not history:
-        raise ArgoError(f"{name}: the optimiser says nothing of its search, there is no history")
+        raise Invalid(f"{name}: the optimiser says nothing of its search, there is no history")
     first, last = max(history[0].time, 1e-3), max(history[-1].time, 1e-3)
     everything = sum(visit.prize for visit in problem.visits)
     bounds = [(first / 2, everything), *((point.time, point.prize_bound) for point in history)]
@@ -163,7 +163,7 @@ def _draw(given: argparse.Namespace) -> list[Path]:
         return plot_gaps(given.results, given.out)
     tests, number = find_set(given.family), given.instance
     if number not in tests.numbers:
-        raise ArgoError(
+        raise Invalid(
             f"test set {tests.name} has the instances {tests.numbers[0]} to {tests.numbers[-1]}, "
             f"not {number}"
         )

@@ -4,7 +4,7 @@ from collections.abc import Callable
 from importlib import import_module
 from typing import Protocol, cast
 
-from argo_compiler.errors import ArgoError
+from argo_compiler.errors import NotFound
 from argo_env.envs.observations import Observation
 
 
@@ -54,12 +54,12 @@ def make_policy(name: str) -> Policy:
         return maker()
     module, _, attribute = maker.partition(":")
     if not attribute:
-        raise ArgoError(
+        raise NotFound(
             f"no policy `{name}`; there are: {', '.join(POLICIES)}; one of your own is "
             "`module:class`"
         )
     try:
         made = getattr(import_module(module), attribute)
     except (ImportError, AttributeError) as error:
-        raise ArgoError(f"policy `{name}`: there is no `{maker}` ({error})") from None
+        raise NotFound(f"policy `{name}`: there is no `{maker}` ({error})") from None
     return cast("Policy", made())

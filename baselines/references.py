@@ -18,7 +18,7 @@ from functools import lru_cache
 from importlib import resources
 from pathlib import Path
 
-from argo_compiler.errors import ArgoError
+from argo_compiler.errors import ArgoError, Conflict, Invalid, NotFound
 from argo_compiler.route import suggest_route
 from baselines.families import TEST_SETS, InstanceSet, find_set
 from baselines.heuristics.insertion import insert_and_improve
@@ -52,12 +52,12 @@ def references(name: str) -> tuple[BestKnown, ...]:
     tests = find_set(name)
     found = resources.files("baselines").joinpath(_FOLDER, f"{name}.json")
     if not found.is_file():
-        raise ArgoError(
+        raise NotFound(
             f"test set {name} has no references: `python -m baselines.references {name}` finds them"
         )
     data = json.loads(found.read_text(encoding="utf-8"))
     if data["checksum"] != tests.checksum():
-        raise ArgoError(
+        raise Conflict(
             f"test set {name} is no longer what its references were found for (checksum "
             f"{tests.checksum()}, not {data['checksum']}): give the changed set another version"
         )
@@ -81,7 +81,7 @@ def improved(tests: InstanceSet, place: int, known: Known | None, time_limit: fl
     prize, bound = known or (0, found.prize_bound)
     prize, bound = max(prize, simple, found.prize), min(bound, found.prize_bound)
     if prize > bound:
-        raise ArgoError(
+        raise Invalid(
             f"test set {tests.name}, instance {tests.numbers[place]}: a route wins {prize}, but "
             f"none is said to win more than {bound}: the optimiser is wrong"
         )

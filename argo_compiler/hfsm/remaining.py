@@ -4,7 +4,7 @@ import heapq
 from collections.abc import Iterator
 from itertools import count
 
-from argo_compiler.errors import ArgoError
+from argo_compiler.errors import Conflict
 from argo_compiler.hfsm.model import DONE, RETURN, Composite, Hfsm, Leaf, task_id
 from argo_compiler.hfsm.progress import GroupProgress, Progress
 from argo_compiler.hfsm.tables import CompiledTransition, GroupNode, LeafNode, tables
@@ -89,7 +89,7 @@ class _Reach:
         name = progress.active
         self.start = known.leaves.get(RETURN if name == RETURN_TASK else task_id(name))
         if self.start is None:
-            raise ArgoError(
+            raise Conflict(
                 f"the progress is at task '{name}', which the mission does not have; use the "
                 "mission that it was saved from, or match it to this one first"
             )

@@ -7,7 +7,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from argo_compiler.analysis.limits import time_words
-from argo_compiler.errors import ArgoError
+from argo_compiler.errors import Invalid, NotFound
 from argo_compiler.il import Mission, Order
 from argo_compiler.reorder.branches import Branches
 from argo_compiler.reorder.precedences import must_be_last, precedences, round_notes, speed_notes
@@ -96,7 +96,7 @@ def _likely(visits: Visits, requirements: Requirements) -> dict[tuple[int, int],
     for one in requirements.likelihoods:
         leaf, target = number.get(one.task), number.get(one.target)
         if leaf is None or target not in {t for _, t in flow.leaves[leaf].conditional}:
-            raise ArgoError(
+            raise NotFound(
                 f"no condition of a task '{one.task}' leads to '{one.target}': name a task and "
                 "where one of its conditions leads to"
             )
@@ -105,7 +105,7 @@ def _likely(visits: Visits, requirements: Requirements) -> dict[tuple[int, int],
     for leaf in {leaf for leaf, _ in likely}:
         total = sum(p for (from_, _), p in likely.items() if from_ == leaf)
         if total > 1.0 + _ROUNDING:
-            raise ArgoError(
+            raise Invalid(
                 f"the ways on from '{flow.leaves[leaf].name}' are {total:g} likely together: "
                 "at most 1 is possible"
             )
@@ -127,7 +127,7 @@ def _costs(
     for row, stop in zip(times, visits.stops, strict=False):
         if np.isneginf(row).any():
             name = visits.spine.name(stop.entry)
-            raise ArgoError(
+            raise Invalid(
                 f"how long it takes from '{name}' to what follows can't be reckoned: only the time "
                 "of a group around it ends it"
             )

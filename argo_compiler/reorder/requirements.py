@@ -5,7 +5,7 @@ from typing import Annotated
 
 from pydantic import AfterValidator, BeforeValidator, Field, model_validator
 
-from argo_compiler.errors import ArgoError
+from argo_compiler.errors import ArgoError, Invalid
 from argo_compiler.model import Model
 
 _PART = re.compile(r"\s*(\d+(?:\.\d+)?)\s*(h|hours?|min|minutes?|'|s|seconds?)?(?![^\W\d])")
@@ -18,15 +18,15 @@ def parse_seconds(text: str) -> float:
     scale = 2 * _SECONDS["h"]
     text = text.strip()
     if text.startswith("-"):
-        raise ArgoError(f"`{text}` must be above 0: write `20 min`, `1 h 30 min` or `90 s`")
+        raise Invalid(f"`{text}` must be above 0: write `20 min`, `1 h 30 min` or `90 s`")
     while at < len(text):
         part = _PART.match(text, at)
         factor = _SECONDS[(part.group(2) or "s")[0]] if part else scale
         if part is None or factor >= scale:  # larger units come first, each once
-            raise ArgoError(f"`{text}` is no duration: write `20 min`, `1 h 30 min` or `90 s`")
+            raise Invalid(f"`{text}` is no duration: write `20 min`, `1 h 30 min` or `90 s`")
         total, at, scale = total + float(part.group(1)) * factor, part.end(), factor
     if not text:
-        raise ArgoError("a duration is missing: write `20 min`, `1 h 30 min` or `90 s`")
+        raise Invalid("a duration is missing: write `20 min`, `1 h 30 min` or `90 s`")
     return total
 
 

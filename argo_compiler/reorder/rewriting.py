@@ -2,7 +2,7 @@
 
 from collections.abc import Sequence
 
-from argo_compiler.errors import ArgoError
+from argo_compiler.errors import Invalid
 from argo_compiler.il import Action, Group, Mission, Task, Transition
 from argo_compiler.reorder.mission import MissionRoute
 from argo_compiler.reorder.units import Circuit, TaskUnit, Unit
@@ -32,22 +32,22 @@ def _require_possible(planned: MissionRoute, route: Tour) -> None:
         after = (
             "sets off" if not first else f"has done {planned.visits.names[route.order[first - 1]]}"
         )
-        raise ArgoError(
+        raise Invalid(
             f"this order charges at {place} when the robot {after}, and no task of a mission does "
             "that: make two missions of it, or let the mission react to low_battery"
         )
     if not route.order and planned.visits.spine.end is None:
-        raise ArgoError("this order leaves out every task: allow more time")
+        raise Invalid("this order leaves out every task: allow more time")
     worth = evaluate(problem, route)
     if worth.waiting:
         minutes, seconds = divmod(round(worth.waiting * problem.unit), 60)
-        raise ArgoError(
+        raise Invalid(
             f"this order waits {minutes:02d}:{seconds:02d} for time windows, and no task of "
             "a mission does that: widen them, or start the mission later"
         )
     for violation in worth.violations:
         if not violation.startswith("it takes "):
-            raise ArgoError(f"no mission can be written in this order: {violation}")
+            raise Invalid(f"no mission can be written in this order: {violation}")
 
 
 class _Rewriting:

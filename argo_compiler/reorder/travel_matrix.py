@@ -5,7 +5,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from argo_compiler.errors import ArgoError
+from argo_compiler.errors import Conflict, Invalid
 from argo_compiler.il import Action, Mission
 
 _ROUNDING = 1e-6  # of a unit, left by sums of floats
@@ -42,9 +42,9 @@ class TravelMatrix:
         columns = len(self.tasks) + len(self.chargers)
         shape = (columns + 1, columns)
         if self.time.shape != shape or self.energy.shape != shape or len(self.work) != columns:
-            raise ArgoError(f"times, energies and work of {columns} places must be {shape}")
+            raise Invalid(f"times, energies and work of {columns} places must be {shape}")
         if self.chargers and (self.battery is None or self.charging <= 0.0):
-            raise ArgoError("with chargers it must be known what battery they charge, and how fast")
+            raise Invalid("with chargers it must be known what battery they charge, and how fast")
 
     def units_of_energy(self, watt_hours: NDArray[np.float64]) -> NDArray[np.float64]:
         """Energy (Wh) as the time that it takes to charge it, in units."""
@@ -63,4 +63,4 @@ def require_matrix_of(ways: TravelMatrix, mission: Mission) -> None:
     """Raises ArgoError if the ways are those of another mission."""
     names = tuple(task.name for task in mission.tasks if task.action is not Action.START)
     if names != ways.tasks:
-        raise ArgoError("these are the ways of another mission: its tasks are others")
+        raise Conflict("these are the ways of another mission: its tasks are others")

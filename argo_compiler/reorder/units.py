@@ -9,7 +9,7 @@ from dataclasses import dataclass
 
 from argo_compiler.analysis.flow import NOWHERE, Flow
 from argo_compiler.analysis.graph import components, is_loop, reached_from
-from argo_compiler.errors import ArgoError
+from argo_compiler.errors import Invalid
 from argo_compiler.il import Mission
 from argo_compiler.reorder.task_graph import Level, TaskGraph
 
@@ -99,7 +99,7 @@ class _Finder:
             level = passages.level(NOWHERE)
             passages.set_apart(level)
             if level.broken:
-                raise ArgoError(f"the order of this mission can't be changed: {level.broken}")
+                raise Invalid(f"the order of this mission can't be changed: {level.broken}")
             units = self._units(NOWHERE, level, self.flow.initial)
         return Spine(
             self.flow,

@@ -4,7 +4,7 @@ from dataclasses import dataclass
 from functools import cached_property
 
 from argo_compiler.analysis.flow import NOWHERE
-from argo_compiler.errors import ArgoError
+from argo_compiler.errors import Invalid, NotFound
 from argo_compiler.il import Action, Task
 from argo_compiler.nearest_name import nearest_name
 from argo_compiler.reorder.requirements import What
@@ -89,7 +89,7 @@ class Visits:
             for i, leaf in enumerate(self.spine.flow.leaves):
                 if leaf.name == what:
                     if i == self.spine.end or i not in self.of_leaf:
-                        raise ArgoError(f"'{what}' stays where it is: it ends the mission")
+                        raise Invalid(f"'{what}' stays where it is: it ends the mission")
                     return [self.of_leaf[i]]
             for group in self.spine.flow.groups:
                 if group.name == what:
@@ -102,7 +102,7 @@ class Visits:
             known += [group.name for group in self.spine.flow.groups]
             near = nearest_name(str(what), known) if isinstance(what, str) else None
             hint = f"is '{near}' meant?" if near else "name a checkpoint, a task or a group of it"
-            raise ArgoError(f"the mission has no {said(what)}: {hint}")
+            raise NotFound(f"the mission has no {said(what)}: {hint}")
         return found
 
     def whole(self, visits: list[int]) -> list[int]:

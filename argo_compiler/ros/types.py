@@ -4,7 +4,7 @@ from enum import Enum
 from functools import cache
 from typing import Any, TypeVar
 
-from argo_compiler.errors import ArgoError
+from argo_compiler.errors import Unavailable
 from argo_compiler.ros.package import PACKAGE, SPECIFICATION, definitions
 
 E = TypeVar("E", bound=Enum)
@@ -17,7 +17,7 @@ class RosTypes:
         try:
             from rosbags.typesys import Stores, get_types_from_msg, get_typestore
         except ImportError:
-            raise ArgoError(
+            raise Unavailable(
                 "ROS messages and bags need rosbags: pip install 'argo-mission[ros]'"
             ) from None
         self.version = version

@@ -5,7 +5,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from argo_compiler.errors import ArgoError
+from argo_compiler.errors import Invalid
 from argo_compiler.route.assignment import assignment_bound
 from argo_compiler.route.infeasible_subset import find_infeasible_subset
 from argo_compiler.route.modes import Step
@@ -70,7 +70,7 @@ def _solved(
     if not net.exact:
         search.say("a round has too many members to weigh all of their orders: nothing is proven")
     if longest(net) >= NEVER // 2:
-        raise ArgoError(
+        raise Invalid(
             "the times of this route problem are too long to be added up: take a greater unit"
         )
     pruned = prune(net)

@@ -12,7 +12,7 @@ from enum import StrEnum
 import numpy as np
 from numpy.typing import NDArray
 
-from argo_compiler.errors import ArgoError
+from argo_compiler.errors import Invalid
 
 NEVER = 1 << 40
 """a travel time where there is no way"""
@@ -126,7 +126,7 @@ class RouteProblem:
     def __post_init__(self) -> None:
         """Raises ArgoError if the parts don't fit together."""
         for trouble in _troubles(self):
-            raise ArgoError(f"this is no route problem: {trouble}")
+            raise Invalid(f"this is no route problem: {trouble}")
         self.travel.setflags(write=False)
         if self.battery is not None:
             self.battery.energy.setflags(write=False)

@@ -16,7 +16,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.typing import NDArray
 
-from argo_compiler.errors import ArgoError
+from argo_compiler.errors import Conflict, Invalid
 from argo_compiler.route.problem import NEVER, RouteProblem, Tour
 from argo_compiler.route.robust_sampling import Completion, Draws, completion
 from argo_compiler.route.robust_spread import TravelSpread
@@ -67,13 +67,13 @@ def suggest_robust_route(
     Raises ArgoError if there is no route even without any spread, or none is found.
     """
     if not 0.0 < confidence <= 1.0:
-        raise ArgoError(f"a confidence of {confidence} is none; give one above 0 and up to 1")
+        raise Invalid(f"a confidence of {confidence} is none; give one above 0 and up to 1")
     nominal = suggest_route(problem, time_limit / 4.0, seed)
     # From here: the first search imports OR-Tools, which may take longer than the time limit.
     end = time.monotonic() + time_limit * 0.75
     if nominal.route is None:
         why = "; ".join(nominal.infeasible_subset) or "none was found within the time limit"
-        raise ArgoError(f"there is no route: {why}; relax what it must keep to, or give more time")
+        raise Conflict(f"there is no route: {why}; relax what it must keep to, or give more time")
     search = _Search(problem, Draws(spread, SEARCHED, _rng(seed, 0)), confidence)
     search.consider(nominal.route)
     if search.all_done:

@@ -12,7 +12,7 @@ from math import log1p, sqrt
 import numpy as np
 from numpy.typing import NDArray
 
-from argo_compiler.errors import ArgoError
+from argo_compiler.errors import Invalid
 from argo_compiler.route.evaluation import evaluate
 from argo_compiler.route.problem import NEVER, RouteProblem, Tour
 from argo_compiler.route.robust_spread import TravelSpread
@@ -49,7 +49,7 @@ class Draws:
     def __init__(self, spread: TravelSpread, samples: int, rng: np.random.Generator) -> None:
         """Raises ArgoError if there are no samples."""
         if samples < 1:
-            raise ArgoError(f"{samples} samples tell nothing; ask for 1 or more")
+            raise Invalid(f"{samples} samples tell nothing; ask for 1 or more")
         self.spread, self.samples = spread, samples
         self._root = int(rng.integers(2**63))
         self.common = _factors(spread.common, samples, self._generator(0))

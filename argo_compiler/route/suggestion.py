@@ -3,7 +3,7 @@
 from collections.abc import Mapping
 from dataclasses import dataclass
 
-from argo_compiler.errors import ArgoError
+from argo_compiler.errors import Invalid
 from argo_compiler.route.problem import RouteProblem, Tour
 
 
@@ -88,7 +88,7 @@ def suggest_route(
     is over. Raises ArgoError if the time limit or the number of workers is not positive.
     """
     if not time_limit > 0.0 or workers < 1:
-        raise ArgoError(
+        raise Invalid(
             f"a route needs time and a worker to be looked for, not {time_limit:g} s and {workers}"
         )
     # OR-Tools takes a second to be imported, and most who import this package don't search.

@@ -9,7 +9,7 @@ import numpy as np
 from gymnasium import spaces
 from numpy.typing import NDArray
 
-from argo_compiler.errors import ArgoError
+from argo_compiler.errors import Invalid
 from argo_env.drives.tracked.body import FLIPPER_LIMITS, TIME_STEP
 from argo_env.envs import lidar
 from argo_env.envs.copying import Copying
@@ -140,7 +140,7 @@ class DriveEnv(Copying, Rendering, gym.Env[Observation, NDArray[np.float32]]):
             check_scenario(self._title, name)
         check_positive(self._title, LONGEST, time_limit=time_limit, max_way=max_way)
         if max_way < NEAREST:
-            raise ArgoError(
+            raise Invalid(
                 f"{self._title}: `max_way` is {max_way:g}, and has to be at least {NEAREST:g} (s)"
             )
         self.render_mode = render_mode
@@ -303,7 +303,7 @@ class DriveEnv(Copying, Rendering, gym.Env[Observation, NDArray[np.float32]]):
         except (TypeError, ValueError):
             values = np.empty(0)
         if values.shape != (3,) or not np.isfinite(values).all():
-            raise ArgoError(f"{self._title}: no action {action!r}; it is three numbers, -1 to 1")
+            raise Invalid(f"{self._title}: no action {action!r}; it is three numbers, -1 to 1")
         ahead, turn, flipper = np.clip(values, -1.0, 1.0).tolist()
         return ahead, turn, flipper
 

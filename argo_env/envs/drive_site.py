@@ -1,6 +1,6 @@
 """The site that Drive-v0 drives on: its world, the robot's body in it, and the ways there."""
 
-from argo_compiler.errors import ArgoError
+from argo_compiler.errors import NotFound
 from argo_env.closing import Closing
 from argo_env.drives.tracked.body import TrackedBody
 from argo_env.envs.guide import Guide
@@ -30,7 +30,7 @@ class DriveSite(Closing):
         """
         for fault in faults:
             if fault.kind not in (*ON_THE_WAY, DYSFUNCTION):
-                raise ArgoError(
+                raise NotFound(
                     f"argo/Drive-v0 does not know the fault `{fault.kind}`; "
                     f"it knows: {', '.join((*ON_THE_WAY, DYSFUNCTION))}"
                 )

@@ -2,7 +2,7 @@
 
 from pydantic import Field, StrictInt
 
-from argo_compiler.errors import ArgoError
+from argo_compiler.errors import ArgoError, Invalid
 from argo_compiler.model import Model
 from argo_env.envs.drive_site import DriveSite
 from argo_env.envs.options import LONGEST, check_floors
@@ -32,7 +32,7 @@ class DriveSites:
 
     def __init__(self, scenarios: tuple[str, ...]) -> None:
         if not scenarios:
-            raise ArgoError(_NO_SITE)
+            raise Invalid(_NO_SITE)
         self.options = DriveOptions()
         self._scenarios = scenarios
         self._ready: dict[str, DriveSite] = {}
@@ -51,7 +51,7 @@ class DriveSites:
         is as it was."""
         names = self._names(options)
         if not names:
-            raise ArgoError(_NO_SITE)
+            raise Invalid(_NO_SITE)
         same = options.faults == self.options.faults
         made: dict[str, DriveSite] = {}
         try:

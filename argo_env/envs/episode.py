@@ -6,7 +6,7 @@ from typing import Any, cast
 import gymnasium as gym
 import numpy as np
 
-from argo_compiler.errors import ArgoError
+from argo_compiler.errors import ArgoError, Invalid
 
 Parts = Mapping[str, type | tuple[type, ...]]
 """the types of what a state has, by name"""
@@ -33,7 +33,7 @@ def read_choice(action: Any, count: int, env: str) -> int:
         action = action[()]
     if isinstance(action, _WHOLE) and 0 <= (number := int(action)) < count:
         return number
-    raise ArgoError(f"{env}: no action {action!r}; an action is a whole number, 0 to {count - 1}")
+    raise Invalid(f"{env}: no action {action!r}; an action is a whole number, 0 to {count - 1}")
 
 
 def check_state(state: Any, parts: Parts, env: str) -> None:

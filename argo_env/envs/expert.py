@@ -7,7 +7,7 @@ import gymnasium as gym
 import numpy as np
 from numpy.typing import NDArray
 
-from argo_compiler.errors import ArgoError
+from argo_compiler.errors import Invalid
 from argo_compiler.model import Pose
 from argo_env.drives.tracked.body import FLIPPER_LIMITS
 from argo_env.drives.tracked.flippers import CAREFUL, Flight, Flippers, find_flight
@@ -36,7 +36,7 @@ class Expert:
         """
         drive = env.unwrapped
         if not isinstance(drive, DriveEnv):
-            raise ArgoError("the expert drives argo/Drive-v0 and no other environment")
+            raise Invalid("the expert drives argo/Drive-v0 and no other environment")
         self._env = drive
         self._flippers = Flippers()
         self._flight: tuple[Motion, Flight] | None = None

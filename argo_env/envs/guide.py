@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 from scipy.sparse.csgraph import dijkstra
 from scipy.spatial import cKDTree
 
-from argo_compiler.errors import ArgoError
+from argo_compiler.errors import Unreachable
 from argo_env.navigation import Navigator
 from argo_env.navigation.path import wrap
 from argo_env.robot.pose import BodyPose
@@ -55,7 +55,9 @@ class Guide:
         }
         if not self._places:
             name = navigator.site.name
-            raise ArgoError(f"site {name} has no place where the robot has room to turn all round")
+            raise Unreachable(
+                f"site {name} has no place where the robot has room to turn all round"
+            )
         self._to = lru_cache(maxsize=_KEPT)(self._search)
 
     @property

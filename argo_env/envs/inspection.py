@@ -9,7 +9,7 @@ import numpy as np
 from gymnasium import spaces
 from numpy.typing import NDArray
 
-from argo_compiler.errors import ArgoError
+from argo_compiler.errors import Invalid, NotFound
 from argo_compiler.il import EventKind
 from argo_env.envs.copying import Copying
 from argo_env.envs.episode import (
@@ -148,7 +148,7 @@ class InspectEnv(Copying, Rendering, gym.Env[Observation, np.int64]):
         """Raises ArgoError if there is no such scenario, drive or render mode."""
         check_render_mode(render_mode, self.metadata["render_modes"])
         if drive not in DRIVES:
-            raise ArgoError(f"no drive `{drive}`; there are: {', '.join(DRIVES)}")
+            raise NotFound(f"no drive `{drive}`; there are: {', '.join(DRIVES)}")
         check_scenario(self._title, scenario)
         check_positive(self._title, LONGEST, time_limit=time_limit)
         check_whole(self._title, 0, MOST_FAULTS, faults=faults)
@@ -317,7 +317,7 @@ class InspectEnv(Copying, Rendering, gym.Env[Observation, np.int64]):
         opened = open_site(scenario).prepare()
         site = opened.site
         if len(site.checkpoints) > self._slots or len(site.docks) > self._docks:
-            raise ArgoError(
+            raise Invalid(
                 f"site {site.name} has {len(site.checkpoints)} checkpoints and {len(site.docks)} "
                 f"docks, and there is room for {self._slots} and {self._docks}: make the "
                 "environment with larger `checkpoints` and `docks`"

@@ -8,7 +8,7 @@ import numpy as np
 from pydantic import ValidationError
 from pydantic_core import ErrorDetails
 
-from argo_compiler.errors import ArgoError
+from argo_compiler.errors import Invalid, NotFound
 from argo_compiler.files.fields import field_hint
 from argo_compiler.files.json_places import format_path
 from argo_compiler.model import Model
@@ -25,20 +25,20 @@ def read_options(model: type[Options], given: Any, env: str) -> Options:
     and arrays are as good as plain ones."""
     known = f"there are: {', '.join(model.model_fields)}"
     if not isinstance(given, Mapping):
-        raise ArgoError(f"options of {env} are a dictionary, not {given!r}; {known}")
+        raise Invalid(f"options of {env} are a dictionary, not {given!r}; {known}")
     data = {name: _plain(value) for name, value in given.items()}
     try:
         return model.model_validate(data)
     except ValidationError as error:
         found = _meant(model, error.errors(include_url=False))
         wrong = "; ".join(_said(model, one, data) for one in found)
-        raise ArgoError(f"options of {env}: {wrong}; {known}") from None
+        raise Invalid(f"options of {env}: {wrong}; {known}") from None
 
 
 def check_scenario(env: str, scenario: Any) -> None:
     """Raises ArgoError if it can't be the name of a site."""
     if not isinstance(scenario, str):
-        raise ArgoError(f"{env}: `scenario` is {scenario!r}, and has to be the name of a site")
+        raise Invalid(f"{env}: `scenario` is {scenario!r}, and has to be the name of a site")
 
 
 def check_floors(scenario: str, known: Sequence[int], floors: Sequence[int]) -> None:
@@ -48,7 +48,7 @@ def check_floors(scenario: str, known: Sequence[int], floors: Sequence[int]) -> 
             last, row = known[-1], list(known) == list(range(known[0], known[-1] + 1))
             said = f"{known[0]} to {last}" if row else ", ".join(map(str, known))
             there = f"the floors {said}" if len(known) > 1 else f"floor {last} only"
-            raise ArgoError(f"scenario {scenario} has {there}, not {floor}")
+            raise NotFound(f"scenario {scenario} has {there}, not {floor}")
 
 
 def check_positive(env: str, most: float, **arguments: Any) -> None:
@@ -56,7 +56,7 @@ def check_positive(env: str, most: float, **arguments: Any) -> None:
     for name, value in arguments.items():
         number = isinstance(value, int | float | np.integer | np.floating)
         if isinstance(value, bool) or not (number and 0 < value <= most):
-            raise ArgoError(
+            raise Invalid(
                 f"{env}: `{name}` is {value!r}, and has to be a number of more than 0, and at most "
                 f"{most:.0f}"
             )
@@ -68,11 +68,11 @@ def check_whole(env: str, low: int, high: int, why: str = "", **arguments: Any) 
     for name, value in arguments.items():
         whole = isinstance(value, int | np.integer) and not isinstance(value, bool)
         if not (whole and value >= low):
-            raise ArgoError(
+            raise Invalid(
                 f"{env}: `{name}` is {value!r}, and has to be a whole number of at least {low}{why}"
             )
         if value > high:
-            raise ArgoError(f"{env}: `{name}` is {value!r}, and has to be at most {high}")
+            raise Invalid(f"{env}: `{name}` is {value!r}, and has to be at most {high}")
 
 
 def _plain(value: Any) -> Any:

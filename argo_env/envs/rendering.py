@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from argo_compiler.errors import ArgoError
+from argo_compiler.errors import NotFound, Unavailable
 
 _DPI = 100
 
@@ -16,7 +16,7 @@ _DPI = 100
 def check_render_mode(mode: str | None, known: Sequence[str]) -> None:
     """Raises ArgoError if there is no such render mode."""
     if mode is not None and mode not in known:
-        raise ArgoError(f"no render mode `{mode}`; there are: {', '.join(known)}")
+        raise NotFound(f"no render mode `{mode}`; there are: {', '.join(known)}")
 
 
 class FigureWindow:
@@ -29,7 +29,7 @@ class FigureWindow:
             os.environ.get("DISPLAY") or os.environ.get("WAYLAND_DISPLAY")
         )
         if headless and os.environ.get("MPLBACKEND", "").lower() != "agg":
-            raise ArgoError(
+            raise Unavailable(
                 "render_mode `human` needs a display, and DISPLAY is not set; "
                 "use `rgb_array`, or set MPLBACKEND=agg to draw in memory"
             )

@@ -11,7 +11,7 @@ from gymnasium.vector import AutoresetMode, VectorEnv
 from gymnasium.vector.utils import batch_space
 from numpy.typing import NDArray
 
-from argo_compiler.errors import ArgoError
+from argo_compiler.errors import Invalid
 from argo_env.envs.copying import Copying
 from argo_env.envs.episode import no_state
 from argo_env.envs.observations import Observation
@@ -231,7 +231,7 @@ class RouteVectorEnv(Copying, VectorEnv[Observation, NDArray[np.int64], NDArray[
             # As words, so that numbers below 0 are large ones.
             if nodes.view(np.uint64).max() < size:
                 return nodes
-        raise ArgoError(
+        raise Invalid(
             f"{_NAME}: no actions {actions!r}; they are {self.num_envs} whole numbers, "
             f"0 to {size - 1}"
         )

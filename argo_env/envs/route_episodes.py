@@ -11,7 +11,7 @@ from gymnasium import spaces
 from numpy.typing import NDArray
 from pydantic import StrictBool, StrictInt
 
-from argo_compiler.errors import ArgoError
+from argo_compiler.errors import Invalid, NotFound
 from argo_compiler.model import Model
 from argo_env.envs.observations import Observation, dict_space
 from argo_env.envs.options import (
@@ -108,7 +108,7 @@ class Episodes:
             check_whole(_NAME, 1, MOST_CHECKPOINTS, checkpoints=checkpoints)
             check_positive(_NAME, LONGEST, budget=budget)
         elif noise is not None:
-            raise ArgoError(
+            raise Invalid(
                 f"{_NAME}: `noise` and `source`: a source makes its instances with the noise that "
                 "it was made with; give one of the two"
             )
@@ -173,7 +173,7 @@ def read_route_options(
     if options.faults.closed > there:
         of = f"scenario {scenario}" if there < slots else "a route"
         more = "" if there < slots else ", or make the environment with more `checkpoints`"
-        raise ArgoError(
+        raise Invalid(
             f"option `faults.closed` of {_NAME} is {options.faults.closed}, and has to be 0 to "
             f"{there}: {of} has {there} checkpoints; close fewer{more}"
         )
@@ -186,21 +186,21 @@ def _check_instance(options: RouteOptions, count: int | None) -> None:
     numbers = given if isinstance(given, tuple) else (given,)
     if isinstance(given, tuple) and len(given) != count:
         wanted = "one number" if count is None else f"one number, or one for each of {count}"
-        raise ArgoError(f"option `instance` of {_NAME} is {wanted}, not {len(given)} numbers")
+        raise Invalid(f"option `instance` of {_NAME} is {wanted}, not {len(given)} numbers")
     for number in numbers:
         if number not in TRAINING and number not in TEST:
-            raise ArgoError(
+            raise NotFound(
                 f"option `instance` of {_NAME}: there is no instance {number}, only "
                 f"{TRAINING[0]} to {TRAINING[-1]} (training) and {TEST[0]} to {TEST[-1]} (test); "
                 "leave `instance` out to have one drawn"
             )
     if options.test:
-        raise ArgoError(
+        raise Invalid(
             f"options `instance` and `test` of {_NAME}: `instance` says which it is, and `test` "
             f"draws one of {TEST[0]} to {TEST[-1]}; give one of the two"
         )
     if options.scenario is not None:
-        raise ArgoError(
+        raise Invalid(
             f"options `instance` and `scenario` of {_NAME}: `instance` is one of the instances of "
             "the scenario that the environment was made with; give one of the two, or make the "
             f"environment with scenario={options.scenario!r}"

@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 from pydantic import Field
 
-from argo_compiler.errors import ArgoError
+from argo_compiler.errors import NotFound
 from argo_compiler.model import Model
 from argo_env.envs.route_aisles import DEPTH, WIDTH, aisle_times, stairs_of
 from argo_env.envs.route_instance import RouteInstance, Stair, make_instance, with_hidden
@@ -143,7 +143,7 @@ class SiteRoutes:
         if self.noise.blocked and not any(
             times_without(name, (stair,)) is not None for stair in stairs_of_site(name)
         ):
-            raise ArgoError(
+            raise NotFound(
                 f"scenario {name} has no stairs that can be blocked: there is no other way; take a "
                 "site with two stair towers, or noise without `blocked`"
             )

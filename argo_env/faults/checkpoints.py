@@ -7,7 +7,7 @@ import numpy as np
 from pydantic import Field, model_validator
 
 from argo_compiler.catalog import CheckpointKind
-from argo_compiler.errors import ArgoError
+from argo_compiler.errors import Invalid, NotFound
 from argo_env.faults.fault import TimedFault
 from argo_env.site import Site, SiteCheckpoint
 from argo_env.site.shapes import Vector
@@ -30,11 +30,11 @@ class CheckpointFault(TimedFault):
     def _at_checkpoint(self, site: Site, rng: np.random.Generator) -> SiteCheckpoint:
         known = [c.id for c in site.checkpoints]
         if not known:
-            raise ArgoError(f"site {site.name} has no checkpoint")
+            raise NotFound(f"site {site.name} has no checkpoint")
         drawn = known[int(rng.integers(len(known)))]
         id = self.checkpoint or drawn
         if id not in known:
-            raise ArgoError(
+            raise NotFound(
                 f"site {site.name} has no checkpoint {id}; there are: {', '.join(map(str, known))}"
             )
         return site.checkpoint(id)
@@ -53,12 +53,12 @@ class AbnormalValue(CheckpointFault):
         value = drawn if self.value is None else self.value
         shown, nominal = checkpoint.range, checkpoint.nominal
         if not shown.contains(value):
-            raise ArgoError(
+            raise Invalid(
                 f"checkpoint {checkpoint.id} ({checkpoint.name}) shows {shown.low:g} to "
                 f"{shown.high:g} {checkpoint.unit}, not {value:g}"
             )
         if nominal.contains(value):
-            raise ArgoError(
+            raise Invalid(
                 f"{value:g} {checkpoint.unit} is nothing abnormal at checkpoint {checkpoint.id} "
                 f"({checkpoint.name}): nominal are {nominal.low:g} to {nominal.high:g}"
             )
@@ -98,7 +98,7 @@ class DisplacedCheckpoint(CheckpointFault):
         checkpoint = self._at_checkpoint(site, rng)
         upright = checkpoint.kind is CheckpointKind.LIQUID_LEVEL_GAUGE
         if upright and self.roll:
-            raise ArgoError(f"checkpoint {checkpoint.id} is a level gauge, which is never rolled")
+            raise Invalid(f"checkpoint {checkpoint.id} is a level gauge, which is never rolled")
         drawn = draw_placement(rng, upright)
         x, y, z = (round(v, 4) for v in drawn.offset)
         turn, roll = (round(math.degrees(angle), 1) for angle in (drawn.turn, drawn.roll))
@@ -135,7 +135,7 @@ def _abnormal(checkpoint: SiteCheckpoint, rng: np.random.Generator) -> float:
     if not free:
         free = [p for p in ((scale.low, nominal.low), (nominal.high, scale.high)) if p[0] < p[1]]
     if not free:
-        raise ArgoError(
+        raise Invalid(
             f"checkpoint {checkpoint.id} ({checkpoint.name}) shows nothing abnormal: its whole "
             "scale is nominal"
         )

@@ -101,7 +101,7 @@ def _settled(fault: AnyFault, number: int, site: Site, seed: int) -> AnyFault:
     try:
         return settle_one(fault, number, site, seed)
     except ArgoError as error:
-        raise ArgoError(f"faults[{number}] ({fault.kind}): {error}") from None
+        raise type(error)(f"faults[{number}] ({fault.kind}): {error}") from None
 
 
 def changed_site(site: Site, faults: Sequence[AnyFault]) -> Site:

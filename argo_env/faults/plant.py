@@ -5,7 +5,7 @@ from typing import TYPE_CHECKING, ClassVar, Literal, Self
 import numpy as np
 from pydantic import Field
 
-from argo_compiler.errors import ArgoError
+from argo_compiler.errors import Invalid, NotFound
 from argo_env.faults.fault import TimedFault
 from argo_env.site import Site
 from argo_env.site.shapes import Vector
@@ -104,10 +104,10 @@ class AbnormalPump(ProcessFault):
     def settled(self, site: Site, rng: np.random.Generator) -> Self:
         known = [pump.name for floor in site.spec.floors for pump in floor.pumps]
         if not known:
-            raise ArgoError(f"site {site.name} has no pump")
+            raise NotFound(f"site {site.name} has no pump")
         pump, defect = known[int(rng.integers(len(known)))], list(PumpFault)[int(rng.integers(2))]
         if self.pump is not None and self.pump not in known:
-            raise ArgoError(
+            raise NotFound(
                 f"site {site.name} has no pump `{self.pump}`; there are: {', '.join(known)}"
             )
         return (
@@ -140,7 +140,7 @@ def _check_place(site: Site, place: Vector | None) -> None:
     low = (x0 - _BESIDE, y0 - _BESIDE, bottom - _BELOW)
     high = (x1 + _BESIDE, y1 + _BESIDE, top + _ABOVE)
     if not all(a <= v <= b for a, v, b in zip(low, place, high, strict=True)):
-        raise ArgoError(
+        raise Invalid(
             f"there is no equipment at ({x:g}, {y:g}, {z:g}): a place on site {site.name} lies "
             f"between ({low[0]:g}, {low[1]:g}, {low[2]:g}) and "
             f"({high[0]:g}, {high[1]:g}, {high[2]:g})"
@@ -150,7 +150,7 @@ def _check_place(site: Site, place: Vector | None) -> None:
 def _near_equipment(site: Site, rng: np.random.Generator, up: float) -> Vector:
     """A place on the equipment behind one of the checkpoints, `up` m above it."""
     if not site.checkpoints:
-        raise ArgoError(f"site {site.name} has no checkpoint: give the place")
+        raise NotFound(f"site {site.name} has no checkpoint: give the place")
     checkpoint = site.checkpoints[int(rng.integers(len(site.checkpoints)))]
     x, y, z = checkpoint.position
     return (

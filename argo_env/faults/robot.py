@@ -5,7 +5,7 @@ from typing import TYPE_CHECKING, ClassVar, Literal, Self
 import numpy as np
 from pydantic import Field
 
-from argo_compiler.errors import ArgoError
+from argo_compiler.errors import NotFound
 from argo_env.faults.fault import Fault, TimedFault
 from argo_env.site import Site
 from argo_env.site.spec import Rect
@@ -60,7 +60,7 @@ class ConnectionLoss(TimedFault):
     def settled(self, site: Site, rng: np.random.Generator) -> Self:
         known = [f.number for f in site.spec.floors]
         if self.floor is not None and self.floor not in known:
-            raise ArgoError(f"site {site.name} has no floor {self.floor}")
+            raise NotFound(f"site {site.name} has no floor {self.floor}")
         return super().settled(site, rng)
 
     def begin(self, stage: "FaultTargets", now: float) -> None:  # noqa: ARG002

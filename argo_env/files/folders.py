@@ -2,7 +2,7 @@
 
 from pathlib import Path
 
-from argo_compiler.errors import ArgoError
+from argo_compiler.errors import Unavailable
 
 
 def make_folder(path: Path) -> None:
@@ -11,4 +11,4 @@ def make_folder(path: Path) -> None:
     try:
         path.mkdir(parents=True, exist_ok=True)
     except OSError as error:
-        raise ArgoError(f"{path}: can't be made a folder: {error.strerror}") from error
+        raise Unavailable(f"{path}: can't be made a folder: {error.strerror}") from error

@@ -9,7 +9,7 @@ from itertools import pairwise
 import numpy as np
 from numpy.typing import NDArray
 
-from argo_compiler.errors import ArgoError, Unreachable
+from argo_compiler.errors import Invalid, Unreachable
 from argo_compiler.model import Pose
 from argo_env.files.parts import NOWHERE, Parts
 from argo_env.navigation.blockage import Blockage, close, closed_cells, turns_over
@@ -117,14 +117,14 @@ class Navigator:
         docks = {n: _nearest(everything, p) for n, p in self.site.docks.items()}
         for number, state in docks.items():
             if state is None:
-                raise ArgoError(
+                raise Invalid(
                     f"site {self.site.name}: the robot can't stand in docking station {number}"
                 )
         first, *others = [s for s in docks.values() if s is not None]
         lattice = connected_part(everything, first)
         for state in others:
             if lattice.state_of[everything.cell[state], everything.heading[state]] < 0:
-                raise ArgoError(
+                raise Invalid(
                     f"site {self.site.name}: there is no way from one docking station to another"
                 )
         return lattice

@@ -10,7 +10,7 @@ from typing import IO
 
 from PIL import GifImagePlugin, Image
 
-from argo_compiler.errors import ArgoError
+from argo_compiler.errors import Unavailable
 
 GIF_COLOURS = 128
 
@@ -20,13 +20,13 @@ def find_ffmpeg() -> str:
     try:
         import imageio_ffmpeg
     except ImportError as error:
-        raise ArgoError(
+        raise Unavailable(
             "writing .mp4 needs imageio-ffmpeg: pip install 'argo-mission[film]', or name a .gif"
         ) from error
     try:
         program: str = imageio_ffmpeg.get_ffmpeg_exe()
     except RuntimeError as error:
-        raise ArgoError(
+        raise Unavailable(
             "imageio-ffmpeg brings no ffmpeg for this computer: "
             "install ffmpeg, set IMAGEIO_FFMPEG_EXE to it, or name a .gif"
         ) from error
@@ -71,7 +71,7 @@ def write_mp4(frames: Iterable[Image.Image], file: Path, size: tuple[int, int], 
         if status:
             messages.seek(0)
             said = messages.read().decode(errors="replace").strip() or f"status {status}"
-            raise ArgoError(f"{file}: ffmpeg can't write the film: {said}")
+            raise Unavailable(f"{file}: ffmpeg can't write the film: {said}")
 
 
 def write_gif(

@@ -9,7 +9,7 @@ from pathlib import Path
 import numpy as np
 from PIL import Image
 
-from argo_compiler.errors import ArgoError
+from argo_compiler.errors import Conflict, Invalid, NotFound, Unavailable
 from argo_env.pictures.caption import add_caption, add_verdict
 from argo_env.pictures.chase import ChaseCamera
 from argo_env.pictures.codec import find_ffmpeg, make_palette, write_gif, write_mp4
@@ -35,13 +35,13 @@ def check_film(file: Path) -> None:
     """Raises ArgoError if no film can be written there: for its suffix, its folder, or an extra
     that isn't installed. To be called before a long run is made."""
     if file.suffix.lower() not in {".mp4", ".gif"}:
-        raise ArgoError(f"{file}: a film is an .mp4 or a .gif; name the file so")
+        raise Invalid(f"{file}: a film is an .mp4 or a .gif; name the file so")
     if not file.absolute().parent.is_dir():
-        raise ArgoError(f"{file}: there is no folder {file.parent}; make it, or choose another")
+        raise NotFound(f"{file}: there is no folder {file.parent}; make it, or choose another")
     if file.is_dir():
-        raise ArgoError(f"{file}: is a folder; choose another name for the film")
+        raise Conflict(f"{file}: is a folder; choose another name for the film")
     if not os.access(file if file.exists() else file.absolute().parent, os.W_OK):
-        raise ArgoError(f"{file}: can't be written; choose another place for the film")
+        raise Unavailable(f"{file}: can't be written; choose another place for the film")
     if file.suffix.lower() == ".mp4":
         find_ffmpeg()
 
@@ -70,9 +70,9 @@ def write_film(
     fps = fps or (GIF_FPS if is_gif else MP4_FPS)
     width, height = size or (GIF_SIZE if is_gif else MP4_SIZE)
     if not (speed > 0 and math.isfinite(speed) and 0 < fps <= 60):
-        raise ArgoError(f"a film needs a speed above 0 and 1 to 60 frames a second: {speed}, {fps}")
+        raise Invalid(f"a film needs a speed above 0 and 1 to 60 frames a second: {speed}, {fps}")
     if min(width, height) < 64 or width % 2 or height % 2:
-        raise ArgoError(f"a film needs an even width and height from 64 px: {width}x{height}")
+        raise Invalid(f"a film needs an even width and height from 64 px: {width}x{height}")
     frame_time = round(100 / fps) / 100 if is_gif else 1 / fps
     motion = RecordedMotion(record, robot)
     count = math.ceil(motion.end / (speed * frame_time) - 1e-9) + 1
@@ -91,7 +91,7 @@ def write_film(
                 write_mp4(frames, part, (width, height), fps)
         part.replace(file)
     except OSError as error:
-        raise ArgoError(
+        raise Unavailable(
             f"{file}: the film can't be written: {error.strerror}; choose another place"
         ) from error
     finally:

@@ -4,7 +4,7 @@ import math
 
 import numpy as np
 
-from argo_compiler.errors import ArgoError
+from argo_compiler.errors import Conflict, Invalid
 from argo_env.drives.flipper_motion import FLAT, RAISED
 from argo_env.robot.pose import BodyPose
 from argo_env.robot.spec import RobotSpec
@@ -22,7 +22,7 @@ class RecordedMotion:
     def __init__(self, record: RunRecord, robot: RobotSpec) -> None:
         """Raises ArgoError if the record has no path."""
         if not record.path:
-            raise ArgoError("the record has no path: there is nothing to draw")
+            raise Invalid("the record has no path: there is nothing to draw")
         path = record.path
         self._robot = robot
         self._times = np.array([s.t for s in path])
@@ -68,6 +68,6 @@ class RecordedMotion:
 def check_site(record: RunRecord, site: Site) -> None:
     """Raises ArgoError if the record is of a run on another site."""
     if record.site != site.name:
-        raise ArgoError(
+        raise Conflict(
             f"the record is of a run on site `{record.site}`, not on `{site.name}`: load that site"
         )

@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 from PIL import Image, ImageDraw, ImageFont
 
-from argo_compiler.errors import ArgoError
+from argo_compiler.errors import Unavailable
 from argo_env.pictures.camera import Camera
 from argo_env.pictures.light import compose, depth_shading, shadows
 from argo_env.pictures.motion import RecordedMotion, check_site
@@ -58,7 +58,7 @@ def write_overview(record: RunRecord, site: Site, robot: RobotSpec, file: Path) 
     try:
         file.write_bytes(content.getvalue())
     except OSError as error:
-        raise ArgoError(
+        raise Unavailable(
             f"{file}: the picture can't be written: {error.strerror}; choose another place"
         ) from error
 

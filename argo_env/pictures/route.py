@@ -7,7 +7,7 @@ import numpy as np
 from numpy.typing import NDArray
 from PIL import Image, ImageDraw
 
-from argo_compiler.errors import ArgoError
+from argo_compiler.errors import Unavailable
 from argo_compiler.il import Action, Task
 from argo_compiler.model import Pose
 from argo_compiler.reorder.mission import MissionRoute
@@ -77,7 +77,7 @@ def write_route(
         try:
             Image.fromarray(image).save(path)
         except OSError as error:
-            raise ArgoError(
+            raise Unavailable(
                 f"{path}: the picture can't be written: {error.strerror}; choose another place"
             ) from error
         written.append(path)

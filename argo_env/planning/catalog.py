@@ -5,7 +5,7 @@ import math
 import numpy as np
 
 from argo_compiler.catalog import Area, Catalog, CheckpointInfo, Floor, Place
-from argo_compiler.errors import ArgoError
+from argo_compiler.errors import Unreachable
 from argo_compiler.model import Pose
 from argo_env.navigation import Navigator
 from argo_env.site import Site
@@ -76,7 +76,7 @@ def _corners(navigator: Navigator, floor: int) -> list[tuple[float, float, float
             if all(math.dist(point, other) >= _APART for other in corners):
                 corners.append(point)
     if len(corners) < 3:
-        raise ArgoError(
+        raise Unreachable(
             f"site {navigator.site.name}: floor {floor} has no three places to patrol between"
         )
     return corners

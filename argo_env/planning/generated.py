@@ -1,6 +1,6 @@
 """Generated sites that have been checked: what can't be driven is drawn again."""
 
-from argo_compiler.errors import ArgoError
+from argo_compiler.errors import ArgoError, Unreachable
 from argo_env.navigation.navigator import Navigator
 from argo_env.planning.checking import unseen_checkpoints, unserved_floors
 from argo_env.robot.spec import RobotSpec, load_robot
@@ -38,7 +38,7 @@ def generate(family: Family, robot: RobotSpec | None = None) -> Navigator:
             if not unseen:
                 return navigator
             refused |= {slots[id] for id in unseen}
-    raise ArgoError(
+    raise Unreachable(
         f"site `{family}`: no draw of this seed can be driven by the {robot.name}; take another"
         " seed or less clutter"
     )

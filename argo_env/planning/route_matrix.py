@@ -7,7 +7,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from argo_compiler.analysis import Leg, NoWay
-from argo_compiler.errors import ArgoError, Unreachable
+from argo_compiler.errors import Unreachable
 from argo_compiler.il import Action, Mission, Task
 from argo_compiler.model import Pose
 from argo_compiler.reorder.mission import MissionRoute, route_problem
@@ -114,7 +114,7 @@ def _standings(places: Sequence[Task], start: Pose, travel: SiteTravel) -> list[
 def _leg(travel: SiteTravel, start: Pose, task: Task) -> Leg:
     leg = travel.leg(start, task, None)
     if isinstance(leg, NoWay):
-        raise ArgoError(f"the robot can't carry out task '{task.name}': {leg.reason}")
+        raise Unreachable(f"the robot can't carry out task '{task.name}': {leg.reason}")
     return leg
 
 
@@ -148,7 +148,7 @@ def _over_lattice(
     try:
         times = navigator.travel_times(distinct)
     except Unreachable as error:  # stands there, says the path, and not the lattice
-        raise ArgoError(f"the ways between the tasks can't be found: {error}") from None
+        raise Unreachable(f"the ways between the tasks can't be found: {error}") from None
     drive = times[np.ix_([number[p] for p in origins], [number[p] for p in standings])]
     step, power = travel.time_step, navigator.robot.power
     work = np.array([travel.work(task) for task in places])

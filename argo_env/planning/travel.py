@@ -1,7 +1,7 @@
 """Travel times and energy of a robot on a site, for the analysis of missions."""
 
 from argo_compiler.analysis import Leg, NoWay, Standing
-from argo_compiler.errors import ArgoError, Unreachable
+from argo_compiler.errors import Unreachable
 from argo_compiler.il import Action, Mission, Task
 from argo_compiler.model import Pose
 from argo_env.drives.timetable import steps
@@ -60,7 +60,7 @@ class SiteTravel:
         """The way to the task's place. Raises ArgoError if there is none."""
         way = self._way(origin, task.object_id if task.action is Action.MEASURE else task.pose)
         if isinstance(way, NoWay):
-            raise ArgoError(f"the robot can't carry out task '{task.name}': {way.reason}")
+            raise Unreachable(f"the robot can't carry out task '{task.name}': {way.reason}")
         return way
 
     def leg(self, origin: Standing, task: Task, velocity: float | None) -> Leg | NoWay:

@@ -6,7 +6,7 @@ from contextlib import closing, contextmanager
 from importlib.util import find_spec
 from pathlib import Path
 
-from argo_compiler.errors import ArgoError
+from argo_compiler.errors import Conflict, Invalid, NotFound, Unavailable
 from argo_env.recording.output import RecordingFile
 from argo_env.run.observer import Observer
 
@@ -23,7 +23,7 @@ def require_libraries() -> None:
     """Raises ArgoError if the extra that recordings need isn't installed."""
     missing = [name for name in _LIBRARIES if find_spec(name) is None]
     if missing:
-        raise ArgoError(
+        raise Unavailable(
             f"recordings need {', '.join(missing)}: pip install 'argo-mission[recording]'"
         )
 
@@ -32,13 +32,13 @@ def check_recording(file: Path) -> None:
     """Raises ArgoError if no recording can be written there: for its suffix, its folder, or an
     extra that isn't installed. To be called before a long run is made."""
     if file.suffix.lower() != ".mcap":
-        raise ArgoError(f"{file}: a recording is an .mcap file; name it so")
+        raise Invalid(f"{file}: a recording is an .mcap file; name it so")
     if not file.absolute().parent.is_dir():
-        raise ArgoError(f"{file}: there is no folder {file.parent}; make it, or choose another")
+        raise NotFound(f"{file}: there is no folder {file.parent}; make it, or choose another")
     if file.is_dir():
-        raise ArgoError(f"{file}: is a folder; choose another name for the recording")
+        raise Conflict(f"{file}: is a folder; choose another name for the recording")
     if not os.access(file if file.exists() else file.absolute().parent, os.W_OK):
-        raise ArgoError(f"{file}: can't be written; choose another place for the recording")
+        raise Unavailable(f"{file}: can't be written; choose another place for the recording")
     require_libraries()
 
 

@@ -7,7 +7,7 @@ from pathlib import Path
 from foxglove_schemas_protobuf.Log_pb2 import Log
 
 from argo_compiler import __version__
-from argo_compiler.errors import ArgoError
+from argo_compiler.errors import Unavailable
 from argo_compiler.hfsm import Occurred
 from argo_env.navigation import Path as Way
 from argo_env.recording import messages, scene
@@ -240,4 +240,4 @@ def _content(path: Path) -> bytes:
     try:
         return path.read_bytes()
     except OSError as error:
-        raise ArgoError(f"{path}: can't be read: {error.strerror}") from error
+        raise Unavailable(f"{path}: can't be read: {error.strerror}") from error

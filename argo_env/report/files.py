@@ -3,7 +3,7 @@
 import json
 from pathlib import Path
 
-from argo_compiler.errors import ArgoError
+from argo_compiler.errors import Conflict, Unavailable
 from argo_env.report.html import page
 from argo_env.run.record import RunRecord
 from argo_env.site import Site
@@ -16,7 +16,7 @@ def write_report(record: RunRecord, site: Site, folder: Path) -> Path:
     Raises ArgoError if the record is of another site, or the files can't be written.
     """
     if record.site != site.name:
-        raise ArgoError(
+        raise Conflict(
             f"the record is of a run on site `{record.site}`, not on `{site.name}`: load that site"
         )
     target = folder / "report.html"
@@ -26,7 +26,7 @@ def write_report(record: RunRecord, site: Site, folder: Path) -> Path:
         for path, text in contents.items():
             path.write_text(text, encoding="utf-8", newline="\n")
     except OSError as error:
-        raise ArgoError(
+        raise Unavailable(
             f"{folder}: the report can't be written: {error.strerror}; choose another folder"
         ) from error
     return target

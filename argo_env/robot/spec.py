@@ -6,7 +6,7 @@ from pathlib import Path
 import yaml
 from pydantic import Field, ValidationError
 
-from argo_compiler.errors import ArgoError
+from argo_compiler.errors import Invalid, NotFound
 from argo_compiler.model import Model
 from argo_env.files import resources
 from argo_env.robot.calibration import Calibration, MotionKind
@@ -134,7 +134,7 @@ def load_robot(name: str = "tracker") -> RobotSpec:
     path, calibrated = robot_folder() / f"{name}.yaml", calibration_file(name)
     if not path.is_file():
         known = sorted(p.stem for p in robot_folder().glob("*.yaml") if "." not in p.stem)
-        raise ArgoError(f"no robot `{name}`; there are: {', '.join(known)}")
+        raise NotFound(f"no robot `{name}`; there are: {', '.join(known)}")
     try:
         spec = RobotSpec.model_validate(yaml.safe_load(path.read_text(encoding="utf-8")))
         if not calibrated.is_file():
@@ -142,7 +142,7 @@ def load_robot(name: str = "tracker") -> RobotSpec:
         path = calibrated
         paces = Calibration.model_validate(yaml.safe_load(path.read_text(encoding="utf-8")))
     except (yaml.YAMLError, ValidationError) as error:
-        raise ArgoError(f"{path}: {error}") from error
+        raise Invalid(f"{path}: {error}") from error
     return spec.model_copy(update={"calibration": paces})
 
 

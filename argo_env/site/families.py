@@ -10,7 +10,7 @@ from collections.abc import Collection
 import numpy as np
 
 from argo_compiler.catalog import CheckpointKind, Interval
-from argo_compiler.errors import ArgoError
+from argo_compiler.errors import Invalid
 from argo_env.seeding import generator
 from argo_env.site.equipment import MOUNT_LENGTH
 from argo_env.site.family import Family, Stairs
@@ -197,7 +197,7 @@ def _choose_slots(
         chosen = [s for s in wanted if (floor, s) not in refused][:count]
         if len(chosen) < count:
             most = len(layout.slots) * family.floors
-            raise ArgoError(
+            raise Invalid(
                 f"site `{family}`: {family.checkpoints} checkpoints do not fit beside its aisles,"
                 f" where there are about {most} places; ask for fewer, or for more floors or a"
                 " larger size"

@@ -2,7 +2,7 @@
 
 from dataclasses import dataclass
 
-from argo_compiler.errors import ArgoError, NotFound
+from argo_compiler.errors import NotFound
 from argo_env.site import Site
 from argo_env.site.shapes import Vector
 from argo_env.surroundings.sources import GasLeak, PumpSound, Source
@@ -60,7 +60,7 @@ class Surroundings:
             known = [pump.name for floor in self.site.spec.floors for pump in floor.pumps]
             if source.pump not in known:
                 names = ", ".join(known) or "none"
-                raise ArgoError(
+                raise NotFound(
                     f"site {self.site.name} has no pump `{source.pump}`; there are: {names}"
                 )
         self._there.append((source, now))

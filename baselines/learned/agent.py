@@ -12,7 +12,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from argo_compiler.errors import ArgoError
+from argo_compiler.errors import Invalid, NotFound
 from argo_env.envs.observations import Observation
 from argo_env.envs.route_instance import DOCK
 from argo_env.seeding import generator
@@ -42,9 +42,9 @@ class Scorer:
             weights = torch.load(path, weights_only=True)
             self._network.load_state_dict({name: w.float() for name, w in weights.items()})
         except FileNotFoundError:
-            raise ArgoError(f"no weights at {path}: train some, see {WEIGHTS.parent}") from None
+            raise NotFound(f"no weights at {path}: train some, see {WEIGHTS.parent}") from None
         except (UnpicklingError, AttributeError, RuntimeError, EOFError):
-            raise ArgoError(
+            raise Invalid(
                 f"{path} has no weights of this policy: take a `weights.pt` that its training wrote"
             ) from None
         self._network.eval()

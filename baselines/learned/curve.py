@@ -7,7 +7,7 @@ from pathlib import Path
 import matplotlib.pyplot as plt
 from matplotlib.axes import Axes
 
-from argo_compiler.errors import ArgoError
+from argo_compiler.errors import ArgoError, Invalid, NotFound
 from baselines.learned.extra import check_learned
 
 Points = list[tuple[int, float]]
@@ -28,12 +28,12 @@ def read_logs(folder: Path) -> dict[str, Points]:
     )
 
     if not (folder / "logs").is_dir():
-        raise ArgoError(f"no logs of a training: there is no folder {folder / 'logs'}")
+        raise NotFound(f"no logs of a training: there is no folder {folder / 'logs'}")
     logs = EventAccumulator(str(folder / "logs"), size_guidance={"scalars": 0})
     logs.Reload()
     tags = logs.Tags()["scalars"]
     if not any(tag.startswith("validation/") for tag in tags):
-        raise ArgoError(f"{folder / 'logs'} has no training of which one part is done")
+        raise Invalid(f"{folder / 'logs'} has no training of which one part is done")
     return {tag: [(event.step, event.value) for event in logs.Scalars(tag)] for tag in tags}
 
 

@@ -2,7 +2,7 @@
 
 from importlib.util import find_spec
 
-from argo_compiler.errors import ArgoError
+from argo_compiler.errors import Unavailable
 
 
 def check_learned() -> None:
@@ -15,6 +15,6 @@ def check_learned() -> None:
     }
     missing = [name for module, name in wanted.items() if find_spec(module) is None]
     if missing:
-        raise ArgoError(
+        raise Unavailable(
             f"learned policies need {', '.join(missing)}: pip install 'argo-mission[learned]'"
         )

@@ -5,7 +5,7 @@ import sys
 from dataclasses import replace
 from pathlib import Path
 
-from argo_compiler.errors import ArgoError
+from argo_compiler.errors import ArgoError, Conflict, Invalid
 from argo_env.files.folders import make_folder
 from baselines.learned.extra import check_learned
 
@@ -41,12 +41,12 @@ def _train(given: argparse.Namespace) -> None:
     }
     if given.resume:
         if chosen:
-            raise ArgoError("--resume goes on with the settings that the training began with")
+            raise Invalid("--resume goes on with the settings that the training began with")
         state, folder = load(given.resume), given.resume
     else:
         folder = given.out
         if (folder / CHECKPOINT).exists():
-            raise ArgoError(f"{folder} has a training already: --resume {folder}, or another --out")
+            raise Conflict(f"{folder} has a training already: --resume {folder}, or another --out")
         make_folder(folder)
         state = begin(replace(Settings(), **chosen))
     train(state, folder, lambda line: print(line, flush=True))

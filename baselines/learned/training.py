@@ -13,7 +13,7 @@ from sb3_contrib import MaskablePPO
 from stable_baselines3.common.logger import Logger, configure
 from stable_baselines3.common.utils import set_random_seed
 
-from argo_compiler.errors import ArgoError
+from argo_compiler.errors import Invalid, NotFound
 from argo_env.seeding import generator
 from baselines.learned.imitation import lessons, loss
 from baselines.learned.network import RouteNetwork
@@ -101,9 +101,9 @@ def load(folder: Path) -> State:
         settings = Settings(**kept["settings"])
         return State(settings, network, kept["part"], kept["steps"], kept["optimiser"])
     except FileNotFoundError:
-        raise ArgoError(f"no training to go on with: there is no {path}") from None
+        raise NotFound(f"no training to go on with: there is no {path}") from None
     except (UnpicklingError, AttributeError, RuntimeError, EOFError, KeyError, TypeError):
-        raise ArgoError(
+        raise Invalid(
             f"{path} is damaged, or not of this training: begin a new one with --out"
         ) from None
 

@@ -10,7 +10,7 @@ from argo_compiler.editing.draft import DraftGroup, DraftTask, MissionDraft
 from argo_compiler.editing.edited import Edited, edited
 from argo_compiler.editing.refusals import EditConflict, conflict
 from argo_compiler.editing.ways import beginning, default_target, defaults
-from argo_compiler.il import Action, Mission, Task, Transition
+from argo_compiler.il import Action, Mission, Transition
 
 _NAMES = 3
 """names that a message lists"""
@@ -85,7 +85,7 @@ class _Removal:
         self._require_round_starts()
         self._require_same_groups()
         for other in self.leading:
-            ways = self._ways(other.task)
+            ways = self._ways(other)
             if self.name in defaults(other.task):
                 other.goes_on = other.goes_on and self.entry.goes_on
             other.task = other.task.model_copy(update={"transitions": ways})
@@ -101,7 +101,8 @@ class _Removal:
             following = following.after
         return None if following is None else following.task.name
 
-    def _ways(self, task: Task) -> tuple[Transition, ...]:
+    def _ways(self, other: DraftTask) -> tuple[Transition, ...]:
+        task = other.task
         if self.successor is not None:
             return tuple(
                 way.model_copy(update={"target": self.successor})
@@ -112,7 +113,9 @@ class _Removal:
         conditional = [way for way in task.transitions if way.conditions]
         while conditional and conditional[-1].target == self.name:
             conditional.pop()
+        # Where nothing else can be done, the mission ends, but for another round of a group.
         ends = all(target == self.name for target in defaults(task))
+        ends = ends and all(g.last is not other for g in self.draft.groups)
         dropped = [way for way in task.transitions if way.conditions and way.target == self.name]
         if dropped and not (ends and all(way.target != self.name for way in conditional)):
             raise self._conflict(
@@ -140,6 +143,8 @@ class _Removal:
         }
         if default_target(before.task) != self.name:
             wrong[before.task.name] = None
+        if default_target(self.entry.task) == self.name:
+            wrong[self.name] = None
         if wrong:
             inner = min(ended, key=lambda g: -g.group.name.count("/"))
             listed = ", ".join(f"'{name}'" for name in list(wrong)[:_NAMES])

@@ -264,7 +264,7 @@ class Planner:
     def _insert(self, anchor: Item | None, *items: Item) -> None:
         self.plan.put(items, anchor)
         for item in items:
-            if item.object_id is not None:
+            if item.action is Action.MEASURE and item.object_id is not None:
                 self.measurements.setdefault(item.object_id, {})[id(item)] = item
 
     def _checkpoints(self, references: Sequence[Reference]) -> list[CheckpointInfo]:
@@ -603,7 +603,7 @@ class Planner:
             self.diagnostics.error("bound-task", message, span, "change the line that asks for it")
             return False
         self.plan.remove(item)
-        if item.object_id is not None:
+        if item.action is Action.MEASURE and item.object_id is not None:
             self.measurements[item.object_id].pop(id(item), None)
         return True
 

@@ -105,6 +105,24 @@ def test_edits_are_carried_out_in_order(catalog: Catalog) -> None:
     assert measured(text, catalog) == ["2", "14", "4", "8"]
 
 
+def test_a_waypoint_that_is_about_an_object_is_moved_and_deleted_like_any_other(
+    catalog: Catalog,
+) -> None:
+    lines = [
+        "Mission Protocol",
+        "Start here",
+        '"gate": go to (1, 2, 0), about object "8"',
+        "Check checkpoint #1",
+        "Check checkpoint #8",
+        'Move step "gate" after checkpoint #1',
+        "Move checkpoint #8 before checkpoint #1",
+    ]
+    moved = import_script("\n".join(lines), catalog).mission
+    assert [t.name for t in moved.tasks] == ["START", "MEASURE 8", "MEASURE 1", "gate"]
+    left = import_script("\n".join([*lines, 'Delete step "gate"']), catalog).mission
+    assert [t.name for t in left.tasks] == ["START", "MEASURE 8", "MEASURE 1"]
+
+
 def test_a_hint_is_kept_and_does_nothing(catalog: Catalog) -> None:
     text = steps("Check checkpoint #1") + "   Hint: at least 3 robots, add valve R99\n"
     script = parse(text, catalog_words(catalog))

@@ -1,0 +1,240 @@
+"""What an edit leaves as it was, shown by carrying missions out: each task reads what its name and
+the number of its visits say, so that two missions can be compared step by step."""
+
+import random
+import zlib
+from collections import Counter
+
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from argo_compiler.checks import check
+from argo_compiler.diagnostics import has_errors
+from argo_compiler.editing import (
+    EditError,
+    add_task,
+    dissolve_group,
+    move_task,
+    remove_task,
+    rename_task,
+    wrap_tasks,
+)
+from argo_compiler.hfsm import ActionSucceeded, Executor, lower
+from argo_compiler.il import Action, Condition, Group, Mission, Task, Transition
+from argo_compiler.model import Pose
+from tests.conftest import examples
+
+STEPS = 120
+
+
+def run(mission, called=None, steps=STEPS):
+    """The tasks in the order in which they are carried out, and whether the mission has ended."""
+    executor = Executor(lower(mission))
+    executor.start(0.0)
+    visits, order = Counter(), []
+    while executor.running is not None and len(order) < steps:
+        task = executor.running
+        name = task.name
+        order.append(name)
+        visits[name] += 1
+        read = zlib.crc32(f"{(called or {}).get(name, name)} {visits[name]}".encode()) % 7
+        value = float(read) if task.action is Action.MEASURE else None
+        executor.handle(ActionSucceeded(name, value), 0.0)
+    return order, executor.finished
+
+
+seeds = st.integers(0, 2**32)
+
+
+def condition(rng):
+    kind = rng.choice(["MEASURED_VALUE_LESS", "MEASURED_VALUE_GREATER"])
+    return Condition(type=kind, object_id=rng.choice("123"), param1=rng.randint(0, 6))
+
+
+def random_mission(rng, plain=False):
+    """A mission whose runs depend on values alone; a `plain` one is a chain with rounds."""
+    while True:
+        names = [f"{rng.choice('MW')}{i}" for i in range(rng.randint(2, 7))]
+        tasks = tuple(random_task(names, i, rng, plain) for i in range(len(names)))
+        if not plain and rng.random() < 0.5:
+            ways = (Transition(target=rng.choice(names)),) if rng.random() < 0.7 else ()
+            tasks = (Task(name="S", action=Action.START, transitions=ways), *tasks)
+        made = Mission(tasks=tasks, groups=random_groups(names, rng))
+        if not has_errors(check(made)):
+            return made
+
+
+def random_task(names, i, rng, plain):
+    ways = []
+    if not plain and rng.random() < 0.35:
+        held = tuple(condition(rng) for _ in range(rng.choice([1, 1, 2])))
+        ways = [Transition(target=rng.choice(names), conditions=held)]
+        if rng.random() < 0.3:
+            ways.append(Transition(target=rng.choice(names), conditions=(condition(rng),)))
+    onward = names if not plain and rng.random() < 0.2 else names[i + 1 : i + 2]
+    if onward and (plain or rng.random() < 0.95):
+        ways.insert(rng.randint(0, len(ways)), Transition(target=rng.choice(onward)))
+    measures = names[i].startswith("M")
+    return Task(
+        name=names[i],
+        action=Action.MEASURE if measures else Action.WAYPOINT,
+        object_id=rng.choice("123") if measures else None,
+        pose=None if measures else Pose(x=0, y=0, z=0),
+        transitions=tuple(ways),
+    )
+
+
+def random_groups(names, rng):
+    """Ranges that lie in each other or apart, named by their nesting."""
+    kept = []
+    for _ in range(rng.randint(0, 3)):
+        first, last = sorted(rng.randrange(len(names)) for _ in range(2))
+        if not any(f < first <= e < last or first < f <= last < e for f, e in kept):
+            kept.append((first, last))
+    groups, around = [], []
+    for i, (first, last) in enumerate(sorted(kept, key=lambda r: (r[0], -r[1]))):
+        while around and around[-1][1] < first:
+            around.pop()
+        name = f"{around[-1][0]}/G{i}" if around else f"G{i}"
+        around.append((name, last))
+        count = rng.randint(1, 3)
+        groups.append(Group(name=name, start=names[first], end=names[last], max_repeat_count=count))
+    return tuple(groups)
+
+
+def silent(mission, name):
+    """Whether nothing depends on what the task reads, and it leads to one place."""
+    task = mission.task(name)
+    compared = {c.object_id for t in mission.tasks for w in t.transitions for c in w.conditions}
+    return task.object_id not in compared and all(not w.conditions for w in task.transitions)
+
+
+def tried(edit):
+    """What an edit makes, or why it is refused."""
+    try:
+        return edit().mission, set()
+    except EditError as refusal:
+        return None, {d.code for d in refusal.diagnostics}
+
+
+def test_a_task_that_is_removed_is_missing_and_nothing_else_is():
+    """Each task of many missions, unless something depends on what it reads; and each reason why a
+    task can't be removed is met."""
+    refused = Counter()
+
+    @settings(max_examples=examples(800))
+    @given(seeds)
+    def remove_each(seed):
+        mission = random_mission(random.Random(seed))
+        before, ended = run(mission)
+        for name in (t.name for t in mission.tasks):
+            if not silent(mission, name):
+                continue
+            made, codes = tried(lambda name=name: remove_task(mission, name))
+            refused.update(codes or {"no"})
+            if made is None:
+                continue
+            left = [task for task in before if task != name]
+            after, ends = run(made, steps=STEPS if ended else len(left))
+            assert after == left
+            assert ends or not ended
+
+    remove_each()
+    assert set(refused) == {
+        "no",
+        "edit.beginning",
+        "edit.ends-by-condition",
+        "edit.ends-round",
+        "edit.leaves-group",
+        "edit.starts-round",
+        *({"il.endless-group"} & set(refused)),
+    }
+    assert refused["no"] > 0.7 * refused.total()
+
+
+@settings(max_examples=examples(200))
+@given(seeds)
+def test_any_task_of_a_chain_with_rounds_can_be_removed(seed):
+    """Until one is left, and whatever groups there are."""
+    rng = random.Random(seed)
+    mission = random_mission(rng, plain=True)
+    while len(mission.tasks) > 1:
+        mission = remove_task(mission, picked(mission, rng)).mission
+    assert all(g.start == g.end == mission.tasks[0].name for g in mission.groups)
+
+
+@settings(max_examples=examples(800))
+@given(seeds, st.booleans())
+def test_a_task_that_is_added_is_carried_out_between_what_was_there(seed, plain):
+    rng = random.Random(seed)
+    mission = random_mission(rng, plain)
+    where = rng.choice(["before", "after", "first", "last"])
+    place = {where: picked(mission, rng)} if where in ("before", "after") else {}
+    place |= {"first": True} if where == "first" else {}
+    if mission.groups and rng.random() < 0.5:
+        place["into"] = rng.choice([g.name for g in mission.groups])
+    new = Task(name="new", action=Action.WAYPOINT, pose=Pose(x=0, y=0, z=0))
+    made, codes = tried(lambda: add_task(mission, new, **place))
+    assert codes <= {"edit.not-beside-group", "il.start-in-group"}
+    if made is None:
+        return
+    before, ended = run(mission)
+    after, ends = run(made, steps=3 * STEPS if ended else STEPS)
+    left = [task for task in after if task != "new"]
+    assert left == before[: len(left)]
+    assert ends == ended or not ends
+    assert left == before or not ended
+
+
+@settings(max_examples=examples(200))
+@given(seeds)
+def test_a_new_name_changes_no_run(seed):
+    rng = random.Random(seed)
+    mission = random_mission(rng)
+    name = picked(mission, rng)
+    made = rename_task(mission, name, "new").mission
+    before, ended = run(mission)
+    after, ends = run(made, called={"new": name})
+    assert [name if task == "new" else task for task in after] == before
+    assert ends == ended
+
+
+@settings(max_examples=examples(200))
+@given(seeds)
+def test_a_chain_is_carried_out_in_the_order_of_its_list_after_any_move(seed):
+    rng = random.Random(seed)
+    mission = random_mission(rng, plain=True).model_copy(update={"groups": ()})
+    names = [t.name for t in mission.tasks]
+    for _ in range(5):
+        name, anchor = rng.choice(names), rng.choice(names)
+        if name == anchor:
+            continue
+        after = rng.random() < 0.5
+        mission = move_task(mission, name, **{"after" if after else "before": anchor}).mission
+        names.remove(name)
+        names.insert(names.index(anchor) + after, name)
+        assert [t.name for t in mission.tasks] == names
+    assert run(mission) == (names, True)
+
+
+@settings(max_examples=examples(200))
+@given(seeds)
+def test_a_group_around_tasks_repeats_them_and_without_it_they_are_done_once(seed):
+    rng = random.Random(seed)
+    mission = random_mission(rng, plain=True)
+    names = [t.name for t in mission.tasks]
+    first, last = sorted(rng.randrange(len(names)) for _ in range(2))
+    group = Group(name="new", start=names[first], end=names[last], max_repeat_count=2)
+    made, codes = tried(lambda: wrap_tasks(mission, group))
+    assert codes <= {"edit.group-overlap"}
+    if made is None:
+        return
+    (name,) = {g.name for g in made.groups if g.name.split("/")[-1] == "new"}
+    assert dissolve_group(made, name).mission == mission
+    if not mission.groups:
+        twice = [*names[: last + 1], *names[first : last + 1], *names[last + 1 :]]
+        assert run(made) == (twice, True)
+
+
+def picked(mission, rng):
+    return rng.choice([t.name for t in mission.tasks])

@@ -108,6 +108,14 @@ class Configuration:
         self.shift += seconds
         self._find_due(now)
 
+    def set_aside(self, seconds: float, now: float) -> None:
+        """So much of the present interruption went into what was done by hand: its time is added
+        when the machine comes to that, and is no part of the interruption."""
+        if self.interrupted_at is not None:
+            part = min(seconds, now - self.interrupted_at)
+            self.shift -= part
+            self.stood -= part
+
     def leave(self) -> None:
         """The mission has ended, whatever it was doing."""
         self.leaf = None

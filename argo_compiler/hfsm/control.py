@@ -2,7 +2,7 @@
 
 import math
 from collections import deque
-from collections.abc import Iterable
+from collections.abc import Sequence
 
 from argo_compiler.hfsm.configuration import Configuration
 from argo_compiler.hfsm.events import Outcome
@@ -257,10 +257,11 @@ class Control:
         self.place.interrupt(self.now)
         self.note(Cause.PAUSE, event=event, failure=failure, detail=detail)
 
-    def give_back(self, by_hand: Iterable[ByHand]) -> None:
+    def give_back(self, by_hand: Sequence[ByHand]) -> None:
         """A person lets the mission go on, and has done these meanwhile."""
-        for task, done in queues(by_hand).items():
-            self.by_hand.setdefault(task, deque()).extend(done)
+        self.place.set_aside(sum(done.duration for done in by_hand), self.now)
+        for task, queue in queues(by_hand).items():
+            self.by_hand.setdefault(task, deque()).extend(queue)
         self.resume()
 
     def resume(self) -> None:

@@ -17,10 +17,12 @@ from argo_compiler.hfsm import (
     ActionSucceeded,
     ByHand,
     Executor,
+    GiveBack,
     Hfsm,
     Pause,
     Progress,
     Resume,
+    TakeOver,
     Tick,
     lower,
 )
@@ -47,6 +49,7 @@ from tests.argo_compiler.hfsm.random_missions import missions, outcome_lists
 from tests.conftest import examples
 
 VISITS = 40
+PAUSE = Pause()
 
 
 class Site:
@@ -103,9 +106,9 @@ class Site:
         self.executions[name] += 1
         self.spent = 0
 
-    def pause(self, executor, now):
+    def pause(self, executor, now, by=PAUSE):
         self.interrupted = executor.running and executor.running.name
-        for cancel in executor.handle(Pause(), now):
+        for cancel in executor.handle(by, now):
             executor.handle(ActionStopped(cancel.task), now)
 
 
@@ -154,6 +157,35 @@ def test_before_by_hand_and_after_are_the_whole_mission(mission, outcomes, at, d
         once.run(whole, whole_time(whole), len(after.ended))
     assert stand(after) == stand(whole.progress())
     assert sum(e.by_hand for e in after.ended) == len(by_hand) - len(after.by_hand)
+
+
+@pytest.mark.rule("H7")
+@settings(max_examples=examples(200), deadline=None)
+@given(missions(events=False), outcome_lists, st.integers(0, 60), st.integers(0, 30), st.data())
+def test_giving_back_is_a_progress_handed_over_and_gone_on_from(mission, outcomes, at, more, data):
+    """A machine that was taken over and given back stands like one restored meanwhile."""
+    assume(not has_errors(check(mission)))
+    whole, once = Executor(lower(mission)), Site(outcomes)
+    whole.start(0)
+    once.run(whole, 0, VISITS)
+
+    live, site = Executor(lower(mission)), Site(outcomes)
+    live.start(0)
+    now = 0
+    while not live.finished and now < at and len(live.progress().ended) < VISITS:
+        now = site.step(live, now, until=at)
+    site.pause(live, now, TakeOver())
+    before = live.progress()
+    by_hand = tuple(done_by_hand(data, site, once.log))
+    away = sum(done.duration for done in by_hand) + more
+    restored = Executor.restore(lower(mission), hand_over(before, by_hand), now + away, away)
+    restored.start(now + away)
+    expected = restored.handle(Resume(), now + away)
+    assert live.handle(GiveBack(by_hand), now + away) == expected
+    assert stand(live.progress()) == stand(restored.progress())
+    assert live.progress().by_hand == restored.progress().by_hand
+    assert live.progress().elapsed == pytest.approx(restored.progress().elapsed)
+    assert live.next_deadline == restored.next_deadline
 
 
 def whole_time(executor):
@@ -223,6 +255,43 @@ class TestByHand:
         assert executor.progress().by_hand == progress.by_hand
         (command,) = executor.handle(Resume(), 1)
         assert command.task.name == "B"
+
+    @pytest.mark.rule("H7")
+    @pytest.mark.parametrize("counts", [False, True])
+    @pytest.mark.parametrize("durations", [(0, 0), (8, 4), (8, 40)])
+    def test_their_time_is_no_part_of_the_interruption(self, counts, durations):
+        """It is added when the machine comes to what was done by hand, and not twice."""
+        group = Group(
+            name="G", start="A", end="D", max_repeat_duration=90, count_interruptions=counts
+        )
+        live = Executor(lower(line(group)))
+        live.start(0)
+        live.handle(ActionSucceeded("A", 4), 5)
+        live.handle(TakeOver(), 10)
+        live.handle(ActionStopped("B"), 10)
+        first, later = durations
+        done = (ByHand(task="B", value=2, duration=first), ByHand(task="D", duration=later))
+        progress = hand_over(live.progress(), done)
+        restored = Executor.restore(lower(line(group)), progress, 50, away=40)
+        restored.start(50)
+        assert live.handle(GiveBack(done), 50) == restored.handle(Resume(), 50)
+        for at in (50, 60):
+            if at == 60:
+                assert live.handle(Tick(), at) == restored.handle(Tick(), at)
+            assert stand(live.progress()) == stand(restored.progress())
+            assert live.next_deadline == restored.next_deadline
+
+    def test_not_while_an_action_runs(self):
+        executor = Executor(lower(line()))
+        executor.start(0)
+        executor.handle(TakeOver(), 1)
+        with pytest.raises(ValueError, match="while the action of 'A' still runs"):
+            executor.handle(GiveBack((ByHand(task="A"),)), 2)
+        assert executor.paused
+        executor.handle(ActionStopped("A"), 3)
+        (command,) = executor.handle(GiveBack((ByHand(task="A"),)), 4)
+        assert command.task.name == "B"
+        assert "pause (a person takes over)" in [e.why for e in executor.trace]
 
 
 class TestTimeAway:

@@ -6,7 +6,12 @@ import pytest
 
 import argo_env  # noqa: F401
 from argo_compiler.errors import ArgoError
+from argo_env.drives.drive import Incident, Trouble
+from argo_env.drives.route import RouteDrive
 from argo_env.envs.inspection import ABNORMAL, DEAD, DOCKED, FINDING, READING
+from argo_env.robot.pose import BodyPose
+from argo_env.run.session import simulate
+from argo_env.run.spec import RunSpec
 
 CHECKPOINTS = 20  # of the site
 
@@ -137,3 +142,73 @@ def test_after_the_platform_alarm_only_docks_are_legal(make):
     observation, _, _, _, info = env.step(nearest(observation))
     assert "platform_alarm" in info["found"]
     assert np.flatnonzero(observation["mask"]).tolist() == [20, 21]
+
+
+class TestOneLoop:
+    """An episode is a run like any other."""
+
+    @pytest.mark.parametrize(
+        ("drive", "actions"),
+        [("route", (1, 0, 2, 3)), ("kinematic", (1, 0, 2, 3)), ("tracked", (1, 3))],
+    )
+    def test_its_record_is_that_of_the_mission_that_it_made(self, make, yard_file, drive, actions):
+        env = make(scenario=yard_file, drive=drive)
+        faults = [
+            {"kind": "abnormal_value", "checkpoint": 2, "at": 4.0},
+            {"kind": "drive_dysfunction", "at": 5.0, "until": 20.0, "speed": 0.3},
+        ]
+        _, info = env.reset(seed=4, options={"faults": faults})
+        for action in actions:
+            _, _, terminated, _, _ = env.step(action)
+        assert terminated
+        record = env.record()
+        assert record.result.success
+        assert [r.checkpoint - 1 for r in record.readings] == list(actions[:-1])
+        spec = RunSpec(mission=record.mission, site=yard_file, **info["settings"])
+        assert simulate(spec) == record
+
+    def test_a_record_of_an_episode_under_way_and_of_one_cut_short(self, make, yard_file):
+        env = make(scenario=yard_file, faults=0, time_limit=40.0)
+        env.reset(seed=4)
+        env.step(0)
+        assert "under way" in env.record().result.verdict
+        truncated = False
+        while not truncated:
+            truncated = env.step(1)[3]
+        assert "the time limit of 40 s was reached" in env.record().result.verdict
+
+    def test_trouble_of_the_drive_is_told(self, make, yard_file, monkeypatch):
+        """Slipping and being stuck, as the record of a run tells them."""
+        slipped = Incident(Trouble.SLIPPING, "made 0.1 m of 0.5 m", BodyPose(2, 2, 0.02, 0))
+        env = make(scenario=yard_file, faults=0)
+        monkeypatch.setattr(RouteDrive, "incidents", (slipped,))
+        env.reset(seed=4)
+        assert env.step(0)[4]["trouble"] == ("slipping: made 0.1 m of 0.5 m",)
+        assert env.step(1)[4]["trouble"] == ()
+        assert [m.trouble for m in env.record().mishaps] == [Trouble.SLIPPING]
+
+
+@pytest.mark.parametrize("mode", ["sync", "async"])
+def test_many_at_a_time_are_as_each_alone(make, yard_file, mode):
+    """Also in processes of their own, to which spaces and observations are sent."""
+    arguments = {"scenario": yard_file, "drive": "kinematic", "faults": 2}
+    many = gym.make_vec("argo/Inspect-v0", 2, mode, **arguments)
+    try:
+        observations, infos = many.reset(seed=[6, 7])
+        alone = [make(**arguments) for _ in range(2)]
+        firsts = [env.reset(seed=6 + k) for k, env in enumerate(alone)]
+        for actions in ([0, 1], [1, 3]):
+            for k, (observation, info) in enumerate(firsts):
+                for name, value in observation.items():
+                    assert np.array_equal(observations[name][k], value), name
+                if "found" in info:
+                    assert infos["found"][k] == info["found"]
+                    assert infos["trouble"][k] == info["trouble"]
+            observations, rewards, ended, _, infos = many.step(np.array(actions))
+            steps = [env.step(action) for env, action in zip(alone, actions, strict=True)]
+            assert rewards.tolist() == [s[1] for s in steps]
+            assert ended.tolist() == [s[2] for s in steps]
+            firsts = [(s[0], s[4]) for s in steps]
+        assert ended.tolist() == [False, True]
+    finally:
+        many.close()

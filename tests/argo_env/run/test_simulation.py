@@ -155,7 +155,7 @@ class TestPausing:
 
 
 def test_eight_threads_give_what_each_gives_alone(site):
-    drives = ["route", "kinematic"] * 3 + ["tracked", "tracked"]
+    drives = [*3 * ["route", "kinematic"], "route", "tracked"]
     specs = [
         spec_of(drive, faults=FAULTS).model_copy(update={"seed": seed})
         for seed, drive in enumerate(drives)

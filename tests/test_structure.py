@@ -204,3 +204,16 @@ def test_messages_of_the_libraries_name_the_thing_and_no_option():
             and OPTION.search(node.value)
         ]
         assert not said, module
+
+
+@pytest.mark.parametrize("package", KNOWS)
+def test_what_goes_wrong_is_of_a_kind(package):
+    """`ArgoError` is what all kinds are; by itself it tells a program nothing."""
+    bare = [
+        f"{module}, line {node.lineno}"
+        for module, tree in TREES.items()
+        if module.split(".")[0] == package
+        for node in ast.walk(tree)
+        if isinstance(node, ast.Call) and ast.unparse(node.func) == "ArgoError"
+    ]
+    assert not bare

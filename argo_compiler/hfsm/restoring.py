@@ -3,7 +3,7 @@
 from collections import deque
 from collections.abc import Iterable, Mapping
 
-from argo_compiler.errors import ArgoError
+from argo_compiler.errors import Conflict
 from argo_compiler.hfsm.configuration import Configuration, Frame
 from argo_compiler.hfsm.model import RETURN, task_id
 from argo_compiler.hfsm.progress import (
@@ -118,7 +118,7 @@ def remaining_by_hand(queues: Mapping[str, deque[ByHand]]) -> tuple[ByHand, ...]
 def _leaf(tables: Tables, name: str) -> LeafNode:
     leaf = tables.leaves.get(RETURN if name == RETURN_TASK else task_id(name))
     if leaf is None:
-        raise ArgoError(
+        raise Conflict(
             f"the progress is at task '{name}', which the mission does not have; {_OTHER}"
         )
     return leaf
@@ -132,7 +132,7 @@ def _groups(leaf: LeafNode, progress: Progress) -> list[GroupNode]:
         group = group.parent
     groups.reverse()
     if [group.name for group in groups] != [known.group for known in progress.groups]:
-        raise ArgoError(
+        raise Conflict(
             f"the progress has task '{leaf.name}' in other groups than the mission; {_OTHER}"
         )
     return groups
@@ -145,7 +145,7 @@ def _reaction(tables: Tables, event: EventKind) -> ReactionNode:
     return reaction
 
 
-def _no_reaction(event: EventKind) -> ArgoError:
-    return ArgoError(
+def _no_reaction(event: EventKind) -> Conflict:
+    return Conflict(
         f"the progress has a reaction to {event}, which the mission does not have; {_OTHER}"
     )

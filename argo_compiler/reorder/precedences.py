@@ -3,7 +3,7 @@
 from collections.abc import Iterator
 from itertools import combinations, product
 
-from argo_compiler.errors import ArgoError
+from argo_compiler.errors import Invalid
 from argo_compiler.il import Mission
 from argo_compiler.reorder.requirements import Requirements
 from argo_compiler.reorder.units import TaskUnit, Unit, find_spine, leaves_of
@@ -67,7 +67,7 @@ def _asked_for(visits: Visits, requirements: Requirements) -> Iterator[Precedenc
         words = " before ".join(map(said, sequence))
         for (i, one), (j, other) in combinations(enumerate(found), 2):
             if set(one) & set(other):
-                raise ArgoError(
+                raise Invalid(
                     f"{words}: {said(sequence[i])} and {said(sequence[j])} have a task in common, "
                     "which can't come before itself"
                 )

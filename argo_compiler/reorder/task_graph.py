@@ -5,7 +5,7 @@ from dataclasses import dataclass, field
 
 from argo_compiler.analysis.flow import NOWHERE, Flow
 from argo_compiler.analysis.graph import leading_to, reached_from
-from argo_compiler.errors import ArgoError, Remedy
+from argo_compiler.errors import Invalid, Remedy
 from argo_compiler.hfsm.lowering import lower
 from argo_compiler.il import Action, Mission
 
@@ -93,13 +93,13 @@ class TaskGraph:
         reached = reached_from(following, [flow.initial])
         for i in self.own:
             if not reached[i]:
-                raise ArgoError(
+                raise Invalid(
                     f"no way leads to task '{flow.leaves[i].name}', so there is no place for it in "
                     "an order: remove it, or lead a transition to it; a check says more",
                     remedies=(Remedy.CHECK_MISSION,),
                 )
         if not reached[flow.done]:
-            raise ArgoError(
+            raise Invalid(
                 "nothing leads to the end of this mission: a check says why",
                 remedies=(Remedy.CHECK_MISSION,),
             )

@@ -6,7 +6,7 @@ from typing import Any, cast
 import gymnasium as gym
 import numpy as np
 
-from argo_compiler.errors import ArgoError, Invalid
+from argo_compiler.errors import Invalid
 
 Parts = Mapping[str, type | tuple[type, ...]]
 """the types of what a state has, by name"""
@@ -51,9 +51,9 @@ def check_state(state: Any, parts: Parts, env: str) -> None:
         raise no_state(env)
 
 
-def no_state(env: str) -> ArgoError:
+def no_state(env: str) -> Invalid:
     """The error for what is no state of the environment."""
-    return ArgoError(f"this is no state of {env}: take what `get_state()` of such a one gave")
+    return Invalid(f"this is no state of {env}: take what `get_state()` of such a one gave")
 
 
 def _of_generator(state: Mapping[str, Any]) -> bool:

@@ -8,7 +8,7 @@ from functools import cached_property
 import numpy as np
 from numpy.typing import NDArray
 
-from argo_compiler.errors import ArgoError
+from argo_compiler.errors import Invalid
 
 DOCK = 0
 """the node where every route ends"""
@@ -177,27 +177,27 @@ def make_instance(
     """
     n = len(prizes)
     if times.shape != (n + 1, n) or service.shape != (n,) or places.shape != (n + 1, 3):
-        raise ArgoError(
+        raise Invalid(
             f"a route instance with {n - 1} checkpoints needs times of shape {(n + 1, n)}, "
             f"not {times.shape}, {n} service times and {n + 1} places"
         )
     if n - 1 > MOST_CHECKPOINTS:
-        raise ArgoError(f"a route has at most {MOST_CHECKPOINTS} checkpoints, not {n - 1}")
+        raise Invalid(f"a route has at most {MOST_CHECKPOINTS} checkpoints, not {n - 1}")
     if prizes.min() < 0.0 or prizes.max() > 1.0 or prizes[DOCK] != 0.0:
-        raise ArgoError("prizes are from 0 to 1, and 0 at the dock")
+        raise Invalid("prizes are from 0 to 1, and 0 at the dock")
     if times.min() < 0.0 or service.min() < 0.0:
-        raise ArgoError("a travel or service time is negative")
+        raise Invalid("a travel or service time is negative")
     if not 0.0 < budget < _LONGEST:
-        raise ArgoError(f"a budget is more than 0 and less than {_LONGEST:.0f} s, not {budget:g}")
+        raise Invalid(f"a budget is more than 0 and less than {_LONGEST:.0f} s, not {budget:g}")
     arrival = _arrival(times, service)
     budget = float(np.floor(budget / TICK) * TICK)
     if arrival[n, DOCK] > budget:
-        raise ArgoError(f"the way from the start to the dock takes longer than {budget:g} s")
+        raise Invalid(f"the way from the start to the dock takes longer than {budget:g} s")
     before = np.zeros((n, n), dtype=np.bool_)
     for first, then in pairs:
         before[first, then] = True
     if np.diagonal(before).any():
-        raise ArgoError("a checkpoint is to be visited before itself")
+        raise Invalid("a checkpoint is to be visited before itself")
     instance = RouteInstance(arrival, prizes.astype(np.float64), before, budget, places)
     for array in (instance.arrival, instance.prizes, before, places):
         array.setflags(write=False)

@@ -12,7 +12,7 @@ from typing import Annotated, ClassVar, Literal, Self
 import numpy as np
 from pydantic import Field
 
-from argo_compiler.errors import ArgoError
+from argo_compiler.errors import Invalid, NotFound
 from argo_env.faults.fault import Fault
 from argo_env.site import Site
 from argo_env.site.shapes import Box, Element, Role, Solid
@@ -49,7 +49,7 @@ class Brick(Fault):
         for _ in range(1 if self.place else _DRAWS):
             floor, place = _place(site, rng, self.floor, self.place, lowest=1)
             if not any(_holds(r, place) for r in floor.walkways.values()):
-                raise ArgoError(f"there is no walkway at ({place[0]:g}, {place[1]:g}) of floor "
+                raise Invalid(f"there is no walkway at ({place[0]:g}, {place[1]:g}) of floor "
                                 f"{floor.number}")  # fmt: skip
             yaw = round(float(rng.uniform(-90.0, 90.0)), 1)
             settled = self._with(
@@ -58,7 +58,7 @@ class Brick(Fault):
             area = settled._over_dock(site, floor)
             if area is None:
                 return settled
-        raise ArgoError(
+        raise Invalid(
             f"a brick at ({place[0]:g}, {place[1]:g}) of floor {floor.number} lies over the dock "
             f"of starting area {area}, where the robot has to stand: give another `place`, or a "
             "smaller `size`"
@@ -109,12 +109,12 @@ class MissingPlate(Fault):
             middle = ((x0 + x1) / 2, (y0 + y1) / 2)
         floor, (x, y) = _place(site, rng, self.floor, middle, lowest=2)
         if not floor.railed:
-            raise ArgoError(f"floor {floor.number} is a slab on the ground and has no plates")
+            raise Invalid(f"floor {floor.number} is a slab on the ground and has no plates")
         half = PLATE / 2
         drawn = tuple(round(v, 3) for v in (x - half, y - half, x + half, y + half))
         settled = self._with(floor=floor.number, rect=self.rect or drawn)
         if settled.changed(site) == site.elements:
-            raise ArgoError(f"there is no deck at ({x:g}, {y:g}) of floor {floor.number}")
+            raise Invalid(f"there is no deck at ({x:g}, {y:g}) of floor {floor.number}")
         return settled
 
     def changed(self, site: Site) -> tuple[Element, ...]:
@@ -142,16 +142,16 @@ class BlockedStairs(Fault):
     def settled(self, site: Site, rng: np.random.Generator) -> Self:
         towers, floors = [t.name for t in site.spec.towers], site.spec.floors[:-1]
         if not towers or not floors:
-            raise ArgoError(f"site {site.name} has no stairs")
+            raise NotFound(f"site {site.name} has no stairs")
         tower = towers[int(rng.integers(len(towers)))]
         floor = floors[int(rng.integers(len(floors)))].number
         if self.tower is not None and self.tower not in towers:
-            raise ArgoError(
+            raise NotFound(
                 f"site {site.name} has no stair tower `{self.tower}`; there are: "
                 f"{', '.join(towers)}"
             )
         if self.floor is not None and self.floor not in [f.number for f in floors]:
-            raise ArgoError(f"site {site.name} has no stairs up from floor {self.floor}")
+            raise NotFound(f"site {site.name} has no stairs up from floor {self.floor}")
         return self._with(tower=self.tower or tower, floor=self.floor or floor)
 
     def changed(self, site: Site) -> tuple[Element, ...]:
@@ -207,10 +207,10 @@ def _place(
     """The floor and the place on one of its walkways: as given, or drawn."""
     floors = [f for f in site.spec.floors if f.number >= lowest]
     if not floors:
-        raise ArgoError(f"site {site.name} has no upper floor")
+        raise NotFound(f"site {site.name} has no upper floor")
     drawn = floors[int(rng.integers(len(floors)))]
     if number is None and place is not None:
-        raise ArgoError("a place without a floor: give the `floor` as well")
+        raise Invalid("a place without a floor: give the `floor` as well")
     floor = drawn if number is None else _floor(site, number)
     x0, y0, x1, y1 = list(floor.walkways.values())[int(rng.integers(len(floor.walkways)))]
     x, y = (
@@ -226,7 +226,7 @@ def _floor(site: Site, number: int) -> FloorSpec:
     for floor in site.spec.floors:
         if floor.number == number:
             return floor
-    raise ArgoError(f"site {site.name} has no floor {number}")
+    raise NotFound(f"site {site.name} has no floor {number}")
 
 
 def _holds(rect: Rect, place: Point) -> bool:

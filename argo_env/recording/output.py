@@ -2,7 +2,7 @@
 
 from pathlib import Path
 
-from argo_compiler.errors import ArgoError
+from argo_compiler.errors import Unavailable
 
 
 class RecordingFile:
@@ -41,7 +41,7 @@ class RecordingFile:
     def close(self) -> None:
         self._file.close()
 
-    def _error(self, error: OSError) -> ArgoError:
-        return ArgoError(
+    def _error(self, error: OSError) -> Unavailable:
+        return Unavailable(
             f"{self._path}: the recording can't be written: {error.strerror}; choose another place"
         )

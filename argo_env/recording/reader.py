@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, NoReturn
 
 from pydantic import ValidationError
 
-from argo_compiler.errors import ArgoError, Invalid, NotFound, Remedy
+from argo_compiler.errors import Invalid, NotFound, Remedy
 from argo_compiler.files.json_places import format_path
 from argo_compiler.files.reading import FileError, FileProblem, read_bytes
 from argo_env.files.yaml_messages import message_of
@@ -48,7 +48,7 @@ class Recording:
     def require_record(self) -> RunRecord:
         """The run's record; ArgoError if the run did not come to its end."""
         if self.record is None:
-            raise ArgoError(
+            raise Invalid(
                 f"{self.name}: has no record of the run, which is written at its end: {self.loss}. "
                 "No report and no film can be made of it; what is there can be shown",
                 remedies=(Remedy.SHOW_REST,),

@@ -17,7 +17,7 @@ from typing import Literal, NoReturn, Self, TypeVar
 from pydantic import ValidationError
 
 from argo_compiler import __version__
-from argo_compiler.errors import ArgoError, Conflict, NotFound, Remedy
+from argo_compiler.errors import ArgoError, Conflict, Invalid, NotFound, Remedy, Unavailable
 from argo_compiler.model import Model
 from argo_env.closing import Closing
 from argo_env.files.yaml_messages import message_of
@@ -80,7 +80,7 @@ class Journal(Observer, Closing):
                 os.fsync(self._file)
         except OSError as error:
             _cut(self._file, self._size)
-            raise ArgoError(
+            raise Unavailable(
                 f"{self.path}: the journal can't be written any further: {error.strerror}; what "
                 "was written stays, and the run can be resumed from there",
                 remedies=(Remedy.RESUME,),
@@ -123,7 +123,7 @@ def fingerprints(site: OpenedSite, spec: RunSpec) -> dict[str, str]:
         try:
             found["mission file"] = _digest(source.read_bytes())
         except OSError as error:
-            raise ArgoError(f"{source}: can't be read: {error.strerror}") from error
+            raise Unavailable(f"{source}: can't be read: {error.strerror}") from error
     return found
 
 
@@ -136,9 +136,9 @@ def require_free(path: Path) -> None:
             about=str(path),
         )
     if not path.parent.is_dir():
-        _refuse(path, "its folder does not exist: make it, or choose another")
+        _refuse(path, "its folder does not exist: make it, or choose another", kind=NotFound)
     if not os.access(path.parent, os.W_OK):
-        _refuse(path, "its folder can't be written to: choose another")
+        _refuse(path, "its folder can't be written to: choose another", kind=Unavailable)
 
 
 def create_journal(path: Path, header: Header) -> Journal:
@@ -164,7 +164,7 @@ def create_journal(path: Path, header: Header) -> Journal:
     except OSError as error:
         os.close(file)
         draft.unlink(missing_ok=True)
-        _refuse(path, f"can't be written: {error.strerror}; choose another place")
+        _refuse(path, f"can't be written: {error.strerror}; choose another place", kind=Unavailable)
     except ArgoError:
         os.close(file)
         raise
@@ -188,7 +188,7 @@ def open_journal(path: Path) -> Journal:
             os.fsync(file)
     except OSError as error:
         os.close(file)
-        _refuse(path, f"can't be read: {error.strerror}")
+        _refuse(path, f"can't be read: {error.strerror}", kind=Unavailable)
     except ArgoError:
         os.close(file)
         raise
@@ -260,14 +260,18 @@ def _open(path: Path, flags: int = 0) -> int:
             f"{path}: there is no such journal: a run begins one", remedies=(Remedy.KEEP_JOURNAL,)
         ) from None
     except OSError as error:
-        _refuse(path, f"can't be opened: {error.strerror}")
+        _refuse(path, f"can't be opened: {error.strerror}", kind=Unavailable)
 
 
 def _lock(file: int, path: Path) -> None:
     try:
         fcntl.flock(file, fcntl.LOCK_EX | fcntl.LOCK_NB)
     except BlockingIOError:
-        _refuse(path, "is in use: another process goes on with this run; wait for its end")
+        _refuse(
+            path,
+            "is in use: another process goes on with this run; wait for its end",
+            kind=Conflict,
+        )
 
 
 def _read(file: int, path: Path) -> bytes:
@@ -306,5 +310,7 @@ def _digest(content: str | bytes) -> str:
     return hashlib.sha256(data).hexdigest()[:12]
 
 
-def _refuse(path: Path, message: str, *remedies: Remedy) -> NoReturn:
-    raise ArgoError(f"{path}: {message}", remedies=remedies) from None
+def _refuse(
+    path: Path, message: str, *remedies: Remedy, kind: type[ArgoError] = Invalid
+) -> NoReturn:
+    raise kind(f"{path}: {message}", remedies=remedies) from None

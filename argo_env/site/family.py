@@ -6,7 +6,7 @@ from typing import Any
 
 from pydantic import Field, ValidationError, field_validator
 
-from argo_compiler.errors import ArgoError
+from argo_compiler.errors import Invalid
 from argo_compiler.model import Model
 from argo_env.files.yaml_messages import message_of
 
@@ -107,9 +107,9 @@ _READERS: dict[str, Callable[[str], Any]] = {
 }
 
 
-def _error(text: str, message: str) -> ArgoError:
+def _error(text: str, message: str) -> Invalid:
     least, most = _SIZE
-    return ArgoError(
+    return Invalid(
         f"site `{text}`: {message}; write {PREFIX}floors=1..12,size=WxD ({least} to {most} m),"
         f"stairs={'|'.join(Stairs)},clutter=0..1,checkpoints=0..500,seed=N, in any order,"
         " each of them optional"

@@ -7,7 +7,7 @@ import typer
 from rich.console import Console
 from rich.markup import escape
 
-from argo_compiler.errors import ArgoError
+from argo_compiler.errors import Invalid
 from argo_compiler.files.mission_file import write_mission
 from argo_env.planning.opening import open_site
 from argo_planner.terminal.files import read_upload, require_mission_output
@@ -28,7 +28,7 @@ def import_script(
     """Read a mission script, a bag or an isar mission, and write the mission as JSON."""
     upload = read_upload(script)
     if kind_of(upload) is SourceKind.MISSION:
-        raise ArgoError(f"{script} is no script: `argo run` and `argo compile` take missions")
+        raise Invalid(f"{script} is no script: `argo run` and `argo compile` take missions")
     require_mission_output(script, output)
     mission = import_shown(upload, open_site(site), start_area, end_area).mission
     write_mission(mission, output)

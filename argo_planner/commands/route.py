@@ -8,7 +8,7 @@ import typer
 from pydantic import ValidationError
 from rich.console import Console
 
-from argo_compiler.errors import ArgoError, Conflict
+from argo_compiler.errors import Conflict, Invalid
 from argo_compiler.files.mission_file import write_mission
 from argo_compiler.files.reading import read_bytes
 from argo_compiler.reorder.requirements import Requirements, What
@@ -158,11 +158,11 @@ def _checked(name: str, option: str, value: object) -> Requirements:
         return Requirements.model_validate({name: value})
     except ValidationError as error:
         fault = error.errors(include_url=False)[0]
-        raise ArgoError(f"--{name} {option}: {message_of(fault, ())}") from None
+        raise Invalid(f"--{name} {option}: {message_of(fault, ())}") from None
 
 
 def _sequence(option: str) -> tuple[What, ...]:
     parts = [part.strip().removeprefix("#") for part in option.split(",")]
     if len(parts) < 2 or not all(parts):
-        raise ArgoError(f'--before {option}: name at least two, such as --before "8, 4"')
+        raise Invalid(f'--before {option}: name at least two, such as --before "8, 4"')
     return tuple(int(part) if part.isdecimal() else part for part in parts)

@@ -8,7 +8,7 @@ from typing import Annotated
 
 import typer
 
-from argo_compiler.errors import ArgoError
+from argo_compiler.errors import Invalid
 from argo_compiler.files.reading import read_bytes
 from argo_env.faults.reading import MAX_BYTES, FaultText, decode_faults
 from argo_env.files.folders import make_folder
@@ -48,7 +48,7 @@ class _Outputs:
     def check(self) -> None:
         """Raises ArgoError where something can't be written; folders are made now."""
         if self.pace is not None and not self.gui:
-            raise ArgoError("--pace is how fast the window shows the run: give --gui as well")
+            raise Invalid("--pace is how fast the window shows the run: give --gui as well")
         if self.render:
             check_film(self.render)
         if self.recording:

@@ -6,7 +6,7 @@ from typing import Annotated
 
 import typer
 
-from argo_compiler.errors import ArgoError, located
+from argo_compiler.errors import ArgoError, Invalid, located
 from argo_env.planning.opening import OpenedSite, open_site
 from argo_planner.terminal.files import keep_input, write_text
 from argo_planner.use_cases.sites import check_site, describe_site, list_sites, require_free_name
@@ -25,7 +25,7 @@ def show_sites(
     """List the sites, or check one; exits with status 2 if it can't be driven."""
     if site is None:
         if output:
-            raise ArgoError("--output writes the description of one site: say which")
+            raise Invalid("--output writes the description of one site: say which")
         for one in list_sites():
             print(f"{one.name}: {one.title}, floors: {one.floors}, checkpoints: {one.checkpoints}")
         return
@@ -49,9 +49,7 @@ def _check_name(output: Path) -> None:
     """Raises ArgoError if no site is found in a file of that name, or another one is by the name
     that it gets."""
     if output.suffix not in {".yaml", ".yml"}:
-        raise ArgoError(
-            f"{output}: a site is found in a file that ends in .yaml or .yml; name it so"
-        )
+        raise Invalid(f"{output}: a site is found in a file that ends in .yaml or .yml; name it so")
     try:
         require_free_name(str(output))
         require_free_name(output.stem)

@@ -2,7 +2,7 @@
 
 import math
 
-from argo_compiler.errors import ArgoError
+from argo_compiler.errors import ArgoError, Conflict, Invalid
 from argo_compiler.hfsm import Event
 from argo_compiler.il import EventKind
 from argo_planner.use_cases.running import event_named
@@ -21,11 +21,11 @@ def parse_events(options: list[str]) -> list[tuple[float, Event]]:
         except ValueError:
             time_s = math.nan
         if not 0.0 <= time_s < math.inf:
-            raise ArgoError(f"--event {option}: write TIME=KIND in s, such as 60=gas_leak")
+            raise Invalid(f"--event {option}: write TIME=KIND in s, such as 60=gas_leak")
         try:
             events.append((time_s, event_named(name)))
         except ArgoError as error:
-            raise ArgoError(f"--event {option}: {error}") from None
+            raise Invalid(f"--event {option}: {error}") from None
     return sorted(events, key=lambda event: event[0])
 
 
@@ -39,8 +39,8 @@ def parse_values(options: list[str]) -> dict[int, float]:
             if not math.isfinite(shown):
                 raise ValueError(value)
         except ValueError:
-            raise ArgoError(f"--value {option}: write ID=VALUE, such as 8=4.2") from None
+            raise Invalid(f"--value {option}: write ID=VALUE, such as 8=4.2") from None
         if number in values:
-            raise ArgoError(f"--value {option}: checkpoint {number} has been given a value already")
+            raise Conflict(f"--value {option}: checkpoint {number} has been given a value already")
         values[number] = shown
     return values

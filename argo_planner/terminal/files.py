@@ -3,7 +3,7 @@
 from collections.abc import Mapping
 from pathlib import Path
 
-from argo_compiler.errors import ArgoError
+from argo_compiler.errors import Conflict, Invalid, Unavailable
 from argo_compiler.files.mission_file import read_mission_bytes
 from argo_compiler.files.reading import read_bytes
 from argo_compiler.files.writing import write_whole
@@ -28,14 +28,14 @@ def read_upload(source: Path) -> Upload:
 def keep_input(source: Path, output: Path) -> None:
     """Raises ArgoError where a command would write over what it reads."""
     if source.resolve() == output.resolve():
-        raise ArgoError(f"{output} is the input as well; choose another place to write to")
+        raise Conflict(f"{output} is the input as well; choose another place to write to")
 
 
 def require_mission_output(source: Path, output: Path) -> None:
     """Raises ArgoError where a mission that is written there could not be read again."""
     keep_input(source, output)
     if output.suffix.lower() != ".json":
-        raise ArgoError(f"{output}: a mission is written as JSON; name a file that ends in .json")
+        raise Invalid(f"{output}: a mission is written as JSON; name a file that ends in .json")
 
 
 def write_text(path: Path, text: str) -> None:
@@ -43,7 +43,7 @@ def write_text(path: Path, text: str) -> None:
     try:
         write_whole(path, text)
     except OSError as error:
-        raise ArgoError(f"{path}: can't be written: {error.strerror}") from error
+        raise Unavailable(f"{path}: can't be written: {error.strerror}") from error
 
 
 def write_content(path: Path, content: str | bytes | Mapping[str, bytes]) -> None:
@@ -58,7 +58,7 @@ def write_content(path: Path, content: str | bytes | Mapping[str, bytes]) -> Non
 
 def _write_folder(folder: Path, files: Mapping[str, bytes]) -> None:
     if folder.exists() and not folder.is_dir():
-        raise ArgoError(f"{folder}: this format is a folder of files, and there is a file already")
+        raise Conflict(f"{folder}: this format is a folder of files, and there is a file already")
     for path, content in files.items():
         make_folder((folder / path).parent)
         _write_bytes(folder / path, content)
@@ -68,4 +68,4 @@ def _write_bytes(path: Path, content: bytes) -> None:
     try:
         path.write_bytes(content)
     except OSError as error:
-        raise ArgoError(f"{path}: can't be written: {error.strerror}") from error
+        raise Unavailable(f"{path}: can't be written: {error.strerror}") from error

@@ -7,7 +7,7 @@ from dataclasses import replace
 import numpy as np
 from numpy.typing import NDArray
 
-from argo_compiler.errors import ArgoError
+from argo_compiler.errors import Unavailable
 from argo_env.robot.pose import BodyPose
 from argo_env.seeding import generator
 from argo_env.sensing.sensor import Measurement, MeasurementError, PoorViewError
@@ -57,7 +57,7 @@ class CameraSensor:
         try:
             import cv2  # noqa: F401
         except ImportError as error:
-            raise ArgoError(
+            raise Unavailable(
                 "the sensor `camera` needs OpenCV: pip install 'argo-mission[vision]'"
             ) from error
         self._world = world

@@ -64,14 +64,14 @@ class AbnormalValue(CheckpointFault):
             )
         return super().settled(site, rng)._with(checkpoint=checkpoint.id, value=value)
 
-    def begin(self, stage: "FaultTargets", now: float) -> None:  # noqa: ARG002
+    def begin(self, targets: "FaultTargets", now: float) -> None:  # noqa: ARG002
         assert self.checkpoint is not None
         assert self.value is not None
-        stage.show(self.checkpoint, self.value)
+        targets.show(self.checkpoint, self.value)
 
-    def end(self, stage: "FaultTargets", now: float) -> None:  # noqa: ARG002
+    def end(self, targets: "FaultTargets", now: float) -> None:  # noqa: ARG002
         assert self.checkpoint is not None
-        stage.show(self.checkpoint, stage.usual[self.checkpoint])
+        targets.show(self.checkpoint, targets.usual[self.checkpoint])
 
 
 class DisplacedCheckpoint(CheckpointFault):
@@ -113,17 +113,17 @@ class DisplacedCheckpoint(CheckpointFault):
             )
         )
 
-    def begin(self, stage: "FaultTargets", now: float) -> None:  # noqa: ARG002
+    def begin(self, targets: "FaultTargets", now: float) -> None:  # noqa: ARG002
         assert self.checkpoint is not None
         assert self.offset is not None
         assert self.turn is not None
         assert self.roll is not None
         placement = Placement(self.offset, math.radians(self.turn), math.radians(self.roll))
-        stage.world.displace(self.checkpoint, placement)
+        targets.world.displace(self.checkpoint, placement)
 
-    def end(self, stage: "FaultTargets", now: float) -> None:  # noqa: ARG002
+    def end(self, targets: "FaultTargets", now: float) -> None:  # noqa: ARG002
         assert self.checkpoint is not None
-        stage.world.displace(self.checkpoint, AS_PLANNED)
+        targets.world.displace(self.checkpoint, AS_PLANNED)
 
 
 def _abnormal(checkpoint: SiteCheckpoint, rng: np.random.Generator) -> float:

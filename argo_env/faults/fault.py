@@ -54,13 +54,13 @@ class Fault(Model):
         """The site's elements as they are with this fault."""
         return site.elements
 
-    def begin(self, stage: "FaultTargets", now: float) -> None:
+    def begin(self, targets: "FaultTargets", now: float) -> None:
         """Takes effect at time `now` (s).
 
         One that does not add up does so again each time that another one of its kind has ended.
         """
 
-    def end(self, stage: "FaultTargets", now: float) -> None:
+    def end(self, targets: "FaultTargets", now: float) -> None:
         """Takes the effect back; one that does not add up, that of all of its kind."""
 
     def _with(self, **fields: Any) -> Self:

@@ -31,11 +31,11 @@ class ProcessFault(TimedFault):
         """What it puts there."""
         raise NotImplementedError
 
-    def begin(self, stage: "FaultTargets", now: float) -> None:
-        stage.surroundings.add(self.source(), now)
+    def begin(self, targets: "FaultTargets", now: float) -> None:
+        targets.surroundings.add(self.source(), now)
 
-    def end(self, stage: "FaultTargets", now: float) -> None:
-        stage.surroundings.remove(self.source(), now)
+    def end(self, targets: "FaultTargets", now: float) -> None:
+        targets.surroundings.remove(self.source(), now)
 
 
 class GasLeakFault(ProcessFault):

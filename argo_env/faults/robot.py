@@ -26,9 +26,9 @@ class LowBattery(Fault):
         drawn = round(float(rng.uniform(0.1, 0.25)), 3)
         return self._with(charge=self.charge or drawn)
 
-    def begin(self, stage: "FaultTargets", now: float) -> None:  # noqa: ARG002
+    def begin(self, targets: "FaultTargets", now: float) -> None:  # noqa: ARG002
         assert self.charge is not None
-        stage.battery.charge = self.charge
+        targets.battery.charge = self.charge
 
 
 class WornBattery(Fault):
@@ -42,9 +42,9 @@ class WornBattery(Fault):
         drawn = round(float(rng.uniform(0.2, 0.6)), 3)
         return self._with(capacity=self.capacity or drawn)
 
-    def begin(self, stage: "FaultTargets", now: float) -> None:  # noqa: ARG002
+    def begin(self, targets: "FaultTargets", now: float) -> None:  # noqa: ARG002
         assert self.capacity is not None
-        stage.battery.wear(self.capacity)
+        targets.battery.wear(self.capacity)
 
 
 class ConnectionLoss(TimedFault):
@@ -63,11 +63,11 @@ class ConnectionLoss(TimedFault):
             raise NotFound(f"site {site.name} has no floor {self.floor}")
         return super().settled(site, rng)
 
-    def begin(self, stage: "FaultTargets", now: float) -> None:  # noqa: ARG002
-        stage.network.shadows.append(Shadow(self.rect, self.floor))
+    def begin(self, targets: "FaultTargets", now: float) -> None:  # noqa: ARG002
+        targets.network.shadows.append(Shadow(self.rect, self.floor))
 
-    def end(self, stage: "FaultTargets", now: float) -> None:  # noqa: ARG002
-        stage.network.shadows.remove(Shadow(self.rect, self.floor))
+    def end(self, targets: "FaultTargets", now: float) -> None:  # noqa: ARG002
+        targets.network.shadows.remove(Shadow(self.rect, self.floor))
 
 
 class EmergencyStop(TimedFault):
@@ -75,11 +75,11 @@ class EmergencyStop(TimedFault):
 
     kind: Literal["emergency_stop"] = "emergency_stop"
 
-    def begin(self, stage: "FaultTargets", now: float) -> None:  # noqa: ARG002
-        stage.drive.pressed = True
+    def begin(self, targets: "FaultTargets", now: float) -> None:  # noqa: ARG002
+        targets.drive.pressed = True
 
-    def end(self, stage: "FaultTargets", now: float) -> None:  # noqa: ARG002
-        stage.drive.pressed = False
+    def end(self, targets: "FaultTargets", now: float) -> None:  # noqa: ARG002
+        targets.drive.pressed = False
 
 
 class SensorDysfunction(TimedFault):
@@ -95,14 +95,14 @@ class SensorDysfunction(TimedFault):
         drawn = "fails" if rng.uniform() < 0.5 else "noise"
         return super().settled(site, rng)._with(effect=self.effect or drawn)
 
-    def begin(self, stage: "FaultTargets", now: float) -> None:  # noqa: ARG002
+    def begin(self, targets: "FaultTargets", now: float) -> None:  # noqa: ARG002
         if self.effect == "fails":
-            stage.sensor.failed = True
+            targets.sensor.failed = True
         else:
-            stage.sensor.noise = self.noise
+            targets.sensor.noise = self.noise
 
-    def end(self, stage: "FaultTargets", now: float) -> None:  # noqa: ARG002
-        stage.sensor.failed, stage.sensor.noise = False, 0.0
+    def end(self, targets: "FaultTargets", now: float) -> None:  # noqa: ARG002
+        targets.sensor.failed, targets.sensor.noise = False, 0.0
 
 
 class DriveDysfunction(TimedFault):
@@ -116,9 +116,9 @@ class DriveDysfunction(TimedFault):
         drawn = round(float(rng.uniform(0.0, 0.5)), 2)
         return super().settled(site, rng)._with(speed=drawn if self.speed is None else self.speed)
 
-    def begin(self, stage: "FaultTargets", now: float) -> None:  # noqa: ARG002
+    def begin(self, targets: "FaultTargets", now: float) -> None:  # noqa: ARG002
         assert self.speed is not None
-        stage.drive.share = min(stage.drive.share, self.speed)
+        targets.drive.share = min(targets.drive.share, self.speed)
 
-    def end(self, stage: "FaultTargets", now: float) -> None:  # noqa: ARG002
-        stage.drive.share = 1.0
+    def end(self, targets: "FaultTargets", now: float) -> None:  # noqa: ARG002
+        targets.drive.share = 1.0

@@ -10,10 +10,10 @@ from argo_env.faults.targets import FaultTargets
 class Schedule:
     """Lets faults begin and end at their times. Holds how far it has come, and what has begun."""
 
-    def __init__(self, faults: Sequence[AnyFault], stage: FaultTargets) -> None:
+    def __init__(self, faults: Sequence[AnyFault], targets: FaultTargets) -> None:
         """The faults must be settled."""
         self.faults = tuple(faults)
-        self._stage = stage
+        self._targets = targets
         self._moments = _moments(faults)
         self._next = 0
         self._active: list[AnyFault] = []  # in the order in which they began
@@ -41,17 +41,17 @@ class Schedule:
             self._next += 1
             if begins:
                 self._active.append(fault)
-                fault.begin(self._stage, at)
+                fault.begin(self._targets, at)
             else:
                 self._active.remove(fault)
-                fault.end(self._stage, at)
+                fault.end(self._targets, at)
                 self._renew(type(fault), at)
 
     def _renew(self, kind: type[Fault], now: float) -> None:
         """Lets those of a kind that have not ended take effect again after one that has."""
         for fault in self._active:
             if type(fault) is kind and not kind.adds_up:
-                fault.begin(self._stage, now)
+                fault.begin(self._targets, now)
 
 
 _Moment = tuple[float, bool, AnyFault]

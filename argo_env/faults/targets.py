@@ -12,7 +12,7 @@ from argo_env.world.paper_world import AnyWorld
 
 @dataclass(frozen=True)
 class FaultTargets:
-    """The parts of one run. They change as faults begin and end; the stage itself does not."""
+    """The parts of one run. They change as faults begin and end; the set of them does not."""
 
     world: AnyWorld
     truth: dict[int, float]

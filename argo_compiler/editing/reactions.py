@@ -23,7 +23,7 @@ def change_reaction(mission: Mission, event: EventKind, reaction: Reaction) -> E
     Raises EditNotFound if there is none, and as `add_reaction` does.
     """
     at = _index(mission, event)
-    if reaction.event is not event:
+    if reaction.event != event:
         _require_free(mission, reaction.event)
     others = mission.reactions
     made = mission.model_copy(update={"reactions": (*others[:at], reaction, *others[at + 1 :])})
@@ -41,7 +41,7 @@ def remove_reaction(mission: Mission, event: EventKind) -> Edited:
 
 def _index(mission: Mission, event: EventKind) -> int:
     for i, reaction in enumerate(mission.reactions):
-        if reaction.event is event:
+        if reaction.event == event:
             return i
     known = ", ".join(reaction.event for reaction in mission.reactions) or "none"
     message = f"the mission has no reaction to {event}"
@@ -50,7 +50,7 @@ def _index(mission: Mission, event: EventKind) -> int:
 
 
 def _require_free(mission: Mission, event: EventKind) -> None:
-    if any(reaction.event is event for reaction in mission.reactions):
+    if any(reaction.event == event for reaction in mission.reactions):
         message = f"there is a reaction to {event} already"
         hint = "change that one, or remove it first"
         raise conflict("edit.second-reaction", message, hint, subject_of("reactions", event))

@@ -1,0 +1,282 @@
+"""Single edits: what becomes of a mission, what else changes, and what is refused."""
+
+import inspect
+
+import pytest
+
+from argo_compiler import editing
+from argo_compiler.diagnostics.codes import CODES
+from argo_compiler.editing import EditConflict, EditInvalid, EditNotFound, commands
+from argo_compiler.editing.commands import FUNCTIONS, apply, read_edit
+from argo_compiler.il import Action, Condition, Group, Mission, Reaction, Task, Transition
+from argo_compiler.model import Pose
+
+HIGH = Condition(type="MEASURED_VALUE_GREATER", object_id="1", param1=5)
+DOCK = Pose(x=0, y=0, z=0)
+
+
+def way(target, *conditions):
+    return Transition(target=target, conditions=conditions)
+
+
+def task(name, *ways, **fields):
+    ways = tuple(way(w) if isinstance(w, str) else w for w in ways)
+    return Task(name=name, action=Action.MEASURE, object_id="1", transitions=ways, **fields)
+
+
+def group(name, start, end, **fields):
+    return Group(name=name, start=start, end=end, **{"max_repeat_count": 2, **fields})
+
+
+START = Task(name="START", action=Action.START, transitions=(way("A"),))
+MISSION = Mission(
+    tasks=(
+        START,
+        task("A", "B"),
+        task("B", way("D", HIGH), "C", group="Alpha"),
+        task("C", "D", group="Alpha/Beta"),
+        task("D", way("A", HIGH), "E"),
+        task("E"),
+    ),
+    groups=(group("Alpha", "B", "C"), group("Alpha/Beta", "C", "C")),
+    reactions=(Reaction(event="low_battery", response="return"),),
+    dock=DOCK,
+    current="C",
+)
+
+
+def told(edited):
+    return [(c.subject, c.before, c.after) for c in edited.consequences]
+
+
+def order(edited):
+    return " ".join(t.name for t in edited.mission.tasks)
+
+
+def test_a_task_is_added_where_the_list_goes_on():
+    edited = editing.add_task(MISSION, task("new"), after="A")
+    assert order(edited) == "START A new B C D E"
+    assert told(edited) == [("tasks['A'].transitions[0].target", "B", "new")]
+    assert edited.mission.task("new").transitions == (way("B"),)
+    assert order(editing.add_task(MISSION, task("new"))) == "START A B C D E new"
+    assert order(editing.add_task(MISSION, task("new"), first=True)) == "START new A B C D E"
+
+
+def test_at_the_border_of_a_group_a_task_is_outside_unless_it_is_to_be_inside():
+    outside = editing.add_task(MISSION, task("new"), after="C").mission
+    assert [(g.start, g.end) for g in outside.groups] == [("B", "C"), ("C", "C")]
+    assert outside.task("new").group == ""
+    inside = editing.add_task(MISSION, task("new"), after="C", into="Alpha").mission
+    assert [(g.start, g.end) for g in inside.groups] == [("B", "new"), ("C", "C")]
+    assert inside.task("new").group == "Alpha"
+    within = editing.add_task(MISSION, task("new"), before="C", into="Alpha/Beta").mission
+    assert [(g.start, g.end) for g in within.groups] == [("B", "C"), ("new", "C")]
+
+
+def test_a_removed_task_leaves_its_place_to_its_neighbours():
+    edited = editing.remove_task(MISSION, "C")
+    assert order(edited) == "START A B D E"
+    assert told(edited) == [
+        ("tasks['B'].transitions[1].target", "C", "D"),
+        ("groups['Alpha'].end", "C", "B"),
+        ("groups['Alpha/Beta']", "Alpha/Beta", None),
+        ("current", "C", "D"),
+    ]
+    assert "no tasks any more" in edited.consequences[2].message
+    assert told(editing.remove_task(MISSION, "START")) == []
+
+
+def test_a_task_is_renamed_wherever_it_is_named():
+    edited = editing.rename_task(MISSION, "C", "gauge")
+    assert told(edited) == [
+        ("tasks['B'].transitions[1].target", "C", "gauge"),
+        ("groups['Alpha'].end", "C", "gauge"),
+        ("groups['Alpha/Beta'].start", "C", "gauge"),
+        ("groups['Alpha/Beta'].end", "C", "gauge"),
+        ("current", "C", "gauge"),
+    ]
+    assert "'C'" not in edited.mission.model_dump_json().replace('"', "'")
+
+
+def test_a_replaced_task_keeps_its_ways_and_gives_its_place():
+    edited = editing.replace_task(MISSION, "D", task("valve", retries=2))
+    assert edited.mission.task("valve").transitions == MISSION.task("D").transitions
+    assert edited.mission.task("C").transitions == (way("valve"),)
+    assert edited.mission.task("B").transitions[0].target == "valve"
+
+
+def test_a_moved_task_crosses_the_borders_of_groups():
+    edited = editing.move_task(MISSION, "E", before="C", into="Alpha/Beta")
+    assert order(edited) == "START A B E C D"
+    assert edited.mission.task("E").group == "Alpha/Beta"
+    assert edited.mission.task("D").transitions == (way("A", HIGH),)
+    assert edited.mission.groups[1].start == "E"
+    out = editing.move_task(edited.mission, "E", first=True)
+    assert order(out) == "START E A B C D"
+    assert out.mission.groups == MISSION.groups
+    assert out.mission.tasks[0].transitions == (way("E"),)
+
+
+def test_the_names_of_groups_follow_from_what_lies_in_what():
+    edited = editing.wrap_tasks(MISSION, group("Round", "A", "D"))
+    assert [g.name for g in edited.mission.groups] == ["Round/Alpha", "Round/Alpha/Beta", "Round"]
+    assert edited.mission.task("C").group == "Round/Alpha/Beta"
+    inner = editing.wrap_tasks(MISSION, group("new", "B", "B")).mission
+    assert inner.groups[-1].name == "Alpha/new"
+    renamed = editing.rename_group(edited.mission, "Round/Alpha", "Gamma").mission
+    assert [g.name for g in renamed.groups] == ["Round/Gamma", "Round/Gamma/Beta", "Round"]
+    assert renamed.task("B").group == "Round/Gamma"
+    left = editing.dissolve_group(edited.mission, "Round").mission
+    assert left.groups == MISSION.groups
+    wide = editing.change_group(MISSION, "Alpha", start="A", max_repeat_count=5).mission
+    assert (wide.groups[0].start, wide.groups[0].max_repeat_count) == ("A", 5)
+    assert wide.task("A").group == "Alpha"
+
+
+def test_ways_conditions_reactions_and_header():
+    mission = editing.remove_transition(MISSION, "D", 0).mission
+    assert mission.task("D").transitions == (way("E"),)
+    mission = editing.add_transition(mission, "D", way("A", HIGH), at=0).mission
+    assert mission == MISSION
+    mission = editing.add_condition(mission, "D", 0, HIGH).mission
+    assert mission.task("D").transitions[0].conditions == (HIGH, HIGH)
+    assert editing.remove_condition(mission, "D", 0, 1).mission == MISSION
+    assert editing.set_target(MISSION, "D", 0, "B").mission.task("D").transitions[0].target == "B"
+    pause = Reaction(event="low_battery", response="pause")
+    assert editing.change_reaction(MISSION, "low_battery", pause).mission.reactions == (pause,)
+    assert editing.remove_reaction(MISSION, "low_battery").mission.reactions == ()
+    changed = editing.set_header(MISSION, designation="X", max_duration=60).mission
+    assert (changed.designation, changed.max_duration, changed.dock) == ("X", 60.0, DOCK)
+    assert editing.set_header(changed, max_duration=None).mission.max_duration is None
+
+
+REFUSALS = [
+    (EditNotFound, "edit.unknown-task", lambda: editing.remove_task(MISSION, "Q")),
+    (EditNotFound, "edit.unknown-task", lambda: editing.set_target(MISSION, "D", 0, "Q")),
+    (EditNotFound, "edit.unknown-task", lambda: editing.set_header(MISSION, current="Q")),
+    (EditNotFound, "edit.unknown-group", lambda: editing.dissolve_group(MISSION, "Beta")),
+    (EditNotFound, "edit.unknown-transition", lambda: editing.remove_transition(MISSION, "E", 0)),
+    (EditNotFound, "edit.unknown-condition", lambda: editing.remove_condition(MISSION, "D", 1, 0)),
+    (EditNotFound, "edit.unknown-reaction", lambda: editing.remove_reaction(MISSION, "gas_leak")),
+    (EditConflict, "edit.name-taken", lambda: editing.rename_task(MISSION, "A", "B")),
+    (
+        EditConflict,
+        "edit.name-taken",
+        lambda: editing.wrap_tasks(MISSION, group("Alpha", "E", "E")),
+    ),
+    (EditConflict, "edit.group-overlap", lambda: editing.wrap_tasks(MISSION, group("X", "A", "B"))),
+    (
+        EditConflict,
+        "edit.group-overlap",
+        lambda: editing.change_group(MISSION, "Alpha/Beta", end="D"),
+    ),
+    (
+        EditConflict,
+        "edit.start-in-group",
+        lambda: editing.wrap_tasks(MISSION, group("X", "START", "A")),
+    ),
+    (EditConflict, "edit.second-default", lambda: editing.add_transition(MISSION, "A", way("C"))),
+    (EditConflict, "edit.second-default", lambda: editing.set_conditions(MISSION, "D", 0, ())),
+    (
+        EditConflict,
+        "edit.second-reaction",
+        lambda: editing.add_reaction(MISSION, Reaction(event="low_battery", response="abort")),
+    ),
+    (
+        EditConflict,
+        "edit.not-beside-group",
+        lambda: editing.add_task(MISSION, task("new"), after="D", into="Alpha"),
+    ),
+    (EditConflict, "edit.last-task", lambda: editing.remove_task(Mission(tasks=(START,)), "START")),
+    (
+        EditConflict,
+        "edit.ambiguous-task",
+        lambda: editing.remove_task(Mission(tasks=(task("A"), task("A"))), "A"),
+    ),
+    (EditConflict, "il.no-dock", lambda: editing.set_header(MISSION, dock=None)),
+    (
+        EditConflict,
+        "il.endless-group",
+        lambda: editing.change_group(MISSION, "Alpha/Beta", max_repeat_count=0),
+    ),
+    (EditConflict, "il.start-as-target", lambda: editing.set_target(MISSION, "D", 0, "START")),
+    (EditInvalid, "edit.place", lambda: editing.move_task(MISSION, "A", after="A")),
+    (EditInvalid, "edit.place", lambda: editing.move_task(MISSION, "A", after="B", first=True)),
+    (EditInvalid, "edit.value", lambda: editing.rename_task(MISSION, "A", "")),
+    (EditInvalid, "edit.value", lambda: editing.set_header(MISSION, max_duration=-1)),
+    (EditInvalid, "edit.value", lambda: read_edit('{"kind": "remove_task", "name": 3}')),
+    (EditInvalid, "edit.group-order", lambda: editing.wrap_tasks(MISSION, group("X", "E", "D"))),
+    (EditInvalid, "edit.group-name", lambda: editing.rename_group(MISSION, "Alpha", "a/b")),
+    (
+        EditInvalid,
+        "il.waypoint-without-pose",
+        lambda: editing.add_task(MISSION, Task(name="new", action=Action.WAYPOINT)),
+    ),
+]
+ELSEWHERE = {
+    "edit.beginning",
+    "edit.ends-by-condition",
+    "edit.ends-round",
+    "edit.leaves-group",
+    "edit.starts-round",
+}
+"""met by the removals in `test_runs`"""
+
+
+@pytest.mark.parametrize(("kind", "code", "edit"), REFUSALS)
+def test_what_can_not_be_is_refused_by_its_kind_and_reason(kind, code, edit):
+    with pytest.raises(kind, match=code) as caught:
+        edit()
+    assert [d.code for d in caught.value.diagnostics] == [code]
+    assert all(d.hint for d in caught.value.diagnostics)
+
+
+def test_every_reason_to_refuse_is_tried():
+    tried = {code for _, code, _ in REFUSALS if code.startswith("edit.")}
+    assert tried | ELSEWHERE == {code for code in CODES if code.startswith("edit.")}
+
+
+def test_a_nearly_right_name_is_met_with_the_right_one():
+    with pytest.raises(EditNotFound, match="is 'START' meant"):
+        editing.remove_task(MISSION, "STRT")
+
+
+def test_what_did_not_change_is_shared():
+    edited = editing.remove_task(MISSION, "E").mission
+    kept = [t for t in edited.tasks if any(t is old for old in MISSION.tasks)]
+    assert [t.name for t in kept] == ["START", "A", "B", "C"]
+    assert edited.groups[0] is MISSION.groups[0]
+
+
+@pytest.mark.parametrize("kind", FUNCTIONS)
+def test_an_edit_as_data_is_the_call_of_its_function(kind):
+    """The models and the functions can't come apart: fields are parameters, and so are defaults."""
+    model = next(
+        m
+        for m in vars(commands).values()
+        if isinstance(m, type)
+        and issubclass(m, commands.EditCommand)
+        and m.model_fields["kind"].default == kind
+    )
+    mission, *rest = inspect.signature(FUNCTIONS[kind]).parameters.values()
+    fields = {name: f for name, f in model.model_fields.items() if name != "kind"}
+    assert mission.name == "mission"
+    named = {p.name: p for p in rest if p.kind is not inspect.Parameter.VAR_KEYWORD}
+    if len(named) == len(rest):
+        assert set(named) == set(fields)
+    else:
+        (values,) = (p for p in rest if p.kind is inspect.Parameter.VAR_KEYWORD)
+        given = set(values.annotation.__args__[0].__annotations__)
+        assert set(named) | given == set(fields)
+    for name, parameter in named.items():
+        required = parameter.default is inspect.Parameter.empty
+        assert fields[name].is_required() == required
+        assert required or fields[name].default == parameter.default
+
+
+def test_an_edit_is_written_with_what_was_given_and_nothing_else():
+    edit = commands.SetHeader(max_duration=None)
+    assert edit.model_dump_json() == '{"kind":"set_header","max_duration":null}'
+    long = MISSION.model_copy(update={"max_duration": 60.0, "designation": "X"})
+    changed = apply(long, read_edit(edit.model_dump_json())).mission
+    assert (changed.max_duration, changed.designation) == (None, "X")

@@ -9,6 +9,7 @@ from rich.markup import escape
 
 from argo_compiler.errors import NotFound
 from argo_env.planning.opening import open_site
+from argo_planner.terminal.completion import among
 from argo_planner.terminal.files import keep_input, read_upload, write_content
 from argo_planner.terminal.importing import import_shown
 from argo_planner.terminal.options import EndArea, SiteOption, Source, StartArea
@@ -18,7 +19,12 @@ from argo_planner.use_cases.exporting import export_mission as export_imported
 
 def export_mission(
     source: Source,
-    to: Annotated[str, typer.Option("--to", metavar="FORMAT", help=", ".join(FORMATS))],
+    to: Annotated[
+        str,
+        typer.Option(
+            "--to", metavar="FORMAT", help=", ".join(FORMATS), autocompletion=among(FORMATS)
+        ),
+    ],
     output: Annotated[
         Path, typer.Option("-o", "--output", help="the file to write, or the folder of files")
     ],

@@ -21,6 +21,7 @@ from argo_env.run.observer import Observer
 from argo_env.run.record import RunRecord
 from argo_env.run.session import simulate
 from argo_env.run.spec import RunSpec, logged
+from argo_planner.terminal.completion import among
 from argo_planner.terminal.events import KINDS, parse_events, parse_values
 from argo_planner.terminal.files import keep_input, read_upload
 from argo_planner.terminal.importing import import_shown
@@ -67,11 +68,17 @@ def run(
     report: Annotated[
         Path | None, typer.Option("--report", metavar="DIR", help="folder for the report")
     ] = None,
-    drive: Annotated[str, typer.Option(help=f"what moves the robot: {', '.join(DRIVES)}")] = (
-        "kinematic"
-    ),
+    drive: Annotated[
+        str,
+        typer.Option(
+            help=f"what moves the robot: {', '.join(DRIVES)}", autocompletion=among(DRIVES)
+        ),
+    ] = "kinematic",
     sensor: Annotated[
-        str, typer.Option(help=f"what reads the checkpoints: {', '.join(SENSORS)}")
+        str,
+        typer.Option(
+            help=f"what reads the checkpoints: {', '.join(SENSORS)}", autocompletion=among(SENSORS)
+        ),
     ] = "ideal",
     optimise: Optimise = False,
     start_area: StartArea = None,

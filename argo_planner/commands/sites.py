@@ -8,6 +8,7 @@ import typer
 
 from argo_compiler.errors import ArgoError, Invalid, located
 from argo_env.planning.opening import OpenedSite, open_site
+from argo_planner.terminal import completion
 from argo_planner.terminal.files import keep_input, write_text
 from argo_planner.use_cases.sites import check_site, describe_site, list_sites, require_free_name
 
@@ -15,7 +16,11 @@ from argo_planner.use_cases.sites import check_site, describe_site, list_sites, 
 def show_sites(
     site: Annotated[
         str | None,
-        typer.Argument(metavar="SITE", help="a site to check: its name, its .yaml, or generated:…"),
+        typer.Argument(
+            metavar="SITE",
+            help="a site to check: its name, its .yaml, or generated:…",
+            autocompletion=completion.sites,
+        ),
     ] = None,
     output: Annotated[
         Path | None,

@@ -5,6 +5,8 @@ from typing import Annotated
 
 import typer
 
+from argo_planner.terminal import completion
+
 Source = Annotated[
     Path,
     typer.Argument(
@@ -14,7 +16,11 @@ Source = Annotated[
 ]
 SiteOption = Annotated[
     str,
-    typer.Option("--site", help="a site's name, a path to its .yaml, or generated:floors=3,seed=7"),
+    typer.Option(
+        "--site",
+        help="a site's name, a path to its .yaml, or generated:floors=3,seed=7",
+        autocompletion=completion.sites,
+    ),
 ]
 Optimise = Annotated[
     bool,

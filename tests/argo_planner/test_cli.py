@@ -88,6 +88,20 @@ def test_bash_completes_what_there_is_to_choose_from() -> None:
     assert complete("bash", "argo schema ma").split() == ["machine"]
 
 
+@pytest.mark.parametrize(
+    ("words", "offered"),
+    [
+        ("argo run m.json --drive k", ["kinematic"]),
+        ("argo run m.json --sensor ", ["ideal", "camera"]),
+        ("argo export m.json --to merm", ["mermaid"]),
+        ("argo check m.json --site um", ["umad"]),
+        ("argo sites darm", ["darmstadt"]),
+    ],
+)
+def test_bash_completes_names(words: str, offered: list[str]) -> None:
+    assert complete("bash", words).split() == offered
+
+
 def test_files_are_left_to_the_shell() -> None:
     assert not complete("bash", "argo check scen").strip()
     assert "_files" in complete("zsh", "argo check scen")

@@ -2,14 +2,12 @@
 
 from dataclasses import dataclass
 
-from argo_compiler.checks.groups import check_groups
-from argo_compiler.diagnostics import Severity
 from argo_compiler.diagnostics.subject import subject_of
 from argo_compiler.editing.linked import Linked, LinkedList
 from argo_compiler.editing.refusals import conflict, unknown
 from argo_compiler.editing.ways import default_target, defaults, with_default
 from argo_compiler.il import Action, Group, Mission, Task
-from argo_compiler.il.grouping import GroupNesting
+from argo_compiler.il.grouping import GroupNesting, GroupRange, group_ranges, parent_name
 
 
 @dataclass(eq=False, slots=True)
@@ -246,7 +244,18 @@ def _goes_on(task: Task, following: str | None) -> bool:
 
 def _nest(mission: Mission) -> bool:
     """Whether names and ranges of the mission's groups tell the same story."""
-    return all(
-        f.severity is not Severity.ERROR or f.code == "il.endless-group"
-        for f in check_groups(mission)
-    )
+    ranges = group_ranges(mission)
+    names = {r.group.name for r in ranges}
+    if not len(names) == len(ranges) == len(mission.groups):
+        return False
+    around: list[GroupRange] = []
+    for r in ranges:
+        while around and around[-1].last < r.first:
+            around.pop()
+        outer = around[-1] if around else None
+        if parent_name(r.group.name) != (None if outer is None else outer.group.name):
+            return False
+        if outer is not None and outer.last < r.last:
+            return False
+        around.append(r)
+    return True

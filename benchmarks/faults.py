@@ -71,7 +71,7 @@ def clean(navigator: Navigator, count: int, first_seed: int, drive: str) -> None
         began = time.perf_counter()
         record = simulate(
             RunSpec(mission=mission, seed=seed, drive=drive),
-            OpenedSite(navigator.site.name, navigator),
+            OpenedSite.of_navigator(navigator),
         )
         wall += time.perf_counter() - began
         simulated += record.result.duration
@@ -108,7 +108,7 @@ def scenarios(navigator: Navigator, seeds: int, drive: str) -> None:
                 faults=read_faults(path),
                 events=logged((OPERATOR, Resume())),
             )
-            record = simulate(spec, OpenedSite(navigator.site.name, navigator))
+            record = simulate(spec, OpenedSite.of_navigator(navigator))
             kinds = {str(a.kind) for a in record.anomalies}
             usual = usual or kinds
             good += kinds == usual and len(record.anomalies) <= 2 and record.contacts == ()
@@ -144,7 +144,7 @@ def bricks(navigator: Navigator, count: int, first_seed: int, drive: str) -> Non
             Task(name="DOCK", action=Action.WAYPOINT, pose=dock),
         )
         spec = RunSpec(mission=mission, seed=seed, drive=drive, faults=(brick,))
-        record = simulate(spec, OpenedSite(navigator.site.name, navigator))
+        record = simulate(spec, OpenedSite.of_navigator(navigator))
         found += any(a.kind is EventKind.POSITIVE_OBSTACLE for a in record.anomalies)
         touched += bool(record.contacts)
         reached += record.result.success

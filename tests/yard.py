@@ -170,7 +170,7 @@ class Watching(Observer):
 
 def opened(navigator):
     """The navigator's site as an opened one."""
-    return OpenedSite(navigator.site.name, navigator)
+    return OpenedSite.of_navigator(navigator)
 
 
 def simulated(plan, navigator, *, observers=(), journal=None, gui=False, pace=None, **fields):

@@ -9,7 +9,6 @@ from collections.abc import Iterable
 from contextlib import suppress
 from dataclasses import dataclass
 from pathlib import Path
-from tempfile import TemporaryFile
 
 from argo_env.files.parts import NOWHERE, Parts
 
@@ -78,6 +77,8 @@ def contents() -> Contents:
 
 def flaw() -> str | None:
     """Why nothing can be kept in the cache; None if it can."""
+    from tempfile import TemporaryFile
+
     try:
         folder = _sites()
         folder.mkdir(parents=True, exist_ok=True)

@@ -12,7 +12,6 @@ import zlib
 from collections.abc import Callable, Mapping
 from contextlib import suppress
 from pathlib import Path
-from tempfile import NamedTemporaryFile
 from typing import Any
 
 import numpy as np
@@ -67,6 +66,8 @@ class Parts:
         """Writes a part in one go, so that no reader ever sees half of it."""
         if self._folder is None:
             return
+        from tempfile import NamedTemporaryFile
+
         draft: str | None = None
         try:
             self._folder.mkdir(parents=True, exist_ok=True)

@@ -1,7 +1,17 @@
 """Navigation: the walkable surface, the robot's moves on it, and the fastest paths."""
 
-from argo_env.navigation.blockage import Blockage
-from argo_env.navigation.navigator import Navigator
-from argo_env.navigation.path import Motion, Path
+from typing import TYPE_CHECKING
+
+from argo_compiler.lazy_names import lazy_names
 
 __all__ = ["Blockage", "Motion", "Navigator", "Path"]
+
+if TYPE_CHECKING:
+    from argo_env.navigation.blockage import Blockage
+    from argo_env.navigation.navigator import Navigator
+    from argo_env.navigation.path import Motion, Path
+else:
+    __getattr__, __dir__ = lazy_names(
+        __name__,
+        {"blockage": ["Blockage"], "navigator": ["Navigator"], "path": ["Motion", "Path"]},
+    )

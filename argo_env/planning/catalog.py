@@ -1,21 +1,41 @@
 """The compiler's view of a site: what scripts may name there."""
 
 import math
+from collections.abc import Mapping
+from typing import TYPE_CHECKING
 
 import numpy as np
 
 from argo_compiler.catalog import Area, Catalog, CheckpointInfo, Floor, Place
 from argo_compiler.errors import Unreachable
 from argo_compiler.model import Pose
-from argo_env.navigation import Navigator
+from argo_env.files.parts import Parts
 from argo_env.site import Site
+
+if TYPE_CHECKING:
+    from argo_env.navigation import Navigator
 
 _APART = 2.0  # m at least between the waypoints of a patrol
 
 
-def make_catalog(navigator: Navigator) -> Catalog:
+def make_catalog(navigator: "Navigator") -> Catalog:
     """The catalogue of the navigator's site, its patrols along places that the robot can reach."""
-    site = navigator.site
+    floors = navigator.site.spec.floors
+    return _catalog(navigator.site, {f.number: patrol(navigator, f.number) for f in floors})
+
+
+def kept_catalog(site: Site, parts: Parts) -> Catalog | None:
+    """The same by the patrols that are kept in `parts`; None if some are not."""
+    patrols = {}
+    for floor in site.spec.floors:
+        corners = parts.find(_part(floor.number))
+        if corners is None:
+            return None
+        patrols[floor.number] = _round(corners["corners"].tolist())
+    return _catalog(site, patrols)
+
+
+def _catalog(site: Site, patrols: Mapping[int, tuple[Pose, ...]]) -> Catalog:
     return Catalog(
         site=site.name,
         checkpoints=tuple(
@@ -32,22 +52,29 @@ def make_catalog(navigator: Navigator) -> Catalog:
         ),
         areas=tuple(Area(number=n, dock=pose) for n, pose in sorted(site.docks.items())),
         floors=tuple(
-            Floor(number=f.number, z=f.z, patrol=patrol(navigator, f.number))
-            for f in site.spec.floors
+            Floor(number=f.number, z=f.z, patrol=patrols[f.number]) for f in site.spec.floors
         ),
         places=tuple(Place(name=name, pose=pose) for name, pose in site.places.items()),
     )
 
 
-def patrol(navigator: Navigator, floor: int) -> tuple[Pose, ...]:
+def patrol(navigator: "Navigator", floor: int) -> tuple[Pose, ...]:
     """A round on a floor: the reachable place nearest to each corner, counter-clockwise from the
     south-west, each pose turned towards the next.
 
     Raises ArgoError if fewer than three of them are apart from each other.
     """
-    corners = navigator.parts.made(
-        f"patrol-{floor}", lambda: {"corners": np.array(_corners(navigator, floor))}
-    )["corners"].tolist()
+    found = navigator.parts.made(
+        _part(floor), lambda: {"corners": np.array(_corners(navigator, floor))}
+    )
+    return _round(found["corners"].tolist())
+
+
+def _part(floor: int) -> str:
+    return f"patrol-{floor}"
+
+
+def _round(corners: list[list[float]]) -> tuple[Pose, ...]:
     following = corners[1:] + corners[:1]
     return tuple(
         Pose(
@@ -60,7 +87,7 @@ def patrol(navigator: Navigator, floor: int) -> tuple[Pose, ...]:
     )
 
 
-def _corners(navigator: Navigator, floor: int) -> list[tuple[float, float, float]]:
+def _corners(navigator: "Navigator", floor: int) -> list[tuple[float, float, float]]:
     places = navigator.turning_places(floor)
     x0, y0, x1, y1 = _bounds(navigator.site, floor)
     # The whole robot stays on the floor, wherever it turns.

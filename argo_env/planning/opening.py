@@ -11,18 +11,19 @@ from typing import TYPE_CHECKING, Any
 
 from argo_compiler.catalog import Catalog
 from argo_compiler.errors import Conflict
+from argo_compiler.files.reading import read_text
 from argo_env.files import cache
-from argo_env.navigation import Navigator
-from argo_env.planning.catalog import make_catalog
+from argo_env.files.parts import NOWHERE, Parts
+from argo_env.planning.catalog import kept_catalog, make_catalog
 from argo_env.planning.code import digest_of_code
 from argo_env.robot.spec import RobotSpec, load_robot
 from argo_env.site import Site, make_site
-from argo_env.site.family import is_family, parse_family
+from argo_env.site.family import Family, is_family, parse_family
 from argo_env.site.site import site_file
-from argo_env.site.site_file import parse_site_spec, read_spec_text
-from argo_env.site.spec import SiteSpec
+from argo_env.site.spec import MAX_BYTES, SiteSpec
 
 if TYPE_CHECKING:
+    from argo_env.navigation import Navigator
     from argo_env.planning.travel import SiteTravel
 
 _KEPT = 8  # sites in memory; each holds some 100 MB
@@ -36,9 +37,14 @@ class OpenedSite:
     description where it was made in memory: who unpickles it opens the site again.
     """
 
-    def __init__(self, reference: str | None, navigator: Navigator) -> None:
+    def __init__(
+        self, reference: str | None, site: Site, robot: RobotSpec, parts: Parts = NOWHERE
+    ) -> None:
+        """What takes long to find is looked up in `parts`, and kept there."""
         self._reference = reference
-        self.navigator = navigator
+        self.site = site
+        self.robot = robot
+        self.parts = parts
 
     @staticmethod
     def of(site: Site, robot: RobotSpec | None = None) -> "OpenedSite":
@@ -46,7 +52,14 @@ class OpenedSite:
         robot = robot or load_robot()
         if site.altered is None:
             return _make_again(site.spec, robot)
-        return OpenedSite(None, Navigator(site, robot))
+        return OpenedSite(None, site, robot)
+
+    @staticmethod
+    def of_navigator(navigator: "Navigator") -> "OpenedSite":
+        """The site of a navigator that was made in memory, with that navigator."""
+        opened = OpenedSite(None, navigator.site, navigator.robot, navigator.parts)
+        opened.navigator = navigator
+        return opened
 
     @property
     def reference(self) -> str:
@@ -55,28 +68,29 @@ class OpenedSite:
         return self._reference or self.name
 
     @property
-    def site(self) -> Site:
-        return self.navigator.site
-
-    @property
-    def robot(self) -> RobotSpec:
-        return self.navigator.robot
-
-    @property
     def name(self) -> str:
         return self.site.name
+
+    # A mission that was checked before is checked without what follows: imported when needed.
+
+    @cached_property
+    def navigator(self) -> "Navigator":
+        """What finds paths on the site; remembers those that it planned last."""
+        from argo_env.navigation import Navigator
+
+        return Navigator(self.site, self.robot, self.parts, remembered=_PATHS)
 
     @cached_property
     def catalog(self) -> Catalog:
         """What scripts may name on the site."""
-        return make_catalog(self.navigator)
+        return kept_catalog(self.site, self.parts) or make_catalog(self.navigator)
 
     @cached_property
     def travel(self) -> "SiteTravel":
         """Travel times and energy, for the analysis and for routes."""
         from argo_env.planning.travel import SiteTravel
 
-        return SiteTravel(self.navigator)
+        return SiteTravel(self)
 
     @cached_property
     def digest(self) -> str:
@@ -121,20 +135,19 @@ def open_site(reference: str = "umad", robot: RobotSpec | None = None) -> Opened
     """
     robot = robot or load_robot()
     if is_family(reference):
-        from argo_env.planning.generated import generate
-
         family = parse_family(reference)
-        return _open(reference, family.model_dump_json(), robot, partial(generate, family, robot))
+        return _open(reference, family.model_dump_json(), robot, partial(_draw, family, robot))
     path = site_file(reference)
-    text = read_spec_text(path)
+    text = read_text(path, "site", MAX_BYTES)
     if path == Path(reference):
         reference = str(path.resolve())
-    return _open(
-        reference,
-        text,
-        robot,
-        lambda: Navigator(make_site(parse_site_spec(text, str(path))), robot),
-    )
+
+    def described() -> Site:
+        from argo_env.site.site_file import parse_site_spec
+
+        return make_site(parse_site_spec(text, str(path)))
+
+    return _open(reference, text, robot, described)
 
 
 def forget_sites() -> None:
@@ -156,7 +169,7 @@ _slots: OrderedDict[tuple[str | None, ...], _Slot] = OrderedDict()
 
 
 def _open(
-    reference: str | None, text: str, robot: RobotSpec, make: Callable[[], Navigator]
+    reference: str | None, text: str, robot: RobotSpec, make: Callable[[], "Site | Navigator"]
 ) -> OpenedSite:
     """The site that is opened by `reference` and made from `text`, by `make` if it is new."""
     key = reference, text, robot.model_dump_json()
@@ -167,23 +180,33 @@ def _open(
             _slots.popitem(last=False)
     with slot.lock:
         if slot.opened is None:
-            slot.opened = OpenedSite(reference, _navigator(text, robot, make))
+            parts = cache.entry((digest_of_code(), text, robot.model_dump_json()))
+            known = parts.find_text("site")
+            if known is None:
+                slot.opened = _keep(reference, robot, parts, make())
+            else:
+                site = make_site(SiteSpec.model_validate_json(known))
+                slot.opened = OpenedSite(reference, site, robot, parts)
         return slot.opened
 
 
-def _navigator(text: str, robot: RobotSpec, make: Callable[[], Navigator]) -> Navigator:
-    """The navigator of the site that is made from `text`, with what is on disk of it."""
-    parts = cache.entry((digest_of_code(), text, robot.model_dump_json()))
-    known = parts.find_text("site")
-    if known is not None:
-        site = make_site(SiteSpec.model_validate_json(known))
-        return Navigator(site, robot, parts, remembered=_PATHS)
-    new = make()
+def _keep(
+    reference: str | None, robot: RobotSpec, parts: Parts, made: "Site | Navigator"
+) -> OpenedSite:
+    """A new site, with what its making has found, kept on disk."""
     cache.make_room()
-    parts.keep_text("site", new.site.spec.model_dump_json())
-    navigator = Navigator(new.site, robot, parts, remembered=_PATHS)
-    navigator.take_over(new)
-    return navigator
+    site = made if isinstance(made, Site) else made.site
+    parts.keep_text("site", site.spec.model_dump_json())
+    opened = OpenedSite(reference, site, robot, parts)
+    if not isinstance(made, Site):
+        opened.navigator.take_over(made)
+    return opened
+
+
+def _draw(family: Family, robot: RobotSpec) -> "Navigator":
+    from argo_env.planning.generated import generate
+
+    return generate(family, robot)
 
 
 def _open_again(reference: str, robot: RobotSpec, digest: str) -> OpenedSite:
@@ -197,5 +220,4 @@ def _open_again(reference: str, robot: RobotSpec, digest: str) -> OpenedSite:
 
 
 def _make_again(spec: SiteSpec, robot: RobotSpec) -> OpenedSite:
-    make = partial(Navigator, make_site(spec), robot)
-    return _open(None, spec.model_dump_json(), robot, make)
+    return _open(None, spec.model_dump_json(), robot, partial(make_site, spec))

@@ -1,15 +1,20 @@
 """Travel times and energy of a robot on a site, for the analysis of missions."""
 
+from typing import TYPE_CHECKING
+
 from argo_compiler.analysis import Leg, NoWay, Standing
 from argo_compiler.errors import Unreachable
 from argo_compiler.il import Action, Mission, Task
 from argo_compiler.model import Pose
 from argo_env.drives.timetable import steps
-from argo_env.navigation import Navigator, Path
-from argo_env.navigation.path import Motion
+from argo_env.navigation.path import Motion, Path
 from argo_env.planning.kept_ways import as_data, kept_way
 from argo_env.planning.start import start_pose
 from argo_env.robot.calibration import MotionKind
+
+if TYPE_CHECKING:
+    from argo_env.navigation import Navigator
+    from argo_env.planning.opening import OpenedSite
 
 
 class SiteTravel:
@@ -20,13 +25,20 @@ class SiteTravel:
     drive's are.
     """
 
-    def __init__(self, navigator: Navigator, time_step: float = 0.1) -> None:
-        self._navigator = navigator
-        self._robot = navigator.robot
-        self._parts = navigator.parts
+    def __init__(self, on: "Navigator | OpenedSite", time_step: float = 0.1) -> None:
+        self._on = on
+        self._robot = on.robot
+        self._parts = on.parts
         self.time_step = time_step
         self._ways: dict[tuple[Pose, str | Pose | None], Path | NoWay] = {}
         self._legs: dict[tuple[Pose, str | Pose | None, float | None], Leg | NoWay] = {}
+
+    @property
+    def _navigator(self) -> "Navigator":
+        # Not before a way is asked for that is not kept: it takes a while to import.
+        from argo_env.navigation import Navigator
+
+        return self._on if isinstance(self._on, Navigator) else self._on.navigator
 
     @property
     def battery(self) -> float:
@@ -43,7 +55,7 @@ class SiteTravel:
 
         Raises Unreachable if the robot can't stand there.
         """
-        pose = start_pose(mission, self._navigator.site.docks)
+        pose = start_pose(mission, self._on.site.docks)
         standing = kept_way(
             self._parts, ["stand", as_data(pose)], lambda: Path(self._navigator.snap(pose), ())
         )
@@ -86,7 +98,7 @@ class SiteTravel:
     def _plan(self, origin: Pose, place: str | Pose | None) -> Path:
         if isinstance(place, Pose):
             return self._navigator.plan(origin, place)
-        checkpoint = self._navigator.site.measured_by(place)
+        checkpoint = self._on.site.measured_by(place)
         return self._navigator.plan_to_view(origin, checkpoint.id)
 
     def _leg(self, way: Path, velocity: float | None, work: float) -> Leg:

@@ -13,7 +13,6 @@ from argo_env.files import resources
 from argo_env.site.family import PREFIX, is_family
 from argo_env.site.index import SolidIndex
 from argo_env.site.shapes import Element, Vector
-from argo_env.site.site_file import read_site_spec
 from argo_env.site.spec import FloorSpec, SiteSpec
 
 SCALES: dict[CheckpointKind, tuple[str, Interval]] = {
@@ -126,6 +125,8 @@ def load_site(name: str) -> Site:
 
     Raises ArgoError, with the place in the file, if there is no such site or it makes no sense.
     """
+    from argo_env.site.site_file import read_site_spec
+
     return make_site(read_site_spec(site_file(name)))
 
 

@@ -6,10 +6,7 @@ import yaml
 
 from argo_compiler.files.reading import read_text
 from argo_env.files.yaml_file import parse_yaml
-from argo_env.site.spec import SiteSpec
-
-MAX_BYTES = 50_000_000
-"""of a site's file; one with hundreds of checkpoints takes some 100 kB"""
+from argo_env.site.spec import MAX_BYTES, SiteSpec
 
 
 def read_site_spec(path: Path) -> SiteSpec:
@@ -17,12 +14,7 @@ def read_site_spec(path: Path) -> SiteSpec:
 
     Raises ArgoError if the file can't be read, and DiagnosticError if it describes no site.
     """
-    return parse_site_spec(read_spec_text(path), str(path))
-
-
-def read_spec_text(path: Path) -> str:
-    """The text of a site's file; ArgoError if it can't be read."""
-    return read_text(path, "site", MAX_BYTES)
+    return parse_site_spec(read_text(path, "site", MAX_BYTES), str(path))
 
 
 def parse_site_spec(text: str, source_name: str) -> SiteSpec:

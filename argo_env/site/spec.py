@@ -27,6 +27,8 @@ Rect = Annotated[tuple[float, float, float, float], AfterValidator(_ordered)]
 
 
 LEDGE = 5e-3  # m, up to which two heights are level for a robot
+MAX_BYTES = 50_000_000
+"""of a site's file; one with hundreds of checkpoints takes some 100 kB"""
 MAX_GROUND = 200.0  # m along an edge; navigation keeps a grid of 0.1 m over it
 
 

@@ -21,7 +21,7 @@ DOCK = Pose(x=1.05, y=1.05, z=0.02)
 
 @pytest.fixture(scope="module")
 def built():
-    return OpenedSite("yard", yard())
+    return OpenedSite.of_navigator(yard())
 
 
 @pytest.fixture

@@ -1,8 +1,8 @@
 """Light on a view: what the renderer leaves out to be fast."""
 
 import numpy as np
+import scipy
 from numpy.typing import NDArray
-from scipy.ndimage import gaussian_filter
 
 from argo_env.pictures.camera import Camera
 from argo_env.pictures.scene import CameraView, Scene
@@ -41,7 +41,9 @@ def depth_shading(view: CameraView, radius: float, strength: float) -> NDArray[n
     if not seen.any():
         return np.ones_like(view.depth)
     depth = np.log(np.where(seen, view.depth, view.depth[seen].max())).astype(np.float32)
-    behind = np.clip(depth - gaussian_filter(depth, radius, truncate=2.0), 0.0, 0.1) * 10
+    behind = (
+        np.clip(depth - scipy.ndimage.gaussian_filter(depth, radius, truncate=2.0), 0.0, 0.1) * 10
+    )
     return np.asarray(1.0 - strength * behind, dtype=np.float64)
 
 
@@ -76,4 +78,6 @@ def shadows(
     nearest[inside] = lit_depth[row[inside].astype(int), column[inside].astype(int)]
     dark = np.zeros(view.depth.shape, dtype=np.float32)
     dark[seen] = depth > nearest + _BIAS
-    return np.asarray(1.0 - (1.0 - _SHADE) * gaussian_filter(dark, softness), dtype=np.float64)
+    return np.asarray(
+        1.0 - (1.0 - _SHADE) * scipy.ndimage.gaussian_filter(dark, softness), dtype=np.float64
+    )

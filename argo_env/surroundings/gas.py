@@ -13,8 +13,8 @@ below it. Decks are gratings and let it through; nothing else stands in its way.
 """
 
 import numpy as np
+import scipy
 from numpy.typing import NDArray
-from scipy.special import erfc, erfcx
 
 from argo_env.surroundings.sources import GasLeak
 from argo_env.surroundings.surroundings import Release, Weather
@@ -57,8 +57,8 @@ def _from_point(offset: NDArray[np.float64], weather: Weather, t: float) -> NDAr
     r = np.maximum(np.linalg.norm(offset, axis=1), _ORIFICE)
     along = offset @ wind  # u x
     root = 2 * np.sqrt(k * t)
-    near = np.exp(np.minimum(along - u * r, 0.0) / (2 * k)) * erfc((r - u * t) / root)
+    near = np.exp(np.minimum(along - u * r, 0.0) / (2 * k)) * scipy.special.erfc((r - u * t) / root)
     # e^(a) erfc(b) as erfcx(b) e^(a - b²), whose exponent is never positive.
     exponent = along / (2 * k) - (r**2 + (u * t) ** 2) / (4 * k * t)
-    far = np.exp(np.minimum(exponent, 0.0)) * erfcx((r + u * t) / root)
+    far = np.exp(np.minimum(exponent, 0.0)) * scipy.special.erfcx((r + u * t) / root)
     return np.asarray((near + far) / (8 * np.pi * k * r))

@@ -4,7 +4,7 @@ import math
 from dataclasses import dataclass
 
 import numpy as np
-from scipy.ndimage import label
+import scipy
 
 from argo_compiler.il import EventKind
 from argo_env.robot.pose import BodyPose
@@ -107,7 +107,7 @@ def find_spots(image: ThermalImage, site_map: SiteMap, air: float) -> tuple[Spot
     warm = image.pixels > air + SUSPICIOUS
     if not warm.any():
         return ()
-    parts, count = label(warm)
+    parts, count = scipy.ndimage.label(warm)
     spots = []
     for part in range(1, count + 1):
         rows, columns = np.nonzero(parts == part)

@@ -6,8 +6,8 @@ from dataclasses import dataclass
 from functools import lru_cache
 
 import numpy as np
+import scipy
 from numpy.typing import NDArray
-from scipy.optimize import lsq_linear, nnls
 
 from argo_compiler.il import EventKind
 from argo_env.robot.pose import BodyPose
@@ -110,7 +110,7 @@ def learn(places: tuple[tuple[str, Vector], ...]) -> Baseline:
                     ears.append(ear)
                     powers.append(heard)
     reach = np.column_stack([np.ones(len(ears)), _reach(ears, [place for _, place in places])])
-    parts, _ = nnls(reach / np.array(powers)[:, None], np.ones(len(powers)))
+    parts, _ = scipy.optimize.nnls(reach / np.array(powers)[:, None], np.ones(len(powers)))
     site, *pumps = parts.tolist()
     return Baseline(site, dict(zip((name for name, _ in places), pumps, strict=True)))
 
@@ -215,7 +215,7 @@ def _explained(
     sum of squares that is left."""
     if not made.shape[1]:
         return np.empty(0), float(wanted @ wanted)
-    fit = lsq_linear(made, wanted, (0.0, WORST), method="bvls")
+    fit = scipy.optimize.lsq_linear(made, wanted, (0.0, WORST), method="bvls")
     return fit.x, 2 * float(fit.cost)
 
 

@@ -5,8 +5,8 @@ from dataclasses import dataclass
 from functools import lru_cache
 
 import numpy as np
+import scipy
 from numpy.typing import NDArray
-from scipy.ndimage import maximum_filter, minimum_filter
 
 from argo_env.robot.pose import BodyPose
 from argo_env.sensing.signals.frames import on_site, point, rotation
@@ -121,10 +121,10 @@ class TerrainScanner:
         raised, sunk = below < expected - RAISED, walkable & (below > expected + SUNK)
         grid = expected.reshape(pattern.shape)
         if raised.any():
-            raised &= below < minimum_filter(grid, 3, mode="nearest").ravel() - RAISED
+            raised &= below < scipy.ndimage.minimum_filter(grid, 3, mode="nearest").ravel() - RAISED
             raised[raised] = ~self._map.near_checkpoint(hits[raised], AROUND_CHECKPOINT)
         if sunk.any():
-            sunk &= below > maximum_filter(grid, 3, mode="nearest").ravel() + SUNK
+            sunk &= below > scipy.ndimage.maximum_filter(grid, 3, mode="nearest").ravel() + SUNK
         doubtful = np.flatnonzero(raised | sunk)
         if len(doubtful):
             least, most = self._from_elsewhere(origin, directions[doubtful], pattern, doubtful)

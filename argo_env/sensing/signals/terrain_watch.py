@@ -4,8 +4,8 @@ import math
 from dataclasses import dataclass
 
 import numpy as np
+import scipy
 from numpy.typing import NDArray
-from scipy.ndimage import binary_dilation, label
 
 from argo_compiler.il import EventKind
 from argo_env.navigation.blockage import LAYER, Blockage
@@ -126,7 +126,9 @@ class TerrainWatch:
         _, places = _evidence(scan, kind)
         new = self._new(scan, kind)
         # Grown by one ray, as what is narrow is hit in every other row only.
-        parts, count = label(binary_dilation(new, EIGHT), structure=EIGHT)
+        parts, count = scipy.ndimage.label(
+            scipy.ndimage.binary_dilation(new, EIGHT), structure=EIGHT
+        )
         detections = []
         for part in range(1, count + 1):
             rays = new & (parts == part)

@@ -12,6 +12,7 @@ What common jobs need is here by name, and imported when it is first used:
 - what goes wrong: `ArgoError` and its kinds.
 """
 
+import logging
 from typing import TYPE_CHECKING
 
 from argo_compiler.lazy_names import lazy_names
@@ -119,3 +120,6 @@ else:
             "script": ["format_script", "import_script"],
         },
     )
+
+# What a library logs is shown where its user asks for it.
+logging.getLogger(__name__).addHandler(logging.NullHandler())

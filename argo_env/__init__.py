@@ -10,6 +10,7 @@ What common jobs need is here by name, and imported when it is first used:
 With this import Gymnasium knows the environments, `argo/Route-v0` and its siblings.
 """
 
+import logging
 from typing import TYPE_CHECKING
 
 from argo_compiler.lazy_names import lazy_names
@@ -63,3 +64,6 @@ else:
     )
 
 register_with_gymnasium()
+
+# What a library logs is shown where its user asks for it.
+logging.getLogger(__name__).addHandler(logging.NullHandler())

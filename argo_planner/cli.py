@@ -9,6 +9,7 @@ import typer
 from argo_compiler import __version__
 from argo_compiler.errors import ArgoError
 from argo_planner.lazy_group import LazyCommand, LazyGroup
+from argo_planner.terminal.verbosity import set_verbosity
 
 
 def _command(name: str, module: str, function: str, help: str) -> LazyCommand:
@@ -117,8 +118,22 @@ def argo(
             "--version", callback=_show_version, is_eager=True, help="show Argo's version"
         ),
     ] = False,
+    verbose: Annotated[
+        int,
+        typer.Option(
+            "-v",
+            "--verbose",
+            count=True,
+            show_default=False,
+            help="say what is done; -vv: in detail",
+        ),
+    ] = 0,
+    quiet: Annotated[
+        bool, typer.Option("-q", "--quiet", help="show results and errors only")
+    ] = False,
 ) -> None:
     """Turns a written inspection mission into a checked plan and drives it through a site."""
+    set_verbosity(verbose, quiet)
 
 
 def main() -> None:

@@ -10,6 +10,7 @@ from typer.core import TyperCommand, TyperGroup
 from typer.main import get_command
 
 from argo_compiler.garbage_collector import collector_held
+from argo_planner.terminal.verbosity import common_options
 
 
 @dataclass(frozen=True)
@@ -47,4 +48,13 @@ def load_command(command: LazyCommand) -> Any:
     with collector_held():
         module = import_module(command.module)
     app.command(command.name)(getattr(module, command.function))
-    return get_command(app)
+    loaded = get_command(app)
+    loaded.params += _common_parameters()
+    return loaded
+
+
+def _common_parameters() -> list[Any]:
+    """Those of the options that all commands have."""
+    app = typer.Typer(add_completion=False)
+    app.command()(common_options)
+    return [parameter for parameter in get_command(app).params if parameter.name != "help"]

@@ -1,10 +1,13 @@
 """One call for all route problems, and what it says: an order, and how good it is known to be."""
 
+import logging
 from collections.abc import Mapping
 from dataclasses import dataclass
 
 from argo_compiler.errors import Invalid
 from argo_compiler.route.problem import RouteProblem, Tour
+
+_log = logging.getLogger(__name__)
 
 
 @dataclass(frozen=True)
@@ -94,4 +97,13 @@ def suggest_route(
     # OR-Tools takes a second to be imported, and most who import this package don't search.
     from argo_compiler.route.find_route import find_route
 
-    return find_route(problem, time_limit, seed, workers, explain=explain)
+    found = find_route(problem, time_limit, seed, workers, explain=explain)
+    for reason in found.reasons:
+        _log.debug("%s", reason)
+    _log.info(
+        "%d visits: %s by %s",
+        problem.size,
+        "no route" if found.route is None else "proven" if found.proven else "not proven",
+        found.method or "no search",
+    )
+    return found

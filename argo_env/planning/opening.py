@@ -1,6 +1,7 @@
 """A site that is ready for work: the one way to get geometry, paths, names and travel times."""
 
 import hashlib
+import logging
 from collections import OrderedDict
 from collections.abc import Callable
 from dataclasses import dataclass, field
@@ -25,6 +26,8 @@ from argo_env.site.spec import MAX_BYTES, SiteSpec
 if TYPE_CHECKING:
     from argo_env.navigation import Navigator
     from argo_env.planning.travel import SiteTravel
+
+_log = logging.getLogger(__name__)
 
 _KEPT = 8  # sites in memory; each holds some 100 MB
 _PATHS = 1024  # of a site; simulations go the same ways again and again
@@ -182,6 +185,7 @@ def _open(
         if slot.opened is None:
             parts = cache.entry((digest_of_code(), text, robot.model_dump_json()))
             known = parts.find_text("site")
+            _log.info("the site is %s", "made" if known is None else "taken from the cache on disk")
             if known is None:
                 slot.opened = _keep(reference, robot, parts, make())
             else:

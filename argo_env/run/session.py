@@ -1,5 +1,6 @@
 """Whole runs in one call: of a spec, and from a journal on."""
 
+import logging
 import time
 from collections.abc import Callable, Sequence
 from contextlib import ExitStack
@@ -14,6 +15,8 @@ from argo_env.run.record import RunRecord
 from argo_env.run.rig import check_spec
 from argo_env.run.simulation import LoggedEvents, Simulation
 from argo_env.run.spec import RunSpec
+
+_log = logging.getLogger(__name__)
 
 
 def run(spec: RunSpec) -> RunRecord:
@@ -47,6 +50,9 @@ def simulate(
     site = site or open_site(spec.site)
     check_spec(spec, site.site)
     machine = Executor(lower(spec.mission))
+    _log.info(
+        "a run on %s: drive %s, sensor %s, seed %d", site.name, spec.drive, spec.sensor, spec.seed
+    )
     with ExitStack() as stack:
         told = [*_paced(pace), *observers]
         if journal is not None:

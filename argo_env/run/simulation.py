@@ -1,5 +1,6 @@
 """The simulation: the one loop between a machine and what carries its actions out."""
 
+import logging
 from collections.abc import Sequence
 from contextlib import ExitStack
 
@@ -20,6 +21,8 @@ from argo_env.run.rig import Rig, fit_out
 from argo_env.run.spec import RunSpec
 from argo_env.run.steering import ReachIn, Steering, StopRun, check_by_hand, check_event, from_now
 from argo_env.run.vehicle import Vehicle
+
+_log = logging.getLogger(__name__)
 
 SAMPLE_PERIOD = 0.5  # s between recorded places of the robot
 
@@ -270,5 +273,6 @@ class Simulation(Closing):
 
     def _conclude(self) -> None:
         self._record = self._course.record(self._spec)
+        _log.info("the run has ended at %g s", self.now)
         for observer in self._observers:
             observer.on_end(self._record)

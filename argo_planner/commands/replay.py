@@ -14,6 +14,7 @@ from argo_env.pictures import check_film
 from argo_env.recording.reader import Recording, read_recording
 from argo_env.robot.spec import load_robot
 from argo_planner.terminal.run_display import conclude
+from argo_planner.terminal.verbosity import is_quiet
 
 
 def replay(
@@ -38,7 +39,7 @@ def replay(
     record = found.require_record()
     if report:
         make_folder(report)
-    console = Console(stderr=True, highlight=False)
+    console = Console(stderr=True, highlight=False, quiet=is_quiet())
     if found.flaw:
         console.print(
             f"[bold yellow]Warning[/]: {escape(str(recording))} {escape(found.flaw)}; the record "

@@ -19,6 +19,7 @@ from argo_env.run.simulation import LoggedEvents
 from argo_env.run.spec import logged
 from argo_planner.terminal.events import KINDS, parse_events
 from argo_planner.terminal.run_display import RunDisplay, conclude
+from argo_planner.terminal.verbosity import is_quiet
 
 
 def resume_run(
@@ -47,7 +48,7 @@ def resume_run(
     if recording:
         check_recording(recording)
     events = logged(*parse_events(event or []))
-    console = Console(stderr=True, highlight=False)
+    console = Console(stderr=True, highlight=False, quiet=is_quiet())
     with open_journal(journal) as book:
         site = open_site(book.header.spec.site)
         book.require_unchanged(site)

@@ -4,6 +4,7 @@ import sys
 
 from argo_compiler.diagnostics import to_text
 from argo_env.planning.opening import OpenedSite
+from argo_planner.terminal.verbosity import is_quiet
 from argo_planner.terminal.words import with_options
 from argo_planner.use_cases.importing import ImportedMission, Upload, import_mission
 
@@ -13,6 +14,6 @@ def import_shown(
 ) -> ImportedMission:
     """The mission of an upload. Warnings are shown. Raises ArgoError as `import_mission` does."""
     imported = import_mission(upload, site, start_area, end_area)
-    if imported.warnings:
+    if imported.warnings and not is_quiet():
         print(to_text(with_options(imported.warnings), upload.name), file=sys.stderr)
     return imported

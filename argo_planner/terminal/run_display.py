@@ -20,6 +20,7 @@ from argo_env.run.record import Anomaly, Reading, RunRecord
 from argo_env.site import Site
 from argo_planner.terminal.files import write_content
 from argo_planner.terminal.record_tables import show_record
+from argo_planner.terminal.verbosity import is_quiet
 from argo_planner.use_cases.reporting import PAGE, report_files
 
 
@@ -54,7 +55,8 @@ class RunDisplay(Observer, Closing):
                 text += f", on {where(news.floor, news.place)}"
             elif news.noticed_from is not None:
                 text += f", noticed from {where(news.floor, news.noticed_from)}"
-        self._progress.console.print(escape(text), soft_wrap=True, highlight=False)
+        if not is_quiet():
+            self._progress.console.print(escape(text), soft_wrap=True, highlight=False)
 
     def __enter__(self) -> Self:
         self._progress.start()
@@ -76,7 +78,8 @@ def conclude(
     """Shows the results and writes what was asked for; exits with status 1 if it is no success."""
     console = Console()
     show_record(record, console)
-    console.print(took, soft_wrap=True)
+    if not is_quiet():
+        console.print(took, soft_wrap=True)
     if report:
         write_content(report, report_files(record, site, robot))
         console.print(f"Report: {escape(str(report / PAGE))}", soft_wrap=True)
@@ -109,4 +112,5 @@ def _progress() -> Progress:
         TimeElapsedColumn(),
         console=Console(stderr=True),
         transient=True,
+        disable=is_quiet(),
     )

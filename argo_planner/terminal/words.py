@@ -1,5 +1,6 @@
 """Messages of the libraries in the words of the command line: which option or command helps."""
 
+import re
 import shlex
 from collections.abc import Iterable
 from typing import TYPE_CHECKING
@@ -25,6 +26,8 @@ _WORDS = {
     Remedy.SHOW_REST: "argo replay without options",
 }
 
+_AREAS = re.compile(r"choose area (\d+(?:(?:, | or )\d+)*)")
+
 
 def said(error: ArgoError, prefix: str = "") -> str:
     """The message of an error with the options and commands that help. The `prefix` goes before
@@ -47,11 +50,19 @@ def order_said(text: str) -> str:
 def with_options(diagnostics: Iterable["Diagnostic"]) -> tuple["Diagnostic", ...]:
     """Diagnostics whose hints name the options that help."""
     return tuple(
-        d.model_copy(update={"hint": f"{d.hint or ''}{_ways(d.remedies)}".lstrip()})
-        if d.remedies
-        else d
+        d.model_copy(update={"hint": _hint(d.hint or "", d.remedies)}) if d.remedies else d
         for d in diagnostics
     )
+
+
+def _hint(hint: str, remedies: tuple[Remedy, ...]) -> str:
+    for remedy in remedies:
+        if areas := _AREAS.search(hint):
+            chosen = re.sub(r"\d+", rf"{_WORDS[remedy]} \g<0>", areas[1])
+            return hint.replace(areas[0], f"choose with {chosen}")
+        if remedy is Remedy.CHOOSE_SITE:
+            return hint.replace("choose the site", "choose it with --site")
+    return f"{hint}{_ways(remedies)}".lstrip()
 
 
 def _ways(remedies: tuple[Remedy, ...], about: str = "") -> str:

@@ -23,7 +23,7 @@ from argo_compiler.ros import decode_bag, is_bag_content, read_bag
 from argo_compiler.script.syntax.source import Source as Script
 from argo_env.planning.opening import OpenedSite
 
-logger = logging.getLogger(__name__)
+_log = logging.getLogger(__name__)
 
 
 class SourceKind(StrEnum):
@@ -92,7 +92,7 @@ def load(
     Raises DiagnosticError, or Invalid where areas are chosen for what has them already.
     """
     kind, name = kind_of(upload), upload.name
-    logger.info("%s is read as a %s", name, kind)
+    _log.info("%s is read as a %s", name, kind)
     if kind is not SourceKind.SCRIPT:
         refuse_areas(name, start_area, end_area)
     if isinstance(upload.content, Path):

@@ -1,6 +1,5 @@
 """A mission's best order: asked for, and applied."""
 
-import logging
 from dataclasses import dataclass, replace
 
 from argo_compiler.diagnostics import DiagnosticError
@@ -32,8 +31,6 @@ MAX_BYTES = 10_000_000
 """of a file of requirements"""
 
 _SAMPLES = 10_000  # of a mission, to tell how probable it is that it is in time
-
-logger = logging.getLogger(__name__)
 
 
 @dataclass(frozen=True, eq=False)
@@ -121,7 +118,6 @@ def suggest_order(
     except ArgoError as error:
         raise located(error, name) from None
     suggestion = suggest_route(planned.problem, time_limit, seed)
-    logger.info("%s: %d stops, searched by %s", name, planned.problem.size, suggestion.method)
     return Suggested(planned, suggestion, site.travel)
 
 

@@ -12,7 +12,7 @@ from argo_env.run.rig import check_spec
 from argo_env.run.spec import RunSpec
 from argo_planner.use_cases.importing import ImportedMission
 
-logger = logging.getLogger(__name__)
+_log = logging.getLogger(__name__)
 
 NO_MISSION = Mission(tasks=())
 """stands in a spec until its mission is known"""
@@ -53,5 +53,5 @@ def with_mission(
         "diagnostics": imported.diagnostics,
         "reordering": reordering,
     }
-    logger.info("%s: %d tasks to run", imported.source_name, len(imported.mission.tasks))
+    _log.info("%s: %d tasks to run", imported.source_name, len(imported.mission.tasks))
     return spec.model_copy(update=known)

@@ -1,0 +1,70 @@
+"""`-q` and `-v`: what is said beside the results, and that the results stay as they are."""
+
+import logging
+
+import pytest
+from typer.testing import CliRunner
+
+from argo_env.planning.opening import OpenedSite
+from argo_planner.cli import app
+from argo_planner.terminal.verbosity import set_verbosity
+from tests.yard import yard
+
+# The misspelt word is worth a warning.
+SCRIPT = (
+    "Mission Protocol: one\n1. Set the starting point in starting area 1.\n2. Chek checkpoint 1.\n"
+)
+
+
+@pytest.fixture(scope="module")
+def built():
+    return OpenedSite("yard", yard())
+
+
+@pytest.fixture
+def argo(built, monkeypatch, tmp_path):
+    for command in ("run", "check", "import_script"):
+        monkeypatch.setattr(f"argo_planner.commands.{command}.open_site", lambda _: built)
+    (tmp_path / "plan.txt").write_text(SCRIPT)
+    monkeypatch.chdir(tmp_path)
+    yield lambda *arguments: CliRunner().invoke(app, arguments)
+    set_verbosity()
+
+
+RUN = ("run", "plan.txt", "--drive", "route")
+
+
+def test_a_quiet_run_shows_its_results_only(argo):
+    usual, quiet = argo(*RUN), argo("-q", *RUN)
+    assert "shows" in usual.stderr
+    assert "warning: " in usual.stderr
+    assert "Loading took" in usual.stdout
+    assert quiet.stderr == ""
+    assert quiet.exit_code == usual.exit_code
+    kept = [line for line in usual.stdout.splitlines() if "took" not in line and "real" not in line]
+    assert quiet.stdout.splitlines() == kept
+
+
+def test_errors_are_said_all_the_same(argo):
+    assert "no drive `rocket`" in str(argo("-q", "run", "plan.txt", "--drive", "rocket").exception)
+
+
+@pytest.mark.parametrize("arguments", [("-v", *RUN), (*RUN, "-v"), ("run", "--verbose", *RUN[1:])])
+def test_the_stages_of_a_run_are_told_on_demand(argo, arguments):
+    result = argo(*arguments)
+    assert "INFO argo_env.run.session: a run on yard: drive route" in result.stderr
+    assert "INFO argo_env.run.simulation: the run has ended at" in result.stderr
+    assert "Success" in result.stdout
+
+
+def test_a_command_is_as_usual_after_one_that_was_not(argo):
+    argo("-vv", *RUN)
+    assert "INFO" not in argo(*RUN).stderr
+    argo(*RUN, "--quiet")
+    assert "shows" in argo(*RUN).stderr
+
+
+def test_libraries_log_without_a_handler_of_their_own():
+    for package in ("argo_compiler", "argo_env"):
+        handlers = logging.getLogger(package).handlers
+        assert any(isinstance(handler, logging.NullHandler) for handler in handlers)

@@ -1,0 +1,43 @@
+"""What the libraries say in the words of the command line."""
+
+import pytest
+
+from argo_compiler.diagnostics import Diagnostic, Severity
+from argo_compiler.errors import Conflict, Invalid, Remedy
+from argo_planner.terminal.words import order_said, said, with_options
+
+
+@pytest.mark.parametrize("remedy", Remedy)
+def test_each_remedy_has_words(remedy):
+    text = said(Invalid("no", remedies=(remedy,), about="a file"), "argo: ")
+    assert text.startswith("argo: no (")
+    assert "--" in text or "argo " in text
+
+
+def test_a_command_names_the_file_so_that_it_can_be_pasted():
+    error = Conflict("my run.journal: is there", remedies=(Remedy.RESUME,), about="my run.journal")
+    assert said(error) == "my run.journal: is there (argo resume 'my run.journal')"
+
+
+@pytest.mark.parametrize(
+    ("hint", "remedy", "said"),
+    [
+        ("choose area 1 or 2", Remedy.CHOOSE_START,
+         "choose with --start-area 1 or --start-area 2"),
+        ("name one, or choose area 1, 2 or 13", Remedy.CHOOSE_END,
+         "name one, or choose with --end-area 1, --end-area 2 or --end-area 13"),
+        ("choose none, or begin elsewhere", Remedy.CHOOSE_START,
+         "choose none, or begin elsewhere (--start-area)"),
+        ("choose the site umad", Remedy.CHOOSE_SITE, "choose it with --site umad"),
+    ],
+)  # fmt: skip
+def test_hints_name_the_options(hint, remedy, said):
+    found = Diagnostic(
+        code="c", severity=Severity.ERROR, message="m", hint=hint, remedies=(remedy,)
+    )
+    (shown,) = with_options([found])
+    assert shown.hint == said
+
+
+def test_an_order_that_is_kept_names_the_option():
+    assert order_said("kept: the order as written") == "kept: the order as written (--keep-order)"

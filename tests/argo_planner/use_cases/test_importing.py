@@ -1,0 +1,99 @@
+"""Missions from bytes: what an upload is, and what is said of one that is nothing."""
+
+import pytest
+
+from argo_compiler.diagnostics import DiagnosticError
+from argo_compiler.errors import ArgoError, Invalid, Remedy
+from argo_compiler.files.mission_file import mission_text
+from argo_compiler.hfsm import lower
+from argo_compiler.isar import to_isar
+from argo_compiler.ros import Storage, to_ros1_bag, to_ros2_bag
+from argo_env.planning.reading_places import inspection_views
+from argo_planner.use_cases.importing import SourceKind, Upload, import_mission, kind_of, load
+from tests.yard import measure, mission
+
+SCRIPT = b"""Mission Protocol: one
+1. Set the starting point in starting area 1.
+2. Check checkpoint #1.
+3. Check checkpoint #2.
+"""
+PLAN = mission(measure(1), measure(2), start_area=1, end_area=1)
+
+
+@pytest.fixture(scope="module")
+def uploads(site):
+    views = inspection_views(PLAN, site.navigator)
+    return {
+        SourceKind.SCRIPT: [Upload("plan.txt", SCRIPT), Upload("no suffix", SCRIPT)],
+        SourceKind.MISSION: [Upload("plan.json", mission_text(PLAN).encode())],
+        SourceKind.ISAR: [Upload("plan.json", to_isar(PLAN, lower(PLAN), views).encode())],
+        SourceKind.BAG: [
+            Upload("plan.bag", to_ros1_bag(PLAN)),
+            Upload("named as no bag is", to_ros1_bag(PLAN)),
+            *(Upload("folder", to_ros2_bag(PLAN, storage)) for storage in Storage),
+            *(
+                Upload(f"one file of a {storage}", content)
+                for storage in Storage
+                for name, content in to_ros2_bag(PLAN, storage).items()
+                if name != "metadata.yaml"
+            ),
+        ],
+    }
+
+
+@pytest.mark.parametrize("kind", SourceKind)
+def test_what_an_upload_is_and_the_mission_in_it(uploads, site, kind):
+    for upload in uploads[kind]:
+        assert kind_of(upload) is kind
+        imported = import_mission(upload, site)
+        measured = [task.object_id for task in imported.mission.tasks if task.object_id]
+        assert measured == ["1", "2"]
+        assert imported.source_name == upload.name
+        if kind in {SourceKind.MISSION, SourceKind.BAG}:
+            assert imported.mission == PLAN
+
+
+def test_a_bag_may_lie_on_this_machine(site, tmp_path):
+    path = tmp_path / "plan.bag"
+    path.write_bytes(to_ros1_bag(PLAN))
+    assert import_mission(Upload("mine", path), site).mission == PLAN
+
+
+@pytest.mark.parametrize(
+    ("upload", "code", "says"),
+    [
+        (Upload("a.txt", b""), "invalid", "a.txt is empty"),
+        (Upload("a.txt", b"Mission\0"), "invalid", "a.txt: is a binary file"),
+        (Upload("a.txt", "Öl".encode("cp1252")), "invalid", "a.txt: is not UTF-8"),
+        (Upload("a.txt", b"Dear robot"), "invalid", "script.unrecognised"),
+        (Upload("a.json", b"{"), "invalid", "a.json:1:2: error"),
+        (Upload("a.json", b"\xff"), "invalid", "file.not-text"),
+        (Upload("a.bag", b"#ROSBAG V2.0\n"), "invalid", "ros.broken-bag"),
+        (Upload("a.mcap", b"no"), "invalid", "ros.not-a-bag"),
+        (Upload("folder", {}), "invalid", "file.directory"),
+        (Upload("folder", {"../metadata.yaml": b""}), "invalid", "no name of a file"),
+        (Upload("a.json", b'{"tasks": [{"name": "A", "action": "MEASURE", "object_id": "9"}]}'),
+         "invalid", "il.unknown-object"),
+    ],
+)  # fmt: skip
+def test_what_can_not_be_read_says_so_by_its_name(site, upload, code, says):
+    with pytest.raises(ArgoError) as caught:
+        import_mission(upload, site)
+    assert caught.value.code == code
+    assert says in str(caught.value)
+    assert upload.name in str(caught.value)
+
+
+def test_no_option_is_named(site):
+    """A service has none; the command line finds by the remedies what it calls them."""
+    mission_file = Upload("plan.json", mission_text(PLAN).encode())
+    with pytest.raises(Invalid, match="has its areas already") as caught:
+        load(mission_file, site.catalog, start_area=1)
+    assert caught.value.remedies == (Remedy.CHOOSE_AREAS,)
+    assert "--" not in str(caught.value)
+    open_start = Upload("a.txt", b"Mission Protocol: one\n1. Check checkpoint #1.\n")
+    with pytest.raises(DiagnosticError) as refused:
+        import_mission(open_start, site)
+    assert "--" not in str(refused.value)
+    assert [d.remedies for d in refused.value.diagnostics] == [(Remedy.CHOOSE_START,)]
+    assert import_mission(open_start, site, start_area=1).mission.start_area == 1

@@ -18,7 +18,7 @@ SCRIPT = (
 
 @pytest.fixture(scope="module")
 def built():
-    return OpenedSite("yard", yard())
+    return OpenedSite.of(yard().site)
 
 
 @pytest.fixture

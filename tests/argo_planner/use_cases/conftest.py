@@ -6,7 +6,7 @@ from tests.yard import yard
 
 @pytest.fixture(scope="package")
 def site() -> OpenedSite:
-    return OpenedSite("yard", yard())
+    return OpenedSite.of(yard().site)
 
 
 @pytest.fixture(autouse=True)

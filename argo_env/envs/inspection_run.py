@@ -50,6 +50,7 @@ class Inspection(Closing):
         self._machine = OpenMachine(spec.mission)
         self._told = _Told()
         self._simulation = Simulation(self._machine, site, spec, observers=[self._told, *observers])
+        self._drive = self._simulation.rig.drive
         self._limit = limit
         self._tasks: dict[str, int] = {}
         self._noticed: list[EventKind] = []
@@ -165,9 +166,11 @@ class Inspection(Closing):
 
     def _mark(self) -> None:
         """Keeps the pose if the robot is far enough from the last one kept."""
-        pose = self.pose
+        pose = self._drive.pose
         if self._trail:
             last = self._trail[-1][1]
+            if pose is last:
+                return
             if math.dist((pose.x, pose.y, pose.z), (last.x, last.y, last.z)) < _TRAIL:
                 return
         self._trail.append((self.now, pose))

@@ -30,20 +30,24 @@ class Course:
         self.given = GivenEvents(spec.events)
         self.steps = 0
         """time steps of the drive since the run began"""
+        self.now = 0.0
+        """s of simulated time"""
+        self._time_step = vehicle.rig.drive.time_step
         self._vehicle = vehicle
         self._interruptions = InterruptionWatch()
         self._velocity = WayVelocity(spec.mission)
         self._came: Path | None = None
 
     @property
-    def now(self) -> float:
-        """s of simulated time; counted in steps, so that nothing adds up."""
-        return round(self.steps * self._vehicle.rig.drive.time_step, 6)
-
-    @property
     def unsampled(self) -> bool:
         """Whether the present place is no point of the recorded path yet."""
         return not self.log.path or self.log.path[-1].t < self.now
+
+    def step_to(self, steps: int) -> None:
+        """So many time steps of the drive have passed since the run began."""
+        self.steps = steps
+        # Counted in steps, so that nothing adds up.
+        self.now = round(steps * self._time_step, 6)
 
     def entry(
         self, events: Sequence[Event] = (), *, sample: bool = False, task: TaskRun | None = None
@@ -100,7 +104,7 @@ class Course:
 
         Raises Invalid if it is one of another run.
         """
-        self.steps = round(entry.t / self._vehicle.rig.drive.time_step)
+        self.step_to(round(entry.t / self._time_step))
         self._vehicle.odometry.restore(entry)
         self.given.occurred = entry.given
         try:

@@ -66,6 +66,8 @@ class Simulation(Closing):
         with ExitStack() as stack:
             self._vehicle = Vehicle(rig or fit_out(spec, site.navigator, gui, stack))
             self._course = Course(machine, self._vehicle, spec)
+            time_step = self.rig.drive.time_step
+            self._sampled_every = max(1, round(SAMPLE_PERIOD / time_step))
             for observer in self._observers:
                 observer.on_begin(self.rig, spec)
             self._set_up(past)
@@ -120,11 +122,11 @@ class Simulation(Closing):
         Raises Conflict if it has ended.
         """
         self._require_going_on()
-        if self._open():
+        if not self._opened and self._open():
             return
         self._advance()
         for observer in self._observers:
-            observer.on_step(self.now, self._course.action)
+            observer.on_step(self._course.now, self._course.action)
         self.settle()
 
     def handle(self, event: Steering) -> None:
@@ -152,7 +154,8 @@ class Simulation(Closing):
         self.settle()
 
     def give(self, task: Task) -> None:
-        """Gives the next task to a machine that takes them one by one, an `OpenMachine`.
+        """Gives the next task to a machine that takes them one by one, an `OpenMachine`. A journal
+        does not hold such tasks, and can't be gone on from.
 
         Raises Conflict if the run has ended, the machine is another, or an action runs.
         """
@@ -178,8 +181,9 @@ class Simulation(Closing):
         """Ends the run if its machine has come to its end, or nothing can go on."""
         if self.over:
             return
-        why = None if self.machine.finished else exhausted(self.now, self._vehicle.supply)
-        if why or self.machine.finished:
+        if self._course.machine.finished:
+            self._end(None)
+        elif why := exhausted(self._course.now, self._vehicle.supply):
             self._end(why)
 
     def close(self) -> None:
@@ -226,9 +230,9 @@ class Simulation(Closing):
 
     def _advance(self) -> None:
         """One step of simulated time."""
-        course = self._course
-        course.steps += 1
-        now = self.now
+        course, machine = self._course, self._course.machine
+        course.step_to(course.steps + 1)
+        now = course.now
         sensed = self._vehicle.advance(course.steps, now, course.action)
         # Before the end, so that a reaction to it comes first and no next task is begun.
         events: list[Event] = [Occurred(a.kind, a.detail) for a in sensed.found]
@@ -237,12 +241,15 @@ class Simulation(Closing):
             events.append(sensed.end)
             run = course.run_of(sensed.end)
         events += course.given.due(now)
-        due = course.steps % max(1, round(SAMPLE_PERIOD / self.rig.drive.time_step)) == 0
+        due = course.steps % self._sampled_every == 0
         if events or due:
             entry = course.entry(events, sample=due, task=run)
-            self._tell(entry.model_copy(update={"found": sensed.found, "reading": sensed.reading}))
-        deadline = self.machine.next_deadline
-        if not self.machine.finished and deadline is not None and deadline <= now:
+            if sensed.found or sensed.reading:
+                came = {"found": sensed.found, "reading": sensed.reading}
+                entry = entry.model_copy(update=came)
+            self._tell(entry)
+        deadline = machine.next_deadline
+        if deadline is not None and deadline <= now and not machine.finished:
             self._tell(course.entry([Tick()]))
 
     def _tell(self, entry: Entry) -> None:

@@ -27,6 +27,9 @@ class Sensed:
     found: tuple[Anomaly, ...] = ()
 
 
+_NOTHING = Sensed()
+
+
 class Vehicle:
     """What a run is carried out with. Holds the rig and all that adds up on the way."""
 
@@ -61,21 +64,22 @@ class Vehicle:
 
     def advance(self, step: int, now: float, action: ActionUnderWay | None) -> Sensed:
         """Lets the time step of that number pass, up to time `now` (s), with `action` under way."""
-        rig, odometry = self.rig, self.odometry
-        self.let_faults_happen(now)
-        before = rig.drive.pose
-        end = action.step() if action else None
-        after = rig.drive.pose
+        rig, odometry, drive = self.rig, self.odometry, self.rig.drive
+        if rig.schedule:
+            rig.schedule.advance(now)
+        before = after = drive.pose
+        end, measuring = None, False
         if action:
+            end = action.step()
+            after, measuring = drive.pose, action.measuring
             odometry.moved(before, after, rig.world.touches(), now)
-            odometry.trouble(rig.drive.incidents, now)
-        measuring = action is not None and action.measuring
-        self.supply.spend(before, after, rig.drive.time_step, measuring)
+            odometry.trouble(drive.incidents, now)
+        self.supply.spend(before, after, drive.time_step, measuring)
         found = self._perception.look(step, now, after)
         reading = action.reading(now) if action and end else None
         if reading and not reading.normal:
             found = (*found, abnormal_reading(reading, rig.navigator.site))
-        return Sensed(end, reading, found)
+        return Sensed(end, reading, found) if end or found else _NOTHING
 
     def state(self) -> dict[str, Any]:
         """What an entry tells of it."""

@@ -44,7 +44,7 @@ __all__ = [
 
 if TYPE_CHECKING:
     from argo_compiler.editing.commands import Edit, apply, read_edit
-    from argo_compiler.editing.edited import Consequence, Edited
+    from argo_compiler.editing.consequences import Consequence, Edited
     from argo_compiler.editing.groups import change_group, dissolve_group, rename_group, wrap_tasks
     from argo_compiler.editing.header import set_header
     from argo_compiler.editing.reactions import add_reaction, change_reaction, remove_reaction
@@ -66,7 +66,7 @@ else:
         __name__,
         {
             "commands": ["Edit", "apply", "read_edit"],
-            "edited": ["Consequence", "Edited"],
+            "consequences": ["Consequence", "Edited"],
             "groups": ["change_group", "dissolve_group", "rename_group", "wrap_tasks"],
             "header": ["set_header"],
             "reactions": ["add_reaction", "change_reaction", "remove_reaction"],

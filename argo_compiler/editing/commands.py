@@ -16,7 +16,7 @@ from pydantic import (
     model_serializer,
 )
 
-from argo_compiler.editing.edited import Edited
+from argo_compiler.editing.consequences import Edited
 from argo_compiler.editing.groups import change_group, dissolve_group, rename_group, wrap_tasks
 from argo_compiler.editing.header import set_header, wrong_values
 from argo_compiler.editing.reactions import add_reaction, change_reaction, remove_reaction

@@ -10,8 +10,8 @@ from typing import TypedDict, Unpack
 from pydantic import ValidationError
 
 from argo_compiler.diagnostics.subject import subject_of
+from argo_compiler.editing.consequences import Edited, edited
 from argo_compiler.editing.draft import DraftGroup, DraftTask, MissionDraft
-from argo_compiler.editing.edited import Edited, edited
 from argo_compiler.editing.header import wrong_values
 from argo_compiler.editing.refusals import EditInvalid, conflict, invalid, name_taken
 from argo_compiler.il import Action, Group, Mission, Stop

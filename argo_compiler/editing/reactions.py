@@ -1,7 +1,7 @@
 """Edits of a mission's reactions, which go by their events."""
 
 from argo_compiler.diagnostics.subject import subject_of
-from argo_compiler.editing.edited import Edited, edited
+from argo_compiler.editing.consequences import Edited, edited
 from argo_compiler.editing.refusals import EditNotFound, conflict, diagnostic
 from argo_compiler.il import EventKind, Mission, Reaction
 

@@ -6,8 +6,8 @@ a round.
 """
 
 from argo_compiler.diagnostics.subject import subject_of
+from argo_compiler.editing.consequences import Edited, edited
 from argo_compiler.editing.draft import DraftGroup, DraftTask, MissionDraft
-from argo_compiler.editing.edited import Edited, edited
 from argo_compiler.editing.refusals import EditConflict, conflict
 from argo_compiler.editing.ways import beginning, default_target, defaults
 from argo_compiler.il import Action, Mission, Transition

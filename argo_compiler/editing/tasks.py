@@ -1,8 +1,8 @@
 """Edits of a mission's tasks: added, replaced, moved, renamed. `removal` takes them out."""
 
 from argo_compiler.diagnostics.subject import subject_of
+from argo_compiler.editing.consequences import Edited, edited
 from argo_compiler.editing.draft import DraftTask, MissionDraft
-from argo_compiler.editing.edited import Edited, edited
 from argo_compiler.editing.refusals import invalid, name_taken, unknown
 from argo_compiler.il import Action, Mission, Task
 

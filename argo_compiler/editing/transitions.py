@@ -3,7 +3,7 @@
 from collections.abc import Sequence
 
 from argo_compiler.diagnostics.subject import subject_of
-from argo_compiler.editing.edited import Edited, edited
+from argo_compiler.editing.consequences import Edited, edited
 from argo_compiler.editing.refusals import EditNotFound, conflict, diagnostic, unknown
 from argo_compiler.il import Condition, Mission, Task, Transition
 

@@ -4,29 +4,12 @@
 """
 
 from argo_compiler.export.btcpp import to_btcpp
+from argo_compiler.export.exporter import Exported, Exporter
 from argo_compiler.export.flexbe import to_flexbe
 from argo_compiler.export.graphviz import to_dot
 from argo_compiler.export.mermaid import to_mermaid
-from argo_compiler.export.registry import Exported, Exporter
-from argo_compiler.export.ros import ROS_EXPORTERS
+from argo_compiler.export.registry import EXPORTERS
 from argo_compiler.export.scxml import to_scxml
-
-EXPORTERS: dict[str, Exporter] = {
-    "scxml": Exporter("SCXML state chart, time-outs from outside", (".scxml",), to_scxml),
-    "scxml-timers": Exporter(
-        "SCXML state chart, time-outs by the engine's clock",
-        (".scxml",),
-        lambda mission, hfsm: to_scxml(mission, hfsm, timers=True),
-    ),
-    "btcpp": Exporter("BehaviorTree.CPP 4 tree", (".xml",), lambda mission, _: to_btcpp(mission)),
-    "flexbe": Exporter("FlexBE behaviour, its states and its manifest", (), to_flexbe),
-    "mermaid": Exporter(
-        "Mermaid state diagram", (".mmd", ".mermaid"), lambda _, hfsm: to_mermaid(hfsm)
-    ),
-    "dot": Exporter("Graphviz graph", (".dot", ".gv"), lambda _, hfsm: to_dot(hfsm)),
-    **ROS_EXPORTERS,
-}
-"""By the names of the formats."""
 
 __all__ = [
     "EXPORTERS",

@@ -8,7 +8,7 @@ tree can leave tasks out, but can't go back other than by a group's rounds.
 from collections.abc import Iterator
 
 from argo_compiler.diagnostics import Diagnostic
-from argo_compiler.export.registry import refusal, refuse
+from argo_compiler.export.exporter import refusal, refuse
 from argo_compiler.export.xml import Attributes, XmlWriter, number
 from argo_compiler.il import (
     Action,

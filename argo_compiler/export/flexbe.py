@@ -11,7 +11,7 @@ from collections.abc import Iterator, Mapping
 from importlib.resources import files
 
 from argo_compiler.diagnostics import Diagnostic
-from argo_compiler.export.registry import refusal, refuse
+from argo_compiler.export.exporter import refusal, refuse
 from argo_compiler.export.xml import XmlWriter
 from argo_compiler.hfsm import Composite, Hfsm, Leaf, StateTransition, TransitionKind
 from argo_compiler.hfsm.model import DONE, MISSION, RETURN

@@ -1,39 +1,26 @@
-"""What an exporter is, and how it refuses what its target can't say."""
+"""The formats that a machine can be exported to: a new one is listed here."""
 
-from collections.abc import Callable, Iterable, Mapping
-from dataclasses import dataclass
+from argo_compiler.export.btcpp import to_btcpp
+from argo_compiler.export.exporter import Exporter
+from argo_compiler.export.flexbe import to_flexbe
+from argo_compiler.export.graphviz import to_dot
+from argo_compiler.export.mermaid import to_mermaid
+from argo_compiler.export.ros import ROS_EXPORTERS
+from argo_compiler.export.scxml import to_scxml
 
-from argo_compiler.diagnostics import Diagnostic, DiagnosticError, Severity, Span
-from argo_compiler.hfsm import Hfsm
-from argo_compiler.il import Mission
-
-Exported = str | bytes | Mapping[str, bytes]
-"""The text or the bytes of one file, or the files of a folder by their path in it."""
-
-
-@dataclass(frozen=True, slots=True)
-class Exporter:
-    """A format that a machine can be written in."""
-
-    description: str
-    """a few words for people"""
-    suffixes: tuple[str, ...]
-    """what the file's name ends with, the usual one first; none where a folder is written"""
-    export: Callable[[Mission, Hfsm], Exported]
-    """raises DiagnosticError with a diagnostic for each thing that the format can't say"""
-
-
-def refusal(
-    code: str, message: str, hint: str | None = None, span: Span | None = None
-) -> Diagnostic:
-    """Says that the target can't say something of the mission; `code` without `export.`."""
-    return Diagnostic(
-        code=f"export.{code}", severity=Severity.ERROR, message=message, span=span, hint=hint
-    )
-
-
-def refuse(diagnostics: Iterable[Diagnostic]) -> None:
-    """Raises DiagnosticError if there are diagnostics."""
-    found = tuple(diagnostics)
-    if found:
-        raise DiagnosticError("mission", found)
+EXPORTERS: dict[str, Exporter] = {
+    "scxml": Exporter("SCXML state chart, time-outs from outside", (".scxml",), to_scxml),
+    "scxml-timers": Exporter(
+        "SCXML state chart, time-outs by the engine's clock",
+        (".scxml",),
+        lambda mission, hfsm: to_scxml(mission, hfsm, timers=True),
+    ),
+    "btcpp": Exporter("BehaviorTree.CPP 4 tree", (".xml",), lambda mission, _: to_btcpp(mission)),
+    "flexbe": Exporter("FlexBE behaviour, its states and its manifest", (), to_flexbe),
+    "mermaid": Exporter(
+        "Mermaid state diagram", (".mmd", ".mermaid"), lambda _, hfsm: to_mermaid(hfsm)
+    ),
+    "dot": Exporter("Graphviz graph", (".dot", ".gv"), lambda _, hfsm: to_dot(hfsm)),
+    **ROS_EXPORTERS,
+}
+"""By the names of the formats."""

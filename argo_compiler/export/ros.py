@@ -1,6 +1,6 @@
 """ROS bags and the package of their messages; `argo_compiler.ros` makes them."""
 
-from argo_compiler.export.registry import Exporter
+from argo_compiler.export.exporter import Exporter
 from argo_compiler.ros import Storage, message_package, to_ros1_bag, to_ros2_bag
 
 ROS_EXPORTERS: dict[str, Exporter] = {

@@ -4,12 +4,12 @@ import math
 from collections import deque
 from collections.abc import Sequence
 
-from argo_compiler.hfsm.configuration import Configuration
 from argo_compiler.hfsm.events import Outcome
 from argo_compiler.hfsm.model import RETURN
 from argo_compiler.hfsm.progress import ByHand, Phase
 from argo_compiler.hfsm.reactions import Pending, Reactions
 from argo_compiler.hfsm.restoring import queues
+from argo_compiler.hfsm.rounds_and_clocks import Configuration
 from argo_compiler.hfsm.tables import CompiledTransition, LeafNode, Tables
 from argo_compiler.hfsm.trace import Cause, RawEntry
 from argo_compiler.il import Afterwards, EventKind, Response

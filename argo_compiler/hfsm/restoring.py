@@ -4,7 +4,6 @@ from collections import deque
 from collections.abc import Iterable, Mapping
 
 from argo_compiler.errors import Conflict
-from argo_compiler.hfsm.configuration import Configuration, Frame
 from argo_compiler.hfsm.model import RETURN, task_id
 from argo_compiler.hfsm.progress import (
     ByHand,
@@ -16,6 +15,7 @@ from argo_compiler.hfsm.progress import (
     Waiting,
 )
 from argo_compiler.hfsm.reactions import Reactions
+from argo_compiler.hfsm.rounds_and_clocks import Configuration, Frame
 from argo_compiler.hfsm.tables import GroupNode, LeafNode, ReactionNode, Tables
 from argo_compiler.il import EventKind, Response
 from argo_compiler.il.reserved import RETURN_TASK

@@ -6,7 +6,7 @@ from typing import Any
 from uuid import NAMESPACE_URL, uuid5
 
 from argo_compiler.diagnostics import Diagnostic
-from argo_compiler.export.registry import refusal, refuse
+from argo_compiler.export.exporter import refusal, refuse
 from argo_compiler.hfsm import ActionSucceeded, Executor, Hfsm, StartAction
 from argo_compiler.il import Action, Mission, Mode, OnFailure, Task
 from argo_compiler.isar.definition import FRAME, IMAGE, INSPECTION, RETURN_TO_HOME

@@ -3,7 +3,7 @@
 from argo_env.drives.powertrain import Powertrain
 from argo_env.run.log import RunLog
 from argo_env.run.machine import Machine
-from argo_env.run.power import PowerSupply
+from argo_env.run.power_supply import PowerSupply
 from argo_env.run.rig import Rig
 
 TIME_LIMIT = 4 * 3600.0  # s of simulated time after which a run is stopped

@@ -12,7 +12,7 @@ from argo_env.run.action import RETREAT, ActionEnd, ActionUnderWay
 from argo_env.run.log import Entry, RunLog
 from argo_env.run.odometry import Odometry
 from argo_env.run.perception import Perception, abnormal_reading
-from argo_env.run.power import PowerSupply
+from argo_env.run.power_supply import PowerSupply
 from argo_env.run.record import Anomaly, Reading
 from argo_env.run.rig import Rig
 

@@ -24,7 +24,7 @@ from argo_env.run.journal import open_journal
 from argo_env.run.record import RunRecord
 from argo_env.run.session import resume
 from argo_env.run.spec import logged
-from tests.yard import SITE, measure, mission, simulated, waypoint, yard
+from tests.yard import SITE, measure, mission, opened, simulated, waypoint, yard
 
 ROOT = Path(__file__).parents[2]
 KILLS = int(os.environ.get("ARGO_KILLS", "8"))
@@ -133,7 +133,7 @@ def test_runs_that_are_killed_lose_nothing(argo, folder, navigator, record_prope
         assert ended
         with open_journal(journal) as book:
             assert book.ended
-            record = resume(book, navigator)
+            record = resume(book, opened(navigator))
         require_complete(record, reference, told)
         done += 1
     record_property("kills", kills)

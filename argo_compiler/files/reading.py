@@ -60,7 +60,7 @@ def read_bytes(path: Path, thing: str, max_bytes: int) -> bytes:
         raise NoFile(
             path,
             FileProblem.MISSING,
-            f"can't be read: there is no such {thing}, the file does not exist",
+            f"can't be read: there is no such file, the {thing} does not exist",
             "check its name",
         ) from None
     except OSError as error:
@@ -104,7 +104,7 @@ def decode_text(content: bytes, name: object, thing: str) -> str:
     """
     if b"\0" in content:
         raise UnreadableFile(
-            name, FileProblem.NOT_TEXT, "is a binary file", f"a {thing} is plain text"
+            name, FileProblem.NOT_TEXT, "is no text but a binary file", f"a {thing} is plain text"
         )
     try:
         return content.decode("utf-8-sig")

@@ -26,7 +26,6 @@ from argo_planner.terminal.events import KINDS, parse_events, parse_values
 from argo_planner.terminal.files import keep_input, read_upload
 from argo_planner.terminal.importing import import_shown
 from argo_planner.terminal.options import EndArea, Optimise, SiteOption, Source, StartArea
-from argo_planner.terminal.reordering import optimise_shown
 from argo_planner.terminal.run_display import RunDisplay, conclude
 from argo_planner.use_cases.running import NO_MISSION, require_possible, with_mission
 
@@ -145,6 +144,8 @@ def run(
     imported = import_shown(upload, opened, start_area, end_area)
     reordering = None
     if optimise:
+        from argo_planner.terminal.reordering import optimise_shown  # brings the solvers
+
         imported, reordering = optimise_shown(imported, opened)
     spec = with_mission(spec, imported, reordering)
     opened.prepare()

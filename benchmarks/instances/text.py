@@ -10,6 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from argo_compiler.errors import ArgoError
+from argo_compiler.files.reading import read_text
 
 MAX_BYTES = 100_000_000
 MAX_NODES = 3000
@@ -18,7 +19,7 @@ MAX_NODES = 3000
 LARGEST = 10**10
 """the greatest number that is read: its sums stay far from where whole numbers overflow"""
 
-_KINDS = "a TSPLIB, OPLib or TSPTW file"
+_KIND = "TSPLIB, OPLib or TSPTW file"
 _OF_NUMBERS = frozenset("0123456789+-.eE \t\r\f\v")
 
 
@@ -47,29 +48,9 @@ class Source:
 
 def read_source(path: Path) -> Source:
     """The lines of a text file. Raises ArgoError if there are none to be read."""
-    if path.is_dir():
-        raise ArgoError(f"{path}: is a directory; name {_KINDS} in it")
-    try:
-        with path.open("rb") as file:
-            content = file.read(MAX_BYTES + 1)
-    except FileNotFoundError:
-        raise ArgoError(f"{path}: there is no such file; check the path") from None
-    except (OSError, ValueError) as error:  # ValueError: a NUL in the path
-        raise ArgoError(f"{path}: can't be read: {error}; check the file") from error
-    if len(content) > MAX_BYTES:
-        raise ArgoError(
-            f"{path}: is larger than {MAX_BYTES // 1_000_000} MB; is this the right file?"
-        )
-    try:
-        text = content.decode("utf-8-sig")
-    except UnicodeDecodeError as error:
-        raise ArgoError(
-            f"{path}: is no text: byte {error.start} is 0x{content[error.start]:02x}; name {_KINDS}"
-        ) from None
-    if "\0" in text:
-        raise ArgoError(f"{path}: is a binary file; name {_KINDS}")
+    text = read_text(path, _KIND, MAX_BYTES)
     if not text.strip():
-        raise ArgoError(f"{path}: is empty; name {_KINDS}")
+        raise ArgoError(f"{path}: is empty; name a {_KIND}")
     return Source(path, tuple(text.splitlines()))
 
 

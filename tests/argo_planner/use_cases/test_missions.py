@@ -28,7 +28,7 @@ from argo_planner.use_cases.running import (
     with_mission,
 )
 from argo_planner.use_cases.schemas import FileKind, schema
-from argo_planner.use_cases.sites import check_site, describe_site, list_sites
+from argo_planner.use_cases.sites import check_site, describe_site, list_sites, uploaded_site
 from tests.yard import measure, mission, waypoint
 
 DOCK = Pose(x=1.05, y=1.05, z=0.02)
@@ -129,7 +129,14 @@ def test_sites(site):
     assert {one.name for one in list_sites()} >= {"umad", "darmstadt"}
     report = check_site(site)
     assert report.errors == ()
-    assert "name: mine" in describe_site(site, "mine")
+    mine = describe_site(site, "mine")
+    again = uploaded_site(mine.encode(), "mine.yaml")
+    assert again.name == "mine"
+    assert again.site.checkpoints == site.site.checkpoints
+    with pytest.raises(DiagnosticError, match=r"mine.yaml:1:1: error: titel"):
+        uploaded_site(b"titel: Mine\n", "mine.yaml")
+    with pytest.raises(Invalid, match=r"mine.yaml: is not UTF-8"):
+        uploaded_site(b"\xff", "mine.yaml")
     with pytest.raises(Conflict, match="would be called umad"):
         describe_site(site, "umad")
 

@@ -12,9 +12,7 @@ from argo_compiler.errors import Invalid
 from argo_compiler.files.reading import read_bytes
 from argo_env.faults.reading import MAX_BYTES, FaultText, decode_faults
 from argo_env.files.folders import make_folder
-from argo_env.pictures import check_film
 from argo_env.planning.opening import OpenedSite, open_site
-from argo_env.recording.files import check_recording, recording_to
 from argo_env.run.drives_and_sensors import DRIVES, SENSORS
 from argo_env.run.journal import require_free
 from argo_env.run.observer import Observer
@@ -49,9 +47,14 @@ class _Outputs:
         """Raises ArgoError where something can't be written; folders are made now."""
         if self.pace is not None and not self.gui:
             raise Invalid("--pace is how fast the window shows the run: give --gui as well")
+        # What films and recordings are made with takes long to import.
         if self.render:
+            from argo_env.pictures import check_film
+
             check_film(self.render)
         if self.recording:
+            from argo_env.recording.files import check_recording
+
             check_recording(self.recording)
             keep_input(self.source, self.recording)
         if self.report:
@@ -170,6 +173,8 @@ def _carry_out(spec: RunSpec, site: OpenedSite, outputs: _Outputs) -> RunRecord:
     with ExitStack() as stack:
         observers: list[Observer] = [stack.enter_context(RunDisplay(spec.mission.max_duration))]
         if outputs.recording:
+            from argo_env.recording.files import recording_to
+
             observers.append(stack.enter_context(recording_to(outputs.recording, outputs.source)))
         return simulate(
             spec,

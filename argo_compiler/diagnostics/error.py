@@ -14,3 +14,6 @@ class DiagnosticError(Invalid):
         self.source_name = source_name
         self.diagnostics = by_place(diagnostics)
         super().__init__(to_text(self.diagnostics, source_name))
+
+    def __reduce__(self) -> tuple[object, ...]:
+        return type(self), (self.source_name, self.diagnostics), vars(self)

@@ -17,6 +17,9 @@ class EditError(ArgoError):
         self.diagnostics = tuple(diagnostics)
         super().__init__(to_text(self.diagnostics, "edit"))
 
+    def __reduce__(self) -> tuple[object, ...]:
+        return type(self), (self.diagnostics,), vars(self)
+
 
 class EditNotFound(EditError, NotFound):
     """The edit names a task, group, transition or reaction that the mission does not have."""

@@ -31,7 +31,7 @@ class FileError(ArgoError):
 
     def __reduce__(self) -> tuple[object, ...]:
         name = str(self).removesuffix(f": {self.message}; {self.hint}")
-        return type(self), (name, self.problem, self.message, self.hint)
+        return type(self), (name, self.problem, self.message, self.hint), vars(self)
 
 
 class NoFile(FileError, NotFound):

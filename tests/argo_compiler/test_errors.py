@@ -1,0 +1,71 @@
+"""Errors cross the border of a process whole: pools hand them from worker to caller by pickle."""
+
+import copy
+import pickle
+from pathlib import Path
+
+import pytest
+
+import argo_env.closing
+from argo_compiler.diagnostics import Diagnostic, DiagnosticError, Severity, Span
+from argo_compiler.editing import EditConflict, EditError, EditInvalid, EditNotFound
+from argo_compiler.errors import (
+    ArgoError,
+    Conflict,
+    Invalid,
+    NotFound,
+    Remedy,
+    Unavailable,
+    Unreachable,
+)
+from argo_compiler.files.reading import FileError, FileProblem, NoFile, UnreadableFile
+
+FINDINGS = (
+    Diagnostic(
+        code="edit.place",
+        severity=Severity.ERROR,
+        message="no such place",
+        span=Span(line=1, column=2),
+        hint="name another",
+        remedies=(Remedy.CHECK_MISSION,),
+    ),
+    Diagnostic(code="edit.value", severity=Severity.ERROR, message="no value"),
+)
+FILE = (Path("a/b: c.json"), FileProblem.MISSING, "there is none", "name one; or none")
+MADE = [
+    *(
+        kind("what: is it", remedies=(Remedy.RESUME, Remedy.RECORD), about="a.jsonl")
+        for kind in (ArgoError, NotFound, Invalid, Unreachable, Conflict, Unavailable)
+    ),
+    argo_env.closing.CopyRefused("not this one", about="it"),
+    DiagnosticError("a.txt", FINDINGS),
+    *(kind(FINDINGS) for kind in (EditError, EditNotFound, EditInvalid, EditConflict)),
+    *(kind(*FILE) for kind in (FileError, NoFile, UnreadableFile)),
+]
+
+
+def through_pickle(error):
+    return [
+        pickle.loads(pickle.dumps(error, protocol))
+        for protocol in range(pickle.HIGHEST_PROTOCOL + 1)
+    ]
+
+
+@pytest.mark.parametrize("error", MADE, ids=lambda e: type(e).__name__)
+def test_an_error_is_the_same_after_a_pickle_and_a_copy(error):
+    error.remedies, error.about = (Remedy.RESUME,), "what it is about"
+    error.add_note("seen by a caller")
+    for made in (*through_pickle(error), copy.copy(error), copy.deepcopy(error)):
+        assert type(made) is type(error)
+        assert str(made) == str(error)
+        assert made.args == error.args
+        assert made.code == error.code
+        assert vars(made) == vars(error)
+
+
+def test_every_kind_of_error_is_looked_at():
+    def kinds(kind):
+        return {kind, *(k for sub in kind.__subclasses__() for k in kinds(sub))}
+
+    ours = {k for k in kinds(ArgoError) if k.__module__.split(".")[0].startswith("argo_")}
+    assert ours == {type(error) for error in MADE}

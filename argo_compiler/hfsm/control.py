@@ -87,7 +87,7 @@ class Control:
         ways: tuple[CompiledTransition, ...],
         failure: str | None = None,
         timed_out: str | None = None,
-        by_hand: bool = False,
+        by_hand: ByHand | None = None,
     ) -> None:
         place = self.place
         source = place.leaf
@@ -103,7 +103,8 @@ class Control:
                 timed_out,
                 None if repeated is None else repeated.name,
                 failure,
-                by_hand=by_hand,
+                by_hand=by_hand is not None,
+                skipped=by_hand is not None and by_hand.skipped,
             )
         )
 
@@ -148,7 +149,7 @@ class Control:
         if done.value is not None and leaf.measures is not None and not done.skipped:
             self.place.values[leaf.measures] = done.value, self.now + self.place.shift
         self.ended.append((leaf.name, None, True))
-        self._take(leaf.ways, by_hand=True)
+        self._take(leaf.ways, by_hand=done)
         return True
 
     def _leave_group(self) -> None:

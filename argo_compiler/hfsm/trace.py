@@ -61,6 +61,8 @@ class TraceEntry:
     """what occurred, for REPORT, REACTION, HOLD and what ends them"""
     by_hand: bool = False
     """whether `source` was done or skipped by a person"""
+    skipped: bool = False
+    """with `by_hand`: whether it was skipped"""
     detail: str = ""
     """more in words"""
 
@@ -80,7 +82,7 @@ class TraceEntry:
         if self.detail:
             why += f" ({self.detail})"
         if self.by_hand:
-            why += "; done by hand"
+            why += "; counts as done by hand: skipped" if self.skipped else "; done by hand"
         if self.failure is not None:
             why += f"; failed: {self.failure}"
         return why
@@ -102,6 +104,7 @@ class RawEntry(NamedTuple):
     failure: str | None = None
     event: EventKind | None = None
     by_hand: bool = False
+    skipped: bool = False
     detail: str = ""
 
 

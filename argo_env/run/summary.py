@@ -6,7 +6,7 @@ from argo_env.run.machine import Machine
 from argo_env.run.record import RunRecord, TraceStep
 from argo_env.run.rig import Rig
 from argo_env.run.spec import RunSpec
-from argo_env.run.verdict import failed_tasks, judge
+from argo_env.run.verdict import judge
 
 
 def make_record(
@@ -15,13 +15,14 @@ def make_record(
     """The record of a run with this log, whose machine stands like this."""
     site = rig.navigator.site
     assert log.last is not None
+    trace = machine.trace
     result = judge(
         spec.mission,
         machine.hfsm,
         site.docks,
         log,
         machine.outcome if machine.finished else None,
-        failed_tasks(log.tasks, machine.trace),
+        trace,
     )
     return RunRecord(
         mission=spec.mission,
@@ -37,8 +38,7 @@ def make_record(
         readings=tuple(log.readings),
         contacts=tuple(sorted(log.contacts, key=lambda c: (c.start, c.link, c.element))),
         trace=tuple(
-            TraceStep(t=e.time, source=e.source, target=e.target, cause=e.why)
-            for e in machine.trace
+            TraceStep(t=e.time, source=e.source, target=e.target, cause=e.why) for e in trace
         ),
         path=tuple(log.path),
         interruptions=interruptions.all(log.last.t),

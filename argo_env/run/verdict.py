@@ -1,7 +1,7 @@
 """The verdict: whether the mission is a success, and what is missing if it is not."""
 
 import math
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 
 from argo_compiler.hfsm import Cause, Hfsm, Outcome, TraceEntry
 from argo_compiler.il import Mission
@@ -35,7 +35,7 @@ def at_dock(pose: BodyPose, dock: Pose) -> bool:
     return away <= DOCKED_DISTANCE and abs(wrap(pose.yaw - dock.yaw)) <= DOCKED_ANGLE
 
 
-def failed_tasks(runs: Sequence[TaskRun], trace: Iterable[TraceEntry]) -> tuple[str, ...]:
+def failed_tasks(runs: Sequence[TaskRun], trace: Sequence[TraceEntry]) -> tuple[str, ...]:
     """The tasks that failed and were not tried again, by name and in order."""
     retried = {(e.time, e.source) for e in trace if e.cause is Cause.RETRY}
     failed = [r.task for r in runs if r.outcome == "failed" and (r.end, r.task) not in retried]
@@ -48,9 +48,9 @@ def judge(
     docks: Mapping[int, Pose],
     log: RunLog,
     outcome: Outcome | None,
-    failed: Sequence[str],
+    trace: Sequence[TraceEntry],
 ) -> Result:
-    """How the mission ended: the machine with `outcome`, the tasks `failed` for good.
+    """How the mission ended: the machine with `outcome`, by the steps of its `trace`.
 
     An `outcome` of None is that of a run that was stopped before, or is still under way.
     """
@@ -65,15 +65,19 @@ def judge(
         missing.append(last.stopped or f"it was stopped after {now:.0f} s")
     elif outcome is not Outcome.COMPLETED:
         missing.append(_ENDINGS[outcome])
-    if failed:
+    if failed := failed_tasks(log.tasks, trace):
         missing.append(f"failed: {', '.join(failed)}")
     if limit is not None and now > limit:
         missing.append(f"it took {now:.0f} s of at most {limit:.0f} s")
     if docked is False:
         missing.append(f"the robot is not docked in starting area {area}")
+    success = not missing
+    skipped = _by_hand(trace, skipped=True)
+    if skipped and not success:
+        missing.append(f"skipped by a person: {', '.join(skipped)}")
     return Result(
-        success=not missing,
-        verdict="; ".join(missing) if missing else _praise(hfsm, log.tasks),
+        success=success,
+        verdict=_praise(hfsm, log.tasks, trace) if success else "; ".join(missing),
         outcome=outcome,
         duration=now,
         max_duration=limit,
@@ -84,10 +88,24 @@ def judge(
     )
 
 
-def _praise(hfsm: Hfsm, runs: Iterable[TaskRun]) -> str:
-    """The verdict of a success: a plan with conditions may pass tasks over."""
-    done = {t.task for t in runs} | RESERVED_NAMES
-    passed_over = [leaf.task.name for leaf in hfsm.leaves if leaf.task.name not in done]
+def _praise(hfsm: Hfsm, runs: Sequence[TaskRun], trace: Sequence[TraceEntry]) -> str:
+    """The verdict of a success: a plan with conditions may pass tasks over, and a person may have
+    done or skipped some."""
+    by_hand, skipped = _by_hand(trace, skipped=False), _by_hand(trace, skipped=True)
+    done = {run.task for run in runs if run.outcome != "interrupted"} | RESERVED_NAMES
+    ended = done.union(by_hand, skipped)
+    passed_over = [leaf.task.name for leaf in hfsm.leaves if leaf.task.name not in ended]
+    said = ["the plan was carried out"]
     if passed_over:
-        return f"the plan was carried out; it led past {', '.join(passed_over)}"
-    return "everything was done as planned"
+        said.append(f"it led past {', '.join(passed_over)}")
+    if by_hand:
+        said.append(f"done by hand: {', '.join(by_hand)}")
+    if skipped:
+        said.append(f"skipped by a person: {', '.join(skipped)}")
+    return "; ".join(said) if len(said) > 1 else "everything was done as planned"
+
+
+def _by_hand(trace: Sequence[TraceEntry], *, skipped: bool) -> tuple[str, ...]:
+    """The tasks that a person did in place of the machine, or skipped, in this order."""
+    found = (e.source for e in trace if e.by_hand and e.skipped is skipped and e.source)
+    return tuple(dict.fromkeys(found))

@@ -272,6 +272,41 @@ class TestSteering:
         with pytest.raises(Invalid, match=says):
             simulation.handle(GiveBack((done,)))
 
+    @pytest.mark.parametrize(
+        ("done", "verdict"),
+        [
+            ([{"task": "MEASURE 2", "skipped": True}], "skipped by a person: MEASURE 2"),
+            ([{"task": "MEASURE 2", "value": 5.0}], "done by hand: MEASURE 2"),
+            (
+                [{"task": "MEASURE 1", "value": 5.0}, {"task": "MEASURE 2", "skipped": True}],
+                "done by hand: MEASURE 1; skipped by a person: MEASURE 2",
+            ),
+        ],
+    )
+    def test_the_verdict_tells_what_a_person_did(self, site, done, verdict):
+        """Also where the robot had begun with it."""
+        spec = RunSpec(mission=mission(measure(1), measure(2)), site="yard", drive="route")
+        with simulation_of(spec, site) as simulation:
+            until(simulation, lambda: simulation.task.name == done[0]["task"])
+            steps(simulation, 5)
+            simulation.handle(TakeOver())
+            until(simulation, lambda: simulation.task is None)
+            simulation.handle(GiveBack(tuple(ByHand(**fields) for fields in done)))
+            record = simulation.run()
+        assert done[0]["task"] in {t.task for t in record.tasks if t.outcome == "interrupted"}
+        assert record.result.success
+        assert record.result.verdict == f"the plan was carried out; {verdict}"
+
+    def test_what_was_skipped_is_told_where_the_mission_is_no_success(self, simulation):
+        steps(simulation, 40)
+        simulation.handle(TakeOver())
+        until(simulation, lambda: simulation.task is None)
+        simulation.handle(GiveBack((ByHand(task="MEASURE 3", skipped=True),)))
+        verdict = simulation.run().result.verdict
+        assert verdict == (
+            "the robot is not docked in starting area 1; skipped by a person: MEASURE 3"
+        )
+
     def test_stopping(self, simulation):
         steps(simulation, 25)
         simulation.handle(StopRun("the tide came in"))

@@ -60,8 +60,8 @@ def read_bytes(path: Path, thing: str, max_bytes: int) -> bytes:
         raise NoFile(
             path,
             FileProblem.MISSING,
-            f"can't be read: there is no such file, the {thing} does not exist",
-            "check its name",
+            "does not exist (no such file)",
+            f"check the {thing}'s name",
         ) from None
     except OSError as error:
         message = f"can't be read: {error.strerror}"

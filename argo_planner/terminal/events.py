@@ -4,10 +4,9 @@ import math
 
 from argo_compiler.errors import ArgoError, Conflict, Invalid
 from argo_compiler.hfsm import Event
-from argo_compiler.il import EventKind
-from argo_planner.use_cases.running import event_named
+from argo_planner.use_cases.running import EVENTS, event_named
 
-KINDS = ", ".join(["pause", "resume", "cancel", *EventKind])
+KINDS = ", ".join(EVENTS)
 """what may stand for KIND in `--event TIME=KIND`"""
 
 
@@ -15,12 +14,12 @@ def parse_events(options: list[str]) -> list[tuple[float, Event]]:
     """What `--event TIME=KIND` says, by time; ArgoError if it is said otherwise."""
     events = []
     for option in options:
-        at, _, name = option.partition("=")
+        at, equals, name = option.partition("=")
         try:
             time_s = float(at)
         except ValueError:
             time_s = math.nan
-        if not 0.0 <= time_s < math.inf:
+        if not (equals and 0.0 <= time_s < math.inf):
             raise Invalid(f"--event {option}: write TIME=KIND in s, such as 60=gas_leak")
         try:
             events.append((time_s, event_named(name)))

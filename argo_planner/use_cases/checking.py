@@ -17,6 +17,7 @@ from argo_compiler.diagnostics import (
     to_text,
 )
 from argo_compiler.errors import ArgoError
+from argo_compiler.files.reading import FileError
 from argo_planner.use_cases.importing import SourceKind, Upload, kind_of, load, refuse_areas
 
 
@@ -56,7 +57,16 @@ def diagnostics_of(error: ArgoError) -> tuple[Diagnostic, ...]:
     """What is wrong with a mission that could not be read, as diagnostics."""
     if isinstance(error, DiagnosticError):
         return error.diagnostics
-    return (Diagnostic(code="script.unreadable", severity=Severity.ERROR, message=str(error)),)
+    # Where the file is named beside it, the message need not name it again.
+    file = error if isinstance(error, FileError) else None
+    return (
+        Diagnostic(
+            code="script.unreadable",
+            severity=Severity.ERROR,
+            message=file.message if file else str(error),
+            hint=file.hint if file else None,
+        ),
+    )
 
 
 def write_diagnostics(diagnostics: tuple[Diagnostic, ...], source_name: str, format: Format) -> str:

@@ -133,3 +133,10 @@ def test_requests_that_make_no_sense(argo, options):
 @pytest.mark.parametrize("name", ["mission", "machine", "progress"])
 def test_schemas_are_printed(argo, name):
     assert json.loads(argo("schema", name).stdout)["title"] == f"Argo {name}"
+
+
+def test_a_file_that_is_not_there_is_named_once(argo, tmp_path: Path):
+    path = tmp_path / "none.txt"
+    result = argo("check", path)
+    assert result.exit_code == 2
+    assert f"{path}: error: does not exist (no such file) [script.unreadable]" in result.output

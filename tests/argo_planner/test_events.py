@@ -5,7 +5,7 @@ import pytest
 from argo_compiler.errors import ArgoError
 from argo_compiler.hfsm import Cancel, Occurred, Pause, Resume
 from argo_compiler.il import EventKind
-from argo_planner.terminal.events import parse_events
+from argo_planner.terminal.events import KINDS, parse_events
 
 
 def test_events_come_in_the_order_of_time():
@@ -27,6 +27,7 @@ def test_every_kind(kind):
     ("option", "says"),
     [
         ("gas_leak", "write TIME=KIND"),
+        ("60", "write TIME=KIND"),
         ("=gas_leak", "write TIME=KIND"),
         ("-1=gas_leak", "write TIME=KIND"),
         ("nan=gas_leak", "write TIME=KIND"),
@@ -39,3 +40,8 @@ def test_every_kind(kind):
 def test_what_is_refused(option, says):
     with pytest.raises(ArgoError, match=says):
         parse_events(["1=hot_spot", option])
+
+
+def test_the_help_names_what_may_be_said():
+    for kind in KINDS.split(", "):
+        parse_events([f"0={kind}"])

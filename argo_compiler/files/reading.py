@@ -60,8 +60,8 @@ def read_bytes(path: Path, thing: str, max_bytes: int) -> bytes:
         raise NoFile(
             path,
             FileProblem.MISSING,
-            "does not exist (no such file)",
-            f"check the {thing}'s name",
+            "can't be read: it does not exist (no such file)",
+            f"check the name of the {thing}",
         ) from None
     except OSError as error:
         message = f"can't be read: {error.strerror}"

@@ -8,7 +8,7 @@ import typer
 from argo_compiler.diagnostics import Diagnostic, has_errors, summary
 from argo_compiler.errors import ArgoError
 from argo_env.planning.opening import open_site
-from argo_planner.terminal.files import keep_input, read_upload, write_text
+from argo_planner.terminal.files import keep_apart, read_upload, write_text
 from argo_planner.terminal.options import EndArea, SiteOption, Source, StartArea
 from argo_planner.terminal.words import with_options
 from argo_planner.use_cases.checking import (
@@ -35,8 +35,7 @@ def check_mission(
     end_area: EndArea = None,
 ) -> None:
     """Say all that is wrong or odd about a mission; exits with status 2 if there are errors."""
-    if output:
-        keep_input(source, output)
+    keep_apart([source, site], [output])
     diagnostics = with_options(_diagnostics(source, site, start_area, end_area))
     written = write_diagnostics(diagnostics, str(source), format)
     if output:

@@ -8,7 +8,7 @@ from rich.console import Console
 from rich.markup import escape
 
 from argo_env.planning.opening import open_site
-from argo_planner.terminal.files import keep_input, read_upload, write_text
+from argo_planner.terminal.files import keep_apart, read_upload, write_text
 from argo_planner.terminal.importing import import_shown
 from argo_planner.terminal.options import EndArea, Optimise, SiteOption, Source, StartArea
 from argo_planner.use_cases.compiling import compile_mission as compile_imported
@@ -26,7 +26,7 @@ def compile_mission(
     end_area: EndArea = None,
 ) -> None:
     """Lower a mission to its state machine and write it as JSON."""
-    keep_input(source, output)
+    keep_apart([source, site], [output, mermaid])
     opened = open_site(site)
     imported = import_shown(read_upload(source), opened, start_area, end_area)
     if optimise:

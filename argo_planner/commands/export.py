@@ -10,7 +10,7 @@ from rich.markup import escape
 from argo_compiler.errors import NotFound
 from argo_env.planning.opening import open_site
 from argo_planner.terminal.completion import among
-from argo_planner.terminal.files import keep_input, read_upload, write_content
+from argo_planner.terminal.files import keep_apart, read_upload, write_content
 from argo_planner.terminal.importing import import_shown
 from argo_planner.terminal.options import EndArea, SiteOption, Source, StartArea
 from argo_planner.use_cases.exporting import FORMATS, require_format
@@ -33,7 +33,7 @@ def export_mission(
     end_area: EndArea = None,
 ) -> None:
     """Write a mission in the format of another tool."""
-    keep_input(source, output)
+    keep_apart([source, site], [output])
     try:
         require_format(to)
     except NotFound as error:

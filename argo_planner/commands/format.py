@@ -7,7 +7,7 @@ from typing import Annotated
 import typer
 
 from argo_env.planning.opening import open_site
-from argo_planner.terminal.files import keep_input, read_upload, write_text
+from argo_planner.terminal.files import keep_apart, read_upload, write_text
 from argo_planner.terminal.importing import import_shown
 from argo_planner.terminal.options import EndArea, SiteOption, Source, StartArea
 from argo_planner.use_cases.exporting import as_script
@@ -23,8 +23,7 @@ def format_mission(
     end_area: EndArea = None,
 ) -> None:
     """Write a mission as a script, in one canonical form; importing that gives the same mission."""
-    if output:
-        keep_input(source, output)
+    keep_apart([source, site], [output])
     opened = open_site(site)
     script = as_script(import_shown(read_upload(source), opened, start_area, end_area), opened)
     if output:

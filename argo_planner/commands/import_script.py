@@ -10,7 +10,7 @@ from rich.markup import escape
 from argo_compiler.errors import Invalid
 from argo_compiler.files.mission_file import write_mission
 from argo_env.planning.opening import open_site
-from argo_planner.terminal.files import read_upload, require_mission_output
+from argo_planner.terminal.files import keep_apart, read_upload, require_mission_output
 from argo_planner.terminal.importing import import_shown
 from argo_planner.terminal.options import EndArea, SiteOption, StartArea
 from argo_planner.use_cases.importing import SourceKind, kind_of
@@ -29,7 +29,8 @@ def import_script(
     upload = read_upload(script)
     if kind_of(upload) is SourceKind.MISSION:
         raise Invalid(f"{script} is no script: `argo run` and `argo compile` take missions")
-    require_mission_output(script, output)
+    keep_apart([script, site], [output])
+    require_mission_output(output)
     mission = import_shown(upload, open_site(site), start_area, end_area).mission
     write_mission(mission, output)
     names = ", ".join(task.name for task in mission.tasks)

@@ -13,6 +13,7 @@ from argo_env.formatting import clock
 from argo_env.pictures import check_film
 from argo_env.recording.reader import Recording, read_recording
 from argo_env.robot.spec import load_robot
+from argo_planner.terminal.files import keep_apart
 from argo_planner.terminal.run_display import conclude
 from argo_planner.terminal.verbosity import is_quiet
 
@@ -29,6 +30,7 @@ def replay(
     ] = None,
 ) -> None:
     """Show what was recorded of a run, and make its report and its film again."""
+    keep_apart([recording], [render])
     if render:
         check_film(render)
     begun = time.monotonic()

@@ -18,6 +18,7 @@ from argo_env.run.session import resume
 from argo_env.run.simulation import LoggedEvents
 from argo_env.run.spec import logged
 from argo_planner.terminal.events import KINDS, parse_events
+from argo_planner.terminal.files import keep_apart
 from argo_planner.terminal.run_display import RunDisplay, conclude
 from argo_planner.terminal.verbosity import is_quiet
 
@@ -45,6 +46,7 @@ def resume_run(
     """Go on with a run whose process has died, from its journal."""
     if report:
         make_folder(report)
+    keep_apart([journal], [recording])
     if recording:
         check_recording(recording)
     events = logged(*parse_events(event or []))

@@ -16,7 +16,7 @@ from argo_compiler.route.robust_spread import CAUTIOUS, SIMULATED
 from argo_env.files.folders import make_folder
 from argo_env.files.yaml_messages import message_of
 from argo_env.planning.opening import OpenedSite, open_site
-from argo_planner.terminal.files import read_upload, require_mission_output
+from argo_planner.terminal.files import keep_apart, read_upload, require_mission_output
 from argo_planner.terminal.importing import import_shown
 from argo_planner.terminal.options import EndArea, SiteOption, Source, StartArea
 from argo_planner.terminal.order_tables import show, show_risk
@@ -88,8 +88,9 @@ def suggest_order(
     end_area: EndArea = None,
 ) -> None:
     """Suggest the best order of a mission's tasks; exits with status 2 if there is none."""
+    keep_apart([source, site, requirements], [output])
     if output:
-        require_mission_output(source, output)
+        require_mission_output(output)
     wanted = with_options(_read(requirements), budget, keep_order, before or [])
     upload = read_upload(source)
     if kind_of(upload) is not SourceKind.SCRIPT:

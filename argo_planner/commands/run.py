@@ -21,7 +21,7 @@ from argo_env.run.session import simulate
 from argo_env.run.spec import RunSpec, logged
 from argo_planner.terminal.completion import among
 from argo_planner.terminal.events import KINDS, parse_events, parse_values
-from argo_planner.terminal.files import keep_input, read_upload
+from argo_planner.terminal.files import keep_apart, read_upload
 from argo_planner.terminal.importing import import_shown
 from argo_planner.terminal.options import EndArea, Optimise, SiteOption, Source, StartArea
 from argo_planner.terminal.run_display import RunDisplay, conclude
@@ -43,8 +43,10 @@ class _Outputs:
     pace: float | None
     """simulated seconds a second"""
 
-    def check(self) -> None:
-        """Raises ArgoError where something can't be written; folders are made now."""
+    def check(self, *inputs: Path | str | None) -> None:
+        """Raises ArgoError where something can't be written, or is one of the inputs; folders are
+        made now."""
+        keep_apart([self.source, *inputs], [self.render, self.recording, self.journal])
         if self.pace is not None and not self.gui:
             raise Invalid("--pace is how fast the window shows the run: give --gui as well")
         # What films and recordings are made with takes long to import.
@@ -56,7 +58,6 @@ class _Outputs:
             from argo_env.recording.files import check_recording
 
             check_recording(self.recording)
-            keep_input(self.source, self.recording)
         if self.report:
             make_folder(self.report)
         if self.journal:
@@ -127,7 +128,7 @@ def run(
 ) -> None:
     """Run a mission on a site, show what was measured, and write a report."""
     outputs = _Outputs(source, report, render, recording, journal, gui, pace)
-    outputs.check()
+    outputs.check(site, faults)
     said = _read_faults(faults) if faults else None
     spec = RunSpec(
         mission=NO_MISSION,

@@ -9,7 +9,7 @@ import typer
 from argo_compiler.errors import ArgoError, Invalid, located
 from argo_env.planning.opening import OpenedSite, open_site
 from argo_planner.terminal import completion
-from argo_planner.terminal.files import keep_input, write_text
+from argo_planner.terminal.files import keep_apart, write_text
 from argo_planner.use_cases.sites import check_site, describe_site, list_sites, require_free_name
 
 
@@ -35,7 +35,7 @@ def show_sites(
             print(f"{one.name}: {one.title}, floors: {one.floors}, checkpoints: {one.checkpoints}")
         return
     if output:
-        keep_input(Path(site), output)
+        keep_apart([site], [output])
         _check_name(output)
     opened = open_site(site)
     if output:

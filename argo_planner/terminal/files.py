@@ -1,6 +1,6 @@
 """What the commands read and write: uploads from files and folders, and results."""
 
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from pathlib import Path
 
 from argo_compiler.errors import Conflict, Invalid, Unavailable
@@ -25,15 +25,28 @@ def read_upload(source: Path) -> Upload:
     return Upload(str(source), read_bytes(source, "script", MAX_BYTES))
 
 
-def keep_input(source: Path, output: Path) -> None:
-    """Raises ArgoError where a command would write over what it reads."""
-    if source.resolve() == output.resolve():
-        raise Conflict(f"{output} is the input as well; choose another place to write to")
+def keep_apart(inputs: Iterable[Path | str | None], outputs: Iterable[Path | None]) -> None:
+    """Raises Conflict where a command would write over what it reads, or twice to one place. A
+    text is a site: its file, if it is one."""
+    read = {
+        Path(given).resolve()
+        for given in inputs
+        if isinstance(given, Path) or (given and Path(given).suffix in {".yaml", ".yml"})
+    }
+    written: set[Path] = set()
+    for output in outputs:
+        if output is None:
+            continue
+        place = output.resolve()
+        if place in read:
+            raise Conflict(f"{output} is the input as well; choose another place to write to")
+        if place in written:
+            raise Conflict(f"{output} is to be written twice; choose another place for one of them")
+        written.add(place)
 
 
-def require_mission_output(source: Path, output: Path) -> None:
-    """Raises ArgoError where a mission that is written there could not be read again."""
-    keep_input(source, output)
+def require_mission_output(output: Path) -> None:
+    """Raises Invalid where a mission that is written there could not be read again."""
     if output.suffix.lower() != ".json":
         raise Invalid(f"{output}: a mission is written as JSON; name a file that ends in .json")
 

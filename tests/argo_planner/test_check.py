@@ -139,4 +139,7 @@ def test_a_file_that_is_not_there_is_named_once(argo, tmp_path: Path):
     path = tmp_path / "none.txt"
     result = argo("check", path)
     assert result.exit_code == 2
-    assert f"{path}: error: does not exist (no such file) [script.unreadable]" in result.output
+    assert (
+        f"{path}: error: can't be read: it does not exist (no such file) [script.unreadable]"
+        in result.output
+    )

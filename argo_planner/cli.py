@@ -1,6 +1,7 @@
 """The command `argo`: its name, its version, and the commands that it has."""
 
 import gc
+import os
 import sys
 from typing import Annotated
 
@@ -138,12 +139,24 @@ def argo(
 
 def main() -> None:
     """The entry point: what goes wrong is said in one message, with exit status 2."""
+    if sys.stdout is None:  # closed by whoever wants no output
+        sys.stdout = open(os.devnull, "w")  # noqa: SIM115
     try:
-        app()
+        try:
+            app()
+        finally:
+            sys.stdout.flush()
     except ArgoError as error:
         from argo_planner.terminal.words import said
 
         print(said(error, "argo: "), file=sys.stderr)
+        raise SystemExit(2) from None
+    except OSError as error:
+        if error.filename is not None:
+            raise
+        print(f"argo: the output can't be written: {error.strerror}", file=sys.stderr)
+        # What is left in the buffer would fail once more at the end of the process.
+        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
         raise SystemExit(2) from None
     finally:
         gc.freeze()  # the process ends: all goes, and needs no search for what can go

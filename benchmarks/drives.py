@@ -99,7 +99,8 @@ def run(navigator: Navigator, seed: int, drive: str) -> Run:
     mission = random_mission(navigator, seed)
     began = time.perf_counter()
     result = simulate(
-        RunSpec(mission=mission, drive=drive, seed=seed), OpenedSite.of_navigator(navigator)
+        RunSpec(mission=mission, site=navigator.site.name, drive=drive, seed=seed),
+        OpenedSite.of_navigator(navigator),
     ).result
     wall = time.perf_counter() - began
     return Run(seed, drive, None if result.success else result.verdict, result.duration, wall)

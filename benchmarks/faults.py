@@ -70,7 +70,7 @@ def clean(navigator: Navigator, count: int, first_seed: int, drive: str) -> None
         mission = random_mission(navigator, seed)
         began = time.perf_counter()
         record = simulate(
-            RunSpec(mission=mission, seed=seed, drive=drive),
+            RunSpec(mission=mission, site=navigator.site.name, seed=seed, drive=drive),
             OpenedSite.of_navigator(navigator),
         )
         wall += time.perf_counter() - began
@@ -103,6 +103,7 @@ def scenarios(navigator: Navigator, seeds: int, drive: str) -> None:
         for seed in range(seeds):
             spec = RunSpec(
                 mission=mission,
+                site=navigator.site.name,
                 seed=seed,
                 drive=drive,
                 faults=read_faults(path),
@@ -143,7 +144,7 @@ def bricks(navigator: Navigator, count: int, first_seed: int, drive: str) -> Non
             Task(name="MEASURE", action=Action.MEASURE, object_id=checkpoint),
             Task(name="DOCK", action=Action.WAYPOINT, pose=dock),
         )
-        spec = RunSpec(mission=mission, seed=seed, drive=drive, faults=(brick,))
+        spec = RunSpec(mission=mission, site=site.name, seed=seed, drive=drive, faults=(brick,))
         record = simulate(spec, OpenedSite.of_navigator(navigator))
         found += any(a.kind is EventKind.POSITIVE_OBSTACLE for a in record.anomalies)
         touched += bool(record.contacts)

@@ -9,6 +9,7 @@ from pathlib import Path
 from argo_compiler.hfsm import Executor, lower
 from argo_env.planning.opening import OpenedSite, open_site
 from argo_env.run.action import ActionUnderWay
+from argo_env.run.fitting_together import require_site
 from argo_env.run.journal import Header, Journal, create_journal
 from argo_env.run.observer import Observer
 from argo_env.run.record import RunRecord
@@ -45,9 +46,10 @@ def simulate(
 
     Raises:
         ArgoError: the mission makes no sense on this site, there is no such site, drive or sensor,
-            or the journal can't be written.
+            the site is not the spec's, or the journal can't be written.
     """
     site = site or open_site(spec.site)
+    require_site(site, spec)
     check_spec(spec, site.site)
     machine = Executor(lower(spec.mission))
     _log.info(

@@ -13,6 +13,7 @@ from argo_env.planning.start import start_pose
 from argo_env.robot.pose import BodyPose
 from argo_env.run.course import Course
 from argo_env.run.ending import exhausted, standstill
+from argo_env.run.fitting_together import require_machine, require_site
 from argo_env.run.log import Entry, LoggedEvent
 from argo_env.run.machine import Machine, OpenMachine
 from argo_env.run.observer import Observer
@@ -56,13 +57,17 @@ class Simulation(Closing):
         that is given stays its owner's; else one is fitted out.
 
         Raises ArgoError if no such run can be on the site, the robot can't stand where it starts,
-        or the past is not this run's.
+        or the past is not this run's: Conflict for a site or a machine that is not the spec's, or a
+        machine that was used before.
         """
         self._spec = spec
         self._observers = tuple(observers)
         self._more = tuple(events)
         self._opened = False
+        self._closed = False
         self._record: RunRecord | None = None
+        require_site(site, spec)
+        require_machine(machine, spec)
         with ExitStack() as stack:
             self._vehicle = Vehicle(rig or fit_out(spec, site.navigator, gui, stack))
             self._course = Course(machine, self._vehicle, spec)
@@ -119,7 +124,7 @@ class Simulation(Closing):
         """Lets one time step of the drive pass: the robot moves, and the machine hears what
         happened. The run ends with its mission, with the battery, or after four hours.
 
-        Raises Conflict if it has ended.
+        Raises Conflict if it has ended, or is closed.
         """
         self._require_going_on()
         if not self._opened and self._open():
@@ -170,6 +175,8 @@ class Simulation(Closing):
     def run(self) -> RunRecord:
         """Goes on to the end of the run; returns its record. A robot that stands still and waits
         for what will not occur ends the run as well, as nobody can tell it anything meanwhile."""
+        if not self.over:
+            self._require_usable()
         while not self.over and not self._open():
             if why := self._standstill():
                 self._end(why)
@@ -188,6 +195,7 @@ class Simulation(Closing):
 
     def close(self) -> None:
         """Gives back what the run was carried out with. The record can still be asked for."""
+        self._closed = True
         self._stack.close()
 
     def _set_up(self, past: Sequence[Entry]) -> None:
@@ -264,6 +272,11 @@ class Simulation(Closing):
     def _require_going_on(self) -> None:
         if self.over:
             raise Conflict(f"the run has ended, at {self.now:g} s: make another simulation")
+        self._require_usable()
+
+    def _require_usable(self) -> None:
+        if self._closed:
+            raise Conflict("the simulation is closed: make another one")
 
     def _standstill(self) -> str | None:
         if self._course.given.pending or self._vehicle.supply.charging:

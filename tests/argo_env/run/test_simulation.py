@@ -15,12 +15,14 @@ from argo_compiler.hfsm import (
     ActionSucceeded,
     ByHand,
     Cancel,
+    Executor,
     GiveBack,
     Occurred,
     Outcome,
     Pause,
     Resume,
     TakeOver,
+    lower,
 )
 from argo_compiler.il import EventKind, Reaction, Response
 from argo_env.envs.inspection_run import Inspection, beginning
@@ -465,4 +467,42 @@ class TestSpec:
     def test_an_area_that_is_not_there(self, site):
         plan = mission(waypoint("A", 2.05, 2.05), end_area=7)
         with pytest.raises(NotFound, match="no starting area 7; there are: 1"):
-            simulate(RunSpec(mission=plan, drive="route"), site)
+            simulate(RunSpec(mission=plan, site="yard", drive="route"), site)
+
+
+class TestWhatDoesNotFitTogether:
+    def test_another_site_than_the_spec_names(self, site):
+        spec = spec_of("route").model_copy(
+            update={"site": "umad", "mission": PLAN.model_copy(update={"site": ""})}
+        )
+        for begin in (lambda: simulate(spec, site), lambda: simulation_of(spec, site)):
+            with pytest.raises(Conflict, match="names site umad, and the site given is yard"):
+                begin()
+
+    def test_a_mission_of_another_site(self, site):
+        elsewhere = PLAN.model_copy(update={"site": "umad"})
+        spec = spec_of("route").model_copy(update={"mission": elsewhere})
+        with pytest.raises(Conflict, match="planned for site umad, and the site is yard"):
+            simulate(spec, site)
+
+    def test_the_machine_of_another_mission(self, site):
+        with pytest.raises(Conflict, match="not that of the spec's mission"):
+            Simulation(Executor(lower(SHORT)), site, spec_of("route"))
+
+    def test_a_machine_that_was_used(self, site):
+        machine = Executor(lower(PLAN))
+        with Simulation(machine, site, spec_of("route")) as simulation:
+            steps(simulation, 3)
+        with pytest.raises(Conflict, match="has been started already"):
+            Simulation(machine, site, spec_of("route"))
+
+
+def test_a_closed_simulation_is_of_no_use(site, drive):
+    simulation = simulation_of(spec_of(drive), site)
+    steps(simulation, 3)
+    standing = simulation.record()
+    simulation.close()
+    for use in (simulation.step, simulation.run, lambda: simulation.handle(Pause())):
+        with pytest.raises(Conflict, match="is closed"):
+            use()
+    assert simulation.record() == standing

@@ -4,7 +4,7 @@ from dataclasses import dataclass
 
 from argo_compiler.diagnostics.subject import subject_of
 from argo_compiler.editing.linked import Linked, LinkedList
-from argo_compiler.editing.refusals import conflict, unknown
+from argo_compiler.editing.refusals import EditConflict, conflict, unknown
 from argo_compiler.editing.ways import default_target, defaults, with_default
 from argo_compiler.il import Action, Group, Mission, Task
 from argo_compiler.il.grouping import GroupNesting, GroupRange, group_ranges, parent_name
@@ -107,20 +107,50 @@ class MissionDraft:
         """Takes a task out of the list. The groups that it began or ended begin or end with its
         neighbour, and what has no task left is no group any more."""
         for g in self.groups:
-            if g.first is entry and g.last is entry:
+            if _is_alone(entry, g):
                 continue
             if g.first is entry:
                 g.first = entry.after
             if g.last is entry:
                 g.last = entry.before
-        self.groups = [g for g in self.groups if g.first is not entry or g.last is not entry]
+        self.groups = [g for g in self.groups if not _is_alone(entry, g)]
         self.tasks.remove(entry)
+
+    def move(self, entry: DraftTask, behind: DraftTask | None, into: str | None) -> None:
+        """Moves a task behind another one, or before all, as `take_out` and `put` do.
+
+        A group that it ended still leads to where it led, but now from the task that ends it;
+        a task that comes to stand directly behind that group leads there itself.
+        Raises EditNotFound, or EditConflict if it can't be there or the groups that it ends can't
+        end with its neighbour.
+        """
+        if into is not None and _is_alone(entry, self.find_group(into)):
+            raise conflict(
+                "edit.not-beside-group",
+                f"'{entry.task.name}' is the only task of group '{into}', which goes with it",
+                "put another task into the group first",
+                subject_of("groups", into),
+            )
+        new_end, stays = entry.before, behind in (entry, entry.before)
+        left = [g for g in self.groups if g.last is entry and g.first is not entry]
+        if stays and into is not None:
+            left = [g for g in left if not f"{into}/".startswith(f"{g.group.name}/")]
+        if left and new_end is not None:
+            if not new_end.goes_on:
+                raise _no_end(left, entry, new_end)
+            if not stays and not entry.goes_on:
+                _hand_on(entry, new_end)
+        if behind is entry:
+            behind = entry.before
+        self.take_out(entry)
+        self.put(entry, behind, into)
 
     def put(self, entry: DraftTask, behind: DraftTask | None, into: str | None) -> None:
         """Puts a task behind another one; None: before all.
 
         At a group's border it stands outside; with `into` it stands in that group. Where it ends
-        the group it leads to where the group led.
+        the group it leads to where the group led, unless it leads elsewhere itself; in either case
+        the task that ended the group goes on with it.
         Raises EditNotFound or EditConflict if it can't stand in it there.
         """
         self.tasks.insert_after(behind, entry)
@@ -147,8 +177,7 @@ class MissionDraft:
             elif not wanted or inside:
                 continue
             elif g.last is entry.before:
-                if g.last.goes_on is False and entry.goes_on:
-                    _hand_on(g.last, entry)
+                _end_in_place_of(g.last, entry)
                 g.last = entry
                 continue
             elif g.first is entry.after:
@@ -216,11 +245,38 @@ class MissionDraft:
         return made.model_copy(update={"tasks": tuple(tasks)})
 
 
+def _is_alone(entry: DraftTask, g: DraftGroup) -> bool:
+    return g.first is entry and g.last is entry
+
+
+def _end_in_place_of(last: DraftTask, entry: DraftTask) -> None:
+    """Lets a task end a group whose last one it follows."""
+    leads_there = default_target(last.task) == entry.task.name
+    if not last.goes_on and entry.goes_on and not leads_there:
+        _hand_on(last, entry)
+    last.goes_on = True
+
+
 def _hand_on(last: DraftTask, entry: DraftTask) -> None:
     """Lets a task that ends a group in place of another one lead to where that one led."""
     entry.task = with_default(entry.task, default_target(last.task))
     entry.goes_on = False
     last.goes_on = True
+
+
+def _no_end(groups: list[DraftGroup], entry: DraftTask, new_end: DraftTask) -> EditConflict:
+    inner = max((g.group.name for g in groups), key=lambda name: name.count("/"))
+    target = default_target(new_end.task)
+    leads = "ends the mission" if target is None else f"leads to '{target}'"
+    end, before = entry.task.name, new_end.task.name
+    return conflict(
+        "edit.ends-round",
+        f"'{end}' ends the rounds of group '{inner}', and the round can't end with '{before}' in "
+        f"its place, which {leads}",
+        f"lead the unconditional transition of '{before}' to '{end}' first, or change where the "
+        "group ends",
+        subject_of("tasks", before),
+    )
 
 
 def following_names(tasks: tuple[Task, ...]) -> list[str | None]:

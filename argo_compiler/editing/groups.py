@@ -14,6 +14,7 @@ from argo_compiler.editing.consequences import Edited, edited
 from argo_compiler.editing.draft import DraftGroup, DraftTask, MissionDraft
 from argo_compiler.editing.header import wrong_values
 from argo_compiler.editing.refusals import EditInvalid, conflict, invalid, name_taken
+from argo_compiler.editing.ways import default_target
 from argo_compiler.il import Action, Group, Mission, Stop
 from argo_compiler.il.grouping import parent_name
 
@@ -114,8 +115,8 @@ def change_group(mission: Mission, name: str, **fields: Unpack[GroupFields]) -> 
 
     Raises:
         EditNotFound: there is no such group, or its new start or end is no task.
-        EditConflict: it would overlap another group, START would be among its tasks, or it would
-            never end.
+        EditConflict: it would overlap another group, START would be among its tasks, it would never
+            end, or its rounds would, with the task that ends it now and leads out of it.
         EditInvalid: a value that the field can't have.
     """
     draft = MissionDraft(mission)
@@ -128,8 +129,10 @@ def change_group(mission: Mission, name: str, **fields: Unpack[GroupFields]) -> 
     found.group = group
     if "start" in fields or "end" in fields:
         new = _drafted(draft, group)
-        found.first, found.last = new.first, new.last
+        former, found.first, found.last = found.last, new.first, new.last
         spans = _Spans(draft)
+        if former is not None:
+            spans.require_way_on(former, found)
         for g in draft.groups:
             if g is not found:
                 _require_relation(g, found, spans.relation(g, found))
@@ -143,6 +146,7 @@ class _Spans:
     """Where the groups of a draft lie in its list of tasks."""
 
     def __init__(self, draft: MissionDraft) -> None:
+        self.names = [entry.task.name for entry in draft.tasks]
         self.position = draft.positions()
 
     def relation(self, g: DraftGroup, new: DraftGroup) -> str:
@@ -161,6 +165,26 @@ class _Spans:
         if first <= start and end <= last:
             return "around"
         raise _overlap(g.group, new.group)
+
+    def require_way_on(self, former: DraftTask, changed: DraftGroup) -> None:
+        """That the task that ended a group does not lead out of it before its new end."""
+        first, last = self._range(changed)
+        at = self.position[id(former)]
+        if not first <= at < last:
+            return
+        target = default_target(former.task)
+        if target in self.names[at + 1 : last + 1]:
+            return
+        name, end = former.task.name, changed.group.end
+        leads = "ends the mission" if target is None else f"leads to '{target}'"
+        following = self.names[at + 1]
+        raise conflict(
+            "edit.ends-round",
+            f"group '{changed.group.name}' ends with '{name}', which {leads}: a round would never "
+            f"get to '{end}'",
+            f"lead '{name}' to '{following}' first, and '{end}' to where the group is to lead",
+            subject_of("tasks", name),
+        )
 
     def _range(self, g: DraftGroup) -> tuple[int, int]:
         if g.first is None or g.last is None:

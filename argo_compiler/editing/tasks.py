@@ -89,9 +89,7 @@ def move_task(
     if name in (before, after):
         message = f"task '{name}' is to stand before or after itself"
         raise invalid("edit.place", message, "name another task")
-    _place(draft, before, after, first)
-    draft.take_out(entry)
-    draft.put(entry, _place(draft, before, after, first), into)
+    draft.move(entry, _place(draft, before, after, first), into)
     return edited(mission, draft.mission())
 
 

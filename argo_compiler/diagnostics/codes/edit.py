@@ -17,9 +17,10 @@ EDIT = {
         "Lead that transition to another task first.",
     ),
     "edit.ends-round": error(
-        "The task ends the rounds of a group, and they can't end with the task before it.",
-        "Lead only the unconditional transition of the task before it to it, or change the "
-        "group's end.",
+        "Another task would end the rounds of a group, and they can't end with it: a task of the "
+        "group leads elsewhere.",
+        "Lead only the unconditional transition of the task before the group's last to that one, "
+        "or end the group elsewhere.",
     ),
     "edit.group-name": error(
         "A group's own name is empty or has a `/`.",

@@ -1,0 +1,229 @@
+"""Tasks that are moved to, away from and behind the ends of groups that lead elsewhere than the
+list: the rounds stay, shown by comparing runs with those of a mission that is built anew."""
+
+import random
+from collections import Counter
+from dataclasses import dataclass, field
+
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from argo_compiler.checks import check
+from argo_compiler.diagnostics import has_errors
+from argo_compiler.editing import EditConflict, add_task, change_group, move_task, set_target
+from argo_compiler.il import Action, Group, Mission, Task, Transition
+from tests.argo_compiler.editing.test_runs import run, tried
+from tests.conftest import examples
+
+
+def task(name, *targets):
+    ways = tuple(Transition(target=target) for target in targets)
+    return Task(name=name, action=Action.MEASURE, object_id="1", transitions=ways)
+
+
+def rounds(name, start, end, count):
+    return Group(name=name, start=start, end=end, max_repeat_count=count)
+
+
+def order(edited):
+    return "".join(run(edited.mission)[0])
+
+
+LEADS_ON = Mission(
+    tasks=(task("a", "b"), task("b", "c"), task("c", "e"), task("d", "e"), task("e")),
+    groups=(rounds("G", "a", "c", 3),),
+)
+ENDS = Mission(
+    tasks=(task("a", "b"), task("b"), task("x", "y"), task("y")),
+    groups=(rounds("G", "a", "b", 2),),
+)
+NESTED = Mission(
+    tasks=(task("a", "b"), task("b", "c"), task("c", "f"), task("d", "f"), task("f")),
+    groups=(rounds("G", "a", "c", 2), rounds("G/H", "b", "c", 2)),
+)
+
+
+@pytest.mark.parametrize(
+    ("mission", "name", "place", "expected"),
+    [
+        (LEADS_ON, "b", {"after": "c", "into": "G"}, "acbacbacbe"),
+        (LEADS_ON, "c", {"after": "a"}, "acbacbacbe"),
+        (LEADS_ON, "c", {"before": "a", "into": "G"}, "cabcabcabe"),
+        (LEADS_ON, "c", {"first": True}, "cabababe"),
+        (LEADS_ON, "c", {}, "abababec"),
+        (LEADS_ON, "c", {"before": "d"}, "abababce"),
+        (LEADS_ON, "c", {"after": "b", "into": "G"}, "abcabcabce"),
+        (LEADS_ON, "e", {"after": "c", "into": "G"}, "abceabceabced"),
+        (ENDS, "b", {"before": "a", "into": "G"}, "baba"),
+        (ENDS, "a", {"after": "b", "into": "G"}, "baba"),
+        (NESTED, "c", {"before": "b"}, "acbbacbbf"),
+        (NESTED, "c", {"before": "b", "into": "G/H"}, "acbcbacbcbf"),
+        (NESTED, "c", {"before": "d", "into": "G"}, "abbcabbcf"),
+    ],
+)
+def test_a_moved_task_leaves_the_rounds_of_its_group(mission, name, place, expected):
+    assert order(move_task(mission, name, **place)) == expected
+
+
+def test_a_round_can_not_end_with_a_task_that_leads_elsewhere():
+    jumps = LEADS_ON.model_copy(
+        update={"tasks": (task("a", "b"), task("b", "e"), *LEADS_ON.tasks[2:])}
+    )
+    with pytest.raises(EditConflict, match="'b' in its place, which leads to 'e'"):
+        move_task(jumps, "c", after="d")
+
+
+def test_a_groups_only_task_can_not_be_moved_into_it():
+    alone = LEADS_ON.model_copy(update={"groups": (rounds("G", "c", "c", 3),)})
+    with pytest.raises(EditConflict, match="'c' is the only task of group 'G'"):
+        move_task(alone, "c", after="a", into="G")
+
+
+def test_a_new_end_that_leads_elsewhere_ends_the_rounds():
+    made = add_task(LEADS_ON, task("n", "d"), after="c", into="G")
+    assert order(made) == "abcnabcnabcnde"
+    assert [c.message for c in made.consequences] == [
+        "task 'c' leads to 'n' now, not to 'e'",
+        "group 'G' ends with task 'n' now, not 'c'",
+    ]
+
+
+def test_a_group_ends_where_a_round_can_get_to():
+    with pytest.raises(
+        EditConflict, match="ends with 'c', which leads to 'e': a round would never"
+    ):
+        change_group(LEADS_ON, "G", end="d")
+    with pytest.raises(EditConflict, match="lead 'b' to 'x' first"):
+        change_group(ENDS, "G", end="x")
+    assert order(change_group(LEADS_ON, "G", end="e")) == "abceabceabce"
+    assert order(change_group(LEADS_ON, "G", end="b")) == "abababce"
+    way_on = set_target(LEADS_ON, "c", 0, "d").mission
+    assert order(change_group(way_on, "G", end="d")) == "abcdabcdabcde"
+
+
+# ---- random missions
+
+
+@dataclass
+class Story:
+    """What a mission of groups whose ends lead elsewhere is to do, in whatever order. Mutable."""
+
+    names: list[str]
+    members: dict[str, set[str]] = field(default_factory=dict)
+    counts: dict[str, int] = field(default_factory=dict)
+    exits: dict[str, str | None] = field(default_factory=dict)
+    """where a group leads; one that is not here goes on"""
+    jumps: dict[str, str | None] = field(default_factory=dict)
+    """where a task itself leads; one that is not here goes on"""
+
+    def ends(self, group):
+        return max(self.members[group], key=self.names.index)
+
+    def around(self, name):
+        """The groups that a task is in, the outermost first."""
+        return sorted(g for g, inside in self.members.items() if name in inside)
+
+    def leads(self, name):
+        if name in self.jumps:
+            return self.jumps[name]
+        for group in self.around(name):
+            if group in self.exits and self.ends(group) == name:
+                return self.exits[group]
+        return next(iter(self.names[self.names.index(name) + 1 :]), None)
+
+    def mission(self):
+        leads = ((name, self.leads(name)) for name in self.names)
+        tasks = tuple(task(name, *([] if to is None else [to])) for name, to in leads)
+        groups = tuple(
+            rounds(g, min(self.members[g], key=self.names.index), self.ends(g), self.counts[g])
+            for g in sorted(self.members)
+        )
+        return Mission(tasks=tasks, groups=groups)
+
+    def put(self, name, anchor, after):
+        """Puts a task beside another one, into the groups of that."""
+        former, ended = self.names.index(name) if name in self.names else None, self.around(name)
+        ended = [g for g in ended if self.ends(g) == name and len(self.members[g]) > 1]
+        exits = self.leads(name) if ended and any(g in self.exits for g in ended) else ()
+        for group in self.around(name):
+            self.members[group].remove(name)
+            if not self.members[group]:
+                del self.members[group]
+        if former is not None:
+            self.names.remove(name)
+        place = self.names.index(anchor) + after
+        self.names.insert(place, name)
+        for group in self.around(anchor):
+            self.members[group].add(name)
+        for group in list(self.exits):
+            if group not in self.members:
+                self.jumps[name] = self.exits.pop(group)
+            elif self.ends(group) == name and (name in self.jumps or self.exits[group] == name):
+                del self.exits[group]
+        if former == place and exits != () and not {*ended} & {*self.around(name)}:
+            self.jumps[name] = exits
+            for group in ended:
+                self.exits.pop(group, None)
+
+
+def random_story(rng):
+    """Up to two groups, perhaps with one in the first of them, of three to ten tasks."""
+    names = list("abcdefghij"[: rng.randint(3, 10)])
+    story = Story(names)
+    cut = rng.randint(1, len(names))
+    ranges = {"G": sorted(rng.choices(range(cut), k=2))}
+    if cut < len(names) and rng.random() < 0.4:
+        ranges["K"] = sorted(rng.choices(range(cut, len(names)), k=2))
+    first, last = ranges["G"]
+    if rng.random() < 0.5:
+        ranges["G/H"] = sorted(rng.choices(range(first, last + 1), k=2))
+    for group, (first, last) in ranges.items():
+        story.members[group] = {*names[first : last + 1]}
+        story.counts[group] = rng.randint(2, 3)
+    for group, (_, last) in ranges.items():
+        shared = group == "G/H" and last == ranges["G"][1]
+        beyond = [*names[last + 2 :], *([None] if last + 1 < len(names) else [])]
+        if beyond and not shared and rng.random() < 0.7:
+            story.exits[group] = rng.choice(beyond)
+    for i, name in enumerate(names[:-2]):
+        if not story.around(name) and rng.random() < 0.15:
+            story.jumps[name] = rng.choice(names[i + 2 :])
+    return story
+
+
+def test_the_rounds_of_groups_that_lead_elsewhere_stay_whatever_is_moved_or_added():
+    met = Counter()
+
+    @settings(max_examples=examples(600))
+    @given(st.integers(0, 2**32))
+    def moved(seed):
+        rng = random.Random(seed)
+        story = random_story(rng)
+        mission = story.mission()
+        assert not has_errors(check(mission))
+        anchor, after = rng.choice(story.names), rng.random() < 0.5
+        place = {"after" if after else "before": anchor}
+        into = story.around(anchor)
+        place |= {"into": into[-1]} if into else {}
+        if rng.random() < 0.3:
+            new = task("n", *rng.choice([(), (), (rng.choice(story.names),)]))
+            if new.transitions:
+                story.jumps["n"] = new.transitions[0].target
+            name, edit = "n", lambda: add_task(mission, new, **place)
+        else:
+            name = rng.choice(story.names)
+            if name == anchor:
+                return
+            edit = lambda: move_task(mission, name, **place)  # noqa: E731
+        made, codes = tried(edit)
+        met.update(codes or {"made"})
+        if made is None:
+            # A task that ends an inner group and leads elsewhere would end the outer one.
+            assert codes == {"edit.ends-round"}
+            return
+        story.put(name, anchor, after)
+        assert run(made) == run(story.mission()), (mission, name, place)
+
+    moved()
+    assert met["made"] > 20 * met["edit.ends-round"]

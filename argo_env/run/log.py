@@ -4,9 +4,13 @@ A run that goes on from its journal reads the same entries that it would have ma
 the same as that of a run that was never cut short.
 """
 
+import math
 from dataclasses import asdict
 from typing import Literal
 
+from pydantic import ValidationError
+
+from argo_compiler.errors import Invalid
 from argo_compiler.hfsm import (
     ActionFailed,
     ActionStopped,
@@ -24,6 +28,7 @@ from argo_compiler.hfsm import (
 from argo_compiler.il import EventKind
 from argo_compiler.model import Model
 from argo_env.faults.kinds import AnyFault
+from argo_env.files.yaml_messages import message_of
 from argo_env.robot.pose import BodyPose
 from argo_env.run.record import (
     DIGITS,
@@ -70,7 +75,15 @@ class LoggedEvent(Model):
 
     @classmethod
     def of(cls, event: Event) -> "LoggedEvent":
-        return cls.model_validate({"kind": _NAMES[type(event)], **asdict(event)})
+        """The event as data; Invalid if it is none, or has values that it can't have."""
+        kind = _NAMES.get(type(event))
+        if kind is None:
+            raise Invalid(f"{event!r} is no event")
+        try:
+            return cls.model_validate({"kind": kind, **asdict(event)})
+        except ValidationError as error:
+            fault = error.errors(include_url=False)[0]
+            raise Invalid(f"{event!r}: {message_of(fault, fault['loc'])}") from None
 
     def original(self) -> Event:
         """The event; ValueError if fields are missing or too many."""
@@ -79,6 +92,24 @@ class LoggedEvent(Model):
             return _EVENTS[self.kind](**given)
         except TypeError as error:
             raise ValueError(f"no event of kind {self.kind} has {sorted(given)}") from error
+
+
+def require_from_outside(event: LoggedEvent) -> None:
+    """Raises Invalid for an event that nobody outside can tell a run."""
+    try:
+        event.original()
+    except ValueError as error:
+        raise Invalid(str(error)) from None
+    if event.kind not in FROM_OUTSIDE:
+        raise Invalid(f"the robot itself tells that an action has {event.kind}")
+    if event.event == EventKind.TIME_UP:
+        raise Invalid("`time_up` occurs by itself, at the mission's max_duration")
+
+
+def require_time(t: float) -> None:
+    """Raises Invalid for a time (s) at which a run can't be told anything."""
+    if not 0 <= t < math.inf:
+        raise Invalid(f"nothing occurs at {t:g} s, before the run or never")
 
 
 class Entry(Model):

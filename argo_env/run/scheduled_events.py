@@ -2,7 +2,7 @@
 
 from collections.abc import Iterable
 
-from argo_compiler.hfsm import Event
+from argo_compiler.hfsm import Event, GiveBack
 from argo_env.run.log import LoggedEvent
 
 
@@ -24,9 +24,20 @@ class GivenEvents:
         ahead = [*self._events[self.occurred :], *((t, event.original()) for t, event in events)]
         self._events[self.occurred :] = sorted(ahead, key=lambda given: given[0])
 
-    def due(self, now: float) -> list[Event]:
-        """Those that occur now, at time `now` (s)."""
+    def due(self, now: float, at_rest: bool) -> list[Event]:
+        """Those that occur now, at time `now` (s). A robot is given back only `at_rest`, without
+        an action, and in a step of its own; what comes after waits as well."""
         first = self.occurred
         while self.pending and self._events[self.occurred][0] <= now:
+            if self._gives_back and (not at_rest or self.occurred > first):
+                break
             self.occurred += 1
         return [event for _, event in self._events[first : self.occurred]]
+
+    def waits_to_give_back(self, now: float) -> bool:
+        """Whether something should have been given back by `now` (s), and waits."""
+        return self.pending and self._events[self.occurred][0] <= now and self._gives_back
+
+    @property
+    def _gives_back(self) -> bool:
+        return isinstance(self._events[self.occurred][1], GiveBack)

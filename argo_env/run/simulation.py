@@ -4,7 +4,7 @@ import logging
 from collections.abc import Sequence
 from contextlib import ExitStack
 
-from argo_compiler.errors import Conflict, NotFound
+from argo_compiler.errors import Conflict, Invalid, NotFound
 from argo_compiler.hfsm import Event, GiveBack, Occurred, Tick
 from argo_compiler.il import Task
 from argo_env.closing import Closing
@@ -20,7 +20,16 @@ from argo_env.run.observer import Observer
 from argo_env.run.record import RunRecord
 from argo_env.run.rig import Rig, fit_out
 from argo_env.run.spec import RunSpec
-from argo_env.run.steering import ReachIn, Steering, StopRun, check_by_hand, check_event, from_now
+from argo_env.run.steering import (
+    ReachIn,
+    Steering,
+    StopRun,
+    check_event,
+    check_given,
+    from_now,
+    require_at_rest,
+    require_taken_over,
+)
 from argo_env.run.vehicle import Vehicle
 
 _log = logging.getLogger(__name__)
@@ -68,6 +77,7 @@ class Simulation(Closing):
         self._record: RunRecord | None = None
         require_site(site, spec)
         require_machine(machine, spec)
+        check_given([*spec.events, *events], spec.mission)
         with ExitStack() as stack:
             self._vehicle = Vehicle(rig or fit_out(spec, site.navigator, gui, stack))
             self._course = Course(machine, self._vehicle, spec)
@@ -137,25 +147,26 @@ class Simulation(Closing):
     def handle(self, event: Steering) -> None:
         """Tells the run something from outside, now.
 
-        Raises Conflict if the run has ended, an action still runs of which it is told what was done
-        by hand, or a fault can't begin now; Invalid, or NotFound, for what makes no sense.
+        Raises Conflict if the run has ended, the robot is given back while an action still runs, or
+        a fault can't begin now; Invalid, or NotFound, for what makes no sense.
         """
         self._require_going_on()
         if self._open():
             raise Conflict("the mission has ended before the run was told anything")
         match event:
             case StopRun(reason):
+                if not isinstance(reason, str):
+                    raise Invalid(f"{reason!r} is no reason: give one in words")
                 self._end(reason)
             case ReachIn(fault):
                 settled = from_now(fault, self.rig, self._spec.seed, self.now)
                 self._tell(self._course.entry().model_copy(update={"faults": (settled,)}))
                 self._vehicle.let_faults_happen(self.now)
-            case GiveBack(by_hand):
-                if by_hand:
-                    check_by_hand(by_hand, self.machine, self._spec.mission)
-                self._tell(self._course.entry([event]))
             case _:
-                self._tell(self._course.entry([check_event(event)]))
+                checked = check_event(event, self._spec.mission)
+                if isinstance(checked, GiveBack):
+                    require_at_rest(self.machine)
+                self._tell(self._course.entry([checked]))
         self.settle()
 
     def give(self, task: Task) -> None:
@@ -248,7 +259,10 @@ class Simulation(Closing):
         if sensed.end:
             events.append(sensed.end)
             run = course.run_of(sensed.end)
-        events += course.given.due(now)
+        given = course.given
+        events += given.due(now, at_rest=machine.running is None and not events)
+        if not events and given.waits_to_give_back(now):
+            require_taken_over(machine, now)
         due = course.steps % self._sampled_every == 0
         if events or due:
             entry = course.entry(events, sample=due, task=run)

@@ -12,7 +12,7 @@ from argo_compiler.il import Mission
 from argo_compiler.model import Model
 from argo_env.faults.kinds import AnyFault
 from argo_env.files.yaml_messages import message_of
-from argo_env.run.log import FROM_OUTSIDE, LoggedEvent
+from argo_env.run.log import LoggedEvent, require_from_outside, require_time
 from argo_env.run.record import Reordering
 
 _SETTINGS = {"drive", "sensor", "seed", "values", "events", "faults"}
@@ -50,11 +50,11 @@ class RunSpec(Model):
         cls, events: tuple[tuple[float, LoggedEvent], ...]
     ) -> tuple[tuple[float, LoggedEvent], ...]:
         for t, event in events:
-            event.original()
-            if event.kind not in FROM_OUTSIDE:
-                raise ValueError(f"the robot itself tells that an action has {event.kind}")
-            if t < 0:
-                raise ValueError(f"nothing occurs at {t:g} s, before the run")
+            try:
+                require_time(t)
+                require_from_outside(event)
+            except Invalid as error:
+                raise ValueError(str(error)) from None
         return events
 
     @property
@@ -75,5 +75,5 @@ def read_spec(content: str | bytes, name: str = "the run's spec") -> RunSpec:
 
 
 def logged(*events: tuple[float, Event]) -> tuple[tuple[float, LoggedEvent], ...]:
-    """Events and their times (s) as specs hold them."""
+    """Events and their times (s) as specs hold them; Invalid for what is no event."""
     return tuple((t, LoggedEvent.of(event)) for t, event in events)

@@ -4,7 +4,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 from argo_compiler.errors import ArgoError, Conflict, Invalid
-from argo_compiler.handover import hand_over, match
+from argo_compiler.handover import match
 from argo_compiler.hfsm import (
     ByHand,
     Cancel,
@@ -12,12 +12,14 @@ from argo_compiler.hfsm import (
     GiveBack,
     Occurred,
     Pause,
+    Progress,
     Resume,
     TakeOver,
 )
-from argo_compiler.il import EventKind, Mission
-from argo_env.faults.fault import TimedFault
+from argo_compiler.il import Mission
+from argo_env.faults.fault import Fault, TimedFault
 from argo_env.faults.kinds import AnyFault, settle_one
+from argo_env.run.log import LoggedEvent, require_from_outside, require_time
 from argo_env.run.machine import Machine
 from argo_env.run.rig import Rig
 
@@ -41,24 +43,52 @@ Steering = Pause | Resume | TakeOver | GiveBack | Cancel | Occurred | ReachIn | 
 _TO_THE_MACHINE = (Pause, Resume, TakeOver, GiveBack, Cancel, Occurred)
 
 
-def check_event(event: Steering) -> Event:
-    """The event as one for the machine; Invalid if nobody outside can tell it."""
+def check_event(event: Steering, mission: Mission) -> Event:
+    """The event as one for the machine of the mission; Invalid if nobody outside can tell it."""
     if not isinstance(event, _TO_THE_MACHINE):
         raise Invalid(f"{event!r} is nothing that a run can be told from outside")
-    if isinstance(event, Occurred) and event.event is EventKind.TIME_UP:
-        raise Invalid("`time_up` occurs by itself, at the mission's max_duration")
-    return event
+    logged = LoggedEvent.of(event)
+    require_from_outside(logged)
+    if logged.by_hand:
+        _check_by_hand(logged.by_hand, mission)
+    return logged.original()
 
 
-def check_by_hand(done: Sequence[ByHand], machine: Machine, mission: Mission) -> None:
-    """Raises Invalid for what a person can't have done by hand in the mission, Conflict while an
-    action still runs."""
+def check_given(events: Sequence[tuple[float, LoggedEvent]], mission: Mission) -> None:
+    """Raises Invalid for events and times (s) that no run of the mission can be given."""
+    for t, event in events:
+        if not isinstance(event, LoggedEvent):
+            raise Invalid(f"{event!r} is no event as data: make it one with `logged`")
+        try:
+            require_time(t)
+            require_from_outside(event)
+            if event.by_hand:
+                _check_by_hand(event.by_hand, mission)
+        except Invalid as error:
+            raise Invalid(f"the event {event.kind} given at {t:g} s: {error}") from None
+
+
+def require_at_rest(machine: Machine) -> None:
+    """Raises Conflict while an action still runs: nothing can be given back."""
     if running := machine.running:
         raise Conflict(
             f"the action of task '{running.name}' has not ended yet: take over, and let time pass "
             "until no action runs"
         )
-    _, findings = match(hand_over(machine.progress(), done), mission)
+
+
+def require_taken_over(machine: Machine, now: float) -> None:
+    """Raises Conflict where a robot is to be given back that nobody has taken over."""
+    if machine.running and not machine.paused and machine.reaction is None:
+        raise Conflict(
+            f"the robot was to be given back by {now:g} s, and nobody has taken it over: the "
+            f"action of task '{machine.running.name}' runs. Give a take-over before that"
+        )
+
+
+def _check_by_hand(done: Sequence[ByHand], mission: Mission) -> None:
+    """Raises Invalid for what a person can't have done by hand in the mission."""
+    _, findings = match(Progress(active=None, by_hand=tuple(done)), mission)
     for finding in findings:
         if finding.code.startswith("handover.by-hand"):
             raise Invalid(f"{finding.message}: {finding.hint}")
@@ -70,6 +100,8 @@ def from_now(fault: AnyFault, rig: Rig, seed: int, now: float) -> AnyFault:
     Raises Conflict for one that can't begin while a run goes on, ArgoError for what the site does
     not have.
     """
+    if not isinstance(fault, Fault):
+        raise Invalid(f"{fault!r} is no fault")
     kind = f"a fault of kind `{fault.kind}`"
     if rig.schedule is None:
         raise Conflict(f"{kind} finds nothing to act on: this run has no parts that go wrong")

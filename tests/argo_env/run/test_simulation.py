@@ -22,6 +22,7 @@ from argo_compiler.hfsm import (
     Pause,
     Resume,
     TakeOver,
+    Tick,
     lower,
 )
 from argo_compiler.il import EventKind, Reaction, Response
@@ -309,6 +310,24 @@ class TestSteering:
             "the robot is not docked in starting area 1; skipped by a person: MEASURE 3"
         )
 
+    def test_nothing_is_given_back_while_the_robot_comes_to_rest(self, simulation):
+        steps(simulation, 40)
+        simulation.handle(TakeOver())
+        with pytest.raises(Conflict, match="'MEASURE 1' has not ended yet"):
+            simulation.handle(GiveBack())
+
+    @pytest.mark.parametrize(
+        "event",
+        [ReachIn(None), StopRun(5), Occurred("nonsense"), GiveBack(5), GiveBack((5,)),
+         Occurred("time_up")],
+    )  # fmt: skip
+    def test_what_has_wrong_values(self, simulation, event):
+        steps(simulation, 3)
+        before = simulation.record()
+        with pytest.raises(Invalid):
+            simulation.handle(event)
+        assert simulation.record() == before
+
     def test_stopping(self, simulation):
         steps(simulation, 25)
         simulation.handle(StopRun("the tide came in"))
@@ -354,6 +373,48 @@ class TestSteering:
     def test_tasks_are_not_given_to_a_mission(self, simulation):
         with pytest.raises(Conflict, match="are those of its mission"):
             simulation.give(waypoint("B", 2.0, 2.0))
+
+
+class TestGivenEvents:
+    @pytest.mark.parametrize("at", [4.0, 4.1, 8.0])
+    def test_a_robot_is_given_back_once_it_has_come_to_rest(self, site, at):
+        done = GiveBack((ByHand(task="MEASURE 1", value=3.0),))
+        events = logged((4.0, TakeOver()), (at, done), (9.0, Pause()), (9.5, Resume()))
+        record = simulate(spec_of("route", events=events), site)
+        assert record.result.outcome is Outcome.COMPLETED
+        assert [r.task for r in record.readings] == ["MEASURE 2", "MEASURE 3"]
+        taken, paused = record.interruptions
+        rest = next(t.end for t in record.tasks if t.task == "MEASURE 1")
+        assert (taken.start, paused.start) == (4.0, 9.0)
+        assert max(rest, at) <= taken.end < 9.0
+
+    def test_a_robot_that_nobody_has_taken_over(self, site):
+        spec = spec_of("route", events=logged((4.0, GiveBack())))
+        with pytest.raises(Conflict, match=r"back by 4 s, and nobody .* 'MEASURE 1' runs"):
+            simulate(spec, site)
+
+    @pytest.mark.parametrize(
+        ("given", "says"),
+        [
+            (logged((3.0, GiveBack((ByHand(task="zz"),)))), "give_back given at 3 s: .*'zz'"),
+            (logged((-3.0, Pause())), "nothing occurs at -3 s"),
+            (logged((float("nan"), Pause())), "nothing occurs at nan s"),
+            (logged((3.0, Tick())), "tick given at 3 s: the robot itself tells"),
+            (logged((3.0, ActionSucceeded("zz"))), "the robot itself tells"),
+            (logged((3.0, Occurred(EventKind.TIME_UP))), "occurs by itself"),
+            ([(3.0, Pause())], "make it one with `logged`"),
+        ],
+    )
+    def test_what_no_run_can_be_given(self, site, given, says):
+        with pytest.raises(Invalid, match=says):
+            simulation_of(spec_of("route"), site, events=given)
+
+    @pytest.mark.parametrize(
+        "event", ["x", None, Occurred("nonsense"), GiveBack(5), GiveBack((5,))]
+    )
+    def test_what_is_no_event(self, event):
+        with pytest.raises(Invalid):
+            logged((1.0, event))
 
 
 class TestOpenMachine:
@@ -443,6 +504,7 @@ class TestSpec:
             ({"mission": None}, "spec.json: mission: "),
             ({"events": [[3.0, {"kind": "succeeded", "task": "A"}]]}, "spec.json: events: "),
             ({"events": [[-3.0, {"kind": "pause"}]]}, "before the run"),
+            ({"events": [[3.0, {"kind": "occurred", "event": "time_up"}]]}, "occurs by itself"),
             ({"events": [[3.0, {"kind": "pause", "value": 3}]]}, "no event of kind pause has"),
             ({"faults": [{"kind": "flood"}]}, r"spec.json: faults\[0\]: "),
         ],

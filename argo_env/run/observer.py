@@ -9,14 +9,17 @@ from argo_env.run.spec import RunSpec
 
 
 class Observer:
-    """Observes one run. Does nothing: override what is of interest."""
+    """Observes one run. Does nothing: override what is of interest.
+
+    It can't steer the run while it is told of it. What it raises breaks the simulation off.
+    """
 
     def on_begin(self, rig: Rig, spec: RunSpec) -> None:
         """The run is about to begin, or to go on from its journal."""
 
     def on_entry(self, entry: Entry) -> None:
         """Something is to be known, and nobody has acted on it yet. What is raised here keeps it
-        from having happened."""
+        from having happened, and the run ends without it."""
 
     def on_change(self, entry: Entry, machine: Machine) -> None:
         """The same, now that the machine has been told."""

@@ -1,11 +1,13 @@
 """Whole runs in one call: of a spec, and from a journal on."""
 
 import logging
+import math
 import time
 from collections.abc import Callable, Sequence
 from contextlib import ExitStack
 from pathlib import Path
 
+from argo_compiler.errors import Invalid
 from argo_compiler.hfsm import Executor, lower
 from argo_env.planning.opening import OpenedSite, open_site
 from argo_env.run.action import ActionUnderWay
@@ -109,4 +111,8 @@ class PacedRun(Observer):
 
 
 def _paced(pace: float | None) -> tuple[Observer, ...]:
-    return () if pace is None else (PacedRun(pace),)
+    if pace is None:
+        return ()
+    if not 0 < pace < math.inf:
+        raise Invalid(f"pace {pace:g}: give the simulated seconds a second, more than 0")
+    return (PacedRun(pace),)

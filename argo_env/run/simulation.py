@@ -1,8 +1,8 @@
 """The simulation: the one loop between a machine and what carries its actions out."""
 
 import logging
-from collections.abc import Sequence
-from contextlib import ExitStack
+from collections.abc import Iterator, Sequence
+from contextlib import ExitStack, contextmanager
 
 from argo_compiler.errors import Conflict, Invalid, NotFound
 from argo_compiler.hfsm import Event, GiveBack, Occurred, Tick
@@ -74,6 +74,8 @@ class Simulation(Closing):
         self._more = tuple(events)
         self._opened = False
         self._closed = False
+        self._changing = False
+        self._broken = False
         self._record: RunRecord | None = None
         require_site(site, spec)
         require_machine(machine, spec)
@@ -134,14 +136,15 @@ class Simulation(Closing):
         """Lets one time step of the drive pass: the robot moves, and the machine hears what
         happened. The run ends with its mission, with the battery, or after four hours.
 
-        Raises Conflict if it has ended, or is closed.
+        Raises Conflict if it has ended, is closed, or was broken off by an error before.
         """
         self._require_going_on()
         if not self._opened and self._open():
             return
-        self._advance()
-        for observer in self._observers:
-            observer.on_step(self._course.now, self._course.action)
+        with self._change():
+            self._advance()
+            for observer in self._observers:
+                observer.on_step(self._course.now, self._course.action)
         self.settle()
 
     def handle(self, event: Steering) -> None:
@@ -276,12 +279,25 @@ class Simulation(Closing):
 
     def _tell(self, entry: Entry) -> None:
         """Tells an entry of the present moment, and acts on it."""
-        for observer in self._observers:
-            observer.on_entry(entry)
-        self._vehicle.told()
-        self._course.take(entry)
-        for observer in self._observers:
-            observer.on_change(entry, self.machine)
+        with self._change():
+            for observer in self._observers:
+                observer.on_entry(entry)
+            self._vehicle.told()
+            self._course.take(entry)
+            for observer in self._observers:
+                observer.on_change(entry, self.machine)
+
+    @contextmanager
+    def _change(self) -> Iterator[None]:
+        """While the run changes nobody can tell it anything; once that has failed, never again."""
+        outer, self._changing = self._changing, True
+        try:
+            yield
+        except BaseException:
+            self._broken = True
+            raise
+        finally:
+            self._changing = outer
 
     def _require_going_on(self) -> None:
         if self.over:
@@ -291,6 +307,13 @@ class Simulation(Closing):
     def _require_usable(self) -> None:
         if self._closed:
             raise Conflict("the simulation is closed: make another one")
+        if self._broken:
+            raise Conflict(
+                f"the simulation broke off by an error, at {self.now:g} s: make another one, or "
+                "resume the run if it has a journal"
+            )
+        if self._changing:
+            raise Conflict("an observer can't steer the run that it is told of: between two steps")
 
     def _standstill(self) -> str | None:
         if self._course.given.pending or self._vehicle.supply.charging:

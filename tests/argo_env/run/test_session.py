@@ -2,7 +2,7 @@
 
 import pytest
 
-from argo_compiler.errors import ArgoError
+from argo_compiler.errors import ArgoError, Invalid
 from argo_compiler.il import Action, Mission, Task, Transition
 from argo_compiler.model import Pose
 from argo_env.run.drives_and_sensors import DRIVES
@@ -64,6 +64,12 @@ def test_window_without_a_display(short, navigator, monkeypatch):
     monkeypatch.delenv("DISPLAY", raising=False)
     with pytest.raises(ArgoError, match="DISPLAY"):
         simulated(short, navigator, gui=True)
+
+
+@pytest.mark.parametrize("pace", [0.0, -1.0, float("nan")])
+def test_a_pace_that_makes_no_sense(short, navigator, pace):
+    with pytest.raises(Invalid, match="more than 0"):
+        simulated(short, navigator, pace=pace)
 
 
 def test_pace_changes_nothing_but_the_time_it_takes(short, navigator):

@@ -33,6 +33,7 @@ from argo_env.faults.robot import ConnectionLoss, DriveDysfunction, LowBattery, 
 from argo_env.faults.walkway import Brick
 from argo_env.run.journal import Header, create_journal, open_journal
 from argo_env.run.machine import OpenMachine
+from argo_env.run.observer import Observer
 from argo_env.run.record import RunRecord
 from argo_env.run.session import resume, run, simulate
 from argo_env.run.simulation import Simulation
@@ -557,6 +558,48 @@ class TestWhatDoesNotFitTogether:
             steps(simulation, 3)
         with pytest.raises(Conflict, match="has been started already"):
             Simulation(machine, site, spec_of("route"))
+
+
+def meddling(told, deed):
+    """An observer that does something when it is told of the run by the method `told`."""
+    observer = Observer()
+    setattr(observer, told, lambda *_: deed())
+    return observer
+
+
+class TestObservers:
+    @pytest.mark.parametrize("told", ["on_entry", "on_change", "on_step"])
+    @pytest.mark.parametrize(
+        "deed", [lambda s: s.handle(Pause()), lambda s: s.step(), lambda s: s.run()]
+    )
+    def test_they_can_not_steer(self, site, told, deed):
+        observer = meddling(told, lambda: deed(simulation))
+        with (
+            simulation_of(spec_of("route"), site, observers=[observer]) as simulation,
+            pytest.raises(Conflict, match="between two steps"),
+        ):
+            steps(simulation, 20)
+
+    @pytest.mark.parametrize("told", ["on_entry", "on_change", "on_step"])
+    def test_what_they_raise_breaks_the_run_off(self, site, told):
+        def fail():
+            if simulation.now == 2.0:
+                raise OSError("no room")
+
+        observer = meddling(told, fail)
+        with simulation_of(spec_of("route"), site, observers=[observer]) as simulation:
+            with pytest.raises(OSError, match="no room"):
+                simulation.run()
+            for use in (simulation.step, simulation.run, lambda: simulation.handle(Pause())):
+                with pytest.raises(Conflict, match="broke off by an error, at 2 s"):
+                    use()
+
+    def test_what_is_refused_breaks_nothing(self, site):
+        with simulation_of(spec_of("route"), site) as simulation:
+            steps(simulation, 20)
+            with pytest.raises(Invalid):
+                simulation.handle(None)
+            assert simulation.run() == simulate(spec_of("route"), site)
 
 
 def test_a_closed_simulation_is_of_no_use(site, drive):

@@ -5,6 +5,8 @@ are the function's parameters. As JSON an edit has only what was given: in a hea
 value away, and what is not there stays.
 """
 
+import json
+from collections import Counter
 from collections.abc import Callable
 from typing import Annotated, Any, Literal
 
@@ -20,7 +22,7 @@ from argo_compiler.editing.consequences import Edited
 from argo_compiler.editing.groups import change_group, dissolve_group, rename_group, wrap_tasks
 from argo_compiler.editing.header import set_header, wrong_values
 from argo_compiler.editing.reactions import add_reaction, change_reaction, remove_reaction
-from argo_compiler.editing.refusals import EditInvalid
+from argo_compiler.editing.refusals import EditInvalid, invalid
 from argo_compiler.editing.removal import remove_task
 from argo_compiler.editing.tasks import add_task, move_task, rename_task, replace_task
 from argo_compiler.editing.transitions import (
@@ -51,6 +53,19 @@ class EditCommand(Model):
     """The call of one function of `argo_compiler.editing` on a mission."""
 
     kind: str
+
+    def given(self) -> dict[str, Any]:
+        """What the edit says: what is not there keeps its default, or stays as it is."""
+        return {name: getattr(self, name) for name in self.model_fields_set if name != "kind"}
+
+    def __eq__(self, other: object) -> bool:
+        # A value that is given changes something where one that is not given stays.
+        if not isinstance(other, EditCommand):
+            return NotImplemented
+        return self.kind == other.kind and self.given() == other.given()
+
+    def __hash__(self) -> int:
+        return hash((self.kind, frozenset(self.given().items())))
 
     @model_serializer(mode="wrap")
     def _as_given(self, write: SerializerFunctionWrapHandler) -> dict[str, Any]:
@@ -295,14 +310,29 @@ _EDIT: TypeAdapter[Edit] = TypeAdapter(Edit)
 
 
 def apply(mission: Mission, edit: Edit) -> Edited:
-    """The mission after the edit. Raises what the function of the edit's kind raises."""
-    given = {name: getattr(edit, name) for name in edit.model_fields_set if name != "kind"}
-    return FUNCTIONS[edit.kind](mission, **given)
+    """The mission after the edit. Raises what the function of the edit's kind raises, and
+    EditInvalid for what is no edit or mission."""
+    if not isinstance(mission, Mission):
+        message = f"a {type(mission).__name__} is no mission"
+        raise invalid("edit.value", message, "read the mission from its file first")
+    if not isinstance(edit, EditCommand):
+        message = f"a {type(edit).__name__} is no edit"
+        raise invalid("edit.value", message, "read an edit in JSON with read_edit first")
+    return FUNCTIONS[edit.kind](mission, **edit.given())
 
 
 def read_edit(text: str | bytes) -> Edit:
     """The edit that a JSON text holds. Raises EditInvalid."""
     try:
-        return _EDIT.validate_json(text)
+        edit = _EDIT.validate_json(text)
     except ValidationError as error:
         raise EditInvalid(wrong_values(error)) from None
+    json.loads(text, object_pairs_hook=_require_once, parse_int=str, parse_float=str)
+    return edit
+
+
+def _require_once(pairs: list[tuple[str, object]]) -> None:
+    for name, count in Counter(name for name, _ in pairs).items():
+        if count > 1:
+            message = f"`{name}` is given {count} times in one object"
+            raise invalid("edit.value", message, "keep one of them")

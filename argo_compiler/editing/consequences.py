@@ -115,7 +115,7 @@ def _of_tasks(
         if at in asked:
             continue
         if old.transitions is not task.transitions:
-            yield from _of_ways(at, old, task)
+            yield from _of_ways(at, old, task, first)
         if old.group != task.group:
             place = f"in group '{task.group}'" if task.group else "outside of all groups"
             message = f"task '{task.name}' is shown {place} now"
@@ -125,11 +125,15 @@ def _of_tasks(
         yield _consequence("tasks", message, former, first)
 
 
-def _of_ways(at: str, old: Task, new: Task) -> Iterator[Consequence]:
+def _of_ways(at: str, old: Task, new: Task, first: str | None) -> Iterator[Consequence]:
     was, is_now = default_target(old), default_target(new)
     if was != is_now:
-        if is_now is None:
+        if new.action is Action.START and is_now is None and first is not None:
+            message = f"task '{new.name}' leads nowhere now; the mission begins with '{first}'"
+        elif is_now is None:
             message = f"the mission ends after task '{new.name}' now; it led to '{was}'"
+        elif was is None and new.action is Action.START:
+            message = f"task '{new.name}' leads to '{is_now}' now"
         elif was is None:
             message = f"task '{new.name}' leads to '{is_now}' now; the mission ended there"
         else:

@@ -12,8 +12,15 @@ from pydantic import ValidationError
 from argo_compiler.diagnostics.subject import subject_of
 from argo_compiler.editing.consequences import Edited, edited
 from argo_compiler.editing.draft import DraftGroup, DraftTask, MissionDraft
-from argo_compiler.editing.header import wrong_values
-from argo_compiler.editing.refusals import EditInvalid, conflict, invalid, name_taken
+from argo_compiler.editing.header import require_fields, wrong_values
+from argo_compiler.editing.refusals import (
+    EditInvalid,
+    conflict,
+    invalid,
+    name_taken,
+    require_kind,
+    require_name,
+)
 from argo_compiler.editing.ways import default_target
 from argo_compiler.il import Action, Group, Mission, Stop
 from argo_compiler.il.grouping import parent_name
@@ -42,6 +49,7 @@ def wrap_tasks(mission: Mission, group: Group) -> Edited:
             or it would never end.
         EditInvalid: its end stands before its start, or its name is no name.
     """
+    require_kind(group, Group, "the group")
     draft = MissionDraft(mission)
     new = _drafted(draft, group)
     spans = _Spans(draft)
@@ -61,7 +69,8 @@ def wrap_tasks(mission: Mission, group: Group) -> Edited:
     _require_own_name(own)
     full = prefix + own
     renamed = {name: f"{full}/{name.removeprefix(prefix)}" for name in inner}
-    _require_free(mission, (*renamed.values(), full), without=renamed)
+    _require_free(mission, (full,), without=())
+    _require_free(mission, renamed.values(), without=renamed)
     draft.groups.append(new)
     new.group = new.group.model_copy(update={"name": full})
     return _renamed(draft, renamed, asked=full)
@@ -92,6 +101,8 @@ def rename_group(mission: Mission, name: str, own_name: str) -> Edited:
     """
     draft = MissionDraft(mission)
     draft.find_group(name)
+    if own_name != "":
+        require_name(f"group '{name}'", own_name)
     outer = parent_name(name)
     prefix = "" if outer is None else f"{outer}/"
     own = own_name.removeprefix(prefix)
@@ -121,6 +132,7 @@ def change_group(mission: Mission, name: str, **fields: Unpack[GroupFields]) -> 
     """
     draft = MissionDraft(mission)
     found = draft.find_group(name)
+    require_fields(fields, GroupFields.__annotations__, "a group")
     try:
         values = Group.model_validate({"name": name, "start": "", "end": "", **fields})
     except ValidationError as error:

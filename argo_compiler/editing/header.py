@@ -1,5 +1,6 @@
 """Edits of a mission's header."""
 
+from collections.abc import Collection, Iterable
 from typing import TypedDict, Unpack
 
 from pydantic import ValidationError
@@ -33,9 +34,10 @@ def set_header(mission: Mission, **fields: Unpack[HeaderFields]) -> Edited:
 
     Raises:
         EditNotFound: `current` is no task.
-        EditInvalid: a value that the field can't have.
+        EditInvalid: a value that the field can't have, or a field that the header does not have.
         EditConflict: the mission needs what is taken away, as a dock to return to.
     """
+    require_fields(fields, HeaderFields.__annotations__, "the header")
     try:
         checked = Mission.model_validate(dict(fields))
     except ValidationError as error:
@@ -47,13 +49,30 @@ def set_header(mission: Mission, **fields: Unpack[HeaderFields]) -> Edited:
     return edited(mission, mission.model_copy(update=values), asked=frozenset(fields))
 
 
+def require_fields(given: Iterable[str], known: Collection[str], of: str) -> None:
+    """Raises EditInvalid for fields that are not among those that an edit can change."""
+    wrong = [name for name in given if name not in known]
+    if wrong:
+        hint = f"the fields that can be changed: {', '.join(known)}"
+        raise EditInvalid(
+            diagnostic("edit.value", f"`{name}` is no field of {of} that can be changed", hint)
+            for name in wrong
+        )
+
+
 def wrong_values(error: ValidationError) -> list[Diagnostic]:
     """What is said of values that a field can't have."""
     return [
         diagnostic(
             "edit.value",
-            f"`{'.'.join(map(str, fault['loc']))}`: {fault['msg'][:1].lower()}{fault['msg'][1:]}",
+            _said(fault["loc"], fault["msg"]),
             "give it a value that the mission format allows",
         )
         for fault in error.errors(include_url=False, include_input=False)
     ]
+
+
+def _said(place: tuple[int | str, ...], message: str) -> str:
+    if not place:
+        return f"the edit can't be read: {message}"
+    return f"`{'.'.join(map(str, place))}`: {message[:1].lower()}{message[1:]}"

@@ -2,7 +2,7 @@
 
 from argo_compiler.diagnostics.subject import subject_of
 from argo_compiler.editing.consequences import Edited, edited
-from argo_compiler.editing.refusals import EditNotFound, conflict, diagnostic
+from argo_compiler.editing.refusals import EditNotFound, conflict, diagnostic, require_kind
 from argo_compiler.il import EventKind, Mission, Reaction
 
 
@@ -13,6 +13,7 @@ def add_reaction(mission: Mission, reaction: Reaction) -> Edited:
         EditConflict: there is a reaction to this event, or the mission has no dock to return to.
         EditInvalid: the reaction makes no sense.
     """
+    require_kind(reaction, Reaction, "the reaction")
     _require_free(mission, reaction.event)
     return edited(mission, mission.model_copy(update={"reactions": (*mission.reactions, reaction)}))
 
@@ -22,6 +23,7 @@ def change_reaction(mission: Mission, event: EventKind, reaction: Reaction) -> E
 
     Raises EditNotFound if there is none, and as `add_reaction` does.
     """
+    require_kind(reaction, Reaction, "the reaction")
     at = _index(mission, event)
     if reaction.event != event:
         _require_free(mission, reaction.event)

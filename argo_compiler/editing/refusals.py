@@ -1,10 +1,14 @@
 """What stands in the way of an edit, as errors of a kind, with diagnostics."""
 
+import re
+import reprlib
 from collections.abc import Collection, Iterable
 
 from argo_compiler.diagnostics import Diagnostic, Severity, to_text
 from argo_compiler.errors import ArgoError, Conflict, Invalid, NotFound
 from argo_compiler.nearest_name import nearest_name
+
+_SURROGATE = re.compile("[\ud800-\udfff]")
 
 
 class EditError(ArgoError):
@@ -69,3 +73,27 @@ def conflict(code: str, message: str, hint: str, subject: str | None = None) -> 
 def invalid(code: str, message: str, hint: str) -> EditInvalid:
     """A refusal of what was given."""
     return EditInvalid([diagnostic(code, message, hint)])
+
+
+def require_kind(value: object, kind: type, what: str) -> None:
+    """Raises EditInvalid for what is not of a kind."""
+    if not isinstance(value, kind):
+        message = f"{what} is to be a {kind.__name__}, not {reprlib.repr(value)}"
+        raise invalid("edit.value", message, f"make a {kind.__name__} of it")
+
+
+def require_name(thing: str, name: object) -> None:
+    """Raises EditInvalid for what can't be the name of a task or group."""
+    if not isinstance(name, str):
+        message, hint = (
+            f"{thing} needs a text as its name, not {reprlib.repr(name)}",
+            "give it a name",
+        )
+    elif not name:
+        message, hint = f"{thing} needs a name that is not empty", "give it a name"
+    elif _SURROGATE.search(name):
+        message = f"{thing} can't be named {name!a}, which has half a character"
+        hint = "leave out the surrogates, which can't be written to a file"
+    else:
+        return
+    raise invalid("edit.value", message, hint)

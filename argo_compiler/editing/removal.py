@@ -6,7 +6,7 @@ a round.
 """
 
 from argo_compiler.diagnostics.subject import subject_of
-from argo_compiler.editing.consequences import Edited, edited
+from argo_compiler.editing.consequences import Consequence, Edited, edited
 from argo_compiler.editing.draft import DraftGroup, DraftTask, MissionDraft
 from argo_compiler.editing.refusals import EditConflict, conflict
 from argo_compiler.editing.ways import beginning, default_target, defaults
@@ -46,7 +46,17 @@ def remove_task(mission: Mission, name: str) -> Edited:
     draft.take_out(entry)
     made = draft.mission()
     _require_beginning(name, successor, mission, made)
-    return edited(mission, made)
+    result = edited(mission, made)
+    if default_target(entry.task) != name or entry.task.action is Action.START:
+        return result
+    told = Consequence(
+        subject="tasks",
+        message=f"a run that came to '{name}' stayed there, as it led to itself; it "
+        + ("ends now" if successor is None else f"goes on with '{successor}' now"),
+        before=name,
+        after=successor,
+    )
+    return Edited(mission=made, consequences=(*result.consequences, told))
 
 
 def _require_beginning(name: str, successor: str | None, before: Mission, after: Mission) -> None:

@@ -3,7 +3,7 @@
 from argo_compiler.diagnostics.subject import subject_of
 from argo_compiler.editing.consequences import Edited, edited
 from argo_compiler.editing.draft import DraftTask, MissionDraft
-from argo_compiler.editing.refusals import invalid, name_taken, unknown
+from argo_compiler.editing.refusals import invalid, name_taken, require_kind, require_name, unknown
 from argo_compiler.il import Action, Mission, Task
 
 
@@ -29,6 +29,7 @@ def add_task(
         EditNotFound: there is no such task or group to put it beside or into, or to lead to.
         EditInvalid: more than one place, or a task that makes no sense.
     """
+    require_kind(task, Task, "the task")
     draft = MissionDraft(mission)
     if draft.has_task(task.name):
         raise name_taken("task", task.name, subject_of("tasks", task.name))
@@ -46,6 +47,7 @@ def replace_task(mission: Mission, name: str, task: Task) -> Edited:
 
     Raises EditNotFound, EditConflict and EditInvalid as `add_task` does.
     """
+    require_kind(task, Task, "the task")
     draft = MissionDraft(mission)
     entry = draft.find(name)
     if task.name != name:
@@ -100,9 +102,7 @@ def rename_task(mission: Mission, name: str, new_name: str) -> Edited:
     """
     draft = MissionDraft(mission)
     entry = draft.find(name)
-    if not new_name:
-        message = f"task '{name}' needs a name that is not empty"
-        raise invalid("edit.value", message, "give it a name")
+    require_name(f"task '{name}'", new_name)
     if new_name != name:
         if draft.has_task(new_name):
             raise name_taken("task", new_name, subject_of("tasks", new_name))

@@ -4,7 +4,7 @@ from collections.abc import Sequence
 
 from argo_compiler.diagnostics.subject import subject_of
 from argo_compiler.editing.consequences import Edited, edited
-from argo_compiler.editing.refusals import EditNotFound, conflict, diagnostic, unknown
+from argo_compiler.editing.refusals import EditNotFound, conflict, diagnostic, require_kind, unknown
 from argo_compiler.il import Condition, Mission, Task, Transition
 
 
@@ -19,6 +19,7 @@ def set_transitions(mission: Mission, task: str, transitions: Sequence[Transitio
     at = _index(mission, task)
     names = {other.name for other in mission.tasks}
     for way in transitions:
+        require_kind(way, Transition, f"a transition of task '{task}'")
         if way.target not in names:
             raise unknown("task", way.target, names)
     unconditional = [k for k, way in enumerate(transitions) if not way.conditions]
@@ -46,6 +47,7 @@ def add_transition(
     """
     ways = _task(mission, task).transitions
     at = len(ways) if at is None else at
+    require_kind(at, int, "the position")
     if not 0 <= at <= len(ways):
         raise _no_such("transition", f"task '{task}'", at, len(ways))
     return set_transitions(mission, task, (*ways[:at], transition, *ways[at:]))
@@ -72,6 +74,8 @@ def set_conditions(mission: Mission, task: str, at: int, conditions: Sequence[Co
 
     Raises as `set_transitions` does.
     """
+    for condition in conditions:
+        require_kind(condition, Condition, f"a condition of task '{task}'")
     return _with_way(mission, task, at, {"conditions": tuple(conditions)})
 
 
@@ -86,6 +90,7 @@ def add_condition(mission: Mission, task: str, at: int, condition: Condition) ->
 
 def remove_condition(mission: Mission, task: str, at: int, condition: int) -> Edited:
     """The mission without one condition of a transition. Raises as `set_transitions` does."""
+    require_kind(condition, int, "the position of the condition")
     held = _way(task, _task(mission, task).transitions, at).conditions
     if not 0 <= condition < len(held):
         raise _no_such("condition", f"transition {at} of task '{task}'", condition, len(held))
@@ -99,6 +104,7 @@ def _with_way(mission: Mission, task: str, at: int, update: dict[str, object]) -
 
 
 def _way(task: str, ways: Sequence[Transition], at: int) -> Transition:
+    require_kind(at, int, "the position")
     if not 0 <= at < len(ways):
         raise _no_such("transition", f"task '{task}'", at, len(ways))
     return ways[at]

@@ -205,6 +205,35 @@ REFUSALS = [
     (EditInvalid, "edit.value", lambda: editing.rename_task(MISSION, "A", "")),
     (EditInvalid, "edit.value", lambda: editing.set_header(MISSION, max_duration=-1)),
     (EditInvalid, "edit.value", lambda: read_edit('{"kind": "remove_task", "name": 3}')),
+    (EditInvalid, "edit.value", lambda: editing.rename_task(MISSION, "A", "\ud800")),
+    (EditInvalid, "edit.value", lambda: editing.rename_task(MISSION, "A", 5)),
+    (EditInvalid, "edit.value", lambda: editing.rename_group(MISSION, "Alpha", None)),
+    (EditInvalid, "edit.value", lambda: editing.set_header(MISSION, tasks=())),
+    (EditInvalid, "edit.value", lambda: editing.change_group(MISSION, "Alpha", source=None)),
+    (EditInvalid, "edit.value", lambda: editing.add_task(MISSION, {"name": "new"})),
+    (EditInvalid, "edit.value", lambda: editing.replace_task(MISSION, "A", None)),
+    (EditInvalid, "edit.value", lambda: editing.wrap_tasks(MISSION, "Alpha")),
+    (EditInvalid, "edit.value", lambda: editing.add_reaction(MISSION, "low_battery")),
+    (EditInvalid, "edit.value", lambda: editing.change_reaction(MISSION, "low_battery", "pause")),
+    (EditInvalid, "edit.value", lambda: editing.add_transition(MISSION, "D", way("A"), at="0")),
+    (EditInvalid, "edit.value", lambda: editing.set_target(MISSION, "D", "0", "A")),
+    (EditInvalid, "edit.value", lambda: editing.set_transitions(MISSION, "D", ("A",))),
+    (EditInvalid, "edit.value", lambda: editing.set_conditions(MISSION, "D", 0, ("x",))),
+    (EditInvalid, "edit.value", lambda: editing.remove_condition(MISSION, "D", 0, "0")),
+    (EditInvalid, "edit.value", lambda: apply(None, commands.RemoveTask(name="A"))),
+    (EditInvalid, "edit.value", lambda: apply(MISSION, {"kind": "remove_task", "name": "A"})),
+    (EditInvalid, "edit.value", lambda: read_edit("")),
+    (EditInvalid, "edit.value", lambda: read_edit(5)),
+    (
+        EditInvalid,
+        "edit.value",
+        lambda: read_edit('{"kind": "remove_task", "name": "A", "name": "B"}'),
+    ),
+    (
+        EditConflict,
+        "edit.name-taken",
+        lambda: editing.wrap_tasks(MISSION, group("Alpha", "B", "C")),
+    ),
     (EditInvalid, "edit.group-order", lambda: editing.wrap_tasks(MISSION, group("X", "E", "D"))),
     (EditInvalid, "edit.group-name", lambda: editing.rename_group(MISSION, "Alpha", "a/b")),
     (
@@ -280,3 +309,28 @@ def test_an_edit_is_written_with_what_was_given_and_nothing_else():
     long = MISSION.model_copy(update={"max_duration": 60.0, "designation": "X"})
     changed = apply(long, read_edit(edit.model_dump_json())).mission
     assert (changed.max_duration, changed.designation) == (None, "X")
+
+
+def test_edits_that_set_other_fields_differ():
+    """A value that is given changes something, though it may be the default."""
+    assert commands.SetHeader() != commands.SetHeader(max_duration=None)
+    assert commands.ChangeGroup(name="G") != commands.ChangeGroup(name="G", max_repeat_count=0)
+    assert len({commands.SetHeader(), commands.SetHeader(max_duration=None)}) == 2
+    written = read_edit('{"kind": "remove_task", "name": "A"}')
+    assert {written: 1}[commands.RemoveTask(name="A")] == 1
+    assert commands.RemoveTask(name="A") != commands.DissolveGroup(name="A")
+
+
+def test_a_start_that_is_moved_does_not_end_the_mission():
+    mission = Mission(tasks=(START, task("A", "B"), task("B")))
+    (told_of,) = editing.move_task(mission, "START", after="B").consequences
+    assert told_of.message == "task 'START' leads nowhere now; the mission begins with 'A'"
+
+
+def test_without_a_task_that_led_to_itself_a_run_goes_on_and_that_is_told():
+    mission = Mission(tasks=(task("A", "B"), task("B", "B"), task("C")))
+    edited = editing.remove_task(mission, "B")
+    assert edited.mission.task("A").transitions == (way("C"),)
+    assert edited.consequences[-1].message == (
+        "a run that came to 'B' stayed there, as it led to itself; it goes on with 'C' now"
+    )

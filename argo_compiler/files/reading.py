@@ -47,11 +47,10 @@ def read_bytes(path: Path, thing: str, max_bytes: int) -> bytes:
 
     Raises FileError if there is no such file, it can't be read, or it is too large.
     """
-    if path.is_dir():
-        raise UnreadableFile(
-            path, FileProblem.DIRECTORY, "can't be read: is a directory", f"name the {thing} in it"
-        )
     try:
+        if path.is_dir():
+            message = "can't be read: is a directory"
+            raise UnreadableFile(path, FileProblem.DIRECTORY, message, f"name the {thing} in it")
         with path.open("rb") as file:
             size = os.fstat(file.fileno()).st_size
             # What is asked for is allocated at once, and pipes have no size.

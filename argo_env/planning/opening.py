@@ -130,8 +130,9 @@ def open_site(reference: str = "umad", robot: RobotSpec | None = None) -> Opened
     """The site of that name, the one that the file `reference` describes, or a generated one such
     as `generated:floors=3,seed=7`, ready for work by the `robot` (the tracker).
 
-    Equal calls give the same object, also from several threads at once; of a file that has changed
-    a new one is made. What takes long to find is kept on disk from process to process.
+    Equal calls give the same object, also from several threads at once, however the parameters of
+    a generated site are written; of a file that has changed a new one is made. What takes long to
+    find is kept on disk from process to process.
 
     Raises NotFound if there is no such site, and ArgoError, with the place in the file, if it makes
     no sense. That the robot can't drive there shows with the first path: see `prepare`.
@@ -139,6 +140,8 @@ def open_site(reference: str = "umad", robot: RobotSpec | None = None) -> Opened
     robot = robot or load_robot()
     if is_family(reference):
         family = parse_family(reference)
+        if parse_family(str(family)) == family:  # a text may lack digits
+            reference = str(family)
         return _open(reference, family.model_dump_json(), robot, partial(_draw, family, robot))
     path = site_file(reference)
     text = read_text(path, "site", MAX_BYTES)

@@ -137,10 +137,20 @@ class PlaceSpec(Model):
     pose: tuple[float, float, float]
 
 
+def _usable_name(name: str) -> str:
+    if not name.strip() or name.startswith(".") or any(c in "/\\" or ord(c) < 32 for c in name):
+        raise ValueError(
+            f"`{name}` is no name of a site: files are named by it, so give it one without "
+            "slashes, which does not begin with a dot"
+        )
+    return name
+
+
 class SiteSpec(Model):
     """A whole site."""
 
-    name: str
+    name: Annotated[str, Field(max_length=200), AfterValidator(_usable_name)]
+    """files are named by it"""
     title: str
     storey: float = Field(gt=0)
     """m from floor to floor"""

@@ -385,6 +385,12 @@ def test_drawn_sites_are_in_no_file():
         load_site(DRAWN)
 
 
+def test_however_its_parameters_are_written_it_is_the_same_site():
+    drawn = open_site(DRAWN)
+    assert open_site("generated:seed=1, checkpoints=2,size=12x12,floors=1,clutter=0.50") is drawn
+    assert open_site(drawn.reference) is drawn
+
+
 def test_what_is_not_there_is_named(umad):
     with pytest.raises(NotFound, match="no site `nowhere`; there are: darmstadt, umad"):
         open_site("nowhere")

@@ -45,9 +45,18 @@ def test_unknown_name(name):
     assert "umad" in message
 
 
-@pytest.mark.parametrize("name", ["missing.yaml", "missing/site.yml", "a\0b.yaml"])
+@pytest.mark.parametrize(
+    "name", ["missing.yaml", "missing/site.yml", "a\0b.yaml", "a" * 5000 + ".yaml"]
+)
 def test_missing_file(tmp_path, name):
     assert name in refusal(tmp_path / name)
+
+
+@pytest.mark.parametrize("name", ["", " ", "a/b", "../x", "a\\b", ".", "a\tb", "a" * 300])
+def test_a_name_that_no_file_can_have(tmp_path, description, name):
+    message = refusal(written(tmp_path, description | {"name": name}))
+    assert "site.yaml" in message
+    assert "name" in message
 
 
 def test_a_folder_is_no_site(tmp_path):

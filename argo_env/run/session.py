@@ -18,6 +18,7 @@ from argo_env.run.record import RunRecord
 from argo_env.run.rig import check_spec
 from argo_env.run.simulation import LoggedEvents, Simulation
 from argo_env.run.spec import RunSpec
+from argo_env.run.steering import check_given
 
 _log = logging.getLogger(__name__)
 
@@ -53,6 +54,7 @@ def simulate(
     site = site or open_site(spec.site)
     require_site(site, spec)
     check_spec(spec, site.site)
+    check_given(spec.events, spec.mission)
     machine = Executor(lower(spec.mission))
     _log.info(
         "a run on %s: drive %s, sensor %s, seed %d", site.name, spec.drive, spec.sensor, spec.seed
@@ -61,7 +63,9 @@ def simulate(
         told = [*_paced(pace), *observers]
         if journal is not None:
             # First, so that nobody is told what is not on disk.
-            told.insert(0, stack.enter_context(create_journal(journal, Header.of(site, spec))))
+            told.insert(
+                0, stack.enter_context(create_journal(Path(journal), Header.of(site, spec)))
+            )
         simulation = Simulation(machine, site, spec, observers=told, gui=gui)
         return stack.enter_context(simulation).run()
 

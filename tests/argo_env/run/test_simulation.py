@@ -389,6 +389,12 @@ class TestGivenEvents:
         assert (taken.start, paused.start) == (4.0, 9.0)
         assert max(rest, at) <= taken.end < 9.0
 
+    def test_a_spec_that_is_refused_leaves_no_journal(self, site, tmp_path):
+        spec = spec_of("route", events=logged((3.0, GiveBack((ByHand(task="zz"),)))))
+        with pytest.raises(Invalid, match="give_back given at 3 s"):
+            simulate(spec, site, journal=tmp_path / "run.journal")
+        assert list(tmp_path.iterdir()) == []
+
     def test_a_robot_that_nobody_has_taken_over(self, site):
         spec = spec_of("route", events=logged((4.0, GiveBack())))
         with pytest.raises(Conflict, match=r"back by 4 s, and nobody .* 'MEASURE 1' runs"):

@@ -46,6 +46,8 @@ class _Outputs:
     def check(self, *inputs: Path | str | None) -> None:
         """Raises ArgoError where something can't be written, or is one of the inputs; folders are
         made now."""
+        if self.journal:
+            require_free(self.journal)
         keep_apart([self.source, *inputs], [self.render, self.recording, self.journal])
         if self.pace is not None and not self.gui:
             raise Invalid("--pace is how fast the window shows the run: give --gui as well")
@@ -60,8 +62,6 @@ class _Outputs:
             check_recording(self.recording)
         if self.report:
             make_folder(self.report)
-        if self.journal:
-            require_free(self.journal)
 
 
 def run(

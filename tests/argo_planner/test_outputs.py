@@ -21,7 +21,7 @@ from argo_planner.cli import app
         ("export m.json --to dot -o m.json", "is the input"),
         ("route m.json --requirements r.yaml -o r.yaml", "is the input"),
         ("run m.json --record m.json", "m.json"),
-        ("run m.json --faults f.yaml --journal f.yaml", "is the input"),
+        ("run m.json --faults f.yaml --journal f.yaml", "is there already"),
         ("run m.json --journal new.mcap --record new.mcap", "twice"),
         ("resume j.mcap --record j.mcap", "is the input"),
         ("replay r.gif --render r.gif", "is the input"),

@@ -3,6 +3,11 @@
 A round is left where it was entered to leave, and nothing comes between its members. So for the
 rest of the route it is one step with some modes: an order of its members, the time and energy that
 all of its rounds take from each place that it may be entered from, and where it ends.
+
+To be done sooner, with less energy, where the robot may then be in fewer places, is never worse for
+what follows, with one exception: a round around it that lasts for a time. That makes one more pass
+where a shorter one ends before the time is over. So ways are dropped for better ones only where no
+such round is around them.
 """
 
 from collections.abc import Callable
@@ -17,9 +22,9 @@ from argo_compiler.route.problem import NEVER, Round, RouteProblem
 Vector = NDArray[np.int64]
 
 MOST_MEMBERS = 9
-"""of a round, those inside others counted as one, up to which all orders are weighed"""
-MOST_TIMED = 6
-"""the same where a round inside lasts for a time"""
+"""of a round, those inside others counted as one, up to which its best orders are known"""
+MOST_ORDERS = 5040
+"""of a round with a duration in it or around it, which are all weighed: those of seven members"""
 
 
 @dataclass(frozen=True, eq=False)
@@ -78,14 +83,15 @@ def modes(
 ) -> tuple[list[StepMode], bool]:
     """The ways to make a step that may be the best, and whether they are all of those.
 
-    A round of more than MOST_MEMBERS parts, or of more than MOST_TIMED with a duration among them,
+    A round of more than MOST_MEMBERS parts, or with a duration and of more than MOST_ORDERS orders,
     is made in the cyclic order that `order_of` gives.
     """
     if step.round is None:
         (visit,) = step.visits
         return [StepMode(visit, (visit,), (visit,), problem.visits[visit].service)], True
-    ways, exact = _ways(problem, step, order_of)
-    return [mode for way in ways for mode in _modes(problem, way)], exact
+    drives = _Drives(problem)
+    ways, exact = _ways(problem, step, order_of, drives, within_timed=False)
+    return [mode for way in ways for mode in _modes(way, drives)], exact
 
 
 def plus(times: Vector, more: int | Vector) -> Vector:
@@ -107,14 +113,14 @@ class StepPlan(Protocol):
         """Its visits in the first round."""
         ...
 
-    def run(self, drive: int, energy: int) -> "StepOutcome":
-        """What it takes after a drive to `first` of that time and energy."""
+    def run(self, drive: int) -> "StepOutcome":
+        """What it takes after a drive to `first` of that time; the drive's energy is not in it."""
         ...
 
 
 @dataclass(frozen=True)
 class StepOutcome:
-    """What a way takes, the drive to it included, and where the robot may then be."""
+    """What a way takes, the time of the drive to it included, and where the robot may then be."""
 
     time: int
     energy: int
@@ -130,110 +136,158 @@ class _Single:
     def order(self) -> tuple[int, ...]:
         return (self.first,)
 
-    def run(self, drive: int, energy: int) -> StepOutcome:
-        return StepOutcome(min(drive + self.service, NEVER), energy, (self.first,))
+    def run(self, drive: int) -> StepOutcome:
+        return StepOutcome(min(drive + self.service, NEVER), 0, (self.first,))
 
 
-@dataclass(frozen=True, eq=False)
 class _Rounds:
-    """A round with its parts in an order."""
+    """A round with its parts in an order. Keeps what it has reckoned once."""
 
-    problem: RouteProblem
-    round: Round
-    parts: tuple[StepPlan, ...]
+    def __init__(self, drives: "_Drives", asked: Round, parts: tuple[StepPlan, ...]) -> None:
+        self._drives, self._round, self._parts = drives, asked, parts
+        self.first = parts[0].first
+        self.order = tuple(visit for part in parts for visit in part.order)
+        self._after: dict[tuple[int, ...], StepOutcome] = {}
+        # Where the first part takes its time whatever the drive, so does a whole pass.
+        self._steady = parts[0].run(0) if isinstance(parts[0], _Single) else None
+        if self._steady is not None:
+            self._steady = self._on(self._steady)
 
-    @property
-    def first(self) -> int:
-        return self.parts[0].first
+    def once(self, drive: int) -> StepOutcome:
+        """A single pass after a drive to `first` of that time."""
+        if self._steady is None:
+            return self._on(self._parts[0].run(drive))
+        done = self._steady
+        return StepOutcome(min(drive + done.time, NEVER), done.energy, done.exit)
 
-    @property
-    def order(self) -> tuple[int, ...]:
-        return tuple(visit for part in self.parts for visit in part.order)
-
-    def once(self, drive: int, energy: int) -> StepOutcome:
-        """A single round."""
-        done = self.parts[0].run(drive, energy)
-        for part in self.parts[1:]:
-            done = _onward(self.problem, done, part)
+    def _on(self, done: StepOutcome) -> StepOutcome:
+        for part in self._parts[1:]:
+            done = self._drives.onward(done, part)
         return done
 
-    def again(self) -> int:
-        """The time of a round that follows another."""
-        begun = StepOutcome(0, 0, (self.first,))
-        once = _onward(self.problem, begun, self.parts[0])
-        for part in self.parts[1:]:
-            once = _onward(self.problem, once, part)
-        return self._next(StepOutcome(0, 0, once.exit)).time
+    def _again(self, exit: tuple[int, ...]) -> StepOutcome:
+        """A further pass, from the places where the last one ended."""
+        if exit not in self._after:
+            begun = self._drives.onward(StepOutcome(0, 0, exit), self._parts[0])
+            self._after[exit] = self._on(begun)
+        return self._after[exit]
 
-    def _next(self, done: StepOutcome) -> StepOutcome:
-        for part in self.parts:
-            done = _onward(self.problem, done, part)
-        return done
-
-    def run(self, drive: int, energy: int) -> StepOutcome:
-        asked = self.round
-        done, count = self.once(drive, energy), 1
+    def run(self, drive: int) -> StepOutcome:
+        asked = self._round
+        done, count = self.once(drive), 1
         while done.time < NEVER and (not asked.repeat or count < asked.repeat):
             if asked.duration and done.time >= asked.duration:
                 break
-            following = self._next(done)
-            count += 1
-            same = following.exit == done.exit
-            step, used = following.time - done.time, following.energy - done.energy
-            done = following
-            if asked.duration and step == 0:
-                break  # rounds that take no time would never fill it
-            if same:  # all that follow are like this one
-                more = asked.repeat - count if asked.repeat else NEVER
+            more, passes = self._again(done.exit), 1
+            if asked.duration and more.time == 0:
+                return _sum(done, more, 1)  # passes that take no time would never fill it
+            if more.exit == done.exit:  # all that follow are like this one
+                passes = asked.repeat - count if asked.repeat else NEVER
                 if asked.duration:
-                    more = min(more, -(-max(0, asked.duration - done.time) // step))
-                done = StepOutcome(
-                    min(done.time + more * step, NEVER),
-                    min(done.energy + more * used, NEVER),
-                    done.exit,
-                )
-                break
+                    passes = min(passes, -(-(asked.duration - done.time) // more.time))
+            done = _sum(done, more, passes)
+            count += passes
         if asked.duration and not asked.soft and asked.duration < done.time < NEVER:
             return StepOutcome(asked.duration, done.energy, tuple(sorted(self.order)))
         return done
 
 
-def _onward(problem: RouteProblem, done: StepOutcome, way: StepPlan) -> StepOutcome:
-    """A way after what was done, from the worst of the places where the robot may be."""
-    places = list(done.exit)
-    drive = int(problem.travel[places, way.first].max())
-    energy = 0
-    if problem.battery is not None:
-        energy = int(problem.battery.energy[places, way.first].max())
-    after = way.run(drive, energy)
-    time = NEVER if drive >= NEVER else min(done.time + after.time, NEVER)
-    return StepOutcome(time, min(done.energy + after.energy, NEVER), after.exit)
+def _sum(done: StepOutcome, more: StepOutcome, times: int) -> StepOutcome:
+    time = min(done.time + times * more.time, NEVER)
+    return StepOutcome(time, min(done.energy + times * more.energy, NEVER), more.exit)
+
+
+class _Drives:
+    """The drives between places. Keeps what it has looked up once."""
+
+    def __init__(self, problem: RouteProblem) -> None:
+        self._travel, self._battery = problem.travel, problem.battery
+        self._entries: dict[int, Vector] = {}
+        self._worst: dict[tuple[tuple[int, ...], int], tuple[int, int]] = {}
+
+    def entries(self, first: int) -> Vector:
+        """The times of all drives to a visit, sorted: a step is entered after one of them."""
+        if first not in self._entries:
+            drives = np.unique(self._travel[:, first])
+            self._entries[first] = drives[drives < NEVER]
+        return self._entries[first]
+
+    def onward(self, done: StepOutcome, way: StepPlan) -> StepOutcome:
+        """A way after what was done, from the worst of the places where the robot may be."""
+        if (done.exit, way.first) not in self._worst:
+            places = list(done.exit)
+            drive, energy = int(self._travel[places, way.first].max()), 0
+            if self._battery is not None:
+                energy = int(self._battery.energy[places, way.first].max())
+            self._worst[done.exit, way.first] = drive, energy
+        drive, energy = self._worst[done.exit, way.first]
+        after = way.run(drive)
+        time = NEVER if drive >= NEVER else min(done.time + after.time, NEVER)
+        return StepOutcome(time, min(done.energy + energy + after.energy, NEVER), after.exit)
 
 
 def _ways(
-    problem: RouteProblem, step: Step, order_of: Callable[[Step], tuple[Step, ...]]
+    problem: RouteProblem,
+    step: Step,
+    order_of: Callable[[Step], tuple[Step, ...]],
+    drives: _Drives,
+    *,
+    within_timed: bool,
 ) -> tuple[list[StepPlan], bool]:
-    """The ways to make a step among which the best is, and whether that is so."""
+    """The ways to make a step among which the best is, and whether that is so. `within_timed`:
+    whether a round around it lasts for a time."""
     if step.round is None:
         (visit,) = step.visits
         return [_Single(visit, problem.visits[visit].service)], True
+    lasts = within_timed or step.round.duration > 0
     exact, choices = True, []
     for part in step.parts:
-        some, all_of_them = _ways(problem, part, order_of)
+        some, all_of_them = _ways(problem, part, order_of, drives, within_timed=lasts)
         choices.append(some)
         exact &= all_of_them
     waits = _waits(problem, step.parts)
-    timed = any(_timed(part) for part in step.parts)
-    if len(step.parts) <= (MOST_TIMED if timed else MOST_MEMBERS):
-        orders = _all_orders(choices, waits) if timed else _best_orders(problem, choices, waits)
-    else:
+    orders: list[tuple[StepPlan, ...]] | None = None
+    if lasts or _timed(step):
+        orders = _all_orders(choices, waits)
+    elif len(step.parts) <= MOST_MEMBERS:
+        return [
+            _Rounds(drives, step.round, order) for order in _best_orders(drives, choices, waits)
+        ], exact
+    if orders is None:
         exact = False
         orders = _rotations(choices, waits, [step.parts.index(part) for part in order_of(step)])
-    found = [_Rounds(problem, step.round, order) for order in orders]
-    if step.round.duration:
-        times = [way.again() for way in found]
-        found = [w for w, time in zip(found, times, strict=True) if time == min(times)]
-    return list(found), exact
+    ways = [_Rounds(drives, step.round, order) for order in orders]
+    return _undominated(ways, drives, by_time=not within_timed), exact
+
+
+def _undominated(ways: list[_Rounds], drives: _Drives, *, by_time: bool) -> list[StepPlan]:
+    """The ways than which none is as good after every drive: in energy, and in time (`by_time`, or
+    else in the same time), in places among which the robot then is."""
+    numbers: dict[tuple[int, ...], int] = {}
+    found: dict[int, list[tuple[_Rounds, Vector]]] = {}
+    for way in ways:
+        ends = [way.run(drive) for drive in drives.entries(way.first).tolist()]
+        rows = [(e.time, e.energy, numbers.setdefault(e.exit, len(numbers))) for e in ends]
+        found.setdefault(way.first, []).append((way, np.array(rows, np.int64).T))
+    within = np.array([[set(one) <= set(other) for other in numbers] for one in numbers])
+    return [way for some in found.values() for way in _best_of(some, within, by_time)]
+
+
+def _best_of(
+    ways: list[tuple[_Rounds, Vector]], within: NDArray[np.bool_], by_time: bool
+) -> list[StepPlan]:
+    """Those with the same first visit. Of each its times, energies and numbers of ends, shape
+    (3, entries); `within`: whether the places of the end of row are among those of column."""
+    kept: list[StepPlan] = []
+    table = np.empty((len(ways), *ways[0][1].shape), np.int64)
+    for way, row in sorted(ways, key=lambda one: tuple(one[1][:2].sum(axis=1))):
+        others, time = table[: len(kept)], row[0]
+        soon = others[:, 0] <= time if by_time else others[:, 0] == time
+        as_good = soon & (others[:, 1] <= row[1]) & within[others[:, 2], row[2]]
+        if (time < NEVER).any() and not (as_good | (time >= NEVER)).all(axis=1).any():
+            table[len(kept)] = row
+            kept.append(way)
+    return kept
 
 
 def _timed(step: Step) -> bool:
@@ -264,7 +318,10 @@ def _free(choices: list[list[StepPlan]], waits: list[int], done: int) -> list[tu
     ]
 
 
-def _all_orders(choices: list[list[StepPlan]], waits: list[int]) -> list[tuple[StepPlan, ...]]:
+def _all_orders(
+    choices: list[list[StepPlan]], waits: list[int]
+) -> list[tuple[StepPlan, ...]] | None:
+    """None: there are more than MOST_ORDERS."""
     orders: list[tuple[int, tuple[StepPlan, ...]]] = [(0, ())]
     for _ in choices:
         orders = [
@@ -272,6 +329,8 @@ def _all_orders(choices: list[list[StepPlan]], waits: list[int]) -> list[tuple[S
             for done, order in orders
             for part, way in _free(choices, waits, done)
         ]
+        if len(orders) > MOST_ORDERS:
+            return None
     return [order for _, order in orders]
 
 
@@ -282,20 +341,20 @@ class _Label:
 
 
 def _best_orders(
-    problem: RouteProblem, choices: list[list[StepPlan]], waits: list[int]
+    drives: _Drives, choices: list[list[StepPlan]], waits: list[int]
 ) -> list[tuple[StepPlan, ...]]:
     """Dynamic programming over the parts done, from each first way to each last one, with the
     labels of time and energy of which neither is the smaller."""
     found: list[tuple[StepPlan, ...]] = []
     for k, first in _free(choices, waits, 0):
-        layer = {(1 << k, id(first)): [_Label(first.run(0, 0), (first,))]}
+        layer = {(1 << k, id(first)): [_Label(first.run(0), (first,))]}
         for _ in range(len(choices) - 1):
             following: dict[tuple[int, int], list[_Label]] = {}
             for (done, _), labels in layer.items():
                 for part, way in _free(choices, waits, done):
                     some = following.setdefault((done | 1 << part, id(way)), [])
                     for label in labels:
-                        after = _onward(problem, label.done, way)
+                        after = drives.onward(label.done, way)
                         _add(some, _Label(after, (*label.order, way)))
             layer = following
         found += [label.order for labels in layer.values() for label in labels]
@@ -326,11 +385,10 @@ def _rotations(
     return found
 
 
-def _modes(problem: RouteProblem, way: StepPlan) -> list[StepMode]:
+def _modes(way: StepPlan, drives: _Drives) -> list[StepMode]:
     """A way as modes: one for each of the ends that it has after the drives that there are."""
-    entries = np.unique(problem.travel[:, way.first])
-    entries = entries[entries < NEVER]
-    outcomes = [way.run(int(drive), 0) for drive in entries]
+    entries = drives.entries(way.first)
+    outcomes = [way.run(drive) for drive in entries.tolist()]
     ends = sorted({outcome.exit for outcome in outcomes if outcome.time < NEVER})
     found = []
     for end in ends:

@@ -12,7 +12,8 @@ _TRIANGLES = {
     "UPPER_DIAG_ROW": (np.triu_indices, 0),
     "LOWER_DIAG_ROW": (np.tril_indices, 0),
 }
-_OF_COORDINATES = ("EUC_2D", "CEIL_2D", "ATT")
+_OF_COORDINATES = ("EUC_2D", "CEIL_2D", "ATT", "GEO")
+_PI, _EARTH_KM = 3.141592, 6378.388  # as they are defined there
 FORBIDDEN = -1
 """in a sequential ordering problem: the column's node comes before the row's"""
 
@@ -89,6 +90,8 @@ def _whole(numbers: Numbers, count: int) -> NDArray[np.int64]:
 
 
 def _between(coordinates: NDArray[np.float64], kind: str) -> NDArray[np.int64]:
+    if kind == "GEO":
+        return _on_earth(coordinates)
     difference = coordinates[:, None, :] - coordinates[None, :, :]
     square = (difference**2).sum(axis=2)
     match kind:
@@ -99,3 +102,14 @@ def _between(coordinates: NDArray[np.float64], kind: str) -> NDArray[np.int64]:
         case _:  # ATT: pseudo-Euclidean
             lengths = np.ceil(np.sqrt(square / 10.0))
     return np.asarray(lengths, dtype=np.int64)
+
+
+def _on_earth(coordinates: NDArray[np.float64]) -> NDArray[np.int64]:
+    """Kilometres between latitudes and longitudes, written as degrees.minutes."""
+    degrees = np.trunc(coordinates)
+    latitude, longitude = (_PI * (degrees + 5.0 * (coordinates - degrees) / 3.0) / 180.0).T
+    q1 = np.cos(longitude[:, None] - longitude)
+    q2 = np.cos(latitude[:, None] - latitude)
+    q3 = np.cos(latitude[:, None] + latitude)
+    cosine = 0.5 * ((1.0 + q1) * q2 - (1.0 - q1) * q3)
+    return np.asarray(_EARTH_KM * np.arccos(np.clip(cosine, -1.0, 1.0)) + 1.0, dtype=np.int64)

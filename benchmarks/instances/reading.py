@@ -16,7 +16,7 @@ def read_route_problem(path: Path) -> NamedProblem:
     """
     source = read_source(path)
     first = next(line for line in source.lines if line.strip()).lstrip()
-    read = read_tsptw if first[0] in "0123456789#" else read_tsplib
+    read = read_tsptw if first[0] in "0123456789#!" else read_tsplib
     try:
         return read(source)
     except ArgoError as error:

@@ -159,6 +159,14 @@ def test_scores_within_a_limit(tmp_path_factory, kind, points, limit, data):
     assert found.feasible == (found.duration <= limit)
 
 
+def test_distances_on_earth_are_whole_kilometres(tmp_path):
+    # Latitudes and longitudes in degrees.minutes: a degree and a half of a great circle, 166.98 km.
+    text = orienteering("GEO", [(0.0, 0.0), (0.0, 1.30), (-1.30, 0.0)], [0, 1, 1], 1, 999)
+    travel = read(tmp_path, text).problem.travel
+    assert travel[2].tolist() == [167, 167, 0]
+    assert travel[0, 1] == 237
+
+
 def test_known_routes(tmp_path):
     (tmp_path / "y.sol").write_text(
         "NAME : y\nTYPE : OP\nROUTE_NODES : 3\nROUTE_SCORE : 7\nROUTE_COST : 12\n"
@@ -196,9 +204,32 @@ def test_tours_with_time_windows(tmp_path_factory, rows, decimals, data):
     assert named.value(0, found.cost(named.problem.objective)) == pytest.approx(travel / scale)
 
 
+def customers(nodes):
+    rows = [
+        f"{k}\t{x} {y} 0  {opens} {closes} 0"
+        for k, ((x, y), (opens, closes)) in enumerate(nodes, 1)
+    ]
+    return "\n".join(["!! some", "", "CUST NO.  XCOORD.", *rows, "999 0 0 0 0 0 0", ""])
+
+
+def test_tours_between_coordinates_take_truncated_times_made_shorter(tmp_path):
+    nodes = [((0, 0), (0, 99)), ((3, 3), (2, 30)), ((6, 6), (0, 40)), ((0, 7), (8, 9))]
+    named = read(tmp_path, customers(nodes))
+    assert (named.kind, named.nodes) == (Kind.TSPTW, (2, 3, 4))
+    # From node 1 to node 2 it is 4.24, to node 3 8.49, which is no longer than by way of node 2.
+    found = evaluate(named.problem, named.route([3, 2, 4]))
+    assert found.cost(Objective.TRAVEL) == 8 + 4 + 5 + 7
+    assert not found.feasible
+    assert evaluate(named.problem, named.route([4, 3, 2])).feasible
+    # 7 and 7.07 without their decimals, and 14.14 is no longer than both.
+    bent = read(tmp_path, customers([((0, 0), (0, 99)), ((5, 5), (0, 99)), ((10, 11), (0, 99))]))
+    assert bent.problem.travel.tolist() == [[0, 7, 7], [7, 0, 14], [7, 14, 0]]
+
+
 SQUARE = [[0, 1], [1, 0]]
 COORDINATES = orienteering("EUC_2D", [(0, 0), (1, 1)], [0, 5], 1, 10)
 WINDOWS = time_windows(SQUARE, [(0, 9), (1, 5)])
+CUSTOMERS = customers([((0, 0), (0, 9)), ((1, 1), (0, 5))])
 
 
 @pytest.mark.parametrize(
@@ -226,7 +257,7 @@ WINDOWS = time_windows(SQUARE, [(0, 9), (1, 5)])
         (explicit("SOP", SQUARE).replace("0   1   1", "0   -1   1"), "comes before the first"),
         (explicit("ATSP", SQUARE, "LOWER_COL"), "EDGE_WEIGHT_FORMAT LOWER_COL is not read"),
         (explicit("ATSP", SQUARE, more="TYPE: ATSP\n"), ":8: TYPE stands here again"),
-        (COORDINATES.replace("EUC_2D", "GEO"), "EDGE_WEIGHT_TYPE GEO is not read"),
+        (COORDINATES.replace("EUC_2D", "XRAY1"), "EDGE_WEIGHT_TYPE XRAY1 is not read"),
         (COORDINATES.replace("2 1 1", "1 1 1"), ":9: 1 is no node or one that is there twice"),
         (COORDINATES.replace("2 5", "2 -5"), "the score of node 2 is -5"),
         (COORDINATES.replace("COST_LIMIT : 10", "COST_LIMIT : -1"), "-1 is negative"),
@@ -236,9 +267,14 @@ WINDOWS = time_windows(SQUARE, [(0, 9), (1, 5)])
         (WINDOWS.replace("1 0", "1 -4"), ":3: -4 is a negative time"),
         (WINDOWS.replace("1   5", "7   5"), ":5: 7 is part of a time window"),
         (WINDOWS.replace("1   5", "1"), "of 4 numbers for the time windows there are 3"),
-        (WINDOWS.replace("1   5", "1   5.000001"), "more than 4 decimals"),
+        (WINDOWS.replace("1   5", "1   5.000001"), "more than 5 decimals"),
         (WINDOWS.replace("2\n", "2.5\n", 1), ":1: 2.5 nodes"),
         (WINDOWS.replace("2\n", "9999\n", 1), "at most"),
+        (CUSTOMERS.replace("0 5 0", "6 5 0"), ":5: 6 is part of a time window"),
+        (CUSTOMERS.replace("0 5 0", "0 5 3"), ":5: 3 is a service"),
+        (CUSTOMERS.replace("999 0", ""), ":6: of 7 numbers for a node there are 5"),
+        (CUSTOMERS + "7\n", ":7: there are 1 numbers more"),
+        (CUSTOMERS.partition("1\t")[0], ":3: 0 nodes"),
     ],
 )
 def test_wrong_files_are_refused_with_their_place(tmp_path, text, said):
@@ -265,7 +301,7 @@ def test_files_that_are_none(tmp_path):
 def test_spoilt_files_are_read_or_refused(tmp_path_factory, data):
     whole = data.draw(
         st.sampled_from(
-            [explicit("SOP", [[0, 1, 2], [-1, 0, 3], [-1, -1, 0]]), COORDINATES, WINDOWS]
+            [explicit("SOP", [[0, 1, 2], [-1, 0, 3], [-1, -1, 0]]), COORDINATES, WINDOWS, CUSTOMERS]
         )
     )
     begin, end = sorted(data.draw(st.tuples(*[st.integers(0, len(whole))] * 2)))

@@ -11,18 +11,19 @@ from argo_compiler.route.problem import (
     Tour,
     Visit,
 )
-from argo_compiler.route.suggestion import Point, RouteSuggestion, suggest_route
+from argo_compiler.route.stop import SearchProgress
+from argo_compiler.route.suggestion import RouteSuggestion, suggest_route
 
 __all__ = [
     "NEVER",
     "EnergyBudget",
     "Evaluation",
     "Objective",
-    "Point",
     "Precedence",
     "Round",
     "RouteProblem",
     "RouteSuggestion",
+    "SearchProgress",
     "Tour",
     "Visit",
     "evaluate",

@@ -14,7 +14,7 @@ from argo_compiler.route.order_ideals import Bits
 from argo_compiler.route.problem import NEVER, Objective
 from argo_compiler.route.pruning import Pruned
 from argo_compiler.route.search import Search
-from argo_compiler.route.solution import Solution
+from argo_compiler.route.solution import LabelSolution
 
 Vector = NDArray[np.int64]
 
@@ -63,7 +63,7 @@ class Space:
         # The other measure: energy, or travel where that is not the time as well.
         self._travels = network.windowed and network.objective is Objective.TRAVEL
 
-    def beam(self, width: int, best: Solution | None, search: Search) -> Beam:
+    def beam(self, width: int, best: LabelSolution | None, search: Search) -> Beam:
         """The best path of a search that keeps the `width` most promising labels of a layer."""
         upper = None if best is None or best.path is None else (best.prize, best.cost)
         layers = [self._start()]

@@ -1,474 +1,122 @@
-"""The exact model for CP-SAT: a circuit through the steps, with self-loops at those left out.
+"""CP-SAT as a solver: proves routes, and finds some.
 
 One worker with the linear relaxation at its strongest proves single tours much faster than many
-workers do, so that is what is set. The sum of the arcs is made small, not the time of the end: it
-gives the linear relaxation something to hold on to.
+workers do, so that is what is set.
 """
 
-from collections.abc import Sequence
-from itertools import pairwise
-from math import ceil
-from typing import Any
+from math import ceil, floor
 
-import numpy as np
 from ortools.sat.python import cp_model
 
+from argo_compiler.route.circuit_model import CircuitModel
 from argo_compiler.route.cp_solver import new_solver, run_solver
-from argo_compiler.route.network import StepNetwork
-from argo_compiler.route.problem import NEVER, Objective
-from argo_compiler.route.pruning import Pruned, horizon, paths
-from argo_compiler.route.search import Search
-from argo_compiler.route.solution import Solution, make_solution, no_solution
+from argo_compiler.route.problem import Objective, RouteProblem
+from argo_compiler.route.search import Search, Solution
+
+_MOST_ARCS = 80_000
+"""of a model"""
+_PATIENCE = 0.5
+"""s for which a first try goes on although a better route was found elsewhere; twice as long from
+try to try"""
 
 
-def solve_cp_sat(
-    network: StepNetwork,
-    pruned: Pruned,
-    search: Search,
-    start: Solution | None = None,
-    *,
-    hinted: bool = True,
-    timed: bool = False,
-    running: list[cp_model.CpSolver] | None = None,
-) -> Solution:
-    """The best path that CP-SAT finds until the deadline, and its bounds. `start`: a path that it
-    need not do worse than; `hinted`: it also begins there, which helps if the path is good.
-    `timed`: order is stated with times instead of positions where a path is known, which shows what
-    order costs. `running`: where solvers are put, for others to stop."""
-    if not pruned.possible:
-        return no_solution(network, proven=True)
-    best = None if start is None or start.path is None else start
-    prize_bound = int(network.prize[pruned.steps].sum())
-    total = None
-    if best is not None and not network.selective and network.objective is Objective.PRIZE:
-        # All are as good.
-        return make_solution(network, best.path or (), best.charges, prize_bound, 0)
-    if network.selective:
-        best, prize_bound, proven = _most_prize(
-            network, pruned, search, start, best, hinted=hinted, running=running
+class CpSat:
+    """Looks for what is better than the best route that is known, until there is none."""
+
+    name = "CP-SAT"
+
+    def supports(self, _problem: RouteProblem, /) -> bool:
+        return True
+
+    def solve(self, search: Search) -> None:
+        """First the most prize, then the least cost with it."""
+        network = search.network
+        if int(search.pruned.arcs.sum()) * (1 + len(network.chargers)) > _MOST_ARCS:
+            search.say(f"{len(network.prize)} steps are too many for CP-SAT")
+            return
+        patience = _PATIENCE
+        while search.left() > 0.0:
+            _Try(search, self.name, patience).run()
+            patience *= 2.0
+
+
+class _Try:
+    """One model, from the best route that is known. Has state: its solver."""
+
+    def __init__(self, search: Search, name: str, patience: float) -> None:
+        self._search, self._name, self._patience = search, name, patience
+        self._best = best = search.best
+        network = search.network
+        self._prizes = network.selective and (best is None or best.prize < search.prize_bound)
+        self._least = best.prize if best is not None and network.selective else 0
+        """the prize of the routes that what is said of the cost is about"""
+        # Nothing but a better route is of interest: that is told apart sooner with times.
+        tight = best is not None and not self._prizes and best.cost > 0 and network.plain
+        self._model = CircuitModel(
+            network, search.pruned, best.cost - 1 if best is not None and tight else None
         )
-        if best is None:
-            return no_solution(network, proven=proven)
-        if network.objective is Objective.PRIZE or best.prize < prize_bound:
-            return make_solution(network, best.path or (), best.charges, prize_bound, 0)
-        total = best.prize
-    # That of a prize alone is 0.
-    known = best if timed and best is not None and best.cost > 0 and network.plain else None
-    if known is not None:
-        # Nothing but a better path is of interest: that is told apart sooner.
-        model, hint = _Model(network, pruned, end=known.cost - 1), None
-        model.minimise_cost(total, known.cost - 1)
-    else:
-        model, hint = _Model(network, pruned), best if hinted else None
-        model.minimise_cost(total, None if best is None else best.cost)
-    status, solver = _solve(model, search, hint, running, prizes=False)
-    if status == cp_model.INFEASIBLE:
-        assert known is not None or best is None
-        bound = 0 if best is None else best.cost
-    else:
-        bound = _bound(solver)
-        search.known(bound=bound)
-    if status in (cp_model.OPTIMAL, cp_model.FEASIBLE):
-        path, charges = model.path(solver)
-        one = make_solution(network, path, charges, prize_bound, bound)
-        best = one if one.better_than(best) else best
-    if best is None:
-        return no_solution(network, proven=status == cp_model.INFEASIBLE, bound=bound)
-    return make_solution(network, best.path or (), best.charges, prize_bound, bound)
 
+    def run(self) -> None:
+        search, best, model = self._search, self._best, self._model
+        if self._prizes:
+            model.maximise_prize(None if best is None else best.prize + 1)
+        elif search.network.objective is not Objective.PRIZE:
+            most = None if best is None else best.cost - 1
+            model.minimise_cost(self._least if search.network.selective else None, most)
+        if best is not None and best.path is not None:
+            model.hint(best.path, best.charges)
+        solver = self._solver()
+        begun = search.now()
 
-def _most_prize(
-    network: StepNetwork,
-    pruned: Pruned,
-    search: Search,
-    start: Solution | None,
-    best: Solution | None,
-    *,
-    hinted: bool,
-    running: list[cp_model.CpSolver] | None,
-) -> tuple[Solution | None, int, bool]:
-    """The path that wins the most, or `best`; the bound on the prize; and whether it is proven that
-    there is no path."""
-    prize_bound = int(network.prize[pruned.steps].sum())
-    model = _Model(network, pruned)
-    model.maximise_prize(start)
-    status, solver = _solve(model, search, start if hinted else None, running, prizes=True)
-    if status == cp_model.INFEASIBLE:
-        return None, prize_bound, True
-    if status in (cp_model.OPTIMAL, cp_model.FEASIBLE):
-        path, charges = model.path(solver)
-        if status == cp_model.OPTIMAL:
-            prize_bound = round(solver.objective_value)
+        def over() -> bool:
+            now = search.best
+            better = now is not best and now is not None and now.method != self._name
+            return search.left() <= 0.0 or (better and search.now() - begun >= self._patience)
+
+        status = run_solver(solver, model.model, _Watch(model, search), over)
+        search.spend(solver.deterministic_time)
+        if status == cp_model.INFEASIBLE:
+            self._nothing_better(best)
+        elif status == cp_model.OPTIMAL:
+            self._bound(solver.objective_value)
+
+    def _solver(self) -> cp_model.CpSolver:
+        search, solver = self._search, new_solver()
+        parameters = solver.parameters
+        parameters.linearization_level = 2
+        parameters.random_seed = search.seed % (1 << 31)
+        if search.timed:
+            parameters.max_time_in_seconds = max(search.left(), 0.01)
         else:
-            prize_bound = _tighter(prize_bound, solver)
-        one = make_solution(network, path, charges, prize_bound, 0)
-        best = one if one.better_than(best) else best
-    elif status == cp_model.UNKNOWN:
-        prize_bound = _tighter(prize_bound, solver)
-    search.known(prize_bound=prize_bound)
-    return best, prize_bound, False
+            parameters.max_deterministic_time = search.left()
+        solver.best_bound_callback = self._bound
+        return solver
 
+    def _bound(self, value: float) -> None:
+        """What CP-SAT says of the prize or the cost of all routes that it may find."""
+        if abs(value) > 1e15:  # there is none yet
+            return
+        if self._prizes:
+            least = 0 if self._best is None else self._best.prize
+            self._search.known(prize_bound=max(least, floor(value + 1e-6)))
+        elif self._search.network.objective is not Objective.PRIZE:
+            self._search.known(bound=ceil(value - 1e-6), prize=self._least)
 
-def _bound(solver: cp_model.CpSolver) -> int:
-    """The bound on the cost after a search; 0 if it was stopped before it had one."""
-    bound = solver.best_objective_bound
-    return max(0, ceil(bound - 1e-6)) if abs(bound) < 1e15 else 0
-
-
-def _tighter(prize_bound: int, solver: cp_model.CpSolver) -> int:
-    """The bound on the prize after a search that was stopped: before it had one, it says 0."""
-    bound = int(solver.best_objective_bound + 1e-6)
-    return min(prize_bound, bound) if bound > 0 else prize_bound
-
-
-def _solve(
-    model: "_Model",
-    search: Search,
-    start: Solution | None,
-    running: list[cp_model.CpSolver] | None,
-    *,
-    prizes: bool,
-) -> tuple[int, cp_model.CpSolver]:
-    solver = new_solver()
-    solver.parameters.max_time_in_seconds = max(search.left(), 0.01)
-    solver.parameters.num_workers = 1
-    solver.parameters.linearization_level = 2
-    solver.parameters.random_seed = search.seed % (1 << 31)
-    if start is not None and start.path is not None:
-        model.hint(start)
-    if running is not None:
-        running.append(solver)
-    return run_solver(solver, model.model, _Watch(model, search, prizes)), solver
+    def _nothing_better(self, best: Solution | None) -> None:
+        if best is None:
+            self._search.impossible()
+        elif self._prizes:
+            self._search.known(prize_bound=best.prize)
+        else:
+            self._search.known(bound=best.cost, prize=self._least)
 
 
 class _Watch(cp_model.CpSolverSolutionCallback):
-    """Notes each solution with its time."""
+    """Takes each solution as it is found."""
 
-    def __init__(self, model: "_Model", search: Search, prizes: bool) -> None:
+    def __init__(self, model: CircuitModel, search: Search) -> None:
         super().__init__()
-        self._model, self._search, self._prizes = model, search, prizes
+        self._model, self._search = model, search
 
     def on_solution_callback(self) -> None:
-        worth = self._model.worth(self)
-        self._search.route(*worth)
-        if not self._prizes:
-            self._search.known(bound=int(self.best_objective_bound))
-
-
-class _Model:
-    """The variables and constraints. Has state: the model that it builds."""
-
-    def __init__(self, network: StepNetwork, pruned: Pruned, end: int | None = None) -> None:
-        """`end`: when the route must end, where order is to be stated with times; for plain
-        networks only. It must be tight for the linear relaxation to see much."""
-        self.model = cp_model.CpModel()
-        self._network, self._pruned = network, pruned
-        self._timed = end is not None
-        self._apart = paths(network)
-        self._horizon = horizon(network)
-        if end is not None:
-            self._horizon = min(self._horizon, end)
-        self._arcs: list[tuple[int, int, int | None, cp_model.IntVar]] = []
-        self._arc_costs: list[int] = []
-        self._arc_energies: list[int] = []
-        self._charges: list[cp_model.IntVar] = []
-        self._made = self._circuit()
-        self._cost: Any = 0
-        self._costs()
-        self._orders()
-
-    # The circuit
-
-    def _circuit(self) -> list[Any]:
-        """Arcs and self-loops; gives for each step whether it is made."""
-        network, pruned, model = self._network, self._pruned, self.model
-        m = network.size
-        circuit: list[tuple[int, int, cp_model.LiteralT]] = []
-        service = [*network.service.tolist(), 0]
-        for i, row in enumerate(pruned.arcs.tolist()):
-            for j, there in enumerate(row):
-                if not there:
-                    continue
-                if network.time[i, j] < NEVER and self._energy_fits(i, j):
-                    self._add_arc(i, j, None, int(network.time[i, j]) + service[j])
-                for charger, station in enumerate(network.chargers):
-                    way = int(station.to[i]) + int(station.out[j])
-                    if way < NEVER and self._charge_fits(i, j, charger):
-                        assert network.problem.battery is not None
-                        overhead = network.problem.battery.overhead
-                        self._add_arc(i, j, charger, way + overhead + service[j])
-        circuit += [(i, j, literal) for i, j, _, literal in self._arcs]
-        made: list[Any] = []
-        for s, mandatory in enumerate(network.mandatory.tolist()):
-            nodes = network.nodes_of(s)
-            left_out = [model.new_bool_var("") for _ in nodes]
-            if len(nodes) == 1 and mandatory:
-                made.append(model.new_constant(1))
-                # The circuit does not know of nodes that have no arcs.
-                into = [literal for _, j, _, literal in self._arcs if j == nodes[0]]
-                model.add_bool_or(into)
-                continue
-            circuit += [(node, node, out) for node, out in zip(nodes, left_out, strict=True)]
-            if not pruned.steps[s]:
-                for out in left_out:
-                    model.add(out == 1)
-            if mandatory:
-                model.add_exactly_one([out.negated() for out in left_out])
-                made.append(model.new_constant(1))
-            elif len(nodes) == 1:
-                made.append(left_out[0].negated())
-            else:
-                some = model.new_bool_var("")
-                model.add(sum(out.negated() for out in left_out) == some)
-                made.append(some)
-        if not network.mandatory.any():
-            empty = model.new_bool_var("")
-            self._empty: cp_model.IntVar | None = empty
-            circuit.append((m, m, empty))
-            direct = int(network.time[m, m])
-            if direct >= NEVER or direct > network.limit or not self._energy_fits(m, m):
-                model.add(empty == 0)
-            # Without the depot, there could be a circuit among the others.
-            for literal in made:
-                model.add_implication(empty, literal.negated())
-        else:
-            self._empty = None
-        if circuit:
-            model.add_circuit(circuit)
-        return made
-
-    def _add_arc(self, i: int, j: int, charger: int | None, cost: int) -> None:
-        network = self._network
-        literal = self.model.new_bool_var("")
-        self._arcs.append((i, j, charger, literal))
-        self._arc_costs.append(cost)
-        if network.energy is not None:
-            if charger is None:
-                self._arc_energies.append(int(network.energy[i, j]))
-            else:
-                station = network.chargers[charger]
-                self._arc_energies.append(int(station.to_energy[i]) + int(station.out_energy[j]))
-
-    def _energy_fits(self, i: int, j: int) -> bool:
-        network, battery = self._network, self._network.problem.battery
-        if battery is None or network.energy is None:
-            return True
-        used = battery.used if i == network.size else 0
-        return used + int(network.energy[i, j]) <= battery.capacity
-
-    def _charge_fits(self, i: int, j: int, charger: int) -> bool:
-        network, battery = self._network, self._network.problem.battery
-        assert battery is not None
-        station = network.chargers[charger]
-        used = battery.used if i == network.size else 0
-        return (
-            used + int(station.to_energy[i]) <= battery.capacity
-            and int(station.out_energy[j]) <= battery.capacity
-        )
-
-    # Costs, clocks and energy
-
-    def _costs(self) -> None:
-        network, model = self._network, self.model
-        m, battery = network.size, network.problem.battery
-        literals = [literal for *_, literal in self._arcs]
-        work: Any = cp_model.LinearExpr.weighted_sum(literals, self._arc_costs)
-        if self._empty is not None and network.time[m, m] < NEVER:
-            work = work + int(network.time[m, m]) * self._empty
-        used: list[Any] = []
-        if battery is not None:
-            energy = cp_model.LinearExpr.weighted_sum(literals, self._arc_energies)
-            if self._empty is not None and network.energy is not None:
-                energy = energy + min(int(network.energy[m, m]), battery.capacity) * self._empty
-            if network.chargers:
-                used = self._charging(battery.used, battery.capacity)
-                work = work + battery.used + energy - used[-1]
-            else:
-                model.add(battery.used + energy <= battery.capacity)
-        self._begins: list[cp_model.IntVar] | None = None
-        duration = work
-        if network.windowed or self._timed:
-            self._begins = self._clocks(used)
-            end = model.new_int_var(0, self._horizon, "end")
-            self._arrive(end, used)
-            waiting = model.new_int_var(0, 0 if self._timed else self._horizon, "waiting")
-            model.add(end == work + waiting)
-            duration = end
-        elif network.limit < NEVER:
-            model.add(work <= network.limit)
-        self._cost = duration if network.objective is Objective.DURATION else work
-
-    def _charging(self, used: int, capacity: int) -> list[Any]:
-        """What has been used since the last charge at the end of each step, and at the end."""
-        network, model = self._network, self.model
-        count, m = len(network.prize), network.size
-        assert network.energy is not None
-        levels: list[Any] = [model.new_int_var(0, capacity, "") for _ in range(count + 1)]
-
-        def level(node: int) -> Any:
-            return levels[int(network.step[node])] if node < m else levels[count]
-
-        for i, j, charger, literal in self._arcs:
-            before = used if i == m else level(i)
-            if charger is None:
-                energy = int(network.energy[i, j])
-                model.add(level(j) == before + energy).only_enforce_if(literal)
-            else:
-                station = network.chargers[charger]
-                model.add(before + int(station.to_energy[i]) <= capacity).only_enforce_if(literal)
-                model.add(level(j) == int(station.out_energy[j])).only_enforce_if(literal)
-        if self._empty is not None:
-            whole = min(used + int(network.energy[m, m]), capacity)
-            model.add(levels[count] == whole).only_enforce_if(self._empty)
-        for s, made in enumerate(self._made):
-            if not network.mandatory[s]:
-                model.add(levels[s] == 0).only_enforce_if(made.negated())
-        return levels
-
-    def _clocks(self, used: Sequence[Any]) -> list[cp_model.IntVar]:
-        """When each step begins."""
-        network, pruned, model = self._network, self._pruned, self.model
-        m, begins = network.size, []
-        latest_of_all = self._horizon
-        for s in range(len(network.prize)):
-            nodes = network.nodes_of(s)
-            if not pruned.steps[s]:
-                begins.append(model.new_int_var(0, latest_of_all, ""))
-                continue
-            soonest = min(int(pruned.earliest[node]) for node in nodes)
-            latest = max(int(pruned.latest[node]) for node in nodes)
-            begins.append(model.new_int_var(soonest, max(soonest, min(latest, latest_of_all)), ""))
-        for i, j, charger, literal in self._arcs:
-            if j < m:
-                begin = begins[int(network.step[j])]
-                self._begin(begin, self._arrival(begins, used, i, j, charger), literal)
-        return begins
-
-    def _begin(self, begin: cp_model.IntVar, arrival: Any, literal: cp_model.IntVar) -> None:
-        """With windows, there may be waiting."""
-        soon = begin == arrival if self._timed else begin >= arrival
-        self.model.add(soon).only_enforce_if(literal)
-
-    def _arrival(
-        self,
-        begins: Sequence[cp_model.IntVar],
-        used: Sequence[Any],
-        i: int,
-        j: int,
-        charger: int | None,
-    ) -> Any:
-        """When the robot comes to node j from node i."""
-        network, m = self._network, self._network.size
-        left: Any = 0
-        if i < m:
-            left = begins[int(network.step[i])] + int(network.service[i])
-        if charger is None:
-            return left + int(network.time[i, j])
-        battery, station = network.problem.battery, network.chargers[charger]
-        assert battery is not None
-        before = battery.used if i == m else used[int(network.step[i])]
-        way = (
-            int(station.to[i]) + int(station.out[j]) + battery.overhead + int(station.to_energy[i])
-        )
-        return left + before + way
-
-    def _arrive(self, end: cp_model.IntVar, used: Sequence[Any]) -> None:
-        assert self._begins is not None
-        m = self._network.size
-        for i, j, charger, literal in self._arcs:
-            if j == m:
-                arrival = self._arrival(self._begins, used, i, j, charger)
-                self._begin(end, arrival, literal)
-
-    def _orders(self) -> None:
-        """What is needed is made before, and what is ruled out is not made after."""
-        network, pruned, model = self._network, self._pruned, self.model
-        ranks: list[cp_model.IntVar] | None = None
-        for i, j in np.argwhere(network.before).tolist():
-            if not (pruned.steps[i] and pruned.steps[j]):
-                continue  # what needs a step that can't be made can't be made either
-            optional = [self._made[s] for s in (i, j) if not network.mandatory[s]]
-            if network.needs[i, j] and not network.mandatory[i]:
-                model.add_implication(self._made[j], self._made[i])
-                optional = [self._made[j]]
-            least = min(
-                int(network.service[first] + self._apart[first, then])
-                for first in network.nodes_of(i)
-                for then in network.nodes_of(j)
-            )
-            if self._begins is not None and least > 0:
-                later = model.add(self._begins[j] >= self._begins[i] + least)
-            else:
-                ranks = self._ranks() if ranks is None else ranks
-                later = model.add(ranks[j] > ranks[i])
-            if optional:
-                later.only_enforce_if(optional)
-
-    def _ranks(self) -> list[cp_model.IntVar]:
-        """The position of each step."""
-        network, model = self._network, self.model
-        count = len(network.prize)
-        ranks = [model.new_int_var(0, count - 1, "") for _ in range(count)]
-        for i, j, _, literal in self._arcs:
-            if i < network.size and j < network.size:
-                before, after = ranks[int(network.step[i])], ranks[int(network.step[j])]
-                model.add(after >= before + 1).only_enforce_if(literal)
-        return ranks
-
-    # Objectives
-
-    def maximise_prize(self, start: Solution | None) -> None:
-        """The sum of the prizes of what is made; at least that of a path that is known."""
-        prize = sum(int(p) * made for p, made in zip(self._network.prize, self._made, strict=True))
-        if start is not None and start.path is not None:
-            self.model.add(prize >= start.prize)
-        self.model.maximize(prize)
-
-    def minimise_cost(self, prize: int | None, most: int | None) -> None:
-        """The cost, which is `most` at most, with a prize of at least `prize`."""
-        if prize is not None:
-            total = sum(
-                int(p) * made for p, made in zip(self._network.prize, self._made, strict=True)
-            )
-            self.model.add(total >= prize)
-        if most is not None:
-            self.model.add(self._cost <= most)
-        self.model.minimize(self._cost)
-
-    def hint(self, start: Solution) -> None:
-        """A path to begin with."""
-        m = self._network.size
-        path = (m, *(start.path or ()), m)
-        legs = {
-            (i, j, start.charges.get(position)) for position, (i, j) in enumerate(pairwise(path))
-        }
-        for i, j, charger, literal in self._arcs:
-            self.model.add_hint(literal, (i, j, charger) in legs)
-
-    # Solutions
-
-    def worth(self, watch: _Watch) -> tuple[int, int]:
-        """The prize and cost of a solution."""
-        made = [watch.boolean_value(literal) for literal in self._made]
-        prize = int(self._network.prize[made].sum())
-        return prize, int(watch.value(self._cost))
-
-    def path(self, solver: cp_model.CpSolver) -> tuple[tuple[int, ...], dict[int, int]]:
-        """The nodes of a solution in order, and its charges."""
-        m = self._network.size
-        onward = {
-            i: (j, charger)
-            for i, j, charger, literal in self._arcs
-            if solver.boolean_value(literal)
-        }
-        path: list[int] = []
-        charges: dict[int, int] = {}
-        node = m
-        while node in onward:
-            node, charger = onward[node]
-            if charger is not None:
-                charges[len(path)] = charger
-            if node == m:
-                break
-            path.append(node)
-        return tuple(path), charges
+        self._search.offer(*self._model.path(self.boolean_value))

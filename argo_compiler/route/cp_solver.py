@@ -1,19 +1,23 @@
-"""CP-SAT's solver as part of a Python program: Ctrl-C ends it as it ends all else."""
+"""CP-SAT's solver as part of a Python program: it ends when it is asked to, and by Ctrl-C."""
 
-import threading
+from collections.abc import Callable
 from concurrent.futures import ThreadPoolExecutor
 
 from ortools.sat.python import cp_model
 
+_LOOKS = 0.02
+"""s between two looks at whether to go on"""
+
 
 def new_solver() -> cp_model.CpSolver:
-    """A solver that leaves SIGINT to Python.
+    """A solver of one worker that leaves SIGINT to Python.
 
     Its own handler would stay in Python's place after the search, so that the next Ctrl-C ends the
     process without a word; and aborts it where the search runs in another thread.
     """
     solver = cp_model.CpSolver()
     solver.parameters.catch_sigint_signal = False
+    solver.parameters.num_workers = 1
     return solver
 
 
@@ -21,15 +25,20 @@ def run_solver(
     solver: cp_model.CpSolver,
     model: cp_model.CpModel,
     callback: cp_model.CpSolverSolutionCallback | None = None,
+    over: Callable[[], bool] = lambda: False,
 ) -> int:
-    """Searches and returns the status. KeyboardInterrupt stops the search and is raised."""
-    if threading.current_thread() is not threading.main_thread():
-        return int(solver.solve(model, callback))
+    """Searches until it is over, and returns the status. KeyboardInterrupt stops the search and is
+    raised."""
     # Python answers signals in the main thread and between its own steps only, so that one waits.
     with ThreadPoolExecutor(1) as pool:
         status = pool.submit(solver.solve, model, callback)
         try:
-            return int(status.result())
+            while True:
+                try:
+                    return int(status.result(_LOOKS))
+                except TimeoutError:
+                    if over():
+                        solver.stop_search()
         except BaseException:
             solver.stop_search()
             raise

@@ -1,6 +1,6 @@
 """From a problem to a suggestion: modes, pruning, bounds, the portfolio; why there is none."""
 
-import time
+from collections.abc import Callable, Sequence
 from dataclasses import replace
 
 import numpy as np
@@ -9,84 +9,120 @@ from argo_compiler.errors import Invalid
 from argo_compiler.route.assignment import assignment_bound
 from argo_compiler.route.infeasible_subset import find_infeasible_subset
 from argo_compiler.route.modes import Step
-from argo_compiler.route.network import StepNetwork, network
+from argo_compiler.route.network import network
 from argo_compiler.route.portfolio import solve
 from argo_compiler.route.problem import NEVER, Objective, RouteProblem
 from argo_compiler.route.pruning import longest, prune
-from argo_compiler.route.ruin_recreate import LocalSearch
-from argo_compiler.route.search import Search
-from argo_compiler.route.solution import Solution, no_solution
+from argo_compiler.route.search import Observers, Search, SearchLimits
+from argo_compiler.route.solver import RouteSolver
+from argo_compiler.route.stop import FirstFeasible
 from argo_compiler.route.suggestion import RouteSuggestion
 
 _CHECK = 2.0
 """s for one check of whether some requirements can be met together"""
 
+Clock = Callable[[], float]
+
 
 def find_route(
-    problem: RouteProblem, time_limit: float, seed: int, workers: int, *, explain: bool
+    problem: RouteProblem,
+    limits: SearchLimits,
+    seed: int,
+    workers: int,
+    clock: Clock,
+    *,
+    explain: bool,
+    observers: Observers,
+    solvers: Sequence[str | RouteSolver] | None = None,
 ) -> RouteSuggestion:
     """See `argo_compiler.route.suggestion.suggest_route`."""
-    net, search, best, method = _solved(problem, time_limit, seed, workers)
-    infeasible_subset: tuple[str, ...] = ()
-    if explain and best.path is None and best.proven:
-        found = find_infeasible_subset(problem, lambda part: _possible(part, seed))
-        if found is not None:
-            infeasible_subset = found.words
-            search.say(
-                "fewer requirements than these can always be met"
-                if found.smallest
-                else "without any one of these requirements, the others can be met"
-            )
-    route = None if best.path is None else net.route(best.path, dict(best.charges))
-    made = set() if route is None else set(route.order)
+    begun = clock()
+    search = _searched(problem, limits, seed, workers, clock, observers, solvers)
+    words: tuple[str, ...] = ()
+    if explain and search.infeasible:
+        words = _explained(problem, search, limits, begun, clock)
+    best = search.best
+    made = set(best.tour.order) if best else set()
     return RouteSuggestion(
-        route,
-        best.prize,
-        best.prize_bound,
-        best.cost,
-        best.bound,
-        best.proven,
-        () if route is None else tuple(v for v in range(problem.size) if v not in made),
-        infeasible_subset,
-        method,
-        tuple(search.reasons),
-        tuple(search.history),
+        None if best is None else best.tour,
+        0 if best is None else best.prize,
+        search.prize_bound,
+        0 if best is None else best.cost,
+        search.bound,
+        search.done,
+        () if best is None else tuple(v for v in range(problem.size) if v not in made),
+        words,
+        search.method,
+        search.reasons,
+        search.history,
     )
 
 
-def _solved(
-    problem: RouteProblem, time_limit: float, seed: int, workers: int
-) -> tuple[StepNetwork, Search, Solution, str]:
-    begun = time.perf_counter()
-    most = sum(visit.prize for visit in problem.visits)
-    deadline = begun + time_limit
-    search = Search(time.perf_counter, deadline, seed, workers, most, begun=begun)
+def _searched(
+    problem: RouteProblem,
+    limits: SearchLimits,
+    seed: int,
+    workers: int,
+    clock: Clock,
+    observers: Observers,
+    solvers: Sequence[str | RouteSolver] | None = None,
+) -> Search:
+    begun = clock()
 
     def order_of(step: Step) -> tuple[Step, ...]:
-        return _cycle(problem, step, time_limit / 4, seed)
+        return _cycle(problem, step, limits, seed, clock)
 
     net = network(problem, order_of)
-    search.certain = net.exact
-    if not net.exact:
-        search.say("a round has too many members to weigh all of their orders: nothing is proven")
     if longest(net) >= NEVER // 2:
         raise Invalid(
             "the times of this route problem are too long to be added up: take a greater unit"
         )
-    pruned = prune(net)
-    bound = assignment_bound(net, pruned)
+    search = Search(net, prune(net), limits, seed, clock, observers, begun)
+    if not net.exact:
+        search.say("a round has too many orders to weigh them all: nothing is proven")
+    bound = assignment_bound(net, search.pruned)
     if bound is None:
         search.say("some step can't be made at all, or not in an order that is asked for")
-        return net, search, no_solution(net, proven=net.exact), "pruning"
+        search.by("pruning").impossible()
+        return search
+    search.known(prize_bound=int(net.prize[search.pruned.steps].sum()))
     if net.objective is not Objective.PRIZE:
         search.known(bound=bound)
-    best, method = solve(net, pruned, search)
-    if not net.exact:
-        best = replace(best, prize_bound=most, bound=0, proven=False)
-    return net, search, best, method
+    solve(search, workers, solvers)
+    return search
 
 
-def _cycle(problem: RouteProblem, step: Step, time_limit: float, seed: int) -> tuple[Step, ...]:
+def _explained(
+    problem: RouteProblem, search: Search, limits: SearchLimits, begun: float, clock: Clock
+) -> tuple[str, ...]:
+    """Why there is no route, as far as that is found out in the time that is left."""
+
+    def possible(part: RouteProblem) -> bool | None:
+        seconds = None if limits.seconds is None else limits.seconds - (clock() - begun)
+        if seconds is not None and seconds <= 0.0:
+            return None
+        if limits.work is None:
+            short = SearchLimits(min(_CHECK, seconds or _CHECK), None, FirstFeasible())
+        else:
+            short = SearchLimits(seconds, _CHECK, FirstFeasible())
+        one = _searched(part, short, search.seed, 1, clock, Observers())
+        return True if one.best is not None else False if one.infeasible else None
+
+    found = find_infeasible_subset(problem, possible)
+    if found is None:
+        search.say("there was no time to find out what can't be met together")
+        return ()
+    search.say(
+        "fewer requirements than these can always be met"
+        if found.smallest
+        else "without any one of these requirements, the others can be met"
+    )
+    return found.words
+
+
+def _cycle(
+    problem: RouteProblem, step: Step, limits: SearchLimits, seed: int, clock: Clock
+) -> tuple[Step, ...]:
     """The shortest cyclic order of a large round's parts, as a route problem of its own that begins
     and ends at the first part that may be the first."""
     members = sorted(step.visits)
@@ -114,24 +150,10 @@ def _cycle(problem: RouteProblem, step: Step, time_limit: float, seed: int) -> t
         tuple(replace(r, members=tuple(place[v] for v in r.members)) for r in inner),
         unit=problem.unit,
     )
-    order = find_route(cycle, time_limit, seed, 1, explain=False).order
-    visits = [first, *(rest[k] for k in order)]
-    if len(visits) < len(members):
+    seconds, work = (None if one is None else one / 4 for one in (limits.seconds, limits.work))
+    short = SearchLimits(seconds, work, limits.stop)
+    best = _searched(cycle, short, seed, 1, clock, Observers()).best
+    if best is None:
         return tuple(step.parts)
+    visits = [first, *(rest[k] for k in best.tour.order)]
     return tuple(sorted(step.parts, key=lambda part: min(visits.index(v) for v in part.visits)))
-
-
-def _possible(problem: RouteProblem, seed: int) -> bool | None:
-    """Whether a problem has a route; None: that was not found out."""
-    begun = time.perf_counter()
-    search = Search(time.perf_counter, begun + _CHECK, seed, 1, 0, begun=begun)
-    net = network(problem, lambda step: tuple(step.parts))
-    pruned = prune(net)
-    if assignment_bound(net, pruned) is None:
-        return False if net.exact else None
-    if LocalSearch(net, pruned, seed).first(lambda: False) is not None:
-        return True
-    best, _ = solve(net, pruned, search)
-    if best.path is not None:
-        return True
-    return False if best.proven and net.exact else None

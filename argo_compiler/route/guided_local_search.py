@@ -11,44 +11,37 @@ from ortools.constraint_solver import pywrapcp, routing_enums_pb2
 
 from argo_compiler.route.network import StepNetwork, compose
 from argo_compiler.route.path_timing import PathTiming
-from argo_compiler.route.problem import NEVER, Objective
+from argo_compiler.route.problem import NEVER, Objective, RouteProblem
 from argo_compiler.route.pruning import Pruned, horizon
 from argo_compiler.route.search import Search
-from argo_compiler.route.solution import Solution, make_solution
 
 _NO_WAY = 1 << 32
 """cost of an arc that there is not"""
 
 
-def applies(network: StepNetwork) -> bool:
-    """Whether the library can state the problem: it knows no charging on the way."""
-    return network.problem.battery is None and network.size > 1
+class GuidedLocalSearch:
+    """Improves the best route that is known, or begins with one of its own."""
 
+    name = "guided local search"
 
-def solve_guided_local_search(
-    network: StepNetwork, pruned: Pruned, search: Search, until: float, start: Solution | None
-) -> Solution | None:
-    """The best route that is found until then (on the search's clock); None: none is."""
-    seconds = until - search.clock()
-    if seconds <= 0.0:
-        return start
-    model = _Model(network, pruned)
-    follower = PathTiming(network)
-    best = [start]
+    def supports(self, problem: RouteProblem, /) -> bool:
+        return problem.battery is None and problem.size > 1
 
-    def note() -> None:
-        path = model.path()
-        stand = follower.follow(path)
-        steps = {int(network.step[node]) for node in path}
-        if stand is None or not all(s in steps for s in np.flatnonzero(network.mandatory).tolist()):
-            return
-        one = make_solution(network, path, {}, int(network.prize.sum()), 0)
-        if one.better_than(best[0]):
-            best[0] = one
-            search.route(one.prize, one.cost)
+    def solve(self, search: Search, /) -> None:
+        network, seconds = search.network, search.left()
+        if not search.timed or seconds <= 0.0:
+            return  # the library has no limit but time
+        model, follower = _Model(network, search.pruned), PathTiming(network)
+        mandatory = np.flatnonzero(network.mandatory).tolist()
 
-    model.solve(seconds, None if start is None else start.path, note)
-    return best[0]
+        def note() -> None:
+            path = model.path()
+            steps = {int(network.step[node]) for node in path}
+            if follower.follow(path) is not None and steps.issuperset(mandatory):
+                search.offer(path)
+
+        start = None if search.best is None else search.best.path
+        model.solve(search.left(), start, note)
 
 
 class _Model:

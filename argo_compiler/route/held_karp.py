@@ -15,12 +15,19 @@ from scipy.sparse.csgraph import connected_components
 
 from argo_compiler.route.network import StepNetwork
 from argo_compiler.route.order_ideals import Bits, Masks
-from argo_compiler.route.problem import Objective
-from argo_compiler.route.pruning import Pruned, shortest
-from argo_compiler.route.solution import Solution, make_solution, no_solution
+from argo_compiler.route.problem import Objective, RouteProblem
+from argo_compiler.route.pruning import Pruned, longest, shortest
+from argo_compiler.route.search import Search
 
 INF = np.int32(1 << 29)
 """more than any time"""
+_MOST_SETS = 1_500_000
+_MOST_WORK = 24_000_000
+"""sets times nodes"""
+_FEW_SETS = 30_000
+"""that take no time worth speaking of; of steps in any order, CP-SAT proves more sooner"""
+_NOMINAL = 1e-7
+"""s for a set and a node"""
 
 
 @dataclass(frozen=True, eq=False)
@@ -62,19 +69,50 @@ def _count(bits: Bits, nodes: list[int], most: int) -> int:
     return total
 
 
-def applies(network: StepNetwork) -> bool:
-    """Whether the soonest is always the best: the waiting of windows must count."""
-    waits = network.objective is Objective.TRAVEL and network.windowed
-    return not waits and network.problem.battery is None
+def small_layers(search: Search) -> list[Layer] | None:
+    """The layers of a search's network, if they are few enough to be gone through."""
+    network, pruned = search.network, search.pruned
+    most = min(_MOST_SETS, _MOST_WORK // max(1, network.size))
+    sets = count_sets(network, pruned, most)
+    ordered = network.windowed or pruned.before.any() or network.problem.battery is not None
+    # Windows may leave much fewer sets than the order does.
+    few = sets <= (most if ordered else _FEW_SETS) or network.windowed
+    if not few or longest(network) >= INF or not Bits(network, pruned).fits:
+        search.say(f"{int(pruned.steps.sum())} steps allow too many sets to go through")
+        return None
+    part = search.part(0.7)
+    layers = soonest_layers(network, pruned, most, lambda: part.left() <= 0.0)
+    if layers is None:
+        search.say("there are too many sets to go through, or there was no time for them")
+        return None
+    count = 1 + sum(len(layer.masks) for layer in layers)
+    search.spend(count * network.size * _NOMINAL)
+    search.say(f"order and time allow {count} sets of {int(pruned.steps.sum())} steps")
+    return layers
 
 
-def solve_held_karp(network: StepNetwork, pruned: Pruned, layers: list[Layer]) -> Solution:
-    """A best path, or the proof that there is none."""
-    best = best_path(network, layers, pruned)
-    if best is None:
-        return no_solution(network, proven=True)
-    made = make_solution(network, best.path, {}, best.prize, 0)
-    return make_solution(network, best.path, {}, best.prize, made.cost)
+class HeldKarp:
+    """Goes through all sets, where the soonest is always the best: where there is no battery, and
+    the waiting for windows counts."""
+
+    name = "Held-Karp"
+
+    def supports(self, problem: RouteProblem, /) -> bool:
+        waits = problem.objective is Objective.TRAVEL and any(v.earliest for v in problem.visits)
+        return problem.battery is None and not waits
+
+    def solve(self, search: Search, /) -> None:
+        layers = small_layers(search)
+        if layers is None:
+            return
+        best = best_path(search.network, layers, search.pruned)
+        if best is None:
+            search.impossible()
+            return
+        search.offer(best.path)
+        found = search.best
+        assert found is not None
+        search.known(best.prize, found.cost, best.prize)
 
 
 @dataclass(frozen=True)
@@ -226,7 +264,7 @@ def _best_end(
         pick = int(np.lexsort((end[rows], -won))[0])
         row = int(rows[pick])
         one = (int(won[pick]), -int(end[row]), number, row, int(nodes[row]))
-        best = one if best is None else max(best, one, key=lambda make_solution: make_solution[:2])
+        best = one if best is None else max(best, one, key=lambda end: end[:2])
     return None if best is None else (best[0], -best[1], *best[2:])
 
 

@@ -22,6 +22,7 @@ from argo_compiler.route.held_karp import (
     ends,
     may_end,
     prizes,
+    small_layers,
     soonest,
 )
 from argo_compiler.route.lower_bounds import PriceGuide, TableGuide
@@ -29,10 +30,10 @@ from argo_compiler.route.modes import plus
 from argo_compiler.route.network import StepNetwork
 from argo_compiler.route.order_ideals import Bits
 from argo_compiler.route.path_timing import PathTiming
-from argo_compiler.route.problem import Objective
-from argo_compiler.route.pruning import Pruned, shortest
+from argo_compiler.route.problem import Objective, RouteProblem
+from argo_compiler.route.pruning import Pruned, longest, shortest
 from argo_compiler.route.search import Search
-from argo_compiler.route.solution import Solution, make_solution, no_solution
+from argo_compiler.route.solution import LabelSolution, make_solution, no_solution
 
 Vector = NDArray[np.int64]
 
@@ -45,19 +46,59 @@ _MOST_OPTIONAL = 22
 """steps where something may be left out: then tables of all their subsets are made"""
 
 
-def applies(network: StepNetwork) -> bool:
-    """Whether two measures are enough."""
-    waits = network.objective is Objective.TRAVEL and network.windowed
-    few = not network.selective or len(network.prize) <= _MOST_OPTIONAL
-    return few and not (waits and network.problem.battery is not None)
+def _applies(problem: RouteProblem) -> bool:
+    """Whether two measures are needed, and enough."""
+    waits = problem.objective is Objective.TRAVEL and any(v.earliest for v in problem.visits)
+    return waits != (problem.battery is not None)
+
+
+class Labels:
+    """Goes through all sets, if they are few enough, with the labels of each."""
+
+    name = "labels"
+
+    def supports(self, problem: RouteProblem, /) -> bool:
+        return _applies(problem)
+
+    def solve(self, search: Search, /) -> None:
+        network = search.network
+        if network.selective and len(network.prize) > _MOST_OPTIONAL:
+            return
+        layers = small_layers(search)
+        if layers is not None:
+            _tell(search, solve_labels(network, search.pruned, search, layers))
+
+
+class LabelBeams:
+    """Beams of labels with prices for what is still to come, for any number of sets."""
+
+    name = "beams of labels"
+
+    def supports(self, problem: RouteProblem, /) -> bool:
+        return _applies(problem) and not problem.selective
+
+    def solve(self, search: Search, /) -> None:
+        network, pruned = search.network, search.pruned
+        if longest(network) < INF and Bits(network, pruned).fits:
+            _tell(search, search_labels(network, pruned, search, None))
+
+
+def _tell(search: Search, found: LabelSolution) -> None:
+    if found.path is not None:
+        search.offer(found.path, found.charges)
+    elif found.proven:
+        search.impossible()
+        return
+    least = found.prize_bound if search.network.selective else 0
+    search.known(found.prize_bound, found.bound, least)
 
 
 def solve_labels(
     network: StepNetwork, pruned: Pruned, search: Search, layers: list[Layer]
-) -> Solution:
+) -> LabelSolution:
     """The best path that the beams find until the deadline, and its bounds. `layers`: those of the
     network without a battery."""
-    start: Solution | None = None
+    start: LabelSolution | None = None
     soon = best_path(network, layers, pruned)
     if soon is None:
         return no_solution(network, proven=True)
@@ -66,7 +107,7 @@ def solve_labels(
     stand = follower.follow(soon.path)
     if stand is not None:
         one = make_solution(network, soon.path, dict(stand.charges), int(network.prize.sum()), 0)
-        search.route(one.prize, one.cost)
+        search.offer(soon.path, dict(stand.charges))
         if stand.time == soon.end and network.objective is not Objective.TRAVEL:
             return make_solution(network, soon.path, dict(stand.charges), soon.prize, one.cost)
         start = one
@@ -80,8 +121,8 @@ def solve_labels(
 
 
 def search_labels(
-    network: StepNetwork, pruned: Pruned, search: Search, start: Solution | None
-) -> Solution:
+    network: StepNetwork, pruned: Pruned, search: Search, start: LabelSolution | None
+) -> LabelSolution:
     """The best path that the beams find until the deadline, and its bounds, with as many sets as
     there may be. For networks in which nothing may be left out, and whose steps `Bits` fit."""
     bits = Bits(network, pruned)
@@ -113,8 +154,8 @@ def _widening(
     space: Space,
     search: Search,
     widths: tuple[int, ...],
-    start: Solution | None,
-) -> Solution:
+    start: LabelSolution | None,
+) -> LabelSolution:
     """Beams, each wider than the one before, until one drops nothing or the time is over."""
     prize, bound, best = int(network.prize.sum()), 0, start
     for width in widths:
@@ -138,8 +179,8 @@ def _by_prize(
     pruned: Pruned,
     search: Search,
     layers: list[Layer],
-    start: Solution | None,
-) -> Solution:
+    start: LabelSolution | None,
+) -> LabelSolution:
     """The sets that could be made in time without windows and battery, from those of the highest
     prize down, so many at once: which of them can be made, and then at which least cost."""
     goals, worth = _goals(network, pruned, layers)
@@ -174,8 +215,8 @@ def _by_prize(
 
 
 def _cheapest(
-    network: StepNetwork, pruned: Pruned, search: Search, best: Solution, goals: Vector
-) -> Solution:
+    network: StepNetwork, pruned: Pruned, search: Search, best: LabelSolution, goals: Vector
+) -> LabelSolution:
     """The cheapest path to any of the goals, which are all of those with the best prize."""
     search.known(prize_bound=best.prize)
     if network.objective is Objective.PRIZE:
@@ -186,15 +227,15 @@ def _cheapest(
 
 
 def _better(
-    network: StepNetwork, search: Search, beam: Beam, best: Solution | None
-) -> Solution | None:
+    network: StepNetwork, search: Search, beam: Beam, best: LabelSolution | None
+) -> LabelSolution | None:
     """The better of a beam's path and the best so far."""
     if beam.path is None:
         return best
     one = make_solution(network, beam.path, beam.charges, int(network.prize.sum()), 0)
     if not one.better_than(best):
         return best
-    search.route(one.prize, one.cost)
+    search.offer(one.path or (), one.charges)
     return one
 
 

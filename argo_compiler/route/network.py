@@ -82,6 +82,35 @@ class StepNetwork:
             places[len(order)] = charges[len(path)]
         return Tour(tuple(order), places)
 
+    def path(self, tour: Tour) -> tuple[tuple[int, ...] | None, dict[int, int]]:
+        """The nodes of a route, and its charges by the position among them; None: the network does
+        not have the order in which it makes a round."""
+        path: list[int] = []
+        charges: dict[int, int] = {}
+        position, at = 0, self.size
+        while position < len(tour.order):
+            if position in tour.charges:
+                charges[len(path)] = tour.charges[position]
+            there = (
+                self.time[at]
+                if position not in tour.charges
+                else (self.chargers[tour.charges[position]].out)
+            )
+            rest = tour.order[position:]
+            fits = (
+                node
+                for node, mode in enumerate(self.nodes)
+                if rest[0] == mode.first and mode.order == rest[: len(mode.order)]
+            )
+            at = next((node for node in fits if there[node] < NEVER), -1)
+            if at < 0:
+                return None, {}
+            path.append(at)
+            position += len(self.nodes[at].order)
+        if position in tour.charges:
+            charges[len(path)] = tour.charges[position]
+        return tuple(path), charges
+
 
 @dataclass(frozen=True, eq=False)
 class ChargingStation:

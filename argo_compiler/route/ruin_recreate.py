@@ -16,17 +16,16 @@ from numpy.typing import NDArray
 from argo_compiler.route import or_opt
 from argo_compiler.route.network import StepNetwork
 from argo_compiler.route.path_timing import PathTiming, Stand
-from argo_compiler.route.problem import NEVER
+from argo_compiler.route.problem import NEVER, RouteProblem
 from argo_compiler.route.pruning import Pruned, horizon, shortest
 from argo_compiler.route.search import Search
-from argo_compiler.route.solution import Solution, make_solution
 
 Path = tuple[int, ...]
 Vector = NDArray[np.int64]
 Worth = tuple[int, int]
 """prize and cost (negative): the greater, the better"""
-_ROUNDS = 10
-"""that are made however little time there is"""
+_NOMINAL = 5e-6
+"""s for each step of a route, of one change"""
 _RUINED = 8
 """steps that are taken out at most"""
 _RUINS = 0.4
@@ -35,6 +34,44 @@ _EXCHANGES, _STRETCH = 6, 30
 """random exchanges at a time, and steps in a stretch, at most"""
 _WORSE = 0.05
 """by how much a route that is taken may be worse, in the beginning"""
+
+
+class FirstRules:
+    """A first route, always on to the best step by a simple rule."""
+
+    name = "first rules"
+
+    def supports(self, _problem: RouteProblem, /) -> bool:
+        return True
+
+    def solve(self, search: Search, /) -> None:
+        path = LocalSearch(search.network, search.pruned, search.seed).first(
+            lambda: search.left() <= 0.0
+        )
+        if path is None:
+            search.say("no simple rule leads to a first route")
+        else:
+            search.offer(path, _charges(search.network, path))
+
+
+class RuinRecreate:
+    """Improves the best route that is known, until the time is over."""
+
+    name = "ruin and recreate"
+
+    def supports(self, _problem: RouteProblem, /) -> bool:
+        return True
+
+    def solve(self, search: Search, /) -> None:
+        best = search.best
+        if best is not None and best.path is not None:
+            LocalSearch(search.network, search.pruned, search.seed).improve(best.path, search)
+
+
+def _charges(network: StepNetwork, path: Path) -> dict[int, int]:
+    stand = PathTiming(network).follow(path)
+    assert stand is not None
+    return dict(stand.charges)
 
 
 class LocalSearch:
@@ -104,37 +141,31 @@ class LocalSearch:
         """Whether the end or a charger is within what the battery still has."""
         return bool(self._follower.go(stands, node, self._network.size, position))
 
-    def improve(self, path: Path, search: Search, until: float, rounds: int = 1 << 60) -> Solution:
-        """The best route found until then (on the search's clock), from the one given."""
+    def improve(self, path: Path, search: Search) -> None:
+        """Offers the better routes that are found until the time is over, from the one given."""
         best = at = path
         best_worth = at_worth = self._worth(path) or (0, -NEVER)
-        search.route(best_worth[0], -best_worth[1])
-        begun = search.clock()
+        whole = search.left()
         if not path and not self._network.selective:
-            rounds = 0
-        for k in range(rounds):
-            now = search.clock()
-            if (now >= until or search.stopped) and k >= _ROUNDS:
-                break
+            return
+        k = 0
+        while (left := search.left()) > 0.0:
+            k += 1
+            search.spend(_NOMINAL * len(at), 1)
             there = self._changed(at)
             worth = None if there is None else self._worth(there)
             if there is None or worth is None:
                 continue
             if worth > best_worth:
                 best, best_worth = there, worth
-                search.route(worth[0], -worth[1])
-            warm = max(0.0, 1.0 - (now - begun) / max(until - begun, 1e-9))
+                search.offer(best, _charges(self._network, best))
             worse = (at_worth[1] - worth[1]) / max(1, -best_worth[1])
             if worth > at_worth or (
-                worth[0] >= at_worth[0] and worse < _WORSE * warm * self._rng.random()
+                worth[0] >= at_worth[0] and worse < _WORSE * left / whole * self._rng.random()
             ):
                 at, at_worth = there, worth
             elif k % 200 == 199:
                 at, at_worth = best, best_worth
-        stand = self._follower.follow(best)
-        assert stand is not None
-        network = self._network
-        return make_solution(network, best, dict(stand.charges), int(network.prize.sum()), 0)
 
     def _changed(self, path: Path) -> Path | None:
         """Another path; None: none was found."""

@@ -8,7 +8,7 @@ from argo_compiler.route.network import StepNetwork
 
 
 @dataclass(frozen=True)
-class Solution:
+class LabelSolution:
     """A path of nodes, and what is known of all paths."""
 
     path: tuple[int, ...] | None
@@ -24,7 +24,7 @@ class Solution:
     charges: Mapping[int, int] = field(default_factory=dict)
     """the charger by the position in the path before which it is used"""
 
-    def better_than(self, other: "Solution | None") -> bool:
+    def better_than(self, other: "LabelSolution | None") -> bool:
         """Whether its path wins more, or as much at less cost."""
         if self.path is None:
             return False
@@ -41,7 +41,7 @@ def make_solution(
     charges: Mapping[int, int],
     prize_bound: int,
     bound: int,
-) -> Solution:
+) -> LabelSolution:
     """The path with what it is worth. Raises AssertionError if it breaks a rule: no solver may."""
     route = network.route(path, dict(charges))
     worth = evaluate(network.problem, route)
@@ -49,9 +49,11 @@ def make_solution(
     cost = worth.cost(network.objective)
     prize = worth.prize
     proven = network.exact and prize >= prize_bound and cost <= bound
-    return Solution(path, prize, cost, max(prize_bound, prize), min(bound, cost), proven, charges)
+    return LabelSolution(
+        path, prize, cost, max(prize_bound, prize), min(bound, cost), proven, charges
+    )
 
 
-def no_solution(network: StepNetwork, *, proven: bool, bound: int = 0) -> Solution:
+def no_solution(network: StepNetwork, *, proven: bool, bound: int = 0) -> LabelSolution:
     """No path; `proven`: there is none."""
-    return Solution(None, 0, 0, int(network.prize.sum()), bound, proven)
+    return LabelSolution(None, 0, 0, int(network.prize.sum()), bound, proven)

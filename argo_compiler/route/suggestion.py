@@ -1,29 +1,19 @@
 """One call for all route problems, and what it says: an order, and how good it is known to be."""
 
 import logging
-from collections.abc import Mapping
+import time
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
+from typing import TYPE_CHECKING
 
 from argo_compiler.errors import Invalid
 from argo_compiler.route.problem import RouteProblem, Tour
+from argo_compiler.route.stop import SearchProgress, StopCriterion, gap
+
+if TYPE_CHECKING:
+    from argo_compiler.route.solver import RouteSolver
 
 _log = logging.getLogger(__name__)
-
-
-@dataclass(frozen=True)
-class Point:
-    """What was known at one moment of the search."""
-
-    time: float
-    """s since the search began"""
-    prize: int | None
-    """of the best route so far; None: there was none"""
-    cost: int | None
-    """of the best route so far, in units"""
-    prize_bound: int
-    """no route wins more"""
-    bound: int
-    """no route that wins as much as the best can win costs less, in units"""
 
 
 @dataclass(frozen=True)
@@ -53,7 +43,8 @@ class RouteSuggestion:
     """which solver it comes from"""
     reasons: tuple[str, ...] = ()
     """why the route was made so: what was tried, and what was picked why"""
-    history: tuple[Point, ...] = ()
+    history: tuple[SearchProgress, ...] = ()
+    """what was known when: the curve of an anytime search"""
 
     @property
     def order(self) -> tuple[int, ...]:
@@ -71,33 +62,56 @@ class RouteSuggestion:
         proven, else of the cost. None without a route."""
         if self.route is None:
             return None
-        if self.prize < self.prize_bound:
-            return (self.prize_bound - self.prize) / self.prize_bound
-        return (self.cost - self.bound) / self.cost if self.cost > self.bound else 0.0
+        return gap(self.prize, self.cost, self.prize_bound, self.bound)
 
 
 def suggest_route(
     problem: RouteProblem,
-    time_limit: float = 5.0,
+    time_limit: float | None = 5.0,
     seed: int = 0,
     workers: int = 1,
     explain: bool = True,
+    *,
+    work_limit: float | None = None,
+    stop: StopCriterion | None = None,
+    on_best: Callable[[SearchProgress, Tour], None] | None = None,
+    on_bound: Callable[[SearchProgress], None] | None = None,
+    solvers: "Sequence[str | RouteSolver] | None" = None,
+    clock: Callable[[], float] = time.perf_counter,
 ) -> RouteSuggestion:
-    """The best route that is found within the time limit (s), and what is known of it. Where there
-    is none, what can't all be met is looked for after that time as well, unless nothing is to be
-    explained.
+    """The best route that is found within the limits, and what is known of it. Where there is none,
+    and there is time left, what can't all be met is looked for, unless nothing is to be explained.
+
+    `time_limit`: s. `work_limit`: s that the solvers may work by their own count, on one core
+    however many workers there are; with it, and without a time limit, the result is the same each
+    time, also on a busy machine. `stop`: see `argo_compiler.route.stop`. `on_best` and `on_bound`
+    are called when a better route, or a better bound, is known; from any thread, so quickly.
+    `solvers`: the only ones that take part, by their names or as objects.
 
     What is proven does not depend on the seed; the route may, where others are as good or the time
-    is over. Raises ArgoError if the time limit or the number of workers is not positive.
+    is over. Raises Invalid if a limit or the number of workers is not positive, or there is no
+    limit, NotFound for an unknown solver, and whatever the criterion and the observers raise.
     """
-    if not time_limit > 0.0 or workers < 1:
+    given = [limit for limit in (time_limit, work_limit) if limit is not None]
+    if not given or not all(limit > 0.0 for limit in given) or workers < 1:
         raise Invalid(
-            f"a route needs time and a worker to be looked for, not {time_limit:g} s and {workers}"
+            "a route needs time (or work) and a worker to be looked for, not "
+            f"{time_limit} s ({work_limit}) and {workers}"
         )
     # OR-Tools takes a second to be imported, and most who import this package don't search.
     from argo_compiler.route.find_route import find_route
+    from argo_compiler.route.search import Observers, SearchLimits
 
-    found = find_route(problem, time_limit, seed, workers, explain=explain)
+    found = find_route(
+        problem,
+        SearchLimits(time_limit, work_limit, stop),
+        seed,
+        workers,
+        clock,
+        explain=explain,
+        observers=Observers(on_best, on_bound),
+        solvers=solvers,
+    )
     for reason in found.reasons:
         _log.debug("%s", reason)
     _log.info(

@@ -1,0 +1,324 @@
+"""The exact model for CP-SAT: a circuit through the steps, with self-loops at those left out.
+
+The sum of the arcs is made small, not the time of the end: it gives the linear relaxation something
+to hold on to.
+"""
+
+from collections.abc import Callable, Mapping, Sequence
+from itertools import pairwise
+from typing import Any
+
+import numpy as np
+from ortools.sat.python import cp_model
+
+from argo_compiler.route.network import StepNetwork
+from argo_compiler.route.problem import NEVER, Objective
+from argo_compiler.route.pruning import Pruned, horizon, paths
+
+
+class CircuitModel:
+    """The variables and constraints. Has state: the model that it builds."""
+
+    def __init__(self, network: StepNetwork, pruned: Pruned, end: int | None = None) -> None:
+        """`end`: when the route must end, where order is to be stated with times; for plain
+        networks only. It must be tight for the linear relaxation to see much."""
+        self.model = cp_model.CpModel()
+        self._network, self._pruned = network, pruned
+        self._timed = end is not None
+        self._apart = paths(network)
+        self._horizon = horizon(network)
+        if end is not None:
+            self._horizon = min(self._horizon, end)
+        self._arcs: list[tuple[int, int, int | None, cp_model.IntVar]] = []
+        self._arc_costs: list[int] = []
+        self._arc_energies: list[int] = []
+        self._charges: list[cp_model.IntVar] = []
+        self._made = self._circuit()
+        self._cost: Any = 0
+        self._costs()
+        self._orders()
+
+    # The circuit
+
+    def _circuit(self) -> list[Any]:
+        """Arcs and self-loops; gives for each step whether it is made."""
+        network, pruned, model = self._network, self._pruned, self.model
+        m = network.size
+        circuit: list[tuple[int, int, cp_model.LiteralT]] = []
+        service = [*network.service.tolist(), 0]
+        for i, row in enumerate(pruned.arcs.tolist()):
+            for j, there in enumerate(row):
+                if not there:
+                    continue
+                if network.time[i, j] < NEVER and self._energy_fits(i, j):
+                    self._add_arc(i, j, None, int(network.time[i, j]) + service[j])
+                for charger, station in enumerate(network.chargers):
+                    way = int(station.to[i]) + int(station.out[j])
+                    if way < NEVER and self._charge_fits(i, j, charger):
+                        assert network.problem.battery is not None
+                        overhead = network.problem.battery.overhead
+                        self._add_arc(i, j, charger, way + overhead + service[j])
+        circuit += [(i, j, literal) for i, j, _, literal in self._arcs]
+        made: list[Any] = []
+        for s, mandatory in enumerate(network.mandatory.tolist()):
+            nodes = network.nodes_of(s)
+            left_out = [model.new_bool_var("") for _ in nodes]
+            if len(nodes) == 1 and mandatory:
+                made.append(model.new_constant(1))
+                # The circuit does not know of nodes that have no arcs.
+                into = [literal for _, j, _, literal in self._arcs if j == nodes[0]]
+                model.add_bool_or(into)
+                continue
+            circuit += [(node, node, out) for node, out in zip(nodes, left_out, strict=True)]
+            if not pruned.steps[s]:
+                for out in left_out:
+                    model.add(out == 1)
+            if mandatory:
+                model.add_exactly_one([out.negated() for out in left_out])
+                made.append(model.new_constant(1))
+            elif len(nodes) == 1:
+                made.append(left_out[0].negated())
+            else:
+                some = model.new_bool_var("")
+                model.add(sum(out.negated() for out in left_out) == some)
+                made.append(some)
+        if not network.mandatory.any():
+            empty = model.new_bool_var("")
+            self._empty: cp_model.IntVar | None = empty
+            circuit.append((m, m, empty))
+            direct = int(network.time[m, m])
+            if direct >= NEVER or direct > network.limit or not self._energy_fits(m, m):
+                model.add(empty == 0)
+            # Without the depot, there could be a circuit among the others.
+            for literal in made:
+                model.add_implication(empty, literal.negated())
+        else:
+            self._empty = None
+        if circuit:
+            model.add_circuit(circuit)
+        return made
+
+    def _add_arc(self, i: int, j: int, charger: int | None, cost: int) -> None:
+        network = self._network
+        literal = self.model.new_bool_var("")
+        self._arcs.append((i, j, charger, literal))
+        self._arc_costs.append(cost)
+        if network.energy is not None:
+            if charger is None:
+                self._arc_energies.append(int(network.energy[i, j]))
+            else:
+                station = network.chargers[charger]
+                self._arc_energies.append(int(station.to_energy[i]) + int(station.out_energy[j]))
+
+    def _energy_fits(self, i: int, j: int) -> bool:
+        network, battery = self._network, self._network.problem.battery
+        if battery is None or network.energy is None:
+            return True
+        used = battery.used if i == network.size else 0
+        return used + int(network.energy[i, j]) <= battery.capacity
+
+    def _charge_fits(self, i: int, j: int, charger: int) -> bool:
+        network, battery = self._network, self._network.problem.battery
+        assert battery is not None
+        station = network.chargers[charger]
+        used = battery.used if i == network.size else 0
+        return (
+            used + int(station.to_energy[i]) <= battery.capacity
+            and int(station.out_energy[j]) <= battery.capacity
+        )
+
+    # Costs, clocks and energy
+
+    def _costs(self) -> None:
+        network, model = self._network, self.model
+        m, battery = network.size, network.problem.battery
+        literals = [literal for *_, literal in self._arcs]
+        work: Any = cp_model.LinearExpr.weighted_sum(literals, self._arc_costs)
+        if self._empty is not None and network.time[m, m] < NEVER:
+            work = work + int(network.time[m, m]) * self._empty
+        used: list[Any] = []
+        if battery is not None:
+            energy = cp_model.LinearExpr.weighted_sum(literals, self._arc_energies)
+            if self._empty is not None and network.energy is not None:
+                energy = energy + min(int(network.energy[m, m]), battery.capacity) * self._empty
+            if network.chargers:
+                used = self._charging(battery.used, battery.capacity)
+                work = work + battery.used + energy - used[-1]
+            else:
+                model.add(battery.used + energy <= battery.capacity)
+        self._begins: list[cp_model.IntVar] | None = None
+        duration = work
+        if network.windowed or self._timed:
+            self._begins = self._clocks(used)
+            end = model.new_int_var(0, self._horizon, "end")
+            self._arrive(end, used)
+            waiting = model.new_int_var(0, 0 if self._timed else self._horizon, "waiting")
+            model.add(end == work + waiting)
+            duration = end
+        elif network.limit < NEVER:
+            model.add(work <= network.limit)
+        self._cost = duration if network.objective is Objective.DURATION else work
+
+    def _charging(self, used: int, capacity: int) -> list[Any]:
+        """What has been used since the last charge at the end of each step, and at the end."""
+        network, model = self._network, self.model
+        count, m = len(network.prize), network.size
+        assert network.energy is not None
+        levels: list[Any] = [model.new_int_var(0, capacity, "") for _ in range(count + 1)]
+
+        def level(node: int) -> Any:
+            return levels[int(network.step[node])] if node < m else levels[count]
+
+        for i, j, charger, literal in self._arcs:
+            before = used if i == m else level(i)
+            if charger is None:
+                energy = int(network.energy[i, j])
+                model.add(level(j) == before + energy).only_enforce_if(literal)
+            else:
+                station = network.chargers[charger]
+                model.add(before + int(station.to_energy[i]) <= capacity).only_enforce_if(literal)
+                model.add(level(j) == int(station.out_energy[j])).only_enforce_if(literal)
+        if self._empty is not None:
+            whole = min(used + int(network.energy[m, m]), capacity)
+            model.add(levels[count] == whole).only_enforce_if(self._empty)
+        for s, made in enumerate(self._made):
+            if not network.mandatory[s]:
+                model.add(levels[s] == 0).only_enforce_if(made.negated())
+        return levels
+
+    def _clocks(self, used: Sequence[Any]) -> list[cp_model.IntVar]:
+        """When each step begins."""
+        network, pruned, model = self._network, self._pruned, self.model
+        m, begins = network.size, []
+        latest_of_all = self._horizon
+        for s in range(len(network.prize)):
+            nodes = network.nodes_of(s)
+            if not pruned.steps[s]:
+                begins.append(model.new_int_var(0, latest_of_all, ""))
+                continue
+            soonest = min(int(pruned.earliest[node]) for node in nodes)
+            latest = max(int(pruned.latest[node]) for node in nodes)
+            begins.append(model.new_int_var(soonest, max(soonest, min(latest, latest_of_all)), ""))
+        for i, j, charger, literal in self._arcs:
+            if j < m:
+                begin = begins[int(network.step[j])]
+                self._begin(begin, self._arrival(begins, used, i, j, charger), literal)
+        return begins
+
+    def _begin(self, begin: cp_model.IntVar, arrival: Any, literal: cp_model.IntVar) -> None:
+        """With windows, there may be waiting."""
+        soon = begin == arrival if self._timed else begin >= arrival
+        self.model.add(soon).only_enforce_if(literal)
+
+    def _arrival(
+        self,
+        begins: Sequence[cp_model.IntVar],
+        used: Sequence[Any],
+        i: int,
+        j: int,
+        charger: int | None,
+    ) -> Any:
+        """When the robot comes to node j from node i."""
+        network, m = self._network, self._network.size
+        left: Any = 0
+        if i < m:
+            left = begins[int(network.step[i])] + int(network.service[i])
+        if charger is None:
+            return left + int(network.time[i, j])
+        battery, station = network.problem.battery, network.chargers[charger]
+        assert battery is not None
+        before = battery.used if i == m else used[int(network.step[i])]
+        way = (
+            int(station.to[i]) + int(station.out[j]) + battery.overhead + int(station.to_energy[i])
+        )
+        return left + before + way
+
+    def _arrive(self, end: cp_model.IntVar, used: Sequence[Any]) -> None:
+        assert self._begins is not None
+        m = self._network.size
+        for i, j, charger, literal in self._arcs:
+            if j == m:
+                arrival = self._arrival(self._begins, used, i, j, charger)
+                self._begin(end, arrival, literal)
+
+    def _orders(self) -> None:
+        """What is needed is made before, and what is ruled out is not made after."""
+        network, pruned, model = self._network, self._pruned, self.model
+        ranks: list[cp_model.IntVar] | None = None
+        for i, j in np.argwhere(network.before).tolist():
+            if not (pruned.steps[i] and pruned.steps[j]):
+                continue  # what needs a step that can't be made can't be made either
+            optional = [self._made[s] for s in (i, j) if not network.mandatory[s]]
+            if network.needs[i, j] and not network.mandatory[i]:
+                model.add_implication(self._made[j], self._made[i])
+                optional = [self._made[j]]
+            least = min(
+                int(network.service[first] + self._apart[first, then])
+                for first in network.nodes_of(i)
+                for then in network.nodes_of(j)
+            )
+            if self._begins is not None and least > 0:
+                later = model.add(self._begins[j] >= self._begins[i] + least)
+            else:
+                ranks = self._ranks() if ranks is None else ranks
+                later = model.add(ranks[j] > ranks[i])
+            if optional:
+                later.only_enforce_if(optional)
+
+    def _ranks(self) -> list[cp_model.IntVar]:
+        """The position of each step."""
+        network, model = self._network, self.model
+        count = len(network.prize)
+        ranks = [model.new_int_var(0, count - 1, "") for _ in range(count)]
+        for i, j, _, literal in self._arcs:
+            if i < network.size and j < network.size:
+                before, after = ranks[int(network.step[i])], ranks[int(network.step[j])]
+                model.add(after >= before + 1).only_enforce_if(literal)
+        return ranks
+
+    # Objectives
+
+    def maximise_prize(self, least: int | None) -> None:
+        """The sum of the prizes of what is made, which is `least` at least."""
+        prize = self._prize()
+        if least is not None:
+            self.model.add(prize >= least)
+        self.model.maximize(prize)
+
+    def minimise_cost(self, prize: int | None, most: int | None) -> None:
+        """The cost, which is `most` at most, with a prize of at least `prize`."""
+        if prize is not None:
+            self.model.add(self._prize() >= prize)
+        if most is not None:
+            self.model.add(self._cost <= most)
+        self.model.minimize(self._cost)
+
+    def _prize(self) -> Any:
+        prizes = self._network.prize.tolist()
+        return sum(int(p) * made for p, made in zip(prizes, self._made, strict=True))
+
+    def hint(self, path: tuple[int, ...], charges: Mapping[int, int]) -> None:
+        """A path to begin with, and the chargers by the position in it."""
+        m = self._network.size
+        ways = enumerate(pairwise((m, *path, m)))
+        legs = {(i, j, charges.get(position)) for position, (i, j) in ways}
+        for i, j, charger, literal in self._arcs:
+            self.model.add_hint(literal, (i, j, charger) in legs)
+
+    def path(
+        self, holds: Callable[[cp_model.IntVar], bool]
+    ) -> tuple[tuple[int, ...], dict[int, int]]:
+        """The nodes of a solution in order, and its charges; `holds`: whether it has a literal."""
+        m = self._network.size
+        onward = {i: (j, charger) for i, j, charger, literal in self._arcs if holds(literal)}
+        path: list[int] = []
+        charges: dict[int, int] = {}
+        node = m
+        while node in onward:
+            node, charger = onward[node]
+            if charger is not None:
+                charges[len(path)] = charger
+            if node == m:
+                break
+            path.append(node)
+        return tuple(path), charges

@@ -1,7 +1,7 @@
 """How far a search is, and the criteria by which it ends before its limit.
 
-A criterion is any callable that is given a `SearchProgress` and says whether to stop. It is called often,
-from several threads.
+A criterion is any callable that is given a `SearchProgress` and says whether to stop. It is called
+often, from several threads.
 """
 
 from collections.abc import Callable

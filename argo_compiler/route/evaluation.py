@@ -5,6 +5,7 @@ Written for reading, and on purpose without anything that the solvers use.
 
 from dataclasses import dataclass
 
+from argo_compiler.errors import Invalid
 from argo_compiler.route.problem import NEVER, Objective, Round, RouteProblem, Tour
 
 
@@ -39,7 +40,14 @@ class Evaluation:
 
 
 def evaluate(problem: RouteProblem, route: Tour) -> Evaluation:
-    """What the route is worth, and what it does not keep to."""
+    """What the route is worth, and what it does not keep to.
+
+    Raises Invalid if it names a visit or a charger that there isn't.
+    """
+    if not set(route.order) <= set(range(problem.size)):
+        raise Invalid(f"a route makes a visit that there isn't: there are {problem.size}, from 0")
+    if not set(route.charges.values()) <= set(range(len(problem.chargers))):
+        raise Invalid(f"a route uses a charger that there isn't: there are {len(problem.chargers)}")
     return _Walk(problem, route).evaluation()
 
 
@@ -70,8 +78,9 @@ class _Walk:
             return Evaluation(prize, NEVER, 0, nowhere, tuple(self._violations))
         used = 0 if problem.battery is None else problem.battery.used
         state = _State(0, used, frozenset([problem.size]))
-        position = 0
+        position, between = 0, {len(order)}
         while position < len(order):
+            between.add(position)
             state = self._charge(state, position)
             whole = self._outermost(order[position])
             if whole is None:
@@ -85,8 +94,8 @@ class _Walk:
         duration = state.time
         if problem.max_duration is not None and duration > problem.max_duration:
             self._violations.append(f"it takes {duration}, longer than {problem.max_duration}")
-        if set(self._route.charges) - set(range(len(order) + 1)):
-            self._violations.append("it charges outside of the order")
+        if not set(self._route.charges) <= between:
+            self._violations.append("it charges within a round, or outside of the order")
         arrivals = tuple(self._arrivals.get(visit, NEVER) for visit in order)
         return Evaluation(prize, duration, self._waiting, arrivals, tuple(self._violations))
 

@@ -31,7 +31,7 @@ class Objective(StrEnum):
     TRAVEL = "travel"
     """the same less waiting"""
     PRIZE = "prize"
-    """nothing: the prize alone counts, and the time only against the maximum duration"""
+    """nothing, which costs 0: the prize alone counts, and time only against the maximum duration"""
 
 
 @dataclass(frozen=True)
@@ -44,7 +44,7 @@ class Visit:
     """how long it takes there"""
     mandatory: bool = True
     prize: int = 0
-    """what it is worth; counts where something is optional"""
+    """what it is worth; that of mandatory visits counts as well"""
     earliest: int = 0
     """when it may begin: a robot that comes earlier waits"""
     latest: int | None = None
@@ -53,7 +53,10 @@ class Visit:
 
 @dataclass(frozen=True)
 class Precedence:
-    """Visits that are made in this order, with whatever between them."""
+    """Visits that are made in this order, with whatever between them.
+
+    A visit that is twice in the sequence would have to come before itself: it can't be made.
+    """
 
     sequence: tuple[int, ...]
     words: str
@@ -67,8 +70,14 @@ class Precedence:
 class Round:
     """Visits that are made one after the other, with nothing between them, as often as is asked.
 
-    With `repeat` and `duration`, whichever comes first ends it. The clock of `duration` starts when
-    the visit before the round ends, on the way to it. Rounds may lie in each other.
+    All of them are made, in the same order each time, or none. From the last the robot goes on to
+    the first again: of a single one over its own entry of the matrix. Rounds may lie in each other;
+    of two with the same members, the one that comes first in the problem is around the other.
+
+    With `repeat` and `duration`, whichever comes first ends it: another round is begun only as long
+    as the duration is not over. The clock of `duration` starts when the visit before the round
+    ends, on the way to it; after a charge, when the robot leaves the charger. A further round that
+    takes no time at all, where there is a duration, is the last one.
     """
 
     name: str
@@ -79,7 +88,9 @@ class Round:
     """for how long; 0: no limit"""
     soft: bool = False
     """whether a round that has begun is completed when the duration is over; else it is left in
-    the middle, from the member from which what comes next takes longest"""
+    the middle when that is so, and what comes next is reckoned from whichever members its time, and
+    its energy, are most. The energy of a round left in the middle counts in full, and all of its
+    ways must be there. One that ends just when the duration does is left from its last member"""
 
 
 @dataclass(frozen=True)
@@ -156,8 +167,8 @@ class Tour:
 
     order: tuple[int, ...]
     charges: Mapping[int, int] = field(default_factory=dict)
-    """the number of the charger by the position in `order` before which the robot is charged;
-    `len(order)`: before the end"""
+    """the number of the charger by the position in `order` before which the robot is charged, which
+    is not within a round, even one that is made once; `len(order)`: before the end"""
 
 
 def _troubles(problem: RouteProblem) -> Iterator[str]:

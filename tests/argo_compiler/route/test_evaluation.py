@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from argo_compiler.errors import ArgoError
+from argo_compiler.errors import ArgoError, Invalid
 from argo_compiler.route import (
     NEVER,
     EnergyBudget,
@@ -124,3 +124,22 @@ def test_parts_that_do_not_fit_are_refused(wrong: dict, words: str) -> None:  # 
         RouteProblem(**parts)
     assert words in str(told.value)
     assert NEVER > 0
+
+
+def test_a_charge_within_a_round_breaks_a_rule() -> None:
+    problem = RouteProblem(
+        (Visit("a"), Visit("b")),
+        np.ones((4, 4), np.int64),
+        rounds=(Round("both", (0, 1)),),
+        battery=EnergyBudget(np.ones((4, 4), np.int64), capacity=9),
+        chargers=("dock",),
+    )
+    assert evaluate(problem, Tour((0, 1), {0: 0, 2: 0})).feasible
+    within = evaluate(problem, Tour((0, 1), {1: 0})).violations
+    assert within == ("it charges within a round, or outside of the order",)
+
+
+@pytest.mark.parametrize("route", [Tour((2,)), Tour((-1, 0)), Tour((0, 1), {0: 1})])
+def test_a_route_of_another_problem_is_refused(route: Tour) -> None:
+    with pytest.raises(Invalid, match="that there isn't"):
+        evaluate(RouteProblem((Visit("a"), Visit("b")), np.ones((3, 3), np.int64)), route)

@@ -1,15 +1,28 @@
 """The benchmark of published route problems, on small ones of its own."""
 
+import dataclasses
 import json
+import sys
 
 import numpy as np
 import pytest
 
 from argo_compiler.errors import ArgoError
-from argo_compiler.route import EnergyBudget, Precedence, RouteProblem, Tour, Visit, evaluate
-from benchmarks import peer_pyvrp
+from argo_compiler.route import (
+    NEVER,
+    EnergyBudget,
+    Objective,
+    Precedence,
+    RouteProblem,
+    Tour,
+    Visit,
+    evaluate,
+)
+from benchmarks import peer_lkh, peer_pyvrp
 from benchmarks.instances import Kind
-from benchmarks.routes import Known, Row, find_files, known_of, main, summary
+from benchmarks.known_values import Known, known_of
+from benchmarks.routes import find_files, main
+from benchmarks.routes_table import PeerFinding, Row, markdown, read_rows, summary
 
 ATSP = """NAME: three
 TYPE: ATSP
@@ -37,18 +50,26 @@ def test_the_table_of_two_problems(folder, capsys):
     into = folder / "rows.json"
     assert main([str(folder), "--time-limit", "0.3", "--workers", "1", "--json", str(into)]) == 0
     late, three = json.loads(into.read_text())["rows"]
-    assert (late["value"], late["bound"], late["proven"], late["peer"]) == (15.0, 15.0, True, 15.0)
-    assert late["known"] == {"value": 15.0, "bound": None}
-    assert (three["value"], three["bound"], three["peer"]) == (7.0, 7.0, 7.0)
+    assert (late["value"], late["bound"], late["proven"]) == (15.0, 15.0, True)
+    assert late["peers"] == [{"name": "PyVRP", "value": 15.0, "none_because": None}]
+    assert late["known"] == {"value": 15.0, "bound": None, "rounded": 0.5}
+    assert (three["value"], three["bound"], three["peers"][0]["value"]) == (7.0, 7.0, 7.0)
     assert three["known"] is None
     lines = capsys.readouterr().out.splitlines()
     assert "15?" in lines[2]
     assert lines[-2:] == [
-        "ATSP: 1 problems, 1 proven, best known value or better 1 times, "
-        f"{three['seconds']:.1f} s in all; PyVRP best known value 1 times of 1",
-        "TSPTW: 1 problems, 1 proven, best known value or better 1 times, "
-        f"{late['seconds']:.1f} s in all; PyVRP best known value 1 times of 1",
+        "ATSP: 1 problems, 1 proven (1 of 1 with up to 100 nodes), best known value or better 1 "
+        f"times, {three['seconds']:.1f} s in all; PyVRP best known value 1 times of 1",
+        "TSPTW: 1 problems, 1 proven (1 of 1 with up to 100 nodes), best known value or better 1 "
+        f"times, {late['seconds']:.1f} s in all; PyVRP best known value 1 times of 1",
     ]
+    setting, rows = read_rows(into)
+    assert setting.startswith("0.3 s for each problem")
+    table = list(markdown(rows))
+    assert table[0].endswith("| by | PyVRP |")
+    assert table[2].startswith("| ATSP three | 3 | - | 7 | 0 | 7 | yes |")
+    assert table[2].endswith("| 7, 0 |")
+    assert table[-2:] == [f"- {line}" for line in lines[-2:]]
 
 
 def test_files_are_picked_by_name(folder, capsys):
@@ -69,14 +90,85 @@ def test_what_is_known_of_a_score_is_beside_it(tmp_path):
     assert known_of(path, Kind.OP) == Known(7)
 
 
-def test_values_are_off_by_a_share_of_the_best():
-    def row(kind, value, peer):
-        return Row("x", kind, 5, Known(10), value, 1.0, False, 1.0, "y", peer, None, None)
+def test_what_is_known_of_tours_with_time_windows_is_beside_them(tmp_path):
+    path = tmp_path / "some.tw"
+    assert known_of(path, Kind.TSPTW) is None
+    (tmp_path / "best_known.txt").write_text("other.tw 3 0\nsome.tw 628.62 0 # from there\n")
+    assert known_of(path, Kind.TSPTW) == Known(628.62, None, pytest.approx(0.005))
+    (tmp_path / "bounds.txt").write_text("# of a table\nsome.tw 628.62 # optimal\n")
+    assert known_of(path, Kind.TSPTW).proven
 
-    cost, score = row(Kind.ATSP, 12.0, 8.0), row(Kind.OP, 8.0, None)
-    assert (cost.off(cost.value), cost.off(cost.peer)) == (0.5, 0.0)
-    assert (score.off(score.value), score.off(score.peer)) == (pytest.approx(0.2), None)
-    assert len(list(summary([cost, score]))) == 2
+
+def test_values_are_off_by_a_share_of_the_best():
+    def row(kind, value, peer, known):
+        peers = (PeerFinding("P", peer), PeerFinding("L", None, "precedence"))
+        return Row("x", kind, 5, known, value, 1.0, False, 1.0, "y", peers, None)
+
+    cost, score = row(Kind.ATSP, 12.0, 8.0, Known(10)), row(Kind.OP, 8.0, None, Known(10))
+    assert (cost.off(12.0), cost.off(8.0)) == (0.5, 0.0)
+    assert (score.off(8.0), score.off(None)) == (pytest.approx(0.2), None)
+    rounded = row(Kind.TSPTW, 9.9967, 10.0041, Known(10.0, 10.0, 0.005))
+    assert (rounded.off(9.9967), rounded.off(10.0)) == (0.0, 0.0)
+    lines = list(summary([cost, score]))
+    assert "P best known value 1 times of 1; L not asked: precedence" in lines[0]
+    assert len(lines) == 2
+
+
+LKH = """#!{python}
+import sys
+given = dict(line.split(" = ") for line in open(sys.argv[1]).read().splitlines() if " = " in line)
+stated = open(given["PROBLEM_FILE"]).read()
+open({seen!r}, "w").write(stated)
+tour = "\\n".join(map(str, {nodes}))
+open(given["TOUR_FILE"], "w").write("TYPE : TOUR\\nTOUR_SECTION\\n" + tour + "\\n-1\\nEOF\\n")
+"""
+
+
+def test_a_problem_as_lkh_sees_it(tmp_path):
+    program, seen = tmp_path / "LKH", tmp_path / "seen"
+
+    def answering(nodes):
+        program.write_text(LKH.format(python=sys.executable, seen=str(seen), nodes=nodes))
+        program.chmod(0o755)
+        return program
+
+    travel = np.array([[0, 4, 3, 9], [4, 0, NEVER, 2], [1, 5, 0, 8], [5, 2, 7, 0]])
+    visits = (Visit("a", service=10), Visit("b"), Visit("c"))
+    ordered = RouteProblem(visits, travel, precedences=(Precedence((2, 1), "c before b"),))
+    found = peer_lkh.search(answering([1, 4, 2, 3, 5]), ordered, 0.1, 1)
+    assert found == Tour((2, 0, 1))
+    lines = seen.read_text().splitlines()
+    assert "TYPE: SOP" in lines
+    assert lines[-7:-1] == [
+        "5",
+        "0 5 2 7 100000000",
+        "-1 0 14 13 19",
+        "-1 4 0 -1 2",
+        "-1 1 5 0 8",
+        "-1 -1 -1 -1 0",
+    ]
+    assert peer_lkh.search(answering([1, 3, 4, 2, 5]), ordered, 0.1, 1) is None
+    travel = np.where(travel == NEVER, 6, travel)
+    late = tuple(dataclasses.replace(visit, latest=20 + 10 * k) for k, visit in enumerate(visits))
+    timed = RouteProblem(late, travel, max_duration=90, objective=Objective.TRAVEL)
+    assert peer_lkh.search(answering([4, 3, 1, 2]), timed, 0.1, 1) == Tour((0, 2, 1))
+    assert seen.read_text().splitlines()[-8:-4] == ["1 0 90", "2 0 20", "3 0 30", "4 0 40"]
+    tour = RouteProblem(visits, travel)
+    assert peer_lkh.search(answering([2, 3, 4, 1]), tour, 0.1, 1) == Tour((0, 1, 2))
+    assert "TYPE: ATSP" in seen.read_text()
+    for problem, reason in [
+        (RouteProblem(visits[:2], travel[:3, :3]), "fewer than three visits"),
+        (RouteProblem((*visits[:2], Visit("c", mandatory=False, prize=1)), travel), "left out"),
+        (RouteProblem(visits, travel, battery=EnergyBudget(travel, 100)), "a battery"),
+        (RouteProblem(visits, travel, max_duration=90), "without windows"),
+        (RouteProblem(late, travel), "waiting"),
+        (dataclasses.replace(timed, precedences=ordered.precedences), "precedence with windows"),
+    ]:
+        assert reason in peer_lkh.why_not(problem)
+    with pytest.raises(ArgoError, match="does not know a limit"):
+        peer_lkh.search(program, RouteProblem(visits, travel, max_duration=90), 0.1, 1)
+    with pytest.raises(ArgoError, match="can't be run as LKH"):
+        peer_lkh.search(tmp_path / "none", tour, 0.1, 1)
 
 
 def test_a_problem_as_pyvrp_sees_it():

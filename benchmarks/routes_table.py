@@ -154,7 +154,7 @@ def _known(known: Known | None) -> str:
 
 
 def _number(value: float | None) -> str:
-    return "-" if value is None else f"{value:.10g}"
+    return "-" if value is None else f"{round(value, 2):.10g}"
 
 
 def _share(share: float | None) -> str:

@@ -85,9 +85,9 @@ def _searched(
         search.say("some step can't be made at all, or not in an order that is asked for")
         search.by("pruning").impossible()
         return search
-    search.known(prize_bound=int(net.prize[search.pruned.steps].sum()))
+    search.by("pruning").known(prize_bound=int(net.prize[search.pruned.steps].sum()))
     if net.objective is not Objective.PRIZE:
-        search.known(bound=bound)
+        search.by("assignment bound").known(bound=bound)
     solve(search, workers, solvers)
     return search
 

@@ -5,7 +5,7 @@ from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass, field
 from math import inf
 
-from argo_compiler.errors import Conflict
+from argo_compiler.errors import Conflict, Invalid
 from argo_compiler.route.evaluation import evaluate
 from argo_compiler.route.network import StepNetwork
 from argo_compiler.route.problem import RouteProblem, Tour
@@ -182,8 +182,9 @@ class Search:
 
     @property
     def method(self) -> str:
-        """The solver that the best route comes from, or the proof that there is none."""
-        return self._known.best.method if self._known.best else self._known.method
+        """The solver whose finding completed the proof; without one, that of the best route."""
+        best = self._known.best
+        return self._known.method if self.done or best is None else best.method
 
     @property
     def reasons(self) -> tuple[str, ...]:
@@ -215,7 +216,7 @@ class Search:
 
     def offer(self, path: Iterable[int], charges: Mapping[int, int] | None = None) -> bool:
         """A route by its nodes was found, with the charger by the position in the path; whether it
-        is better than the best one. One that breaks a rule is an AssertionError."""
+        is better than the best one. Raises Invalid if it breaks a rule."""
         path, charges = tuple(path), dict(charges or {})
         return self._offer(self.network.route(path, charges), path, charges)
 
@@ -226,7 +227,10 @@ class Search:
 
     def _offer(self, tour: Tour, path: tuple[int, ...] | None, charges: Mapping[int, int]) -> bool:
         worth = evaluate(self.problem, tour)
-        assert worth.feasible, (self._method, tour, worth.violations)
+        if not worth.feasible:
+            raise Invalid(
+                f"solver {self._method!r} offers a route that breaks a rule: {worth.violations[0]}"
+            )
         cost = worth.cost(self.problem.objective)
         solution = Solution(tour, worth.prize, cost, path, charges, self._method)
         known = self._known
@@ -265,7 +269,7 @@ class Search:
         if not self.network.exact:
             return
         with self._known.lock:
-            self._known.impossible, self._known.method = True, self._method
+            self._known.impossible = True
             self._note()
 
     def _note(self) -> None:
@@ -278,4 +282,5 @@ class Search:
                 f"solver {self._method!r}: what it finds contradicts what is said to be proven of "
                 "this route problem; please report it with the problem"
             )
+        known.method = self._method or known.method
         known.history.append(self.progress())

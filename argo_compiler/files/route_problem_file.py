@@ -1,0 +1,179 @@
+"""Route problems and what is suggested for them as JSON, for other programs and for later.
+
+A problem is an object with `version` 1 and the fields of `RouteProblem`; a matrix is a list of
+rows, in which `null` is NEVER. Fields with their default value may be left out.
+"""
+
+import json
+from collections.abc import Mapping
+from dataclasses import MISSING, asdict, fields
+from pathlib import Path
+from typing import Any, get_type_hints
+
+import numpy as np
+from numpy.typing import NDArray
+from pydantic import BaseModel, ConfigDict, ValidationError, create_model
+
+from argo_compiler.errors import Invalid, Unavailable
+from argo_compiler.files.json_places import JsonPath, JsonText, find_places, format_path
+from argo_compiler.files.reading import decode_text, read_bytes
+from argo_compiler.files.writing import write_whole
+from argo_compiler.nearest_name import nearest_name
+from argo_compiler.route.problem import (
+    NEVER,
+    EnergyBudget,
+    Objective,
+    Precedence,
+    Round,
+    RouteProblem,
+    Visit,
+)
+from argo_compiler.route.suggestion import RouteSuggestion
+
+VERSION = 1
+MAX_BYTES = 200_000_000
+"""far above a problem of 3,000 visits"""
+
+_Rows = tuple[tuple[int | None, ...], ...]
+
+
+def _model(data: type, **other: Any) -> type[BaseModel]:
+    """What the JSON object of a dataclass holds. `other`: types that differ in JSON."""
+    hints = {**get_type_hints(data), **other}
+    defaults = {
+        f.name: f.default_factory() if f.default_factory is not MISSING else f.default
+        for f in fields(data)
+    }
+    content = {
+        name: (hint, ... if defaults.get(name, MISSING) is MISSING else defaults[name])
+        for name, hint in hints.items()
+    }
+    config = ConfigDict(extra="forbid", strict=True)
+    return create_model(data.__name__, __config__=config, **content)  # type: ignore[call-overload,no-any-return]
+
+
+_VISIT, _PRECEDENCE, _ROUND = _model(Visit), _model(Precedence), _model(Round)
+_BATTERY = _model(EnergyBudget, energy=_Rows)
+_PROBLEM = _model(
+    RouteProblem,
+    version=int,
+    visits=tuple[_VISIT, ...],  # type: ignore[valid-type]
+    travel=_Rows,
+    precedences=tuple[_PRECEDENCE, ...],  # type: ignore[valid-type]
+    rounds=tuple[_ROUND, ...],  # type: ignore[valid-type]
+    battery=_BATTERY | None,
+    words=dict[str, str],
+)
+
+
+def write_route_problem(problem: RouteProblem, path: Path) -> None:
+    """Writes a problem as JSON. Raises Unavailable if that can't be done."""
+    try:
+        write_whole(path, route_problem_text(problem))
+    except OSError as error:
+        raise Unavailable(f"{path}: can't be written: {error.strerror}") from error
+
+
+def route_problem_text(problem: RouteProblem) -> str:
+    """What `write_route_problem` writes."""
+    plain = {field.name: _plain(getattr(problem, field.name)) for field in fields(problem)}
+    needed = {name: value for name, value in plain.items() if value not in (None, [], {})}
+    return json.dumps({"version": VERSION, "visits": [], **needed}, ensure_ascii=False) + "\n"
+
+
+def _plain(value: Any) -> Any:
+    """What JSON can hold of a part of a problem."""
+    if isinstance(value, np.ndarray):
+        return [[None if time == NEVER else time for time in row] for row in value.tolist()]
+    if isinstance(value, EnergyBudget):
+        return {f.name: _plain(getattr(value, f.name)) for f in fields(value)}
+    if isinstance(value, tuple):
+        return [one if isinstance(one, str) else asdict(one) for one in value]
+    return dict(value) if isinstance(value, Mapping) else value
+
+
+def read_route_problem(path: Path) -> RouteProblem:
+    """The problem in a JSON file. Raises FileError or Invalid, with the place in the file."""
+    content = read_bytes(path, "file of a route problem", MAX_BYTES)
+    return parse_route_problem(decode_text(content, path, "file of a route problem"), str(path))
+
+
+def parse_route_problem(text: str, name: str) -> RouteProblem:
+    """The problem in a JSON text, which messages call `name`. Raises Invalid."""
+    try:
+        data = json.loads(text)
+    except (json.JSONDecodeError, RecursionError) as error:
+        where = f"{error.lineno}:{error.colno}:" if isinstance(error, json.JSONDecodeError) else ""
+        what = getattr(error, "msg", "it is nested too deeply")
+        raise Invalid(f"{name}:{where} is not JSON: {what}; correct it there") from error
+    except ValueError as error:  # an integer of thousands of digits
+        raise Invalid(f"{name}: is not usable JSON: {error}; correct the number") from error
+    version = data.get("version") if isinstance(data, dict) else None
+    if version != VERSION or isinstance(version, bool):
+        raise Invalid(
+            f"{name}: is no route problem of version {VERSION}: it begins with "
+            f'{{"version": {VERSION}, "visits": [; write it anew with this version of Argo'
+        )
+    try:
+        found = _PROBLEM.model_validate_json(text)
+    except ValidationError as error:
+        raise Invalid(f"{name}{_said(error, text)}") from None
+    try:
+        return _problem(found)
+    except Invalid as error:
+        raise Invalid(f"{name}: {error}") from None
+
+
+def _said(error: ValidationError, text: str) -> str:
+    """The first fault with its place: `:3:7: visits[0].prize: …`."""
+    first = error.errors(include_url=False)[0]
+    path: JsonPath = first["loc"]
+    owner = path[:-1] if first["type"] in {"missing", "extra_forbidden"} else path
+    span = find_places(JsonText(text), [owner]).get(owner) if owner else None
+    place = f":{span.line}:{span.column}" if span else ""
+    what = first["msg"][:1].lower() + first["msg"][1:]
+    if first["type"] == "extra_forbidden":
+        near = nearest_name(str(path[-1]), tuple(_PROBLEM.model_fields))
+        what = f"there is no such field; is `{near}` meant?" if near else "there is no such field"
+    more = len(error.errors()) - 1
+    return f"{place}: {format_path(path)}: {what}" + (f" (and {more} more)" if more else "")
+
+
+def _problem(found: Any) -> RouteProblem:
+    battery = found.battery
+    return RouteProblem(
+        tuple(Visit(**visit.model_dump()) for visit in found.visits),
+        _matrix(found.travel, "travel"),
+        tuple(Precedence(**one.model_dump()) for one in found.precedences),
+        tuple(Round(**one.model_dump()) for one in found.rounds),
+        found.max_duration,
+        None
+        if battery is None
+        else EnergyBudget(
+            _matrix(battery.energy, "battery.energy"),
+            battery.capacity,
+            battery.used,
+            battery.overhead,
+        ),
+        found.chargers,
+        Objective(found.objective),
+        found.unit,
+        found.words,
+    )
+
+
+def _matrix(rows: _Rows, name: str) -> NDArray[np.int64]:
+    if len({len(row) for row in rows}) > 1:
+        raise Invalid(f"{name}: its rows do not have the same length")
+    try:
+        return np.array(
+            [[NEVER if time is None else time for time in row] for row in rows], np.int64
+        ).reshape(len(rows), -1 if rows else 0)
+    except OverflowError:
+        raise Invalid(f"{name}: a number in it is too large: take a greater unit") from None
+
+
+def route_suggestion_text(suggestion: RouteSuggestion) -> str:
+    """A suggestion as JSON: its fields, the curve of the search included; the charges of the route
+    by the position as a string."""
+    return json.dumps(asdict(suggestion), ensure_ascii=False) + "\n"

@@ -55,6 +55,7 @@ def find_route(
         search.method,
         search.reasons,
         search.history,
+        search.turns,
     )
 
 
@@ -83,11 +84,12 @@ def _searched(
     bound = assignment_bound(net, search.pruned)
     if bound is None:
         search.say("some step can't be made at all, or not in an order that is asked for")
-        search.by("pruning").impossible()
+        with search.by("pruning") as turn:
+            turn.impossible()
         return search
-    search.by("pruning").known(prize_bound=int(net.prize[search.pruned.steps].sum()))
-    if net.objective is not Objective.PRIZE:
-        search.by("assignment bound").known(bound=bound)
+    with search.by("assignment") as turn:
+        turn.known(prize_bound=int(net.prize[search.pruned.steps].sum()))
+        turn.known(bound=None if net.objective is Objective.PRIZE else bound)
     solve(search, workers, solvers)
     return search
 

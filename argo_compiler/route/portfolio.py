@@ -81,7 +81,8 @@ def _prove(search: Search, solvers: Sequence[RouteSolver]) -> None:
 
 def _run(solver: RouteSolver, search: Search) -> None:
     if search.left() > 0.0:
-        solver.solve(search.by(solver.name))
+        with search.by(solver.name) as turn:
+            solver.solve(turn)
 
 
 def _beside(search: Search, here: Callable[[], object], there: Callable[[], object]) -> None:

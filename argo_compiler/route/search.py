@@ -1,8 +1,9 @@
 """What a search has found and proven, and the time that it has: what all its solvers share."""
 
 import threading
-from collections.abc import Callable, Iterable, Mapping
-from dataclasses import dataclass, field
+from collections.abc import Callable, Iterable, Iterator, Mapping
+from contextlib import contextmanager
+from dataclasses import dataclass, field, replace
 from math import inf
 
 from argo_compiler.errors import Conflict, Invalid
@@ -10,7 +11,7 @@ from argo_compiler.route.evaluation import evaluate
 from argo_compiler.route.network import StepNetwork
 from argo_compiler.route.problem import RouteProblem, Tour
 from argo_compiler.route.pruning import Pruned
-from argo_compiler.route.stop import SearchProgress, StopCriterion
+from argo_compiler.route.stop import SearchProgress, SolverTurn, StopCriterion
 
 
 @dataclass(frozen=True)
@@ -69,6 +70,7 @@ class _Known:
     method: str = ""
     reasons: list[str] = field(default_factory=list)
     history: list[SearchProgress] = field(default_factory=list)
+    turns: list[SolverTurn] = field(default_factory=list)
     lock: threading.RLock = field(default_factory=threading.RLock)
 
 
@@ -132,11 +134,14 @@ class Search:
         view._deadline = min(self._deadline, deadline)
         return view
 
-    def by(self, method: str) -> "Search":
-        """The same search, whose routes and proofs are by that solver."""
-        view = self.until(inf)
-        view._method = method
-        return view
+    @contextmanager
+    def by(self, solver: str) -> Iterator["Search"]:
+        """The same search, whose routes and proofs are by that solver: its turn."""
+        view, known = self.until(inf), self._known
+        view._method = solver
+        begin = known.clock() - known.begun
+        yield view
+        known.turns.append(SolverTurn(solver, begin, known.clock() - known.begun))
 
     def spend(self, work: float, iterations: int = 0) -> None:
         """A solver has worked so long by its own count (s), and tried so many routes."""
@@ -193,6 +198,10 @@ class Search:
     @property
     def history(self) -> tuple[SearchProgress, ...]:
         return tuple(self._known.history)
+
+    @property
+    def turns(self) -> tuple[SolverTurn, ...]:
+        return tuple(sorted(self._known.turns, key=lambda turn: turn.begin))
 
     def progress(self) -> SearchProgress:
         """How far the search is."""
@@ -283,4 +292,4 @@ class Search:
                 "this route problem; please report it with the problem"
             )
         known.method = self._method or known.method
-        known.history.append(self.progress())
+        known.history.append(replace(self.progress(), solver=self._method))

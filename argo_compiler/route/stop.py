@@ -30,6 +30,8 @@ class SearchProgress:
     """no route that wins as much as the best can win costs less, in units"""
     better: tuple[float, int] = (0.0, 0)
     """time and iterations when the best route was found; those of the beginning before"""
+    solver: str = ""
+    """in the curve of a search: who found this"""
 
     @property
     def gap(self) -> float | None:
@@ -45,6 +47,15 @@ def gap(prize: int, cost: int, prize_bound: int, bound: int) -> float:
     if prize < prize_bound:
         return (prize_bound - prize) / prize_bound
     return (cost - bound) / cost if cost > bound else 0.0
+
+
+@dataclass(frozen=True)
+class SolverTurn:
+    """When a solver took part; s since the search began."""
+
+    solver: str
+    begin: float
+    end: float
 
 
 StopCriterion = Callable[[SearchProgress], bool]

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 
 from argo_compiler.errors import Invalid
 from argo_compiler.route.problem import RouteProblem, Tour
-from argo_compiler.route.stop import SearchProgress, StopCriterion, gap
+from argo_compiler.route.stop import SearchProgress, SolverTurn, StopCriterion, gap
 
 if TYPE_CHECKING:
     from argo_compiler.route.solver import RouteSolver
@@ -45,6 +45,8 @@ class RouteSuggestion:
     """why the route was made so: what was tried, and what was picked why"""
     history: tuple[SearchProgress, ...] = ()
     """what was known when: the curve of an anytime search"""
+    turns: tuple[SolverTurn, ...] = ()
+    """which solver took part when, by their begin"""
 
     @property
     def order(self) -> tuple[int, ...]:

@@ -51,6 +51,17 @@ def evaluate(problem: RouteProblem, route: Tour) -> Evaluation:
     return _Walk(problem, route).evaluation()
 
 
+def after_rounds(
+    problem: RouteProblem, number: int, order: tuple[int, ...], places: frozenset[int]
+) -> tuple[int, int, frozenset[int]] | None:
+    """Time, energy used and where the robot may be after all rounds of an outermost Round whose
+    members come in the order given, counted from the places from which it is entered; None: that
+    can't be."""
+    walk = _Walk(problem, Tour(order))
+    state = walk._rounds(_State(0, 0, places), number, order)
+    return None if walk._violations else (state.time, state.used, state.places)
+
+
 @dataclass(frozen=True)
 class _State:
     """Between two visits. `places`: where the robot may be: it is reckoned with the worst."""

@@ -16,6 +16,7 @@ from argo_compiler.route.robust_spread import CAUTIOUS, SIMULATED
 from argo_env.files.folders import make_folder
 from argo_env.files.yaml_messages import message_of
 from argo_env.planning.opening import OpenedSite, open_site
+from argo_planner.terminal.certificate_lines import show_certificate
 from argo_planner.terminal.files import keep_apart, read_upload, require_mission_output
 from argo_planner.terminal.importing import import_shown
 from argo_planner.terminal.options import EndArea, SiteOption, Source, StartArea
@@ -32,6 +33,7 @@ from argo_planner.use_cases.routing import (
     suggest_robust,
 )
 from argo_planner.use_cases.routing import suggest_order as suggest
+from argo_planner.use_cases.routing import verify as verify_order
 
 
 class Spread(StrEnum):
@@ -78,6 +80,9 @@ def suggest_order(
     robust: Annotated[
         bool, typer.Option("--robust", help="take the order that is most probably in time instead")
     ] = False,
+    verify: Annotated[
+        bool, typer.Option("--verify", help="check apart from the search what is said of the order")
+    ] = False,
     output: Annotated[
         Path | None, typer.Option("-o", "--output", help="the mission's .json to write")
     ] = None,
@@ -87,7 +92,8 @@ def suggest_order(
     start_area: StartArea = None,
     end_area: EndArea = None,
 ) -> None:
-    """Suggest the best order of a mission's tasks; exits with status 2 if there is none."""
+    """Suggest the best order of a mission's tasks; exits with status 2 if there is none, and 1 if
+    something that was said of it turns out to be wrong."""
     keep_apart([source, site, requirements], [output])
     if output:
         require_mission_output(output)
@@ -104,12 +110,14 @@ def suggest_order(
     found = suggest(imported, opened, wanted, time_limit=time_limit, seed=seed)
     console = Console(highlight=False)
     spread = SPREADS[risk or Spread.CAUTIOUS]
-    _require_order(source, found, console)
+    _require_order(source, found, console, verify)
     if robust:
         found = suggest_robust(found, spread, time_limit, seed)
-        _require_order(source, found, console)
+        _require_order(source, found, console, verify)
     reordered = found.mission if output else None  # now: not every order can be written
     show(found, console)
+    if verify:
+        _verify(found, console)
     if robust or risk:
         show_risk(found, spread, seed, console)
     if output and reordered:
@@ -133,11 +141,20 @@ def _draw(found: Suggested, site: OpenedSite, folder: Path, console: Console) ->
         console.print(f"Picture: {path}", soft_wrap=True, markup=False)
 
 
-def _require_order(source: Path, found: Suggested, console: Console) -> None:
+def _verify(found: Suggested, console: Console) -> None:
+    certificate = verify_order(found)
+    show_certificate(found, certificate, console)
+    if certificate.refuted:
+        raise typer.Exit(1)
+
+
+def _require_order(source: Path, found: Suggested, console: Console, verify: bool) -> None:
     try:
         require_order(found, str(source))
     except Conflict as error:
         console.print(order_said(said(error)), soft_wrap=True, markup=False)
+        if verify:
+            _verify(found, console)
         raise typer.Exit(2) from None
 
 

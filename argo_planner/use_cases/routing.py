@@ -10,6 +10,7 @@ from argo_compiler.reorder.mission import MissionRoute
 from argo_compiler.reorder.precedences import require_known
 from argo_compiler.reorder.requirements import Requirements
 from argo_compiler.reorder.rewriting import apply_route
+from argo_compiler.route.certificate import Certificate, certify
 from argo_compiler.route.evaluation import Evaluation, evaluate
 from argo_compiler.route.problem import Tour
 from argo_compiler.route.robust import suggest_robust_route
@@ -30,6 +31,7 @@ TIME_LIMIT = 5.0
 MAX_BYTES = 10_000_000
 """of a file of requirements"""
 
+_VERIFIED = 10.0  # s that it may take to verify an order
 _SAMPLES = 10_000  # of a mission, to tell how probable it is that it is in time
 
 
@@ -157,6 +159,11 @@ def suggest_robust(
         reasons=(*nominal.reasons, text),
     )
     return replace(found, suggestion=suggestion)
+
+
+def verify(found: Suggested) -> Certificate:
+    """What is sure of all that is said of the order, checked apart from the search."""
+    return certify(found.planned.problem, found.suggestion, _VERIFIED)
 
 
 def completions(found: Suggested, spread: TravelSpread, seed: int) -> tuple[Completion, Completion]:

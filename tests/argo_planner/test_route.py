@@ -11,6 +11,7 @@ from argo_compiler.files.mission_file import read_mission, write_mission
 from argo_compiler.hfsm import Hfsm
 from argo_compiler.il import Group, Order
 from argo_compiler.model import Pose
+from argo_compiler.route import RouteSuggestion, Tour, evaluate
 from argo_env.planning.opening import OpenedSite
 from argo_env.run.record import RunRecord
 from argo_planner.cli import app
@@ -85,6 +86,32 @@ def test_what_does_not_fit_into_a_budget_is_left_out(argo, source, tmp_path):
     assert "Suggested: within all limits with" in result.text
     assert "MEASURE 2" in order_in(tmp_path / "new.json")
     assert len(order_in(tmp_path / "new.json")) < len(order_in(source))
+
+
+def test_what_is_said_of_an_order_can_be_verified(argo, source):
+    result = argo("route", source, "--verify")
+    assert result.exit_code == 0, result.text
+    assert "Verified: the order keeps to everything and takes" in result.text
+    assert "Verified: no order is better (all routes gone through" in result.text
+    assert "Wrong" not in result.text
+    result = argo("route", source, "--verify", "--budget", "1s")
+    assert result.exit_code == 2
+    result = argo("route", source, "--verify", "--keep-order", "--before", "1, 2")
+    assert result.exit_code == 2
+    assert "Verified: no order meets all that is asked for" in result.text
+
+
+def test_an_order_that_is_wrongly_said_to_be_the_best_is_a_defect(argo, source, monkeypatch):
+    def turned(problem, *_):
+        route = Tour(tuple(range(problem.size))[::-1])
+        cost = evaluate(problem, route).cost(problem.objective)
+        return RouteSuggestion(route, 0, 0, cost, cost, proven=True)
+
+    monkeypatch.setattr("argo_planner.use_cases.routing.suggest_route", turned)
+    result = argo("route", source, "--verify")
+    assert result.exit_code == 1
+    assert "Wrong: no order is better (" in result.text
+    assert "please report it" in result.text
 
 
 def test_a_robust_order_is_in_time_more_often(argo, source):

@@ -20,6 +20,9 @@ from scipy.sparse import csr_array
 from argo_compiler.route.blocks import Blocks, Places
 from argo_compiler.route.problem import NEVER, Objective, Tour
 
+_MOST_ARCS = 5_000
+"""between blocks, for which prices are looked for"""
+
 
 class Beginning(NamedTuple):
     """A route up to the end of some block, or up to a charger."""
@@ -170,7 +173,7 @@ def _prices(between: NDArray[np.int64], selective: bool) -> tuple[list[int], lis
     count = len(between)
     rows, columns = np.nonzero(between < NEVER)
     leave = np.zeros(count, np.int64)
-    if not selective and len(rows):
+    if not selective and 0 < len(rows) <= _MOST_ARCS:
         arcs = np.arange(len(rows))
         matrix = csr_array(
             (np.ones(2 * len(rows)), (np.tile(arcs, 2), np.append(rows, count + columns))),

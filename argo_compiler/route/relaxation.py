@@ -62,12 +62,14 @@ class Relaxation:
         claimed. None: no route wins it."""
         if self._blocks.problem.objective is Objective.PRIZE:
             return 0
+        cost = 0
         if not self._blocks.problem.selective:
             rows, columns = linear_sum_assignment(self._between)
             cost = int(self._between[rows, columns].sum())
             if cost >= claimed:
                 return None if cost >= NEVER else cost
-        return self._minimum(self._times, prize, claimed)
+        least = self._minimum(self._times, prize, claimed)
+        return None if least is None else max(least, cost)
 
     def _row(self, arcs: NDArray[np.bool_], block: int, least: float, most: float) -> Row:
         """Counts arcs, less whether the block is made."""

@@ -1,5 +1,5 @@
-"""The optimiser as a policy. Its limit is one of work, by which it finds the same routes on a slow or
-a busy machine."""
+"""The optimiser as a policy. Its limit is one of work: so it finds the same routes each time, on a
+slow or a busy machine as well."""
 
 from argo_compiler.route import suggest_route
 from argo_env.envs.observations import Observation

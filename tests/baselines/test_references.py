@@ -36,7 +36,7 @@ def problem_of(tests, number=NUMBER):
 def finds(monkeypatch, order, prize, bound):
     """The optimiser finds this, whatever it is asked."""
     found = RouteSuggestion(Tour(order), prize, bound, 0, 0, prize == bound)
-    monkeypatch.setattr(references, "suggest_route", lambda *_: found)
+    monkeypatch.setattr(references, "suggest_route", lambda *_, **__: found)
 
 
 @pytest.mark.parametrize("name", TEST_SETS)

@@ -1,4 +1,4 @@
-"""Route problems stated for PyVRP, which searches and gives no bounds (extra `bench`).
+"""Route problems stated for PyVRP, which searches and gives no bounds (extra `route`).
 
 PyVRP (N. Wouda, L. Lan, W. Kool, INFORMS Journal on Computing 2024) is a local search for vehicle
 routing. It takes one of our problems as one vehicle that sets off at time 0, with whole numbers
@@ -39,7 +39,7 @@ def search(problem: RouteProblem, time_limit: float, seed: int) -> Tour | None:
     Raises ArgoError if PyVRP is not installed or can't state the problem.
     """
     if find_spec("pyvrp") is None:
-        raise ArgoError("PyVRP is not installed; run: pip install 'argo-mission[bench]'")
+        raise ArgoError("PyVRP is not installed; run: pip install 'argo-mission[route]'")
     if reason := why_not(problem):
         raise ArgoError(f"PyVRP does not know {reason}; leave it out")
     import pyvrp

@@ -9,6 +9,7 @@ from argo_compiler.route.cp_sat import CpSat
 from argo_compiler.route.guided_local_search import GuidedLocalSearch
 from argo_compiler.route.held_karp import HeldKarp
 from argo_compiler.route.labels import LabelBeams, Labels
+from argo_compiler.route.pyvrp_search import PyvrpSearch
 from argo_compiler.route.ruin_recreate import FirstRules, RuinRecreate
 from argo_compiler.route.search import Search
 from argo_compiler.route.solver import RouteSolver, registered_solvers
@@ -16,7 +17,12 @@ from argo_compiler.route.solver import RouteSolver, registered_solvers
 FIRST: tuple[RouteSolver, ...] = (FirstRules(),)
 SMALL: tuple[RouteSolver, ...] = (HeldKarp(), Labels())
 """prove what is small enough, and give up on all else at once"""
-IMPROVING: tuple[RouteSolver, ...] = (GuidedLocalSearch(), RuinRecreate(), LabelBeams())
+IMPROVING: tuple[RouteSolver, ...] = (
+    PyvrpSearch(),
+    GuidedLocalSearch(),
+    RuinRecreate(),
+    LabelBeams(),
+)
 PROVING: tuple[RouteSolver, ...] = (CpSat(),)
 
 _IMPROVED_FIRST = 0.35

@@ -1,0 +1,120 @@
+"""PyVRP as one of the route solvers, alone and under a limit of work."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from argo_compiler.route import NEVER, Precedence, Round, RouteProblem, Visit, evaluate
+from argo_compiler.route.problem import EnergyBudget
+from argo_compiler.route.pyvrp_search import PyvrpSearch
+from argo_compiler.route.suggestion import RouteSuggestion, suggest_route
+from tests.argo_compiler.route.brute_force import brute_force
+from tests.argo_compiler.route.random_problems import random_problem
+
+pytest.importorskip("pyvrp")
+
+
+def suggest(problem: RouteProblem, work: float = 0.04, seed: int = 1) -> RouteSuggestion:
+    return suggest_route(
+        problem, None, seed, explain=False, work_limit=work, solvers=(PyvrpSearch(),)
+    )
+
+
+def plain_problem(n: int, seed: int = 0) -> RouteProblem:
+    """Visits in a square; each is worth something."""
+    rng = np.random.default_rng(seed)
+    at = rng.uniform(0, 100, (n + 1, 2))
+    travel = np.rint(np.abs(at[:, None] - at).sum(axis=2)).astype(np.int64)
+    visits = tuple(Visit(f"{k}", int(rng.integers(0, 9)), prize=k + 1) for k in range(n))
+    return RouteProblem(visits, travel)
+
+
+def test_best_routes_of_small_problems_with_any_constraints_it_can_state():
+    told: set[str] = set()
+    for seed in range(60):
+        problem = replace(random_problem(np.random.default_rng(seed), 6), precedences=())
+        if problem.battery is not None:
+            continue
+        counted = [replace(one, repeat=max(1, one.repeat), duration=0) for one in problem.rounds]
+        problem = replace(problem, rounds=tuple(counted))
+        best, found = brute_force(problem), suggest(problem)
+        if best is None:
+            assert found.route is None
+            continue
+        assert found.route is not None, seed
+        assert evaluate(problem, found.route).feasible
+        assert (found.prize, found.cost) == best, seed
+        told |= {"rounds"} if problem.rounds else set()
+        told |= {"windows"} if any(v.latest is not None for v in problem.visits) else set()
+        told |= {"prizes"} if problem.selective else set()
+        told |= {"no way"} if (problem.travel == NEVER).any() else set()
+    assert told == {"rounds", "windows", "prizes", "no way"}
+
+
+def test_same_route_for_the_same_seed_and_work():
+    problem = plain_problem(40)
+    optional = tuple(replace(visit, mandatory=False) for visit in problem.visits)
+    for one in (problem, replace(problem, visits=optional, max_duration=300)):
+        first, again = suggest(one), suggest(one)
+        assert first.route == again.route
+        courses = [[(p.work, p.prize, p.cost) for p in s.history] for s in (first, again)]
+        assert courses[0] == courses[1]
+
+
+def test_each_better_route_is_known_at_once():
+    problem = plain_problem(60)
+    costs: list[int] = []
+    found = suggest_route(
+        problem,
+        None,
+        work_limit=0.3,
+        solvers=(PyvrpSearch(),),
+        on_best=lambda _, tour: costs.append(evaluate(problem, tour).duration),
+    )
+    assert len(costs) > 3
+    assert costs == sorted(costs, reverse=True)
+    assert costs[-1] == found.cost
+
+
+def test_a_better_route_than_the_first_is_gone_on_from():
+    problem = plain_problem(60)
+    simple = suggest_route(problem, None, work_limit=0.1, solvers=("first rules",))
+    better = suggest_route(problem, None, work_limit=0.1, solvers=("first rules", PyvrpSearch()))
+    assert better.cost < simple.cost
+
+
+def test_any_prize_comes_before_the_way_also_where_prizes_are_huge():
+    problem = plain_problem(6)
+    for worth in (1, 1 << 35):
+        visits = tuple(replace(v, mandatory=False, prize=v.prize * worth) for v in problem.visits)
+        limited = replace(problem, visits=visits, max_duration=250)
+        found = suggest(limited)
+        assert (found.prize, found.cost) == brute_force(limited)
+
+
+def test_what_makes_nothing_is_offered_only_where_it_is_possible():
+    travel = np.array([[0, NEVER], [NEVER, 7]])
+    visit = Visit("a", mandatory=False, prize=1)
+    found = suggest(RouteProblem((visit,), travel, max_duration=7))
+    assert found.route is not None
+    assert found.order == ()
+    assert suggest(RouteProblem((visit,), travel, max_duration=6)).route is None
+    assert suggest(RouteProblem((), travel[1:, 1:])).cost == 7
+
+
+def test_what_it_can_not_state():
+    problem = plain_problem(4)
+    ordered = replace(problem, precedences=(Precedence((0, 1), "0 before 1"),))
+    within = replace(ordered, rounds=(Round("r", (0, 1), 2),))
+    across = replace(ordered, rounds=(Round("r", (1, 2), 2),))
+    powered = replace(problem, battery=EnergyBudget(problem.travel.copy(), 1000))
+    solver = PyvrpSearch()
+    assert [solver.supports(p) for p in (problem, ordered, within, powered)] == [
+        True,
+        False,
+        True,
+        False,
+    ]
+    assert suggest(within).order.index(0) + 1 == suggest(within).order.index(1)
+    assert suggest(across).route is None

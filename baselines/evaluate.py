@@ -1,11 +1,13 @@
-"""Policies compared on fixed test sets: prize, gap to the optimum, feasible share and time.
+"""Policies compared on fixed test sets: prize, gap to the best known routes, and time.
 
     python -m baselines.evaluate                                   # all policies on random-20-v1
     python -m baselines.evaluate --family noisy-20-v1 umad-20-v1 --policy learned portfolio-resolved
     python -m baselines.evaluate --policy my_module:MyPolicy --instances 10 --out out/mine
 
-Intervals are 95 % intervals of a bootstrap over instances, paired between policies. The gap is by
-how much the mean prize is below that of the best routes (see `python -m baselines.references`).
+Intervals are 95 % intervals of a bootstrap over instances, paired between policies. The gap is
+by how much the mean prize is below that of the best routes that are known (see `python -m
+baselines.references`). s/instance is processor time. A star marks the Pareto front: no other policy
+wins as much in less time.
 """
 
 import argparse
@@ -21,7 +23,7 @@ from rich.table import Table
 
 from argo_compiler.errors import ArgoError, Invalid
 from argo_env.files.folders import make_folder
-from baselines.comparison import PolicyComparison, compare
+from baselines.comparison import Beaten, PolicyComparison, compare
 from baselines.episodes import play
 from baselines.families import TEST_SETS, find_set
 from baselines.intervals import ConfidenceInterval
@@ -32,28 +34,50 @@ _DEFAULT = "random-20-v1"
 _WIDTH = 150  # characters of a table that goes to a file
 
 
-COLUMNS = ("policy", "prize", "gap %", "behind the best", "docked after s", "feasible %", "ms/act")
+COLUMNS = (
+    "", "policy", "s/instance", "prize", "gap vs best known %", "behind the first",
+    "docked after s", "feasible %",
+)  # fmt: skip
 
 
 def title(comparison: PolicyComparison) -> str:
     """What is compared."""
-    return (
-        f"{comparison.test_set}: {comparison.instances} instances, the best route proven for "
-        f"{comparison.proven}"
+    said = (
+        f"{comparison.test_set}: {comparison.instances} instances, the best known route proven to "
+        f"be the best for {comparison.proven}"
     )
+    if comparison.proven == comparison.instances:
+        return said
+    return f"{said}; no routes win more than {100 * comparison.open:.1f} % above the best known"
+
+
+def warnings(comparison: PolicyComparison) -> list[str]:
+    """What is wrong with the best known routes: each policy that found better ones."""
+    found: dict[str, list[Beaten]] = {}
+    for one in comparison.beaten:
+        found.setdefault(one.policy, []).append(one)
+    return [
+        f"{name} BEATS the best known routes of {comparison.test_set} on {len(those)} of "
+        f"{comparison.instances} instances (first {those[0].instance}: {those[0].prize:.2f}, known "
+        f"{those[0].known:.2f}): they are stale, and gaps to them say too little. Write results "
+        f"with --out DIR, and run `python -m baselines.references {comparison.test_set} --results "
+        "DIR/results.json`"
+        for name, those in found.items()
+    ]
 
 
 def lines(comparison: PolicyComparison) -> list[tuple[str, ...]]:
     """What is printed of each policy, the best first."""
     return [
         (
+            "*" if row in comparison.front else "",
             row.policy,
+            f"{row.seconds.value:.2g}",
             _said(row.prize, 1, 2),
             _said(row.gap, 100, 2),
             _said(row.behind, 1, 2),
             _said(row.time, 1, 0),
             _said(row.feasible, 100, 0),
-            _said(row.thinking, 1000, 2),
         )
         for row in sorted(comparison.rows, key=lambda row: -row.prize.value)
     ]
@@ -67,7 +91,10 @@ def _said(interval: ConfidenceInterval, scale: float, digits: int) -> str:
 
 def table(comparison: PolicyComparison) -> Table:
     """The comparison as it is printed."""
-    caption = "in brackets: 95 % intervals, bootstrap over instances, paired"
+    caption = (
+        "*: no other wins as much in less time; in brackets: 95 % intervals, bootstrap over "
+        "instances, paired"
+    )
     made = Table(title=title(comparison), caption=caption)
     for name in COLUMNS:
         made.add_column(name, justify="left" if name == "policy" else "right")
@@ -80,7 +107,8 @@ def markdown(comparison: PolicyComparison) -> str:
     """The same as a table in Markdown."""
     rows = [COLUMNS, ("---",) * len(COLUMNS), *lines(comparison)]
     text = "".join(f"| {' | '.join(row)} |\n" for row in rows)
-    return f"{title(comparison)}\n\n{text}"
+    warned = "".join(f"\n{warning}\n" for warning in warnings(comparison))
+    return f"{title(comparison)}\n\n{text}{warned}"
 
 
 def write(comparisons: Sequence[PolicyComparison], folder: Path) -> None:
@@ -172,6 +200,8 @@ def _evaluate(given: argparse.Namespace) -> None:
             outcomes[name] = tuple(play(policy, tests, given.instances, given.seed))
         comparisons.append(compare(tests, outcomes, best[tests.name], given.seed))
         console.print(table(comparisons[-1]))
+        for warning in warnings(comparisons[-1]):
+            notes.print(f"WARNING: {warning}", style="bold red", highlight=False, soft_wrap=True)
         if given.out is not None:
             write(comparisons, given.out)
 

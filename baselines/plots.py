@@ -1,5 +1,6 @@
 """Plots of the arena.
 
+python -m baselines.plots ranking out/arena/results.json --out out/plots
 python -m baselines.plots gaps out/arena/results.json --out out/plots
 python -m baselines.plots tour --family umad-20-v1 --policy insertion --instance 1000000 --out …
 python -m baselines.plots convergence --family random-40-v1 --instance 1000000 --out out/plots
@@ -14,25 +15,92 @@ from typing import Any
 
 import matplotlib.pyplot as plt
 import numpy as np
+from matplotlib.axes import Axes
 from PIL import Image
 
 from argo_compiler.errors import ArgoError, Invalid, Unavailable
 from argo_compiler.route import RouteProblem, suggest_route
 from argo_env.envs.route import RouteEnv
 from argo_env.files.folders import make_folder
+from baselines.comparison import PolicyComparison, Row
+from baselines.episodes import EpisodeOutcome
 from baselines.families import InstanceSet, TurnTaking, find_set
+from baselines.intervals import ConfidenceInterval
 from baselines.policy import Policy, make_policy
 from baselines.problem import HUNDREDTH, hindsight
+from baselines.references import BestKnown
 
-_FOUND, _BOUND = "#1f5f99", "#b45309"
+_FOUND, _BOUND, _BEHIND = "#1f5f99", "#b45309", "#64707c"
+_TICKS = (-20, -10, -5, -2, 0, 2, 5, 10, 20, 50)  # %
+
+
+def plot_ranking(results: Path, folder: Path) -> list[Path]:
+    """For each test set in a `results.json`, each policy by its time and its gap to the best known
+    routes, with the Pareto front. Raises ArgoError if it is no such file."""
+    return [
+        _ranking(one, folder / f"ranking-{one.test_set}.png") for one in read_comparisons(results)
+    ]
 
 
 def plot_gaps(results: Path, folder: Path) -> list[Path]:
-    """A box plot for each test set in a `results.json`: by what share of the best route's prize
-    each policy is below it, instance by instance. Raises ArgoError if it is no such file."""
+    """A box plot for each test set in a `results.json`: by what share of the best known route's
+    prize each policy is below it, instance by instance. Raises ArgoError if it is no such file."""
+    return [
+        _box_plot(one.test_set, _gaps(one), folder / f"gaps-{one.test_set}.png")
+        for one in read_comparisons(results)
+    ]
+
+
+def _ranking(comparison: PolicyComparison, picture: Path) -> Path:
+    figure, axes = plt.subplots(figsize=(8, 4.5), layout="constrained")
+    front = comparison.front
+    last = 10 * max(row.seconds.value for row in comparison.rows)
+    axes.step(
+        [*(row.seconds.value for row in front), last],
+        [100 * row.gap.value for row in (*front, front[-1])],
+        where="post", color=_FOUND, linewidth=1, zorder=1,
+        label="Pareto front: no other wins as much in less time",
+    )  # fmt: skip
+    for row in comparison.rows:
+        gap, colour = row.gap, _FOUND if row in front else _BEHIND
+        axes.errorbar(
+            row.seconds.value, 100 * gap.value, color=colour, marker="o", capsize=2, linewidth=1,
+            yerr=[[100 * (gap.value - gap.low)], [100 * (gap.high - gap.value)]],
+        )  # fmt: skip
+        axes.annotate(
+            f"{row.policy}  {100 * gap.value:.1f}", (row.seconds.value, 100 * gap.value),
+            xytext=(6, 5), textcoords="offset points", fontsize=8, color=colour,
+        )  # fmt: skip
+    _best_known_lines(axes, comparison)
+    axes.set_xscale("log")
+    axes.set_xlim(right=last)
+    axes.set_yscale("symlog", linthresh=5.0)
+    axes.set_yticks(_TICKS, [str(tick) for tick in _TICKS])
+    axes.set_yticks([], minor=True)
+    axes.invert_yaxis()
+    axes.set_xlabel("s of processor time for an instance")
+    axes.set_ylabel("gap to the best known routes, %")
+    axes.set_title(f"{comparison.test_set}, {comparison.instances} instances", fontsize=10)
+    axes.grid(alpha=0.3)
+    axes.legend(loc="lower right", fontsize=8)
+    return _saved(figure, picture)
+
+
+def _best_known_lines(axes: Axes, comparison: PolicyComparison) -> None:
+    """At the best known routes; and above, what is not proven to be out of reach."""
+    open_ = 100 * comparison.open
+    proven = f"proven for {comparison.proven} of {comparison.instances}"
+    axes.axhline(0.0, color=_BOUND, linewidth=1, label=f"best known routes ({proven})")
+    if open_ > 0.0:
+        label = f"none wins more than {open_:.1f} % above them"
+        axes.axhspan(-open_, 0.0, color=_BOUND, alpha=0.12, linewidth=0, label=label)
+
+
+def read_comparisons(results: Path) -> list[PolicyComparison]:
+    """What `python -m baselines.evaluate --out DIR` wrote as `results.json`. Raises ArgoError if it
+    is no such file."""
     try:
-        comparisons = json.loads(results.read_text(encoding="utf-8"))
-        gaps = {one["test_set"]: _gaps(one) for one in comparisons}
+        return [_comparison(one) for one in json.loads(results.read_text(encoding="utf-8"))]
     except OSError as error:
         raise Unavailable(f"{results} can't be read: {error.strerror}") from None
     except (ValueError, KeyError, TypeError):
@@ -40,15 +108,34 @@ def plot_gaps(results: Path, folder: Path) -> list[Path]:
             f"{results} has no results of `python -m baselines.evaluate --out DIR`: give the "
             "results.json that it writes"
         ) from None
-    return [_box_plot(name, found, folder / f"gaps-{name}.png") for name, found in gaps.items()]
 
 
-def _gaps(comparison: dict[str, Any]) -> dict[str, list[float]]:
+def _comparison(data: dict[str, Any]) -> PolicyComparison:
+    """Lists are read as tuples."""
+    rows = [
+        {name: ConfidenceInterval(**part) for name, part in row.items() if name != "policy"}
+        for row in data["rows"]
+    ]
+    parts = {
+        "rows": tuple(
+            Row(policy=row["policy"], **figures)
+            for row, figures in zip(data["rows"], rows, strict=True)
+        ),
+        "best": tuple(BestKnown(**one | {"route": tuple(one["route"])}) for one in data["best"]),
+        "outcomes": {
+            name: tuple(EpisodeOutcome(**one | {"route": tuple(one["route"])}) for one in found)
+            for name, found in data["outcomes"].items()
+        },
+    }
+    return PolicyComparison(**data | parts)
+
+
+def _gaps(comparison: PolicyComparison) -> dict[str, list[float]]:
     """Of each policy, in %, the best on average first; instances without a prize are left out."""
-    best = [reference["prize"] for reference in comparison["best"]]
+    best = [reference.prize for reference in comparison.best]
     found = {
-        policy: [100 * (1 - o["prize"] / b) for o, b in zip(outcomes, best, strict=True) if b > 0]
-        for policy, outcomes in comparison["outcomes"].items()
+        policy: [100 * (1 - o.prize / b) for o, b in zip(outcomes, best, strict=True) if b > 0]
+        for policy, outcomes in comparison.outcomes.items()
     }
     return dict(sorted(found.items(), key=lambda item: float(np.mean(item[1]))))
 
@@ -68,7 +155,7 @@ def _box_plot(name: str, gaps: dict[str, list[float]], picture: Path) -> Path:
     )  # fmt: skip
     axes.invert_yaxis()
     axes.axvline(0.0, color="#64707c", linewidth=0.8)
-    axes.set_xlabel("below the best route, % of its prize (line: median, diamond: mean of all)")
+    axes.set_xlabel("gap to the best known route, % of its prize (line: median, diamond: mean)")
     axes.set_title(f"{name}, {len(next(iter(gaps.values())))} instances", fontsize=10)
     axes.grid(axis="x", alpha=0.3)
     return _saved(figure, picture)
@@ -137,8 +224,10 @@ def main(arguments: Sequence[str] | None = None) -> int:
         formatter_class=argparse.RawDescriptionHelpFormatter,
     )
     kinds = parser.add_subparsers(dest="kind", required=True)
+    ranking = kinds.add_parser("ranking", help="time and gap of each policy")
     gaps = kinds.add_parser("gaps", help="box plots of gaps")
-    gaps.add_argument("results", type=Path, metavar="RESULTS.json")
+    for kind in (ranking, gaps):
+        kind.add_argument("results", type=Path, metavar="RESULTS.json")
     tour = kinds.add_parser("tour", help="a policy's route on the floors")
     tour.add_argument("--policy", default="portfolio", metavar="NAME")
     convergence = kinds.add_parser("convergence", help="best prize and bound over time")
@@ -146,7 +235,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
     for kind in (tour, convergence):
         kind.add_argument("--family", default="random-20-v1", metavar="NAME")
         kind.add_argument("--instance", type=int, default=1_000_000, metavar="NUMBER")
-    for kind in (gaps, tour, convergence):
+    for kind in (ranking, gaps, tour, convergence):
         kind.add_argument("--out", type=Path, default=Path("out/plots"), metavar="DIR")
     given = parser.parse_args(arguments)
     try:
@@ -159,6 +248,8 @@ def main(arguments: Sequence[str] | None = None) -> int:
 
 
 def _draw(given: argparse.Namespace) -> list[Path]:
+    if given.kind == "ranking":
+        return plot_ranking(given.results, given.out)
     if given.kind == "gaps":
         return plot_gaps(given.results, given.out)
     tests, number = find_set(given.family), given.instance

@@ -36,6 +36,7 @@ POLICIES: dict[str, str | Callable[[], Policy]] = {
     "prize-over-time": "baselines.heuristics.prize_over_time:PrizeOverTime",
     "insertion": "baselines.heuristics.insertion:Insertion",
     "portfolio": "baselines.portfolio:Portfolio",
+    "portfolio-1s": "baselines.portfolio:QuickPortfolio",
     "portfolio-resolved": "baselines.portfolio:ResolvedPortfolio",
     "learned": "baselines.learned.agent:greedy",
     "learned-sampled": "baselines.learned.agent:sampled",

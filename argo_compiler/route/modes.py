@@ -267,6 +267,8 @@ def _undominated(ways: list[_Rounds], drives: _Drives, *, by_time: bool) -> list
     found: dict[int, list[tuple[_Rounds, Vector]]] = {}
     for way in ways:
         ends = [way.run(drive) for drive in drives.entries(way.first).tolist()]
+        if not ends:
+            continue  # there is no way to it
         rows = [(e.time, e.energy, numbers.setdefault(e.exit, len(numbers))) for e in ends]
         found.setdefault(way.first, []).append((way, np.array(rows, np.int64).T))
     within = np.array([[set(one) <= set(other) for other in numbers] for one in numbers])

@@ -1,6 +1,6 @@
 """Greedy insertion, and a local search with 2-opt and or-opt."""
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 
 from argo_compiler.route import RouteProblem
 from argo_env.envs.observations import Observation
@@ -21,16 +21,18 @@ class Insertion(PlannedPolicy):
         return found.order_of(insert_and_improve(found.problem))
 
 
-def insert_and_improve(problem: RouteProblem) -> tuple[int, ...]:
+def insert_and_improve(problem: RouteProblem, start: Sequence[int] = ()) -> tuple[int, ...]:
     """An order that keeps to the maximum duration and to precedence with `needed`: of visits that
     are all optional, without time windows, rounds and batteries.
 
     Inserts the visit with the most prize for the time that it adds, where it adds least; then
     reverses stretches (2-opt) and moves up to three visits (or-opt) as long as that saves time;
-    then inserts again, until nothing more fits.
+    then inserts again, until nothing more fits. Goes on from `start`, an order that keeps to the
+    maximum duration, less what does not come after all that it needs; nothing may take longer
+    where something is left out.
     """
     search = _Search(problem)
-    order: list[int] = []
+    order = search.kept(start)
     while True:
         grown = search.shortened(search.filled(order))
         if len(grown) == len(order):
@@ -51,6 +53,14 @@ class _Search:
         for precedence in problem.precedences:
             for k, visit in enumerate(precedence.sequence):
                 self._first[visit].update(precedence.sequence[:k])
+
+    def kept(self, order: Sequence[int]) -> list[int]:
+        """The order without what does not come after all that must come before it."""
+        made: set[int] = set()
+        for visit in order:
+            if self._first[visit] <= made:
+                made.add(visit)
+        return [visit for visit in order if visit in made]
 
     def filled(self, order: list[int]) -> list[int]:
         """The order with all inserted that can be, the best first."""
@@ -73,7 +83,7 @@ class _Search:
         while True:
             for changed in self._neighbours(order):
                 shorter = self._time(changed)
-                if shorter < time and self._kept(changed):
+                if shorter < time and len(self.kept(changed)) == len(changed):
                     order, time = changed, shorter
                     break
             else:
@@ -111,12 +121,3 @@ class _Search:
                 for j in range(len(rest) + 1):
                     if j != i:
                         yield rest[:j] + moved + rest[j:]
-
-    def _kept(self, order: list[int]) -> bool:
-        """Whether each visit comes after those that must come before it."""
-        made: set[int] = set()
-        for visit in order:
-            if not self._first[visit] <= made:
-                return False
-            made.add(visit)
-        return True

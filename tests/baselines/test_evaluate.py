@@ -8,8 +8,13 @@ import numpy as np
 import pytest
 from PIL import Image
 
+from argo_env.envs.route_sources import TEST
 from baselines import evaluate, plots
+from baselines.comparison import compare
+from baselines.episodes import EpisodeOutcome
+from baselines.families import TEST_SETS
 from baselines.intervals import Bootstrap
+from baselines.references import BestKnown
 
 FAST = ["given-order", "insertion"]
 
@@ -26,8 +31,10 @@ def results(tmp_path_factory):
 def test_the_table_is_printed(capsys):
     assert evaluate.main(["--instances", "2", "--policy", *FAST]) == 0
     printed = capsys.readouterr().out
-    for words in ("random-20-v1: 2 instances, the best route proven for 2", "gap %", *FAST):
-        assert words in printed
+    words = "random-20-v1: 2 instances, the best known route proven to be the best for 2"
+    for said in (words, "gap vs best", "s/instance", *FAST):
+        assert said in printed
+    assert "above the best known" not in printed  # nothing is open
     assert printed.index("insertion") < printed.index("given-order")  # the best comes first
 
 
@@ -61,7 +68,7 @@ def test_equal_arguments_give_equal_results(results, tmp_path):
         data = json.loads((folder / "results.json").read_text())
         for comparison in data:
             for row in comparison["rows"]:
-                del row["thinking"]
+                del row["seconds"]
             for outcomes in comparison["outcomes"].values():
                 for outcome in outcomes:
                     del outcome["seconds"]
@@ -86,6 +93,63 @@ def test_what_is_not_there_is_told_in_one_line(arguments, words, capsys):
     said = capsys.readouterr().err
     assert words in said
     assert said.count("\n") == 1
+
+
+def compared(prizes_and_seconds, best):
+    """Policies by name, with the prize on each instance and the seconds that each takes."""
+    outcomes = {
+        name: tuple(
+            EpisodeOutcome(number, prize, 100.0, True, 3, seconds, (1, 0))
+            for number, prize in zip(TEST, prizes, strict=False)
+        )
+        for name, (prizes, seconds) in prizes_and_seconds.items()
+    }
+    return compare(TEST_SETS["random-20-v1"], outcomes, best, 0)
+
+
+KNOWN = (BestKnown(4.0, 5.0), BestKnown(6.0, 6.0))
+
+
+def test_the_front_has_who_is_not_beaten_in_less_time():
+    policies = {
+        "slow": ([4.0, 6.0], 2.0),
+        "slower": ([4.0, 6.0], 3.0),
+        "rule": ([2.0, 2.0], 0.01),
+        "rule as good": ([2.0, 2.0], 0.02),
+        "bad": ([1.0, 1.0], 0.1),
+        "quick": ([3.0, 5.0], 0.1),
+    }
+    comparison = compared(policies, KNOWN)
+    assert [row.policy for row in comparison.front] == ["rule", "quick", "slow"]
+    stars = {line[1]: line[0] for line in evaluate.lines(comparison)}
+    assert {name for name, star in stars.items() if star == "*"} == {"rule", "quick", "slow"}
+
+
+def test_what_is_not_proven_is_said():
+    comparison = compared({"mine": ([4.0, 6.0], 1.0)}, KNOWN)
+    assert (comparison.proven, comparison.open) == (1, pytest.approx(0.1))
+    said = evaluate.title(comparison)
+    assert "proven to be the best for 1; no routes win more than 10.0 % above" in said
+    assert not evaluate.warnings(comparison)
+
+
+def test_a_policy_that_beats_the_best_known_is_told(monkeypatch, capsys):
+    comparison = compared({"mine": ([4.5, 6.0], 1.0), "other": ([4.0, 5.0], 1.0)}, KNOWN)
+    (warning,) = evaluate.warnings(comparison)
+    assert "mine BEATS the best known routes of random-20-v1 on 1 of 2 instances" in warning
+    assert "first 1000000: 4.50, known 4.00" in warning
+    assert "mine BEATS" in evaluate.markdown(comparison)
+    # Insertion is better than a route of 1.
+    stale = tuple(BestKnown(1.0, 99.0) for _ in range(100))
+    monkeypatch.setattr(evaluate, "references", lambda _: stale)
+    assert evaluate.main(["--instances", "2", "--policy", "insertion"]) == 0
+    assert "WARNING: insertion BEATS" in capsys.readouterr().err
+
+
+def test_results_are_read_as_they_were(tmp_path):
+    comparison = compared({"mine": ([4.0, 6.0], 1.0)}, KNOWN)
+    evaluate.write([comparison], tmp_path)
+    assert plots.read_comparisons(tmp_path / "results.json") == [comparison]
 
 
 def test_intervals_are_those_of_the_mean():
@@ -115,11 +179,12 @@ def picture(path):
 
 def test_plots_are_drawn(results, tmp_path, capsys):
     out = ["--out", str(tmp_path)]
-    assert plots.main(["gaps", str(results / "results.json"), *out]) == 0
+    for kind in ("gaps", "ranking"):
+        assert plots.main([kind, str(results / "results.json"), *out]) == 0
     assert plots.main(["tour", "--policy", "insertion", *out]) == 0
     assert plots.main(["convergence", "--time-limit", "5", *out]) == 0
     drawn = capsys.readouterr().out.split()
-    assert len(drawn) == 4
+    assert len(drawn) == 6
     for path in drawn:
         assert picture(path).std() > 5.0
 
@@ -135,6 +200,7 @@ def test_a_file_is_no_folder_for_results(tmp_path, capsys):
     ("arguments", "words"),
     [
         (["gaps", "nowhere.json"], "nowhere.json can't be read"),
+        (["ranking", "nowhere.json"], "nowhere.json can't be read"),
         (["tour", "--instance", "7"], "1000000 to 1000099, not 7"),
         (["tour", "--policy", "best"], "no policy `best`"),
     ],

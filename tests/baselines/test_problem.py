@@ -60,6 +60,11 @@ def test_optimum_is_that_of_brute_force(number, checkpoints, budget, precedence)
     score = score_route(instance, found.order_of(order))
     assert score.illegal is None
     assert round(100 * score.prize) == sum(found.problem.visits[v].prize for v in order) <= best
+    # The same, begun with the best route of somebody whom no order is asked of.
+    free = suggest_route(replace(found.problem, precedences=()), 5.0)
+    mended = insert_and_improve(found.problem, free.order)
+    assert evaluate(found.problem, Tour(mended)).feasible
+    assert sum(found.problem.visits[v].prize for v in mended) <= best <= free.prize
 
 
 @settings(max_examples=examples(30), deadline=None)

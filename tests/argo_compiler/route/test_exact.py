@@ -129,3 +129,13 @@ def test_of_a_round_with_many_members_nothing_is_claimed() -> None:
     assert not made.proven
     assert made.bound == 0
     assert any("too many orders" in reason for reason in made.reasons)
+
+
+def test_a_round_to_which_there_is_no_way() -> None:
+    from argo_compiler.route import Round, RouteProblem, Visit
+
+    travel = np.array([[NEVER, NEVER, 1], [NEVER, 0, 1], [NEVER, NEVER, 3]])
+    round_ = Round("patrol", (0, 1), repeat=0, duration=5)
+    made = suggest_route(RouteProblem((Visit("a"), Visit("b")), travel, rounds=(round_,)))
+    assert made.proven
+    assert made.route is None

@@ -1,0 +1,151 @@
+"""What a route means, and what is claimed of it, against a second reading of both.
+
+More problems than here: `python -m tests.argo_compiler.route.odd_campaign --help`.
+"""
+
+import numpy as np
+import pytest
+
+from argo_compiler.route import (
+    NEVER,
+    EnergyBudget,
+    Objective,
+    Precedence,
+    Round,
+    RouteProblem,
+    Tour,
+    Visit,
+    evaluate,
+    suggest_route,
+)
+from tests.argo_compiler.route.odd_campaign import finding, findings, numbered
+from tests.argo_compiler.route.odd_problems import odd_tour
+from tests.argo_compiler.route.second_reading import Reading
+
+WAYS = np.array([[50, 10, 100], [12, 60, 13], [14, 15, 16]])
+"""of two visits"""
+
+
+def two_visits(*rounds: Round) -> RouteProblem:
+    return RouteProblem((Visit("a", 1), Visit("b", 2)), WAYS.copy(), rounds=rounds)
+
+
+@pytest.mark.parametrize("chunk", range(8))
+def test_evaluation_agrees_with_the_second_reading(chunk: int) -> None:
+    rng = np.random.default_rng([chunk, 2])
+    possible = 0
+    for number in range(chunk * 200, chunk * 200 + 200):
+        problem = numbered(number, timed=chunk % 2 == 1)
+        reading = Reading(problem)
+        for _ in range(5):
+            tour = odd_tour(rng, problem)
+            evaluation, end = evaluate(problem, tour), reading.evaluate(tour)
+            assert evaluation.feasible == (end is not None), (number, tour, evaluation.violations)
+            if end is not None:
+                possible += 1
+                assert evaluation.prize == reading.prize(tour.order)
+                assert (evaluation.duration, evaluation.waiting) == (end.time, end.waiting)
+                assert evaluation.cost(problem.objective) == reading.cost(end), (number, tour)
+    assert possible > 100
+
+
+@pytest.mark.parametrize("chunk", range(16))
+def test_every_claim_is_true(chunk: int) -> None:
+    found, _ = findings(range(chunk * 100, chunk * 100 + 100))
+    assert not found, "\n".join(map(str, found))
+
+
+@pytest.mark.parametrize("chunk", range(8))
+def test_every_claim_is_true_of_rounds_that_last_for_some_time(chunk: int) -> None:
+    found, _ = findings(range(chunk * 50, chunk * 50 + 50), timed=True)
+    assert not found, "\n".join(map(str, found))
+
+
+@pytest.mark.parametrize(
+    ("duration", "soft", "end"),
+    [
+        (26, False, 26 + 100),  # left in the middle, from the member farthest from the end
+        (27, False, 27 + 13),  # complete just when it is over
+        (28, False, 28 + 100),
+        (27, True, 27 + 13),
+        (28, True, 27 + 25 + 13),  # one more round
+    ],
+)
+def test_when_a_round_is_over(duration: int, soft: bool, end: int) -> None:
+    problem = two_visits(Round("r", (0, 1), repeat=0, duration=duration, soft=soft))
+    read = Reading(problem).evaluate(Tour((0, 1)))
+    assert read is not None
+    assert read.time == evaluate(problem, Tour((0, 1))).duration == end
+
+
+def test_of_two_rounds_with_the_same_members_the_later_lies_within() -> None:
+    thrice, timed = Round("a", (0, 1), repeat=3), Round("b", (0, 1), 0, duration=28, soft=True)
+    for rounds, end in (((timed, thrice), 27 + 2 * 25), ((thrice, timed), 27 + 25 + 4 * 25)):
+        problem = two_visits(*rounds)
+        read = Reading(problem).evaluate(Tour((0, 1)))
+        assert read is not None
+        assert read.time == evaluate(problem, Tour((0, 1))).duration == end + 13
+
+
+def test_a_soft_round_in_others_of_which_a_visit_may_be_left_out() -> None:
+    travel = [
+        [2, 3, 2, 2, 3],
+        [2, 2, 1, 0, 3],
+        [2, 0, 0, 2, 3],
+        [1, 2, 0, 1, 3],
+        [NEVER, 2, 1, 2, 3],
+    ]
+    service_and_prize = [(2, 3), (0, 4), (2, 4), (8, 2)]
+    problem = RouteProblem(
+        tuple(Visit(f"{k}", s, k == 1, p) for k, (s, p) in enumerate(service_and_prize)),
+        np.array(travel),
+        precedences=(Precedence((0, 3), "0 before 3", needed=True),),
+        rounds=(
+            Round("r0", (2, 0, 3), repeat=0, duration=11, soft=True),
+            Round("r1", (2,), repeat=0, duration=25, soft=True),
+            Round("r2", (1,), repeat=2, duration=22, soft=True),
+        ),
+        max_duration=46,
+    )
+    found = suggest_route(problem, explain=False)
+    assert (found.proven, found.prize, found.cost) == (True, 13, 46)
+    assert found.order == (1, 2, 0, 3)
+    assert finding(problem)[0] == ""
+
+
+@pytest.mark.parametrize("seed", range(20))
+def test_a_round_with_an_end_and_the_same_once(seed: int) -> None:
+    rng = np.random.default_rng([seed, 3])
+    longest = int(rng.choice([5, 20, 60]))
+    rounds = [
+        Round("for a time", (1, 3, 2, 4), repeat=0, duration=107),
+        Round("once", (1, 3, 2, 4), repeat=1),
+        Round("alone", (0,), repeat=1),
+    ]
+    problem = RouteProblem(
+        tuple(Visit(f"{k}", int(rng.integers(longest))) for k in range(6)),
+        rng.integers(0, longest + 1, (7, 7)),
+        rounds=tuple(rounds[int(k)] for k in rng.permutation(3)),
+        objective=Objective.TRAVEL,
+    )
+    assert finding(problem)[0] == ""
+
+
+@pytest.mark.parametrize("seed", range(10))
+def test_a_round_of_all_with_a_battery_and_a_charger(seed: int) -> None:
+    rng = np.random.default_rng([seed, 4])
+    for _ in range(20):
+        longest = int(rng.integers(1, 5))
+        problem = RouteProblem(
+            tuple(Visit(f"{k}", int(rng.integers(0, 3))) for k in range(4)),
+            rng.integers(0, longest + 1, (6, 6)),
+            rounds=(Round("r", (0, 1, 2, 3), repeat=0, duration=6, soft=True),),
+            battery=EnergyBudget(
+                rng.integers(0, longest + 1, (6, 6)),
+                capacity=int(rng.integers(longest, 6 * longest)),
+                used=int(rng.integers(0, longest + 1)),
+                overhead=int(rng.integers(0, 3)),
+            ),
+            chargers=("c",),
+        )
+        assert finding(problem)[0] == "", problem

@@ -106,6 +106,10 @@ def findings(
             if not solvers:
                 found.append(Finding(number, timed, "refused", str(refused), None))
             continue
+        except Exception as broken:
+            # Whatever goes wrong is to be found, and the rest of the problems are to be tried.
+            found.append(Finding(number, timed, "broken", repr(broken), None))
+            continue
         counts[f"{said.method}: {'a route' if said.route else 'none'}"] += 1
         if what:
             words = (

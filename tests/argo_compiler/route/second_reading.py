@@ -276,3 +276,9 @@ class Search:
         found = Best(Tour(order, dict(charges)), self.reading.prize(order), self.reading.cost(end))
         if self.best is None or (-found.prize, found.cost) < (-self.best.prize, self.best.cost):
             self.best = found
+
+
+def best_worth(problem: RouteProblem) -> tuple[int, int] | None:
+    """The prize and cost of the best route; None: there is none."""
+    best = Reading(problem).best()
+    return None if best is None else (best.prize, best.cost)

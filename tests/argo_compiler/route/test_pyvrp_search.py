@@ -9,8 +9,8 @@ from argo_compiler.route import NEVER, Precedence, Round, RouteProblem, Visit, e
 from argo_compiler.route.problem import EnergyBudget
 from argo_compiler.route.pyvrp_search import PyvrpSearch
 from argo_compiler.route.suggestion import RouteSuggestion, suggest_route
-from tests.argo_compiler.route.brute_force import brute_force
 from tests.argo_compiler.route.random_problems import random_problem
+from tests.argo_compiler.route.second_reading import best_worth
 
 pytest.importorskip("pyvrp")
 
@@ -38,7 +38,7 @@ def test_best_routes_of_small_problems_with_any_constraints_it_can_state():
             continue
         counted = [replace(one, repeat=max(1, one.repeat), duration=0) for one in problem.rounds]
         problem = replace(problem, rounds=tuple(counted))
-        best, found = brute_force(problem), suggest(problem)
+        best, found = best_worth(problem), suggest(problem)
         if best is None:
             assert found.route is None
             continue
@@ -90,7 +90,7 @@ def test_any_prize_comes_before_the_way_also_where_prizes_are_huge():
         visits = tuple(replace(v, mandatory=False, prize=v.prize * worth) for v in problem.visits)
         limited = replace(problem, visits=visits, max_duration=250)
         found = suggest(limited)
-        assert (found.prize, found.cost) == brute_force(limited)
+        assert (found.prize, found.cost) == best_worth(limited)
 
 
 def test_what_makes_nothing_is_offered_only_where_it_is_possible():

@@ -34,6 +34,7 @@ class PathTiming:
             for s in network.chargers
         ]
         self._battery = network.problem.battery
+        self._travels = network.windowed and network.objective is Objective.TRAVEL
 
     def start(self) -> list[Stand]:
         """Before the first node."""
@@ -59,7 +60,7 @@ class PathTiming:
                     arrived = stand.time + to[origin] + self._battery.overhead + at + out[node]
                     charges = (*stand.charges, (position, number))
                     self._arrive(found, stand, node, arrived, out_energy[node], charges)
-        return _best(found)
+        return found if len(found) < 2 else self._best(found)
 
     def _arrive(
         self,
@@ -95,13 +96,16 @@ class PathTiming:
             case Objective.PRIZE:
                 return 0
 
-
-def _best(stands: list[Stand]) -> list[Stand]:
-    """Those than which none is as good in time, energy and waiting."""
-    if len(stands) < 2:
-        return stands
-    kept: list[Stand] = []
-    for one in sorted(stands, key=lambda s: (s.time, s.used, -s.waited)):
-        if not any(k.used <= one.used and k.time - k.waited <= one.time - one.waited for k in kept):
-            kept.append(one)
-    return kept
+    def _best(self, stands: list[Stand]) -> list[Stand]:
+        """Those than which none is as good in time and energy, and waiting where it counts."""
+        kept: list[Stand] = []
+        if not self._travels:
+            for one in sorted(stands, key=lambda s: (s.time, s.used)):
+                if not kept or one.used < kept[-1].used:
+                    kept.append(one)
+            return kept
+        for one in sorted(stands, key=lambda s: (s.time, s.used, -s.waited)):
+            gone = one.time - one.waited
+            if not any(k.used <= one.used and k.time - k.waited <= gone for k in kept):
+                kept.append(one)
+        return kept

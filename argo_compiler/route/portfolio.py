@@ -6,11 +6,12 @@ from collections.abc import Callable, Sequence
 from argo_compiler.errors import NotFound
 from argo_compiler.nearest_name import nearest_name
 from argo_compiler.route.cp_sat import CpSat
+from argo_compiler.route.first_rules import FirstRules
 from argo_compiler.route.guided_local_search import GuidedLocalSearch
 from argo_compiler.route.held_karp import HeldKarp
 from argo_compiler.route.labels import LabelBeams, Labels
 from argo_compiler.route.pyvrp_search import PyvrpSearch
-from argo_compiler.route.ruin_recreate import FirstRules, RuinRecreate
+from argo_compiler.route.ruin_recreate import RuinRecreate
 from argo_compiler.route.search import Search
 from argo_compiler.route.solver import RouteSolver, registered_solvers
 

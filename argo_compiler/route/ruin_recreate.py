@@ -1,4 +1,4 @@
-"""Routes for any problem: built step by step, then changed again and again.
+"""Routes for any problem, changed again and again.
 
 By ruin and recreate: some steps near each other are taken out of the route and put back where they
 cost least (P. Shaw, CP 1998; G. Schrimpf et al., Journal of Computational Physics 159, 2000). Steps
@@ -7,7 +7,6 @@ by the exchanges that pay, where a route's time is the sum of its arcs. A route 
 worse is taken now and then, less and less often.
 """
 
-from collections.abc import Callable
 from itertools import pairwise
 
 import numpy as np
@@ -15,9 +14,9 @@ from numpy.typing import NDArray
 
 from argo_compiler.route import or_opt
 from argo_compiler.route.network import StepNetwork
-from argo_compiler.route.path_timing import PathTiming, Stand
+from argo_compiler.route.path_timing import PathTiming
 from argo_compiler.route.problem import NEVER, RouteProblem
-from argo_compiler.route.pruning import Pruned, horizon, shortest
+from argo_compiler.route.pruning import Pruned, shortest
 from argo_compiler.route.search import Search
 
 Path = tuple[int, ...]
@@ -34,24 +33,6 @@ _EXCHANGES, _STRETCH = 6, 30
 """random exchanges at a time, and steps in a stretch, at most"""
 _WORSE = 0.05
 """by how much a route that is taken may be worse, in the beginning"""
-
-
-class FirstRules:
-    """A first route, always on to the best step by a simple rule."""
-
-    name = "first rules"
-
-    def supports(self, _problem: RouteProblem, /) -> bool:
-        return True
-
-    def solve(self, search: Search, /) -> None:
-        path = LocalSearch(search.network, search.pruned, search.seed).first(
-            lambda: search.left() <= 0.0
-        )
-        if path is None:
-            search.say("no simple rule leads to a first route")
-        else:
-            search.offer(path, _charges(search.network, path))
 
 
 class RuinRecreate:
@@ -75,7 +56,7 @@ def _charges(network: StepNetwork, path: Path) -> dict[int, int]:
 
 
 class LocalSearch:
-    """Builds and improves routes of one network. Has state: its generator."""
+    """Improves routes of one network. Has state: its generator."""
 
     def __init__(self, network: StepNetwork, pruned: Pruned, seed: int) -> None:
         self._network, self._pruned = network, pruned
@@ -88,58 +69,6 @@ class LocalSearch:
         self._after = [set(np.flatnonzero(row).tolist()) for row in pruned.before]
         self._before = [set(np.flatnonzero(column).tolist()) for column in pruned.before.T]
         self._must = np.flatnonzero(network.mandatory).tolist()
-
-    def first(self, over: Callable[[], bool]) -> Path | None:
-        """A route that makes all that must be made, if one of some simple rules leads to one."""
-        network, m = self._network, self._network.size
-        onward = self._near[:, :m] + network.service
-        latest = np.minimum(self._pruned.latest, horizon(network))
-        earliest = network.earliest[network.step]
-        rules: list[Callable[[int, int], Vector]] = [
-            lambda at, _: onward[at],
-            lambda at, now: np.maximum(now + onward[at], earliest),
-            lambda at, now: np.maximum(now + onward[at], earliest) + latest // 4,
-            lambda _at, _now: latest,
-        ]
-        for rule in rules:
-            path = self._built(rule)
-            if path is not None:
-                return path
-            if over():
-                return None
-        return None
-
-    def _built(self, rule: Callable[[int, int], Vector]) -> Path | None:
-        """Always on to the best node by the rule from which the end can be reached; the steps that
-        must be made first, and what they need."""
-        network, follower, m = self._network, self._follower, self._network.size
-        path: list[int] = []
-        left = network.mandatory.copy()
-        missing = self._pruned.needs.sum(axis=0)
-        closed = np.zeros(len(left), np.int64)
-        stands, at = follower.start(), m
-        while left.any():
-            ready = (left & (missing == 0) & (closed == 0))[network.step] & self._pruned.arcs[
-                at, :m
-            ]
-            nodes = np.flatnonzero(ready)
-            cost = rule(at, stands[0].time)[nodes]
-            for node in nodes[np.argsort(cost, kind="stable")].tolist():
-                following = follower.go(stands, at, node, len(path))
-                if following and self._goes_on(following, node, len(path) + 1):
-                    break
-            else:
-                return None
-            stands, at, s = following, node, self._step[node]
-            path.append(node)
-            left[s] = False
-            missing = missing - self._pruned.needs[s]
-            closed = closed + self._pruned.before[:, s]
-        return tuple(path) if follower.follow(tuple(path)) is not None else None
-
-    def _goes_on(self, stands: list[Stand], node: int, position: int) -> bool:
-        """Whether the end or a charger is within what the battery still has."""
-        return bool(self._follower.go(stands, node, self._network.size, position))
 
     def improve(self, path: Path, search: Search) -> None:
         """Offers the better routes that are found until the time is over, from the one given."""

@@ -2,6 +2,7 @@
 
 from collections.abc import Callable, Sequence
 from dataclasses import replace
+from math import inf
 
 import numpy as np
 
@@ -20,6 +21,9 @@ from argo_compiler.route.suggestion import RouteSuggestion
 
 _CHECK = 2.0
 """s for one check of whether some requirements can be met together"""
+
+_ROUNDS = 0.25
+"""share of the time in which the ways to make rounds are found"""
 
 Clock = Callable[[], float]
 
@@ -73,14 +77,15 @@ def _searched(
     def order_of(step: Step) -> tuple[Step, ...]:
         return _cycle(problem, step, limits, seed, clock)
 
-    net = network(problem, order_of)
+    seconds = inf if limits.seconds is None else limits.seconds
+    net = network(problem, order_of, lambda: clock() - begun > _ROUNDS * seconds)
     if longest(net) >= NEVER // 2:
         raise Invalid(
             "the times of this route problem are too long to be added up: take a greater unit"
         )
     search = Search(net, prune(net), limits, seed, clock, observers, begun)
     if not net.exact:
-        search.say("a round has too many orders to weigh them all: nothing is proven")
+        search.say("rounds have too many orders to weigh them all: nothing is proven")
     bound = assignment_bound(net, search.pruned)
     if bound is None:
         search.say("some step can't be made at all, or not in an order that is asked for")
@@ -152,7 +157,8 @@ def _cycle(
         tuple(replace(r, members=tuple(place[v] for v in r.members)) for r in inner),
         unit=problem.unit,
     )
-    seconds, work = (None if one is None else one / 4 for one in (limits.seconds, limits.work))
+    share = _ROUNDS / len(problem.rounds)
+    seconds, work = (None if one is None else share * one for one in (limits.seconds, limits.work))
     short = SearchLimits(seconds, work, limits.stop)
     best = _searched(cycle, short, seed, 1, clock, Observers()).best
     if best is None:

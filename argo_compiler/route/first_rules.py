@@ -12,7 +12,7 @@ from argo_compiler.route.search import Search
 
 Vector = NDArray[np.int64]
 Rule = Callable[[int, int], Vector]
-"""from the node and the time that the robot is at, a number for each node: the smaller, the better"""
+"""from the node and the time that the robot is at, numbers of all nodes: the smaller, the better"""
 
 
 class FirstRules:

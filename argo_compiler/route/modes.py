@@ -25,6 +25,8 @@ MOST_MEMBERS = 9
 """of a round, those inside others counted as one, up to which its best orders are known"""
 MOST_ORDERS = 5040
 """of a round with a duration in it or around it, which are all weighed: those of seven members"""
+_FEW = 3
+"""orders that are weighed also when the time is over"""
 
 
 @dataclass(frozen=True, eq=False)
@@ -79,19 +81,22 @@ def steps(problem: RouteProblem) -> list[Step]:
 
 
 def modes(
-    problem: RouteProblem, step: Step, order_of: Callable[[Step], tuple[Step, ...]]
+    problem: RouteProblem,
+    step: Step,
+    order_of: Callable[[Step], tuple[Step, ...]],
+    over: Callable[[], bool] = lambda: False,
 ) -> tuple[list[StepMode], bool]:
     """The ways to make a step that may be the best, and whether they are all of those.
 
     A round of more than MOST_MEMBERS parts, or with a duration and of more than MOST_ORDERS orders,
-    is made in the cyclic order that `order_of` gives.
+    is made in the cyclic order that `order_of` gives. When the time is `over`, some ways do.
     """
     if step.round is None:
         (visit,) = step.visits
         return [StepMode(visit, (visit,), (visit,), problem.visits[visit].service)], True
     drives = _Drives(problem)
-    ways, exact = _ways(problem, step, order_of, drives, within_timed=False)
-    return [mode for way in ways for mode in _modes(way, drives)], exact
+    ways, exact = _ways(problem, step, order_of, drives, over, within_timed=False)
+    return [m for way in ways if isinstance(way, _Rounds) for m in _modes(way, drives)], exact
 
 
 def plus(times: Vector, more: int | Vector) -> Vector:
@@ -172,6 +177,29 @@ class _Rounds:
             self._after[exit] = self._on(begun)
         return self._after[exit]
 
+    def runs(self, drives: Vector) -> tuple[Vector, Vector, list[tuple[int, ...]], Vector]:
+        """Times and energies after some drives, the ends that there are, and which each has."""
+        asked, once = self._round, self._steady
+        more = None if once is None else self._again(once.exit)
+        if once is None or more is None or more.exit != once.exit or more.time == 0:
+            ends = [self.run(drive) for drive in drives.tolist()]
+            exits = sorted({end.exit for end in ends})
+            rows = [(end.time, end.energy, exits.index(end.exit)) for end in ends]
+            time, energy, which = np.array(rows, np.int64).reshape(-1, 3).T
+            return time, energy, exits, which
+        time = plus(drives, once.time)
+        passes = np.full(len(time), asked.repeat - 1 if asked.repeat else NEVER)
+        if asked.duration:
+            wanted = -((time - asked.duration) // more.time)
+            passes = np.minimum(passes, np.maximum(wanted, 0))
+        time, energy = (
+            plus(time, passes * more.time),
+            np.minimum(once.energy + passes * more.energy, NEVER),
+        )
+        left = (time > asked.duration) & (time < NEVER) & (asked.duration > 0) & (not asked.soft)
+        time[left] = asked.duration
+        return time, energy, [once.exit, tuple(sorted(self.order))], left.astype(np.int64)
+
     def run(self, drive: int) -> StepOutcome:
         asked = self._round
         done, count = self.once(drive), 1
@@ -231,6 +259,7 @@ def _ways(
     step: Step,
     order_of: Callable[[Step], tuple[Step, ...]],
     drives: _Drives,
+    over: Callable[[], bool],
     *,
     within_timed: bool,
 ) -> tuple[list[StepPlan], bool]:
@@ -242,7 +271,7 @@ def _ways(
     lasts = within_timed or step.round.duration > 0
     exact, choices = True, []
     for part in step.parts:
-        some, all_of_them = _ways(problem, part, order_of, drives, within_timed=lasts)
+        some, all_of_them = _ways(problem, part, order_of, drives, over, within_timed=lasts)
         choices.append(some)
         exact &= all_of_them
     waits = _waits(problem, step.parts)
@@ -250,39 +279,51 @@ def _ways(
     if lasts or _timed(step):
         orders = _all_orders(choices, waits)
     elif len(step.parts) <= MOST_MEMBERS:
-        return [
-            _Rounds(drives, step.round, order) for order in _best_orders(drives, choices, waits)
-        ], exact
-    if orders is None:
+        orders = _best_orders(drives, choices, waits, over)
+        if orders is not None:
+            return [_Rounds(drives, step.round, order) for order in orders], exact
+    if orders is None or over():
         exact = False
-        orders = _rotations(choices, waits, [step.parts.index(part) for part in order_of(step)])
+        cycle = step.parts if over() else order_of(step)
+        orders = _rotations(choices, waits, [step.parts.index(part) for part in cycle])
     ways = [_Rounds(drives, step.round, order) for order in orders]
-    return _undominated(ways, drives, by_time=not within_timed), exact
+    best = _undominated(ways, drives, over, by_time=not within_timed)
+    return best, exact and not over()
 
 
-def _undominated(ways: list[_Rounds], drives: _Drives, *, by_time: bool) -> list[StepPlan]:
+def _undominated(
+    ways: list[_Rounds], drives: _Drives, over: Callable[[], bool], *, by_time: bool
+) -> list[StepPlan]:
     """The ways than which none is as good after every drive: in energy, and in time (`by_time`, or
-    else in the same time), in places among which the robot then is."""
+    else in the same time), in places among which the robot then is. Some when the time is over."""
     numbers: dict[tuple[int, ...], int] = {}
     found: dict[int, list[tuple[_Rounds, Vector]]] = {}
-    for way in ways:
-        ends = [way.run(drive) for drive in drives.entries(way.first).tolist()]
-        if not ends:
+    for k, way in enumerate(ways):
+        if k >= _FEW and over():
+            break
+        if not len(drives.entries(way.first)):
             continue  # there is no way to it
-        rows = [(e.time, e.energy, numbers.setdefault(e.exit, len(numbers))) for e in ends]
-        found.setdefault(way.first, []).append((way, np.array(rows, np.int64).T))
+        time, energy, exits, which = way.runs(drives.entries(way.first))
+        number = np.array([numbers.setdefault(exit, len(numbers)) for exit in exits], np.int64)
+        row = np.stack([time, energy, number[which]])
+        found.setdefault(way.first, []).append((way, row))
     within = np.array([[set(one) <= set(other) for other in numbers] for one in numbers])
-    return [way for some in found.values() for way in _best_of(some, within, by_time)]
+    return [way for some in found.values() for way in _best_of(some, within, over, by_time)]
 
 
 def _best_of(
-    ways: list[tuple[_Rounds, Vector]], within: NDArray[np.bool_], by_time: bool
+    ways: list[tuple[_Rounds, Vector]],
+    within: NDArray[np.bool_],
+    over: Callable[[], bool],
+    by_time: bool,
 ) -> list[StepPlan]:
     """Those with the same first visit. Of each its times, energies and numbers of ends, shape
     (3, entries); `within`: whether the places of the end of row are among those of column."""
     kept: list[StepPlan] = []
     table = np.empty((len(ways), *ways[0][1].shape), np.int64)
     for way, row in sorted(ways, key=lambda one: tuple(one[1][:2].sum(axis=1))):
+        if kept and over():
+            break
         others, time = table[: len(kept)], row[0]
         soon = others[:, 0] <= time if by_time else others[:, 0] == time
         as_good = soon & (others[:, 1] <= row[1]) & within[others[:, 2], row[2]]
@@ -343,14 +384,16 @@ class _Label:
 
 
 def _best_orders(
-    drives: _Drives, choices: list[list[StepPlan]], waits: list[int]
-) -> list[tuple[StepPlan, ...]]:
+    drives: _Drives, choices: list[list[StepPlan]], waits: list[int], over: Callable[[], bool]
+) -> list[tuple[StepPlan, ...]] | None:
     """Dynamic programming over the parts done, from each first way to each last one, with the
-    labels of time and energy of which neither is the smaller."""
+    labels of time and energy of which neither is the smaller. None: the time is over."""
     found: list[tuple[StepPlan, ...]] = []
     for k, first in _free(choices, waits, 0):
         layer = {(1 << k, id(first)): [_Label(first.run(0), (first,))]}
         for _ in range(len(choices) - 1):
+            if over():
+                return None
             following: dict[tuple[int, int], list[_Label]] = {}
             for (done, _), labels in layer.items():
                 for part, way in _free(choices, waits, done):
@@ -374,29 +417,30 @@ def _add(labels: list[_Label], new: _Label) -> None:
 def _rotations(
     choices: list[list[StepPlan]], waits: list[int], cycle: list[int]
 ) -> list[tuple[StepPlan, ...]]:
-    """A cyclic order of the parts, entered at each part that may be the first."""
+    """A cyclic order of the parts, entered at each part that may be the first; parts that must wait
+    for others come as soon as they may."""
     found = []
     for k in range(len(cycle)):
-        order, done = cycle[k:] + cycle[:k], 0
-        for part in order:
-            if waits[part] & ~done:
+        rest, done, order = cycle[k:] + cycle[:k], 0, list[int]()
+        while rest:
+            part = next((p for p in rest if choices[p] and not waits[p] & ~done), None)
+            if part is None or (not order and part != cycle[k]):
                 break
+            rest.remove(part)
+            order.append(part)
             done |= 1 << part
         else:
             found.append(tuple(choices[part][0] for part in order))
     return found
 
 
-def _modes(way: StepPlan, drives: _Drives) -> list[StepMode]:
+def _modes(way: _Rounds, drives: _Drives) -> list[StepMode]:
     """A way as modes: one for each of the ends that it has after the drives that there are."""
     entries = drives.entries(way.first)
-    outcomes = [way.run(drive) for drive in entries.tolist()]
-    ends = sorted({outcome.exit for outcome in outcomes if outcome.time < NEVER})
+    time, energy, exits, which = way.runs(entries)
     found = []
-    for end in ends:
-        here = np.array([outcome.exit == end for outcome in outcomes])
-        time = np.array([outcome.time for outcome in outcomes], np.int64)
-        energy = np.array([outcome.energy for outcome in outcomes], np.int64)
-        time = np.where(here, time, NEVER)
-        found.append(StepMode(way.first, end, way.order, 0, entries, time, energy))
+    for number, exit in enumerate(exits):
+        here = np.where(which == number, time, NEVER)
+        if (here < NEVER).any():
+            found.append(StepMode(way.first, exit, way.order, 0, entries, here, energy))
     return found

@@ -10,6 +10,9 @@ from numpy.typing import NDArray
 from argo_compiler.route.modes import Step, StepMode, Vector, modes, steps
 from argo_compiler.route.problem import NEVER, Objective, RouteProblem, Tour
 
+_MOST_NODES = 4000
+"""after which rounds are made in few ways: matrices of nodes by nodes have to be held"""
+
 
 @dataclass(frozen=True, eq=False)
 class StepNetwork:
@@ -123,12 +126,21 @@ class ChargingStation:
     out_energy: Vector
 
 
-def network(problem: RouteProblem, order_of: Callable[[Step], tuple[Step, ...]]) -> StepNetwork:
-    """The network of a problem. `order_of`: see `argo_compiler.route.modes.modes`."""
+def network(
+    problem: RouteProblem,
+    order_of: Callable[[Step], tuple[Step, ...]],
+    over: Callable[[], bool] = lambda: False,
+) -> StepNetwork:
+    """The network of a problem. `order_of`, `over`: see `argo_compiler.route.modes.modes`."""
     found = steps(problem)
-    exact, nodes, step_of = True, [], []
+    exact, step_of = True, list[int]()
+    nodes: list[StepMode] = []
+
+    def full() -> bool:
+        return over() or len(nodes) > _MOST_NODES
+
     for number, step in enumerate(found):
-        some, all_of_them = modes(problem, step, order_of)
+        some, all_of_them = modes(problem, step, order_of, full)
         exact &= all_of_them
         nodes += some
         step_of += [number] * len(some)

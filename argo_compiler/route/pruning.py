@@ -8,6 +8,9 @@ from numpy.typing import NDArray
 from argo_compiler.route.network import StepNetwork, compose
 from argo_compiler.route.problem import NEVER
 
+_MOST_NODES = 300
+"""whose shortest paths take no time worth speaking of"""
+
 
 @dataclass(frozen=True, eq=False)
 class Pruned:
@@ -137,8 +140,8 @@ def _windows(
     graph[:m, :] += network.service[:, None]
     graph[best >= NEVER] = np.inf
     # In the node m start and end are one; no path has a reason to go through it.
-    ahead = _bellman(graph[m, :m], graph[:m, :m])
-    back = _bellman(graph[:m, m], graph[:m, :m].T)
+    ahead = _lengths(graph[m, :m], graph[:m, :m])
+    back = _lengths(graph[:m, m], graph[:m, :m].T)
     soonest = np.where(np.isfinite(ahead), ahead, NEVER).astype(np.int64)
     left = np.where(np.isfinite(back), back, NEVER).astype(np.int64)
     earliest = np.maximum(network.earliest[network.step], soonest)
@@ -152,22 +155,28 @@ def _windows(
 
 
 def paths(network: StepNetwork) -> NDArray[np.int64]:
-    """The least time from the end of one node to the beginning of another, by whatever nodes,
-    shape (m, m)."""
+    """At most the least time from the end of one node to the beginning of another, by whatever
+    nodes, shape (m, m); that itself where there are not more than _MOST_NODES."""
     m = network.size
     least = shortest(network)[:m, :m]
+    if m > _MOST_NODES:  # by another node, a way has at least two arcs
+        np.fill_diagonal(least, NEVER)
+        out = least.min(axis=1) + network.service.min()
+        return np.minimum(np.minimum(least, out[:, None] + least.min(axis=0)), NEVER)
     for through in range(m):
         by_it = least[:, through, None] + network.service[through] + least[None, through, :]
         np.minimum(least, by_it, out=least)
     return np.minimum(least, NEVER)
 
 
-def _bellman(first: NDArray[np.float64], onward: NDArray[np.float64]) -> NDArray[np.float64]:
-    """The lengths of the shortest paths, from the lengths of their first arcs and of the others."""
-    length = first.copy()
+def _lengths(first: NDArray[np.float64], onward: NDArray[np.float64]) -> NDArray[np.float64]:
+    """The lengths of the shortest paths, from the lengths of their first arcs and of the others
+    (E. W. Dijkstra, Numerische Mathematik 1, 1959)."""
+    length, ahead = first.copy(), first.copy()
     for _ in range(len(length)):
-        shorter = np.minimum(length, (length[:, None] + onward).min(axis=0, initial=np.inf))
-        if (shorter == length).all():
-            break
-        length = shorter
+        at = int(ahead.argmin())
+        ahead[at] = np.inf
+        by_it = length[at] + onward[at]
+        ahead = np.where(by_it < length, by_it, ahead)
+        length = np.minimum(length, by_it)
     return length

@@ -40,30 +40,37 @@ class Layer:
     """the row of the set of k - 1 steps that each was reached from, shape of `times`"""
 
 
-def count_sets(network: StepNetwork, pruned: Pruned, most: int) -> int:
-    """How many sets of steps the order allows, up to a little more than `most`."""
+def count_sets(
+    network: StepNetwork, pruned: Pruned, most: int, over: Callable[[], bool] = lambda: False
+) -> int:
+    """How many sets of steps the order allows; more than `most` when they are so many, or when
+    counting them is `over` before it is done."""
     bits = Bits(network, pruned)
     if not bits.fits:
         return most + 1
     first_node = {int(step): node for node, step in reversed(list(enumerate(network.step)))}
     if bits.shared:
-        return _count(bits, list(first_node.values()), most)
+        return _count(bits, list(first_node.values()), most, over)
     # The product over the parts of the order that have nothing to do with each other.
     total = 1
     _, part = connected_components(pruned.needs, directed=False)
     for number in range(int(part.max(initial=-1)) + 1):
         nodes = [first_node[s] for s in np.flatnonzero(part == number).tolist() if s in first_node]
-        total *= _count(bits, nodes, most // total)
+        total *= _count(bits, nodes, most // total, over)
         if total > most:
             break
     return total
 
 
-def _count(bits: Bits, nodes: list[int], most: int) -> int:
+def _count(bits: Bits, nodes: list[int], most: int, over: Callable[[], bool]) -> int:
     masks, total, size = np.zeros(1, np.int64), 1, 0
     while len(masks) and total <= most:
+        if over():
+            return most + 1
         rules = bits.layer(size)
-        following = [rules.after(masks[rules.rows(masks, node)], node) for node in nodes]
+        following = [
+            rules.after(masks[rules.rows(masks, node)], node) for node in nodes if rules.open[node]
+        ]
         masks = np.unique(np.concatenate([*following, masks[:0]]))
         total, size = total + len(masks), size + 1
     return total
@@ -73,14 +80,14 @@ def small_layers(search: Search) -> list[Layer] | None:
     """The layers of a search's network, if they are few enough to be gone through."""
     network, pruned = search.network, search.pruned
     most = min(_MOST_SETS, _MOST_WORK // max(1, network.size))
-    sets = count_sets(network, pruned, most)
+    part = search.part(0.7)
+    sets = count_sets(network, pruned, most, lambda: part.left() <= 0.0)
     ordered = network.windowed or pruned.before.any() or network.problem.battery is not None
     # Windows may leave much fewer sets than the order does.
     few = sets <= (most if ordered else _FEW_SETS) or network.windowed
     if not few or longest(network) >= INF or not Bits(network, pruned).fits:
         search.say(f"{int(pruned.steps.sum())} steps allow too many sets to go through")
         return None
-    part = search.part(0.7)
     layers = soonest_layers(network, pruned, most, lambda: part.left() <= 0.0)
     if layers is None:
         search.say("there are too many sets to go through, or there was no time for them")
@@ -133,12 +140,12 @@ def soonest_layers(
     latest = np.minimum(pruned.latest, INF - 1)
     earliest = network.earliest[network.step]
     layers, total = [], 0
-    for layer in soonest(network, Bits(network, pruned), arcs, earliest, latest):
+    for layer in soonest(network, Bits(network, pruned), arcs, earliest, latest, over):
         total += len(layer.masks)
-        if total > most or over():
+        if total > most:
             return None
         layers.append(layer)
-    return layers
+    return None if over() else layers
 
 
 def best_path(network: StepNetwork, layers: list[Layer], pruned: Pruned) -> BestPath | None:
@@ -166,16 +173,20 @@ def soonest(
     arcs: NDArray[np.int32],
     earliest: Masks,
     latest: Masks,
+    over: Callable[[], bool] = lambda: False,
 ) -> Iterator[Layer]:
     """The layers from that of the first steps on, for arcs between nodes that begin when they may
-    (`earliest`, `latest`, shape (m,))."""
+    (`earliest`, `latest`, shape (m,)); not all of them when the time is over."""
     m, size = network.size, 0
     masks, times = np.zeros(1, np.int64), np.zeros((1, 1), np.int32)
     onward = arcs[m:, :]  # from the start; afterwards from all nodes
     while True:
         rules = bits.layer(size)
         origins, parts, ends = [], [], []
-        for node in range(m):
+        nodes = np.flatnonzero(rules.open).tolist()
+        for node in nodes:
+            if over():
+                return
             rows = rules.rows(masks, node)
             arrival = (times[rows] + onward[None, :, node]).min(axis=1)
             begin = np.maximum(arrival, earliest[node])
@@ -190,9 +201,9 @@ def soonest(
         times = np.full((len(masks), m), INF, np.int32)
         origin = np.full((len(masks), m), -1, np.int32)
         first = 0
-        for node, end in enumerate(ends):
+        for node, rows, end in zip(nodes, origins, ends, strict=True):
             there = place[first : first + len(end)]
-            times[there, node], origin[there, node] = end, origins[node]
+            times[there, node], origin[there, node] = end, rows
             first += len(end)
         keep = _in_time(network, bits, latest, size, masks, times)
         masks, times, origin = masks[keep], times[keep], origin[keep]
@@ -217,12 +228,13 @@ def _in_time(
     """Whether each mandatory step that is still to be made can begin in time."""
     at = times.min(axis=1)
     keep = np.ones(len(masks), np.bool_)
+    last = np.full(len(network.prize), -1, np.int64)
+    np.maximum.at(last, network.step, latest)
     doubt, sure = bits.in_doubt(size), bits.surely(size)
-    for s in np.flatnonzero(network.mandatory & ~sure).tolist():
-        last = max(int(latest[node]) for node in network.nodes_of(s))
-        if last < INF - 1:
-            made = (masks & bits.bit(s) != 0) if doubt[s] else np.zeros(len(masks), np.bool_)
-            keep &= made | (at <= last)
+    ahead = network.mandatory & ~sure & (last < INF - 1)
+    keep &= at <= last[ahead & ~doubt].min(initial=int(INF))
+    for s in np.flatnonzero(ahead & doubt).tolist():
+        keep &= (masks & bits.bit(s) != 0) | (at <= last[s])
     return keep
 
 

@@ -84,6 +84,8 @@ class Bits:
                 number = len(free_from)
                 free_from.append(last)
             numbers[s] = number
+            if number >= MOST_BITS:
+                break  # they don't fit, whatever follows
         return numbers
 
     def in_doubt(self, size: int) -> NDArray[np.bool_]:
@@ -113,18 +115,15 @@ class Bits:
     def _rules(self, size: int) -> LayerRules:
         network, pruned = self._network, self._pruned
         doubt, sure = self.in_doubt(size), self.surely(size)
-        nowhere = ~doubt & ~sure
         doubt_after = self.in_doubt(size + 1)
-        count = len(network.prize)
-        bit, needs, ruled = (np.zeros(count, np.int64) for _ in range(3))
+        bit, needs, ruled = (np.zeros(len(doubt), np.int64) for _ in range(3))
         may = pruned.steps & ~sure & (self._from <= size)
-        for s in range(count):
+        may[may] &= ~pruned.needs[~doubt & ~sure][:, may].any(axis=0)
+        may[may] &= ~pruned.before[may][:, sure].any(axis=1)
+        for s in np.flatnonzero(may).tolist():
             bit[s] = self.bit(s) if doubt_after[s] else 0
-            before, after = pruned.needs[:, s], pruned.before[s]
-            may[s] &= not (before & nowhere).any() and not (after & sure).any()
-            needs[s] = self.mask(before & doubt)
-            itself = np.arange(count) == s
-            ruled[s] = self.mask((after | itself) & doubt)
+            needs[s] = self.mask(pruned.needs[:, s] & doubt)
+            ruled[s] = self.mask(pruned.before[s] & doubt) | (self.bit(s) if doubt[s] else 0)
         step = network.step
         kept = self.mask(doubt & doubt_after)
         return LayerRules(bit[step], needs[step], ruled[step], may[step], kept)

@@ -162,7 +162,8 @@ def paths(network: StepNetwork) -> NDArray[np.int64]:
     if m > _MOST_NODES:  # by another node, a way has at least two arcs
         np.fill_diagonal(least, NEVER)
         out = least.min(axis=1) + network.service.min()
-        return np.minimum(np.minimum(least, out[:, None] + least.min(axis=0)), NEVER)
+        by_others: NDArray[np.int64] = out[:, None] + least.min(axis=0)
+        return np.minimum(np.minimum(least, by_others), NEVER)
     for through in range(m):
         by_it = least[:, through, None] + network.service[through] + least[None, through, :]
         np.minimum(least, by_it, out=least)

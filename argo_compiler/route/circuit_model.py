@@ -82,18 +82,8 @@ class CircuitModel:
                 some = model.new_bool_var("")
                 model.add(sum(out.negated() for out in left_out) == some)
                 made.append(some)
-        if not network.mandatory.any():
-            empty = model.new_bool_var("")
-            self._empty: cp_model.IntVar | None = empty
-            circuit.append((m, m, empty))
-            direct = int(network.time[m, m])
-            if direct >= NEVER or direct > network.limit or not self._energy_fits(m, m):
-                model.add(empty == 0)
-            # Without the depot, there could be a circuit among the others.
-            for literal in made:
-                model.add_implication(empty, literal.negated())
-        else:
-            self._empty = None
+        # A route that makes nothing is none of the model's.
+        model.add_exactly_one([literal for i, *_, literal in self._arcs if i == m])
         if circuit:
             model.add_circuit(circuit)
         return made
@@ -131,16 +121,12 @@ class CircuitModel:
 
     def _costs(self) -> None:
         network, model = self._network, self.model
-        m, battery = network.size, network.problem.battery
+        battery = network.problem.battery
         literals = [literal for *_, literal in self._arcs]
         work: Any = cp_model.LinearExpr.weighted_sum(literals, self._arc_costs)
-        if self._empty is not None and network.time[m, m] < NEVER:
-            work = work + int(network.time[m, m]) * self._empty
         used: list[Any] = []
         if battery is not None:
             energy = cp_model.LinearExpr.weighted_sum(literals, self._arc_energies)
-            if self._empty is not None and network.energy is not None:
-                energy = energy + min(int(network.energy[m, m]), battery.capacity) * self._empty
             if network.chargers:
                 used = self._charging(battery.used, battery.capacity)
                 work = work + battery.used + energy - used[-1]
@@ -178,9 +164,6 @@ class CircuitModel:
                 station = network.chargers[charger]
                 model.add(before + int(station.to_energy[i]) <= capacity).only_enforce_if(literal)
                 model.add(level(j) == int(station.out_energy[j])).only_enforce_if(literal)
-        if self._empty is not None:
-            whole = min(used + int(network.energy[m, m]), capacity)
-            model.add(levels[count] == whole).only_enforce_if(self._empty)
         for s, made in enumerate(self._made):
             if not network.mandatory[s]:
                 model.add(levels[s] == 0).only_enforce_if(made.negated())

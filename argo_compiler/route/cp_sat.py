@@ -10,7 +10,8 @@ from ortools.sat.python import cp_model
 
 from argo_compiler.route.circuit_model import CircuitModel
 from argo_compiler.route.cp_solver import new_solver, run_solver
-from argo_compiler.route.problem import Objective, RouteProblem
+from argo_compiler.route.evaluation import evaluate
+from argo_compiler.route.problem import Objective, RouteProblem, Tour
 from argo_compiler.route.search import Search, Solution
 
 _MOST_ARCS = 80_000
@@ -34,10 +35,20 @@ class CpSat:
         if int(search.pruned.arcs.sum()) * (1 + len(network.chargers)) > _MOST_ARCS:
             search.say(f"{len(network.prize)} steps are too many for CP-SAT")
             return
+        if not network.mandatory.any():
+            _offer_nothing(search)
         patience = _PATIENCE
         while search.left() > 0.0:
             _Try(search, self.name, patience).run()
             patience *= 2.0
+
+
+def _offer_nothing(search: Search) -> None:
+    """The routes that make nothing, straight or by a charger."""
+    for charges in ({}, *({0: number} for number in range(len(search.network.chargers)))):
+        tour = Tour((), charges)
+        if evaluate(search.problem, tour).feasible:
+            search.offer_tour(tour)
 
 
 class _Try:
@@ -100,7 +111,9 @@ class _Try:
             least = 0 if self._best is None else self._best.prize
             self._search.known(prize_bound=max(least, floor(value + 1e-6)))
         elif self._search.network.objective is not Objective.PRIZE:
-            self._search.known(bound=ceil(value - 1e-6), prize=self._least)
+            bound = ceil(value - 1e-6)
+            bound = bound if self._best is None else min(bound, self._best.cost)
+            self._search.known(bound=bound, prize=self._least)
 
     def _nothing_better(self, best: Solution | None) -> None:
         if best is None:

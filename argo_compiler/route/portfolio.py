@@ -28,6 +28,8 @@ PROVING: tuple[RouteSolver, ...] = (CpSat(),)
 
 _IMPROVED_FIRST = 0.35
 """share of the time for better routes before proofs are tried, where there is one worker"""
+_FIRST_MOST = 0.05
+"""s for each step that this is at most"""
 _PROVED = 0.7
 """share of the rest for proofs; what is left is for better routes again"""
 
@@ -70,7 +72,8 @@ def solve(search: Search, workers: int, chosen: Sequence[str | RouteSolver] | No
             lambda: _prove(search, proving),
         )
         return
-    _improve(search.part(_IMPROVED_FIRST if proving else 1.0), improving)
+    most = _FIRST_MOST * len(search.network.prize)
+    _improve(search.part(_IMPROVED_FIRST, most) if proving else search, improving)
     _prove(search.part(_PROVED if improving else 1.0), proving)
     _improve(search, improving)
 

@@ -58,6 +58,8 @@ def prune(network: StepNetwork) -> Pruned:
     reachable: NDArray[np.bool_] = np.zeros(len(steps), np.bool_)
     reachable[step[arcs[:, :m].any(axis=0) & arcs[:m, :].any(axis=1)]] = True
     steps &= reachable
+    # `needs` is closed: what needs a step that can't be made can't be made either.
+    steps &= ~(needs & ~steps[:, None]).any(axis=0)
     arcs[:m, :] &= steps[step][:, None]
     arcs[:, :m] &= steps[step][None, :]
     possible = bool(steps[network.mandatory].all())

@@ -9,6 +9,7 @@ from itertools import pairwise
 from typing import Any
 
 import numpy as np
+from numpy.typing import NDArray
 from ortools.sat.python import cp_model
 
 from argo_compiler.route.network import StepNetwork
@@ -279,6 +280,20 @@ class CircuitModel:
     def _prize(self) -> Any:
         prizes = self._network.prize.tolist()
         return sum(int(p) * made for p, made in zip(prizes, self._made, strict=True))
+
+    def at_least(
+        self,
+        counts: Callable[[NDArray[np.int64], NDArray[np.int64]], NDArray[np.int64]],
+        least: int,
+    ) -> None:
+        """What the arcs of a route come to, by what arcs count from tails to heads, is `least` at
+        least."""
+        ends = np.array([arc[:2] for arc in self._arcs], np.int64).reshape(-1, 2)
+        found = counts(ends[:, 0], ends[:, 1])
+        some = np.flatnonzero(found).tolist()
+        literals = [self._arcs[k][3] for k in some]
+        whole = cp_model.LinearExpr.weighted_sum(literals, found[some].tolist())
+        self.model.add(whole >= least)
 
     def hint(self, path: tuple[int, ...], charges: Mapping[int, int]) -> None:
         """A path to begin with, and the chargers by the position in it."""

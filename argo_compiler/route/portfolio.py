@@ -10,13 +10,14 @@ from argo_compiler.route.first_rules import FirstRules
 from argo_compiler.route.guided_local_search import GuidedLocalSearch
 from argo_compiler.route.held_karp import HeldKarp
 from argo_compiler.route.labels import LabelBeams, Labels
+from argo_compiler.route.linear_proof import LinearProof
 from argo_compiler.route.pyvrp_search import PyvrpSearch
 from argo_compiler.route.ruin_recreate import RuinRecreate
 from argo_compiler.route.search import Search
 from argo_compiler.route.solver import RouteSolver, registered_solvers
 
 FIRST: tuple[RouteSolver, ...] = (FirstRules(),)
-SMALL: tuple[RouteSolver, ...] = (HeldKarp(), Labels())
+SMALL: tuple[RouteSolver, ...] = (HeldKarp(), Labels(), LinearProof())
 """prove what is small enough, and give up on all else at once"""
 IMPROVING: tuple[RouteSolver, ...] = (
     PyvrpSearch(),

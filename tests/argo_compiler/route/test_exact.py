@@ -35,6 +35,7 @@ def test_the_best_route_is_that_of_brute_force(part: int) -> None:
     ("solvers", "proves"),
     [
         (("CP-SAT",), 1.0),
+        (("linear relaxation",), 0.3),
         (("first rules", "CP-SAT"), 1.0),
         (("Held-Karp",), 0.6),
         (("labels",), 0.4),

@@ -6,6 +6,7 @@ from collections.abc import Callable, Sequence
 from argo_compiler.errors import NotFound
 from argo_compiler.nearest_name import nearest_name
 from argo_compiler.route.cp_sat import CpSat
+from argo_compiler.route.exchange_search import ExchangeSearch
 from argo_compiler.route.first_rules import FirstRules
 from argo_compiler.route.guided_local_search import GuidedLocalSearch
 from argo_compiler.route.held_karp import HeldKarp
@@ -19,12 +20,9 @@ from argo_compiler.route.solver import RouteSolver, registered_solvers
 FIRST: tuple[RouteSolver, ...] = (FirstRules(),)
 SMALL: tuple[RouteSolver, ...] = (HeldKarp(), Labels(), LinearProof())
 """prove what is small enough, and give up on all else at once"""
-IMPROVING: tuple[RouteSolver, ...] = (
-    PyvrpSearch(),
-    GuidedLocalSearch(),
-    RuinRecreate(),
-    LabelBeams(),
-)
+_EXCHANGE = ExchangeSearch()
+_WEAKER: tuple[RouteSolver, ...] = (GuidedLocalSearch(), RuinRecreate())
+IMPROVING: tuple[RouteSolver, ...] = (PyvrpSearch(), _EXCHANGE, *_WEAKER, LabelBeams())
 PROVING: tuple[RouteSolver, ...] = (CpSat(),)
 
 _IMPROVED_FIRST = 0.35
@@ -65,6 +63,8 @@ def solve(search: Search, workers: int, chosen: Sequence[str | RouteSolver] | No
         _run(solver, search)
     mine = [one for one in own if one.supports(search.problem)]
     improving = [*mine, *those(registered_solvers()), *those(IMPROVING)]
+    if chosen is None and search.problem.precedences and _EXCHANGE in improving:
+        improving = [one for one in improving if one not in _WEAKER]
     proving = those(PROVING)
     if workers > 1 and search.timed and improving and proving:
         _beside(

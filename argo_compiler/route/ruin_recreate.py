@@ -2,17 +2,14 @@
 
 By ruin and recreate: some steps near each other are taken out of the route and put back where they
 cost least (P. Shaw, CP 1998; G. Schrimpf et al., Journal of Computational Physics 159, 2000). Steps
-that were left out are tried as well. Or by some random exchanges of stretches. Either is followed
-by the exchanges that pay, where a route's time is the sum of its arcs. A route that is a little
-worse is taken now and then, less and less often.
+that were left out are tried as well. A route that is a little worse is taken now and then, less and
+less often. `argo_compiler.route.exchange_search` does more of it in the same time, but knows no
+battery.
 """
-
-from itertools import pairwise
 
 import numpy as np
 from numpy.typing import NDArray
 
-from argo_compiler.route import or_opt
 from argo_compiler.route.network import StepNetwork
 from argo_compiler.route.path_timing import PathTiming
 from argo_compiler.route.problem import NEVER, RouteProblem
@@ -27,10 +24,6 @@ _NOMINAL = 5e-6
 """s for each step of a route, of one change"""
 _RUINED = 8
 """steps that are taken out at most"""
-_RUINS = 0.4
-"""share of ruin and recreate where stretches can be exchanged"""
-_EXCHANGES, _STRETCH = 6, 30
-"""random exchanges at a time, and steps in a stretch, at most"""
 _WORSE = 0.05
 """by how much a route that is taken may be worse, in the beginning"""
 
@@ -62,7 +55,6 @@ class LocalSearch:
         self._network, self._pruned = network, pruned
         self._follower = PathTiming(network)
         self._rng = np.random.default_rng(seed)
-        self._exchange = or_opt.Exchange(network, pruned) if or_opt.applies(network) else None
         self._near = shortest(network)
         self._step = network.step.tolist()
         self._needs = [set(np.flatnonzero(column).tolist()) for column in pruned.needs.T]
@@ -81,7 +73,7 @@ class LocalSearch:
         while (left := search.left()) > 0.0:
             k += 1
             search.spend(_NOMINAL * len(at), 1)
-            there = self._changed(at)
+            there = self._recreated(self._ruined(at))
             worth = None if there is None else self._worth(there)
             if there is None or worth is None:
                 continue
@@ -95,21 +87,6 @@ class LocalSearch:
                 at, at_worth = there, worth
             elif k % 200 == 199:
                 at, at_worth = best, best_worth
-
-    def _changed(self, path: Path) -> Path | None:
-        """Another path; None: none was found."""
-        if self._exchange is None or self._rng.random() < _RUINS:
-            there = self._recreated(self._ruined(path))
-            if there is None or self._exchange is None:
-                return there
-            m = self._network.size
-            old = set(pairwise((m, *path, m)))
-            near = {arc[0] for arc in pairwise((m, *there, m)) if arc not in old}
-        else:
-            times = int(self._rng.integers(1, _EXCHANGES + 1))
-            length = int(self._rng.integers(1, _STRETCH + 1))
-            there, near = self._exchange.shuffled(path, self._rng, times, length)
-        return self._exchange.improved(there, near)
 
     def _worth(self, path: Path) -> Worth | None:
         stand = self._follower.follow(path)

@@ -41,7 +41,7 @@ class LinearProof:
         network, pruned, best = search.network, search.pruned, search.best
         if not pruned.possible or not 0 < int(pruned.arcs.sum()) <= _MOST_ARCS:
             return
-        whole = network.plain and not pruned.before.any()
+        whole = network.plain and not network.before.any()
         search = search.part(_SHARE if whole else _SHARE_OF_BOUND)
         m = network.size
         if network.selective and (best is None or best.prize < search.prize_bound):

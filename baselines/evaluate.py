@@ -197,6 +197,9 @@ def _evaluate(given: argparse.Namespace) -> None:
         outcomes = {}
         for name, policy in policies.items():
             notes.print(f"{tests.name}: {name} …", highlight=False)
+            # What is loaded or compiled the first time is no time to think.
+            for _ in play(policy, tests, 1, given.seed):
+                pass
             outcomes[name] = tuple(play(policy, tests, given.instances, given.seed))
         comparisons.append(compare(tests, outcomes, best[tests.name], given.seed))
         console.print(table(comparisons[-1]))

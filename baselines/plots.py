@@ -69,7 +69,8 @@ def _ranking(comparison: PolicyComparison, picture: Path) -> Path:
         )  # fmt: skip
         axes.annotate(
             f"{row.policy}  {100 * gap.value:.1f}", (row.seconds.value, 100 * gap.value),
-            xytext=(6, 5), textcoords="offset points", fontsize=8, color=colour,
+            xytext=(6, 5 if row in front else -11), textcoords="offset points", fontsize=8,
+            color=colour,
         )  # fmt: skip
     _best_known_lines(axes, comparison)
     axes.set_xscale("log")
@@ -77,7 +78,8 @@ def _ranking(comparison: PolicyComparison, picture: Path) -> Path:
     axes.set_yscale("symlog", linthresh=5.0)
     axes.set_yticks(_TICKS, [str(tick) for tick in _TICKS])
     axes.set_yticks([], minor=True)
-    axes.invert_yaxis()
+    best = min(-100 * comparison.open, *(100 * row.gap.low for row in comparison.rows))
+    axes.set_ylim(115 * max(row.gap.high for row in comparison.rows) + 1, 1.2 * best - 1)
     axes.set_xlabel("s of processor time for an instance")
     axes.set_ylabel("gap to the best known routes, %")
     axes.set_title(f"{comparison.test_set}, {comparison.instances} instances", fontsize=10)

@@ -233,7 +233,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
     parser.add_argument("--seconds", type=float, default=8.0, metavar="S",
                         help="of processor time for an instance; default 8")  # fmt: skip
     parser.add_argument("--searches", type=int, default=2, metavar="N",
-                        help="that they are shared among, with a seed each; default 2")  # fmt: skip
+                        help="that share it; 0: the optimiser is not asked; default 2")  # fmt: skip
     parser.add_argument("--policy", nargs="*", default=[], metavar="NAME",
                         help="whose routes are tried as well")  # fmt: skip
     parser.add_argument("--results", nargs="*", type=Path, default=[], metavar="RESULTS.json",
@@ -244,9 +244,12 @@ def main(arguments: Sequence[str] | None = None) -> int:
     folder = Path(__file__).parent / _FOLDER
     effort = Effort(given.seconds, given.searches, tuple(given.policy))
     try:
-        for name, number in (("searches", given.searches), ("processes", given.processes)):
-            if number < 1:
-                raise Invalid(f"--{name} is {number}, and has to be at least 1")
+        for name, number, least in (
+            ("searches", given.searches, 0),
+            ("processes", given.processes, 1),
+        ):
+            if number < least:
+                raise Invalid(f"--{name} is {number}, and has to be at least {least}")
         if not given.seconds > 0.0:
             raise Invalid(f"--seconds is {given.seconds:g}, and has to be positive")
         for name in given.names or TEST_SETS:

@@ -136,7 +136,8 @@ def test_routes_of_results_are_read_by_instance(tmp_path):
     [
         (["random-21"], "no test set `random-21`"),
         (["random-20-v1", "--results", "nowhere.json"], "nowhere.json can't be read"),
-        (["random-20-v1", "--searches", "0"], "--searches is 0, and has to be at least 1"),
+        (["random-20-v1", "--searches", "-1"], "--searches is -1, and has to be at least 0"),
+        (["random-20-v1", "--processes", "0"], "--processes is 0, and has to be at least 1"),
         (["random-20-v1", "--seconds", "0"], "--seconds is 0, and has to be positive"),
     ],
 )

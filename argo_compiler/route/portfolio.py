@@ -8,7 +8,6 @@ from argo_compiler.nearest_name import nearest_name
 from argo_compiler.route.cp_sat import CpSat
 from argo_compiler.route.exchange_search import ExchangeSearch
 from argo_compiler.route.first_rules import FirstRules
-from argo_compiler.route.guided_local_search import GuidedLocalSearch
 from argo_compiler.route.held_karp import HeldKarp
 from argo_compiler.route.labels import LabelBeams, Labels
 from argo_compiler.route.linear_proof import LinearProof
@@ -19,11 +18,9 @@ from argo_compiler.route.solver import RouteSolver, registered_solvers
 
 FIRST: tuple[RouteSolver, ...] = (FirstRules(),)
 SMALL: tuple[RouteSolver, ...] = (HeldKarp(), Labels(), LinearProof())
-"""prove what is small enough, and give up on all else at once"""
-_EXCHANGE = ExchangeSearch()
-_WEAKER: tuple[RouteSolver, ...] = (GuidedLocalSearch(), RuinRecreate())
-IMPROVING: tuple[RouteSolver, ...] = (PyvrpSearch(), _EXCHANGE, *_WEAKER, LabelBeams())
-PROVING: tuple[RouteSolver, ...] = (CpSat(),)
+"""prove what is small enough, or in any order, and give up on all else at once"""
+IMPROVING: tuple[RouteSolver, ...] = (PyvrpSearch(), ExchangeSearch(), RuinRecreate())
+PROVING: tuple[RouteSolver, ...] = (LabelBeams(), CpSat())
 
 _IMPROVED_FIRST = 0.35
 """share of the time for better routes before proofs are tried, where there is one worker"""
@@ -62,32 +59,33 @@ def solve(search: Search, workers: int, chosen: Sequence[str | RouteSolver] | No
     for solver in [*those(FIRST), *those(SMALL)]:
         _run(solver, search)
     mine = [one for one in own if one.supports(search.problem)]
-    improving = [*mine, *those(registered_solvers()), *those(IMPROVING)]
-    if chosen is None and search.problem.precedences and _EXCHANGE in improving:
-        improving = [one for one in improving if one not in _WEAKER]
+    improving = [*mine, *those(registered_solvers()), *_best_of(search, those(IMPROVING))]
     proving = those(PROVING)
     if workers > 1 and search.timed and improving and proving:
         _beside(
             search,
-            lambda: _improve(search, improving),
-            lambda: _prove(search, proving),
+            lambda: _in_turn(search, improving),
+            lambda: _in_turn(search, proving),
         )
         return
     most = _FIRST_MOST * len(search.network.prize)
-    _improve(search.part(_IMPROVED_FIRST, most) if proving else search, improving)
-    _prove(search.part(_PROVED if improving else 1.0), proving)
-    _improve(search, improving)
+    _in_turn(search.part(_IMPROVED_FIRST, most) if proving else search, improving)
+    _in_turn(search.part(_PROVED if improving else 1.0), proving)
+    _in_turn(search, improving)
 
 
-def _improve(search: Search, solvers: Sequence[RouteSolver]) -> None:
-    """Each solver in turn, in equal parts of the time that is left."""
+def _best_of(search: Search, solvers: list[RouteSolver]) -> list[RouteSolver]:
+    """Those of the local searches that find the best routes of such a problem, in their order."""
+    kept = [one for one in solvers if not isinstance(one, RuinRecreate)] or solvers
+    waits = search.network.selective or search.network.windowed
+    # Without prizes and windows, PyVRP does not find what exchanges find.
+    return kept if waits else kept[::-1]
+
+
+def _in_turn(search: Search, solvers: Sequence[RouteSolver]) -> None:
+    """Each solver has an equal part of the time that is left."""
     for number, solver in enumerate(solvers):
         _run(solver, search.part(1.0 / (len(solvers) - number)))
-
-
-def _prove(search: Search, solvers: Sequence[RouteSolver]) -> None:
-    for solver in solvers:
-        _run(solver, search)
 
 
 def _run(solver: RouteSolver, search: Search) -> None:

@@ -8,7 +8,7 @@ from math import ceil, floor
 
 from ortools.sat.python import cp_model
 
-from argo_compiler.route.circuit_model import CircuitModel
+from argo_compiler.route.circuit_model import CircuitModel, time_to_build
 from argo_compiler.route.cp_solver import new_solver, run_solver
 from argo_compiler.route.evaluation import evaluate
 from argo_compiler.route.problem import Objective, RouteProblem, Tour
@@ -38,7 +38,7 @@ class CpSat:
         if not network.mandatory.any():
             _offer_nothing(search)
         patience = _PATIENCE
-        while search.left() > 0.0:
+        while search.left() > time_to_build(network, search.pruned):
             _Try(search, self.name, patience).run()
             patience *= 2.0
 

@@ -21,8 +21,9 @@ from argo_compiler.route.suggestion import RouteSuggestion
 
 _CHECK = 2.0
 """s for one check of whether some requirements can be met together"""
-
-_ROUNDS = 0.25
+_BEGUN = 0.3
+"""s that it takes at most until a check looks at the time"""
+_ROUNDS = 0.2
 """share of the time in which the ways to make rounds are found"""
 
 Clock = Callable[[], float]
@@ -104,18 +105,24 @@ def _explained(
 ) -> tuple[str, ...]:
     """Why there is no route, as far as that is found out in the time that is left."""
 
+    longest_check = 0.0
+
+    def left() -> float:
+        return inf if limits.seconds is None else limits.seconds - (clock() - begun)
+
     def possible(part: RouteProblem) -> bool | None:
-        seconds = None if limits.seconds is None else limits.seconds - (clock() - begun)
-        if seconds is not None and seconds <= 0.0:
-            return None
+        nonlocal longest_check
+        seconds = None if limits.seconds is None else max(left(), 1e-3)
+        before = clock()
         if limits.work is None:
             short = SearchLimits(min(_CHECK, seconds or _CHECK), None, FirstFeasible())
         else:
             short = SearchLimits(seconds, _CHECK, FirstFeasible())
         one = _searched(part, short, search.seed, 1, clock, Observers())
+        longest_check = max(longest_check, clock() - before)
         return True if one.best is not None else False if one.infeasible else None
 
-    found = find_infeasible_subset(problem, possible)
+    found = find_infeasible_subset(problem, possible, lambda: left() <= min(longest_check, _BEGUN))
     if found is None:
         search.say("there was no time to find out what can't be met together")
         return ()
@@ -123,6 +130,8 @@ def _explained(
         "fewer requirements than these can always be met"
         if found.smallest
         else "without any one of these requirements, the others can be met"
+        if found.minimal
+        else "there was no time to find out which of these requirements can be spared"
     )
     return found.words
 

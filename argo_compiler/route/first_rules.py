@@ -14,6 +14,11 @@ Vector = NDArray[np.int64]
 Rule = Callable[[int, int], Vector]
 """from the node and the time that the robot is at, numbers of all nodes: the smaller, the better"""
 
+_BEYOND = 0.1
+"""s beyond the limit for a first route, so that there is one"""
+_MOST_STANDS = 8
+"""ways to have charged that are kept"""
+
 
 class FirstRules:
     """Makes what must be made, and what that needs, by the first of some rules that gets through.
@@ -36,11 +41,12 @@ class FirstRules:
             lambda _at, _now: latest,
         ]
         follower = PathTiming(network)
-        if not any(_built(search, follower, rule) for rule in rules):
+        until = search.now() + search.left() + _BEYOND
+        if not any(_built(search, follower, rule, until) for rule in rules):
             search.say("no simple rule leads to a first route")
 
 
-def _built(search: Search, follower: PathTiming, rule: Rule) -> bool:
+def _built(search: Search, follower: PathTiming, rule: Rule, until: float) -> bool:
     """Offers the route that goes always on to the best node by the rule from which the end can be
     reached, and says whether there is one, and time for it."""
     network, pruned, m = search.network, search.pruned, search.network.size
@@ -55,7 +61,7 @@ def _built(search: Search, follower: PathTiming, rule: Rule) -> bool:
         nodes = np.flatnonzero(ready)
         cost = rule(at, stands[0].time)[nodes]
         for node in nodes[np.argsort(cost, kind="stable")].tolist():
-            if search.left() <= 0.0:
+            if search.now() >= until:
                 return False
             following = follower.go(stands, at, node, len(path))
             home = follower.go(following, node, m, len(path) + 1)
@@ -63,6 +69,8 @@ def _built(search: Search, follower: PathTiming, rule: Rule) -> bool:
                 break
         else:
             return False
+        if len(following) > _MOST_STANDS:  # the soonest, and that with the most left
+            following = [*following[: _MOST_STANDS - 1], following[-1]]
         stands, at, s = following, node, network.step[node]
         path.append(node)
         left[s] = False

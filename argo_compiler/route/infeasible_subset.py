@@ -30,9 +30,11 @@ class Requirement:
 
 @dataclass(frozen=True)
 class InfeasibleSubset:
-    """Requirements that can't all be met, though each part of them can."""
+    """Requirements that can't all be met."""
 
     words: tuple[str, ...]
+    minimal: bool
+    """whether each part of them can be met"""
     smallest: bool
     """whether there is none of fewer"""
 
@@ -130,30 +132,34 @@ def reduced(problem: RouteProblem, wanted: list[Requirement]) -> RouteProblem:
 def find_infeasible_subset(
     problem: RouteProblem,
     possible: Callable[[RouteProblem], bool | None],
+    over: Callable[[], bool],
     most_checks: int = 200,
 ) -> InfeasibleSubset | None:
-    """As few requirements as possible that can't all be met with all that must be visited, and as
-    few of those visits as possible. `possible` says whether a problem has a route, None if that is
-    not known; it is called about twice `most_checks` times at most, after which there may be
-    smaller clashes than the one found. None: none was found."""
+    """Of a problem that has no route, as few requirements as possible that can't all be met with
+    all that must be visited, and as few of those visits as possible. `possible` says whether a
+    problem has a route, None if that is not known; after `most_checks` calls of it, and when the
+    time is `over`, there may be smaller clashes than the one found. None: it is all of them, for
+    all that was found out in time."""
     asked = requirements(problem)
     visits = [one for one in asked if one.kind == "visit"]
     rest = [one for one in asked if one.kind != "visit"]
-    finder = _Finder(rest, lambda some: possible(reduced(problem, visits + some)), most_checks)
-    infeasible_subset = finder.infeasible_subset()
-    if infeasible_subset is None:
+
+    def of_rest(some: list[Requirement]) -> bool | None:
+        return possible(reduced(problem, visits + some))
+
+    def of_visits(more: list[Requirement]) -> bool | None:
+        return possible(reduced(problem, more + some))
+
+    some, minimal, smallest = _Finder(rest, of_rest, most_checks, over).infeasible_subset()
+    needed, none_spared, fewest = _Finder(visits, of_visits, most_checks, over).infeasible_subset()
+    minimal &= none_spared
+    if not minimal and len(some) + len(needed) == len(asked):
         return None
-    some, smallest = infeasible_subset
-    finder = _Finder(visits, lambda more: possible(reduced(problem, more + some)), most_checks)
-    infeasible_subset = finder.infeasible_subset()
-    if infeasible_subset is None:
-        return None
-    needed, fewest = infeasible_subset
     named = {visit for one in some for visit in _named(problem, one)}
     words = [
         one.words for one in [*needed, *some] if one.kind != "visit" or one.number not in named
     ]
-    return InfeasibleSubset(tuple(words), smallest and fewest)
+    return InfeasibleSubset(tuple(words), minimal, smallest and fewest)
 
 
 def _named(problem: RouteProblem, requirement: Requirement) -> tuple[int, ...]:
@@ -170,37 +176,39 @@ def _named(problem: RouteProblem, requirement: Requirement) -> tuple[int, ...]:
 
 
 class _Finder:
-    """Looks for a smallest part of some requirements that can't be met. Has state: what is known of
-    their parts."""
+    """Looks for a smallest part that can't be met of some requirements of which that is known. Has
+    state: what is known of their parts."""
 
     def __init__(
         self,
         asked: list[Requirement],
         possible: Callable[[list[Requirement]], bool | None],
         most_checks: int,
+        over: Callable[[], bool],
     ) -> None:
         self._asked, self._possible, self._most = asked, possible, most_checks
+        self._over = over
         self._checks = 0
         self._met: list[Kept] = []
         self._clashing: list[Kept] = []
         self._unknown = False
 
-    def infeasible_subset(self) -> tuple[list[Requirement], bool] | None:
-        """The part, and whether there is no smaller one; None: all can be met, or it is not
-        known."""
+    def infeasible_subset(self) -> tuple[list[Requirement], bool, bool]:
+        """The part, whether nothing in it can be spared, and whether there is no smaller one."""
         everything = frozenset(range(len(self._asked)))
-        if not self._clashes(everything):
-            return None
         small = self._spared(everything)
+        minimal = not self._unknown
         to_hit: list[Kept] = []
         while self._checks < self._most and not self._unknown:
-            smallest = _hitting_set(to_hit, len(self._asked))
+            smallest = _hitting_set(to_hit, len(self._asked), self._over)
+            if smallest is None:
+                break
             if len(smallest) >= len(small):
-                return self._told(small), True
+                return self._told(small), True, True
             if self._clashes(smallest):
-                return self._told(smallest), True
+                return self._told(smallest), True, True
             to_hit.append(everything - self._filled(smallest))
-        return self._told(small), False
+        return self._told(small), minimal, False
 
     def _told(self, infeasible_subset: Kept) -> list[Requirement]:
         return [self._asked[k] for k in sorted(infeasible_subset)]
@@ -211,6 +219,9 @@ class _Finder:
             return False
         if any(infeasible_subset <= kept for infeasible_subset in self._clashing):
             return True
+        if self._over():
+            self._unknown = True
+            return False
         self._checks += 1
         answer = self._possible(self._told(kept))
         self._unknown |= answer is None
@@ -221,10 +232,16 @@ class _Finder:
         return answer is False
 
     def _spared(self, infeasible_subset: Kept) -> Kept:
-        """A part of an infeasible subset of which nothing more can be spared."""
-        for part in sorted(infeasible_subset):
-            if part in infeasible_subset and self._clashes(infeasible_subset - {part}):
-                infeasible_subset = infeasible_subset - {part}
+        """A part of an infeasible subset of which nothing more can be spared, as far as there is
+        time: all of them are tried first, then halves, single ones last."""
+        size = 2 * len(infeasible_subset)
+        while size > 1:
+            size //= 2
+            parts = sorted(infeasible_subset)
+            for first in range(0, len(parts), size):
+                fewer = infeasible_subset - set(parts[first : first + size])
+                if self._clashes(fewer):
+                    infeasible_subset = fewer
         return infeasible_subset
 
     def _filled(self, met: Kept) -> Kept:
@@ -235,8 +252,8 @@ class _Finder:
         return met
 
 
-def _hitting_set(sets: list[Kept], count: int) -> Kept:
-    """A smallest set that has something in common with each of these."""
+def _hitting_set(sets: list[Kept], count: int, over: Callable[[], bool]) -> Kept | None:
+    """A smallest set that has something in common with each of these; None: no time for it."""
     model = cp_model.CpModel()
     picked = [model.new_bool_var("") for _ in range(count)]
     for one in sets:
@@ -244,5 +261,6 @@ def _hitting_set(sets: list[Kept], count: int) -> Kept:
     model.minimize(sum(picked))
     solver = new_solver()
     solver.parameters.num_workers = 1
-    run_solver(solver, model)
+    if run_solver(solver, model, None, over) != cp_model.OPTIMAL:
+        return None
     return frozenset(k for k in range(count) if solver.boolean_value(picked[k]))

@@ -13,7 +13,7 @@ import numpy as np
 from numpy.typing import NDArray
 from ortools.sat.python import cp_model
 
-from argo_compiler.route.circuit_model import CircuitModel
+from argo_compiler.route.circuit_model import CircuitModel, time_to_build
 from argo_compiler.route.cp_solver import new_solver, run_solver
 from argo_compiler.route.linear_relaxation import LinearRelaxation
 from argo_compiler.route.network import StepNetwork
@@ -119,8 +119,13 @@ class _Stage:
         arcs[network.size, network.size] = False
         steps = np.zeros_like(pruned.steps)
         steps[network.step[arcs[:, :-1].any(axis=0)]] = True
-        few = replace(network, mandatory=must)
-        model = CircuitModel(few, replace(pruned, arcs=arcs, steps=pruned.steps & steps))
+        few, pruned = (
+            replace(network, mandatory=must),
+            replace(pruned, arcs=arcs, steps=pruned.steps & steps),
+        )
+        if search.left() < time_to_build(few, pruned):
+            return min(relaxation.bound or 0, most)
+        model = CircuitModel(few, pruned)
         for cut in relaxation.cuts:
             model.at_least(cut.of, cut.least)
         if _symmetric(network):

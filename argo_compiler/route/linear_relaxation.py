@@ -140,6 +140,8 @@ class LinearRelaxation:
             self._glop.SetSolverSpecificParametersAsString(
                 f"use_preprocessing: false use_dual_simplex: {simplex}"
             )
+            if search.timed:
+                self._glop.SetTimeLimit(max(1, int(1e3 * search.left())))
             status = self._glop.Solve()
             search.spend(_WORK[0] * len(self._rows) * (1 + self._glop.iterations()))
             if status != pywraplp.Solver.OPTIMAL:

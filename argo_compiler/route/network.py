@@ -6,12 +6,15 @@ from functools import cached_property
 
 import numpy as np
 from numpy.typing import NDArray
+from scipy.sparse import csr_array
 
 from argo_compiler.route.modes import Step, StepMode, Vector, modes, steps
 from argo_compiler.route.problem import NEVER, Objective, RouteProblem, Tour
 
 _MOST_NODES = 4000
 """after which rounds are made in few ways: matrices of nodes by nodes have to be held"""
+_SPARSE = 0.01
+"""share of what is true in relations that are composed as lists"""
 
 
 @dataclass(frozen=True, eq=False)
@@ -246,6 +249,9 @@ def compose(first: NDArray[np.bool_], then: NDArray[np.bool_]) -> NDArray[np.boo
     """The composition of two relations: row to column by way of something between."""
     if not (first.any() and then.any()):
         return np.zeros_like(first)
+    if max(first.mean(), then.mean()) < _SPARSE:
+        found: NDArray[np.bool_] = (csr_array(first) @ csr_array(then)).toarray()
+        return found
     # As numbers with a fraction, for which there are fast products.
     return np.asarray(first.astype(np.float32) @ then.astype(np.float32) > 0.0)
 

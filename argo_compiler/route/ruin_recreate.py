@@ -7,6 +7,8 @@ less often. `argo_compiler.route.exchange_search` does more of it in the same ti
 battery.
 """
 
+from collections.abc import Callable
+
 import numpy as np
 from numpy.typing import NDArray
 
@@ -24,6 +26,8 @@ _NOMINAL = 5e-6
 """s for each step of a route, of one change"""
 _RUINED = 8
 """steps that are taken out at most"""
+_TRIED = 40
+"""steps that were left out and are tried, at most"""
 _WORSE = 0.05
 """by how much a route that is taken may be worse, in the beginning"""
 
@@ -60,6 +64,7 @@ class LocalSearch:
         self._needs = [set(np.flatnonzero(column).tolist()) for column in pruned.needs.T]
         self._after = [set(np.flatnonzero(row).tolist()) for row in pruned.before]
         self._before = [set(np.flatnonzero(column).tolist()) for column in pruned.before.T]
+        self._over: Callable[[], bool] = lambda: False
         self._must = np.flatnonzero(network.mandatory).tolist()
 
     def improve(self, path: Path, search: Search) -> None:
@@ -67,6 +72,7 @@ class LocalSearch:
         best = at = path
         best_worth = at_worth = self._worth(path) or (0, -NEVER)
         whole = search.left()
+        self._over = lambda: search.left() <= 0.0
         if not path and not self._network.selective:
             return
         k = 0
@@ -98,13 +104,11 @@ class LocalSearch:
     def _ruined(self, path: Path) -> tuple[list[int], list[int]]:
         """A path without some nodes near each other, and the steps that may be put back."""
         m, rng = self._network.size, self._rng
-        left_out = sorted(
-            s
-            for s in range(len(self._network.prize))
-            if self._pruned.steps[s] and s not in {self._step[node] for node in path}
-        )
+        made = {self._step[node] for node in path}
+        left_out = [s for s in np.flatnonzero(self._pruned.steps).tolist() if s not in made]
+        left_out = rng.permutation(left_out)[:_TRIED].tolist()
         if not path:
-            return [], [int(s) for s in rng.permutation(left_out)]
+            return [], [int(s) for s in left_out]
         count = int(rng.integers(1, min(_RUINED, len(path)) + 1))
         centre = path[int(rng.integers(len(path)))]
         near = np.minimum(self._near[centre, :m], self._near[:m, centre])
@@ -122,6 +126,8 @@ class LocalSearch:
         path, back = ruin
         must = set(self._must)
         for s in sorted(back, key=lambda s: (len(self._needs[s]), s not in must)):
+            if self._over():
+                return None
             made = {self._step[node] for node in path}
             placed = None
             if self._needs[s] <= made:

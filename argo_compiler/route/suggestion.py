@@ -38,7 +38,8 @@ class RouteSuggestion:
     """the visits that are left out"""
     infeasible_subset: tuple[str, ...] = ()
     """without a route: requirements, in the mission's words, that can't all be met, though each
-    smaller set of them can; empty: none are known"""
+    smaller set of them can, unless there was no time to find that out, as `reasons` then says;
+    empty: none are known"""
     method: str = ""
     """which solver it comes from"""
     reasons: tuple[str, ...] = ()

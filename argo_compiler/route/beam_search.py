@@ -61,7 +61,7 @@ class Space:
         self._bits, self._guide, self._level = bits, guide, level
         self._battery = network.problem.battery
         # The other measure: energy, or travel where that is not the time as well.
-        self._travels = network.windowed and network.objective is Objective.TRAVEL
+        self._travels = network.waits
 
     def beam(self, width: int, best: LabelSolution | None, search: Search) -> Beam:
         """The best path of a search that keeps the `width` most promising labels of a layer."""

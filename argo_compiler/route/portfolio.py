@@ -17,10 +17,10 @@ from argo_compiler.route.search import Search
 from argo_compiler.route.solver import RouteSolver, registered_solvers
 
 FIRST: tuple[RouteSolver, ...] = (FirstRules(),)
-SMALL: tuple[RouteSolver, ...] = (HeldKarp(), Labels(), LinearProof())
-"""prove what is small enough, or in any order, and give up on all else at once"""
+SMALL: tuple[RouteSolver, ...] = (HeldKarp(), Labels())
+"""prove what is small enough, and give up on all else at once"""
 IMPROVING: tuple[RouteSolver, ...] = (PyvrpSearch(), ExchangeSearch(), RuinRecreate())
-PROVING: tuple[RouteSolver, ...] = (LabelBeams(), CpSat())
+PROVING: tuple[RouteSolver, ...] = (LinearProof(), LabelBeams(), CpSat())
 
 _IMPROVED_FIRST = 0.35
 """share of the time for better routes before proofs are tried, where there is one worker"""

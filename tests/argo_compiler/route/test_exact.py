@@ -6,7 +6,18 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from argo_compiler.route import NEVER, Tour, evaluate, labels, suggest_route
+from argo_compiler.route import (
+    NEVER,
+    EnergyBudget,
+    Objective,
+    Round,
+    RouteProblem,
+    Tour,
+    Visit,
+    evaluate,
+    labels,
+    suggest_route,
+)
 from tests.argo_compiler.route.random_problems import random_problem
 from tests.argo_compiler.route.second_reading import best_worth
 
@@ -104,7 +115,6 @@ def test_equal_arguments_give_equal_routes_where_the_best_is_proven() -> None:
 
 
 def _grid(count: int):  # type: ignore[no-untyped-def]
-    from argo_compiler.route import RouteProblem, Visit
 
     rng = np.random.default_rng(count)
     places = rng.integers(0, 1000, (count + 1, 2))
@@ -122,7 +132,6 @@ def test_a_route_that_can_win_nothing_is_proven() -> None:
 
 
 def test_of_a_round_with_many_members_nothing_is_claimed() -> None:
-    from argo_compiler.route import Round
 
     grid = _grid(12)
     problem = replace(grid, rounds=(Round("patrol", tuple(range(11)), repeat=2),))
@@ -134,10 +143,24 @@ def test_of_a_round_with_many_members_nothing_is_claimed() -> None:
 
 
 def test_a_round_to_which_there_is_no_way() -> None:
-    from argo_compiler.route import Round, RouteProblem, Visit
 
     travel = np.array([[NEVER, NEVER, 1], [NEVER, 0, 1], [NEVER, NEVER, 3]])
     round_ = Round("patrol", (0, 1), repeat=0, duration=5)
     made = suggest_route(RouteProblem((Visit("a"), Visit("b")), travel, rounds=(round_,)))
     assert made.proven
     assert made.route is None
+
+
+def test_of_labels_energy_is_not_taken_for_travel() -> None:
+    """With a battery and a visit that must begin early, but none that is waited for."""
+    rng = np.random.default_rng(3)
+    for _ in range(60):
+        n = 3
+        travel, energy = rng.integers(0, 5, (2, n + 2, n + 2))
+        visits = tuple(Visit(str(k), latest=int(rng.integers(2, 9))) for k in range(n))
+        battery = EnergyBudget(energy, capacity=9)
+        problem = RouteProblem(visits, travel, (), (), None, battery, ("dock",), Objective.TRAVEL)
+        made = suggest_route(problem, 20.0, explain=False, solvers=("labels",))
+        best = best_worth(problem)
+        assert made.proven
+        assert (None if made.route is None else (made.prize, made.cost)) == best

@@ -36,14 +36,14 @@ class CpSat:
             search.say(f"{len(network.prize)} steps are too many for CP-SAT")
             return
         if not network.mandatory.any():
-            _offer_nothing(search)
+            offer_nothing(search)
         patience = _PATIENCE
         while search.left() > time_to_build(network, search.pruned):
             _Try(search, self.name, patience).run()
             patience *= 2.0
 
 
-def _offer_nothing(search: Search) -> None:
+def offer_nothing(search: Search) -> None:
     """The routes that make nothing, straight or by a charger."""
     for charges in ({}, *({0: number} for number in range(len(search.network.chargers)))):
         tour = Tour((), charges)

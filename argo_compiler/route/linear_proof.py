@@ -14,6 +14,7 @@ from numpy.typing import NDArray
 from ortools.sat.python import cp_model
 
 from argo_compiler.route.circuit_model import CircuitModel, time_to_build
+from argo_compiler.route.cp_sat import offer_nothing
 from argo_compiler.route.cp_solver import new_solver, run_solver
 from argo_compiler.route.linear_relaxation import LinearRelaxation
 from argo_compiler.route.network import StepNetwork
@@ -38,9 +39,12 @@ class LinearProof:
 
     def solve(self, search: Search) -> None:
         """First the most prize, then the least cost with it."""
-        network, pruned, best = search.network, search.pruned, search.best
+        network, pruned = search.network, search.pruned
         if not pruned.possible or not 0 < int(pruned.arcs.sum()) <= _MOST_ARCS:
             return
+        if not network.mandatory.any():
+            offer_nothing(search)  # its circuits make something
+        best = search.best
         whole = network.plain and not network.before.any()
         search = search.part(_SHARE if whole else _SHARE_OF_BOUND)
         m = network.size

@@ -18,6 +18,8 @@ from argo_compiler.route.solution import LabelSolution
 
 Vector = NDArray[np.int64]
 
+_NODE, _LABEL = 1e-4, 1.5e-6
+"""s for a node, and for each label that is gone on from to it"""
 _DIRECT = -1
 """charger of a way without a charge"""
 
@@ -146,6 +148,7 @@ class Space:
                 return None
             rows = rules.rows(labels.mask, node)
             rows = rows[pruned.arcs[labels.last[rows], node]]
+            search.spend(_NODE + _LABEL * len(rows))
             earliest = int(network.earliest[network.step[node]])
             for origin, time, other, charger in self._legs(labels, rows, node):
                 begin = np.maximum(time, earliest)

@@ -9,7 +9,7 @@ from math import ceil, floor
 from ortools.sat.python import cp_model
 
 from argo_compiler.route.circuit_model import CircuitModel, time_to_build
-from argo_compiler.route.cp_solver import new_solver, run_solver
+from argo_compiler.route.cp_solver import NOMINAL, new_solver, run_solver
 from argo_compiler.route.evaluation import evaluate
 from argo_compiler.route.problem import Objective, RouteProblem, Tour
 from argo_compiler.route.search import Search, Solution
@@ -85,7 +85,7 @@ class _Try:
             return search.left() <= 0.0 or (better and search.now() - begun >= self._patience)
 
         status = run_solver(solver, model.model, _Watch(model, search), over)
-        search.spend(solver.deterministic_time)
+        search.spend(NOMINAL * solver.deterministic_time)
         if status == cp_model.INFEASIBLE:
             self._nothing_better(best)
         elif status == cp_model.OPTIMAL:
@@ -99,7 +99,7 @@ class _Try:
         if search.timed:
             parameters.max_time_in_seconds = max(search.left(), 0.01)
         else:
-            parameters.max_deterministic_time = search.left()
+            parameters.max_deterministic_time = search.left() / NOMINAL
         solver.best_bound_callback = self._bound
         return solver
 

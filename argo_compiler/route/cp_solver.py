@@ -5,6 +5,8 @@ from concurrent.futures import ThreadPoolExecutor
 
 from ortools.sat.python import cp_model
 
+NOMINAL = 8.0
+"""s for a second of CP-SAT's own count of its work, with the linear relaxation at its strongest"""
 _LOOKS = 0.02
 """s between two looks at whether to go on"""
 

@@ -26,7 +26,7 @@ _MOST_WORK = 24_000_000
 """sets times nodes"""
 _FEW_SETS = 30_000
 """that take no time worth speaking of; of steps in any order, CP-SAT proves more sooner"""
-_NOMINAL = 1e-7
+_NOMINAL = 2e-7
 """s for a set and a node"""
 
 
@@ -81,6 +81,8 @@ def small_layers(search: Search) -> list[Layer] | None:
     network, pruned = search.network, search.pruned
     most = min(_MOST_SETS, _MOST_WORK // max(1, network.size))
     part = search.part(0.7)
+    if not search.timed:
+        most = min(most, int(part.left() / (_NOMINAL * max(1, network.size))))
     sets = count_sets(network, pruned, most, lambda: part.left() <= 0.0)
     ordered = network.windowed or pruned.before.any() or network.problem.battery is not None
     # Windows may leave much fewer sets than the order does.

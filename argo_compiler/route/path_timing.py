@@ -34,7 +34,9 @@ class PathTiming:
             for s in network.chargers
         ]
         self._battery = network.problem.battery
-        self._travels = network.windowed and network.objective is Objective.TRAVEL
+        self._travels = network.waits
+        self.legs = 0
+        """that were looked at, by chargers included: what it has worked"""
 
     def start(self) -> list[Stand]:
         """Before the first node."""
@@ -44,6 +46,7 @@ class PathTiming:
     def go(self, stands: list[Stand], origin: int, node: int, position: int) -> list[Stand]:
         """On to a node (m: the end); none are left if that is not possible."""
         found: list[Stand] = []
+        self.legs += len(stands) * (1 + len(self._stations))
         for stand in stands:
             if self._battery is None:
                 arrived = stand.time + self._time[origin][node]

@@ -22,8 +22,8 @@ Path = tuple[int, ...]
 Vector = NDArray[np.int64]
 Worth = tuple[int, int]
 """prize and cost (negative): the greater, the better"""
-_NOMINAL = 5e-6
-"""s for each step of a route, of one change"""
+_CHANGE, _LEG = 1e-4, 3e-6
+"""s for one change, and for each leg that it looks at"""
 _RUINED = 8
 """steps that are taken out at most"""
 _TRIED = 40
@@ -75,10 +75,11 @@ class LocalSearch:
         self._over = lambda: search.left() <= 0.0
         if not path and not self._network.selective:
             return
-        k = 0
+        k, legs = 0, self._follower.legs
         while (left := search.left()) > 0.0:
             k += 1
-            search.spend(_NOMINAL * len(at), 1)
+            search.spend(_CHANGE + _LEG * (self._follower.legs - legs), 1)
+            legs = self._follower.legs
             there = self._recreated(self._ruined(at))
             worth = None if there is None else self._worth(there)
             if there is None or worth is None:

@@ -19,9 +19,6 @@ _MOST_ARCS = 80_000
 _PATIENCE = 0.5
 """s for which a first try goes on although a better route was found elsewhere; twice as long from
 try to try"""
-_BY_TIMES = 0.3
-"""share of the time in which order is stated with times, which must end before the best known route
-does; in the rest it is stated with positions. Either proves some that the other does not"""
 
 
 class CpSat:
@@ -40,14 +37,9 @@ class CpSat:
             return
         if not network.mandatory.any():
             offer_nothing(search)
-        if network.plain and search.pruned.before.any():
-            self._repeat(search.part(_BY_TIMES), by_times=True)
-        self._repeat(search, by_times=False)
-
-    def _repeat(self, search: Search, *, by_times: bool) -> None:
         patience = _PATIENCE
-        while search.left() > time_to_build(search.network, search.pruned):
-            _Try(search, self.name, patience, by_times=by_times).run()
+        while search.left() > time_to_build(network, search.pruned):
+            _Try(search, self.name, patience).run()
             patience *= 2.0
 
 
@@ -62,14 +54,16 @@ def offer_nothing(search: Search) -> None:
 class _Try:
     """One model, from the best route that is known. Has state: its solver."""
 
-    def __init__(self, search: Search, name: str, patience: float, *, by_times: bool) -> None:
+    def __init__(self, search: Search, name: str, patience: float) -> None:
         self._search, self._name, self._patience = search, name, patience
         self._best = best = search.best
         network = search.network
         self._prizes = network.selective and (best is None or best.prize < search.prize_bound)
         self._least = best.prize if best is not None and network.selective else 0
         """the prize of the routes that what is said of the cost is about"""
-        tight = by_times and best is not None and not self._prizes and best.cost > 0
+        # With times, what order costs is told apart sooner where a better route is looked for.
+        ordered = network.plain and bool(search.pruned.before.any())
+        tight = ordered and best is not None and not self._prizes and best.cost > 0
         self._model = CircuitModel(
             network, search.pruned, best.cost - 1 if best is not None and tight else None
         )

@@ -24,8 +24,8 @@ PROVING: tuple[RouteSolver, ...] = (LinearProof(), LabelBeams(), CpSat())
 
 _IMPROVED_FIRST = 0.35
 """share of the time for better routes before proofs are tried, where there is one worker"""
-_FIRST_MOST = 0.05
-"""s for each step that this is at most"""
+_FIRST_MOST, _FIRST_BRIEF = 0.05, 0.003
+"""s for each step that this is at most; and where a proof needs no good route"""
 _PROVED = 0.7
 """share of the rest for proofs; what is left is for better routes again"""
 
@@ -68,7 +68,9 @@ def solve(search: Search, workers: int, chosen: Sequence[str | RouteSolver] | No
             lambda: _in_turn(search, proving),
         )
         return
-    most = _FIRST_MOST * len(search.network.prize)
+    network = search.network
+    brief = network.plain and not (network.selective or search.pruned.before.any())
+    most = (_FIRST_BRIEF if brief else _FIRST_MOST) * len(network.prize)
     _in_turn(search.part(_IMPROVED_FIRST, most) if proving else search, improving)
     _in_turn(search.part(_PROVED if improving else 1.0), proving)
     _in_turn(search, improving)

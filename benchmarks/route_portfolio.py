@@ -54,9 +54,9 @@ def draw(name: str, made: RouteSuggestion, turns: Axes, curve: Axes) -> None:
     curve.step(times, [*bound, bound[-1]], where="post", color="tab:red", ls="--", label="bound")
     curve.set_ylabel("prize" if prizes else "cost, s", fontsize=8)
     known = [value for value in [*values, *bound] if np.isfinite(value) and value > 0]
-    curve.set_ylim(0.9 * min(known), 1.05 * max(v for v in values if np.isfinite(v)))
-    if prizes:
-        curve.set_ylim(0.6 * max(known), 1.05 * max(known))
+    most = max(known) if prizes else max(value for value in values if np.isfinite(value))
+    curve.set_ylim(0.9 * min(known), 1.05 * most)
+    turns.tick_params(axis="x", labelsize=8)
     curve.tick_params(labelsize=8)
     curve.set_xlabel("s", fontsize=8)
 

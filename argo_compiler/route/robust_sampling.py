@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 
 from argo_compiler.errors import Invalid
 from argo_compiler.route.evaluation import evaluate
-from argo_compiler.route.problem import NEVER, RouteProblem, Tour
+from argo_compiler.route.problem import NEVER, EnergyBudget, RouteProblem, Tour
 from argo_compiler.route.robust_spread import TravelSpread
 
 Floats = NDArray[np.float64]
@@ -112,12 +112,10 @@ def completion(problem: RouteProblem, route: Tour, draws: Draws) -> Completion:
 
 def _is_none(problem: RouteProblem, route: Tour) -> bool:
     """Whether the route breaks what has nothing to do with times: as if all ways took none."""
-    side = problem.size + 1
     visits = tuple(replace(visit, earliest=0, latest=None) for visit in problem.visits)
-    travel = np.zeros((side, side), dtype=np.int64)
-    timeless = replace(
-        problem, visits=visits, travel=travel, max_duration=None, battery=None, chargers=()
-    )
+    travel = np.zeros_like(problem.travel)
+    battery = None if problem.battery is None else EnergyBudget(travel, capacity=0)
+    timeless = replace(problem, visits=visits, travel=travel, max_duration=None, battery=battery)
     return not evaluate(timeless, route).feasible
 
 

@@ -92,8 +92,7 @@ def suggest_order(
     start_area: StartArea = None,
     end_area: EndArea = None,
 ) -> None:
-    """Suggest the best order of a mission's tasks; exits with status 2 if there is none, and 1 if
-    something that was said of it turns out to be wrong."""
+    """Suggest the best order of a mission's tasks; exits with status 2 if there is none."""
     keep_apart([source, site, requirements], [output])
     if output:
         require_mission_output(output)

@@ -19,6 +19,7 @@ _EXTRAS: dict[str, tuple[str, tuple[str, ...]]] = {
         ("mcap", "mcap_protobuf", "foxglove_schemas_protobuf"),
     ),
     "ros": ("missions in bags of ROS", ("rosbags",)),
+    "route": ("better routes", ("pyvrp", "numba")),
     "vision": ("reading gauges from pictures", ("cv2",)),
 }
 """What each extra is for, and the modules that it brings."""

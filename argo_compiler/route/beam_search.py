@@ -63,7 +63,7 @@ class Space:
         self._bits, self._guide, self._level = bits, guide, level
         self._battery = network.problem.battery
         # The other measure: energy, or travel where that is not the time as well.
-        self._travels = network.waits
+        self._travels = network.problem.waits
 
     def beam(self, width: int, best: LabelSolution | None, search: Search) -> Beam:
         """The best path of a search that keeps the `width` most promising labels of a layer."""

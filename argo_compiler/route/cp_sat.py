@@ -9,7 +9,7 @@ from math import ceil, floor
 from ortools.sat.python import cp_model
 
 from argo_compiler.route.circuit_model import CircuitModel, time_to_build
-from argo_compiler.route.cp_solver import NOMINAL, new_solver, run_solver
+from argo_compiler.route.cp_solver import run_solver, solver_for, spend
 from argo_compiler.route.evaluation import evaluate
 from argo_compiler.route.problem import Objective, RouteProblem, Tour
 from argo_compiler.route.search import Search, Solution
@@ -77,7 +77,8 @@ class _Try:
             model.minimise_cost(self._least if search.network.selective else None, most)
         if best is not None and best.path is not None:
             model.hint(best.path, best.charges)
-        solver = self._solver()
+        solver = solver_for(search)
+        solver.best_bound_callback = self._bound
         begun = search.now()
 
         def over() -> bool:
@@ -86,23 +87,11 @@ class _Try:
             return search.left() <= 0.0 or (better and search.now() - begun >= self._patience)
 
         status = run_solver(solver, model.model, _Watch(model, search), over)
-        search.spend(NOMINAL * solver.deterministic_time)
+        spend(search, solver)
         if status == cp_model.INFEASIBLE:
             self._nothing_better(best)
         elif status == cp_model.OPTIMAL:
             self._bound(solver.objective_value)
-
-    def _solver(self) -> cp_model.CpSolver:
-        search, solver = self._search, new_solver()
-        parameters = solver.parameters
-        parameters.linearization_level = 2
-        parameters.random_seed = search.seed % (1 << 31)
-        if search.timed:
-            parameters.max_time_in_seconds = max(search.left(), 0.01)
-        else:
-            parameters.max_deterministic_time = search.left() / NOMINAL
-        solver.best_bound_callback = self._bound
-        return solver
 
     def _bound(self, value: float) -> None:
         """What CP-SAT says of the prize or the cost of all routes that it may find."""

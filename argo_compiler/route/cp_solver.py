@@ -5,7 +5,9 @@ from concurrent.futures import ThreadPoolExecutor
 
 from ortools.sat.python import cp_model
 
-NOMINAL = 8.0
+from argo_compiler.route.search import Search
+
+_NOMINAL = 8.0
 """s for a second of CP-SAT's own count of its work, with the linear relaxation at its strongest"""
 _LOOKS = 0.02
 """s between two looks at whether to go on"""
@@ -21,6 +23,23 @@ def new_solver() -> cp_model.CpSolver:
     solver.parameters.catch_sigint_signal = False
     solver.parameters.num_workers = 1
     return solver
+
+
+def solver_for(search: Search) -> cp_model.CpSolver:
+    """A solver with the limits of a search, and the linear relaxation at its strongest."""
+    solver = new_solver()
+    solver.parameters.linearization_level = 2
+    solver.parameters.random_seed = search.seed % (1 << 31)
+    if search.timed:
+        solver.parameters.max_time_in_seconds = max(search.left(), 0.01)
+    else:
+        solver.parameters.max_deterministic_time = search.left() / _NOMINAL
+    return solver
+
+
+def spend(search: Search, solver: cp_model.CpSolver) -> None:
+    """Counts what the solver has worked as the search's."""
+    search.spend(_NOMINAL * solver.deterministic_time)
 
 
 def run_solver(

@@ -15,7 +15,7 @@ from scipy.sparse.csgraph import connected_components
 
 from argo_compiler.route.network import StepNetwork
 from argo_compiler.route.order_ideals import Bits, Masks
-from argo_compiler.route.problem import Objective, RouteProblem
+from argo_compiler.route.problem import RouteProblem
 from argo_compiler.route.pruning import Pruned, longest, shortest
 from argo_compiler.route.search import Search
 
@@ -107,8 +107,7 @@ class HeldKarp:
     name = "Held-Karp"
 
     def supports(self, problem: RouteProblem, /) -> bool:
-        waits = problem.objective is Objective.TRAVEL and any(v.earliest for v in problem.visits)
-        return problem.battery is None and not waits
+        return problem.battery is None and not problem.waits
 
     def solve(self, search: Search, /) -> None:
         layers = small_layers(search)

@@ -48,8 +48,7 @@ _MOST_OPTIONAL = 22
 
 def _applies(problem: RouteProblem) -> bool:
     """Whether two measures are needed, and enough."""
-    waits = problem.objective is Objective.TRAVEL and any(v.earliest for v in problem.visits)
-    return waits != (problem.battery is not None)
+    return problem.waits != (problem.battery is not None)
 
 
 class Labels:

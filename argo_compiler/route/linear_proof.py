@@ -15,7 +15,7 @@ from ortools.sat.python import cp_model
 
 from argo_compiler.route.circuit_model import CircuitModel, time_to_build
 from argo_compiler.route.cp_sat import offer_nothing
-from argo_compiler.route.cp_solver import NOMINAL, new_solver, run_solver
+from argo_compiler.route.cp_solver import run_solver, solver_for, spend
 from argo_compiler.route.linear_relaxation import LinearRelaxation
 from argo_compiler.route.network import StepNetwork
 from argo_compiler.route.problem import Objective, RouteProblem
@@ -138,15 +138,9 @@ class _Stage:
             model.maximise_prize(-most)
         else:
             model.minimise_cost(self.least_prize or None, most)
-        solver = new_solver()
-        solver.parameters.linearization_level = 2
-        solver.parameters.random_seed = search.seed % (1 << 31)
-        if search.timed:
-            solver.parameters.max_time_in_seconds = max(search.left(), 0.01)
-        else:
-            solver.parameters.max_deterministic_time = search.left() / NOMINAL
+        solver = solver_for(search)
         status = run_solver(solver, model.model, None, lambda: search.left() <= 0.0)
-        search.spend(NOMINAL * solver.deterministic_time)
+        spend(search, solver)
         if status == cp_model.INFEASIBLE:
             return most + 1
         bound = relaxation.bound or 0

@@ -60,11 +60,6 @@ class StepNetwork:
         return bool((self.earliest > 0).any() or (self.latest < NEVER).any())
 
     @property
-    def waits(self) -> bool:
-        """Whether the robot may have to wait, which does not count."""
-        return self.objective is Objective.TRAVEL and bool((self.earliest > 0).any())
-
-    @property
     def plain(self) -> bool:
         """Whether a route's time is the sum of its arcs, and none is too short."""
         return self.problem.battery is None and not self.windowed

@@ -34,7 +34,7 @@ class PathTiming:
             for s in network.chargers
         ]
         self._battery = network.problem.battery
-        self._travels = network.waits
+        self._travels = network.problem.waits
         self.legs = 0
         """that were looked at, by chargers included: what it has worked"""
 

@@ -160,6 +160,11 @@ class RouteProblem:
         """Whether anything may be left out."""
         return not all(visit.mandatory for visit in self.visits)
 
+    @property
+    def waits(self) -> bool:
+        """Whether the robot may have to wait for a visit, and that does not count."""
+        return self.objective is Objective.TRAVEL and any(v.earliest > 0 for v in self.visits)
+
 
 @dataclass(frozen=True)
 class Tour:

@@ -1,4 +1,4 @@
-"""What a solver gives back to the portfolio."""
+"""What beams of labels have found, and what is known by them of all paths."""
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field

@@ -180,7 +180,7 @@ def simulated(plan, navigator, *, observers=(), journal=None, gui=False, pace=No
     return simulate(spec, site, observers=observers, journal=journal, gui=gui, pace=pace)
 
 
-def run_with(plan, rig, *, observers=(), journal=None, **fields):
+def run_with(plan, rig, *, observers=(), journal=None, interrupted=lambda: False, **fields):
     """The record of a run with such a rig: of all of it, or from where a journal ends."""
     spec = RunSpec(mission=plan, site=rig.navigator.site.name, **fields)
     past = journal.entries if journal else ()
@@ -189,7 +189,7 @@ def run_with(plan, rig, *, observers=(), journal=None, **fields):
     with simulation_of(
         spec, opened(rig.navigator), past=past, observers=observers, rig=rig
     ) as simulation:
-        return simulation.run()
+        return simulation.run(interrupted)
 
 
 def simulation_of(spec, site, **arguments):

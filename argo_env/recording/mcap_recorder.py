@@ -140,12 +140,17 @@ class McapRecorder(Observer):
         if entry.events or entry.resumed or entry.ended or self._state is None:
             self._mission(machine, now)
 
+    def on_interrupted(self, record: RunRecord) -> None:
+        """Writes the record as it stands; that of a later moment counts more."""
+        self.on_end(record)
+
     def on_end(self, record: RunRecord) -> None:
         """Writes the end of the run and its record."""
         result, now = record.result, self._now
         if now != self._sampled:
             self._sample(now)
-        level = Log.INFO if result.success else Log.ERROR
+        unfinished = Log.ERROR if result.ended else Log.WARNING
+        level = Log.INFO if result.success else unfinished
         self._log(f"{result.verdict}", level, "verdict", now)
         self._writer.attach("record.json", "application/json", to_json(record), now)
 

@@ -59,7 +59,7 @@ class Recording:
     def loss(self) -> str:
         """What is missing of a run without a record, in words."""
         if self.flaw is None:
-            return f"the run failed after {self.until:g} s"
+            return f"the run broke off after {self.until:g} s"
         return f"the recording {self.flaw}"
 
 

@@ -89,6 +89,15 @@ class Journal(Observer, Closing):
         self._size += len(line)
         self._lines += 1
 
+    def require_going_on(self) -> None:
+        """Raises ArgoError if the run has ended, and can't be told anything more."""
+        if self.ended:
+            raise Conflict(
+                f"{self.path}: the run has ended, at {self.entries[-1].t:g} s: nothing more can "
+                "occur in it; begin a new run with all events",
+                remedies=(Remedy.RUN_ANEW,),
+            )
+
     def require_unchanged(self, site: OpenedSite) -> None:
         """Raises ArgoError if the run would not go on with what it began with."""
         before = self.header.fingerprints

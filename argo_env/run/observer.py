@@ -27,5 +27,8 @@ class Observer:
     def on_step(self, now: float, action: ActionUnderWay | None) -> None:
         """A step of simulated time has ended at `now` (s), `action` under way."""
 
+    def on_interrupted(self, record: RunRecord) -> None:
+        """The run goes on no further for now, and this is its record as it stands."""
+
     def on_end(self, record: RunRecord) -> None:
         """The run has ended, and this is its record."""

@@ -198,6 +198,8 @@ class Result(Model):
     success: bool
     verdict: str
     """one sentence: success, or what is missing"""
+    ended: bool = True
+    """whether this is the end of the run; else it was interrupted here, and may go on"""
     outcome: Outcome | None = None
     """how the state machine ended; None: the run was stopped before"""
     duration: float

@@ -40,12 +40,14 @@ def simulate(
     journal: Path | None = None,
     gui: bool = False,
     pace: float | None = None,
+    interrupted: Callable[[], bool] = lambda: False,
 ) -> RunRecord:
     """Runs the mission of a spec to its end and returns the record. Equal specs give equal records.
 
     The `site` is the one that the spec names, if it is open already. With a `journal`, a new file,
     the run can be resumed after its process has died. With `pace` a second of wall time shows at
-    most that many seconds of simulated time.
+    most that many seconds of simulated time. The function `interrupted` is asked after each step
+    whether the run is to stop there: the record is as it stands then, and a journal can go on.
 
     Raises:
         ArgoError: the mission makes no sense on this site, there is no such site, drive or sensor,
@@ -67,7 +69,7 @@ def simulate(
                 0, stack.enter_context(create_journal(Path(journal), Header.of(site, spec)))
             )
         simulation = Simulation(machine, site, spec, observers=told, gui=gui)
-        return stack.enter_context(simulation).run()
+        return stack.enter_context(simulation).run(interrupted)
 
 
 def resume(
@@ -78,16 +80,20 @@ def resume(
     events: LoggedEvents = (),
     gui: bool = False,
     pace: float | None = None,
+    interrupted: Callable[[], bool] = lambda: False,
 ) -> RunRecord:
     """Goes on with the run of a journal and returns the record of the whole of it.
 
     The robot goes on from where it was last known to be, and the action that ran begins anew. If
     the run had ended, its record is made again. Further `events` occur at their times (s), at once
-    if these are over.
+    if these are over. It may be `interrupted` as in `simulate`.
 
     Raises:
-        ArgoError: the site, the robot, the mission's file or Argo is not what the run began with.
+        ArgoError: the site, the robot, the mission's file or Argo is not what the run began with,
+            or there are `events` for a run that has ended.
     """
+    if events:
+        journal.require_going_on()
     spec = journal.header.spec
     site = site or open_site(spec.site)
     journal.require_unchanged(site)
@@ -96,7 +102,7 @@ def resume(
     with Simulation(
         machine, site, spec, past=journal.entries, events=events, observers=told, gui=gui
     ) as simulation:
-        return simulation.run()
+        return simulation.run(interrupted)
 
 
 class PacedRun(Observer):

@@ -1,7 +1,7 @@
 """The simulation: the one loop between a machine and what carries its actions out."""
 
 import logging
-from collections.abc import Iterator, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from contextlib import ExitStack, contextmanager
 
 from argo_compiler.errors import Conflict, Invalid, NotFound
@@ -186,17 +186,25 @@ class Simulation(Closing):
         self._spec = self._spec.model_copy(update={"mission": machine.mission})
         self._course.obey(commands)
 
-    def run(self) -> RunRecord:
+    def run(self, interrupted: Callable[[], bool] = lambda: False) -> RunRecord:
         """Goes on to the end of the run; returns its record. A robot that stands still and waits
-        for what will not occur ends the run as well, as nobody can tell it anything meanwhile."""
+        for what will not occur ends the run as well, as nobody can tell it anything meanwhile.
+
+        Where `interrupted` says so between two steps, the record is that of the run as it stands.
+        """
         if not self.over:
             self._require_usable()
-        while not self.over and not self._open():
+        while not self.over and not interrupted() and not self._open():
             if why := self._standstill():
                 self._end(why)
             else:
                 self.step()
-        return self.record()
+        record = self.record()
+        if not self.over:
+            _log.info("the run was interrupted at %g s", self.now)
+            for observer in self._observers:
+                observer.on_interrupted(record)
+        return record
 
     def settle(self) -> None:
         """Ends the run if its machine has come to its end, or nothing can go on."""

@@ -60,7 +60,7 @@ def judge(
     docked = None if area is None else is_docked(last.body_pose, docks, area)
     missing = []
     if outcome is None and not last.ended:
-        missing.append(f"it is under way, {now:.0f} s so far")
+        missing.append(f"the mission is not at its end after {now:.0f} s")
     elif outcome is None:
         missing.append(last.stopped or f"it was stopped after {now:.0f} s")
     elif outcome is not Outcome.COMPLETED:
@@ -69,7 +69,7 @@ def judge(
         missing.append(f"failed: {', '.join(failed)}")
     if limit is not None and now > limit:
         missing.append(f"it took {now:.0f} s of at most {limit:.0f} s")
-    if docked is False:
+    if docked is False and last.ended:
         missing.append(f"the robot is not docked in starting area {area}")
     success = not missing
     skipped = _by_hand(trace, skipped=True)
@@ -77,6 +77,7 @@ def judge(
         missing.append(f"skipped by a person: {', '.join(skipped)}")
     return Result(
         success=success,
+        ended=last.ended,
         verdict=_praise(hfsm, log.tasks, trace) if success else "; ".join(missing),
         outcome=outcome,
         duration=now,

@@ -60,6 +60,19 @@ def test_a_recorded_run_is_the_run_without_a_recorder(recorded, yard_navigator) 
     assert simulate(SPEC, opened(yard_navigator)) == recorded.record
 
 
+def test_an_interrupted_run_is_recorded_with_its_record_as_it_stands(
+    yard_navigator, tmp_path: Path
+) -> None:
+    looks, file = iter([False] * 200 + [True]), tmp_path / "run.mcap"
+    with recording_to(file) as recorder:
+        record = simulate(
+            SPEC, opened(yard_navigator), observers=[recorder], interrupted=lambda: next(looks)
+        )
+    found = read_recording(file)
+    assert found.record == record
+    assert (found.flaw, record.result.ended) == (None, False)
+
+
 def test_a_resumed_run_is_recorded_with_the_record_of_all_of_it(
     recorded, yard_navigator, tmp_path: Path
 ) -> None:
@@ -234,5 +247,5 @@ def test_a_run_that_fails_leaves_what_was_recorded(yard_navigator, tmp_path: Pat
     found = read_recording(file)
     assert (found.flaw, found.record) == (None, None)
     assert found.until == pytest.approx(30.1)
-    with pytest.raises(ArgoError, match=r"the run failed after 30\.1 s"):
+    with pytest.raises(ArgoError, match=r"the run broke off after 30\.1 s"):
         found.require_record()

@@ -4,7 +4,7 @@ import os
 import resource
 import signal
 from dataclasses import replace
-from itertools import pairwise
+from itertools import count, pairwise
 from pathlib import Path
 from types import SimpleNamespace
 
@@ -34,6 +34,7 @@ from argo_env.run.journal import (
     open_journal,
 )
 from argo_env.run.log import LoggedEvent
+from argo_env.run.observer import Observer
 from argo_env.run.session import resume
 from argo_env.run.simulation import SAMPLE_PERIOD
 from argo_env.run.spec import RunSpec, logged
@@ -51,6 +52,7 @@ from tests.yard import (
     opened,
     run_with,
     simulated,
+    simulation_of,
     waypoint,
     yard,
 )
@@ -104,11 +106,12 @@ def header(navigator, plan=PLAN, events=EVENTS, source=None):
 def runner(navigator, journal, plan=PLAN, events=EVENTS, values=None):
     rig = fast_rig(navigator, values or {2: 5.5})
 
-    def go_on(observe=None, announce=None):
+    def go_on(observe=None, announce=None, interrupted=lambda: False):
         watching = [Watching(observe, announce)]
         return run_with(
-            plan, rig, journal=journal, observers=watching, seed=1, events=logged(*events)
-        )
+            plan, rig, journal=journal, observers=watching, interrupted=interrupted, seed=1,
+            events=logged(*events),
+        )  # fmt: skip
 
     return SimpleNamespace(run=go_on)
 
@@ -214,6 +217,66 @@ def test_cut_at_every_line_end(navigator, whole, tmp_path):
             require_a_continuation(record, reference, entries[-1].t)
         else:
             assert record == reference
+
+
+def test_interrupted_after_any_step(navigator, whole, tmp_path):
+    """The record is the reference's so far, and the journal goes on to all of it."""
+    reference, path = whole.record, tmp_path / "run.journal"
+    steps = round(reference.result.duration / 0.1)
+    for n in range(0, steps, 1 if CAMPAIGN else 61):
+        path.unlink(missing_ok=True)
+        looks = count()
+        with create_journal(path, header(navigator)) as journal:
+            record = runner(navigator, journal).run(interrupted=lambda: next(looks) >= n)  # noqa: B023
+        assert not record.result.ended
+        assert not record.result.success
+        assert record.result.verdict == f"the mission is not at its end after {n / 10:.0f} s"
+        assert record.result.duration == n / 10
+        for name in ("tasks", "readings", "anomalies", "trace"):
+            so_far = getattr(record, name)
+            assert so_far == getattr(reference, name)[: len(so_far)]
+        with open_journal(path) as journal:
+            assert not journal.ended
+            reached = journal.entries[-1].t if journal.entries else None
+        gone_on, told = resumed(navigator, path)
+        assert (*record.readings, *told) == gone_on.readings
+        if reached is None:
+            assert gone_on == reference
+        else:
+            assert record.result.duration - reached <= SAMPLE_PERIOD
+            require_a_continuation(gone_on, reference, reached)
+
+
+def test_an_interruption_is_told_and_the_simulation_can_go_on(navigator):
+    told, looks = [], iter([False] * 20 + [True])
+
+    class Told(Observer):
+        def on_interrupted(self, record):
+            told.append(record)
+
+    spec = RunSpec(mission=PLAN, site="yard")
+    with simulation_of(
+        spec, opened(navigator), observers=[Told()], rig=fast_rig(navigator)
+    ) as simulation:
+        record = simulation.run(lambda: next(looks))
+        assert told == [record]
+        assert record.result.duration == 2.0
+        whole = simulation.run()
+        assert told == [record]
+    assert whole.result.ended
+    assert whole == run_with(PLAN, fast_rig(navigator))
+
+
+def test_a_run_that_has_ended_can_be_told_nothing(navigator, whole, tmp_path):
+    path = tmp_path / "run.journal"
+    path.write_bytes(whole.content)
+    with (
+        open_journal(path) as journal,
+        pytest.raises(Conflict, match=r"run\.journal: the run has ended, at") as caught,
+    ):
+        resume(journal, opened(navigator), events=logged((5.0, Pause())))
+    assert caught.value.remedies == (Remedy.RUN_ANEW,)
+    assert path.read_bytes() == whole.content
 
 
 def test_cut_at_every_byte_of_the_last_lines(navigator, tmp_path):

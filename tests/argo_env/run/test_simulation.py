@@ -192,7 +192,7 @@ class TestRecordAtAnyMoment:
                     so_far = getattr(record, name)
                     assert so_far == getattr(reference, name)[: len(so_far)]
                 if not simulation.over:
-                    assert "under way" in record.result.verdict
+                    assert "not at its end" in record.result.verdict
                     assert (record.result.success, record.result.outcome) == (False, None)
             assert simulation.record() == reference
         assert RunRecord.model_validate_json(record.model_dump_json()) == record

@@ -63,7 +63,7 @@ class MissionFile:
 
 
 def read_mission(path: Path) -> Mission:
-    """The mission in a JSON file (UTF-8, with or without a byte order mark).
+    """The mission in a JSON file, UTF-8 or UTF-16.
 
     Only its shape is looked at; what it means is for `check`.
 

@@ -6,6 +6,7 @@ from pathlib import Path
 from typing import BinaryIO
 
 from argo_compiler.errors import ArgoError, Invalid, NotFound
+from argo_compiler.files.encodings import encoding_of
 
 _PART = 1 << 20
 
@@ -97,21 +98,23 @@ def require_size(content: bytes, name: object, thing: str, max_bytes: int) -> No
 
 
 def decode_text(content: bytes, name: object, thing: str) -> str:
-    """The text of a file that is meant as a `thing`: UTF-8, with or without a byte order mark.
+    """The text of a file that is meant as a `thing`: UTF-8 with or without a byte order mark, or
+    UTF-16, which Windows calls Unicode.
 
     Raises UnreadableFile if it is binary or in another encoding.
     """
-    if b"\0" in content:
+    encoding = encoding_of(content)
+    try:
+        text = "\0" if encoding is None else content.decode(encoding).removeprefix("\ufeff")
+    except UnicodeDecodeError as error:
+        line = content[: error.start].decode(error.encoding, "replace").count("\n") + 1
+        place = f"(byte {error.start + 1}, line {line})"
+        wrong = "is not UTF-8" if encoding == "utf-8" else f"is damaged {error.encoding.upper()}"
+        raise UnreadableFile(
+            name, FileProblem.NOT_TEXT, f"{wrong} {place}", "save it as UTF-8"
+        ) from error
+    if "\0" in text:
         raise UnreadableFile(
             name, FileProblem.NOT_TEXT, "is no text but a binary file", f"a {thing} is plain text"
         )
-    try:
-        return content.decode("utf-8-sig")
-    except UnicodeDecodeError as error:
-        line = content.count(b"\n", 0, error.start) + 1
-        raise UnreadableFile(
-            name,
-            FileProblem.NOT_TEXT,
-            f"is not UTF-8 (byte {error.start + 1}, line {line})",
-            "save it as UTF-8",
-        ) from error
+    return text

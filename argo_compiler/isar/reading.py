@@ -10,6 +10,7 @@ from pydantic import ValidationError
 from argo_compiler.catalog import Catalog
 from argo_compiler.diagnostics import Diagnostic, DiagnosticError, Severity
 from argo_compiler.files.mission_file import MAX_BYTES
+from argo_compiler.files.reading import FileError, decode_text
 from argo_compiler.il import Action, Mission, Task, Transition
 from argo_compiler.isar.definition import (
     FRAME,
@@ -48,13 +49,12 @@ def read_isar(content: bytes, source_name: str, catalog: Catalog | None = None) 
 def find_definition(content: bytes) -> dict[str, Any] | None:
     """The data of a file with an isar definition; None if it is no such file."""
     # Argo's own missions can be large: they are not read twice for having these words in them.
-    if len(content) > MAX_BYTES or not any(
-        f'"{word}"'.encode() in content for word in ("inspection", RETURN_TO_HOME, _WRAPPED)
-    ):
-        return None
     try:
-        data = json.loads(content)
-    except (ValueError, RecursionError):
+        text = "" if len(content) > MAX_BYTES else decode_text(content, "", "mission")
+        if not any(f'"{word}"' in text for word in ("inspection", RETURN_TO_HOME, _WRAPPED)):
+            return None
+        data = json.loads(text)
+    except (FileError, ValueError, RecursionError):
         return None  # the reader of missions says what is wrong with the file
     return data if _is_definition(data) else None
 

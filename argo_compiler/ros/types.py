@@ -5,6 +5,7 @@ from functools import cache
 from typing import Any, TypeVar
 
 from argo_compiler.errors import Unavailable
+from argo_compiler.extras import install_line
 from argo_compiler.ros.package import PACKAGE, SPECIFICATION, definitions
 
 E = TypeVar("E", bound=Enum)
@@ -18,7 +19,7 @@ class RosTypes:
             from rosbags.typesys import Stores, get_types_from_msg, get_typestore
         except ImportError:
             raise Unavailable(
-                "ROS messages and bags need rosbags: pip install 'argo-mission[ros]'"
+                f"ROS messages and bags need rosbags: {install_line('ros')}"
             ) from None
         self.version = version
         self.store = get_typestore(Stores.ROS1_NOETIC if version == 1 else Stores.ROS2_JAZZY)

@@ -11,6 +11,7 @@ from typing import IO
 from PIL import GifImagePlugin, Image
 
 from argo_compiler.errors import Unavailable
+from argo_compiler.extras import install_line
 
 GIF_COLOURS = 128
 
@@ -21,7 +22,7 @@ def find_ffmpeg() -> str:
         import imageio_ffmpeg
     except ImportError as error:
         raise Unavailable(
-            "writing .mp4 needs imageio-ffmpeg: pip install 'argo-mission[film]', or name a .gif"
+            f"writing .mp4 needs imageio-ffmpeg: {install_line('film')}, or name a .gif"
         ) from error
     try:
         program: str = imageio_ffmpeg.get_ffmpeg_exe()

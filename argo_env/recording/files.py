@@ -7,6 +7,7 @@ from importlib.util import find_spec
 from pathlib import Path
 
 from argo_compiler.errors import Conflict, Invalid, NotFound, Unavailable
+from argo_compiler.extras import install_line
 from argo_env.recording.output import RecordingFile
 from argo_env.run.observer import Observer
 
@@ -23,9 +24,7 @@ def require_libraries() -> None:
     """Raises ArgoError if the extra that recordings need isn't installed."""
     missing = [name for name in _LIBRARIES if find_spec(name) is None]
     if missing:
-        raise Unavailable(
-            f"recordings need {', '.join(missing)}: pip install 'argo-mission[recording]'"
-        )
+        raise Unavailable(f"recordings need {', '.join(missing)}: {install_line('recording')}")
 
 
 def check_recording(file: Path) -> None:

@@ -5,6 +5,7 @@ from importlib.util import find_spec
 
 from argo_compiler import __version__
 from argo_compiler.errors import ArgoError
+from argo_compiler.extras import install_line
 from argo_compiler.model import Model
 from argo_env.files import cache
 
@@ -50,7 +51,7 @@ class Extra(Model):
     @property
     def remedy(self) -> str:
         """The command that installs it."""
-        return f"pip install 'argo-mission[{self.name}]'"
+        return install_line(self.name)
 
 
 class Examination(Model):

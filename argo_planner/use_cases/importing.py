@@ -1,6 +1,7 @@
 """Missions from what someone hands in: scripts, missions, bags and other tools' missions."""
 
 import logging
+import re
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
 from enum import StrEnum
@@ -24,6 +25,9 @@ from argo_compiler.script.syntax.source import Source as Script
 from argo_env.planning.opening import OpenedSite
 
 _log = logging.getLogger(__name__)
+
+_BRACE = re.compile(rb"(\xef\xbb\xbf|\xff\xfe|\xfe\xff)?[\s\0]*\{")
+"""how JSON begins that is no list, in any encoding"""
 
 
 class SourceKind(StrEnum):
@@ -79,7 +83,8 @@ def kind_of(upload: Upload) -> SourceKind:
     """What an upload is, by its name and its content. What is nothing else is meant as a script."""
     if not isinstance(upload.content, bytes) or is_bag_content(upload.name, upload.content):
         return SourceKind.BAG
-    if Path(upload.name).suffix.lower() != ".json":
+    # From a pipe there is no name that tells, and no script begins with a brace.
+    if Path(upload.name).suffix.lower() != ".json" and not _BRACE.match(upload.content):
         return SourceKind.SCRIPT
     return SourceKind.MISSION if find_definition(upload.content) is None else SourceKind.ISAR
 

@@ -3,6 +3,7 @@
 from importlib.util import find_spec
 
 from argo_compiler.errors import Unavailable
+from argo_compiler.extras import install_line
 
 
 def check_learned() -> None:
@@ -15,6 +16,4 @@ def check_learned() -> None:
     }
     missing = [name for module, name in wanted.items() if find_spec(module) is None]
     if missing:
-        raise Unavailable(
-            f"learned policies need {', '.join(missing)}: pip install 'argo-mission[learned]'"
-        )
+        raise Unavailable(f"learned policies need {', '.join(missing)}: {install_line('learned')}")

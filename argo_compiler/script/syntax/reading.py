@@ -10,7 +10,7 @@ MAX_BYTES = 32_000_000
 
 
 def read_script(path: str | Path) -> str:
-    """The text of the script at `path`, which must be UTF-8, with or without a byte order mark.
+    """The text of the script at `path`, UTF-8 or UTF-16.
 
     Raises ArgoError if there is no such file, or if it can't be a script: a directory, empty,
     binary, in another encoding, or larger than `MAX_BYTES`.

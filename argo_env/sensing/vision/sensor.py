@@ -8,6 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from argo_compiler.errors import Unavailable
+from argo_compiler.extras import install_line
 from argo_env.robot.pose import BodyPose
 from argo_env.seeding import generator
 from argo_env.sensing.sensor import Measurement, MeasurementError, PoorViewError
@@ -58,7 +59,7 @@ class CameraSensor:
             import cv2  # noqa: F401
         except ImportError as error:
             raise Unavailable(
-                "the sensor `camera` needs OpenCV: pip install 'argo-mission[vision]'"
+                f"the sensor `camera` needs OpenCV: {install_line('vision')}"
             ) from error
         self._world = world
         self._seed = seed

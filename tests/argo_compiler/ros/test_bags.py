@@ -244,7 +244,7 @@ def test_without_rosbags_the_way_to_get_it_is_told(monkeypatch, tmp_path):
     monkeypatch.setitem(sys.modules, "rosbags.typesys", None)
     ros_types.ros1_types.cache_clear()
     try:
-        with pytest.raises(ArgoError, match=r"pip install 'argo-mission\[ros\]'"):
+        with pytest.raises(ArgoError, match=r"need rosbags: pip install .*\[ros\]"):
             read_bag(path)
     finally:
         ros_types.ros1_types.cache_clear()

@@ -19,9 +19,29 @@ def test_a_byte_order_mark_is_taken_off(tmp_path: Path) -> None:
     assert read_script(str(path)) == "Mission’s"
 
 
+@pytest.mark.parametrize("encoding", ["utf-16-le", "utf-16-be"])
+@pytest.mark.parametrize("mark", ["\ufeff", ""])
+def test_utf_16_is_recognised(encoding: str, mark: str, tmp_path: Path) -> None:
+    """Windows Notepad calls it Unicode."""
+    text = "Mission’s designation:\r\n1. Prüfe 5 €\r\n"
+    path = tmp_path / "script.txt"
+    path.write_bytes((mark + text).encode(encoding))
+    assert read_script(path) == text
+
+
+def test_utf_32_with_its_mark_is_recognised(tmp_path: Path) -> None:
+    path = tmp_path / "script.txt"
+    path.write_bytes("Mission’s".encode("utf-32"))
+    assert read_script(path) == "Mission’s"
+
+
 @pytest.mark.parametrize(
     ("data", "message"),
     [
+        ("\ufeffa\nb".encode("utf-16-le")[:-1], r"is damaged UTF-16-LE \(byte 7, line 2\); save"),
+        ("\ufeffa\0b".encode("utf-16-be"), "binary"),
+        ("Mission".encode("utf-16-le")[:-1], "binary"),
+        (bytes(range(64)), "binary"),
         (b"", "is empty"),
         (b" \n\t", "is empty"),
         (b"Mission\0", "binary"),

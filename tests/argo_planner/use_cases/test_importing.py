@@ -24,9 +24,20 @@ PLAN = mission(measure(1), measure(2), start_area=1, end_area=1)
 def uploads(site):
     views = inspection_views(PLAN, site.navigator)
     return {
-        SourceKind.SCRIPT: [Upload("plan.txt", SCRIPT), Upload("no suffix", SCRIPT)],
-        SourceKind.MISSION: [Upload("plan.json", mission_text(PLAN).encode())],
-        SourceKind.ISAR: [Upload("plan.json", to_isar(PLAN, lower(PLAN), views).encode())],
+        SourceKind.SCRIPT: [
+            Upload("plan.txt", SCRIPT),
+            Upload("no suffix", SCRIPT),
+            Upload("plan.txt", SCRIPT.decode().encode("utf-16")),
+        ],
+        SourceKind.MISSION: [
+            Upload(name, mission_text(PLAN).encode(encoding))
+            for name in ("plan.json", "/dev/stdin")
+            for encoding in ("utf-8", "utf-8-sig", "utf-16", "utf-16-be")
+        ],
+        SourceKind.ISAR: [
+            Upload("plan.json", to_isar(PLAN, lower(PLAN), views).encode(encoding))
+            for encoding in ("utf-8", "utf-16")
+        ],
         SourceKind.BAG: [
             Upload("plan.bag", to_ros1_bag(PLAN)),
             Upload("named as no bag is", to_ros1_bag(PLAN)),

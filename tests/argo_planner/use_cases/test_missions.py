@@ -132,6 +132,7 @@ def test_sites(site):
     mine = describe_site(site, "mine")
     again = uploaded_site(mine.encode(), "mine.yaml")
     assert again.name == "mine"
+    assert uploaded_site(mine.encode("utf-16"), "mine.yaml").site == again.site
     assert again.site.checkpoints == site.site.checkpoints
     with pytest.raises(DiagnosticError, match=r"mine.yaml:1:1: error: titel"):
         uploaded_site(b"titel: Mine\n", "mine.yaml")

@@ -1,22 +1,52 @@
-"""The Python in README and docs runs as it stands there."""
+"""What README and docs show works as it stands there: Python runs, YAML is accepted."""
 
 import re
 from pathlib import Path
 
 import pytest
+import yaml
+
+from argo_env.faults.reading import decode_faults
+from argo_planner.use_cases.routing import parse_requirements
+from argo_planner.use_cases.sites import check_site, uploaded_site
 
 ROOT = Path(__file__).parents[1]
-PAGES = {
-    path.relative_to(ROOT).as_posix(): re.findall(r"^```python\n(.*?)^```", text, re.M | re.S)
-    for path in (ROOT / "README.md", *sorted((ROOT / "docs").rglob("*.md")))
-    if "```python" in (text := path.read_text(encoding="utf-8"))
-}
 
 
-@pytest.mark.parametrize("page", PAGES)
+def snippets(language):
+    """Those of a language, by page."""
+    fence = re.compile(rf"^```{language}\n(.*?)^```", re.M | re.S)
+    pages = (ROOT / "README.md", *sorted((ROOT / "docs").rglob("*.md")))
+    found = {p.relative_to(ROOT).as_posix(): fence.findall(p.read_text("utf-8")) for p in pages}
+    return {page: parts for page, parts in found.items() if parts}
+
+
+PYTHON, YAML = snippets("python"), snippets("yaml")
+
+
+@pytest.mark.parametrize("page", PYTHON)
 def test_snippets_run(page, monkeypatch):
     """Those of a page one after the other, from the project's folder."""
     monkeypatch.chdir(ROOT)
     names = {"__name__": "snippet"}
-    for number, snippet in enumerate(PAGES[page], start=1):
+    for number, snippet in enumerate(PYTHON[page], start=1):
         exec(compile(snippet, f"{page}, snippet {number}", "exec"), names)
+
+
+def is_a_site(text, page):
+    report = check_site(uploaded_site(text.encode(), page))
+    assert (report.errors, report.notes) == ((), ())
+
+
+READERS = {
+    "docs/diagnostics.md": lambda text, page: yaml.safe_load(text),  # steps of somebody's CI
+    "docs/faults.md": lambda text, page: decode_faults(text.encode(), page),
+    "docs/routes.md": lambda text, page: parse_requirements(text.encode(), page),
+    "docs/sites.md": is_a_site,
+}
+
+
+@pytest.mark.parametrize("page", YAML)
+def test_yaml_snippets_are_accepted(page):
+    """Those of a page as one file."""
+    READERS[page]("".join(YAML[page]), page)

@@ -39,7 +39,7 @@ def is_a_site(text, page):
 
 
 READERS = {
-    "docs/diagnostics.md": lambda text, page: yaml.safe_load(text),  # steps of somebody's CI
+    "docs/diagnostics.md": lambda text, _page: yaml.safe_load(text),  # steps of somebody's CI
     "docs/faults.md": lambda text, page: decode_faults(text.encode(), page),
     "docs/routes.md": lambda text, page: parse_requirements(text.encode(), page),
     "docs/sites.md": is_a_site,

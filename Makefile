@@ -14,7 +14,7 @@ TWO_WORKERS := --numprocesses 2 --dist loadgroup --no-loadscope-reorder
 
 demo: .venv/demo.stamp ## run mission #1 and write its report
 	$(BIN)/argo run scenarios/umad/missions/mission_1.txt --site umad --seed 0 \
-		--start-area 1 --end-area 2 --report out/demo
+		--start-area 1 --end-area 2 --report out/demo --force
 	@echo "Open out/demo/report.html in a browser; out/demo/site.png shows the path on the site."
 
 test: .venv/test.stamp ## run the suite, but for what takes long; says which tests took longest

@@ -23,6 +23,7 @@ class Remedy(StrEnum):
     RESUME = "resume"
     RUN_ANEW = "run-anew"
     RECORD = "record"
+    REPLACE = "replace"
     SHOW_REST = "show-rest"
 
 

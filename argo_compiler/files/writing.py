@@ -1,32 +1,140 @@
-"""Writes files so that nobody ever sees half of one."""
+"""Writes files so that nobody ever sees half of one, or old ones and new ones together."""
 
+import errno
 import os
 import secrets
-from contextlib import suppress
+import shutil
+from collections.abc import Iterator, Mapping
+from contextlib import contextmanager, suppress
 from pathlib import Path
 
+from argo_compiler.errors import Conflict, NotFound, Unavailable
 
-def write_whole(path: Path, text: str) -> None:
-    """Writes `text` as UTF-8 with Unix line ends; afterwards the file is either old or new.
+_OPEN_FILES = (Path("/dev/fd"), Path("/proc/self/fd"))
+"""the files that this process has open"""
+_STREAMS = (Path("/dev/stdout"), Path("/dev/stderr"))
+
+
+def is_stream(path: Path) -> bool:
+    """Whether it is no file but what can only be written to: a terminal, a pipe, a device, or
+    what this process has open already."""
+    place = path.absolute()
+    if place in _STREAMS or place.parent in _OPEN_FILES:
+        return True
+    return os.path.exists(place) and not os.path.isfile(place) and not os.path.isdir(place)
+
+
+def check_place(file: Path) -> None:
+    """Raises ArgoError if no file can be written there. To be called before long work."""
+    if is_stream(file):
+        return
+    place = Path(os.path.realpath(file))
+    if os.path.isdir(place):
+        raise Conflict(f"{file}: is a folder; choose another name")
+    if not os.path.isdir(place.parent):
+        raise NotFound(f"{file}: there is no folder {file.parent}; make it, or choose another")
+    if not os.access(place.parent, os.W_OK | os.X_OK):
+        raise Unavailable(
+            f"{file}: can't be written: its folder can't be written to; choose another place"
+        )
+
+
+def write_whole(path: Path, content: str | bytes) -> None:
+    """Writes bytes, or text as UTF-8 with Unix line ends; afterwards the file is old or new.
 
     It is written beside its place and then moved there. A link stays a link, and what is no file,
     such as a terminal, is written to as it is. Raises OSError.
     """
-    path = path.resolve()
-    content = text.encode("utf-8")
-    if path.exists() and not path.is_file():
-        path.write_bytes(content)
+    data = content.encode("utf-8") if isinstance(content, str) else content
+    with drafting(path) as draft, draft.open("ab") as file:
+        file.write(data)
+
+
+@contextmanager
+def drafting(path: Path) -> Iterator[Path]:
+    """Gives the place for a draft, which becomes the file where the context ends well. The draft
+    has the same name in a folder of its own. Raises OSError."""
+    if is_stream(path):
+        yield path
         return
-    beside = path.with_name(f".argo-{secrets.token_hex(6)}.tmp")
+    path = Path(os.path.realpath(path))
+    with _drafts_in(path.parent) as folder:
+        draft = folder / path.name
+        yield draft
+        _finish(draft, path)
+        draft.replace(path)
+
+
+def write_folder(folder: Path, files: Mapping[str, bytes]) -> None:
+    """Writes files, by their paths in the folder; afterwards all of them are old or all are new.
+    Other files stay. Raises OSError.
+
+    The last one is the first to go and the last to come, such as a page that shows the others.
+    """
+    folder = Path(os.path.realpath(folder))
+    for name in files:
+        if (folder / name).is_dir():
+            raise IsADirectoryError(errno.EISDIR, os.strerror(errno.EISDIR), str(folder / name))
+    made: list[Path] = []
     try:
-        with beside.open("xb") as file:
-            file.write(content)
-            file.flush()
-            os.fsync(file.fileno())
-        if path.exists():
-            beside.chmod(path.stat().st_mode & 0o7777)
-        beside.replace(path)
+        for name in files:
+            _make_folder((folder / name).parent, made)
+        with _drafts_in(folder) as drafts:
+            old, new = drafts / "old", drafts / "new"
+            for name, content in files.items():
+                for side in (old, new):
+                    (side / name).parent.mkdir(parents=True, exist_ok=True)
+                (new / name).write_bytes(content)
+                _finish(new / name, folder / name)
+            _swap(folder, list(files), old, new)
     except BaseException:
-        with suppress(OSError):
-            beside.unlink()
+        for path in reversed(made):
+            with suppress(OSError):
+                path.rmdir()
         raise
+
+
+def _swap(folder: Path, names: list[str], old: Path, new: Path) -> None:
+    """Moves the old files out of the folder and the new ones in; takes all back if that fails."""
+    try:
+        for name in reversed(names):
+            if os.path.lexists(folder / name):
+                (folder / name).replace(old / name)
+        for name in names:
+            (new / name).replace(folder / name)
+    except BaseException:
+        for name in reversed(names):
+            if not os.path.lexists(new / name):
+                (folder / name).unlink(missing_ok=True)
+        for name in names:
+            if os.path.lexists(old / name):
+                (old / name).replace(folder / name)
+        raise
+
+
+@contextmanager
+def _drafts_in(folder: Path) -> Iterator[Path]:
+    """A hidden folder, on the same disk as what its files become."""
+    drafts = folder / f".argo-{secrets.token_hex(6)}.tmp"
+    try:
+        drafts.mkdir()
+        yield drafts
+    finally:
+        shutil.rmtree(drafts, ignore_errors=True)
+
+
+def _finish(draft: Path, path: Path) -> None:
+    """Has a draft on disk, with the permissions of the file that it replaces."""
+    with draft.open("rb") as file:
+        os.fsync(file.fileno())
+    if os.path.exists(path):
+        draft.chmod(path.stat().st_mode & 0o7777)
+
+
+def _make_folder(path: Path, made: list[Path]) -> None:
+    """Makes a folder and those that it is in, and adds them to those made."""
+    if path.is_dir():
+        return
+    _make_folder(path.parent, made)
+    path.mkdir()
+    made.append(path)

@@ -43,6 +43,11 @@ _LEFT = 16.0 * FINER
 _OLD = (120, 132, 145)
 
 
+def picture_names(site: Site) -> tuple[str, ...]:
+    """The names of the files that `write_route` may write."""
+    return tuple(_name(floor.number) for floor in site.spec.floors)
+
+
 def write_route(
     planned: MissionRoute,
     route: Tour,
@@ -73,7 +78,7 @@ def write_route(
         image = _draw(
             make_sheet([plan]), plan.number, planned, route, old, new, travel, site, headline
         )
-        path = folder / f"floor-{plan.number}.png"
+        path = folder / _name(plan.number)
         try:
             Image.fromarray(image).save(path)
         except OSError as error:
@@ -82,6 +87,10 @@ def write_route(
             ) from error
         written.append(path)
     return written
+
+
+def _name(floor: int) -> str:
+    return f"floor-{floor}.png"
 
 
 def _way(

@@ -4,9 +4,13 @@ import json
 from pathlib import Path
 
 from argo_compiler.errors import Conflict, Unavailable
+from argo_compiler.files.writing import write_folder
 from argo_env.report.html import page
 from argo_env.run.record import RunRecord
 from argo_env.site import Site
+
+PAGE = "report.html"
+"""the file of a report that a person opens"""
 
 
 def write_report(record: RunRecord, site: Site, folder: Path) -> Path:
@@ -19,17 +23,14 @@ def write_report(record: RunRecord, site: Site, folder: Path) -> Path:
         raise Conflict(
             f"the record is of a run on site `{record.site}`, not on `{site.name}`: load that site"
         )
-    target = folder / "report.html"
-    contents = {folder / "report.json": to_json(record), target: page(record, site)}
+    contents = {"report.json": to_json(record).encode(), PAGE: page(record, site).encode()}
     try:
-        folder.mkdir(parents=True, exist_ok=True)
-        for path, text in contents.items():
-            path.write_text(text, encoding="utf-8", newline="\n")
+        write_folder(folder, contents)
     except OSError as error:
         raise Unavailable(
             f"{folder}: the report can't be written: {error.strerror}; choose another folder"
         ) from error
-    return target
+    return folder / PAGE
 
 
 def to_json(record: RunRecord) -> str:

@@ -136,9 +136,16 @@ def fingerprints(site: OpenedSite, spec: RunSpec) -> dict[str, str]:
     return found
 
 
-def require_free(path: Path) -> None:
-    """Raises ArgoError if no new journal can be written there."""
-    if path.exists():
+def require_free(path: Path, replace: bool = False) -> None:
+    """Raises ArgoError if no new journal can be written there; with `replace` one that is there
+    already is in the way only while a process has it."""
+    if replace and path.is_file():
+        file = _open(path)
+        try:
+            _lock(file, path)
+        finally:
+            os.close(file)
+    elif path.exists():
         raise Conflict(
             f"{path}: is there already: resume that run, or choose another",
             remedies=(Remedy.RESUME,),
@@ -150,19 +157,21 @@ def require_free(path: Path) -> None:
         _refuse(path, "its folder can't be written to: choose another", kind=Unavailable)
 
 
-def create_journal(path: Path, header: Header) -> Journal:
+def create_journal(path: Path, header: Header, replace: bool = False) -> Journal:
     """A new journal with its header on disk, locked.
 
-    Raises ArgoError if the file is there already or can't be written.
+    Raises ArgoError if the file is there already, unless it may be replaced and no process has it,
+    or can't be written.
     """
-    require_free(path)
+    require_free(path, replace)
     # The header is written under another name, so that a journal is never without it.
     draft = path.with_name(path.name + ".new")
     line = _line(0, header)
     file = _open(draft, os.O_CREAT)
     try:
         _lock(file, path)
-        if path.exists():  # another process was faster; its draft has become the journal
+        if path.exists() and not replace:
+            # Another process was faster; its draft has become the journal.
             draft.unlink(missing_ok=True)
             require_free(path)
         os.ftruncate(file, 0)

@@ -38,16 +38,18 @@ def simulate(
     *,
     observers: Sequence[Observer] = (),
     journal: Path | None = None,
+    replace: bool = False,
     gui: bool = False,
     pace: float | None = None,
     interrupted: Callable[[], bool] = lambda: False,
 ) -> RunRecord:
     """Runs the mission of a spec to its end and returns the record. Equal specs give equal records.
 
-    The `site` is the one that the spec names, if it is open already. With a `journal`, a new file,
-    the run can be resumed after its process has died. With `pace` a second of wall time shows at
-    most that many seconds of simulated time. The function `interrupted` is asked after each step
-    whether the run is to stop there: the record is as it stands then, and a journal can go on.
+    The `site` is the one that the spec names, if it is open already. With a `journal` the run can
+    be resumed after its process has died: a new file, or with `replace` one that is there already.
+    With `pace` a second of wall time shows at most that many seconds of simulated time. The
+    function `interrupted` is asked after each step whether the run is to stop there: the record is
+    as it stands then, and a journal can go on.
 
     Raises:
         ArgoError: the mission makes no sense on this site, there is no such site, drive or sensor,
@@ -65,9 +67,8 @@ def simulate(
         told = [*_paced(pace), *observers]
         if journal is not None:
             # First, so that nobody is told what is not on disk.
-            told.insert(
-                0, stack.enter_context(create_journal(Path(journal), Header.of(site, spec)))
-            )
+            book = create_journal(Path(journal), Header.of(site, spec), replace)
+            told.insert(0, stack.enter_context(book))
         simulation = Simulation(machine, site, spec, observers=told, gui=gui)
         return stack.enter_context(simulation).run(interrupted)
 

@@ -8,8 +8,8 @@ import typer
 from argo_compiler.diagnostics import Diagnostic, has_errors, summary
 from argo_compiler.errors import ArgoError
 from argo_env.planning.opening import open_site
-from argo_planner.terminal.files import keep_apart, read_upload, write_text
-from argo_planner.terminal.options import EndArea, SiteOption, Source, StartArea
+from argo_planner.terminal.files import STANDARD_OUTPUT, check_outputs, read_upload, write_text
+from argo_planner.terminal.options import EndArea, Force, SiteOption, Source, StartArea
 from argo_planner.terminal.words import with_options
 from argo_planner.use_cases.checking import (
     Format,
@@ -33,12 +33,13 @@ def check_mission(
     ] = None,
     start_area: StartArea = None,
     end_area: EndArea = None,
+    force: Force = False,
 ) -> None:
     """Say all that is wrong or odd about a mission; exits with status 2 if there are errors."""
-    keep_apart([source, site], [output])
+    check_outputs([source, site], [output], force=force)
     diagnostics = with_options(_diagnostics(source, site, start_area, end_area))
     written = write_diagnostics(diagnostics, str(source), format)
-    if output:
+    if output and output != STANDARD_OUTPUT:
         write_text(output, written + "\n")
         print(f"{source}: {summary(diagnostics)}")
     else:

@@ -4,13 +4,11 @@ from pathlib import Path
 from typing import Annotated
 
 import typer
-from rich.console import Console
-from rich.markup import escape
 
 from argo_env.planning.opening import open_site
-from argo_planner.terminal.files import keep_apart, read_upload, write_text
+from argo_planner.terminal.files import check_outputs, read_upload, say_written, write_text
 from argo_planner.terminal.importing import import_shown
-from argo_planner.terminal.options import EndArea, Optimise, SiteOption, Source, StartArea
+from argo_planner.terminal.options import EndArea, Force, Optimise, SiteOption, Source, StartArea
 from argo_planner.use_cases.compiling import compile_mission as compile_imported
 
 
@@ -24,9 +22,10 @@ def compile_mission(
     optimise: Optimise = False,
     start_area: StartArea = None,
     end_area: EndArea = None,
+    force: Force = False,
 ) -> None:
     """Lower a mission to its state machine and write it as JSON."""
-    keep_apart([source, site], [output, mermaid])
+    check_outputs([source, site], [output, mermaid], force=force)
     opened = open_site(site)
     imported = import_shown(read_upload(source), opened, start_area, end_area)
     if optimise:
@@ -38,7 +37,4 @@ def compile_mission(
     if mermaid:
         write_text(mermaid, compiled.mermaid)
     machine = compiled.machine
-    Console(highlight=False).print(
-        f"{escape(str(output))}: {len(machine.leaves)} tasks, {len(machine.composites) - 1} groups",
-        soft_wrap=True,
-    )
+    say_written(output, f"{len(machine.leaves)} tasks, {len(machine.composites) - 1} groups")

@@ -4,15 +4,19 @@ from pathlib import Path
 from typing import Annotated
 
 import typer
-from rich.console import Console
-from rich.markup import escape
 
 from argo_compiler.errors import Invalid
-from argo_compiler.files.mission_file import write_mission
+from argo_compiler.files.mission_file import mission_text
 from argo_env.planning.opening import open_site
-from argo_planner.terminal.files import keep_apart, read_upload, require_mission_output
+from argo_planner.terminal.files import (
+    check_outputs,
+    read_upload,
+    require_mission_output,
+    say_written,
+    write_text,
+)
 from argo_planner.terminal.importing import import_shown
-from argo_planner.terminal.options import EndArea, SiteOption, StartArea
+from argo_planner.terminal.options import EndArea, Force, SiteOption, StartArea
 from argo_planner.use_cases.importing import SourceKind, kind_of
 
 
@@ -24,14 +28,14 @@ def import_script(
     site: SiteOption = "umad",
     start_area: StartArea = None,
     end_area: EndArea = None,
+    force: Force = False,
 ) -> None:
     """Read a mission script, a bag or an isar mission, and write the mission as JSON."""
     upload = read_upload(script)
     if kind_of(upload) is SourceKind.MISSION:
         raise Invalid(f"{script} is no script: `argo run` and `argo compile` take missions")
-    keep_apart([script, site], [output])
+    check_outputs([script, site], [output], force=force)
     require_mission_output(output)
     mission = import_shown(upload, open_site(site), start_area, end_area).mission
-    write_mission(mission, output)
-    names = ", ".join(task.name for task in mission.tasks)
-    Console(highlight=False).print(f"{escape(str(output))}: {escape(names)}", soft_wrap=True)
+    write_text(output, mission_text(mission))
+    say_written(output, ", ".join(task.name for task in mission.tasks))

@@ -13,9 +13,11 @@ from argo_env.formatting import clock
 from argo_env.pictures import check_film
 from argo_env.recording.reader import Recording, read_recording
 from argo_env.robot.spec import load_robot
-from argo_planner.terminal.files import keep_apart
+from argo_planner.terminal.files import check_outputs
+from argo_planner.terminal.options import Force
 from argo_planner.terminal.run_display import conclude
 from argo_planner.terminal.verbosity import is_quiet
+from argo_planner.use_cases.reporting import REPORT_FILES
 
 
 def replay(
@@ -28,9 +30,10 @@ def replay(
     render: Annotated[
         Path | None, typer.Option("--render", metavar="FILE.mp4|FILE.gif", help="film the run")
     ] = None,
+    force: Force = False,
 ) -> None:
     """Show what was recorded of a run, and make its report and its film again."""
-    keep_apart([recording], [render])
+    check_outputs([recording], [render], [(report, REPORT_FILES)], force)
     if render:
         check_film(render)
     begun = time.monotonic()

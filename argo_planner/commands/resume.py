@@ -18,9 +18,11 @@ from argo_env.run.session import resume
 from argo_env.run.simulation import LoggedEvents
 from argo_env.run.spec import logged
 from argo_planner.terminal.events import KINDS, parse_events
-from argo_planner.terminal.files import keep_apart
+from argo_planner.terminal.files import check_outputs
+from argo_planner.terminal.options import Force
 from argo_planner.terminal.run_display import RunDisplay, conclude
 from argo_planner.terminal.verbosity import is_quiet
+from argo_planner.use_cases.reporting import REPORT_FILES
 
 
 def resume_run(
@@ -42,13 +44,14 @@ def resume_run(
         Path | None,
         typer.Option("--record", metavar="FILE.mcap", help="record the rest of the run"),
     ] = None,
+    force: Force = False,
 ) -> None:
     """Go on with a run whose process has died, from its journal."""
-    if report:
-        make_folder(report)
-    keep_apart([journal], [recording])
+    check_outputs([journal], [recording], [(report, REPORT_FILES)], force)
     if recording:
         check_recording(recording)
+    if report:
+        make_folder(report)
     events = logged(*parse_events(event or []))
     console = Console(stderr=True, highlight=False, quiet=is_quiet())
     with open_journal(journal) as book:

@@ -17,9 +17,9 @@ from argo_env.files.folders import make_folder
 from argo_env.files.yaml_messages import message_of
 from argo_env.planning.opening import OpenedSite, open_site
 from argo_planner.terminal.certificate_lines import show_certificate
-from argo_planner.terminal.files import keep_apart, read_upload, require_mission_output
+from argo_planner.terminal.files import check_outputs, read_upload, require_mission_output
 from argo_planner.terminal.importing import import_shown
-from argo_planner.terminal.options import EndArea, SiteOption, Source, StartArea
+from argo_planner.terminal.options import EndArea, Force, SiteOption, Source, StartArea
 from argo_planner.terminal.order_tables import show, show_risk
 from argo_planner.terminal.words import order_said, said
 from argo_planner.use_cases.importing import SourceKind, kind_of, refuse_areas
@@ -91,18 +91,19 @@ def suggest_order(
     ] = None,
     start_area: StartArea = None,
     end_area: EndArea = None,
+    force: Force = False,
 ) -> None:
     """Suggest the best order of a mission's tasks; exits with status 2 if there is none."""
-    keep_apart([source, site, requirements], [output])
+    check_outputs([source, site, requirements], [output], [(pictures, ())], force)
     if output:
         require_mission_output(output)
     wanted = with_options(_read(requirements), budget, keep_order, before or [])
     upload = read_upload(source)
     if kind_of(upload) is not SourceKind.SCRIPT:
         refuse_areas(upload.name, start_area, end_area)
-    if pictures:
-        make_folder(pictures)
     opened = open_site(site)
+    if pictures:
+        _prepare(pictures, opened, force)
     imported = import_shown(upload, opened, start_area, end_area)
     if robust:
         require_limit(imported.mission, wanted)
@@ -131,6 +132,14 @@ def _read(requirements: Path | None) -> Requirements:
         return Requirements()
     content = read_bytes(requirements, "file of requirements", MAX_BYTES)
     return parse_requirements(content, str(requirements))
+
+
+def _prepare(folder: Path, site: OpenedSite, force: bool) -> None:
+    """Makes the folder of pictures. Raises ArgoError if there are such pictures in it already."""
+    from argo_env.pictures.route import picture_names
+
+    check_outputs([], folders=[(folder, picture_names(site.site))], force=force)
+    make_folder(folder)
 
 
 def _draw(found: Suggested, site: OpenedSite, folder: Path, console: Console) -> None:

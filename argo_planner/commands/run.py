@@ -21,10 +21,11 @@ from argo_env.run.session import simulate
 from argo_env.run.spec import RunSpec, logged
 from argo_planner.terminal.completion import among
 from argo_planner.terminal.events import KINDS, parse_events, parse_values
-from argo_planner.terminal.files import keep_apart, read_upload
+from argo_planner.terminal.files import check_outputs, read_upload
 from argo_planner.terminal.importing import import_shown
-from argo_planner.terminal.options import EndArea, Optimise, SiteOption, Source, StartArea
+from argo_planner.terminal.options import EndArea, Force, Optimise, SiteOption, Source, StartArea
 from argo_planner.terminal.run_display import RunDisplay, conclude
+from argo_planner.use_cases.reporting import REPORT_FILES
 from argo_planner.use_cases.running import NO_MISSION, require_possible, with_mission
 
 DEFAULT_PACE = 5.0
@@ -42,13 +43,20 @@ class _Outputs:
     gui: bool
     pace: float | None
     """simulated seconds a second"""
+    force: bool
+    """whether what is there already is replaced"""
 
     def check(self, *inputs: Path | str | None) -> None:
         """Raises ArgoError where something can't be written, or is one of the inputs; folders are
         made now."""
         if self.journal:
-            require_free(self.journal)
-        keep_apart([self.source, *inputs], [self.render, self.recording, self.journal])
+            require_free(self.journal, self.force)
+        check_outputs(
+            [self.source, *inputs],
+            [self.render, self.recording, self.journal],
+            [(self.report, REPORT_FILES)],
+            self.force,
+        )
         if self.pace is not None and not self.gui:
             raise Invalid("--pace is how fast the window shows the run: give --gui as well")
         # What films and recordings are made with takes long to import.
@@ -125,9 +133,10 @@ def run(
             "--record", metavar="FILE.mcap", help="record the run, for Foxglove and `argo replay`"
         ),
     ] = None,
+    force: Force = False,
 ) -> None:
     """Run a mission on a site, show what was measured, and write a report."""
-    outputs = _Outputs(source, report, render, recording, journal, gui, pace)
+    outputs = _Outputs(source, report, render, recording, journal, gui, pace, force)
     outputs.check(site, faults)
     said = _read_faults(faults) if faults else None
     spec = RunSpec(
@@ -182,6 +191,7 @@ def _carry_out(spec: RunSpec, site: OpenedSite, outputs: _Outputs) -> RunRecord:
             site,
             observers=observers,
             journal=outputs.journal,
+            replace=outputs.force,
             gui=outputs.gui,
             pace=(outputs.pace or DEFAULT_PACE) if outputs.gui else None,
         )

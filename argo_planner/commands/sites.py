@@ -9,7 +9,8 @@ import typer
 from argo_compiler.errors import ArgoError, Invalid, located
 from argo_env.planning.opening import OpenedSite, open_site
 from argo_planner.terminal import completion
-from argo_planner.terminal.files import keep_apart, write_text
+from argo_planner.terminal.files import check_outputs, write_text
+from argo_planner.terminal.options import Force
 from argo_planner.use_cases.sites import check_site, describe_site, list_sites, require_free_name
 
 
@@ -26,6 +27,7 @@ def show_sites(
         Path | None,
         typer.Option("-o", "--output", help="a .yaml to write the site's description to"),
     ] = None,
+    force: Force = False,
 ) -> None:
     """List the sites, or check one; exits with status 2 if it can't be driven."""
     if site is None:
@@ -35,7 +37,7 @@ def show_sites(
             print(f"{one.name}: {one.title}, floors: {one.floors}, checkpoints: {one.checkpoints}")
         return
     if output:
-        keep_apart([site], [output])
+        check_outputs([site], [output], force=force)
         _check_name(output)
     opened = open_site(site)
     if output:

@@ -1,16 +1,22 @@
 """What the commands read and write: uploads from files and folders, and results."""
 
+import os
+import sys
 from collections.abc import Iterable, Mapping
 from pathlib import Path
 
-from argo_compiler.errors import Conflict, Invalid, Unavailable
+from rich.console import Console
+
+from argo_compiler.errors import Conflict, Invalid, Remedy, Unavailable
 from argo_compiler.files.mission_file import read_mission_bytes
 from argo_compiler.files.reading import read_bytes
-from argo_compiler.files.writing import write_whole
+from argo_compiler.files.writing import check_place, is_stream, write_folder, write_whole
 from argo_compiler.ros import is_bag
 from argo_compiler.script.syntax.reading import MAX_BYTES
-from argo_env.files.folders import make_folder
 from argo_planner.use_cases.importing import Upload
+
+STANDARD_OUTPUT = Path("-")
+"""what is named where a result is to be shown, not kept"""
 
 
 def read_upload(source: Path) -> Upload:
@@ -25,19 +31,47 @@ def read_upload(source: Path) -> Upload:
     return Upload(str(source), read_bytes(source, "script", MAX_BYTES))
 
 
-def keep_apart(inputs: Iterable[Path | str | None], outputs: Iterable[Path | None]) -> None:
-    """Raises Conflict where a command would write over what it reads, or twice to one place. A
-    text is a site: its file, if it is one."""
+def check_outputs(
+    inputs: Iterable[Path | str | None],
+    files: Iterable[Path | None] = (),
+    folders: Iterable[tuple[Path | None, Iterable[str]]] = (),
+    force: bool = False,
+) -> None:
+    """Raises ArgoError where a command would write over what it reads, twice to one place, to where
+    nothing can be written, or, without `force`, over what is there already. To be called first.
+
+    A text among the inputs is a site: its file, if it is one. The `folders` come with the names
+    that are to be written in them.
+    """
+    single = [file for file in files if file is not None and not is_stream(file)]
+    several = []
+    for folder, names in folders:
+        if folder is not None:
+            if os.path.exists(folder) and not os.path.isdir(folder):
+                raise Conflict(f"{folder}: is a file, and a folder is asked for; choose another")
+            several += [folder / name for name in names]
+    _keep_apart(inputs, [*single, *several])
+    for output in (*single, *several):
+        if output == STANDARD_OUTPUT:
+            continue
+        if output in single or output.parent.is_dir():
+            check_place(output)
+        if os.path.exists(output) and not force:
+            raise Conflict(
+                f"{output}: is there already: choose another place, or replace it",
+                remedies=(Remedy.REPLACE,),
+            )
+
+
+def _keep_apart(inputs: Iterable[Path | str | None], outputs: Iterable[Path]) -> None:
     read = {
-        Path(given).resolve()
+        os.path.realpath(given)
         for given in inputs
         if isinstance(given, Path) or (given and Path(given).suffix in {".yaml", ".yml"})
     }
-    written: set[Path] = set()
+    written: set[str] = set()
     for output in outputs:
-        if output is None:
-            continue
-        place = output.resolve()
+        place = os.path.realpath(output)
         if place in read:
             raise Conflict(f"{output} is the input as well; choose another place to write to")
         if place in written:
@@ -47,38 +81,37 @@ def keep_apart(inputs: Iterable[Path | str | None], outputs: Iterable[Path | Non
 
 def require_mission_output(output: Path) -> None:
     """Raises Invalid where a mission that is written there could not be read again."""
-    if output.suffix.lower() != ".json":
+    if output != STANDARD_OUTPUT and output.suffix.lower() != ".json":
         raise Invalid(f"{output}: a mission is written as JSON; name a file that ends in .json")
 
 
 def write_text(path: Path, text: str) -> None:
     """Writes text as UTF-8 with Unix line ends; ArgoError if that is impossible."""
-    try:
-        write_whole(path, text)
-    except OSError as error:
-        raise Unavailable(f"{path}: can't be written: {error.strerror}") from error
+    write_content(path, text)
 
 
 def write_content(path: Path, content: str | bytes | Mapping[str, bytes]) -> None:
-    """Writes a file, or a folder of files; ArgoError if that is impossible."""
-    if isinstance(content, str):
-        write_text(path, content)
-    elif isinstance(content, bytes):
-        _write_bytes(path, content)
-    else:
+    """Writes a file, or a folder of files, to their place or to standard output; ArgoError if that
+    is impossible."""
+    if isinstance(content, Mapping):
         _write_folder(path, content)
+    elif path == STANDARD_OUTPUT:
+        sys.stdout.buffer.write(content.encode() if isinstance(content, str) else content)
+    else:
+        try:
+            write_whole(path, content)
+        except OSError as error:
+            raise Unavailable(f"{path}: can't be written: {error.strerror}") from error
+
+
+def say_written(path: Path, text: str) -> None:
+    """Says in a line what was written, but where that was shown itself."""
+    if path != STANDARD_OUTPUT:
+        Console(highlight=False).print(f"{path}: {text}", soft_wrap=True, markup=False)
 
 
 def _write_folder(folder: Path, files: Mapping[str, bytes]) -> None:
-    if folder.exists() and not folder.is_dir():
-        raise Conflict(f"{folder}: this format is a folder of files, and there is a file already")
-    for path, content in files.items():
-        make_folder((folder / path).parent)
-        _write_bytes(folder / path, content)
-
-
-def _write_bytes(path: Path, content: bytes) -> None:
     try:
-        path.write_bytes(content)
+        write_folder(folder, files)
     except OSError as error:
-        raise Unavailable(f"{path}: can't be written: {error.strerror}") from error
+        raise Unavailable(f"{folder}: can't be written: {error.strerror}") from error

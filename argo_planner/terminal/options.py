@@ -32,3 +32,4 @@ StartArea = Annotated[
 EndArea = Annotated[
     int | None, typer.Option("--end-area", help="the area to end in, where the script leaves it")
 ]
+Force = Annotated[bool, typer.Option("--force", help="replace files that are there already")]

@@ -11,6 +11,7 @@ from rich.progress import BarColumn, Progress, TextColumn, TimeElapsedColumn
 from argo_env.closing import Closing
 from argo_env.faults.kinds import changed_site
 from argo_env.formatting import where
+from argo_env.report.files import PAGE
 from argo_env.robot.spec import RobotSpec
 from argo_env.run.action import ActionUnderWay
 from argo_env.run.log import Entry
@@ -21,7 +22,7 @@ from argo_env.site import Site
 from argo_planner.terminal.files import write_content
 from argo_planner.terminal.record_tables import show_record
 from argo_planner.terminal.verbosity import is_quiet
-from argo_planner.use_cases.reporting import PAGE, report_files
+from argo_planner.use_cases.reporting import report_files
 
 
 class RunDisplay(Observer, Closing):

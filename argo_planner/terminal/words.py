@@ -23,6 +23,7 @@ _WORDS = {
     Remedy.RESUME: "argo resume {about}",
     Remedy.RUN_ANEW: "argo run",
     Remedy.RECORD: "argo run --record",
+    Remedy.REPLACE: "--force",
     Remedy.SHOW_REST: "argo replay without options",
 }
 

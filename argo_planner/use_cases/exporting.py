@@ -43,6 +43,12 @@ def require_format(name: str) -> None:
         raise NotFound(f"{name}: there is no such format; choose from {', '.join(FORMATS)}")
 
 
+def is_folder(format: str) -> bool:
+    """Whether the format is a folder of files. Raises NotFound if there is no such format."""
+    require_format(format)
+    return format in EXPORTERS and not EXPORTERS[format].suffixes
+
+
 def export_mission(imported: ImportedMission, site: OpenedSite, format: str) -> ExportedMission:
     """Writes a mission in that format.
 

@@ -5,13 +5,13 @@ from pathlib import Path
 
 from argo_env.faults.kinds import changed_site
 from argo_env.pictures import write_overview
-from argo_env.report import write_report
+from argo_env.report.files import PAGE, write_report
 from argo_env.robot.spec import RobotSpec
 from argo_env.run.record import RunRecord
 from argo_env.site import Site
 
-PAGE = "report.html"
-"""the file of a report that a person opens"""
+REPORT_FILES = ("report.json", "site.png", PAGE)
+"""the page last: it shows the others"""
 
 
 def report_files(record: RunRecord, site: Site, robot: RobotSpec) -> dict[str, bytes]:
@@ -23,8 +23,4 @@ def report_files(record: RunRecord, site: Site, robot: RobotSpec) -> dict[str, b
         folder = Path(name)
         write_report(record, site, folder)
         write_overview(record, changed_site(site, record.faults), robot, folder / "site.png")
-        return {
-            path.relative_to(folder).as_posix(): path.read_bytes()
-            for path in sorted(folder.rglob("*"))
-            if path.is_file()
-        }
+        return {name: (folder / name).read_bytes() for name in REPORT_FILES}

@@ -202,7 +202,7 @@ def test_a_mission_is_compiled_in_its_best_order(argo, source, tmp_path):
 
 def test_a_run_in_its_best_order_says_so_in_its_report(argo, source, tmp_path, monkeypatch):
     monkeypatch.setattr(
-        "argo_planner.use_cases.reporting.write_overview", lambda *_: None
+        "argo_planner.use_cases.reporting.write_overview", lambda *given: given[-1].touch()
     )  # takes long
     report = tmp_path / "report"
     result = argo("run", source, "--optimise", "--drive", "route", "--report", report)

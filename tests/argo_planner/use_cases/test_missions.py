@@ -11,6 +11,7 @@ from argo_compiler.hfsm import Hfsm, Occurred, Pause
 from argo_compiler.il import EventKind, Order
 from argo_compiler.model import Pose
 from argo_env.faults.reading import decode_faults
+from argo_env.report.files import PAGE
 from argo_env.run.record import RunRecord
 from argo_env.run.session import simulate
 from argo_env.run.spec import RunSpec
@@ -19,7 +20,7 @@ from argo_planner.use_cases.compiling import compile_mission
 from argo_planner.use_cases.exporting import FORMATS, as_script, export_mission
 from argo_planner.use_cases.importing import Upload, import_mission
 from argo_planner.use_cases.no_order import require_order
-from argo_planner.use_cases.reporting import PAGE, report_files
+from argo_planner.use_cases.reporting import report_files
 from argo_planner.use_cases.routing import parse_requirements, require_limit, suggest_order
 from argo_planner.use_cases.running import (
     NO_MISSION,

@@ -13,3 +13,10 @@ def generator(seed: int, *purpose: str | int) -> np.random.Generator:
     """
     key = [zlib.crc32(str(part).encode()) for part in purpose]
     return np.random.default_rng([seed, *key])
+
+
+def draw(rng: np.random.Generator, low: float, high: float, decimals: int) -> float:
+    """A number from low to high with so many decimals, or with more where the range needs them."""
+    drawn = float(rng.uniform(low, high))
+    rounded = (round(drawn, digits) for digits in range(decimals, 17))
+    return next((value for value in rounded if low <= value <= high), drawn)

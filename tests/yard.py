@@ -49,6 +49,14 @@ SITE = {
 }
 
 
+def gauged(low, high):
+    """The yard's site with gauges whose nominal range that is."""
+    (floor,) = SITE["floors"]
+    checkpoints = [c | {"nominal": {"low": low, "high": high}} for c in floor["checkpoints"]]
+    floors = [floor | {"checkpoints": checkpoints}]
+    return make_site(SiteSpec.model_validate(SITE | {"floors": floors}))
+
+
 def yard():
     navigator = Navigator(make_site(SiteSpec.model_validate(SITE)), load_robot())
     navigator.prepare()

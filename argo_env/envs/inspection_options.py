@@ -10,6 +10,7 @@ from argo_compiler.model import Model
 from argo_env.drives.route import RouteDrive
 from argo_env.faults.kinds import KINDS, AnyFault, settle
 from argo_env.faults.robot import EmergencyStop
+from argo_env.seeding import draw
 from argo_env.site import Site
 
 MOST_FAULTS = 8
@@ -57,6 +58,6 @@ def _fault(kind: str, rng: np.random.Generator) -> AnyFault:
     """A fault of that kind, what matters drawn by the run's seed; someone releases an emergency
     stop after a minute."""
     if kind == "emergency_stop":
-        at = round(float(rng.uniform(0.0, 600.0)), 1)
+        at = draw(rng, 0.0, 600.0, 1)
         return EmergencyStop(at=at, until=at + 60.0)
     return cast("AnyFault", KINDS[kind].model_validate({}))

@@ -9,6 +9,7 @@ from pydantic import Field, model_validator
 from argo_compiler.catalog import CheckpointKind
 from argo_compiler.errors import Invalid, NotFound
 from argo_env.faults.fault import TimedFault
+from argo_env.seeding import draw
 from argo_env.site import Site, SiteCheckpoint
 from argo_env.site.shapes import Vector
 from argo_env.world.placement import AS_PLANNED, Placement, draw_placement
@@ -100,7 +101,8 @@ class DisplacedCheckpoint(CheckpointFault):
         if upright and self.roll:
             raise Invalid(f"checkpoint {checkpoint.id} is a level gauge, which is never rolled")
         drawn = draw_placement(rng, upright)
-        x, y, z = (round(v, 4) for v in drawn.offset)
+        # Towards the plan: rounded to the nearest, some would be farther away than may be.
+        x, y, z = (math.trunc(v * 1e4) / 1e4 for v in drawn.offset)
         turn, roll = (round(math.degrees(angle), 1) for angle in (drawn.turn, drawn.roll))
         return (
             super()
@@ -129,11 +131,16 @@ class DisplacedCheckpoint(CheckpointFault):
 def _abnormal(checkpoint: SiteCheckpoint, rng: np.random.Generator) -> float:
     """A value on the scale outside the nominal range, clearly so where there is room."""
     scale, nominal = checkpoint.range, checkpoint.nominal
-    gap = _CLEARLY * (scale.high - scale.low)
-    parts = [(scale.low, nominal.low - gap), (nominal.high + gap, scale.high)]
-    free = [(low, high) for low, high in parts if low <= high]
-    if not free:
-        free = [p for p in ((scale.low, nominal.low), (nominal.high, scale.high)) if p[0] < p[1]]
+    below, above = math.nextafter(nominal.low, -math.inf), math.nextafter(nominal.high, math.inf)
+
+    def beyond(gap: float) -> list[tuple[float, float]]:
+        parts = (
+            (scale.low, min(below - gap, scale.high)),
+            (max(above + gap, scale.low), scale.high),
+        )
+        return [(low, high) for low, high in parts if low <= high]
+
+    free = beyond(_CLEARLY * (scale.high - scale.low)) or beyond(0.0)
     if not free:
         raise Invalid(
             f"checkpoint {checkpoint.id} ({checkpoint.name}) shows nothing abnormal: its whole "
@@ -141,4 +148,4 @@ def _abnormal(checkpoint: SiteCheckpoint, rng: np.random.Generator) -> float:
         )
     lengths = np.array([high - low for low, high in free]) + 1e-9
     low, high = free[int(rng.choice(len(free), p=lengths / lengths.sum()))]
-    return round(float(rng.uniform(low, high)), 2)
+    return draw(rng, low, high, 2)

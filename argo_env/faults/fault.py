@@ -6,6 +6,7 @@ import numpy as np
 from pydantic import Field, SerializerFunctionWrapHandler, model_serializer, model_validator
 
 from argo_compiler.model import Model
+from argo_env.seeding import draw
 from argo_env.site import Site
 from argo_env.site.shapes import Element
 
@@ -91,5 +92,5 @@ class TimedFault(Fault):
 
     def settled(self, site: Site, rng: np.random.Generator) -> Self:  # noqa: ARG002
         latest = LATEST if self.until is None else min(LATEST, self.until)
-        drawn = round(float(rng.uniform(0.0, latest)), 1)
+        drawn = draw(rng, 0.0, latest, 1)
         return self if self.at is not None else self._with(at=max(0.0, min(drawn, latest - 0.1)))

@@ -7,6 +7,7 @@ from pydantic import Field
 
 from argo_compiler.errors import Invalid, NotFound
 from argo_env.faults.fault import TimedFault
+from argo_env.seeding import draw
 from argo_env.site import Site
 from argo_env.site.shapes import Vector
 from argo_env.surroundings import Alarm, GasLeak, HotSpot, PumpFault, PumpSound
@@ -49,7 +50,7 @@ class GasLeakFault(ProcessFault):
 
     def settled(self, site: Site, rng: np.random.Generator) -> Self:
         _check_place(site, self.place)
-        place, rate = _near_equipment(site, rng, 0.0), round(float(rng.uniform(0.01, 0.04)), 4)
+        place, rate = _near_equipment(site, rng, 0.0), draw(rng, 0.01, 0.04, 4)
         return (
             super()
             .settled(site, rng)
@@ -76,7 +77,7 @@ class HotSpotFault(ProcessFault):
     def settled(self, site: Site, rng: np.random.Generator) -> Self:
         _check_place(site, self.place)
         place = _near_equipment(site, rng, 0.3)
-        temperature = round(float(rng.uniform(80.0, 150.0)), 1)
+        temperature = draw(rng, 80.0, 150.0, 1)
         return (
             super()
             .settled(site, rng)

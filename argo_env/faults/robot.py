@@ -7,6 +7,7 @@ from pydantic import Field
 
 from argo_compiler.errors import NotFound
 from argo_env.faults.fault import Fault, TimedFault
+from argo_env.seeding import draw
 from argo_env.site import Site
 from argo_env.site.spec import Rect
 from argo_env.surroundings.network import Shadow
@@ -23,7 +24,7 @@ class LowBattery(Fault):
     """share of the capacity that is there at the start"""
 
     def settled(self, site: Site, rng: np.random.Generator) -> Self:  # noqa: ARG002
-        drawn = round(float(rng.uniform(0.1, 0.25)), 3)
+        drawn = draw(rng, 0.1, 0.25, 3)
         return self._with(charge=self.charge or drawn)
 
     def begin(self, targets: "FaultTargets", now: float) -> None:  # noqa: ARG002
@@ -39,7 +40,7 @@ class WornBattery(Fault):
     """share of the capacity that is left"""
 
     def settled(self, site: Site, rng: np.random.Generator) -> Self:  # noqa: ARG002
-        drawn = round(float(rng.uniform(0.2, 0.6)), 3)
+        drawn = draw(rng, 0.2, 0.6, 3)
         return self._with(capacity=self.capacity or drawn)
 
     def begin(self, targets: "FaultTargets", now: float) -> None:  # noqa: ARG002
@@ -113,7 +114,7 @@ class DriveDysfunction(TimedFault):
     """share of the speed that is left; 0: it stops"""
 
     def settled(self, site: Site, rng: np.random.Generator) -> Self:
-        drawn = round(float(rng.uniform(0.0, 0.5)), 2)
+        drawn = draw(rng, 0.0, 0.5, 2)
         return super().settled(site, rng)._with(speed=drawn if self.speed is None else self.speed)
 
     def begin(self, targets: "FaultTargets", now: float) -> None:  # noqa: ARG002

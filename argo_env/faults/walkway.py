@@ -14,6 +14,7 @@ from pydantic import Field
 
 from argo_compiler.errors import Invalid, NotFound
 from argo_env.faults.fault import Fault
+from argo_env.seeding import draw
 from argo_env.site import Site
 from argo_env.site.shapes import Box, Element, Role, Solid
 from argo_env.site.spec import FlightSpec, FloorSpec, Point, Rect, TowerSpec
@@ -51,7 +52,7 @@ class Brick(Fault):
             if not any(_holds(r, place) for r in floor.walkways.values()):
                 raise Invalid(f"there is no walkway at ({place[0]:g}, {place[1]:g}) of floor "
                                 f"{floor.number}")  # fmt: skip
-            yaw = round(float(rng.uniform(-90.0, 90.0)), 1)
+            yaw = draw(rng, -90.0, 90.0, 1)
             settled = self._with(
                 floor=floor.number, place=place, yaw=yaw if self.yaw is None else self.yaw
             )

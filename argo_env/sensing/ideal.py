@@ -7,6 +7,7 @@ import numpy as np
 from argo_env.navigation.views import camera_positions, face_normal, sight_target
 from argo_env.robot.pose import BodyPose
 from argo_env.robot.spec import RobotSpec
+from argo_env.seeding import draw
 from argo_env.sensing.sensor import Measurement, MeasurementError, PoorViewError
 from argo_env.site import Site
 from argo_env.world.paper_world import AnyWorld
@@ -49,7 +50,11 @@ class IdealSensor:
 
 
 def draw_values(site: Site, rng: np.random.Generator) -> dict[int, float]:
-    """A true value for every checkpoint, somewhere in its nominal range, with two decimals."""
-    return {
-        c.id: round(float(rng.uniform(c.nominal.low, c.nominal.high)), 2) for c in site.checkpoints
-    }
+    """A true value on the scale of every checkpoint, somewhere in its nominal range, as a rule with
+    two decimals."""
+    values = {}
+    for c in site.checkpoints:
+        scale, nominal = c.range, c.nominal
+        low, high = (min(max(v, scale.low), scale.high) for v in (nominal.low, nominal.high))
+        values[c.id] = draw(rng, low, high, 2)
+    return values

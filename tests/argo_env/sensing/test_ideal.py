@@ -9,6 +9,7 @@ from argo_compiler.errors import NotFound
 from argo_env.robot.pose import BodyPose
 from argo_env.sensing.ideal import IdealSensor, draw_values
 from argo_env.sensing.sensor import MeasurementError
+from tests.yard import gauged
 
 
 @pytest.fixture(scope="module")
@@ -94,3 +95,14 @@ def test_drawn_values_are_nominal_and_the_seeds_own(umad, truth):
             value = values[checkpoint.id]
             assert checkpoint.nominal.contains(value)
             assert value == round(value, 2)
+
+
+@pytest.mark.parametrize(
+    ("low", "high", "least", "most"),
+    [(2.001, 2.004, 2.001, 2.004), (4.996, 4.996, 4.996, 4.996), (9.0, 12.0, 9.0, 10.0)],
+)
+def test_drawn_values_are_nominal_however_narrow_that_is(low, high, least, most):
+    site = gauged(low, high)
+    for seed in range(100):
+        values = draw_values(site, np.random.default_rng(seed)).values()
+        assert all(least <= value <= most for value in values)

@@ -1,5 +1,5 @@
 """`python -m argo_planner` is the command `argo`."""
 
-from argo_planner.cli import main
+from argo_planner.entry import main
 
 main()

@@ -1,7 +1,7 @@
 """The command `argo`: its name, its version, and the commands that it has."""
 
+import errno
 import gc
-import os
 import sys
 from typing import Annotated
 
@@ -10,6 +10,8 @@ import typer
 from argo_compiler import __version__
 from argo_compiler.errors import ArgoError
 from argo_planner.lazy_group import LazyCommand, LazyGroup
+from argo_planner.terminal.output import guard_output
+from argo_planner.terminal.signals import ignore_signals, raise_interrupted
 from argo_planner.terminal.verbosity import set_verbosity
 
 
@@ -139,27 +141,51 @@ def argo(
 
 def main() -> None:
     """The entry point: what goes wrong is said in one message, with exit status 2."""
-    if sys.stdout is None:  # closed by whoever wants no output
-        sys.stdout = open(os.devnull, "w")  # noqa: SIM115
+    output = guard_output()
+    try:
+        status = _carry_out()
+        if output.failure is not None and status in {0, 1}:
+            status = _without_output(output.failure)
+        raise SystemExit(status)
+    finally:
+        gc.freeze()  # the process ends: all goes, and needs no search for what can go
+
+
+def _carry_out() -> int:
+    """Carries out what the command line asks for; the exit status."""
+    raised = raise_interrupted()
     try:
         try:
-            app()
+            app(prog_name="argo")
         finally:
+            ignore_signals()
             sys.stdout.flush()
-    except ArgoError as error:
+    except BaseException as error:
+        if raised.came is not None:  # whatever has been made of it
+            print("argo: interrupted", file=sys.stderr)
+            return raised.came.status
+        return _status(error)
+    return 0
+
+
+def _status(error: BaseException) -> int:
+    """What went wrong is said; raised again if it is a defect of Argo."""
+    if isinstance(error, SystemExit) and isinstance(error.code, int):
+        return error.code
+    if isinstance(error, ArgoError):
         from argo_planner.terminal.words import said
 
         print(said(error, "argo: "), file=sys.stderr)
-        raise SystemExit(2) from None
-    except OSError as error:
-        if error.filename is not None:
-            raise
-        print(f"argo: the output can't be written: {error.strerror}", file=sys.stderr)
-        # What is left in the buffer would fail once more at the end of the process.
-        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
-        raise SystemExit(2) from None
-    finally:
-        gc.freeze()  # the process ends: all goes, and needs no search for what can go
+        return 2
+    raise error
+
+
+def _without_output(failure: OSError) -> int:
+    """The exit status of a command whose output nobody has got."""
+    if failure.errno == errno.EPIPE:  # its reader has gone, and knows
+        return 141
+    print(f"argo: the output can't be written: {failure.strerror}", file=sys.stderr)
+    return 2
 
 
 if __name__ == "__main__":

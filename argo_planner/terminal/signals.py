@@ -1,0 +1,110 @@
+"""Signals that ask the process to end: Ctrl-C (SIGINT) and SIGTERM.
+
+Imported before anything else, so it brings next to nothing. A signal that whoever started the
+process has it ignore, as `nohup` does, stays ignored.
+"""
+
+import os
+import signal
+import sys
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager, suppress
+from types import FrameType
+
+_NUMBERS = (signal.SIGINT, signal.SIGTERM)
+_AGAIN = 0.01
+"""s until an interruption that was lost is tried again"""
+
+_Handler = Callable[[int, FrameType | None], object]
+
+
+class Interrupted(BaseException):
+    """A signal asks the process to end. No Exception, so that nobody takes it for an error."""
+
+    def __init__(self, number: int) -> None:
+        super().__init__(f"signal {number}")
+        self.status = 128 + number
+        """that the process exits with, as shells tell it"""
+
+
+class Interruption:
+    """Whether a signal has come. Holds it."""
+
+    def __init__(self) -> None:
+        self.came: Interrupted | None = None
+
+    def __call__(self) -> bool:
+        return self.came is not None
+
+
+def end_at_once() -> None:
+    """From now on a signal ends the process with a line: for as long as it has done nothing."""
+    _answer(_end)
+
+
+def ignore_signals() -> None:
+    """From now on signals change nothing: for when all is done, and the process is ending."""
+    for number in _NUMBERS:
+        signal.signal(number, signal.SIG_IGN)
+
+
+def raise_interrupted() -> Interruption:
+    """From now on a signal raises Interrupted, wherever the program is. What is returned says later
+    whether that has happened, as what a library makes of it may be another exception."""
+    raised = Interruption()
+
+    def interrupt(number: int, _: FrameType | None) -> None:
+        raised.came = Interrupted(number)
+        raise raised.came
+
+    def unraisable(said: "sys.UnraisableHookArgs") -> None:
+        """Python can't raise what comes up in a destructor or such, and would print it."""
+        if raised.came is None:
+            sys.__unraisablehook__(said)
+        elif isinstance(said.exc_value, Interrupted):
+            number = said.exc_value.status - 128
+            signal.signal(signal.SIGALRM, lambda _, frame: interrupt(number, frame))
+            signal.setitimer(signal.ITIMER_REAL, _AGAIN)
+
+    _answer(interrupt)
+    sys.unraisablehook = unraisable
+    return raised
+
+
+@contextmanager
+def first_signal_deferred() -> Iterator[Interruption]:
+    """Within the context the first signal is only noted, and what it gives says so; the next one is
+    answered as before."""
+    deferred = Interruption()
+    before = {number: signal.getsignal(number) for number in _NUMBERS}
+
+    def restore() -> None:
+        for number, handler in before.items():
+            signal.signal(number, handler)
+
+    def note(number: int, _: FrameType | None) -> None:
+        deferred.came = Interrupted(number)
+        restore()
+
+    try:
+        _answer(note)
+    except ValueError:  # not in the main thread, where signals are answered
+        yield deferred
+        return
+    try:
+        yield deferred
+    finally:
+        restore()
+
+
+def _answer(handler: _Handler) -> None:
+    """Raises ValueError but in the main thread."""
+    for number in _NUMBERS:
+        if signal.getsignal(number) is not signal.SIG_IGN:
+            signal.signal(number, handler)
+
+
+def _end(number: int, _: FrameType | None) -> None:
+    with suppress(OSError):
+        os.write(2, b"argo: interrupted\n")
+    os._exit(128 + number)

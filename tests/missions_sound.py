@@ -116,6 +116,7 @@ def sound_missions(draw: st.DrawFn, catalog: Catalog, most: int = 7) -> Mission:
         groups=tuple(draw(st.permutations(groups))),
         reactions=tuple(draw(_reactions(event, catalog)) for event in events),
         current=draw(st.none() | st.sampled_from([t.name for t in tasks]) | texts),
+        left_out=tuple(draw(st.lists(texts, max_size=3))),
     )
 
 

@@ -7,9 +7,12 @@ from argo_compiler.diagnostics import Diagnostic, Severity
 from argo_compiler.errors import Remedy
 from argo_compiler.il import Mission
 
+_SHOWN = 12  # tasks that are left out, as far as they are named
+
 
 def check_header(mission: Mission, catalog: Catalog | None) -> Iterator[Diagnostic]:
-    """What is wrong with the site, the areas and the current task of a mission."""
+    """What is wrong with the site, the areas and the current task of a mission, and what it does
+    not do any more."""
     if mission.current is not None and mission.task(mission.current) is None:
         yield Diagnostic(
             code="il.unknown-current",
@@ -17,6 +20,17 @@ def check_header(mission: Mission, catalog: Catalog | None) -> Iterator[Diagnost
             message=f"the current task '{mission.current}' is no task of the mission",
             hint="name a task or leave it out: only the planner uses it",
             subject="current",
+        )
+    if omitted := mission.omitted:
+        more = len(omitted) - _SHOWN
+        yield Diagnostic(
+            code="il.left-out",
+            severity=Severity.WARNING,
+            message=f"left out when the order was chosen: {', '.join(omitted[:_SHOWN])}"
+            + (f" and {more} more" if more > 0 else ""),
+            hint="they are not done: allow more time and choose the order anew, or make another "
+            "mission of them",
+            subject="left_out",
         )
     if catalog is None:
         return

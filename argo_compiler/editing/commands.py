@@ -252,6 +252,7 @@ class SetHeader(EditCommand):
     real_time_reporting: str = ""
     after_mission_report: str = ""
     current: str | None = None
+    left_out: tuple[str, ...] = ()
 
 
 Edit = Annotated[

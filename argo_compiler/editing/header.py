@@ -27,6 +27,7 @@ class HeaderFields(TypedDict, total=False):
     real_time_reporting: str
     after_mission_report: str
     current: str | None
+    left_out: tuple[str, ...]
 
 
 def set_header(mission: Mission, **fields: Unpack[HeaderFields]) -> Edited:

@@ -244,6 +244,15 @@ class Mission(Model):
     reactions: tuple[Reaction, ...] = ()
     current: str | None = None
     """the task that the planner shows as current; the machine does not use it"""
+    left_out: tuple[str, ...] = ()
+    """the names of tasks that were taken away when the order was chosen, as they did not fit into
+    the time; for people, the machine does not use it"""
 
     def task(self, name: str) -> Task | None:
         return next((t for t in self.tasks if t.name == name), None)
+
+    @property
+    def omitted(self) -> tuple[str, ...]:
+        """What was left out and has not been added again."""
+        names = {task.name for task in self.tasks}
+        return tuple(name for name in self.left_out if name not in names)

@@ -10,11 +10,17 @@ from argo_compiler.analysis.limits import time_words
 from argo_compiler.errors import Invalid, NotFound
 from argo_compiler.il import Mission, Order
 from argo_compiler.reorder.branches import Branches
-from argo_compiler.reorder.precedences import must_be_last, precedences, round_notes, speed_notes
+from argo_compiler.reorder.precedences import (
+    asked_for,
+    must_be_last,
+    precedences,
+    round_notes,
+    speed_notes,
+)
 from argo_compiler.reorder.requirements import Requirements
 from argo_compiler.reorder.travel_matrix import TravelMatrix, require_matrix_of
 from argo_compiler.reorder.units import TaskUnit, Unit, find_spine
-from argo_compiler.reorder.visits import Visits
+from argo_compiler.reorder.visits import Visits, said
 from argo_compiler.route.problem import NEVER, EnergyBudget, Round, RouteProblem, Tour, Visit
 
 _NOTHING = Requirements()
@@ -32,6 +38,10 @@ class MissionRoute:
     """the order in which the mission is written"""
     reasons: tuple[str, ...]
     """what stays as it is written, and how it is reckoned"""
+    limit: float | None = None
+    """s, the shorter of the mission's maximum duration and the budget"""
+    unsaid: tuple[str, ...] = ()
+    """in words, what was asked for that no mission can say"""
 
 
 def route_problem(
@@ -73,8 +83,23 @@ def route_problem(
         words=words,
     )
     return MissionRoute(
-        mission, visits, problem, Tour(tuple(range(len(visits.stops)))), tuple(reasons)
+        mission,
+        visits,
+        problem,
+        Tour(tuple(range(len(visits.stops)))),
+        tuple(reasons),
+        None if limit is None else limit[0],
+        tuple(_unsaid(visits, requirements)),
     )
+
+
+def _unsaid(visits: Visits, requirements: Requirements) -> Iterator[str]:
+    yield from dict.fromkeys(one.words for one in asked_for(visits, requirements))
+    for window in requirements.windows:
+        words = said(window.what)
+        if window.earliest:
+            words += f" from {time_words(window.earliest)} on"
+        yield words if window.latest is None else f"{words} by {time_words(window.latest)}"
 
 
 def _limit(mission: Mission, requirements: Requirements) -> tuple[float, str] | None:

@@ -28,7 +28,7 @@ def precedences(
         shown = ", ".join(visits.short(k) for k in everything)
         words = f"precise order {shown}" if precise else AS_WRITTEN
         found.append(Precedence(everything, words))
-    found += _asked_for(visits, requirements)
+    found += asked_for(visits, requirements)
     # Also in a precise order: what a decision needs must not be left out.
     found += _deciding(visits)
     if not kept:
@@ -48,7 +48,7 @@ def require_known(mission: Mission, requirements: Requirements) -> None:
     ]
     for what in named:
         visits.find(what)
-    for _ in _asked_for(visits, requirements):
+    for _ in asked_for(visits, requirements):
         pass
 
 
@@ -61,7 +61,8 @@ def must_be_last(visits: Visits) -> int | None:
     return None
 
 
-def _asked_for(visits: Visits, requirements: Requirements) -> Iterator[Precedence]:
+def asked_for(visits: Visits, requirements: Requirements) -> Iterator[Precedence]:
+    """The orders that the requirements ask for. Raises ArgoError as `precedences` does."""
     for sequence in requirements.before:
         found = [visits.find(what) for what in sequence]
         words = " before ".join(map(said, sequence))

@@ -13,9 +13,10 @@ from argo_compiler.route.problem import Tour
 def apply_route(planned: MissionRoute, route: Tour) -> Mission:
     """The mission with its tasks in the order of the route.
 
-    What the route leaves out is taken away, with what is done only after it. Transitions, the
-    groups' first and last tasks and START lead to what comes next now; names, conditions, sources
-    and everything else are kept.
+    What the route leaves out is taken away, with what is done only after it, and named in
+    `left_out`. Transitions, the groups' first and last tasks and START lead to what comes next now;
+    the limit that the order was chosen for is the maximum duration; names, conditions, sources and
+    everything else are kept.
 
     Raises ArgoError if the route breaks a rule other than a limit of time, or a mission can't say
     it: it has no task that waits, and none that charges.
@@ -55,6 +56,7 @@ class _Rewriting:
 
     def __init__(self, planned: MissionRoute, route: Tour) -> None:
         self.mission_before = planned.mission
+        self.limit = planned.limit
         self.visits = planned.visits
         self.spine = planned.visits.spine
         self.position = {visit: k for k, visit in enumerate(route.order)}
@@ -81,6 +83,11 @@ class _Rewriting:
                 "tasks": tasks,
                 "groups": tuple(self._group(g) for g in before.groups if self._stays(g, names)),
                 "current": before.current if before.current in names else None,
+                "max_duration": self.limit,
+                "left_out": (
+                    *before.left_out,
+                    *(task.name for task in before.tasks if task.name not in names),
+                ),
             }
         )
 

@@ -20,7 +20,7 @@ from argo_planner.terminal.certificate_lines import show_certificate
 from argo_planner.terminal.files import check_outputs, read_upload, require_mission_output
 from argo_planner.terminal.importing import import_shown
 from argo_planner.terminal.options import EndArea, Force, SiteOption, Source, StartArea
-from argo_planner.terminal.order_tables import show, show_risk
+from argo_planner.terminal.order_tables import show, show_risk, written_lines
 from argo_planner.terminal.words import order_said, said
 from argo_planner.use_cases.importing import SourceKind, kind_of, refuse_areas
 from argo_planner.use_cases.no_order import require_order
@@ -122,7 +122,8 @@ def suggest_order(
         show_risk(found, spread, seed, console)
     if output and reordered:
         write_mission(reordered, output)
-        console.print(f"Mission: {output}", soft_wrap=True, markup=False)
+        for line in written_lines(found, reordered, opened, output):
+            console.print(line, soft_wrap=True, markup=False)
     if pictures:
         _draw(found, opened, pictures, console)
 

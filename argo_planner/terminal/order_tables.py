@@ -2,18 +2,21 @@
 
 from collections.abc import Iterator
 from itertools import chain
+from pathlib import Path
 
 from rich.console import Console
 from rich.markup import escape
 from rich.table import Table
 
-from argo_compiler.il import Order
+from argo_compiler.analysis.limits import time_words
+from argo_compiler.il import Mission, Order
 from argo_compiler.route.evaluation import evaluate
 from argo_compiler.route.robust_spread import TravelSpread
 from argo_compiler.route.tour_pauses import TourPause, pauses
 from argo_env.formatting import clock
+from argo_env.planning.opening import OpenedSite
 from argo_planner.terminal.words import order_said
-from argo_planner.use_cases.routing import Suggested, completions
+from argo_planner.use_cases.routing import Suggested, completions, too_long
 
 _BROKEN = 3  # requirements that the written order does not keep to, as far as they are shown
 _SHOWN = 12  # orders to keep that are shown
@@ -37,6 +40,23 @@ def show(found: Suggested, console: Console) -> None:
     console.print(_table(found))
     for line in _lines(found):
         console.print(escape(line), soft_wrap=True)
+
+
+def written_lines(
+    found: Suggested, mission: Mission, site: OpenedSite, output: Path
+) -> Iterator[str]:
+    """What is said of a mission that was written in its new order."""
+    yield f"Mission: {output}"
+    limit = mission.max_duration
+    if limit is not None and limit != found.planned.mission.max_duration:
+        yield f"Its maximum duration is the budget now: {time_words(limit)}"
+    if wrong := too_long(mission, site):
+        yield f"Note: on its own ways {wrong}: choose the order for less time"
+    if unsaid := found.planned.unsaid:
+        yield (
+            f"Note: no mission can say this: {'; '.join(unsaid)}. The order keeps to it as "
+            "planned, but whoever changes it has to ask for it again"
+        )
 
 
 def _table(found: Suggested) -> Table:

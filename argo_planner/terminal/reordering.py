@@ -5,9 +5,11 @@ from dataclasses import replace
 from rich.console import Console
 from rich.markup import escape
 
+from argo_compiler.errors import Conflict
 from argo_env.formatting import clock
 from argo_env.planning.opening import OpenedSite
 from argo_env.run.record import Reordering
+from argo_planner.terminal.words import said_elsewhere
 from argo_planner.use_cases.importing import ImportedMission
 from argo_planner.use_cases.no_order import require_order
 from argo_planner.use_cases.routing import suggest_order
@@ -22,7 +24,10 @@ def optimise_shown(
     for.
     """
     found = suggest_order(imported, site)
-    require_order(found, imported.source_name)
+    try:
+        require_order(found, imported.source_name)
+    except Conflict as error:
+        raise Conflict(said_elsewhere(error, imported.source_name)) from None
     done = found.reordering
     order = ", ".join(done.order)
     text = (

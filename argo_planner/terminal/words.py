@@ -41,6 +41,13 @@ def said(error: ArgoError, prefix: str = "") -> str:
     return f"{prefix}{error}{_ways(error.remedies, error.about)}"
 
 
+def said_elsewhere(error: ArgoError, source: str) -> str:
+    """The message of an error about an order, where the command at hand has not the options that
+    help, but `argo route` has."""
+    ways = [f"argo route {shlex.quote(source)} {_WORDS[remedy]}" for remedy in error.remedies]
+    return f"{error} ({', '.join(ways)})" if ways else str(error)
+
+
 def order_said(text: str) -> str:
     """What is said of an order, with the option that keeps it as it is written."""
     from argo_compiler.reorder.precedences import AS_WRITTEN

@@ -2,6 +2,7 @@
 
 from dataclasses import dataclass, replace
 
+from argo_compiler.analysis import analyse
 from argo_compiler.diagnostics import DiagnosticError
 from argo_compiler.errors import ArgoError, Conflict, Invalid, Remedy, located
 from argo_compiler.files.reading import decode_text, require_size
@@ -159,6 +160,15 @@ def suggest_robust(
         reasons=(*nominal.reasons, text),
     )
     return replace(found, suggestion=suggestion)
+
+
+def too_long(mission: Mission, site: OpenedSite) -> str | None:
+    """What is wrong if a mission in its new order takes longer than it may, reckoned on its own
+    ways: the order was chosen with one place for each checkpoint, wherever the robot comes from."""
+    if mission.max_duration is None:
+        return None
+    found = analyse(mission, site.catalog, site.travel).diagnostics
+    return next((d.message for d in found if d.code == "analysis.too-long"), None)
 
 
 def verify(found: Suggested) -> Certificate:

@@ -383,6 +383,17 @@ def test_the_current_task_has_to_exist():
     assert codes(mission.model_copy(update={"current": "A"})) == []
 
 
+@pytest.mark.rule("M8")
+def test_what_was_left_out_is_said_until_it_is_back():
+    mission = Mission(tasks=CHAIN, left_out=("Z", CHAIN[0].name, "Y"))
+    (finding,) = check(mission)
+    assert (finding.code, finding.subject) == ("il.left-out", "left_out")
+    assert finding.message == "left out when the order was chosen: Z, Y"
+    many = mission.model_copy(update={"left_out": tuple(f"T{k}" for k in range(30))})
+    assert check(many)[0].message.endswith("T11 and 18 more")
+    assert codes(mission.model_copy(update={"left_out": ()})) == []
+
+
 class TestSite:
     CATALOG = TestCatalog.CATALOG.model_copy(update={"areas": (Area(number=2, dock=DOCK),)})
 

@@ -28,7 +28,7 @@ def built():
 @pytest.fixture
 def argo(built, monkeypatch):
     """Runs `argo` in this process, on the yard."""
-    for command in ("route", "compile", "run"):
+    for command in ("route", "compile", "run", "check", "format", "import_script"):
         monkeypatch.setattr(f"argo_planner.commands.{command}.open_site", lambda _: built)
     monkeypatch.setenv("COLUMNS", "120")
 
@@ -53,6 +53,14 @@ def source(tmp_path):
     path = tmp_path / "mission.json"
     write_mission(written, path)
     return path
+
+
+@pytest.fixture
+def no_overview(monkeypatch):
+    """It takes long to draw."""
+    monkeypatch.setattr(
+        "argo_planner.use_cases.reporting.write_overview", lambda *given: given[-1].touch()
+    )
 
 
 def order_in(path):
@@ -86,6 +94,58 @@ def test_what_does_not_fit_into_a_budget_is_left_out(argo, source, tmp_path):
     assert "Suggested: within all limits with" in result.text
     assert "MEASURE 2" in order_in(tmp_path / "new.json")
     assert len(order_in(tmp_path / "new.json")) < len(order_in(source))
+
+
+@pytest.mark.usefixtures("no_overview")
+def test_a_routed_mission_keeps_its_limit_and_names_what_was_left_out(argo, source, tmp_path):
+    """From the written file through the check and a script to the report of its run."""
+    new, wanted, script = tmp_path / "new.json", tmp_path / "wanted.yaml", tmp_path / "new.txt"
+    wanted.write_text("mandatory: [2]\nwindows:\n- {what: 2, latest: 5 min}\n")
+    result = argo(
+        "route", source, "--budget", "65 s", "--requirements", wanted, "--before", "3, 1",
+        "-o", new,
+    )  # fmt: skip
+    assert result.exit_code == 0, result.text
+    assert "Its maximum duration is the budget now: 1 min 5 s" in result.text
+    assert "on its own ways" not in result.text
+    unsaid = "checkpoint 3 before checkpoint 1; checkpoint 2 by 5 min"
+    assert f"Note: no mission can say this: {unsaid}. The order keeps to it" in result.text
+    before, after = read_mission(source), read_mission(new)
+    assert after.left_out
+    assert {t.name for t in after.tasks} | set(after.left_out) == {t.name for t in before.tasks}
+    assert after.max_duration == 65.0
+    named = f"left out when the order was chosen: {', '.join(after.left_out)}"
+    checked = argo("check", new)
+    assert checked.exit_code == 0, checked.text
+    assert named in checked.text
+    assert argo("format", new, "-o", script).exit_code == 0
+    again = tmp_path / "again.json"
+    assert argo("import", script, "-o", again).exit_code == 0
+    assert read_mission(again).left_out == after.left_out
+    ran = argo("run", new, "--drive", "route", "--report", tmp_path / "report")
+    assert named in ran.text
+    page = (tmp_path / "report" / "report.html").read_text()
+    assert f"<dt>Left out when the order was chosen</dt><dd>{', '.join(after.left_out)}" in page
+
+
+def test_a_mission_that_is_too_long_on_its_own_ways_says_so_when_it_is_written(
+    argo, source, tmp_path
+):
+    new = tmp_path / "new.json"
+    result = argo("route", source, "--budget", "70 s", "-o", new)
+    assert result.exit_code == 0, result.text
+    said = "the mission takes at least 1 min 12 s, longer than its maximum duration of 1 min 10 s"
+    assert f"Note: on its own ways {said}" in result.text
+    assert said in argo("check", new).text
+
+
+def test_what_no_order_meets_says_which_command_has_the_way_out(argo, source, tmp_path):
+    late = read_mission(source).model_copy(update={"max_duration": 3.0})
+    write_mission(late, tmp_path / "late.json")
+    result = argo("run", tmp_path / "late.json", "--optimise")
+    assert f"(argo route {tmp_path / 'late.json'} --budget)" in result.text
+    result = argo("route", tmp_path / "late.json")
+    assert "left out (--budget)" in result.text
 
 
 def test_what_is_said_of_an_order_can_be_verified(argo, source):
@@ -200,10 +260,8 @@ def test_a_mission_is_compiled_in_its_best_order(argo, source, tmp_path):
     assert f"Order: {', '.join(order[:-1])}\n" in result.text
 
 
-def test_a_run_in_its_best_order_says_so_in_its_report(argo, source, tmp_path, monkeypatch):
-    monkeypatch.setattr(
-        "argo_planner.use_cases.reporting.write_overview", lambda *given: given[-1].touch()
-    )  # takes long
+@pytest.mark.usefixtures("no_overview")
+def test_a_run_in_its_best_order_says_so_in_its_report(argo, source, tmp_path):
     report = tmp_path / "report"
     result = argo("run", source, "--optimise", "--drive", "route", "--report", report)
     assert "Predicted:" in result.text

@@ -55,6 +55,11 @@ IL = {
         "The joints and positions of a task's joint states do not belong to each other.",
         "Give exactly one position for each joint, and each joint once.",
     ),
+    "il.left-out": warning(
+        "Tasks were taken away when the mission's order was chosen, as they did not fit into its "
+        "time.",
+        "Allow more time and choose the order anew, or make another mission of them.",
+    ),
     "il.many-retries": warning(
         "A failed action would be tried again so often that the mission seems to hang.",
         "A few retries are enough; let `on_failure` say what comes then.",

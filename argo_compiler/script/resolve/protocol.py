@@ -51,6 +51,7 @@ def protocol_mission(
         groups=groups,
         reactions=tuple(planner.reactions),
         current=current,
+        left_out=protocol.left_out.tasks if protocol.left_out else (),
     )
 
 

@@ -15,6 +15,7 @@ from argo_compiler.script.syntax.nodes import (
     DockHeader,
     DurationHeader,
     Hint,
+    LeftOutHeader,
     ModeField,
     OrderField,
     TextField,
@@ -238,6 +239,10 @@ class LineBuilder(Builder):
         ref = phrase.first(Clause)
         task = ref.value if ref else StepRef(span=phrase.span, first=self._points(phrase)[0])
         return HeaderClause("current", CurrentHeader(span=phrase.span, task=task))
+
+    def left_out(self, phrase: Phrase) -> HeaderClause:
+        names = tuple(quoted.text for quoted in phrase.every(Quoted))
+        return HeaderClause("left_out", LeftOutHeader(span=phrase.span, tasks=names))
 
     def step(self, phrase: Phrase) -> Statement:
         clauses = tuple([child for child in phrase.children if type(child) is Clause])

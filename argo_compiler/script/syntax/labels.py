@@ -21,6 +21,7 @@ PROTOCOL_LABELS = (
     "End area",
     "Dock",
     "Current",
+    "Left out",
     "Hint",
 )
 _LABEL = re.compile(r"[^\W\d_][\w'-]*(?:\s+[\w'-]+){0,6}\s*:")

@@ -101,6 +101,13 @@ class CurrentHeader(Node):
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
+class LeftOutHeader(Node):
+    """`Left out: "MEASURE 4", "MEASURE 5"`."""
+
+    tasks: tuple[str, ...]
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
 class DurationHeader(Node):
     """`Maximum duration: 20'` or `none`."""
 
@@ -145,6 +152,7 @@ class Protocol:
     end_area: AreaHeader | None = None
     dock: DockHeader | None = None
     current: CurrentHeader | None = None
+    left_out: LeftOutHeader | None = None
     steps: tuple[ProtocolStep, ...] = ()
     hints: tuple[Hint, ...] = ()
     diagnostics: tuple[Diagnostic, ...] = ()

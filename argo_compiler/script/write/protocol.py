@@ -95,6 +95,9 @@ def _header(mission: Mission, catalog: Catalog, steps: Steps) -> list[str]:
         lines.append(f"Dock: {'none' if mission.dock is None else point(mission.dock)}")
     if mission.current is not None:
         lines += wrapped(f"Current: {quote(mission.current)}")
+    if mission.left_out:
+        names = ",\n".join(map(quote, mission.left_out))
+        lines += wrapped(f"Left out: {names}")
     return lines
 
 

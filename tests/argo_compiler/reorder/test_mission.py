@@ -1,6 +1,7 @@
 """Missions as route problems and back: an executor carries out what was rewritten."""
 
 from collections import Counter
+from dataclasses import replace
 
 import numpy as np
 from hypothesis import assume, event, given, settings
@@ -30,6 +31,7 @@ SEEDS = st.integers(0, 2**32 - 1)
 SHOWN = st.fixed_dictionaries(
     {o: st.lists(st.integers(0, 9), min_size=1, max_size=4) for o in OBJECTS}
 )
+LIMITS = st.none() | st.floats(1.0, 1e6)
 
 
 @st.composite
@@ -112,18 +114,19 @@ def test_no_branch_takes_longer_than_reckoned(mission, values, seed):
     assert done.time <= evaluate(planned.problem, route).duration
 
 
-@given(missions(), SHOWN, SEEDS)
+@given(missions(), LIMITS, LIMITS, SHOWN, SEEDS)
 @settings(max_examples=examples(60), deadline=None)
-def test_what_is_left_out_is_not_done(mission, values, seed):
+def test_what_is_left_out_is_named_and_not_done(mission, most, budget, values, seed):
+    mission = mission.model_copy(update={"max_duration": most})
     rng = np.random.default_rng(seed)
     ways = random_ways(mission, rng)
-    planned = route_problem(mission, ways, Requirements(budget=1e6))
+    planned = route_problem(mission, ways, Requirements(budget=budget or 1e6))
     kept = [k for k in planned.written.order if rng.random() < 0.6]
     for _, members in planned.visits.circuits:
         if not set(members) <= set(kept):
             kept = [k for k in kept if k not in members]
     route = Tour(tuple(kept))
-    assume(kept and evaluate(planned.problem, route).feasible)
+    assume(kept and evaluate(replace(planned.problem, max_duration=None), route).feasible)
     changed = apply_route(planned, route)
     assert not has_errors(check(changed))
     stops = planned.visits.stops
@@ -131,4 +134,6 @@ def test_what_is_left_out_is_not_done(mission, values, seed):
     event("left out" if gone else "all kept")
     names = {planned.visits.spine.name(leaf) for k in gone for leaf in stops[k].leaves}
     assert {t.name for t in changed.tasks} == {t.name for t in mission.tasks} - names
+    assert changed.left_out == tuple(t.name for t in mission.tasks if t.name in names)
+    assert changed.max_duration == min(limit for limit in (most, budget or 1e6) if limit)
     assert not names & set(carry_out(changed, ways, values).tasks)

@@ -4,6 +4,7 @@ import math
 from collections.abc import Sequence
 
 from argo_env.drives.drive import Drive, DriveStatus, Incident
+from argo_env.drives.timed_drive import from_here
 from argo_env.navigation.path import Path
 from argo_env.robot.pose import BodyPose
 
@@ -20,10 +21,13 @@ class Powertrain:
         self.time_step = drive.time_step
         self.pressed = False
         """whether the emergency stop is pressed: brakes hold the robot where it is"""
+        self.held = 0
+        """steps that the emergency stop has held it"""
         self.share = 1.0
         """of its speed that the drive makes"""
         self.way: tuple[Path, float | None] | None = None
-        """the path that it was told to follow and the velocity (m/s) on it; None: to stand"""
+        """the path that it was told to follow, from where it was, and the velocity (m/s) on it;
+        None: to stand"""
         self._credit = 0.0
         self._failure: str | None = None
         self._still = 0.0
@@ -48,7 +52,7 @@ class Powertrain:
 
     def begin(self, path: Path, velocity: float | None) -> None:
         """Sets off along `path`, when it can."""
-        self.way = path, velocity
+        self.way = from_here(path, self._drive.pose), velocity
         self._credit, self._still, self._failure = 0.0, 0.0, None
         self._drive.begin(path, velocity)
 
@@ -60,6 +64,7 @@ class Powertrain:
     def step(self) -> DriveStatus:
         """Goes on for one time step; a robot that is slowed makes fewer of the drive's steps."""
         if self.pressed:
+            self.held += 1
             return DriveStatus.ARRIVED if self.way is None else DriveStatus.MOVING
         if self.way is not None:
             self._credit += self.share

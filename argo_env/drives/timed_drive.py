@@ -43,7 +43,7 @@ class TimedDrive(ABC):
 
     def begin(self, path: Path, velocity: float | None) -> None:
         """Sets off along `path` at `velocity` (m/s) on the flat, or at the robot's own speeds."""
-        self._timetable = Timetable(self._from_here(path), self._robot, velocity)
+        self._timetable = Timetable(from_here(path, self._pose), self._robot, velocity)
         self._steps = 0
 
     def halt(self) -> None:
@@ -64,16 +64,17 @@ class TimedDrive(ABC):
         self.halt()
         return DriveStatus.ARRIVED
 
-    def _from_here(self, path: Path) -> Path:
-        """The path, with a straight shift to its start if that is beside the robot: paths begin
-        where the navigator's lattice has a state, some centimetres from a robot that was stopped,
-        and at most the navigator's SNAP_DISTANCE. No tracked robot could shift sideways."""
-        start, pose = path.start, self._pose
-        if math.dist((start.x, start.y), (pose.x, pose.y)) < _SAME_PLACE:
-            return path
-        here = Pose(x=pose.x, y=pose.y, z=pose.z, yaw=start.yaw)
-        return Path(here, (Motion(here, start), *path.motions))
-
     @abstractmethod
     def _pose_at(self, motion: Motion, share: float) -> BodyPose:
         """How the robot stands after `share` of the motion, 0 to 1."""
+
+
+def from_here(path: Path, pose: BodyPose) -> Path:
+    """The path, with a straight shift to its start if that is beside a robot at `pose`: paths begin
+    where the navigator's lattice has a state, some centimetres from a robot that was stopped, and
+    at most the navigator's SNAP_DISTANCE. No tracked robot could shift sideways."""
+    start = path.start
+    if math.dist((start.x, start.y), (pose.x, pose.y)) < _SAME_PLACE:
+        return path
+    here = Pose(x=pose.x, y=pose.y, z=pose.z, yaw=start.yaw)
+    return Path(here, (Motion(here, start), *path.motions))

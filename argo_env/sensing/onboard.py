@@ -119,6 +119,7 @@ class DriveWatch:
         self._way: tuple[Path, float | None] | None = None
         self._plan: NDArray[np.float64] = np.empty((0, 4))
         self._at = 0
+        self._held = 0
         self._progress: deque[tuple[float, float]] = deque()
         self._told = False
 
@@ -127,14 +128,17 @@ class DriveWatch:
 
     def look(self, now: float, pose: BodyPose) -> tuple[Detection, ...]:
         way = self._drive.way
-        if way is None or self._drive.pressed:
-            self._way = None
+        if way is None:
             return ()
         if way is not self._way:
             self._way, self._at = way, 0
             self._plan = _places(*way, self._robot)
             self._progress.clear()
         self._at = self._nearest(pose)
+        if self._drive.held != self._held:
+            # Brakes say nothing of the drive; where the robot is on its way it must not forget.
+            self._held = self._drive.held
+            self._progress.clear()
         self._progress.append((now, self._at * _SAMPLE))
         while now - self._progress[0][0] > WINDOW + 1e-6:
             self._progress.popleft()

@@ -217,3 +217,25 @@ def test_what_goes_wrong_is_of_a_kind(package):
         if isinstance(node, ast.Call) and ast.unparse(node.func) == "ArgoError"
     ]
     assert not bare
+
+
+SHIPPED = {
+    "argo_compiler.script.syntax.tables",
+    "argo_env.files.resources",
+    "argo_env.planning.code",
+}
+"""Modules that ask only for files that Argo has made itself."""
+
+
+def test_paths_of_users_are_asked_for_by_what_never_raises():
+    """Unlike `os.path`, a `Path` raises where a folder can't be read or links go round."""
+    asking = {
+        module
+        for module, tree in TREES.items()
+        for node in ast.walk(tree)
+        if isinstance(node, ast.Call)
+        and isinstance(node.func, ast.Attribute)
+        and node.func.attr in {"exists", "is_file", "is_dir", "resolve"}
+        and ast.unparse(node.func.value) != "os.path"
+    }
+    assert {module for module in asking if not module.startswith("baselines")} == SHIPPED

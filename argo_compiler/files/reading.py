@@ -1,6 +1,8 @@
 """Reads files: what is no readable file is refused with a message, and never by the library."""
 
 import os
+from collections.abc import Iterator
+from contextlib import contextmanager
 from enum import StrEnum
 from pathlib import Path
 from typing import BinaryIO
@@ -43,19 +45,33 @@ class UnreadableFile(FileError, Invalid):
     """There is something of that name, but it can't be read, or is no such thing."""
 
 
-def read_bytes(path: Path, thing: str, max_bytes: int) -> bytes:
-    """What the file holds that is meant as a `thing`, such as `script`.
+def read_bytes(path: Path, thing: str, max_bytes: int, magic: bytes = b"") -> bytes:
+    """What the file holds that is meant as a `thing`, such as `script`; no more than its beginning
+    if that is not the `magic` one of all such things.
 
     Raises FileError if there is no such file, it can't be read, or it is too large.
     """
+    with opened(path, thing) as file:
+        content = file.read(len(magic))
+        if content == magic:
+            size = os.fstat(file.fileno()).st_size
+            # What is asked for is allocated at once, and pipes have no size.
+            whole = 0 < size <= max_bytes
+            content += file.read() if whole else _read_at_most(file, max_bytes + 1)
+    require_size(content, path, thing, max_bytes)
+    return content
+
+
+@contextmanager
+def opened(path: Path, thing: str) -> Iterator[BinaryIO]:
+    """The file that is meant as a `thing`, open for reading. Raises FileError where it can't be
+    opened, or read further."""
     try:
-        if path.is_dir():
+        if os.path.isdir(path):
             message = "can't be read: is a directory"
             raise UnreadableFile(path, FileProblem.DIRECTORY, message, f"name the {thing} in it")
         with path.open("rb") as file:
-            size = os.fstat(file.fileno()).st_size
-            # What is asked for is allocated at once, and pipes have no size.
-            content = file.read() if 0 < size <= max_bytes else _read_at_most(file, max_bytes + 1)
+            yield file
     except FileNotFoundError:
         raise NoFile(
             path,
@@ -69,8 +85,6 @@ def read_bytes(path: Path, thing: str, max_bytes: int) -> bytes:
     except ValueError as error:  # a NUL in the path
         message = f"can't be read: {error}"
         raise UnreadableFile(path, FileProblem.UNREADABLE, message, "check its name") from error
-    require_size(content, path, thing, max_bytes)
-    return content
 
 
 def _read_at_most(file: BinaryIO, count: int) -> bytes:

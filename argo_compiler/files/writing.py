@@ -37,6 +37,14 @@ def check_place(file: Path) -> None:
         raise Unavailable(
             f"{file}: can't be written: its folder can't be written to; choose another place"
         )
+    try:
+        place.lstat()
+    except FileNotFoundError:
+        return
+    except OSError as error:  # such as a name that is too long
+        raise Unavailable(
+            f"{file}: can't be written: {error.strerror}; choose another place"
+        ) from None
 
 
 def write_whole(path: Path, content: str | bytes) -> None:
@@ -73,7 +81,7 @@ def write_folder(folder: Path, files: Mapping[str, bytes]) -> None:
     """
     folder = Path(os.path.realpath(folder))
     for name in files:
-        if (folder / name).is_dir():
+        if os.path.isdir(folder / name):
             raise IsADirectoryError(errno.EISDIR, os.strerror(errno.EISDIR), str(folder / name))
     made: list[Path] = []
     try:
@@ -133,7 +141,7 @@ def _finish(draft: Path, path: Path) -> None:
 
 def _make_folder(path: Path, made: list[Path]) -> None:
     """Makes a folder and those that it is in, and adds them to those made."""
-    if path.is_dir():
+    if os.path.isdir(path):
         return
     _make_folder(path.parent, made)
     path.mkdir()

@@ -1,5 +1,6 @@
 """Missions in bags: ROS 1 bags, rosbag2 folders, and the files of their storages."""
 
+import os
 import tempfile
 from collections.abc import Iterator, Mapping
 from contextlib import contextmanager
@@ -9,6 +10,7 @@ from typing import Any, NoReturn
 
 from argo_compiler.diagnostics import Diagnostic, DiagnosticError, Severity
 from argo_compiler.errors import Invalid
+from argo_compiler.files.reading import FileError, opened
 from argo_compiler.il import Mission
 from argo_compiler.ros.compression import (
     TooLargeError,
@@ -48,7 +50,7 @@ class Storage(StrEnum):
 
 def is_bag(path: Path) -> bool:
     """Whether the path is meant as a bag: a folder, a bag's first bytes, or a bag's suffix."""
-    return path.is_dir() or is_bag_content(path.name, _first_bytes(path))
+    return os.path.isdir(path) or is_bag_content(path.name, _first_bytes(path))
 
 
 def is_bag_content(name: str, content: bytes) -> bool:
@@ -129,12 +131,14 @@ def read_bag(path: Path, source_name: str | None = None) -> Mission:
         ArgoError: `rosbags` is not installed.
     """
     name = str(path) if source_name is None else source_name
-    if not path.exists():
-        _refuse(name, "file.missing", "there is no such file", "check the path")
-    first = _first_bytes(path)
-    if path.is_dir() and not (path / "metadata.yaml").is_file():
+    is_folder = os.path.isdir(path)
+    if is_folder and not os.path.isfile(path / "metadata.yaml"):
         _refuse(name, "file.directory", "is a directory", "name the mission file in it")
-    if not path.is_dir() and not first.startswith((_ROS1, _MCAP, _SQLITE)):
+    try:
+        first = b"" if is_folder else _beginning(path)
+    except FileError as error:
+        _refuse(name, f"file.{error.problem}", error.message, error.hint)
+    if not is_folder and not first.startswith((_ROS1, _MCAP, _SQLITE)):
         _refuse(name, "ros.not-a-bag", "is no bag", "name a ROS 1 bag or a rosbag2 folder")
     types = ros1_types() if first.startswith(_ROS1) else ros2_types()
     # rosbags raises whatever the broken bytes lead to: errors of its own, of SQLite, of struct, of
@@ -186,9 +190,9 @@ def _open(path: Path, first: bytes) -> Iterator[Any]:
     else:
         from rosbags.rosbag2 import Reader as Ros2Reader
 
-        if path.is_dir():
+        if os.path.isdir(path):
             check_metadata(path)
-        for file in path.glob("*") if path.is_dir() else [path]:
+        for file in path.glob("*") if os.path.isdir(path) else [path]:
             if _first_bytes(file).startswith(_MCAP):
                 check_mcap_chunks(file)
         with Ros2Reader(path) as reader:
@@ -241,11 +245,18 @@ def _read(name: str, reader: Any, types: RosTypes) -> bytes:
 
 
 def _first_bytes(path: Path) -> bytes:
+    if not os.path.isfile(path):  # what is read of a pipe is gone
+        return b""
     try:
-        with path.open("rb") as file:
-            return file.read(16)
-    except OSError:
+        return _beginning(path)
+    except FileError:
         return b""  # reading it in earnest says what is wrong
+
+
+def _beginning(path: Path) -> bytes:
+    """Enough to tell what the file is. Raises FileError if it can't be read."""
+    with opened(path, "bag") as file:
+        return file.read(16)
 
 
 def _refuse(source_name: str, code: str, message: str, hint: str) -> NoReturn:

@@ -3,6 +3,7 @@
 import math
 import os
 from collections.abc import Callable, Iterator
+from contextlib import suppress
 from itertools import groupby
 from pathlib import Path
 
@@ -36,11 +37,11 @@ def check_film(file: Path) -> None:
     that isn't installed. To be called before a long run is made."""
     if file.suffix.lower() not in {".mp4", ".gif"}:
         raise Invalid(f"{file}: a film is an .mp4 or a .gif; name the file so")
-    if not file.absolute().parent.is_dir():
+    if not os.path.isdir(file.absolute().parent):
         raise NotFound(f"{file}: there is no folder {file.parent}; make it, or choose another")
-    if file.is_dir():
+    if os.path.isdir(file):
         raise Conflict(f"{file}: is a folder; choose another name for the film")
-    if not os.access(file if file.exists() else file.absolute().parent, os.W_OK):
+    if not os.access(file if os.path.exists(file) else file.absolute().parent, os.W_OK):
         raise Unavailable(f"{file}: can't be written; choose another place for the film")
     if file.suffix.lower() == ".mp4":
         find_ffmpeg()
@@ -95,7 +96,8 @@ def write_film(
             f"{file}: the film can't be written: {error.strerror}; choose another place"
         ) from error
     finally:
-        part.unlink(missing_ok=True)
+        with suppress(OSError):
+            part.unlink()
 
 
 def _frames(

@@ -2,6 +2,7 @@
 
 import hashlib
 import logging
+import os
 from collections import OrderedDict
 from collections.abc import Callable
 from dataclasses import dataclass, field
@@ -146,7 +147,7 @@ def open_site(reference: str = "umad", robot: RobotSpec | None = None) -> Opened
     path = site_file(reference)
     text = read_text(path, "site", MAX_BYTES)
     if path == Path(reference):
-        reference = str(path.resolve())
+        reference = os.path.realpath(path)
 
     def described() -> Site:
         from argo_env.site.site_file import parse_site_spec

@@ -32,11 +32,11 @@ def check_recording(file: Path) -> None:
     extra that isn't installed. To be called before a long run is made."""
     if file.suffix.lower() != ".mcap":
         raise Invalid(f"{file}: a recording is an .mcap file; name it so")
-    if not file.absolute().parent.is_dir():
+    if not os.path.isdir(file.absolute().parent):
         raise NotFound(f"{file}: there is no folder {file.parent}; make it, or choose another")
-    if file.is_dir():
+    if os.path.isdir(file):
         raise Conflict(f"{file}: is a folder; choose another name for the recording")
-    if not os.access(file if file.exists() else file.absolute().parent, os.W_OK):
+    if not os.access(file if os.path.exists(file) else file.absolute().parent, os.W_OK):
         raise Unavailable(f"{file}: can't be written; choose another place for the recording")
     require_libraries()
 

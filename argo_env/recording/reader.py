@@ -169,7 +169,7 @@ def _read(name: str, content: bytes, parts: _Parts) -> str | None:
 
 def _content(path: Path) -> bytes:
     try:
-        return read_bytes(path, "recording", MAX_BYTES)
+        return read_bytes(path, "recording", MAX_BYTES, MAGIC)
     except FileError as error:
         match error.problem:
             case FileProblem.MISSING:

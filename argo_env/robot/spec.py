@@ -1,6 +1,7 @@
 """What planning and driving need to know of a robot: `urdf/robot/<name>.yaml`."""
 
 import math
+import os
 from pathlib import Path
 
 import yaml
@@ -132,12 +133,12 @@ class RobotSpec(Model):
 def load_robot(name: str = "tracker") -> RobotSpec:
     """The robot of that name; ArgoError if there is none or its description makes no sense."""
     path, calibrated = robot_folder() / f"{name}.yaml", calibration_file(name)
-    if not path.is_file():
+    if not os.path.isfile(path):
         known = sorted(p.stem for p in robot_folder().glob("*.yaml") if "." not in p.stem)
         raise NotFound(f"no robot `{name}`; there are: {', '.join(known)}")
     try:
         spec = RobotSpec.model_validate(yaml.safe_load(path.read_text(encoding="utf-8")))
-        if not calibrated.is_file():
+        if not os.path.isfile(calibrated):
             return spec
         path = calibrated
         paces = Calibration.model_validate(yaml.safe_load(path.read_text(encoding="utf-8")))

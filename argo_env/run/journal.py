@@ -103,7 +103,7 @@ class Journal(Observer, Closing):
         before = self.header.fingerprints
         source = self.header.spec.source
         now = fingerprints(site, self.header.spec)
-        if source is not None and not Path(source).exists():
+        if source is not None and not os.path.exists(source):
             now["mission file"] = before.get("mission file", "")
         changed = [
             f"{what} (was {before.get(what, 'absent')}, is {now.get(what, 'absent')})"
@@ -128,7 +128,7 @@ def fingerprints(site: OpenedSite, spec: RunSpec) -> dict[str, str]:
         for field, value in model.model_dump(mode="json").items():
             found[f"{what}'s {field}"] = _digest(json.dumps(value))
     source = None if spec.source is None else Path(spec.source)
-    if source is not None and source.exists():
+    if source is not None and os.path.exists(source):
         try:
             found["mission file"] = _digest(source.read_bytes())
         except OSError as error:
@@ -139,19 +139,19 @@ def fingerprints(site: OpenedSite, spec: RunSpec) -> dict[str, str]:
 def require_free(path: Path, replace: bool = False) -> None:
     """Raises ArgoError if no new journal can be written there; with `replace` one that is there
     already is in the way only while a process has it."""
-    if replace and path.is_file():
+    if replace and os.path.isfile(path):
         file = _open(path)
         try:
             _lock(file, path)
         finally:
             os.close(file)
-    elif path.exists():
+    elif os.path.exists(path):
         raise Conflict(
             f"{path}: is there already: resume that run, or choose another",
             remedies=(Remedy.RESUME,),
             about=str(path),
         )
-    if not path.parent.is_dir():
+    if not os.path.isdir(path.parent):
         _refuse(path, "its folder does not exist: make it, or choose another", kind=NotFound)
     if not os.access(path.parent, os.W_OK):
         _refuse(path, "its folder can't be written to: choose another", kind=Unavailable)
@@ -170,7 +170,7 @@ def create_journal(path: Path, header: Header, replace: bool = False) -> Journal
     file = _open(draft, os.O_CREAT)
     try:
         _lock(file, path)
-        if path.exists() and not replace:
+        if os.path.exists(path) and not replace:
             # Another process was faster; its draft has become the journal.
             draft.unlink(missing_ok=True)
             require_free(path)
@@ -194,7 +194,7 @@ def open_journal(path: Path) -> Journal:
 
     Raises ArgoError if it is none, is damaged, or another process has it.
     """
-    if path.is_dir() or (path.exists() and not path.is_file()):
+    if os.path.exists(path) and not os.path.isfile(path):
         _refuse(path, "is no file: name a journal that a run has written", Remedy.KEEP_JOURNAL)
     file = _open(path)
     try:

@@ -1,5 +1,6 @@
 """`argo run`: a mission is driven through its site."""
 
+import os
 import time
 from contextlib import ExitStack
 from dataclasses import dataclass
@@ -141,7 +142,7 @@ def run(
     said = _read_faults(faults) if faults else None
     spec = RunSpec(
         mission=NO_MISSION,
-        source=str(source.resolve()),
+        source=os.path.realpath(source),
         drive=drive,
         sensor=sensor,
         seed=seed,

@@ -54,7 +54,7 @@ def check_outputs(
     for output in (*single, *several):
         if output == STANDARD_OUTPUT:
             continue
-        if output in single or output.parent.is_dir():
+        if output in single or os.path.isdir(output.parent):
             check_place(output)
         if os.path.exists(output) and not force:
             raise Conflict(

@@ -114,7 +114,7 @@ class Navigator:
 
     def _build_lattice(self) -> Lattice:
         everything = build_lattice(self.surface, self.robot)
-        docks = {n: _nearest(everything, p) for n, p in self.site.docks.items()}
+        docks = {n: nearest_state(everything, p) for n, p in self.site.docks.items()}
         for number, state in docks.items():
             if state is None:
                 raise Invalid(
@@ -244,7 +244,7 @@ class Navigator:
         return np.array(states, dtype=np.int64)
 
     def _state_at(self, pose: Pose) -> int:
-        state = _nearest(self.lattice, pose)
+        state = nearest_state(self.lattice, pose)
         if state is None:
             raise Unreachable(
                 f"there is no place that the robot can reach within {SNAP_DISTANCE} m of "
@@ -322,7 +322,7 @@ class Navigator:
         return Path(path.start, tuple(motions))
 
 
-def _nearest(lattice: Lattice, pose: Pose) -> int | None:
+def nearest_state(lattice: Lattice, pose: Pose) -> int | None:
     """The state nearest to the pose, first by place, then by heading; None if all are far."""
     surface = lattice.surface
     around = surface.near(pose.x, pose.y, SNAP_DISTANCE)

@@ -1,6 +1,7 @@
 """From where a checkpoint can be read: states with its face in range and in sight."""
 
 import math
+from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
@@ -41,6 +42,27 @@ def find_views(
     Both arrays are empty if there is no such state.
     """
     sensor, target = lattice.robot.sensor, sight_target(checkpoint)
+    views = possible_views(checkpoint, lattice)
+    seen = in_sight(site, views.cameras, target)
+    far = np.maximum(0.0, views.distance[seen] / sensor.max_range - 0.5) * 2
+    oblique = (views.obliqueness[seen] / sensor.max_obliqueness) ** 2
+    return views.states[seen], _OBLIQUE_COST * oblique + _FAR_COST * far**2
+
+
+@dataclass(frozen=True)
+class PossibleViews:
+    """States with a face in range and not too oblique, whatever stands between; with each where
+    the camera is (m, shape (n, 3)), how far the face is (m), and how oblique (deg)."""
+
+    states: NDArray[np.int64]
+    cameras: NDArray[np.float64]
+    distance: NDArray[np.float64]
+    obliqueness: NDArray[np.float64]
+
+
+def possible_views(checkpoint: SiteCheckpoint, lattice: Lattice) -> PossibleViews:
+    """Those of a checkpoint."""
+    sensor, target = lattice.robot.sensor, sight_target(checkpoint)
     reach = sensor.max_range + math.hypot(*sensor.offset[:2])
     states = lattice.state_of[lattice.surface.near(target[0], target[1], reach)]
     states = states[states >= 0]
@@ -55,10 +77,7 @@ def find_views(
         & (distance <= sensor.max_range)
         & (obliqueness <= sensor.max_obliqueness)
     )
-    good[good] = in_sight(site, cameras[good], target)
-    far = np.maximum(0.0, distance[good] / sensor.max_range - 0.5) * 2
-    cost = _OBLIQUE_COST * (obliqueness[good] / sensor.max_obliqueness) ** 2 + _FAR_COST * far**2
-    return states[good], cost
+    return PossibleViews(states[good], cameras[good], distance[good], obliqueness[good])
 
 
 def in_sight(

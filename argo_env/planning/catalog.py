@@ -15,7 +15,7 @@ from argo_env.site import Site
 if TYPE_CHECKING:
     from argo_env.navigation import Navigator
 
-_APART = 2.0  # m at least between the waypoints of a patrol
+APART = 2.0  # m at least between the waypoints of a patrol
 
 
 def make_catalog(navigator: "Navigator") -> Catalog:
@@ -88,6 +88,17 @@ def _round(corners: list[list[float]]) -> tuple[Pose, ...]:
 
 
 def _corners(navigator: "Navigator", floor: int) -> list[tuple[float, float, float]]:
+    corners = patrol_corners(navigator, floor)
+    if len(corners) < 3:
+        raise Unreachable(
+            f"site {navigator.site.name}: floor {floor} has no three places to patrol between"
+        )
+    return corners
+
+
+def patrol_corners(navigator: "Navigator", floor: int) -> list[tuple[float, float, float]]:
+    """The reachable places (m) nearest to each corner of a floor that are apart from each other.
+    Fewer than three make no patrol."""
     places = navigator.turning_places(floor)
     x0, y0, x1, y1 = _bounds(navigator.site, floor)
     # The whole robot stays on the floor, wherever it turns.
@@ -100,12 +111,8 @@ def _corners(navigator: "Navigator", floor: int) -> list[tuple[float, float, flo
         if len(places):
             nearest = places[np.argmin(np.hypot(places[:, 0] - x, places[:, 1] - y))]
             point = (float(nearest[0]), float(nearest[1]), float(nearest[2]))
-            if all(math.dist(point, other) >= _APART for other in corners):
+            if all(math.dist(point, other) >= APART for other in corners):
                 corners.append(point)
-    if len(corners) < 3:
-        raise Unreachable(
-            f"site {navigator.site.name}: floor {floor} has no three places to patrol between"
-        )
     return corners
 
 

@@ -4,11 +4,11 @@ from dataclasses import dataclass
 
 from argo_compiler.errors import Conflict
 from argo_compiler.files.reading import decode_text, require_size
-from argo_env.planning.checking import unseen_checkpoints, unserved_floors
+from argo_env.planning.flaws import Flaw, Standing, look_over
 from argo_env.planning.opening import OpenedSite
 from argo_env.site import load_site, make_site, site_names
 from argo_env.site.family import PREFIX, is_family
-from argo_env.site.norms import breaches, false_ends
+from argo_env.site.norms import breaches
 from argo_env.site.site_file import parse_site_spec, to_yaml
 from argo_env.site.spec import MAX_BYTES
 
@@ -29,8 +29,15 @@ class SiteReport:
 
     notes: tuple[str, ...]
     """what is unlike real sites, but does no harm"""
-    errors: tuple[str, ...]
+    flaws: tuple[Flaw, ...]
     """what can't be reached, and what to do about it"""
+    standing: Standing | None = None
+    """where the robot can stand, if there are flaws"""
+
+    @property
+    def errors(self) -> tuple[str, ...]:
+        """The flaws in words."""
+        return tuple(flaw.message for flaw in self.flaws)
 
 
 def list_sites() -> tuple[SiteSummary, ...]:
@@ -55,23 +62,9 @@ def uploaded_site(content: bytes, source_name: str) -> OpenedSite:
 
 
 def check_site(site: OpenedSite) -> SiteReport:
-    """Looks for what the robot can't reach. Raises ArgoError if a dock is of no use."""
-    site.navigator.prepare()
-    return SiteReport(tuple(breaches(site.site.spec)), tuple(_errors(site)))
-
-
-def _errors(site: OpenedSite) -> list[str]:
-    if ends := false_ends(site.site.spec):
-        return ends  # what can't be reached for that is found again once they are mended
-    floors = [
-        f"floor {number} can't be reached and patrolled; give its corners 1.4 m by 1.4 m to turn in"
-        for number in unserved_floors(site.navigator)
-    ]
-    return floors + [
-        f"checkpoint {id} ({site.site.checkpoint(id).name}) can't be read from anywhere that"
-        " the robot can reach; move or turn it"
-        for id in unseen_checkpoints(site.navigator)
-    ]
+    """Looks for what the robot can't reach."""
+    found = look_over(site.navigator)
+    return SiteReport(tuple(breaches(site.site.spec)), found.flaws, found.standing)
 
 
 def describe_site(site: OpenedSite, name: str) -> str:

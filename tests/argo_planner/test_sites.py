@@ -136,7 +136,7 @@ def test_a_site_that_can_not_be_driven(tmp_path, hall_yaml):
     assert result.exit_code == 2
     assert "error: floor 2" in result.output
     assert "error: checkpoint 1 (pressure gauge 1)" in result.output
-    assert "error: checkpoint 5" in result.output
+    assert "error: checkpoints 4, 5 and 6 on floor 2 can't be read" in result.output
     assert "note: checkpoint 2: it is 2.4 m high" in result.output
     assert "checkpoint 3" not in result.output
 

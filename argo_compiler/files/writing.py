@@ -13,6 +13,8 @@ from argo_compiler.errors import Conflict, NotFound, Unavailable
 _OPEN_FILES = (Path("/dev/fd"), Path("/proc/self/fd"))
 """the files that this process has open"""
 _STREAMS = (Path("/dev/stdout"), Path("/dev/stderr"))
+_MOST_LINKS = 40
+"""as Linux follows"""
 
 
 def is_stream(path: Path) -> bool:
@@ -65,7 +67,7 @@ def drafting(path: Path) -> Iterator[Path]:
     if is_stream(path):
         yield path
         return
-    path = Path(os.path.realpath(path))
+    path = _behind_links(path)
     with _drafts_in(path.parent) as folder:
         draft = folder / path.name
         yield draft
@@ -79,7 +81,6 @@ def write_folder(folder: Path, files: Mapping[str, bytes]) -> None:
 
     The last one is the first to go and the last to come, such as a page that shows the others.
     """
-    folder = Path(os.path.realpath(folder))
     for name in files:
         if os.path.isdir(folder / name):
             raise IsADirectoryError(errno.EISDIR, os.strerror(errno.EISDIR), str(folder / name))
@@ -118,6 +119,15 @@ def _swap(folder: Path, names: list[str], old: Path, new: Path) -> None:
             if os.path.lexists(old / name):
                 (old / name).replace(folder / name)
         raise
+
+
+def _behind_links(path: Path) -> Path:
+    """The file that a link stands for. Raises OSError if it stands for itself."""
+    for _ in range(_MOST_LINKS):
+        if not path.is_symlink():
+            return path
+        path = path.parent / path.readlink()
+    raise OSError(errno.ELOOP, os.strerror(errno.ELOOP), str(path))
 
 
 @contextmanager

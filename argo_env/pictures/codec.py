@@ -72,7 +72,8 @@ def write_mp4(frames: Iterable[Image.Image], file: Path, size: tuple[int, int], 
         if status:
             messages.seek(0)
             said = messages.read().decode(errors="replace").strip() or f"status {status}"
-            raise Unavailable(f"{file}: ffmpeg can't write the film: {said}")
+            said = said.replace(f"{file.absolute()}: ", "")  # a draft, which nobody knows
+            raise Unavailable(f"ffmpeg can't write the film: {said}")
 
 
 def write_gif(

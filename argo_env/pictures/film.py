@@ -1,16 +1,15 @@
 """A film of a run, made from its record: a camera follows the robot through the site."""
 
 import math
-import os
 from collections.abc import Callable, Iterator
-from contextlib import suppress
 from itertools import groupby
 from pathlib import Path
 
 import numpy as np
 from PIL import Image
 
-from argo_compiler.errors import Conflict, Invalid, NotFound, Unavailable
+from argo_compiler.errors import Invalid, Unavailable, located
+from argo_compiler.files.writing import check_place, drafting
 from argo_env.pictures.caption import add_caption, add_verdict
 from argo_env.pictures.chase import ChaseCamera
 from argo_env.pictures.codec import find_ffmpeg, make_palette, write_gif, write_mp4
@@ -37,12 +36,7 @@ def check_film(file: Path) -> None:
     that isn't installed. To be called before a long run is made."""
     if file.suffix.lower() not in {".mp4", ".gif"}:
         raise Invalid(f"{file}: a film is an .mp4 or a .gif; name the file so")
-    if not os.path.isdir(file.absolute().parent):
-        raise NotFound(f"{file}: there is no folder {file.parent}; make it, or choose another")
-    if os.path.isdir(file):
-        raise Conflict(f"{file}: is a folder; choose another name for the film")
-    if not os.access(file if os.path.exists(file) else file.absolute().parent, os.W_OK):
-        raise Unavailable(f"{file}: can't be written; choose another place for the film")
+    check_place(file)
     if file.suffix.lower() == ".mp4":
         find_ffmpeg()
 
@@ -79,25 +73,23 @@ def write_film(
     count = math.ceil(motion.end / (speed * frame_time) - 1e-9) + 1
     times = [min(k * speed * frame_time, motion.end) for k in range(count)]
     times += [motion.end] * (round(VERDICT_TIME / frame_time) - 1)
-    part = file.with_name(f".{file.stem}.part{file.suffix.lower()}")
     try:
-        with Scene(site, robot) as scene:
+        with drafting(file) as draft, Scene(site, robot) as scene:
             frames = _frames(record, motion, scene, times, (width, height), frame_time, progress)
             if is_gif:
                 picks = np.linspace(0, len(times) - 1, _PALETTE_SAMPLES).round().astype(int)
                 spread = [times[k] for k in dict.fromkeys(picks.tolist())]
                 samples = _frames(record, motion, scene, spread, (width, height), math.inf, None)
-                write_gif(frames, part, make_palette(list(samples)), frame_time)
+                write_gif(frames, draft, make_palette(list(samples)), frame_time)
             else:
-                write_mp4(frames, part, (width, height), fps)
-        part.replace(file)
+                try:
+                    write_mp4(frames, draft, (width, height), fps)
+                except Unavailable as error:
+                    raise located(error, str(file)) from None
     except OSError as error:
         raise Unavailable(
             f"{file}: the film can't be written: {error.strerror}; choose another place"
         ) from error
-    finally:
-        with suppress(OSError):
-            part.unlink()
 
 
 def _frames(

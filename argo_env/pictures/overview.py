@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 from PIL import Image, ImageDraw, ImageFont
 
 from argo_compiler.errors import Unavailable
+from argo_compiler.files.writing import write_whole
 from argo_env.pictures.camera import Camera
 from argo_env.pictures.light import compose, depth_shading, shadows
 from argo_env.pictures.motion import RecordedMotion, check_site
@@ -56,7 +57,7 @@ def write_overview(record: RunRecord, site: Site, robot: RobotSpec, file: Path) 
     content = io.BytesIO()
     image.resize(SIZE, Image.Resampling.LANCZOS).save(content, "png")
     try:
-        file.write_bytes(content.getvalue())
+        write_whole(file, content.getvalue())
     except OSError as error:
         raise Unavailable(
             f"{file}: the picture can't be written: {error.strerror}; choose another place"

@@ -1,5 +1,6 @@
 """A suggested order as pictures: a plan of each floor with the way as written and as suggested."""
 
+import io
 from collections.abc import Iterator, Sequence
 from pathlib import Path as FilePath
 
@@ -8,6 +9,7 @@ from numpy.typing import NDArray
 from PIL import Image, ImageDraw
 
 from argo_compiler.errors import Unavailable
+from argo_compiler.files.writing import write_folder
 from argo_compiler.il import Action, Task
 from argo_compiler.model import Pose
 from argo_compiler.reorder.mission import MissionRoute
@@ -71,22 +73,23 @@ def write_route(
     old = _way(planned, planned.written, navigator, travel)
     new = _way(planned, route, navigator, travel)
     floors = {moment.floor for moment in (*old, *new)}
-    written = []
+    pictures = {}
     for plan in plans_of(site):
         if plan.number not in floors:
             continue
         image = _draw(
             make_sheet([plan]), plan.number, planned, route, old, new, travel, site, headline
         )
-        path = folder / _name(plan.number)
-        try:
-            Image.fromarray(image).save(path)
-        except OSError as error:
-            raise Unavailable(
-                f"{path}: the picture can't be written: {error.strerror}; choose another place"
-            ) from error
-        written.append(path)
-    return written
+        content = io.BytesIO()
+        Image.fromarray(image).save(content, "png")
+        pictures[_name(plan.number)] = content.getvalue()
+    try:
+        write_folder(folder, pictures)
+    except OSError as error:
+        raise Unavailable(
+            f"{folder}: the pictures can't be written: {error.strerror}; choose another place"
+        ) from error
+    return [folder / name for name in pictures]
 
 
 def _name(floor: int) -> str:

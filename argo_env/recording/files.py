@@ -1,15 +1,18 @@
 """Where recordings are written and what they need: checked before a long run is made."""
 
-import os
-from collections.abc import Iterator
+import logging
+from collections.abc import Callable, Iterator
 from contextlib import closing, contextmanager
 from importlib.util import find_spec
 from pathlib import Path
 
-from argo_compiler.errors import Conflict, Invalid, NotFound, Unavailable
+from argo_compiler.errors import Invalid, Unavailable
 from argo_compiler.extras import install_line
+from argo_compiler.files.writing import check_place
+from argo_env.recording.best_effort import BestEffort
 from argo_env.recording.output import RecordingFile
-from argo_env.run.observer import Observer
+
+_log = logging.getLogger(__name__)
 
 VERSION = "1"
 """of what a recording of Argo's holds"""
@@ -32,30 +35,26 @@ def check_recording(file: Path) -> None:
     extra that isn't installed. To be called before a long run is made."""
     if file.suffix.lower() != ".mcap":
         raise Invalid(f"{file}: a recording is an .mcap file; name it so")
-    if not os.path.isdir(file.absolute().parent):
-        raise NotFound(f"{file}: there is no folder {file.parent}; make it, or choose another")
-    if os.path.isdir(file):
-        raise Conflict(f"{file}: is a folder; choose another name for the recording")
-    if not os.access(file if os.path.exists(file) else file.absolute().parent, os.W_OK):
-        raise Unavailable(f"{file}: can't be written; choose another place for the recording")
+    check_place(file)
     require_libraries()
 
 
 @contextmanager
-def recording_to(file: Path, source: Path | None = None) -> Iterator[Observer]:
+def recording_to(
+    file: Path, source: Path | None = None, warn: Callable[[str], None] = _log.warning
+) -> Iterator[BestEffort]:
     """A recorder that writes to the file, and the text of the mission's `source` with it.
 
     A recording that was there is replaced. What has been recorded stays, and can be read, if the
-    run fails or its process is killed.
-
-    Raises ArgoError where `check_recording` does, and while it goes on if the disk is full.
+    run fails, its process is killed, or the disk is full: then the run goes on without, and `warn`
+    is told what is lost. Raises ArgoError where `check_recording` does.
     """
     check_recording(file)
     # What this needs is not there without the extra.
     from argo_env.recording.mcap_recorder import McapRecorder
 
     with closing(RecordingFile(file)) as stream:
-        recorder = McapRecorder(stream, source)
+        recorder = BestEffort(McapRecorder(stream, source, warn), warn)
         try:
             yield recorder
         finally:

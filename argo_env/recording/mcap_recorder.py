@@ -1,13 +1,15 @@
 """The recorder: all that Foxglove shows of a run, and all that a report is made from."""
 
 import json
+import logging
 import math
+import os
+from collections.abc import Callable
 from pathlib import Path
 
 from foxglove_schemas_protobuf.Log_pb2 import Log
 
 from argo_compiler import __version__
-from argo_compiler.errors import Unavailable
 from argo_compiler.hfsm import Occurred
 from argo_env.navigation import Path as Way
 from argo_env.recording import messages, scene
@@ -30,6 +32,8 @@ from argo_env.run.spec import RunSpec
 from argo_env.site import Site, SiteCheckpoint
 from argo_env.world.world import Shot, World
 
+_log = logging.getLogger(__name__)
+
 SAMPLE_PERIOD = 0.1
 """s between recorded poses, at least; a drive with longer steps has one at each"""
 
@@ -37,10 +41,17 @@ SAMPLE_PERIOD = 0.1
 class McapRecorder(Observer):
     """Writes one run to a file. Holds what was last written, to write what is new only."""
 
-    def __init__(self, stream: RecordingFile, source: Path | None = None) -> None:
-        """`source`: the file that the mission was read from."""
+    def __init__(
+        self,
+        stream: RecordingFile,
+        source: Path | None = None,
+        warn: Callable[[str], None] = _log.warning,
+    ) -> None:
+        """`source`: the file that the mission was read from; `warn` is told if it is left out."""
         self._writer = RecordingWriter(stream)
         self._source = source
+        self._warn = warn
+        self._begun = False
         self._rig: Rig | None = None
         self._motion: MotionTopics | None = None
         self._next = -math.inf  # s, when the next pose is due
@@ -76,8 +87,8 @@ class McapRecorder(Observer):
             },
         )
         attach = self._writer.attach
-        if self._source is not None:
-            attach(f"source/{self._source.name}", media_type(self._source), _content(self._source))
+        for name, content in self._sources().items():
+            attach(f"source/{name}", media_type(Path(name)), content)
         attach("mission.json", "application/json", spec.mission.model_dump_json(indent=2))
         attach("settings.json", "application/json", json.dumps(spec.settings, indent=2))
         attach("site.json", "application/json", site.spec.model_dump_json(indent=2))
@@ -92,6 +103,7 @@ class McapRecorder(Observer):
             # They are written at the end of the step in which they were taken.
             rig.world.on_shot = self._shots.append
         self._writer.flush(0.0)
+        self._begun = True
 
     def on_step(self, now: float, action: ActionUnderWay | None) -> None:
         """Writes the robot's motion, and the way ahead when there is a new one."""
@@ -157,6 +169,33 @@ class McapRecorder(Observer):
     def close(self) -> None:
         """Writes the index of the file."""
         self._writer.close()
+
+    @property
+    def until(self) -> float | None:
+        """s of simulated time up to which all can be read, whatever happens; None: nothing can."""
+        return self._writer.until if self._begun else None
+
+    def give_up(self) -> None:
+        """Keeps nothing any more of what there is to record."""
+        self._shots.clear()
+        if self._rig is not None and isinstance(self._rig.world, World):
+            self._rig.world.on_shot = None
+
+    def _sources(self) -> dict[str, bytes]:
+        """The file that the mission was read from, or the files of its folder, by their names."""
+        source = self._source
+        if source is None:
+            return {}
+        try:
+            if os.path.isdir(source):
+                return {f"{source.name}/{p.name}": p.read_bytes() for p in sorted(source.iterdir())}
+            if os.path.isfile(source):
+                return {source.name: source.read_bytes()}
+            why = "it is no file that can be read again"
+        except OSError as error:
+            why = str(error.strerror)
+        self._warn(f"{source}: is not recorded with the run: {why}")
+        return {}
 
     def _sample(self, now: float) -> None:
         assert self._rig is not None, "on_begin comes first"
@@ -239,10 +278,3 @@ def _limbs(rig: Rig) -> Limbs:
         return world.joint_positions
     stowed = {name: math.radians(a) for name, a in rig.navigator.robot.arm_stowed.items()}
     return lambda names: [stowed.get(name, 0.0) for name in names]
-
-
-def _content(path: Path) -> bytes:
-    try:
-        return path.read_bytes()
-    except OSError as error:
-        raise Unavailable(f"{path}: can't be read: {error.strerror}") from error

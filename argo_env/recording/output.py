@@ -1,14 +1,25 @@
 """The file that a recording is written to, without a buffer: what is written is with the system."""
 
+import os
+from contextlib import suppress
 from pathlib import Path
 
 from argo_compiler.errors import Unavailable
 
 
+class UnwritableRecording(Unavailable):
+    """The recording can't be written any further."""
+
+    def __init__(self, path: Path, error: OSError) -> None:
+        super().__init__(f"{path}: the recording can't be written any further: {error.strerror}")
+        self.reason = error.strerror
+        """in the words of the system"""
+
+
 class RecordingFile:
     """A new file, open for writing. Holds it until it is closed; replaces what was there.
 
-    Raises ArgoError, as `write` does, if the file can't be written.
+    Raises ArgoError if the file can't be made, and `write` raises UnwritableRecording.
     """
 
     def __init__(self, path: Path) -> None:
@@ -16,21 +27,31 @@ class RecordingFile:
         try:
             self._file = path.open("wb", buffering=0)
         except OSError as error:
-            raise self._error(error) from error
+            raise Unavailable(
+                f"{path}: the recording can't be written: {error.strerror}; choose another place"
+            ) from error
         self._size = 0
+        self._kept = 0
         self._failed = False
 
     def write(self, data: bytes) -> int:
-        """Writes all of the data; after a failure nothing more, so that no gap comes about."""
+        """Writes all of the data; after a failure nothing more, so that no gap comes about, and
+        the file ends where it was whole last."""
         left = memoryview(data)
         try:
             while left and not self._failed:
                 left = left[self._file.write(left) or 0 :]
         except OSError as error:
             self._failed = True
-            raise self._error(error) from error
+            with suppress(OSError):  # no file but a device
+                os.ftruncate(self._file.fileno(), self._kept)
+            raise UnwritableRecording(self._path, error) from error
         self._size += len(data)
         return len(data)
+
+    def keep(self) -> None:
+        """What has been written so far is whole: it stays if what follows can't be written."""
+        self._kept = self._size
 
     def tell(self) -> int:
         return self._size
@@ -40,8 +61,3 @@ class RecordingFile:
 
     def close(self) -> None:
         self._file.close()
-
-    def _error(self, error: OSError) -> Unavailable:
-        return Unavailable(
-            f"{self._path}: the recording can't be written: {error.strerror}; choose another place"
-        )

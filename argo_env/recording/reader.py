@@ -157,7 +157,7 @@ def _read(name: str, content: bytes, parts: _Parts) -> str | None:
             _refuse(name, f"is damaged {until} {why}: take it from a copy")
         # A part that reaches beyond the end of the file is the last one of a file that breaks off.
         if isinstance(error, EndOfFile | RecordLengthLimitExceeded):
-            return f"breaks off {until}, as if its process had been killed"
+            return f"breaks off {until}, as where its process was killed, or the disk full"
         return f"is damaged {until} {why}, and has no end"
     if is_sound_end(content, stream.tell()):
         return None

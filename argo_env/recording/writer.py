@@ -27,6 +27,10 @@ class RecordingWriter:
     """Writes one file. Holds the open chunk and what has been registered; close it at the end."""
 
     def __init__(self, stream: RecordingFile) -> None:
+        self._stream = stream
+        self.until: float | None = None
+        """s of simulated time up to which all can be read, whatever happens; None: nothing can"""
+        self._latest = 0.0
         self._writer = Writer(
             cast(IO[bytes], stream),
             compression=CompressionType.ZSTD,
@@ -69,6 +73,7 @@ class RecordingWriter:
         data = content.encode() if isinstance(content, str) else content
         self.flush(t)
         self._writer.add_attachment(nanoseconds(t), nanoseconds(t), name, media_type, data)
+        self._keep()
 
     def describe(self, name: str, facts: Mapping[str, str]) -> None:
         """Adds metadata: texts by name."""
@@ -84,9 +89,11 @@ class RecordingWriter:
         """Has all on disk that came before the time t (s)."""
         self._flushed = t
         self._writer.flush()  # type: ignore[no-untyped-call]
+        self._keep()
 
     def close(self) -> None:
         """Writes the index; the file is complete then."""
+        self.flush(self._latest)
         self._writer.finish()  # type: ignore[no-untyped-call]
 
     def _register(self, topic: str, encoding: str, schema: int) -> None:
@@ -94,9 +101,16 @@ class RecordingWriter:
         self._sequences[topic] = 0
 
     def _add(self, topic: str, data: bytes, t: float) -> None:
-        time = nanoseconds(t)
+        time, size = nanoseconds(t), self._stream.tell()
+        self._latest = max(self._latest, t)
         self._writer.add_message(self._channels[topic], time, data, time, self._sequences[topic])
         self._sequences[topic] += 1
+        if self._stream.tell() > size:  # it has filled a chunk, which is written as a whole
+            self._keep()
+
+    def _keep(self) -> None:
+        self.until = self._latest
+        self._stream.keep()
 
 
 def media_type(path: Path) -> str:

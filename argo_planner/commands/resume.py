@@ -7,6 +7,7 @@ from typing import Annotated
 
 import typer
 from rich.console import Console
+from rich.markup import escape
 
 from argo_env.files.folders import make_folder
 from argo_env.planning.opening import OpenedSite, open_site
@@ -64,23 +65,29 @@ def resume_run(
             site.prepare()
             console.print(f"The run goes on at {at:g} s.")
         begun = time.monotonic()
-        record = _go_on(book, site, events, recording)
+        record, loss = _go_on(book, site, events, recording)
     seconds = time.monotonic() - begun
     speed = (record.result.duration - at) / max(1e-9, seconds)
     took = f"The rest took {seconds:.1f} s: {speed:.0f} times real time."
     if book.ended:
         took = f"Reading the journal took {seconds:.1f} s."
+    if recording:
+        took += f"\nRecording: {escape(f'{recording}{loss}')}"
     conclude(record, site.site, site.robot, took, report)
 
 
 def _go_on(
     book: Journal, site: OpenedSite, events: LoggedEvents, recording: Path | None
-) -> RunRecord:
-    """The rest of the run, with its progress shown."""
+) -> tuple[RunRecord, str]:
+    """The rest of the run, with its progress shown, and what its recording lacks."""
     spec = book.header.spec
+    recorder = None
     with ExitStack() as stack:
-        observers: list[Observer] = [stack.enter_context(RunDisplay(spec.mission.max_duration))]
+        display = stack.enter_context(RunDisplay(spec.mission.max_duration))
+        observers: list[Observer] = [display]
         if recording:
             source = Path(spec.source) if spec.source else None
-            observers.append(stack.enter_context(recording_to(recording, source)))
-        return resume(book, site, observers=observers, events=events)
+            recorder = stack.enter_context(recording_to(recording, source, display.warn))
+            observers.append(recorder)
+        record = resume(book, site, observers=observers, events=events)
+    return record, f": {recorder.loss}" if recorder and recorder.loss else ""

@@ -8,6 +8,7 @@ from pathlib import Path
 from typing import Annotated
 
 import typer
+from rich.markup import escape
 
 from argo_compiler.errors import Invalid
 from argo_compiler.files.reading import read_bytes
@@ -164,14 +165,14 @@ def run(
     spec = with_mission(spec, imported, reordering)
     opened.prepare()
     loaded = time.monotonic()
-    record = _carry_out(spec, opened, outputs)
+    record, loss = _carry_out(spec, opened, outputs)
     ended = time.monotonic()
     took = (
         f"Loading took {loaded - started:.1f} s, the run {ended - loaded:.1f} s: "
         f"{record.result.duration / max(1e-9, ended - loaded):.0f} times real time."
     )
     if recording:
-        took += f"\nRecording: {recording}"
+        took += f"\nRecording: {escape(f'{recording}{loss}')}"
     conclude(record, opened.site, opened.robot, took, report, render)
 
 
@@ -179,15 +180,20 @@ def _read_faults(path: Path) -> FaultText:
     return decode_faults(read_bytes(path, "file of faults", MAX_BYTES), str(path))
 
 
-def _carry_out(spec: RunSpec, site: OpenedSite, outputs: _Outputs) -> RunRecord:
-    """The run, with its progress shown."""
+def _carry_out(spec: RunSpec, site: OpenedSite, outputs: _Outputs) -> tuple[RunRecord, str]:
+    """The run, with its progress shown, and what its recording lacks."""
+    recorder = None
     with ExitStack() as stack:
-        observers: list[Observer] = [stack.enter_context(RunDisplay(spec.mission.max_duration))]
+        display = stack.enter_context(RunDisplay(spec.mission.max_duration))
+        observers: list[Observer] = [display]
         if outputs.recording:
             from argo_env.recording.files import recording_to
 
-            observers.append(stack.enter_context(recording_to(outputs.recording, outputs.source)))
-        return simulate(
+            recorder = stack.enter_context(
+                recording_to(outputs.recording, outputs.source, display.warn)
+            )
+            observers.append(recorder)
+        record = simulate(
             spec,
             site,
             observers=observers,
@@ -196,3 +202,4 @@ def _carry_out(spec: RunSpec, site: OpenedSite, outputs: _Outputs) -> RunRecord:
             gui=outputs.gui,
             pace=(outputs.pace or DEFAULT_PACE) if outputs.gui else None,
         )
+    return record, f": {recorder.loss}" if recorder and recorder.loss else ""

@@ -59,6 +59,12 @@ class RunDisplay(Observer, Closing):
         if not is_quiet():
             self._progress.console.print(escape(text), soft_wrap=True, highlight=False)
 
+    def warn(self, text: str) -> None:
+        """Shows what the run goes on without, in lines of their own, which stay."""
+        self._progress.console.print(
+            f"[bold yellow]Warning[/]: {escape(text)}", soft_wrap=True, highlight=False
+        )
+
     def __enter__(self) -> Self:
         self._progress.start()
         return self

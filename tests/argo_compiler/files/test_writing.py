@@ -1,10 +1,15 @@
 import os
 import stat
+from pathlib import Path
 
 import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
 
 from argo_compiler.files import writing
-from argo_compiler.files.writing import write_whole
+from argo_compiler.files.writing import write_folder, write_whole
+from tests.conftest import examples
+from tests.disks import fill, small_disk
 
 
 def test_text_is_written_as_utf_8_with_unix_line_ends(tmp_path):
@@ -63,3 +68,104 @@ def test_what_is_no_file_is_written_to(tmp_path):
     finally:
         os.close(reader)
     assert stat.S_ISFIFO(pipe.stat().st_mode)
+
+
+def test_what_the_process_has_open_is_added_to(tmp_path):
+    path = tmp_path / "kept.txt"
+    path.write_text("before, ")
+    with path.open("a") as file:
+        write_whole(Path(f"/dev/fd/{file.fileno()}"), "after")
+    assert path.read_text() == "before, after"
+    assert list(tmp_path.iterdir()) == [path]
+
+
+FILES = {"data.json": b"new data", "pictures/1.png": b"new picture", "page.html": b"new page"}
+
+
+def contents(folder):
+    return {
+        path.relative_to(folder).as_posix(): path.read_bytes()
+        for path in sorted(folder.rglob("*"))
+        if path.is_file()
+    }
+
+
+def test_files_of_a_folder_are_replaced_and_others_stay(tmp_path):
+    (tmp_path / "page.html").write_text("old page")
+    (tmp_path / "page.html").chmod(0o640)
+    (tmp_path / "notes.txt").write_text("mine")
+    write_folder(tmp_path, FILES)
+    assert contents(tmp_path) == FILES | {"notes.txt": b"mine"}
+    assert stat.S_IMODE((tmp_path / "page.html").stat().st_mode) == 0o640
+    assert sorted(p.name for p in tmp_path.iterdir()) == [
+        "data.json", "notes.txt", "page.html", "pictures",
+    ]  # fmt: skip
+
+
+def test_a_folder_is_made_with_those_that_it_is_in(tmp_path):
+    write_folder(tmp_path / "a" / "b", FILES)
+    assert contents(tmp_path / "a" / "b") == FILES
+
+
+def test_a_folder_in_the_way_stays(tmp_path):
+    (tmp_path / "page.html").mkdir()
+    with pytest.raises(IsADirectoryError, match="directory"):
+        write_folder(tmp_path, FILES)
+    assert [p.name for p in tmp_path.iterdir()] == ["page.html"]
+
+
+@pytest.mark.parametrize("steps", range(8))
+def test_whoever_is_interrupted_leaves_all_old_or_all_new(tmp_path, monkeypatch, steps):
+    old = {"data.json": b"old data", "page.html": b"old page"}
+    write_folder(tmp_path, old)
+    replace, done = Path.replace, []
+
+    def interrupted(self, target):
+        done.append(replace(self, target))
+        # What has been seen meanwhile: never a new page with old data, or the other way round.
+        seen = contents(tmp_path)
+        assert len({seen[name][:3] for name in old if name in seen}) <= 1
+        if len(done) == steps + 1:
+            raise KeyboardInterrupt
+
+    monkeypatch.setattr(Path, "replace", interrupted)
+    try:
+        write_folder(tmp_path, FILES)
+    except KeyboardInterrupt:
+        assert contents(tmp_path) == old
+        assert sorted(p.name for p in tmp_path.iterdir()) == ["data.json", "page.html"]
+    else:
+        assert steps >= 5, "two files are moved out, and three in"
+        assert contents(tmp_path) == FILES
+
+
+_PAGE = 4096  # bytes
+
+
+def test_a_full_disk_leaves_all_old_or_all_new():
+    old = {"data.json": b"o" * 7 * _PAGE, "page.html": b"o" * 2 * _PAGE}
+    kept = set()
+
+    @settings(deadline=None, max_examples=examples(60))
+    @given(room=st.integers(0, 30), sizes=st.lists(st.integers(0, 9), min_size=3, max_size=3))
+    def check(room, sizes):
+        new = {name: b"n" * size * _PAGE for name, size in zip(FILES, sizes, strict=True)}
+        write_folder(disk, old)
+        filler = fill(disk, leave=room * _PAGE)
+        before = {path: path.stat().st_mode for path in disk.rglob("*")}
+        try:
+            write_folder(disk, new)
+        except OSError:
+            kept.add("old")
+            assert contents(disk) == old | {"filler": filler.read_bytes()}
+            assert {path: path.stat().st_mode for path in disk.rglob("*")} == before
+        else:
+            kept.add("new")
+            assert contents(disk) == new | {"filler": filler.read_bytes()}
+        for path in disk.rglob("*"):
+            path.is_dir() or path.unlink()
+        (disk / "pictures").is_dir() and (disk / "pictures").rmdir()
+
+    with small_disk(64 * _PAGE) as disk:
+        check()
+    assert kept == {"old", "new"}

@@ -1,7 +1,6 @@
 """Recordings read back: the same report, and what is left of files that are cut or damaged."""
 
 import json
-import os
 from pathlib import Path
 
 import pytest
@@ -223,17 +222,6 @@ def test_where_no_recording_can_be_written(tmp_path: Path, monkeypatch) -> None:
     monkeypatch.setattr(files, "find_spec", lambda name: None if name == "mcap" else object())
     with pytest.raises(ArgoError, match=r"need mcap: pip install .*\[recording\]"):
         check_recording(tmp_path / "run.mcap")
-
-
-@pytest.mark.skipif(not os.path.exists("/dev/full"), reason="there is no full disk to try")
-def test_a_full_disk_is_said(yard_navigator, tmp_path: Path) -> None:
-    full = tmp_path / "full.mcap"
-    full.symlink_to("/dev/full")
-    with (
-        pytest.raises(ArgoError, match=r"full\.mcap: the recording can't be written: No space"),
-        recording_to(full) as recorder,
-    ):
-        simulate(SPEC, opened(yard_navigator), observers=[recorder])
 
 
 def test_a_run_that_fails_leaves_what_was_recorded(yard_navigator, tmp_path: Path) -> None:

@@ -9,6 +9,8 @@ from pathlib import Path
 import pytest
 from hypothesis import HealthCheck, settings
 from hypothesis.internal.conjecture import providers
+from xdist.remote import Producer
+from xdist.scheduler import LoadFileScheduling
 
 # As many workers run as there are cores: threads of numerical libraries would wait for each other.
 os.environ |= {"OMP_NUM_THREADS": "1", "OPENBLAS_NUM_THREADS": "1"}
@@ -45,9 +47,36 @@ _ORDER = ("e2e", "argo_env", "baselines")
 """The folders whose files take longest come first, so that no worker waits for another's last."""
 
 
+_SHARED = {
+    "tests/argo_env/planning/test_travel.py": "missions on UMAD",
+    "tests/argo_env/run/test_runner.py": "missions on UMAD",
+    "tests/argo_env/drives/tracked/test_body.py": "the tracked drive's world",
+    "tests/argo_env/drives/tracked/test_drive.py": "the tracked drive's world",
+}
+"""Files that share a fixture that takes long, and what it is."""
+
+
+def work_unit(test: str) -> str:
+    """What one worker runs of all that the test belongs to: its file, in its order.
+
+    So fixtures are made once, and what one test leaves behind is left to the same others each time.
+    """
+    file = test.split("::", 1)[0]
+    return _SHARED.get(file, file)
+
+
+class _ByFile(LoadFileScheduling):
+    def _split_scope(self, nodeid: str) -> str:
+        return work_unit(nodeid)
+
+
+@pytest.hookimpl(optionalhook=True)
+def pytest_xdist_make_scheduler(config: pytest.Config, log: Producer) -> LoadFileScheduling:
+    return _ByFile(config, log)
+
+
 def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
-    """Gives the tests of a file to one worker, in their order: their fixtures are made once, and
-    what one test leaves behind is left to the same others each time."""
+    """Brings what takes longest to the front."""
     root = Path(__file__).parent
 
     def place(item: pytest.Item) -> int:
@@ -55,6 +84,3 @@ def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
         return _ORDER.index(folder) if folder in _ORDER else len(_ORDER)
 
     items.sort(key=place)
-    for item in items:
-        if item.get_closest_marker("xdist_group") is None:
-            item.add_marker(pytest.mark.xdist_group(item.path.relative_to(root).as_posix()))

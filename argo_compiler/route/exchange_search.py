@@ -154,7 +154,7 @@ def _ways(kernel: ModuleType, net: StepNetwork, pruned: Pruned) -> Any:
     arc = np.median(time[time < kernel.NO_WAY]) if (time < kernel.NO_WAY).any() else 0.0
     return kernel.Ways(
         time,
-        near,
+        np.ascontiguousarray(near),  # a part of rows is another type, and compiled again
         np.packbits(bits, axis=1, bitorder="little").view(np.int64),
         nodes,
         np.stack([first, worth, np.append(~net.mandatory, 0)]),

@@ -1,5 +1,6 @@
 """The compiled local search, against trying all routes and against what it must keep to."""
 
+from importlib import import_module
 from itertools import combinations
 
 import numpy as np
@@ -64,6 +65,14 @@ def test_it_repeats_under_a_limit_of_work() -> None:
         for seed in (0, 0)
     ]
     assert [p.cost for p in costs[0]] == [p.cost for p in costs[1]]
+
+
+def test_it_is_compiled_once_for_small_and_large_problems() -> None:
+    for size in (5, 40):
+        suggest_route(with_orders(3, size, 4), None, work_limit=0.05, explain=False, solvers=ONLY)
+    kernel = import_module("argo_compiler.route.exchange_kernel")
+    assert len(kernel.run.signatures) == 1
+    assert len(kernel.put.signatures) == 1
 
 
 def test_there_is_no_route_where_the_compiler_has_no_time() -> None:

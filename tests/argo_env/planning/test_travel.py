@@ -8,8 +8,6 @@ from argo_compiler.model import Pose
 from argo_env.planning.travel import SiteTravel
 from tests.yard import simulated
 
-pytestmark = pytest.mark.xdist_group("missions on UMAD")  # they share its runs
-
 STEP = 0.1  # s of the drive, within which a sum of times may be rounded differently
 
 

@@ -20,8 +20,6 @@ from argo_env.run.simulation import SAMPLE_PERIOD
 from argo_env.run.verdict import is_docked
 from tests.yard import simulated
 
-pytestmark = pytest.mark.xdist_group("missions on UMAD")  # they share its runs
-
 FRONT = Pose(x=8.05, y=-2.05, z=-0.03, yaw=0.0)
 
 

@@ -9,8 +9,6 @@ from hypothesis import strategies as st
 from argo_env.drives.tracked.belts import Belts, Traction
 from tests.conftest import examples
 
-pytestmark = pytest.mark.xdist_group("tracked drive")  # they share its world
-
 WEIGHT = 600.0
 LEVEL = (1.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0)
 STILL = (0.0, 0.0, 0.0)

@@ -12,8 +12,6 @@ from argo_env.drives.tracked.body import TrackedBody
 from argo_env.navigation.path import wrap
 from argo_env.robot.pose import BodyPose
 
-pytestmark = pytest.mark.xdist_group("tracked drive")  # they share its world
-
 GRAVEL = BodyPose(5.0, -2.05, -0.03, 0.0)
 RISE, GOING = 0.178571, 0.28
 SLOPE = math.atan2(RISE, GOING)

@@ -12,8 +12,6 @@ from argo_env.drives.tracked.stall_watch import WINDOW, StallWatch
 from argo_env.navigation.path import Motion, Path, wrap
 from argo_env.robot.pose import BodyPose
 
-pytestmark = pytest.mark.xdist_group("tracked drive")  # they share its world
-
 TOWERS = {"west": ((1.9, 2.8), (1.9, 7.95)), "east": ((12.3, 5.55), (12.3, 5.55))}
 
 

@@ -17,6 +17,7 @@ from argo_env.drives.tracked.body import TrackedBody
 from argo_env.drives.tracked.drive import TrackedDrive
 from argo_env.envs import ENVIRONMENTS
 from argo_env.pictures.scene import Scene
+from argo_env.site import load_site
 from argo_env.world.world import World
 from tests.argo_env.envs import rollouts
 
@@ -266,7 +267,8 @@ def test_batch_before_a_reset(batch, duplicate):
     other = duplicate(batch)
     with pytest.raises(gym.error.ResetNeeded):
         other.step(np.zeros(5, int))
-    assert rollouts.digest(other.reset(seed=SEED)) == rollouts.digest(batch.reset(seed=SEED))
+    resets = [rollouts.digest(one.reset(seed=SEED, options=FEW)) for one in (other, batch)]
+    assert resets[0] == resets[1]
 
 
 def test_batch_after_close(batch, duplicate):
@@ -274,7 +276,8 @@ def test_batch_after_close(batch, duplicate):
     batch.close()
     other = duplicate(batch)
     assert other.closed
-    assert rollouts.digest(other.reset(seed=SEED)) == rollouts.digest(batch.reset(seed=SEED))
+    resets = [rollouts.digest(one.reset(seed=SEED, options=FEW)) for one in (other, batch)]
+    assert resets[0] == resets[1]
 
 
 def test_batches_of_gymnasium(id, yard_file, closing):
@@ -300,11 +303,12 @@ def test_batches_of_gymnasium(id, yard_file, closing):
 @pytest.mark.parametrize(
     "kind", ["World", "Scene", "TrackedBody", "TrackedDrive", "KinematicDrive"]
 )
-def test_refused_with_the_reason(umad, robot, way, kind):
-    with World(umad, robot) as world:
+def test_refused_with_the_reason(yard_file, robot, way, kind):
+    site = load_site(yard_file)
+    with World(site, robot) as world:
         made = {
             "World": lambda: world,
-            "Scene": lambda: Scene(umad, robot),
+            "Scene": lambda: Scene(site, robot),
             "TrackedBody": lambda: TrackedBody(world, robot),
             "TrackedDrive": lambda: TrackedDrive(world, robot),
             "KinematicDrive": lambda: KinematicDrive(world, robot),
@@ -314,13 +318,13 @@ def test_refused_with_the_reason(umad, robot, way, kind):
         assert isinstance(caught.value, TypeError)
 
 
-def test_connections_that_are_forgotten_end(umad, robot):
+def test_connections_that_are_forgotten_end(yard_file, robot):
     """PyBullet has 1,024; a search that copies environments does not close all of them."""
     import gc
 
     from argo_env.world.world import pybullet
 
-    world = World(umad, robot)
+    world = World(load_site(yard_file), robot)
     client = world._client
     assert pybullet.isConnected(client)
     del world

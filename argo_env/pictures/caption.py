@@ -7,6 +7,7 @@ from collections.abc import Sequence
 from PIL import Image, ImageDraw, ImageFont
 
 from argo_env.formatting import clock
+from argo_env.run.headline import Tone
 from argo_env.run.record import Reading, RunRecord
 
 HEIGHT = 0.105  # of the frame
@@ -17,6 +18,7 @@ _Font = ImageFont.FreeTypeFont
 _BAR = (20, 28, 38, 205)
 BRIGHT, DIM = (255, 255, 255, 255), (178, 190, 204, 255)
 _NORMAL, _ABNORMAL = (110, 226, 160, 255), (255, 128, 120, 255)
+_TONES = {Tone.GOOD: _NORMAL, Tone.NOTICE: (255, 196, 92, 255), Tone.BAD: _ABNORMAL}
 
 
 def add_caption(frame: Image.Image, record: RunRecord, t: float, floor: int) -> Image.Image:
@@ -53,14 +55,14 @@ def add_bar(frame: Image.Image, left: Sequence[Text], right: Sequence[Text]) -> 
 def add_verdict(frame: Image.Image, record: RunRecord) -> Image.Image:
     """The frame, RGB, with a bar over its caption that says how the mission has ended."""
     width, height = frame.size
-    success = record.result.success
-    word, ink = ("Success", _NORMAL) if success else ("Not successful", _ABNORMAL)
+    headline = record.headline
+    word, ink = headline.word, _TONES[headline.tone]
     size = height * HEIGHT * 0.40
     font = ImageFont.load_default(size)
     gap, pitch = size * 0.8, size * 1.35
     draw = ImageDraw.Draw(frame)
     indent = draw.textlength(f"{word}:  ", font=font)
-    lines = _lines(record.result.verdict, draw, font, width - 2 * gap - indent)
+    lines = _lines(headline.text, draw, font, width - 2 * gap - indent)
     bar = Image.new("RGBA", (width, round(pitch * len(lines) + 2 * gap - (pitch - size))), _BAR)
     draw = ImageDraw.Draw(bar)
     draw.text((gap, gap + size / 2), f"{word}:", fill=ink, font=font, anchor="lm")

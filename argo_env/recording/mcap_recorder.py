@@ -23,6 +23,7 @@ from argo_env.recording.writer import RecordingWriter, media_type
 from argo_env.report.files import to_json
 from argo_env.robot.spec import robot_folder
 from argo_env.run.action import ActionUnderWay
+from argo_env.run.headline import Tone
 from argo_env.run.log import Entry
 from argo_env.run.machine import Machine
 from argo_env.run.observer import Observer
@@ -34,6 +35,7 @@ from argo_env.world.world import Shot, World
 
 _log = logging.getLogger(__name__)
 
+_LEVELS = {Tone.GOOD: Log.INFO, Tone.NOTICE: Log.WARNING, Tone.BAD: Log.ERROR}
 SAMPLE_PERIOD = 0.1
 """s between recorded poses, at least; a drive with longer steps has one at each"""
 
@@ -132,10 +134,12 @@ class McapRecorder(Observer):
             if isinstance(original, Occurred):
                 detail = f": {original.detail}" if original.detail else ""
                 self._log(f"{original.event.replace('_', ' ')}{detail}", Log.WARNING, "event", now)
-        for anomaly in entry.found:
+        assert self._rig is not None, "on_begin comes first"
+        found = (*entry.found, *entry.told(self._rig.navigator.site))
+        for anomaly in found:
             self._found.append(anomaly)
             self._writer.put_json("/findings", anomaly, now)
-        if entry.found:
+        if found:
             self._writer.put("/findings/markers", scene.finding_scene(self._found, now), now)
         for mishap in entry.mishaps:
             self._log(f"{mishap.trouble}: {mishap.detail}", Log.WARNING, "drive", now)
@@ -158,12 +162,10 @@ class McapRecorder(Observer):
 
     def on_end(self, record: RunRecord) -> None:
         """Writes the end of the run and its record."""
-        result, now = record.result, self._now
+        headline, now = record.headline, self._now
         if now != self._sampled:
             self._sample(now)
-        unfinished = Log.ERROR if result.ended else Log.WARNING
-        level = Log.INFO if result.success else unfinished
-        self._log(f"{result.verdict}", level, "verdict", now)
+        self._log(str(headline), _LEVELS[headline.tone], "verdict", now)
         self._writer.attach("record.json", "application/json", to_json(record), now)
 
     def close(self) -> None:

@@ -60,7 +60,7 @@ def checkpoint_scene(
 
 def finding_scene(found: Sequence[Anomaly], t: float) -> SceneUpdate:
     """All that was found and has a place: a ball with a few words, and what is closed by it. Of
-    what was only noticed from somewhere, the words stand there alone."""
+    what was only noticed or told of somewhere, the words stand there alone."""
     return SceneUpdate(
         entities=[
             _finding(f"finding {number}", anomaly, at, t)
@@ -72,10 +72,10 @@ def finding_scene(found: Sequence[Anomaly], t: float) -> SceneUpdate:
 
 def _finding(id: str, anomaly: Anomaly, place: Vector, t: float) -> SceneEntity:
     level: Quaternion = (0.0, 0.0, 0.0, 1.0)
-    text = f"{anomaly.kind.replace('_', ' ')}: {anomaly.detail}"
+    text = anomaly.kind.replace("_", " ") + (f": {anomaly.detail}" if anomaly.detail else "")
     looks = [Visual("sphere", (_BALL, _BALL, _BALL), place, level, _ABNORMAL)]
     if anomaly.place is None:
-        text, looks = f"noticed from here: {text}", []
+        text, looks = f"{'told' if anomaly.is_told else 'noticed from'} here: {text}", []
     if anomaly.extent is not None:
         x0, y0, x1, y1 = anomaly.extent
         middle = ((x0 + x1) / 2, (y0 + y1) / 2, place[2])

@@ -8,17 +8,17 @@ from jinja2 import Environment, StrictUndefined, Template
 from argo_compiler.export import to_mermaid
 from argo_compiler.il import Action, Mission
 from argo_compiler.il.reserved import RETURN_TASK
-from argo_env.formatting import clock, where
+from argo_env.formatting import clock
 from argo_env.report.charge import charge_curve
 from argo_env.report.elevation import elevation
 from argo_env.report.machine import drawable, machine
 from argo_env.report.plan import floor_plan, visited_floors
 from argo_env.report.rounds import blocks, with_waits
 from argo_env.report.svg import Node, clean, drawing, markup, node
-from argo_env.report.timeline import timeline
+from argo_env.report.timeline import is_untold, timeline
 from argo_env.report.track import colour
 from argo_env.report.waiting import waits
-from argo_env.run.record import Reading, RunRecord
+from argo_env.run.record import Anomaly, Reading, RunRecord
 from argo_env.site import Site
 from argo_env.site.site import SCALES
 
@@ -32,7 +32,10 @@ def page(record: RunRecord, site: Site) -> str:
     others = [str(f.number) for f in site.spec.floors if f.number not in floors]
     return _template().render(
         record=record,
+        headline=record.headline,
         site=site,
+        found=_found(record),
+        untold=any(map(is_untold, record.tasks)),
         missed=record.missed_faults,
         failed=[t for t in record.tasks if t.outcome == "failed"],
         readings=[(reading, markup(_bar(reading))) for reading in record.readings],
@@ -59,9 +62,19 @@ def _template() -> Template:
         finalize=lambda value: clean(value) if type(value) is str else value,
     )
     environment.filters["clock"] = clock
-    environment.globals["where"] = where
     text = Path(__file__).with_name("report.html.j2").read_text(encoding="utf-8")
     return environment.from_string(text)
+
+
+def _found(record: RunRecord) -> list[tuple[int | None, Anomaly]]:
+    """All that was found and what tells that it is over, with the numbers that drawings give."""
+    findings = {finding.number: finding for finding in record.findings}
+    rows: list[tuple[int | None, Anomaly]] = [
+        (number, findings.get(number, anomaly))
+        for number, anomaly in enumerate(record.anomalies, start=1)
+    ]
+    rows += [(None, finding) for finding in record.findings if finding.number is None]
+    return sorted(rows, key=lambda row: row[1].t)
 
 
 def _docking(mission: Mission) -> frozenset[str]:

@@ -30,7 +30,8 @@ def timeline(record: RunRecord) -> Node:
         label = node("text", x=0.0, y=y + 16, text=shorten(name, 30), class_="label")
         label.append(node("title", text=name))
         parts.append(label)
-    parts += [_bar(run, HEAD + ROW * rows[run.task], px) for run in record.tasks]
+    for run in record.tasks:
+        parts += _bars(run, HEAD + ROW * rows[run.task], px)
     for reading in record.readings:
         if reading.task in rows:
             mark = node(
@@ -47,20 +48,34 @@ def timeline(record: RunRecord) -> Node:
     return drawing(WIDTH, bottom + 24, "Tasks along the time", *parts, class_="drawing timeline")
 
 
-def _bar(run: TaskRun, y: float, px: float) -> Node:
-    action = "measure" if run.action is Action.MEASURE else "drive"
-    bar = node(
-        "rect",
-        x=LABELS + run.start * px,
-        y=y + 4,
-        width=max((run.end - run.start) * px, 1.5),
-        height=ROW - 8,
-        rx=2.0,
-        class_=f"run {action} {run.outcome}",
-    )
+def is_untold(run: TaskRun) -> bool:
+    """Whether a run measured, and does not tell when."""
+    return run.measuring is None and run.action is Action.MEASURE
+
+
+def _bars(run: TaskRun, y: float, px: float) -> list[Node]:
+    """The bar of a run, and over it a darker one for each time that the robot measured."""
     text = f"{run.task}: {clock(run.start)} to {clock(run.end)}, {run.outcome}"
-    bar.append(node("title", text=text + (f" ({run.reason})" if run.reason else "")))
-    return bar
+    text += f" ({run.reason})" if run.reason else ""
+    untold = " untold" if is_untold(run) else ""
+    spans = [(run.start, run.end, f"run{untold} {run.outcome}", text)]
+    for start, end in run.measuring or ():
+        said = f"{run.task}: measuring, {clock(start)} to {clock(end)}"
+        spans.append((start, end, f"measuring {run.outcome}", said))
+    bars = []
+    for start, end, class_, title in spans:
+        bar = node(
+            "rect",
+            x=LABELS + start * px,
+            y=y + 4,
+            width=max((end - start) * px, 1.5),
+            height=ROW - 8,
+            rx=2.0,
+            class_=class_,
+        )
+        bar.append(node("title", text=title))
+        bars.append(bar)
+    return bars
 
 
 def time_axis(end: float, px: float, top: float, bottom: float) -> list[Node]:

@@ -66,11 +66,19 @@ class ActionUnderWay:
         self._retreated = False
         self._views = 0  # that have been gone to
         self._left = 0.0  # s of the measurement, or until the arm is stowed
+        self._measured: list[tuple[float, float]] = []  # s, from when to when
+        self._since: float | None = None  # s, when the measurement began
         self._phase: Callable[[], ActionEnd | None] = self._set_off
 
-    def step(self) -> ActionEnd | None:
-        """Goes on for one time step of the drive; returns how the action has ended, if it has."""
+    def step(self, now: float) -> ActionEnd | None:
+        """Goes on for one time step of the drive, up to time `now` (s); returns how the action has
+        ended, if it has."""
         end = self._phase()
+        if self._since is None and self.measuring:
+            self._since = now
+        elif self._since is not None and (end is not None or not self.measuring):
+            self._measured.append((self._since, now))
+            self._since = None
         if end is not None:
             self._rig.world.move_arm(self._rig.navigator.robot.arm_stowed)
             if isinstance(end, ActionFailed):
@@ -145,6 +153,7 @@ class ActionUnderWay:
         else:
             outcome = "interrupted" if self.interrupted else "cancelled"
             reason = "; ".join(filter(None, (self.cancelled, reason)))
+        under_way = () if self._since is None else ((self._since, now),)
         return TaskRun(
             task=self.task.name,
             action=self.task.action,
@@ -155,6 +164,7 @@ class ActionUnderWay:
             reason=reason,
             distance=round(distance - self._distance_before, DIGITS),
             climbed=round(climbed - self._climbed_before, DIGITS),
+            measuring=(*self._measured, *under_way),
         )
 
     @property

@@ -32,7 +32,7 @@ from argo_env.files.yaml_messages import message_of
 from argo_env.robot.pose import BodyPose
 from argo_env.run.record import (
     DIGITS,
-    FROM_READING,
+    TOLD,
     Anomaly,
     Contact,
     Mishap,
@@ -168,8 +168,25 @@ class Entry(Model):
     def news(self) -> tuple[Reading | Anomaly, ...]:
         """What was sensed: things noticed, then the reading."""
         # An abnormal reading is found as well; it is told as the reading.
-        noticed = tuple(anomaly for anomaly in self.found if anomaly.source != FROM_READING)
+        noticed = tuple(anomaly for anomaly in self.found if not anomaly.is_reading)
         return (*noticed, *((self.reading,) if self.reading else ()))
+
+    def told(self, site: Site) -> tuple[Anomaly, ...]:
+        """What the robot was told of from outside, and where it was then. What it has found itself
+        comes first among the events."""
+        x, y, z = (round(v, DIGITS) for v in self.pose[:3])
+        return tuple(
+            Anomaly(
+                t=self.t,
+                kind=event.event,
+                detail=event.detail or "",
+                source=TOLD,
+                noticed_from=(x, y, z),
+                floor=site.floor_at(self.pose[2]),
+            )
+            for event in self.events[len(self.found) :]
+            if event.event is not None
+        )
 
 
 class RunLog:
@@ -194,7 +211,7 @@ class RunLog:
             self.tasks.append(entry.task)
         if entry.reading:
             self.readings.append(entry.reading)
-        self.anomalies += entry.found
+        self.anomalies += (*entry.found, *entry.told(self._site))
         self.mishaps += entry.mishaps
         if entry.events:
             self.last_event = entry.t

@@ -4,13 +4,19 @@ It holds simulated times only. What depends on the machine it ran on is not part
 same mission, site and seed give the same record.
 """
 
+from collections.abc import Sequence
+
+from pydantic import computed_field, model_validator
+
 from argo_compiler.catalog import CheckpointKind, Interval
 from argo_compiler.diagnostics import Diagnostic
 from argo_compiler.hfsm import Hfsm, Outcome
-from argo_compiler.il import Action, EventKind, Mission
+from argo_compiler.il import Action, EventKind, Mission, Response
 from argo_compiler.model import Model
 from argo_env.drives.drive import Trouble
 from argo_env.faults.kinds import AnyFault
+from argo_env.formatting import where
+from argo_env.run.headline import Headline, headline
 from argo_env.site.shapes import Vector
 from argo_env.site.spec import Rect
 
@@ -18,7 +24,23 @@ DIGITS = 4
 """of recorded lengths and angles: below what the geometry means"""
 FROM_READING = "reading"
 """the source of an anomaly that a value measured at a checkpoint is"""
-_OVER = frozenset({EventKind.ALL_CLEAR, EventKind.BATTERY_CHARGED, EventKind.CONNECTION_RESTORED})
+TOLD = "told"
+"""the source of an anomaly that the robot was told of from outside"""
+_ENDS = {
+    EventKind.ALL_CLEAR: frozenset(
+        {
+            EventKind.GAS_LEAK,
+            EventKind.HOT_SPOT,
+            EventKind.ABNORMAL_SOUND,
+            EventKind.PLATFORM_ALARM,
+            EventKind.EMERGENCY_STOP,
+            EventKind.DYSFUNCTION,
+        }
+    ),
+    EventKind.BATTERY_CHARGED: frozenset({EventKind.LOW_BATTERY}),
+    EventKind.CONNECTION_RESTORED: frozenset({EventKind.CONNECTION_LOST}),
+}
+"""What tells that something is over, and what that may be."""
 
 
 class PathSample(Model):
@@ -59,6 +81,14 @@ class TaskRun(Model):
     """m driven"""
     climbed: float
     """m upwards"""
+    measuring: tuple[tuple[float, float], ...] | None = None
+    """s, from when to when it measured, arm included; more than once if it looked from several
+    places. None: not told, as in old records"""
+
+    @property
+    def measured_for(self) -> float:
+        """s, that it measured."""
+        return sum(end - start for start, end in self.measuring or ())
 
 
 class Reading(Model):
@@ -119,7 +149,8 @@ class Mishap(Model):
 
 
 class Anomaly(Model):
-    """Something that the robot found by sensing, or that tells that such a thing is over."""
+    """Something that the robot found by sensing or was told of, or that tells that such a thing is
+    over."""
 
     t: float
     """s"""
@@ -127,12 +158,12 @@ class Anomaly(Model):
     detail: str
     """in a few words, such as `gas, 840 ppm, near pump P-301`"""
     source: str
-    """the watch that found it"""
+    """the watch that found it, `reading` or `told`"""
     place: Vector | None = None
     """m, where it is; None where the signal tells no place"""
     noticed_from: Vector | None = None
     """m, where the robot was when it noticed what has no place, if that says anything about it, as
-    of gas and connection"""
+    of gas and connection; and when it was told of something"""
     floor: int | None = None
     """the floor of `place` or `noticed_from`"""
     confidence: float = 1.0
@@ -143,7 +174,47 @@ class Anomaly(Model):
     @property
     def over(self) -> bool:
         """Whether it tells that something is over."""
-        return self.kind in _OVER
+        return self.kind in _ENDS
+
+    @property
+    def is_reading(self) -> bool:
+        """Whether it is a value that was measured."""
+        return self.source == FROM_READING
+
+    @property
+    def is_told(self) -> bool:
+        """Whether the robot was told of it, and did not sense it."""
+        return self.source == TOLD
+
+    @property
+    def whereabouts(self) -> str:
+        """Where it is, or where the robot was, in words; empty if neither is known."""
+        if self.place is not None:
+            return f"on {where(self.floor, self.place)}"
+        if self.noticed_from is None:
+            return ""
+        how = "told while the robot was on" if self.is_told else "noticed from"
+        return f"{how} {where(self.floor, self.noticed_from)}"
+
+    def ends(self, other: "Anomaly") -> bool:
+        """Whether it tells that the other, of before, is over: a watch can say so of what it found
+        itself, a person of anything."""
+        return other.kind in _ENDS.get(self.kind, ()) and self.source in (TOLD, other.source)
+
+
+class Finding(Anomaly):
+    """An anomaly that is none of the ends of others, and what came of it."""
+
+    number: int | None
+    """of the anomaly in the record, from 1; None: an abnormal reading of which it tells nothing"""
+    what: str
+    """in a few words, such as `gas leak`, or `gauge 5 (#8) abnormal: 9.2 bar`"""
+    answered: bool
+    """whether a reaction of the mission answered it"""
+    answer: str
+    """in words: by what, or that none did"""
+    over_at: float | None = None
+    """s, when it was told to be over; None: it was not"""
 
 
 class Interruption(Model):
@@ -247,10 +318,35 @@ class RunRecord(Model):
     reordering: Reordering | None = None
     """None: the tasks were done in the order in which the mission was written"""
 
+    @model_validator(mode="before")
+    @classmethod
+    def _without_computed(cls, data: object) -> object:
+        """What follows from the rest is written for other programs, and not read back."""
+        if not isinstance(data, dict):
+            return data
+        return {
+            name: value for name, value in data.items() if name not in cls.model_computed_fields
+        }
+
+    @computed_field  # type: ignore[prop-decorator]
     @property
-    def findings(self) -> tuple[Anomaly, ...]:
-        """What was found, without what tells that it is over."""
-        return tuple(anomaly for anomaly in self.anomalies if not anomaly.over)
+    def findings(self) -> tuple[Finding, ...]:
+        """All that was out of the ordinary, each once, and what came of it."""
+        told = {anomaly.t for anomaly in self.anomalies if anomaly.is_reading}
+        bare = [_abnormal(r) for r in self.readings if not (r.normal or r.t in told)]
+        found = [
+            self._finding(anomaly, number, self.anomalies[number:])
+            for number, anomaly in enumerate(self.anomalies, start=1)
+            if not anomaly.over
+        ]
+        found += [self._finding(anomaly, None, ()) for anomaly in bare]
+        return tuple(sorted(found, key=lambda finding: finding.t))
+
+    @computed_field  # type: ignore[prop-decorator]
+    @property
+    def headline(self) -> Headline:
+        """How the run went, in a line."""
+        return headline(self)
 
     @property
     def missed_faults(self) -> tuple[AnyFault, ...]:
@@ -263,3 +359,46 @@ class RunRecord(Model):
             f"fault {fault.kind.replace('_', ' ')} did not happen: begins at {fault.begins:g} s, "
             f"the mission ended at {round(self.result.duration, 1):g} s"
         )
+
+    def _finding(self, anomaly: Anomaly, number: int | None, later: Sequence[Anomaly]) -> Finding:
+        answered, answer = self._answer(anomaly)
+        return Finding(
+            **dict(anomaly),
+            number=number,
+            what=self._what(anomaly),
+            answered=answered,
+            answer=answer,
+            over_at=next((a.t for a in later if a.ends(anomaly)), None),
+        )
+
+    def _what(self, anomaly: Anomaly) -> str:
+        for reading in self.readings:
+            if anomaly.is_reading and reading.t == anomaly.t:
+                value = f"{reading.value:.4g} {reading.unit}"
+                return f"{reading.name} (#{reading.checkpoint}) abnormal: {value}"
+        return anomaly.kind.replace("_", " ")
+
+    def _answer(self, anomaly: Anomaly) -> tuple[bool, str]:
+        """Whether a reaction answered it, and by what in words."""
+        own = next((r for r in self.mission.reactions if r.event is anomaly.kind), None)
+        if own is None:
+            return False, "no reaction answers it"
+        begun = own.response is Response.REPORT or any(
+            i.event is anomaly.kind and i.end >= anomaly.t for i in self.interruptions
+        )
+        # The end of the mission is no interruption.
+        aborted = own.response is Response.ABORT and self.result.outcome is Outcome.ABORTED
+        if begun or aborted:
+            return True, f"answered by reaction: {own.response.replace('_', ' ')}"
+        return False, "the reaction to it did not begin"
+
+
+def _abnormal(reading: Reading) -> Anomaly:
+    """What a reading tells that no anomaly was made of, as one made by hand."""
+    return Anomaly(
+        t=reading.t,
+        kind=EventKind.ABNORMAL_READING,
+        detail=f"{reading.name} shows {reading.value:g} {reading.unit}",
+        source=FROM_READING,
+        floor=reading.floor,
+    )

@@ -70,7 +70,7 @@ class Vehicle:
         before = after = drive.pose
         end, measuring = None, False
         if action:
-            end = action.step()
+            end = action.step(now)
             after, measuring = drive.pose, action.measuring
             odometry.moved(before, after, rig.world.touches(), now)
             odometry.trouble(drive.incidents, now)

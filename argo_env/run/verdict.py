@@ -9,6 +9,7 @@ from argo_compiler.il.reserved import RESERVED_NAMES
 from argo_compiler.model import Pose
 from argo_env.navigation.path import wrap
 from argo_env.robot.pose import BodyPose
+from argo_env.run.headline import AS_PLANNED
 from argo_env.run.log import RunLog
 from argo_env.run.record import DIGITS, Result, TaskRun
 
@@ -103,7 +104,7 @@ def _praise(hfsm: Hfsm, runs: Sequence[TaskRun], trace: Sequence[TraceEntry]) ->
         said.append(f"done by hand: {', '.join(by_hand)}")
     if skipped:
         said.append(f"skipped by a person: {', '.join(skipped)}")
-    return "; ".join(said) if len(said) > 1 else "everything was done as planned"
+    return "; ".join(said) if len(said) > 1 else AS_PLANNED
 
 
 def _by_hand(trace: Sequence[TraceEntry], *, skipped: bool) -> tuple[str, ...]:

@@ -8,42 +8,51 @@ from rich.table import Table
 
 from argo_env.formatting import clock, where
 from argo_env.report.waiting import waits
+from argo_env.run.headline import Tone, in_words
 from argo_env.run.record import RunRecord
+
+_WIDE = 100
+"""characters of a terminal that has room for what not everyone needs"""
+_STYLES = {Tone.GOOD: "bold green", Tone.NOTICE: "bold yellow", Tone.BAD: "bold red"}
 
 
 def show_record(record: RunRecord, console: Console) -> None:
-    """Prints what was measured, what each task took, the contacts and the verdict."""
+    """Prints what was measured, what each task took, what was noticed, and how the run went."""
     console.print(_readings(record))
-    console.print(_tasks(record))
+    measuring = console.width >= _WIDE and any(t.measured_for for t in record.tasks)
+    console.print(_tasks(record, measuring))
     result = record.result
     limit = f" of at most {clock(result.max_duration)}" if result.max_duration else ""
     touches = f"{len(record.contacts)} contact{'s' if len(record.contacts) != 1 else ''}"
-    found = len(record.findings)
-    findings = f"{found} finding{'s' if found != 1 else ''}, " if found else ""
     docked = {True: "docked", False: "not docked", None: "no docking asked for"}[result.docked]
     console.print(
         f"{clock(result.duration)}{limit}, {result.distance:.1f} m, "
-        f"{result.climbed:.1f} m climbed, {touches}, {findings}{docked}",
+        f"{result.climbed:.1f} m climbed, {touches}, {docked}",
         soft_wrap=True,
     )
-    for contact in record.contacts[:10]:
-        console.print(
-            f"  contact at {clock(contact.start)}: {escape(contact.link)} with "
-            f"{escape(contact.element)}, {contact.depth * 1000:.0f} mm deep",
-            style="red",
-            soft_wrap=True,
+    for line in _noticed(record):
+        console.print(f"  {escape(line)}", style="yellow", soft_wrap=True)
+    headline = record.headline
+    console.print(
+        f"[{_STYLES[headline.tone]}]{headline.word}[/]: {escape(headline.text)}.", soft_wrap=True
+    )
+
+
+def _noticed(record: RunRecord) -> Iterator[str]:
+    """A line for each thing that the headline counts, and for faults that did not happen."""
+    for finding in record.findings:
+        detail = "" if finding.is_reading or not finding.detail else f": {finding.detail}"
+        yield ", ".join(filter(None, (in_words(finding), finding.whereabouts))) + detail
+    for contact in record.contacts:
+        yield (
+            f"contact at {clock(contact.start)}: {contact.link} with {contact.element}, "
+            f"{contact.depth * 1000:.0f} mm deep"
         )
-    for mishap in record.mishaps[:10]:
-        console.print(
-            f"  {mishap.trouble} at {clock(mishap.t)} on {where(mishap.floor, mishap.place)}: "
-            f"{escape(mishap.detail)}",
-            style="yellow",
-            soft_wrap=True,
-        )
+    for mishap in record.mishaps:
+        place = where(mishap.floor, mishap.place)
+        yield f"{mishap.trouble} at {clock(mishap.t)} on {place}: {mishap.detail}"
     for fault in record.missed_faults:
-        console.print(f"  {escape(record.why_missed(fault))}", style="yellow", soft_wrap=True)
-    style, word = ("bold green", "Success") if result.success else ("bold red", "No success")
-    console.print(f"[{style}]{word}[/]: {escape(result.verdict)}.", soft_wrap=True)
+        yield record.why_missed(fault)
 
 
 def _readings(record: RunRecord) -> Table:
@@ -66,17 +75,18 @@ def _readings(record: RunRecord) -> Table:
     return table
 
 
-def _tasks(record: RunRecord) -> Table:
+def _tasks(record: RunRecord, measuring: bool) -> Table:
     """One row for each task and for what was waited for, in the order in which they first began;
-    repeated ones are taken together."""
+    repeated ones are taken together. With `measuring`, how much of the time went into that."""
     table = Table(title="Tasks", title_justify="left")
     table.add_column("task")
-    for name in ("times", "first at", "time", "distance", "climbed"):
+    names = ("times", "first at", "time", *(["measuring"] if measuring else []))
+    for name in (*names, "distance", "climbed"):
         table.add_column(name, justify="right")
     table.add_column("outcome")
     rows = [*_task_rows(record), *_wait_rows(record)]
     for _, row in sorted(rows, key=lambda timed: timed[0]):
-        table.add_row(*row)
+        table.add_row(*row[:4], *(row[4:5] if measuring else ()), *row[5:])
     return table
 
 
@@ -93,6 +103,7 @@ def _task_rows(record: RunRecord) -> Iterator[tuple[float, tuple[str, ...]]]:
                 str(len(runs)),
                 clock(runs[0].start),
                 clock(sum(t.end - t.start for t in runs)),
+                clock(measured) if (measured := sum(t.measured_for for t in runs)) else "",
                 f"{sum(t.distance for t in runs):.1f} m",
                 f"{sum(t.climbed for t in runs):.1f} m",
                 escape(", ".join(outcomes) + (f" ({'; '.join(reasons)})" if reasons else "")),
@@ -112,6 +123,7 @@ def _wait_rows(record: RunRecord) -> Iterator[tuple[float, tuple[str, ...]]]:
                 str(len(same)),
                 clock(same[0].start),
                 clock(sum(wait.end - wait.start for wait in same)),
+                "",
                 "",
                 "",
                 "over" if same[-1].over else "still waiting at the end",

@@ -10,7 +10,6 @@ from rich.progress import BarColumn, Progress, TextColumn, TimeElapsedColumn
 
 from argo_env.closing import Closing
 from argo_env.faults.kinds import changed_site
-from argo_env.formatting import where
 from argo_env.report.files import PAGE
 from argo_env.robot.spec import RobotSpec
 from argo_env.run.action import ActionUnderWay
@@ -18,6 +17,8 @@ from argo_env.run.log import Entry
 from argo_env.run.machine import Machine
 from argo_env.run.observer import Observer
 from argo_env.run.record import Anomaly, Reading, RunRecord
+from argo_env.run.rig import Rig
+from argo_env.run.spec import RunSpec
 from argo_env.site import Site
 from argo_planner.terminal.files import write_content
 from argo_planner.terminal.record_tables import show_record
@@ -32,6 +33,11 @@ class RunDisplay(Observer, Closing):
         """`total`: the mission's longest duration (s), if it has one."""
         self._progress = _progress()
         self._bar = self._progress.add_task("setting off", total=total)
+        self._site: Site | None = None
+
+    def on_begin(self, rig: Rig, spec: RunSpec) -> None:  # noqa: ARG002
+        """The run is about to begin on this site."""
+        self._site = rig.navigator.site
 
     def on_step(self, now: float, action: ActionUnderWay | None) -> None:
         """Shows the time (s) and the task under way."""
@@ -39,8 +45,9 @@ class RunDisplay(Observer, Closing):
         self._progress.update(self._bar, completed=now, description=task)
 
     def on_change(self, entry: Entry, machine: Machine) -> None:  # noqa: ARG002
-        """Shows what was sensed."""
-        for news in entry.news:
+        """Shows what was told and sensed."""
+        told = entry.told(self._site) if self._site else ()
+        for news in (*told, *entry.news):
             self.announce(news)
 
     def announce(self, news: Reading | Anomaly) -> None:
@@ -51,11 +58,11 @@ class RunDisplay(Observer, Closing):
                 f"{news.value!r} {news.unit}"
             )
         else:
-            text = f"{news.t!r} s: found: {news.kind.replace('_', ' ')}: {news.detail}"
-            if news.place is not None:
-                text += f", on {where(news.floor, news.place)}"
-            elif news.noticed_from is not None:
-                text += f", noticed from {where(news.floor, news.noticed_from)}"
+            how = "told" if news.is_told else "found"
+            said = filter(None, (how, news.kind.replace("_", " "), news.detail))
+            text = f"{news.t!r} s: {': '.join(said)}"
+            if place := news.whereabouts:
+                text += f", {place}"
         if not is_quiet():
             self._progress.console.print(escape(text), soft_wrap=True, highlight=False)
 

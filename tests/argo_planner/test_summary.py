@@ -11,12 +11,20 @@ from argo_compiler.il import Action, Afterwards, EventKind, Mission, Reaction, R
 from argo_env.faults.plant import GasLeakFault
 from argo_env.faults.robot import ConnectionLoss
 from argo_env.formatting import clock
-from argo_env.run.record import Contact, Interruption, Reading, Result, RunRecord, TaskRun
+from argo_env.run.record import (
+    Anomaly,
+    Contact,
+    Interruption,
+    Reading,
+    Result,
+    RunRecord,
+    TaskRun,
+)
 from argo_planner.terminal.record_tables import show_record
 
 
-def shown(record: RunRecord) -> str:
-    console = Console(file=io.StringIO(), width=140, color_system=None)
+def shown(record: RunRecord, width: int = 140) -> str:
+    console = Console(file=io.StringIO(), width=width, color_system=None)
     show_record(record, console)
     assert isinstance(console.file, io.StringIO)
     return console.file.getvalue()
@@ -69,9 +77,41 @@ def test_everything_that_went_wrong_is_said(record: RunRecord) -> None:
     for part in (
         "abnormal", "9.50 bar", "1 to 2.5", "failed", "hidden behind x", "not docked",
         "11:40 of at most 10:00", "1 contact,", "forearm with floor 2 railing 7, 12 mm deep",
-        "No success: it took 700 s of at most 600 s.",
+        "No success: it took 700 s of at most 600 s. 1 finding, 1 contact: ",
     ):  # fmt: skip
         assert part in text
+
+
+def test_each_thing_that_the_headline_counts_has_a_line(record: RunRecord) -> None:
+    told = Anomaly(
+        t=60.0, kind=EventKind.GAS_LEAK, detail="a hiss", source="told",
+        noticed_from=(1.0, 2.0, 0.0), floor=1,
+    )  # fmt: skip
+    over = told.model_copy(update={"t": 90.0, "kind": EventKind.ALL_CLEAR})
+    result = record.result.model_copy(
+        update={"success": True, "verdict": "everything was done as planned"}
+    )
+    text = shown(record.model_copy(update={"anomalies": (told, over), "result": result}))
+    lines = text[text.index("11:40 of") :].splitlines()
+    assert lines[1:-1] == [
+        "  pressure gauge 2 (#3) abnormal: 9.5 bar",
+        "  gas leak at 01:00 (no reaction answers it), over at 01:30, told while the robot was on "
+        "floor 1 at (1.00, 2.00, 0.00): a hiss",
+        "  contact at 00:12: forearm with floor 2 railing 7, 12 mm deep",
+    ]
+    assert lines[-1] == (
+        "Done, 2 findings, 1 contact: pressure gauge 2 (#3) abnormal: 9.5 bar; gas leak at 01:00 "
+        "(no reaction answers it), over at 01:30; forearm touched floor 2 railing 7 at 00:12."
+    )
+
+
+def test_how_long_it_measured_is_told_where_there_is_room(record: RunRecord) -> None:
+    assert "measuring" not in shown(record)
+    first = record.tasks[0].model_copy(update={"measuring": ((10.0, 16.0), (20.0, 30.0))})
+    changed = record.model_copy(update={"tasks": (first, *record.tasks[1:])})
+    (row,) = [line for line in shown(changed).splitlines() if line.startswith("│ [bold]M")]
+    assert [cell.strip() for cell in row.split("│")[4:6]] == ["01:00", "00:16"]
+    assert "measuring" not in shown(changed, width=80)
 
 
 def test_repeated_tasks_are_taken_together(record: RunRecord) -> None:

@@ -58,7 +58,11 @@ def test_found_told_kept_and_shown(argo, folder):
     )
     assert resumed.returncode == 0, resumed.stderr
     again = RunRecord.model_validate(json.loads((folder / "again" / "report.json").read_text()))
-    assert sorted(a.kind for a in again.anomalies) == sorted(a.kind for a in record.anomalies)
+    told = [a.kind for a in again.anomalies if a.is_told]
+    assert told == ["hot_spot"]
+    assert "hot spot at " in resumed.stdout
+    sensed = sorted(a.kind for a in again.anomalies if not a.is_told)
+    assert sensed == sorted(a.kind for a in record.anomalies)
     assert [r.value for r in again.readings] == [r.value for r in record.readings]
     assert any("hot spot" in step.cause for step in again.trace)
 

@@ -28,6 +28,12 @@ def charged(record, charges):
     return record.model_copy(update={"path": path})
 
 
+@pytest.fixture
+def simple(simple):
+    """The record without its abnormal reading, which would be found as well."""
+    return simple.model_copy(update={"readings": simple.readings[:1]})
+
+
 def section(text, id):
     return re.search(rf'<section id="{id}">.*?</section>', text, re.DOTALL)[0]
 
@@ -59,6 +65,25 @@ def test_each_finding_has_a_row_and_a_number_where_it_was(simple, site):
     assert len(re.findall(r'<g class="found">', plan)) == 1
 
 
+def test_the_headline_counts_the_rows_and_says_what_came_of_them(simple, site):
+    text = page(simple, site)
+    assert '<span class="badge notice">Done, 1 contact</span>' in text
+    quiet = simple.model_copy(update={"contacts": ()})
+    assert '<span class="badge good">Success</span>' in page(quiet, site)
+    told = anomaly(1.0, floor=1).model_copy(
+        update={"source": "told", "noticed_from": (1.0, 2.0, 0.0)}
+    )
+    over = told.model_copy(update={"t": 9.0, "kind": EventKind.ALL_CLEAR})
+    text = page(quiet.model_copy(update={"anomalies": (told, over)}), site)
+    assert '<span class="badge notice">Done, 1 finding</span>' in text
+    assert "<p>Gas leak at 00:01 (no reaction answers it), over at 00:09. All check" in text
+    table = section(text, "anomalies")
+    assert table.count('class="mark finding"') == 1
+    assert "<td>no reaction answers it, over at 00:09</td>" in table
+    assert "<td>told while the robot was on floor 1 at (1.00, 2.00, 0.00)</td>" in table
+    assert "<td>told</td>" in table
+
+
 def test_what_tells_no_place_is_not_drawn_as_if_it_were_there(simple, site):
     at = simple.path[0]
     leak = Anomaly(
@@ -81,7 +106,7 @@ def test_what_is_over_is_no_finding_that_counts(simple, site):
         text = page(simple.model_copy(update={"anomalies": found}), site)
         return re.findall(r'<div class="tile (\w+)"><b>(\d+)</b><span>findings?</span>', text)
 
-    assert tiles(EventKind.GAS_LEAK, EventKind.ALL_CLEAR) == [("bad", "1")]
+    assert tiles(EventKind.GAS_LEAK, EventKind.ALL_CLEAR) == [("notice", "1")]
     assert tiles(EventKind.ALL_CLEAR) == [("good", "0")]
 
 

@@ -129,6 +129,35 @@ def test_rounds_are_collapsed(site, patrol):
     assert len(classes(timeline, "round")) == 25
 
 
+def test_timeline_tells_driving_from_measuring(site, simple):
+    spans = {0: ((3.0, 6.0),), 1: ((7.0, 8.0), (10.0, 12.0)), 2: ()}
+    tasks = tuple(t.model_copy(update={"measuring": spans[n]}) for n, t in enumerate(simple.tasks))
+    text = page(simple.model_copy(update={"tasks": tasks}), site)
+    timeline = next(s for s in svgs(text) if "timeline" in s.get("class").split())
+    runs, bars = classes(timeline, "run"), classes(timeline, "measuring")
+    assert [run.get("class") for run in runs] == ["run done", "run failed", "run done"]
+    assert [bar.get("class") for bar in bars] == ["measuring done", *2 * ["measuring failed"]]
+    first, bar = runs[0], bars[0]
+    assert float(bar.get("width")) == pytest.approx(float(first.get("width")) / 2, abs=0.1)
+    assert bar.findtext("title") == "1: measuring, 00:03 to 00:06"
+    for run, bar in zip([runs[0], runs[1], runs[1]], bars, strict=True):
+        left, right = float(run.get("x")), float(run.get("x")) + float(run.get("width"))
+        start = float(bar.get("x"))
+        assert left <= start < start + float(bar.get("width")) <= right + 0.1
+    assert "</i>driving</span>" in text
+    assert "</i>measuring</span>" in text
+    assert "</i>failed, driving and measuring</span>" in text
+    assert "the record does not tell when" not in text
+    assert '<td class="n">3.0 s</td><td class="n">2.0 m</td>' in text
+
+
+def test_old_records_do_not_tell_when_it_measured(site, simple):
+    text = page(simple, site)
+    assert "the record does not tell when" in text
+    assert 'class="run untold done"' in text
+    assert 'class="measuring' not in text
+
+
 def test_scripts_can_not_put_markup_into_the_page(site, make):
     bad = "<script>alert('x')</script>\x01"
     task = Task(name=bad, action=Action.MEASURE, object_id="1")

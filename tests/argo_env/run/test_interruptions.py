@@ -1,6 +1,8 @@
 """Pauses, reactions and cancellations while a mission runs: what the robot does, and the record."""
 
 import math
+import re
+from collections import Counter
 from itertools import pairwise
 
 import pytest
@@ -11,6 +13,7 @@ from argo_compiler.hfsm import Cancel, Occurred, Outcome, Pause, Resume
 from argo_compiler.il import Afterwards, EventKind, Group, OnFailure, Reaction, Response
 from argo_compiler.model import Pose
 from argo_env.report import write_report
+from argo_env.run.headline import Tone
 from argo_env.run.record import RunRecord
 from argo_env.run.spec import logged
 from argo_env.sensing.sensor import MeasurementError
@@ -317,6 +320,24 @@ def reactions(draw):
     return tuple(found)
 
 
+def check_findings(record, plan, events):
+    """All that occurred is found or over, each thing once, and only then the headline is amber."""
+    occurred = [(t, e.event) for t, e in events if isinstance(e, Occurred)]
+    told = [(a.t, a.kind) for a in record.anomalies if a.is_told]
+    assert not Counter(kind for _, kind in told) - Counter(kind for _, kind in occurred)
+    assert all(kind in [k for _, k in told] for t, kind in occurred if t < record.result.duration)
+    abnormal = [r for r in record.readings if not r.normal]
+    overs = [a for a in record.anomalies if a.over]
+    assert len(record.findings) == len(told) - len(overs) + len(abnormal)
+    answerable = {reaction.event for reaction in plan.reactions}
+    assert not [f for f in record.findings if f.answered and f.kind not in answerable]
+    headline = record.headline
+    assert (headline.tone is Tone.GOOD) == (record.result.success and not record.findings)
+    said = re.findall(r"(\d+) findings?:", str(headline))
+    assert said == [str(len(record.findings))] * bool(record.findings)
+    assert RunRecord.model_validate_json(record.model_dump_json()).headline == headline
+
+
 @settings(max_examples=examples(40), deadline=None)
 @given(given_events(), reactions(), st.none() | st.floats(5.0, 80.0))
 def test_whatever_occurs(navigator, events, answers, limit):
@@ -326,6 +347,7 @@ def test_whatever_occurs(navigator, events, answers, limit):
     )  # fmt: skip
     record = run(navigator, plan, *events, values={2: 5.5})
     assert run(navigator, plan, *events, values={2: 5.5}) == record
+    check_findings(record, plan, events)
     # One action at a time, each with its end; a reading belongs to one that is done.
     assert all(a.end <= b.start for a, b in pairwise(record.tasks))
     measured = [t for t in record.tasks if t.action == "MEASURE" and t.outcome == "done"]

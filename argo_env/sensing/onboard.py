@@ -98,7 +98,7 @@ class EmergencyStopWatch:
         self._pressed = False
 
     def remember(self, told: Sequence[Told], now: float) -> None:  # noqa: ARG002
-        self._pressed = bool(told)  # if it no longer is, the first look shows it
+        self._pressed = bool(told) and self._drive.pressed
 
     def look(self, now: float, pose: BodyPose) -> tuple[Detection, ...]:  # noqa: ARG002
         before, self._pressed = self._pressed, self._drive.pressed

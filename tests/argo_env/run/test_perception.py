@@ -413,6 +413,16 @@ class TestResumedWhileItWaits:
         kinds = [EventKind.CONNECTION_LOST, EventKind.CONNECTION_RESTORED]
         assert [a.kind for a in again.anomalies] == 2 * kinds
 
+    def test_a_stop_right_after_is_another_one(self, navigator, tmp_path):
+        stops = [
+            {"kind": "emergency_stop", "at": 1, "until": 9},
+            {"kind": "emergency_stop", "at": 10.1, "until": 16},
+        ]
+        whole, again = self.cut_where(
+            navigator, tmp_path / "run.journal", self.LOST, stops, lambda e: e.t >= 10
+        )
+        assert [a.t for a in again.anomalies] == [a.t for a in whole.anomalies] == [1.0, 10.1]
+
 
 class TestStandingStill:
     def schedule(self, *data):

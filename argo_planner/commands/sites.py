@@ -9,9 +9,15 @@ import typer
 from argo_compiler.errors import ArgoError, Invalid, located
 from argo_env.planning.opening import OpenedSite, open_site
 from argo_planner.terminal import completion
-from argo_planner.terminal.files import check_outputs, write_text
+from argo_planner.terminal.files import check_outputs, say_written, write_content, write_text
 from argo_planner.terminal.options import Force
-from argo_planner.use_cases.sites import check_site, describe_site, list_sites, require_free_name
+from argo_planner.use_cases.sites import (
+    check_site,
+    describe_site,
+    draw_report,
+    list_sites,
+    require_free_name,
+)
 
 
 def show_sites(
@@ -27,27 +33,38 @@ def show_sites(
         Path | None,
         typer.Option("-o", "--output", help="a .yaml to write the site's description to"),
     ] = None,
+    picture: Annotated[
+        Path | None,
+        typer.Option("--picture", help="a .png of the floors, with the places of errors"),
+    ] = None,
     force: Force = False,
 ) -> None:
     """List the sites, or check one; exits with status 2 if it can't be driven."""
     if site is None:
-        if output:
-            raise Invalid("--output writes the description of one site: say which")
+        if output or picture:
+            raise Invalid("a description or a picture is of one site: say which")
         for one in list_sites():
             print(f"{one.name}: {one.title}, floors: {one.floors}, checkpoints: {one.checkpoints}")
         return
     if output:
-        check_outputs([site], [output], force=force)
         _check_name(output)
+    if picture and picture.suffix.lower() != ".png":
+        raise Invalid(f"{picture}: a site is drawn as a .png; name it so")
+    check_outputs([site], [output, picture], force=force)
     opened = open_site(site)
     if output:
         _write(opened, output)
     report = check_site(opened)
+    if picture:
+        write_content(picture, draw_report(opened, report))
+        say_written(picture, "written, the site's floors")
     for note in report.notes:
         print(f"{site}: note: {note}")
     for error in report.errors:
         print(f"{site}: error: {error}")
     if report.errors:
+        if not picture:
+            print(f"to see where: argo sites {shlex.quote(site)} --picture FILE.png")
         raise typer.Exit(2)
     print(f"{site}: every floor and every checkpoint can be reached from every dock, and back")
 

@@ -67,6 +67,13 @@ def check_site(site: OpenedSite) -> SiteReport:
     return SiteReport(tuple(breaches(site.site.spec)), found.flaws, found.standing)
 
 
+def draw_report(site: OpenedSite, report: SiteReport) -> bytes:
+    """The site as a PNG, with the places of what is wrong with it."""
+    from argo_env.pictures.site_plan import draw_site  # few ask for it, and it takes long to import
+
+    return draw_site(site.site, report.flaws, report.standing)
+
+
 def describe_site(site: OpenedSite, name: str) -> str:
     """The YAML that describes the site, under another name: its own stands for another site, and
     this one is there to be changed. Raises Conflict as `require_free_name`."""

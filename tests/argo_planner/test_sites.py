@@ -3,8 +3,10 @@
 import re
 import shlex
 
+import numpy as np
 import pytest
 import yaml
+from PIL import Image
 from typer.testing import CliRunner
 
 from argo_compiler.diagnostics import has_errors
@@ -139,6 +141,45 @@ def test_a_site_that_can_not_be_driven(tmp_path, hall_yaml):
     assert "error: checkpoints 4, 5 and 6 on floor 2 can't be read" in result.output
     assert "note: checkpoint 2: it is 2.4 m high" in result.output
     assert "checkpoint 3" not in result.output
+
+
+def reds(picture):
+    """The number of pixels of the colour of what is wrong; checkpoints are orange."""
+    red, green, blue = np.asarray(picture.convert("RGB")).astype(int).transpose(2, 0, 1)
+    return ((red - green > 80) & (abs(green - blue) < 30)).sum()
+
+
+def test_a_picture_shows_what_is_wrong_and_where(tmp_path, hall_yaml):
+    hall_yaml["towers"] = []
+    file, picture = tmp_path / "site.yaml", tmp_path / "site.png"
+    file.write_text(yaml.safe_dump(hall_yaml), encoding="utf-8")
+    told = argo("sites", file)
+    assert f"to see where: argo sites {file} --picture FILE.png" in told.output
+    result = argo("sites", file, "--picture", picture)
+    assert result.exit_code == 2
+    assert "to see where" not in result.output
+    drawn = Image.open(picture)
+    assert drawn.width == 1280
+    assert drawn.height > 720, "the errors stand below the floors"
+    assert reds(drawn) > 1000, "floor 2 is hatched"
+    before = picture.read_bytes()
+    assert "is there already" in str(argo("sites", "darmstadt", "--picture", picture).exception)
+    assert picture.read_bytes() == before
+    assert argo("sites", "darmstadt", "--picture", picture, "--force").exit_code == 0
+    drawn = Image.open(picture)
+    assert drawn.size == (1280, 720)
+    assert reds(drawn) == 0
+
+
+@pytest.mark.parametrize(
+    ("arguments", "says"),
+    [
+        (["darmstadt", "--picture", "a.jpg"], "drawn as a .png"),
+        (["--picture", "a.png"], "say which"),
+    ],
+)
+def test_a_picture_that_can_not_be_drawn(arguments, says):
+    assert says in str(argo("sites", *arguments).exception)
 
 
 def test_the_shipped_mission_of_the_test_site_has_no_findings():

@@ -69,7 +69,7 @@ def draw_legend(draw: ImageDraw.ImageDraw, sheet: FloorSheet, shown: Shown) -> N
     if shown.stairs:
         paint_stairs(draw, (x + STAIRS[0] * FINER, y), 2, True, colour(0.5))
         _word(draw, "stairs taken", x + (2 * STAIRS[0] + 4) * FINER, y)
-    right = _length(draw, sheet, SIZE[0] * FINER - _LEFT, y) - 22 * FINER
+    right = draw_length(draw, sheet, SIZE[0] * FINER - _LEFT, y) - 22 * FINER
     if shown.end is not None:
         _times(draw, right, y, shown.end)
 
@@ -81,7 +81,7 @@ def _word(draw: ImageDraw.ImageDraw, text: str, x: float, y: float) -> float:
     return x + draw.textlength(text, font=face) + 14 * FINER
 
 
-def _length(draw: ImageDraw.ImageDraw, sheet: FloorSheet, right: float, y: float) -> float:
+def draw_length(draw: ImageDraw.ImageDraw, sheet: FloorSheet, right: float, y: float) -> float:
     """A bar of some m that ends at the right; where it begins."""
     metres = max((m for m in _BARS if m * sheet.scale <= _LONGEST), default=_BARS[0])
     left, tick, face = right - metres * sheet.scale, 4 * FINER, font(12)

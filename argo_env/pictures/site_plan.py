@@ -1,0 +1,286 @@
+"""A site as a picture: the plans of its floors, and where what is wrong with it shows."""
+
+import io
+import math
+from collections.abc import Iterator, Sequence
+
+import numpy as np
+from numpy.typing import NDArray
+from PIL import Image, ImageDraw
+
+from argo_env.navigation.raster import CELL
+from argo_env.pictures.drawing.floors import plans_of
+from argo_env.pictures.drawing.legend import draw_headline, draw_length
+from argo_env.pictures.drawing.sheet import (
+    FINER,
+    FOOT,
+    HEAD,
+    INK,
+    PAPER,
+    SIZE,
+    SOFT,
+    FloorSheet,
+    Panel,
+    Pixel,
+    font,
+    make_sheet,
+)
+from argo_env.pictures.drawing.spots import Spots
+from argo_env.pictures.drawing.style import STYLES, Ink, paint_disc
+from argo_env.planning.flaws import Flaw, Standing
+from argo_env.site import Site
+
+_RADIUS = 9.0  # px of a checkpoint's disc
+_FACE = 15.0  # px that a checkpoint's face is shown to look
+_STATION = 6.0  # px from the middle of a dock's mark to its sides
+_FLAW = 10.0  # px from the middle of a flaw's mark to its corners
+_LEFT = 16.0 * FINER
+_LINE = 17 * FINER  # px from one line of text to the next
+_SWEPT = 4  # cells from the middle of the robot that it covers about
+_LEAST = 5  # cells: narrower pieces of deck are no place for a robot, reached or not
+_HATCH = 9 * FINER  # px from line to line
+_REACHED, _UNREACHED, _RED = (52, 168, 110), (205, 50, 50), (190, 24, 24)
+
+
+def draw_site(site: Site, flaws: Sequence[Flaw] = (), standing: Standing | None = None) -> bytes:
+    """A PNG of the floors side by side, with checkpoints, docking stations, places and stairs.
+
+    Flaws are numbered where they show, and said below; with `standing`, which deck can be reached
+    is shaded, and which can't is hatched.
+    """
+    sheet = make_sheet(plans_of(site))
+    image = sheet.image.copy()
+    if standing is not None:
+        for number in sheet.panels:
+            _shade(image, sheet, number, standing)
+    draw = ImageDraw.Draw(image)
+    spots = Spots(sheet)
+    numbers: dict[tuple[int, float, float], str] = {}
+    for k, flaw in enumerate(flaws, start=1):
+        for mark in flaw.marks:
+            numbers.setdefault((mark.floor, *_at(sheet, mark.x, mark.y, mark.floor)), str(k))
+    for _, x, y in numbers:
+        spots.take((x, y), 3 * FINER, 3 * FINER)
+    _draw_things(draw, sheet, spots, site)
+    for (floor, x, y), text in numbers.items():
+        _draw_flaw(draw, spots, (x, y), floor, text)
+    wrong = f": {len(flaws)} error{'s' if len(flaws) > 1 else ''}" if flaws else ""
+    draw_headline(draw, f"{site.spec.title} ({site.name}){wrong}")
+    _draw_north(draw)
+    _draw_legend(draw, sheet, bool(site.places), standing is not None, bool(flaws))
+    content = io.BytesIO()
+    _with_text(image, flaws).reduce(FINER).save(content, "png")
+    return content.getvalue()
+
+
+def _shade(image: Image.Image, sheet: FloorSheet, number: int, standing: Standing) -> None:
+    """Shades what can be reached of a floor, and hatches what can't."""
+    from scipy.ndimage import binary_dilation, binary_opening
+
+    surface, site = standing.lattice.surface, standing.site
+    levels = np.array([floor.z for floor in site.spec.floors]) - 0.1
+    here = np.maximum(np.searchsorted(levels, surface.z, side="right"), 1) == number
+    deck = np.zeros((surface.grid.nx, surface.grid.ny), dtype=bool)
+    deck[surface.i[here], surface.j[here]] = True
+    middles = np.zeros_like(deck)
+    cells = standing.lattice.cell[standing.reached]
+    cells = cells[here[cells]]
+    middles[surface.i[cells], surface.j[cells]] = True
+    across = np.hypot(*np.mgrid[-_SWEPT : _SWEPT + 1, -_SWEPT : _SWEPT + 1])
+    reached = binary_dilation(middles, across <= _SWEPT + 0.5) & deck
+    unreached = binary_opening(deck & ~reached, np.ones((_LEAST, _LEAST), dtype=bool))
+    panel = sheet.panels[number]
+    rows, columns = np.mgrid[0 : panel.height, 0 : panel.width]
+    stripes = (rows + columns) % _HATCH < 2 * FINER
+    for cells_shown, ink, opacity, pattern in (
+        (reached, _REACHED, 60, None),
+        (unreached, _UNREACHED, 35, None),
+        (unreached, _UNREACHED, 200, stripes),
+    ):
+        shown = _in_panel(cells_shown, panel, sheet.scale, (surface.grid.x0, surface.grid.y0))
+        if pattern is not None:
+            shown &= pattern
+        mask = Image.fromarray(np.where(shown, opacity, 0).astype(np.uint8))
+        image.paste(ink, (panel.left, panel.top), mask)
+
+
+def _in_panel(
+    cells: NDArray[np.bool_], panel: Panel, scale: float, origin: tuple[float, float]
+) -> NDArray[np.bool_]:
+    """Cells of a grid that begins at `origin` (m) as the pixels of a panel."""
+    x0, _, _, y1 = panel.plan.bounds
+    x = x0 + (np.arange(panel.width) + 0.5) / scale
+    y = y1 - (np.arange(panel.height) + 0.5) / scale
+    i = np.floor((x - origin[0]) / CELL).astype(int)
+    j = np.floor((y - origin[1]) / CELL).astype(int)
+    inside = ((i >= 0) & (i < cells.shape[0]))[None, :] & ((j >= 0) & (j < cells.shape[1]))[:, None]
+    i, j = i.clip(0, cells.shape[0] - 1), j.clip(0, cells.shape[1] - 1)
+    return np.asarray(cells[i[None, :], j[:, None]] & inside)
+
+
+def _at(sheet: FloorSheet, x: float, y: float, floor: int) -> Pixel:
+    """Where a point (m) is, or the edge of its floor that is nearest to what lies outside."""
+    panel, margin = sheet.panels[floor], _STATION * FINER
+    px, py = sheet.at(x, y, floor)
+    return (
+        min(max(px, panel.left + margin), panel.left + panel.width - margin),
+        min(max(py, panel.top + margin), panel.top + panel.height - margin),
+    )
+
+
+def _draw_things(draw: ImageDraw.ImageDraw, sheet: FloorSheet, spots: Spots, site: Site) -> None:
+    """Docking stations, places, checkpoints and the names of stairs."""
+    lowest = site.spec.floors[0].number
+    named: list[tuple[Pixel, int, str]] = []
+    for number, dock in site.docks.items():
+        x, y = place = _at(sheet, dock.x, dock.y, lowest)
+        r = _STATION * FINER
+        spots.take(place, r, r)
+        draw.rectangle((x - r, y - r, x + r, y + r), fill=INK, outline=PAPER, width=FINER)
+        named.append((place, lowest, f"dock {number}"))
+    for name, pose in site.places.items():
+        x, y = place = _at(sheet, pose.x, pose.y, lowest)
+        r = _STATION * FINER * 0.7
+        spots.take(place, r, r)
+        draw.ellipse((x - r, y - r, x + r, y + r), fill=PAPER, outline=INK, width=2 * FINER)
+        named.append((place, lowest, name))
+    for checkpoint in site.checkpoints:
+        true = _at(sheet, *checkpoint.position[:2], checkpoint.floor)
+        size = (_RADIUS + 1.0) * FINER
+        place = spots.nearest(true, size, size, checkpoint.floor)
+        if place != true:
+            draw.line([true, place], fill=STYLES["open"].rim, width=FINER)
+        _draw_face(draw, true, checkpoint.yaw)
+        paint_disc(draw, place, _RADIUS, "open", str(checkpoint.id))
+    named += _stairs(sheet, site)
+    for place, floor, name in named:
+        _plate(draw, spots, place, name, floor)
+
+
+def _stairs(sheet: FloorSheet, site: Site) -> Iterator[tuple[Pixel, int, str]]:
+    """Where stairs begin, and their names, on each floor that they lead up from."""
+    for tower in site.spec.towers:
+        for floor in site.spec.floors[:-1]:
+            if tower.flights:
+                x, y = min(tower.flights, key=lambda flight: flight.foot[2]).foot[:2]
+                yield _at(sheet, x, y, floor.number), floor.number, tower.name
+
+
+def _draw_face(draw: ImageDraw.ImageDraw, place: Pixel, yaw: float) -> None:
+    """A line from a checkpoint to where its face looks."""
+    end = (
+        place[0] + _FACE * FINER * math.cos(yaw),
+        place[1] - _FACE * FINER * math.sin(yaw),
+    )
+    draw.line([place, end], fill=STYLES["open"].rim, width=2 * FINER)
+
+
+def _plate(
+    draw: ImageDraw.ImageDraw, spots: Spots, place: Pixel, text: str, floor: int, ink: Ink = INK
+) -> None:
+    """A name on a plate where it covers nothing."""
+    face = font(11)
+    wide, high = draw.textlength(text, font=face) / 2 + 4.0 * FINER, 8.0 * FINER
+    x, y = spots.beside(place, wide, high, floor)
+    box = (x - wide, y - high, x + wide, y + high)
+    draw.rounded_rectangle(box, 3 * FINER, fill=PAPER, outline=SOFT, width=FINER)
+    draw.text((x, y), text, fill=ink, font=face, anchor="mm")
+
+
+def _draw_flaw(draw: ImageDraw.ImageDraw, spots: Spots, true: Pixel, floor: int, text: str) -> None:
+    """A point where a flaw shows, and its number beside it."""
+    size = _FLAW * FINER
+    place = spots.beside(true, size, size, floor, 4.0 * FINER)
+    draw.line([true, place], fill=_RED, width=2 * FINER)
+    r = 4.0 * FINER
+    x, y = true
+    draw.ellipse((x - r, y - r, x + r, y + r), fill=_RED, outline=PAPER, width=FINER)
+    _paint_flaw(draw, place, text)
+
+
+def _paint_flaw(draw: ImageDraw.ImageDraw, place: Pixel, text: str) -> None:
+    (x, y), r = place, _FLAW * FINER
+    box = (x - r, y - r, x + r, y + r)
+    draw.rounded_rectangle(box, 3 * FINER, fill=_RED, outline=PAPER, width=FINER)
+    draw.text(place, text, fill=PAPER, font=font(13), anchor="mm")
+
+
+def _draw_north(draw: ImageDraw.ImageDraw) -> None:
+    """An arrow to the north, at the upper right."""
+    x, y = SIZE[0] * FINER - _LEFT - 6 * FINER, HEAD * FINER / 2
+    high, wide = 12 * FINER, 6 * FINER
+    draw.polygon(
+        [(x, y - high), (x + wide, y + high), (x, y + high / 2), (x - wide, y + high)], INK
+    )
+    draw.text((x - 2 * wide, y), "N", fill=INK, font=font(14), anchor="rm")
+
+
+def _draw_legend(
+    draw: ImageDraw.ImageDraw, sheet: FloorSheet, places: bool, shaded: bool, flaws: bool
+) -> None:
+    """What the marks mean, and the scale."""
+    y, face, x = (SIZE[1] - FOOT / 2) * FINER, font(12), _LEFT
+    r = 7 * FINER
+
+    def word(text: str) -> None:
+        nonlocal x
+        draw.text((x + 2 * r, y), text, fill=SOFT, font=face, anchor="lm")
+        x += 2 * r + draw.textlength(text, font=face) + 16 * FINER
+
+    _draw_face(draw, (x + r / 2, y), 0.0)
+    paint_disc(draw, (x + r / 2, y), 7.0, "open", "3")
+    x += r
+    word("checkpoint, and where it looks")
+    draw.rectangle((x, y - r + FINER, x + 2 * r - 2 * FINER, y + r - FINER), fill=INK)
+    x += r / 2
+    word("docking station")
+    if places:
+        draw.ellipse((x, y - r / 1.5, x + 1.33 * r, y + r / 1.5), PAPER, INK, 2 * FINER)
+        word("place")
+    if shaded:
+        for ink, text in ((_REACHED, "can be reached"), (_UNREACHED, "can't be reached")):
+            pale = tuple(round(255 - (255 - c) * 0.35) for c in ink)
+            box = (x, y - r, x + 2 * r, y + r)
+            draw.rectangle(box, fill=pale, outline=ink, width=FINER)
+            if ink is _UNREACHED:
+                draw.line((x, y + r, x + 2 * r, y - r), fill=ink, width=2 * FINER)
+            x += r
+            word(text)
+    if flaws:
+        _paint_flaw(draw, (x + r, y), "1")
+        x += r
+        word("error, see below")
+    draw_length(draw, sheet, SIZE[0] * FINER - _LEFT, y)
+
+
+def _with_text(image: Image.Image, flaws: Sequence[Flaw]) -> Image.Image:
+    """The picture with the flaws in words below it."""
+    draw = ImageDraw.Draw(image)
+    lines = []
+    for k, flaw in enumerate(flaws, start=1):
+        room = SIZE[0] * FINER - 2 * _LEFT - 30 * FINER
+        for n, line in enumerate(_wrapped(draw, flaw.message, room)):
+            lines.append(("" if n else str(k), line))
+    if not lines:
+        return image
+    width, height = image.size
+    whole = Image.new("RGB", (width, height + _LINE * (len(lines) + 1)), PAPER)
+    whole.paste(image)
+    draw = ImageDraw.Draw(whole)
+    for n, (number, line) in enumerate(lines):
+        y = height + _LINE * (n + 0.5)
+        draw.text((_LEFT, y), number, fill=_RED, font=font(13), anchor="lm")
+        draw.text((_LEFT + 30 * FINER, y), line, fill=INK, font=font(13), anchor="lm")
+    return whole
+
+
+def _wrapped(draw: ImageDraw.ImageDraw, text: str, room: float) -> Iterator[str]:
+    """The text in lines of no more than `room` px, cut between words."""
+    line = ""
+    for word in text.split():
+        longer = f"{line} {word}".strip()
+        if line and draw.textlength(longer, font=font(13)) > room:
+            yield line
+            longer = word
+        line = longer
+    yield line

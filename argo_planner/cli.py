@@ -12,6 +12,7 @@ from argo_compiler.errors import ArgoError
 from argo_planner.lazy_group import LazyCommand, LazyGroup
 from argo_planner.terminal.output import guard_output
 from argo_planner.terminal.signals import ignore_signals, raise_interrupted
+from argo_planner.terminal.stage_display import stages_shown
 from argo_planner.terminal.verbosity import set_verbosity
 
 
@@ -115,6 +116,7 @@ def _show_version(wanted: bool) -> None:
 
 @app.callback()
 def argo(
+    context: typer.Context,
     _version: Annotated[
         bool,
         typer.Option(
@@ -137,6 +139,7 @@ def argo(
 ) -> None:
     """Turns a written inspection mission into a checked plan and drives it through a site."""
     set_verbosity(verbose, quiet)
+    context.with_resource(stages_shown())
 
 
 def main() -> None:

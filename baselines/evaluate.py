@@ -22,6 +22,7 @@ from rich.console import Console
 from rich.table import Table
 
 from argo_compiler.errors import ArgoError, Invalid
+from argo_compiler.stages import heard_by, stage
 from argo_env.files.folders import make_folder
 from baselines.comparison import Beaten, PolicyComparison, compare
 from baselines.episodes import play
@@ -29,6 +30,7 @@ from baselines.families import TEST_SETS, find_set
 from baselines.intervals import ConfidenceInterval
 from baselines.policy import POLICIES, make_policy
 from baselines.references import references
+from baselines.stage_lines import StageLines
 
 _DEFAULT = "random-20-v1"
 _WIDTH = 150  # characters of a table that goes to a file
@@ -171,7 +173,8 @@ def main(arguments: Sequence[str] | None = None) -> int:
                         help="write results.json, results.csv and results.md here")  # fmt: skip
     given = parser.parse_args(arguments)
     try:
-        _evaluate(given)
+        with heard_by(StageLines(lambda line: print(line, file=sys.stderr, flush=True))):
+            _evaluate(given)
     except ArgoError as error:
         print(f"error: {error}", file=sys.stderr)
         return 2
@@ -200,7 +203,12 @@ def _evaluate(given: argparse.Namespace) -> None:
             # What is loaded or compiled the first time is no time to think.
             for _ in play(policy, tests, 1, given.seed):
                 pass
-            outcomes[name] = tuple(play(policy, tests, given.instances, given.seed))
+            done = []
+            with stage(f"{tests.name}: {name}") as tell:
+                for outcome in play(policy, tests, given.instances, given.seed):
+                    done.append(outcome)
+                    tell(len(done) / given.instances)
+            outcomes[name] = tuple(done)
         comparisons.append(compare(tests, outcomes, best[tests.name], given.seed))
         console.print(table(comparisons[-1]))
         for warning in warnings(comparisons[-1]):

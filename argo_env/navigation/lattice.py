@@ -10,6 +10,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from argo_compiler.stages import stage
 from argo_env.files.parts import Arrays
 from argo_env.navigation.graphs import Graph, graph_of, graph_of_moves, part_of, strong_parts
 from argo_env.navigation.raster import CELL
@@ -92,6 +93,7 @@ def lattice_of(surface: Surface, robot: RobotSpec, arrays: Arrays) -> Lattice:
     )
 
 
+@stage("finding where the robot can stand and turn")
 def build_lattice(surface: Surface, robot: RobotSpec) -> Lattice:
     """All states in which the robot stands safely, and all moves between them."""
     rises, rooms = [], []

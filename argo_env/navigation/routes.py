@@ -7,6 +7,7 @@ from itertools import pairwise
 import numpy as np
 from numpy.typing import NDArray
 
+from argo_compiler.stages import each, stage
 from argo_env.files.parts import NOWHERE, Parts
 from argo_env.navigation.graphs import search
 from argo_env.navigation.inside import find_inside
@@ -47,8 +48,9 @@ class Routes:
 
     def prepare(self) -> None:
         """Searches now what all later searches use."""
-        portals = len(self._portals.states) > 0
-        for area in self.partition.regions:
+        with stage("finding the ways between floors"):
+            portals = len(self._portals.states) > 0
+        for area in each("searching the ways of each part", self.partition.regions):
             area.landmarks.prepare()
             if portals:
                 _ = area.to_exits

@@ -11,6 +11,7 @@ from functools import cached_property
 import numpy as np
 from numpy.typing import NDArray
 
+from argo_compiler.stages import stage
 from argo_env.files.parts import Arrays
 from argo_env.navigation.raster import CELL, Columns, Grid, rasterise
 from argo_env.site.shapes import Element
@@ -61,6 +62,7 @@ def surface_arrays(surface: Surface) -> Arrays:
     return {"i": surface.i, "j": surface.j, "z": surface.z, "links": surface.links}
 
 
+@stage("finding the walkable surface")
 def find_surface(
     elements: tuple[Element, ...], grid: Grid, headroom: float, max_step: float
 ) -> Surface:

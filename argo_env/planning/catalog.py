@@ -9,6 +9,7 @@ import numpy as np
 from argo_compiler.catalog import Area, Catalog, CheckpointInfo, Floor, Place
 from argo_compiler.errors import Unreachable
 from argo_compiler.model import Pose
+from argo_compiler.stages import each
 from argo_env.files.parts import Parts
 from argo_env.site import Site
 
@@ -20,7 +21,7 @@ APART = 2.0  # m at least between the waypoints of a patrol
 
 def make_catalog(navigator: "Navigator") -> Catalog:
     """The catalogue of the navigator's site, its patrols along places that the robot can reach."""
-    floors = navigator.site.spec.floors
+    floors = each("looking for patrols of all floors", navigator.site.spec.floors)
     return _catalog(navigator.site, {f.number: patrol(navigator, f.number) for f in floors})
 
 

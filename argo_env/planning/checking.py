@@ -1,13 +1,15 @@
 """Whether a site can be driven: what must hold of every site before missions run on it."""
 
 from argo_compiler.errors import ArgoError
+from argo_compiler.stages import each
 from argo_env.navigation.navigator import Navigator
 from argo_env.planning.catalog import patrol
 
 
 def unserved_floors(navigator: Navigator) -> list[int]:
     """The floors that can't be patrolled on ways that the docking stations lead to and back."""
-    return [f.number for f in navigator.site.spec.floors if not _patrolled(navigator, f.number)]
+    floors = each("looking for patrols of all floors", navigator.site.spec.floors)
+    return [f.number for f in floors if not _patrolled(navigator, f.number)]
 
 
 def _patrolled(navigator: Navigator, floor: int) -> bool:
@@ -20,4 +22,5 @@ def _patrolled(navigator: Navigator, floor: int) -> bool:
 
 def unseen_checkpoints(navigator: Navigator) -> list[int]:
     """The checkpoints that can be read from nowhere that the docking stations lead to and back."""
-    return [c.id for c in navigator.site.checkpoints if not navigator.can_view(c.id)]
+    checkpoints = each("looking for views of all checkpoints", navigator.site.checkpoints)
+    return [c.id for c in checkpoints if not navigator.can_view(c.id)]

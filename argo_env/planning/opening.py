@@ -14,6 +14,7 @@ from typing import TYPE_CHECKING, Any
 from argo_compiler.catalog import Catalog
 from argo_compiler.errors import Conflict
 from argo_compiler.files.reading import read_text
+from argo_compiler.stages import stage
 from argo_env.files import cache
 from argo_env.files.parts import NOWHERE, Parts
 from argo_env.planning.catalog import kept_catalog, make_catalog
@@ -191,7 +192,8 @@ def _open(
             known = parts.find_text("site")
             _log.info("the site is %s", "made" if known is None else "taken from the cache on disk")
             if known is None:
-                slot.opened = _keep(reference, robot, parts, make())
+                with stage(f"making the site {reference or ''}".rstrip()):
+                    slot.opened = _keep(reference, robot, parts, make())
             else:
                 site = make_site(SiteSpec.model_validate_json(known))
                 slot.opened = OpenedSite(reference, site, robot, parts)

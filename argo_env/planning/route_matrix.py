@@ -13,6 +13,7 @@ from argo_compiler.model import Pose
 from argo_compiler.reorder.mission import MissionRoute, route_problem
 from argo_compiler.reorder.requirements import Requirements
 from argo_compiler.reorder.travel_matrix import TravelMatrix
+from argo_compiler.stages import each
 from argo_env.navigation import Navigator
 from argo_env.planning.travel import SiteTravel
 
@@ -21,6 +22,7 @@ MOST_PLANNED = 40
 the others take as long as the cheapest way over the lattice, whose corners are not cut"""
 NEAREST = 12
 """places to which the ways are planned then"""
+_PLANNING = "planning the ways between tasks"
 _ORIGINS = 8  # from which it is looked where the robot comes to stand to read a checkpoint
 
 
@@ -68,11 +70,10 @@ def mission_ways(
         time, energy = _planned(origins, velocities, places, travel)
     else:
         time, energy = _over_lattice(origins, places, standings, navigator, travel)
-        for row, origin in enumerate(origins):
+        for row, origin in enumerate(each(_PLANNING, origins)):
             near = np.argsort(time[row], kind="stable")[:NEAREST].tolist()
             chosen = [places[k] for k in near]
-            nearest = _planned([origin], [None], chosen, travel)
-            time[row, near], energy[row, near] = nearest[0][0], nearest[1][0]
+            time[row, near], energy[row, near] = _planned_from(origin, None, chosen, travel)
         slowed = [k for k, velocity in enumerate(velocities) if velocity is not None]
         rows = _planned(
             [origins[k] for k in slowed], [velocities[k] for k in slowed], places, travel
@@ -99,7 +100,7 @@ def _standings(places: Sequence[Task], start: Pose, travel: SiteTravel) -> list[
         around.append(leg.arrival if isinstance(leg.arrival, Pose) else start)
     origins = [around[k] for k in np.linspace(0, len(around) - 1, _ORIGINS).round().astype(int)]
     found = []
-    for k, task in enumerate(places, start=1):
+    for k, task in enumerate(each("looking where each task is done", places), start=1):
         if task.action is not Action.MEASURE:
             found.append(around[k])
             continue
@@ -127,12 +128,19 @@ def _planned(
     """Times (s) and energies (Wh) of planned ways; inf where there is none."""
     time = np.full((len(origins), len(places)), np.inf)
     energy = time.copy()
-    for row, (origin, velocity) in enumerate(zip(origins, velocities, strict=True)):
-        for column, task in enumerate(places):
-            leg = travel.leg(origin, task, velocity)
-            if isinstance(leg, Leg):
-                time[row, column], energy[row, column] = leg.duration, leg.energy
+    rows = list(zip(origins, velocities, strict=True))
+    for row, (origin, velocity) in enumerate(each(_PLANNING, rows)):
+        time[row], energy[row] = _planned_from(origin, velocity, places, travel)
     return time, energy
+
+
+def _planned_from(
+    origin: Pose, velocity: float | None, places: Sequence[Task], travel: SiteTravel
+) -> tuple[list[float], list[float]]:
+    """The same from one place."""
+    legs = [travel.leg(origin, task, velocity) for task in places]
+    time = [leg.duration if isinstance(leg, Leg) else np.inf for leg in legs]
+    return time, [leg.energy if isinstance(leg, Leg) else np.inf for leg in legs]
 
 
 def _over_lattice(

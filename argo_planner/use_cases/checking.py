@@ -18,6 +18,7 @@ from argo_compiler.diagnostics import (
 )
 from argo_compiler.errors import ArgoError
 from argo_compiler.files.reading import FileError
+from argo_compiler.stages import stage
 from argo_planner.use_cases.importing import SourceKind, Upload, kind_of, load, refuse_areas
 
 
@@ -49,7 +50,8 @@ def check_source(
         return diagnostics_of(error)
     found = check(loaded.mission, catalog)
     if not has_errors(found):
-        found += analyse(loaded.mission, catalog, travel).diagnostics
+        with stage("analysing the mission's paths"):
+            found += analyse(loaded.mission, catalog, travel).diagnostics
     return by_place((*loaded.diagnostics, *loaded.placed(found)))
 
 

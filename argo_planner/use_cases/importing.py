@@ -22,6 +22,7 @@ from argo_compiler.il import Mission
 from argo_compiler.isar import find_definition, from_isar
 from argo_compiler.ros import decode_bag, is_bag_content, read_bag
 from argo_compiler.script.syntax.source import Source as Script
+from argo_compiler.stages import stage
 from argo_env.planning.opening import OpenedSite
 
 _log = logging.getLogger(__name__)
@@ -89,6 +90,7 @@ def kind_of(upload: Upload) -> SourceKind:
     return SourceKind.MISSION if find_definition(upload.content) is None else SourceKind.ISAR
 
 
+@stage("reading the mission")
 def load(
     upload: Upload, catalog: Catalog, start_area: int | None = None, end_area: int | None = None
 ) -> Loaded:

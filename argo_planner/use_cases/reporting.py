@@ -3,6 +3,7 @@
 import tempfile
 from pathlib import Path
 
+from argo_compiler.stages import stage
 from argo_env.faults.kinds import changed_site
 from argo_env.pictures import write_overview
 from argo_env.report.files import PAGE, write_report
@@ -21,6 +22,8 @@ def report_files(record: RunRecord, site: Site, robot: RobotSpec) -> dict[str, b
     """
     with tempfile.TemporaryDirectory() as name:
         folder = Path(name)
-        write_report(record, site, folder)
-        write_overview(record, changed_site(site, record.faults), robot, folder / "site.png")
+        with stage("writing the report"):
+            write_report(record, site, folder)
+        with stage("drawing the site"):
+            write_overview(record, changed_site(site, record.faults), robot, folder / "site.png")
         return {name: (folder / name).read_bytes() for name in REPORT_FILES}

@@ -17,8 +17,11 @@ from argo_compiler.route.problem import Tour
 from argo_compiler.route.robust import suggest_robust_route
 from argo_compiler.route.robust_sampling import Completion, Draws, completion
 from argo_compiler.route.robust_spread import TravelSpread
+from argo_compiler.route.stop import SearchProgress
 from argo_compiler.route.suggestion import RouteSuggestion, suggest_route
+from argo_compiler.stages import stage
 from argo_env.files.yaml_file import parse_yaml
+from argo_env.formatting import clock
 from argo_env.planning.opening import OpenedSite
 from argo_env.planning.route_matrix import plan_mission
 from argo_env.planning.travel import SiteTravel
@@ -120,8 +123,21 @@ def suggest_order(
         raise DiagnosticError(name, error.diagnostics) from None
     except ArgoError as error:
         raise located(error, name) from None
-    suggestion = suggest_route(planned.problem, time_limit, seed)
+    with stage("searching for the best order") as tell:
+
+        def found(progress: SearchProgress, *_: object) -> None:
+            tell(None, _known(progress, planned.problem.unit))
+
+        suggestion = suggest_route(planned.problem, time_limit, seed, on_best=found, on_bound=found)
     return Suggested(planned, suggestion, site.travel)
+
+
+def _known(progress: SearchProgress, unit: float) -> str:
+    """How far a search is, in words."""
+    if progress.cost is None:
+        return "none found so far"
+    best, bound = (clock(units * unit) for units in (progress.cost, progress.bound))
+    return f"{best} so far, none takes less than {bound}"
 
 
 def require_limit(mission: Mission, requirements: Requirements) -> None:
@@ -135,6 +151,7 @@ def require_limit(mission: Mission, requirements: Requirements) -> None:
         )
 
 
+@stage("trying orders with times that spread")
 def suggest_robust(
     found: Suggested, spread: TravelSpread, time_limit: float, seed: int
 ) -> Suggested:
@@ -171,11 +188,13 @@ def too_long(mission: Mission, site: OpenedSite) -> str | None:
     return next((d.message for d in found if d.code == "analysis.too-long"), None)
 
 
+@stage("verifying the order")
 def verify(found: Suggested) -> Certificate:
     """What is sure of all that is said of the order, checked apart from the search."""
     return certify(found.planned.problem, found.suggestion, _VERIFIED)
 
 
+@stage("drawing how long the orders take")
 def completions(found: Suggested, spread: TravelSpread, seed: int) -> tuple[Completion, Completion]:
     """How probable it is that the written order and the suggested one keep to all limits, if times
     spread so. Raises Conflict if there is no order."""

@@ -13,6 +13,7 @@ import torch
 from numpy.typing import NDArray
 from torch.nn import functional
 
+from argo_compiler.stages import stage
 from argo_env.envs.route_instance import DOCK
 from argo_env.envs.route_sources import RouteSource
 from argo_env.seeding import generator
@@ -50,12 +51,14 @@ def lessons(source: RouteSource, size: int, count: int, seed: int) -> Lessons:
     """At least `count` samples with `size` checkpoints. Equal arguments give equal samples."""
     rng = generator(seed, "lessons", size)
     found: list[tuple[dict[str, Floats], Floats, float]] = []
-    while len(found) < count:
-        cuts = [_cut(source, size, rng) for _ in range(_BATCH)]
-        oracle = Oracle(Remainder(*(np.stack(parts) for parts in zip(*cuts, strict=True))))
-        for k in range(_BATCH):
-            for _ in range(_ROUTES):
-                found += _follow(oracle, k, rng)
+    with stage(f"lessons with {size} checkpoints") as tell:
+        while len(found) < count:
+            tell(len(found) / count)
+            cuts = [_cut(source, size, rng) for _ in range(_BATCH)]
+            oracle = Oracle(Remainder(*(np.stack(parts) for parts in zip(*cuts, strict=True))))
+            for k in range(_BATCH):
+                for _ in range(_ROUTES):
+                    found += _follow(oracle, k, rng)
     observation = {name: np.stack([one[0][name] for one in found]) for name in found[0][0]}
     return Lessons(
         observation,

@@ -6,8 +6,10 @@ from dataclasses import replace
 from pathlib import Path
 
 from argo_compiler.errors import ArgoError, Conflict, Invalid
+from argo_compiler.stages import heard_by
 from argo_env.files.folders import make_folder
 from baselines.learned.extra import check_learned
+from baselines.stage_lines import StageLines
 
 
 def main(arguments: list[str] | None = None) -> int:
@@ -49,7 +51,8 @@ def _train(given: argparse.Namespace) -> None:
             raise Conflict(f"{folder} has a training already: --resume {folder}, or another --out")
         make_folder(folder)
         state = begin(replace(Settings(), **chosen))
-    train(state, folder, lambda line: print(line, flush=True))
+    with heard_by(StageLines(lambda line: print(line, file=sys.stderr, flush=True))):
+        train(state, folder, lambda line: print(line, flush=True))
 
 
 def _whole(least: int):  # type: ignore[no-untyped-def]

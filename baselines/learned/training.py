@@ -1,7 +1,7 @@
 """Training in parts: first lessons, then MaskablePPO. Each part begins with nothing but what the
 one before it left in a file, so that a training that was cut off goes on to the same weights."""
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import asdict, dataclass, field
 from pathlib import Path
 from pickle import UnpicklingError
@@ -10,10 +10,12 @@ from typing import Any
 import numpy as np
 import torch
 from sb3_contrib import MaskablePPO
+from stable_baselines3.common.callbacks import BaseCallback
 from stable_baselines3.common.logger import Logger, configure
 from stable_baselines3.common.utils import set_random_seed
 
 from argo_compiler.errors import Invalid, NotFound
+from argo_compiler.stages import TellShare, stage
 from argo_env.seeding import generator
 from baselines.learned.imitation import lessons, loss
 from baselines.learned.network import RouteNetwork
@@ -114,14 +116,16 @@ def train(state: State, folder: Path, tell: Callable[[str], None] = print) -> No
     settings = state.settings
     logger = configure(str(folder / "logs"), ["tensorboard"])
     validation = Validation(settings.sites, settings.validation)
-    while state.part < settings.lesson_parts + settings.parts:
-        if state.part < settings.lesson_parts:
-            _teach(state, logger)
-        else:
-            _practise(state, logger)
-        state.part += 1
-        save(state, folder)
-        scores = validation(state.network)
+    parts = settings.lesson_parts + settings.parts
+    while state.part < parts:
+        with stage(f"part {state.part + 1} of {parts}"):
+            if state.part < settings.lesson_parts:
+                _teach(state, logger)
+            else:
+                _practise(state, logger)
+            state.part += 1
+            save(state, folder)
+            scores = validation(state.network)
         for name, prize in scores.items():
             logger.record(f"validation/{name}", prize)
         logger.record("validation/part", state.part)
@@ -146,26 +150,51 @@ def _teach(state: State, logger: Logger) -> None:
     optimiser.param_groups[0]["lr"] = settings.lesson_rate * (
         1.0 - 0.95 * part / settings.lesson_parts
     )
-    losses = []
-    for _ in range(_PASSES):
-        batches = [
-            (k, rows)
-            for k, one in enumerate(taught)
-            for rows in np.array_split(rng.permutation(len(one)), max(len(one) // 256, 1))
-        ]
-        for b in rng.permutation(len(batches)):
-            k, rows = batches[b]
-            actions, value = loss(state.network, taught[k].part(rows))
-            optimiser.zero_grad()
-            (actions + value).backward()  # type: ignore[no-untyped-call]
-            torch.nn.utils.clip_grad_norm_(state.network.parameters(), 1.0)
-            optimiser.step()
-            losses.append((actions.item(), value.item()))
+    losses: list[tuple[float, float]] = []
+    with stage("learning from them") as tell:
+        for done in range(_PASSES):
+            batches = [
+                (k, rows)
+                for k, one in enumerate(taught)
+                for rows in np.array_split(rng.permutation(len(one)), max(len(one) // 256, 1))
+            ]
+            for number, b in enumerate(rng.permutation(len(batches))):
+                tell((done + number / len(batches)) / _PASSES, _latest(losses))
+                k, rows = batches[b]
+                actions, value = loss(state.network, taught[k].part(rows))
+                optimiser.zero_grad()
+                (actions + value).backward()  # type: ignore[no-untyped-call]
+                torch.nn.utils.clip_grad_norm_(state.network.parameters(), 1.0)
+                optimiser.step()
+                losses.append((actions.item(), value.item()))
     state.steps += sum(len(one) for one in taught)
     last = part + 1 == settings.lesson_parts
     state.optimiser = {} if last else optimiser.state_dict()
     logger.record("lessons/actions", float(np.mean([one[0] for one in losses])))
     logger.record("lessons/value", float(np.mean([one[1] for one in losses])))
+
+
+def _latest(losses: Sequence[tuple[float, float]]) -> str:
+    return f"loss {sum(losses[-1]):.3f}" if losses else ""
+
+
+class _Told(BaseCallback):
+    """Tells how far MaskablePPO is."""
+
+    def __init__(self, tell: TellShare, total: int) -> None:
+        super().__init__()
+        self._tell = tell
+        self._total = total
+
+    def _on_step(self) -> bool:
+        done = self.num_timesteps - self._begun
+        returns = [one["r"] for one in self.model.ep_info_buffer or ()]
+        mean = f", mean return {np.mean(returns):.3f}" if returns else ""
+        self._tell(done / self._total, f"{done} of {self._total} steps{mean}")
+        return True
+
+    def _on_training_start(self) -> None:
+        self._begun = self.model.num_timesteps
 
 
 def _practise(state: State, logger: Logger) -> None:
@@ -197,7 +226,9 @@ def _practise(state: State, logger: Logger) -> None:
         model.policy.optimizer.load_state_dict(state.optimiser)
     model.set_logger(logger)
     model.num_timesteps = state.steps
-    model.learn(settings.iterations * routes * moves, reset_num_timesteps=False)
+    steps = settings.iterations * routes * moves
+    with stage("practising") as tell:
+        model.learn(steps, callback=_Told(tell, steps), reset_num_timesteps=False)
     state.network.load_state_dict(network.state_dict())
     state.optimiser = model.policy.optimizer.state_dict()
     state.steps = model.num_timesteps

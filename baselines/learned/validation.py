@@ -6,6 +6,7 @@ import numpy as np
 import torch
 from numpy.typing import NDArray
 
+from argo_compiler.stages import each
 from argo_env.envs.route_batch import RouteVectorEnv
 from argo_env.envs.route_instance import DOCK
 from baselines.learned.network import RouteNetwork
@@ -31,9 +32,10 @@ class Validation:
 
     def __call__(self, network: RouteNetwork) -> dict[str, float]:
         """By the name of the set."""
+        batches = each("evaluating", list(self._batches.items()))
         return {
             name: float(greedy_prizes(network, batch, range(batch.num_envs)).mean())
-            for name, batch in self._batches.items()
+            for name, batch in batches
         }
 
 

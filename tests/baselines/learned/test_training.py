@@ -12,6 +12,7 @@ pytest.importorskip("sb3_contrib")
 from sb3_contrib.common.maskable.utils import get_action_masks  # noqa: E402
 
 from argo_compiler.errors import ArgoError  # noqa: E402
+from argo_compiler.stages import heard_by  # noqa: E402
 from argo_env.envs import route_episodes  # noqa: E402
 from argo_env.envs.route_instance import score_route  # noqa: E402
 from argo_env.envs.route_sources import TEST, RandomRoutes  # noqa: E402
@@ -44,15 +45,25 @@ def few_instances() -> Iterator[None]:
         yield
 
 
+Told = tuple[str | None, float | None, str]
+
+
 class CutOffError(Exception):
     """The power went."""
 
 
 @pytest.fixture(scope="module")
-def trained(tmp_path_factory: pytest.TempPathFactory) -> tuple[Path, State]:
+def heard() -> list[Told]:
+    """What the training has told."""
+    return []
+
+
+@pytest.fixture(scope="module")
+def trained(tmp_path_factory: pytest.TempPathFactory, heard: list[Told]) -> tuple[Path, State]:
     folder = tmp_path_factory.mktemp("trained")
     state = begin(SMALL)
-    train(state, folder, [].append)
+    with heard_by(lambda *told: heard.append(told)):
+        train(state, folder, [].append)
     return folder, state
 
 
@@ -69,6 +80,21 @@ def test_training_changes_weights_and_saves_them(trained: tuple[Path, State]) ->
     shipped = torch.load(folder / WEIGHTS, weights_only=True)
     assert all(w.dtype == torch.float16 for w in shipped.values())
     LearnedPolicy.load(folder / WEIGHTS)
+
+
+@pytest.mark.usefixtures("trained")
+def test_training_says_what_it_does_and_how_far_it_is(heard: list[Told]) -> None:
+    stages = list(dict.fromkeys(stage for stage, _, _ in heard if stage))
+    assert stages[:6] == [
+        "part 1 of 3", "part 1 of 3: lessons with 5 checkpoints",
+        "part 1 of 3: learning from them", "part 1 of 3: evaluating",
+        "part 2 of 3", "part 2 of 3: practising",
+    ]  # fmt: skip
+    assert stages[-1] == "part 3 of 3: evaluating"
+    steps = (SMALL.routes * 20 // 5) * (SMALL.moves * 5 // 20)
+    *_, last = (told for told in heard if told[0] == stages[5] and told[1] is not None)
+    assert last[1] == 1.0
+    assert last[2].startswith(f"{steps} of {steps} steps")
 
 
 def test_a_training_that_was_cut_off_ends_with_the_same_weights(

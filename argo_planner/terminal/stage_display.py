@@ -1,0 +1,135 @@
+"""What takes more than two seconds is shown on standard error: what it is, and how far it is."""
+
+import time
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
+from threading import Event, RLock, Thread
+from typing import TYPE_CHECKING
+
+from argo_compiler.stages import heard_by
+from argo_planner.terminal.verbosity import is_quiet
+
+# Most commands are done before there is anything to show.
+if TYPE_CHECKING:
+    from rich.console import Console
+    from rich.progress import Progress
+
+AFTER = 2.0
+"""s that something has to take until it is shown"""
+EVERY = 10.0
+"""s between lines where standard error is no terminal"""
+_GAP = 1.0  # s of other work between two stages, after which the first line is waited for again
+_TICK = 0.25  # s
+
+
+@contextmanager
+def stages_shown() -> Iterator[None]:
+    """Within this, stages that last are shown."""
+    display = StageDisplay()
+    try:
+        with heard_by(display):
+            yield
+    finally:
+        display.close()
+
+
+class StageDisplay:
+    """Shows stages: a bar on a terminal, which goes away at their end, and else a line now and
+    then. A thread of its own looks what goes on, as the work itself may not say anything for long.
+    """
+
+    def __init__(
+        self,
+        console: "Console | None" = None,
+        clock: Callable[[], float] = time.monotonic,
+        watched: bool = True,
+    ) -> None:
+        """The clock gives s. Without a console, it is standard error; `watched`: by a thread, else
+        by whoever calls `look`."""
+        self._console = console
+        self._clock = clock
+        self._watched = watched
+        self._lock = RLock()
+        self._closed = Event()
+        self._thread: Thread | None = None
+        self._stage: str | None = None
+        self._share: float | None = None
+        self._detail = ""
+        self._begun = 0.0
+        self._ended = -_GAP
+        self._written = -EVERY
+        self._bar: Progress | None = None
+
+    def __call__(self, stage: str | None, share: float | None, detail: str) -> None:
+        """Hears of a stage, or of the end of all."""
+        with self._lock:
+            now = self._clock()
+            if stage is None:
+                self._hide()
+                self._ended = now
+            elif self._stage is None and now - self._ended >= _GAP:
+                self._begun, self._written = now, now - EVERY
+            self._stage, self._share, self._detail = stage, share, detail
+        if self._watched and self._thread is None:
+            self._thread = Thread(target=self._watch, daemon=True)
+            self._thread.start()
+        self.look()
+
+    def look(self) -> None:
+        """Shows what goes on, if it is time to."""
+        with self._lock:
+            now = self._clock()
+            if self._stage is None or now - self._begun < AFTER or is_quiet():
+                return
+            if self._console is None:
+                from rich.console import Console
+
+                self._console = Console(stderr=True)
+            if self._console.is_terminal:
+                self._show(self._console)
+            elif now - self._written >= EVERY:
+                self._written = now
+                done = [] if self._share is None else [f"{self._share:.0%}"]
+                text = ", ".join([*self._said(), *done])
+                self._console.print(f"{text} …", soft_wrap=True, highlight=False, markup=False)
+
+    def close(self) -> None:
+        """Ends the display."""
+        self._closed.set()
+        if self._thread is not None:
+            self._thread.join()
+        with self._lock:
+            self._hide()
+
+    def _watch(self) -> None:
+        while not self._closed.wait(_TICK):
+            self.look()
+
+    def _show(self, console: "Console") -> None:
+        if self._bar is None:
+            from rich.progress import BarColumn, Progress, TextColumn, TimeElapsedColumn
+
+            self._bar = Progress(
+                TextColumn("{task.description}", markup=False),
+                BarColumn(),
+                TimeElapsedColumn(),
+                console=console,
+                transient=True,
+                redirect_stdout=False,  # results never go to standard error
+            )
+            self._bar.add_task(", ".join(self._said()), total=None)
+            self._bar.start()
+        self._bar.update(
+            self._bar.task_ids[0],
+            description=", ".join(self._said()),
+            total=None if self._share is None else 1.0,
+            completed=self._share or 0.0,
+        )
+
+    def _said(self) -> list[str]:
+        return [text for text in (self._stage, self._detail) if text]
+
+    def _hide(self) -> None:
+        if self._bar is not None:
+            self._bar.stop()
+            self._bar = None

@@ -95,8 +95,10 @@ def write_content(path: Path, content: str | bytes | Mapping[str, bytes]) -> Non
     is impossible."""
     if isinstance(content, Mapping):
         _write_folder(path, content)
+    elif path == STANDARD_OUTPUT and isinstance(content, str):
+        sys.stdout.write(content)
     elif path == STANDARD_OUTPUT:
-        sys.stdout.buffer.write(content.encode() if isinstance(content, str) else content)
+        sys.stdout.buffer.write(content)
     else:
         try:
             write_whole(path, content)

@@ -1,12 +1,21 @@
-"""No command writes over what it reads, or two results to one place."""
+"""No command writes over what it reads or what is there already, or two results to one place."""
 
 from pathlib import Path
 
 import pytest
+import yaml
+from hypothesis import HealthCheck, given, settings
+from hypothesis import strategies as st
 from typer.testing import CliRunner
 
-from argo_compiler.errors import Conflict
+from argo_compiler.errors import ArgoError, Conflict, Remedy
+from argo_compiler.files.mission_file import write_mission
 from argo_planner.cli import app
+from argo_planner.terminal.words import said
+from tests.conftest import examples
+from tests.yard import SITE, measure, mission
+
+SCRIPT = "Mission Protocol #1\n1. Start in starting area 1.\n2. Check checkpoint #1.\n"
 
 
 @pytest.mark.parametrize(
@@ -17,14 +26,18 @@ from argo_planner.cli import app
         ("check m.json --site site.yaml -o site.yaml", "is the input"),
         ("compile m.json -o new.json --mermaid m.json", "is the input"),
         ("compile m.json -o new.json --mermaid ./new.json", "twice"),
+        ("compile m.json -o - --mermaid -", "twice"),
         ("format m.json -o m.json", "is the input"),
         ("export m.json --to dot -o m.json", "is the input"),
+        ("export m.json --to flexbe -o m.json", "is a file"),
         ("route m.json --requirements r.yaml -o r.yaml", "is the input"),
         ("run m.json --record m.json", "m.json"),
         ("run m.json --faults f.yaml --journal f.yaml", "is there already"),
+        ("run m.json --faults f.yaml --journal f.yaml --force", "is the input"),
         ("run m.json --journal new.mcap --record new.mcap", "twice"),
-        ("resume j.mcap --record j.mcap", "is the input"),
-        ("replay r.gif --render r.gif", "is the input"),
+        ("run m.json --report m.json", "is a file"),
+        ("resume j.mcap --record j.mcap --force", "is the input"),
+        ("replay r.gif --render r.gif --force", "is the input"),
         ("sites site.yaml -o site.yaml", "is the input"),
     ],
 )
@@ -36,3 +49,155 @@ def test_inputs_are_kept(monkeypatch, tmp_path: Path, command: str, says: str):
     assert isinstance(result.exception, Conflict)
     assert says in str(result.exception)
     assert {path.read_text(encoding="utf-8") for path in tmp_path.iterdir()} == {"mine"}
+
+
+OUTPUTS = {
+    "import s.txt -o new.json": ["new.json"],
+    "check s.txt -o found.txt": ["found.txt"],
+    "compile m.json -o machine.json --mermaid machine.mmd": ["machine.json", "machine.mmd"],
+    "format m.json -o new.txt": ["new.txt"],
+    "export m.json --to dot -o new.dot": ["new.dot"],
+    "export m.json --to ros1-bag -o new.bag": ["new.bag"],
+    "export m.json --to ros2-bag -o bag": ["bag/metadata.yaml"],
+    "route m.json -o new.json --pictures floors": ["new.json", "floors/floor-1.png"],
+    "run m.json --drive route --report report --record run.mcap --journal run.journal": [
+        "report/report.html", "report/report.json", "report/site.png", "run.mcap", "run.journal",
+    ],
+    "run m.json --render run.gif": ["run.gif"],
+    "resume old.journal --record run.mcap": ["run.mcap"],
+    "replay old.mcap --report report --render run.gif": ["report/report.html", "run.gif"],
+    "sites yard.yaml -o new.yaml": ["new.yaml"],
+}  # fmt: skip
+"""What commands write."""
+WORKING = [command for command in OUTPUTS if "old." not in command and "gif" not in command]
+"""Those that find what they read, and take no long time."""
+
+
+@pytest.fixture
+def folder(monkeypatch, tmp_path: Path) -> Path:
+    """The working folder, with what the commands read."""
+    monkeypatch.chdir(tmp_path)
+    Path("s.txt").write_text(SCRIPT, encoding="utf-8")
+    Path("yard.yaml").write_text(yaml.safe_dump(SITE), encoding="utf-8")
+    write_mission(mission(measure(1)), Path("m.json"))
+    return tmp_path
+
+
+def invoke(command: str, *more: str):
+    site = [] if command.split()[0] in {"sites", "resume", "replay"} else ["--site", "yard.yaml"]
+    return CliRunner().invoke(app, [*command.split(), *site, *more])
+
+
+def contents(folder: Path) -> dict[str, bytes]:
+    return {
+        path.relative_to(folder).as_posix(): path.read_bytes()
+        for path in folder.rglob("*")
+        if path.is_file()
+    }
+
+
+def put(names: list[str]) -> None:
+    for name in names:
+        Path(name).parent.mkdir(exist_ok=True)
+        Path(name).write_text(f"old {name}", encoding="utf-8")
+
+
+@settings(
+    deadline=None,
+    max_examples=examples(40),
+    suppress_health_check=[HealthCheck.function_scoped_fixture],
+)
+@given(st.data())
+def test_nothing_that_is_there_is_changed_without_force(folder: Path, data) -> None:
+    command = data.draw(st.sampled_from(sorted(OUTPUTS)))
+    there = data.draw(st.lists(st.sampled_from(OUTPUTS[command]), min_size=1, unique=True))
+    others = data.draw(st.lists(st.sampled_from(["report/notes.txt", "bag/x.db3", "a.json"])))
+    try:
+        put([*there, *others])
+        before = contents(folder)
+        result = invoke(command)
+        assert isinstance(result.exception, Conflict), result.output
+        assert "is there already" in str(result.exception)
+        assert any(str(result.exception).startswith(name) for name in there)
+        assert contents(folder) == before
+    finally:
+        for name in {*there, *others}:
+            Path(name).unlink()
+
+
+@pytest.mark.usefixtures("folder")
+def test_the_way_out_is_said() -> None:
+    put(["new.dot"])
+    error = invoke("export m.json --to dot -o new.dot").exception
+    assert isinstance(error, ArgoError)
+    assert error.remedies == (Remedy.REPLACE,)
+    assert said(error) == (
+        "new.dot: is there already: choose another place, or replace it (--force)"
+    )
+
+
+@pytest.mark.parametrize("command", WORKING)
+def test_with_force_the_results_are_replaced_and_nothing_else(
+    folder: Path, monkeypatch, command: str
+) -> None:
+    monkeypatch.setattr(
+        "argo_planner.use_cases.reporting.write_overview",
+        lambda *given: given[-1].write_bytes(b"a picture"),
+    )  # takes long
+    put([*OUTPUTS[command], "report/notes.txt", "bag/notes.txt", "floors/notes.txt"])
+    before = contents(folder)
+    result = invoke(command, "--force")
+    assert result.exit_code == 0, result.exception
+    after = contents(folder)
+    for name in OUTPUTS[command]:
+        assert not after[name].startswith(b"old"), name
+    kept = before.keys() - set(OUTPUTS[command])
+    assert {name: after[name] for name in kept} == {name: before[name] for name in kept}
+    assert not [name for name in after if ".tmp" in name]
+
+
+@pytest.mark.usefixtures("folder")
+@pytest.mark.parametrize(
+    "command",
+    ["import s.txt -o {}", "check s.txt -o {}", "compile m.json -o {}", "format m.json -o {}",
+     "export m.json --to dot -o {}"],
+)  # fmt: skip
+def test_a_dash_is_standard_output(command: str) -> None:
+    shown = invoke(command.format("-"))
+    assert shown.exit_code == 0, shown.exception
+    assert not Path("-").exists()
+    invoke(command.format("kept.json"))
+    assert shown.stdout == Path("kept.json").read_text(encoding="utf-8")
+
+
+@pytest.mark.usefixtures("folder")
+def test_what_is_no_file_is_always_written_to() -> None:
+    Path("nowhere").symlink_to("/dev/null")
+    for place in ("/dev/null", "nowhere"):
+        assert invoke(f"compile m.json -o {place} --mermaid {place}").exit_code == 0
+    assert Path("nowhere").is_symlink()
+
+
+@pytest.mark.usefixtures("folder")
+@pytest.mark.parametrize(
+    ("command", "says"),
+    [
+        ("import s.txt -o none/new.json", "no folder none"),
+        ("compile m.json -o new.json --mermaid none/new.mmd", "no folder none"),
+        ("format m.json -o taken", "is a folder"),
+        ("export m.json --to dot -o taken", "is a folder"),
+        ("run m.json --report holding", "is a folder"),
+        ("route m.json -o none/new.json", "no folder none"),
+        ("run m.json --record none/run.mcap", "no folder none"),
+        ("replay run.mcap --render none/film.gif", "no folder none"),
+    ],
+)
+def test_a_place_that_can_not_be_written_to_is_said_before_any_work(
+    command: str, says: str
+) -> None:
+    Path("taken").mkdir()
+    Path("holding/report.html").mkdir(parents=True)
+    # Its site is never looked at.
+    error = CliRunner().invoke(app, [*command.split(), *["--force"]]).exception
+    assert isinstance(error, ArgoError)
+    assert says in str(error)

@@ -571,6 +571,22 @@ def test_a_full_disk(navigator, whole, tmp_path):
     require_a_continuation(record, reference, reached)
 
 
+def test_one_that_is_there_is_replaced_on_demand_unless_it_is_in_use(navigator, tmp_path):
+    path = tmp_path / "run.journal"
+    with create_journal(path, header(navigator)) as journal:
+        before = path.read_bytes()
+        with pytest.raises(Conflict, match="is there already"):
+            create_journal(path, header(navigator))
+        with pytest.raises(Conflict, match="is in use"):
+            create_journal(path, header(navigator), replace=True)
+        assert path.read_bytes() == before
+        assert journal.path == path
+    path.write_text("old")
+    create_journal(path, header(navigator), replace=True).close()
+    assert path.read_bytes() == before
+    assert os.listdir(tmp_path) == ["run.journal"]
+
+
 def test_no_room_for_the_first_line(navigator, tmp_path):
     path = tmp_path / "run.journal"
     limits = resource.getrlimit(resource.RLIMIT_FSIZE)

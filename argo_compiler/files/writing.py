@@ -30,7 +30,7 @@ def check_place(file: Path) -> None:
     """Raises ArgoError if no file can be written there. To be called before long work."""
     if is_stream(file):
         return
-    place = Path(os.path.realpath(file))
+    place = Path(os.path.realpath(file)) if os.path.islink(file) else file.absolute()
     if os.path.isdir(place):
         raise Conflict(f"{file}: is a folder; choose another name")
     if not os.path.isdir(place.parent):

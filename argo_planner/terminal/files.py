@@ -95,10 +95,11 @@ def write_content(path: Path, content: str | bytes | Mapping[str, bytes]) -> Non
     is impossible."""
     if isinstance(content, Mapping):
         _write_folder(path, content)
-    elif path == STANDARD_OUTPUT and isinstance(content, str):
-        sys.stdout.write(content)
     elif path == STANDARD_OUTPUT:
-        sys.stdout.buffer.write(content)
+        if isinstance(content, str):
+            sys.stdout.write(content)
+        else:
+            sys.stdout.buffer.write(content)
     else:
         try:
             write_whole(path, content)

@@ -8,11 +8,13 @@ from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 from typer.testing import CliRunner
 
-from argo_compiler.errors import ArgoError, Conflict, Remedy
+from argo_compiler.errors import ArgoError, Conflict, Remedy, Unavailable
 from argo_compiler.files.mission_file import write_mission
+from argo_compiler.files.writing import write_folder
 from argo_planner.cli import app
 from argo_planner.terminal.words import said
 from tests.conftest import examples
+from tests.disks import fill, small_disk
 from tests.yard import SITE, measure, mission
 
 SCRIPT = "Mission Protocol #1\n1. Start in starting area 1.\n2. Check checkpoint #1.\n"
@@ -136,14 +138,18 @@ def test_the_way_out_is_said() -> None:
     )
 
 
-@pytest.mark.parametrize("command", WORKING)
-def test_with_force_the_results_are_replaced_and_nothing_else(
-    folder: Path, monkeypatch, command: str
-) -> None:
+@pytest.fixture
+def quick_picture(monkeypatch) -> None:
+    """Stands for the picture of the site, which takes long."""
     monkeypatch.setattr(
         "argo_planner.use_cases.reporting.write_overview",
         lambda *given: given[-1].write_bytes(b"a picture"),
-    )  # takes long
+    )
+
+
+@pytest.mark.usefixtures("quick_picture")
+@pytest.mark.parametrize("command", WORKING)
+def test_with_force_the_results_are_replaced_and_nothing_else(folder: Path, command: str) -> None:
     put([*OUTPUTS[command], "report/notes.txt", "bag/notes.txt", "floors/notes.txt"])
     before = contents(folder)
     result = invoke(command, "--force")
@@ -201,3 +207,18 @@ def test_a_place_that_can_not_be_written_to_is_said_before_any_work(
     error = CliRunner().invoke(app, [*command.split(), *["--force"]]).exception
     assert isinstance(error, ArgoError)
     assert says in str(error)
+
+
+@pytest.mark.usefixtures("folder", "quick_picture")
+@pytest.mark.parametrize("room", [0, 2, 5])
+def test_an_old_report_stays_whole_where_the_disk_is_full(room: int) -> None:
+    with small_disk(30 * 4096) as disk:
+        old = {"report/report.html": b"old", "report/report.json": b"old", "report/my.txt": b"old"}
+        write_folder(disk, old)
+        filler = fill(disk, leave=room * 4096)
+        error = invoke(f"run m.json --drive route --force --report {disk / 'report'}").exception
+        filler.unlink()
+        assert contents(disk) == old
+        assert sorted(path.name for path in disk.iterdir()) == ["report"]
+    assert isinstance(error, Unavailable)
+    assert "No space left on device" in str(error)

@@ -4,6 +4,7 @@ Rectangles are `[x0, y0, x1, y1]` in the site's frame. Heights of things on a fl
 floor's deck.
 """
 
+import math
 from itertools import pairwise
 from typing import Annotated, Literal
 
@@ -13,23 +14,53 @@ from pydantic_core import PydanticCustomError
 from argo_compiler.catalog import CheckpointKind, Interval
 from argo_compiler.model import Model
 
-Point = tuple[float, float]
+LEDGE = 5e-3  # m, up to which two heights are level for a robot
+MAX_BYTES = 50_000_000
+"""of a site's file; one with hundreds of checkpoints takes some 100 kB"""
+MAX_GROUND = 200.0  # m along an edge; navigation keeps a grid of 0.1 m over it
+
+# What no site exceeds. All solids are made from the description, so that a slip of the pen in a
+# number must not ask for millions of them.
+MAX_FLOORS = 50
+MAX_RISERS = 100  # of a flight; the norm has a landing after 18 or so
+MAX_THINGS = 1000  # of one kind, on a floor or on the whole site
+_FAR = 10_000.0  # m from the origin
+_BULKY = 50.0  # m of a radius or a width
+_STEEP = 2.0  # m of a rise or a going
+
+Coordinate = Annotated[float, Field(ge=-_FAR, le=_FAR)]
+Point = tuple[Coordinate, Coordinate]
+Point3 = tuple[Coordinate, Coordinate, Coordinate]
+Stance = tuple[Coordinate, Coordinate, float]
+"""x, y, yaw"""
+Length = Annotated[float, Field(gt=0, le=MAX_GROUND)]
+Thickness = Annotated[float, Field(gt=0, le=_BULKY)]
+StepSize = Annotated[float, Field(gt=0, le=_STEEP)]
 
 
 def _ordered(rect: tuple[float, float, float, float]) -> tuple[float, float, float, float]:
     x0, y0, x1, y1 = rect
     if x0 >= x1 or y0 >= y1:
         raise ValueError(f"a rectangle is [x0, y0, x1, y1] with x0 < x1 and y0 < y1, not {rect}")
+    if max(x1 - x0, y1 - y0) > MAX_GROUND:
+        raise ValueError(f"it is larger than {MAX_GROUND:.0f} m by {MAX_GROUND:.0f} m")
     return rect
 
 
-Rect = Annotated[tuple[float, float, float, float], AfterValidator(_ordered)]
+Rect = Annotated[tuple[Coordinate, Coordinate, Coordinate, Coordinate], AfterValidator(_ordered)]
 
 
-LEDGE = 5e-3  # m, up to which two heights are level for a robot
-MAX_BYTES = 50_000_000
-"""of a site's file; one with hundreds of checkpoints takes some 100 kB"""
-MAX_GROUND = 200.0  # m along an edge; navigation keeps a grid of 0.1 m over it
+def _no_longer(line: tuple[tuple[float, ...], ...]) -> tuple[tuple[float, ...], ...]:
+    for a, b in pairwise(line):
+        if math.dist(a, b) > MAX_GROUND:
+            raise ValueError(f"it is longer than {MAX_GROUND:.0f} m from {a} to {b}")
+    return line
+
+
+Line = Annotated[tuple[Point, ...], Field(max_length=MAX_THINGS), AfterValidator(_no_longer)]
+Line3 = Annotated[
+    tuple[Point3, ...], Field(min_length=2, max_length=MAX_THINGS), AfterValidator(_no_longer)
+]
 
 
 class VesselSpec(Model):
@@ -37,17 +68,17 @@ class VesselSpec(Model):
 
     name: str
     axis: Literal["x", "y", "z"] = "z"
-    center: tuple[float, float, float]
-    radius: float = Field(gt=0)
-    length: float = Field(gt=0)
+    center: Point3
+    radius: Thickness
+    length: Length
 
 
 class PipeSpec(Model):
     """A pipe through the given points, in the site's frame."""
 
     name: str
-    points: tuple[tuple[float, float, float], ...] = Field(min_length=2)
-    radius: float = Field(default=0.06, gt=0)
+    points: Line3
+    radius: Thickness = 0.06
 
     @model_validator(mode="after")
     def _distinct(self) -> "PipeSpec":
@@ -70,7 +101,7 @@ class CheckpointSpec(Model):
     id: int = Field(ge=1)
     kind: CheckpointKind
     name: str
-    position: tuple[float, float, float]
+    position: Point3
     """x, y and the height above the floor's deck"""
     yaw: float
     nominal: Interval
@@ -80,30 +111,30 @@ class FloorSpec(Model):
     """A floor: the deck's rectangles less the openings, and what stands on it."""
 
     number: int = Field(ge=1)
-    z: float
-    walkways: dict[str, Rect] = Field(min_length=1)
-    openings: dict[str, Rect] = Field(default_factory=dict)
+    z: Coordinate
+    walkways: dict[str, Rect] = Field(min_length=1, max_length=MAX_THINGS)
+    openings: dict[str, Rect] = Field(default_factory=dict, max_length=MAX_THINGS)
     railed: bool = True
     """whether free edges of the deck carry a railing"""
-    gates: dict[str, Rect] = Field(default_factory=dict)
+    gates: dict[str, Rect] = Field(default_factory=dict, max_length=MAX_THINGS)
     """where a railing is left out"""
-    barriers: dict[str, tuple[Point, ...]] = Field(default_factory=dict)
+    barriers: dict[str, Line] = Field(default_factory=dict, max_length=MAX_THINGS)
     """railings that stand on the deck, along polylines"""
-    vessels: tuple[VesselSpec, ...] = ()
-    pumps: tuple[PumpSpec, ...] = ()
-    checkpoints: tuple[CheckpointSpec, ...] = ()
+    vessels: tuple[VesselSpec, ...] = Field(default=(), max_length=MAX_THINGS)
+    pumps: tuple[PumpSpec, ...] = Field(default=(), max_length=MAX_THINGS)
+    checkpoints: tuple[CheckpointSpec, ...] = Field(default=(), max_length=MAX_THINGS)
 
 
 class FlightSpec(Model):
     """A flight of open steps that rises along `yaw` from `foot`, the middle of its first nosing."""
 
     name: str
-    foot: tuple[float, float, float]
+    foot: Point3
     yaw: float
-    risers: int = Field(ge=2)
-    rise: float = Field(gt=0)
-    going: float = Field(gt=0)
-    width: float = Field(gt=0)
+    risers: int = Field(ge=2, le=MAX_RISERS)
+    rise: StepSize
+    going: StepSize
+    width: Thickness
 
 
 class LandingSpec(Model):
@@ -111,22 +142,22 @@ class LandingSpec(Model):
 
     name: str
     rect: Rect
-    z: float
+    z: Coordinate
 
 
 class TowerSpec(Model):
     """A stair tower, repeated from floor to floor: flights and landings relative to each floor."""
 
     name: str
-    flights: tuple[FlightSpec, ...]
-    landings: tuple[LandingSpec, ...] = ()
+    flights: tuple[FlightSpec, ...] = Field(max_length=MAX_FLOORS)
+    landings: tuple[LandingSpec, ...] = Field(default=(), max_length=MAX_FLOORS)
 
 
 class AreaSpec(Model):
     """A starting area: the pose of the robot that is docked in its station, in front of it."""
 
     number: int = Field(ge=1)
-    dock: tuple[float, float, float]
+    dock: Stance
     """x, y, yaw"""
 
 
@@ -134,7 +165,7 @@ class PlaceSpec(Model):
     """A named place on the ground, as x, y, yaw."""
 
     name: str
-    pose: tuple[float, float, float]
+    pose: Stance
 
 
 def _usable_name(name: str) -> str:
@@ -152,17 +183,17 @@ class SiteSpec(Model):
     name: Annotated[str, Field(max_length=200), AfterValidator(_usable_name)]
     """files are named by it"""
     title: str
-    storey: float = Field(gt=0)
+    storey: Length
     """m from floor to floor"""
     ground: Rect
-    ground_z: float
-    towers: tuple[TowerSpec, ...]
-    floors: tuple[FloorSpec, ...] = Field(min_length=1)
-    columns: tuple[Point, ...] = ()
-    pipes: tuple[PipeSpec, ...] = ()
-    vessels: tuple[VesselSpec, ...] = ()
-    areas: tuple[AreaSpec, ...] = Field(min_length=1)
-    places: tuple[PlaceSpec, ...] = ()
+    ground_z: Coordinate
+    towers: tuple[TowerSpec, ...] = Field(max_length=MAX_FLOORS)
+    floors: tuple[FloorSpec, ...] = Field(min_length=1, max_length=MAX_FLOORS)
+    columns: tuple[Point, ...] = Field(default=(), max_length=MAX_THINGS)
+    pipes: tuple[PipeSpec, ...] = Field(default=(), max_length=MAX_THINGS)
+    vessels: tuple[VesselSpec, ...] = Field(default=(), max_length=MAX_THINGS)
+    areas: tuple[AreaSpec, ...] = Field(min_length=1, max_length=MAX_THINGS)
+    places: tuple[PlaceSpec, ...] = Field(default=(), max_length=MAX_THINGS)
 
     @model_validator(mode="after")
     def _consistent(self) -> "SiteSpec":
@@ -183,9 +214,6 @@ class SiteSpec(Model):
                         "path": ("storey",),
                     },
                 )
-        x0, y0, x1, y1 = self.ground
-        if max(x1 - x0, y1 - y0) > MAX_GROUND:
-            raise ValueError(f"the ground is larger than {MAX_GROUND:.0f} m by {MAX_GROUND:.0f} m")
         for (kind, name), paths in self._named().items():
             if len(paths) > 1:
                 raise PydanticCustomError(

@@ -1,3 +1,4 @@
+import re
 from pathlib import Path
 
 import pytest
@@ -151,9 +152,40 @@ def test_site_of_one_slab(tmp_path):
 def test_a_ground_too_large_for_navigation_is_refused(tmp_path: Path) -> None:
     text = (resources.scenarios() / "umad" / "site.yaml").read_text(encoding="utf-8")
     path = tmp_path / "huge.yaml"
-    path.write_text(text.replace("ground: [-2.0", "ground: [-90000.0"), encoding="utf-8")
+    path.write_text(text.replace("ground: [-2.0", "ground: [-900.0"), encoding="utf-8")
     with pytest.raises(ArgoError, match="larger than 200 m"):
         load_site(str(path))
+
+
+@pytest.mark.parametrize(
+    ("where", "value", "says"),
+    [
+        (("towers", 0, "flights", 0, "risers"), 100_000, "`risers` has to be at most 100"),
+        (("towers", 0, "flights", 0, "rise"), 1e9, "`rise` has to be at most 2"),
+        (("towers", 0, "flights", 0, "foot", 1), 1e9, "`foot[1]` has to be at most 10000"),
+        (("floors", 0, "walkways", "slab", 2), 900.0, "it is larger than 200 m by 200 m"),
+        (
+            ("floors", 0, "barriers"),
+            {"fence": [[0, 0], [0, 9000]]},
+            "barriers.fence: it is longer than 200 m",
+        ),
+        (("floors", 0, "vessels"), [{"radius": 1e6}], "`radius` has to be at most 50"),
+        (("columns",), [[0, 0]] * 5000, "`columns` has to be a list of at most 1000"),
+        (("pipes", 0, "points", 0, 2), -1e7, "`points[0][2]` has to be at least -10000"),
+        (("storey",), 1e6, "`storey` has to be at most 200"),
+    ],
+)
+def test_sizes_that_no_site_has_are_refused_with_their_place(tmp_path, where, value, says):
+    """Before solids are made of them by the million."""
+    text = (resources.scenarios() / "darmstadt" / "site.yaml").read_text("utf-8")
+    whole = yaml.safe_load(text)
+    node = whole
+    for step in where[:-1]:
+        node = node[step]
+    node[where[-1]] = value
+    message = refusal(written(tmp_path, whole))
+    assert says in message
+    assert re.search(r"site.yaml:\d+:\d+: error", message)
 
 
 @pytest.mark.parametrize(

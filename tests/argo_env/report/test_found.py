@@ -81,7 +81,7 @@ def test_the_headline_counts_the_rows_and_says_what_came_of_them(simple, site):
     assert table.count('class="mark finding"') == 1
     assert "<td>no reaction answers it, over at 00:09</td>" in table
     assert "<td>told while the robot was on floor 1 at (1.00, 2.00, 0.00)</td>" in table
-    assert "<td>told</td>" in table
+    assert '<td data-name="found by">told</td>' in table
 
 
 def test_what_tells_no_place_is_not_drawn_as_if_it_were_there(simple, site):

@@ -172,11 +172,13 @@ def _of_groups(
     if before.groups is after.groups or before.groups == after.groups:
         return
     now = {group.name: group for group in after.groups}
+    former = {group.name for group in before.groups}
     for old in before.groups:
         name = renamed.get(old.name, old.name)
         at = subject_of("groups", name)
         new = now.get(name)
-        if at in asked:
+        inherited = name != old.name and name in former  # from a group around it, which is gone
+        if at in asked and not inherited:
             continue
         if new is None:
             message = f"group '{old.name}' is gone, as it has no tasks any more"

@@ -21,6 +21,7 @@ _FOOT = np.array([-0.10, 0.0, 0.66])  # m, the shoulder in the robot's frame
 _UPPER_ARM, _FOREARM = 0.55, 0.43  # m
 _LENS = 0.07  # m from the head's axis to the optical centre
 _LIMITS = np.array([3.1415, 1.8, 3.0, 3.0, 2.6])  # rad either way
+_NONE = 1e-9  # m
 
 
 @dataclass(frozen=True)
@@ -58,11 +59,10 @@ def inverse(
     sight = body.T @ (target - eye)
     sight /= np.linalg.norm(sight)
     head = body.T @ (eye - np.array([pose.x, pose.y, pose.z])) - _LENS * sight - _FOOT
-    toward = math.atan2(head[1], head[0])
-    for yaw, reach in (
-        (toward, math.hypot(head[0], head[1])),
-        (_wrapped(toward + math.pi), -math.hypot(head[0], head[1])),
-    ):
+    away = math.hypot(head[0], head[1])
+    # Right above or below its foot the arm may have any yaw: that of the line of sight.
+    toward = math.atan2(head[1], head[0]) if away > _NONE else math.atan2(sight[1], sight[0])
+    for yaw, reach in ((toward, away), (_wrapped(toward + math.pi), -away)):
         span = math.hypot(reach, head[2])
         cosine = (span**2 - _UPPER_ARM**2 - _FOREARM**2) / (2 * _UPPER_ARM * _FOREARM)
         if abs(cosine) > 1.0 + 1e-9:

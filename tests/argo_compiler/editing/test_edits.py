@@ -133,6 +133,18 @@ def test_the_names_of_groups_follow_from_what_lies_in_what():
     assert wide.task("A").group == "Alpha"
 
 
+def test_a_group_that_gets_the_name_of_the_one_around_it_is_told():
+    wrapped = editing.wrap_tasks(MISSION, group("Round", "A", "D")).mission
+    wrapped = editing.rename_group(wrapped, "Round", "Alpha").mission
+    assert [g.name for g in wrapped.groups] == ["Alpha/Alpha", "Alpha/Alpha/Beta", "Alpha"]
+    edited = editing.dissolve_group(wrapped, "Alpha")
+    assert edited.mission.groups == MISSION.groups
+    assert [c for c in told(edited) if c[0].startswith("groups")] == [
+        ("groups['Alpha'].name", "Alpha/Alpha", "Alpha"),
+        ("groups['Alpha/Beta'].name", "Alpha/Alpha/Beta", "Alpha/Beta"),
+    ]
+
+
 def test_ways_conditions_reactions_and_header():
     mission = editing.remove_transition(MISSION, "D", 0).mission
     assert mission.task("D").transitions == (way("E"),)

@@ -6,7 +6,7 @@ from itertools import product
 import numpy as np
 import pybullet
 import pytest
-from hypothesis import given, settings
+from hypothesis import example, given, settings
 from hypothesis import strategies as st
 
 from argo_compiler.errors import Unreachable
@@ -77,6 +77,7 @@ def test_forward_kinematics_is_pybullets(tracker, joints, pose):
 
 
 @given(joints=angles, pose=poses, reach=st.floats(0.3, 2.0))
+@example(joints=(1.0, 0.0, 0.0, 0.0, 2.0), pose=BodyPose(0.0, 0.0, 0.0, 0.0), reach=1.0)
 @settings(max_examples=examples(60), deadline=None)
 def test_inverse_kinematics_brings_the_lens_there(tracker, joints, pose, reach):
     camera = forward(np.array(joints), pose)

@@ -4,6 +4,7 @@ Few links with many solids, since PyBullet's collision step grows with the numbe
 with 12 links of 250 boxes, 3 ms with 400 links of 8 boxes (one run on two cores).
 """
 
+from functools import lru_cache
 from xml.etree import ElementTree as ET
 
 from argo_env.site.shapes import Box, Element, Solid, Vector
@@ -23,6 +24,7 @@ COLOURS: dict[str, tuple[float, float, float]] = {
 """Red, green and blue from 0 to 1 for each material."""
 
 
+@lru_cache(maxsize=8)  # worlds of the same site are made again and again
 def to_urdf(name: str, elements: tuple[Element, ...]) -> str:
     """The elements as one URDF document. Links are named after materials, solids after elements.
 

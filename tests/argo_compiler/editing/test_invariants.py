@@ -59,7 +59,7 @@ def run(mission: Mission, seed: int) -> list[tuple[Mission, object]]:
     return steps
 
 
-@settings(max_examples=examples(200))
+@settings(max_examples=examples(80))
 @given(sound_missions(make_catalog()) | tangled_missions(), seeds)
 def test_fifty_edits_keep_the_rules_and_snapshots_undo_them(mission, seed):
     written = mission.model_dump_json()
@@ -79,7 +79,7 @@ def test_fifty_edits_keep_the_rules_and_snapshots_undo_them(mission, seed):
         assert Mission.model_validate_json(text) == snapshot
 
 
-@settings(max_examples=examples(100))
+@settings(max_examples=examples(60))
 @given(all_missions(), seeds)
 def test_a_mission_that_makes_no_sense_is_not_made_worse(mission, seed):
     before, ruled = errors(mission), broken(mission)
@@ -88,7 +88,7 @@ def test_a_mission_that_makes_no_sense_is_not_made_worse(mission, seed):
         assert set(broken(made)) <= set(ruled)
 
 
-@settings(max_examples=examples(200))
+@settings(max_examples=examples(80))
 @given(sound_missions(make_catalog()) | tangled_missions(), seeds)
 def test_what_else_changed_is_told_and_nothing_that_did_not(mission, seed):
     rng = random.Random(seed)

@@ -131,8 +131,8 @@ from argo_env.planning.opening import open_site
 from tests.argo_env.world import test_threads
 
 file = sys.argv[1]
-with ThreadPoolExecutor(8) as pool:
-    records = list(pool.map(test_threads.run, [file] * 8, range(8)))
+with ThreadPoolExecutor(4) as pool:  # each drive and the camera
+    records = list(pool.map(test_threads.run, [file] * 4, range(4)))
 opened, folder = open_site(file), Path(file).parent
 write_film(records[0], opened.site, opened.robot, folder / "film.gif", speed=60.0, size=(64, 64))
 write_overview(records[1], opened.site, opened.robot, folder / "site.png")

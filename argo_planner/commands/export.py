@@ -6,10 +6,16 @@ from typing import Annotated
 
 import typer
 
-from argo_compiler.errors import NotFound
+from argo_compiler.errors import Invalid, NotFound
 from argo_env.planning.opening import open_site
 from argo_planner.terminal.completion import among
-from argo_planner.terminal.files import check_outputs, read_upload, say_written, write_content
+from argo_planner.terminal.files import (
+    STANDARD_OUTPUT,
+    check_outputs,
+    read_upload,
+    say_written,
+    write_content,
+)
 from argo_planner.terminal.importing import import_shown
 from argo_planner.terminal.options import EndArea, Force, SiteOption, Source, StartArea
 from argo_planner.use_cases.exporting import FORMATS, is_folder, require_format
@@ -38,6 +44,8 @@ def export_mission(
     except NotFound as error:
         raise NotFound(f"--to {error}") from None
     if is_folder(to):
+        if output == STANDARD_OUTPUT:
+            raise Invalid(f"{to} is a folder of files and can't be shown; name a folder")
         check_outputs([source, site], folders=[(output, ())])
     else:
         check_outputs([source, site], [output], force=force)

@@ -9,6 +9,7 @@ from argo_compiler.errors import Invalid
 from argo_compiler.files.mission_file import mission_text
 from argo_env.planning.opening import open_site
 from argo_planner.terminal.files import (
+    STANDARD_OUTPUT,
     check_outputs,
     read_upload,
     require_mission_output,
@@ -35,7 +36,8 @@ def import_script(
     if kind_of(upload) is SourceKind.MISSION:
         raise Invalid(f"{script} is no script: `argo run` and `argo compile` take missions")
     check_outputs([script, site], [output], force=force)
-    require_mission_output(output)
+    if output != STANDARD_OUTPUT:
+        require_mission_output(output)
     mission = import_shown(upload, open_site(site), start_area, end_area).mission
     write_text(output, mission_text(mission))
     say_written(output, ", ".join(task.name for task in mission.tasks))

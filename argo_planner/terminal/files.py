@@ -81,7 +81,7 @@ def _keep_apart(inputs: Iterable[Path | str | None], outputs: Iterable[Path]) ->
 
 def require_mission_output(output: Path) -> None:
     """Raises Invalid where a mission that is written there could not be read again."""
-    if output != STANDARD_OUTPUT and output.suffix.lower() != ".json":
+    if output.suffix.lower() != ".json":
         raise Invalid(f"{output}: a mission is written as JSON; name a file that ends in .json")
 
 

@@ -8,7 +8,7 @@ from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 from typer.testing import CliRunner
 
-from argo_compiler.errors import ArgoError, Conflict, Remedy, Unavailable
+from argo_compiler.errors import ArgoError, Conflict, Invalid, Remedy, Unavailable
 from argo_compiler.files.mission_file import write_mission
 from argo_compiler.files.writing import write_folder
 from argo_planner.cli import app
@@ -174,6 +174,13 @@ def test_a_dash_is_standard_output(command: str) -> None:
     assert not Path("-").exists()
     invoke(command.format("kept.json"))
     assert shown.stdout == Path("kept.json").read_text(encoding="utf-8")
+
+
+@pytest.mark.usefixtures("folder")
+def test_only_one_text_is_shown() -> None:
+    for command in ("route m.json -o -", "export m.json --to flexbe -o -", "sites yard.yaml -o -"):
+        assert isinstance(invoke(command).exception, Invalid)
+    assert not Path("-").exists()
 
 
 @pytest.mark.usefixtures("folder")

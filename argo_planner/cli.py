@@ -147,8 +147,8 @@ def main() -> None:
     output = guard_output()
     try:
         status = _carry_out()
-        if output.failure is not None and status in {0, 1}:
-            status = _without_output(output.failure)
+        if output.failure is not None and status in {0, 1, 2}:
+            status = _without_output(output.failure, status)
         raise SystemExit(status)
     finally:
         gc.freeze()  # the process ends: all goes, and needs no search for what can go
@@ -183,10 +183,10 @@ def _status(error: BaseException) -> int:
     raise error
 
 
-def _without_output(failure: OSError) -> int:
-    """The exit status of a command whose output nobody has got."""
+def _without_output(failure: OSError, status: int) -> int:
+    """The exit status of a command whose output nobody has got; else it would be that `status`."""
     if failure.errno == errno.EPIPE:  # its reader has gone, and knows
-        return 141
+        return 2 if status == 2 else 141
     print(f"argo: the output can't be written: {failure.strerror}", file=sys.stderr)
     return 2
 

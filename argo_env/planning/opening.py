@@ -12,14 +12,14 @@ from threading import Lock
 from typing import TYPE_CHECKING, Any
 
 from argo_compiler.catalog import Catalog
-from argo_compiler.errors import Conflict
+from argo_compiler.errors import Conflict, Invalid
 from argo_compiler.files.reading import read_text
 from argo_compiler.stages import stage
 from argo_env.files import cache
 from argo_env.files.parts import NOWHERE, Parts
 from argo_env.planning.catalog import kept_catalog, make_catalog
 from argo_env.planning.code import digest_of_code
-from argo_env.robot.spec import RobotSpec, load_robot
+from argo_env.robot.spec import RobotSpec, checked_robot, load_robot
 from argo_env.site import Site, make_site
 from argo_env.site.family import Family, is_family, parse_family
 from argo_env.site.site import site_file
@@ -139,7 +139,9 @@ def open_site(reference: str = "umad", robot: RobotSpec | None = None) -> Opened
     Raises NotFound if there is no such site, and ArgoError, with the place in the file, if it makes
     no sense. That the robot can't drive there shows with the first path: see `prepare`.
     """
-    robot = robot or load_robot()
+    if not isinstance(reference, str):
+        raise Invalid(f"{reference!r} is no text: a site is opened by its name or its file's path")
+    robot = checked_robot(robot) if robot else load_robot()
     if is_family(reference):
         family = parse_family(reference)
         if parse_family(str(family)) == family:  # a text may lack digits

@@ -2,10 +2,11 @@
 
 import math
 import os
+from functools import lru_cache
 from pathlib import Path
 
 import yaml
-from pydantic import Field, ValidationError
+from pydantic import Field, ValidationError, model_validator
 
 from argo_compiler.errors import Invalid, NotFound
 from argo_compiler.model import Model
@@ -104,6 +105,20 @@ class RobotSpec(Model):
     calibration: Calibration = Calibration()
     """from `<name>.calibration.yaml`, where there is one"""
 
+    @model_validator(mode="after")
+    def _arm_is_its_models(self) -> "RobotSpec":
+        if odd := self.arm_stowed.keys() ^ self.arm_raised.keys():
+            raise ValueError(
+                f"arm_stowed and arm_raised name the same joints; in only one there are: "
+                f"{', '.join(sorted(odd))}"
+            )
+        if unknown := self.arm_stowed.keys() - _joints(self.urdf):
+            raise ValueError(
+                f"arm_stowed and arm_raised name joints of {self.urdf}; it has no "
+                f"{', '.join(sorted(unknown))}"
+            )
+        return self
+
     @property
     def turn_rate_radians(self) -> float:
         """rad/s."""
@@ -128,6 +143,27 @@ class RobotSpec(Model):
         its own (m/s)."""
         pace = self.calibration.pace(kind)
         return amount / ((told or self.told_speed(kind)) * pace.share) + pace.lost
+
+
+@lru_cache
+def _joints(urdf: str) -> frozenset[str]:
+    """The names of a model's joints; ValueError if there is no such model."""
+    from xml.etree import ElementTree as ET
+
+    try:
+        tree = ET.parse(robot_folder() / urdf)
+    except (OSError, ET.ParseError) as error:
+        raise ValueError(f"the robot's model {urdf} can't be read: {error}") from None
+    return frozenset(joint.get("name", "") for joint in tree.iter("joint"))
+
+
+def checked_robot(robot: RobotSpec) -> RobotSpec:
+    """The robot, if its description makes sense, which pydantic's `model_copy` does not look at;
+    else Invalid."""
+    try:
+        return RobotSpec.model_validate(dict(robot))
+    except ValidationError as error:
+        raise Invalid(f"robot {robot.name}: {error}") from error
 
 
 def load_robot(name: str = "tracker") -> RobotSpec:

@@ -17,7 +17,7 @@ from argo_env.run.observer import Observer
 from argo_env.run.record import RunRecord
 from argo_env.run.rig import check_spec
 from argo_env.run.simulation import LoggedEvents, Simulation
-from argo_env.run.spec import RunSpec
+from argo_env.run.spec import RunSpec, checked
 from argo_env.run.steering import check_given
 
 _log = logging.getLogger(__name__)
@@ -55,6 +55,7 @@ def simulate(
         ArgoError: the mission makes no sense on this site, there is no such site, drive or sensor,
             the site is not the spec's, or the journal can't be written.
     """
+    spec = checked(spec)
     site = site or open_site(spec.site)
     require_site(site, spec)
     check_spec(spec, site.site)

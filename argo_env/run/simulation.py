@@ -19,7 +19,7 @@ from argo_env.run.machine import Machine, OpenMachine
 from argo_env.run.observer import Observer
 from argo_env.run.record import RunRecord
 from argo_env.run.rig import Rig, fit_out
-from argo_env.run.spec import RunSpec
+from argo_env.run.spec import RunSpec, checked
 from argo_env.run.steering import (
     ReachIn,
     Steering,
@@ -69,7 +69,7 @@ class Simulation(Closing):
         or the past is not this run's: Conflict for a site or a machine that is not the spec's, or a
         machine that was used before.
         """
-        self._spec = spec
+        self._spec = spec = checked(spec)
         self._observers = tuple(observers)
         self._more = tuple(events)
         self._opened = False

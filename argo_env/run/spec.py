@@ -68,10 +68,25 @@ def read_spec(content: str | bytes, name: str = "the run's spec") -> RunSpec:
     try:
         return RunSpec.model_validate_json(content)
     except ValidationError as error:
-        fault = error.errors(include_url=False)[0]
-        place = format_path(fault["loc"])
-        said = message_of(fault, fault["loc"])
-        raise Invalid(f"{name}: {place + ': ' if place else ''}{said}") from None
+        raise _invalid(name, error) from None
+
+
+def checked(spec: RunSpec) -> RunSpec:
+    """The spec with the types that its fields have: pydantic's `model_copy` and `model_construct`
+    check nothing. Raises Invalid, with the field, for what is none."""
+    if not isinstance(spec, RunSpec):
+        raise Invalid(f"{spec!r} is no spec of a run: make it a RunSpec")
+    try:
+        return RunSpec.model_validate(dict(spec))
+    except ValidationError as error:
+        raise _invalid("the run's spec", error) from None
+
+
+def _invalid(name: str, error: ValidationError) -> Invalid:
+    fault = error.errors(include_url=False)[0]
+    place = format_path(fault["loc"])
+    said = message_of(fault, fault["loc"])
+    return Invalid(f"{name}: {place + ': ' if place else ''}{said}")
 
 
 def logged(*events: tuple[float, Event]) -> tuple[tuple[float, LoggedEvent], ...]:

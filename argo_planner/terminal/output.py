@@ -44,7 +44,7 @@ def _guarded(stream: TextIO | None) -> tuple[Output, io.TextIOWrapper]:
         # Where Python was asked not to buffer, there is nothing between them.
         output if stream.write_through else io.BufferedWriter(output),
         encoding=stream.encoding,
-        errors=stream.errors,
+        errors="backslashreplace",  # names need not be of a terminal's letters
         line_buffering=stream.line_buffering,
         write_through=stream.write_through,
     )

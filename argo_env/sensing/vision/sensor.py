@@ -7,7 +7,7 @@ from dataclasses import replace
 import numpy as np
 from numpy.typing import NDArray
 
-from argo_compiler.errors import Unavailable
+from argo_compiler.errors import Invalid, Unavailable
 from argo_compiler.extras import install_line
 from argo_env.robot.pose import BodyPose
 from argo_env.seeding import generator
@@ -54,13 +54,18 @@ class CameraSensor:
     name = "camera"
 
     def __init__(self, world: World, seed: int = 0) -> None:
-        """Raises ArgoError if OpenCV is not installed."""
+        """Raises ArgoError if OpenCV is not installed, or the robot's arm can't be aimed."""
         try:
             import cv2  # noqa: F401
         except ImportError as error:
             raise Unavailable(
                 f"the sensor `camera` needs OpenCV: {install_line('vision')}"
             ) from error
+        if missing := [joint for joint in JOINTS if joint not in world.robot.arm_raised]:
+            raise Invalid(
+                f"the sensor `camera` aims an arm with the joints {', '.join(JOINTS)}; robot "
+                f"{world.robot.name} has no {', '.join(missing)}: take the sensor `ideal`"
+            )
         self._world = world
         self._seed = seed
         self._solids: dict[int, tuple[Solid, ...]] = {}

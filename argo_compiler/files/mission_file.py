@@ -170,6 +170,8 @@ def _parse(source_name: str, text: str) -> tuple[Any, bool]:
         repeats = repeats or len(data) < len(pairs)
         return data
 
+    if not text.strip():
+        _refuse(source_name, "", [unplaced("file.not-json", "is empty", "name a mission's file")])
     try:
         return json.loads(text, object_pairs_hook=to_dict), repeats
     except json.JSONDecodeError as error:

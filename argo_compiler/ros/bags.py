@@ -133,7 +133,8 @@ def read_bag(path: Path, source_name: str | None = None) -> Mission:
     name = str(path) if source_name is None else source_name
     is_folder = os.path.isdir(path)
     if is_folder and not os.path.isfile(path / "metadata.yaml"):
-        _refuse(name, "file.directory", "is a directory", "name the mission file in it")
+        hint = "name the script, mission or bag in it; a rosbag2 folder has a metadata.yaml"
+        _refuse(name, "file.directory", "is a directory", hint)
     try:
         first = b"" if is_folder else _beginning(path)
     except FileError as error:

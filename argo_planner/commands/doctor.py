@@ -4,6 +4,7 @@ from typing import Annotated
 
 import typer
 
+from argo_compiler.errors import Unavailable
 from argo_env.files import cache
 from argo_planner.use_cases.doctor import examine
 
@@ -16,9 +17,7 @@ def show_health(
 ) -> None:
     """Show the version, the cache on disk, and which optional parts are installed."""
     if empty_cache:
-        freed = cache.contents().size
-        cache.empty()
-        print(f"cache: emptied, {_megabytes(freed)} freed")
+        _empty()
     found = examine()
     print(f"argo {found.version}, Python {found.python}, {found.system}")
     kept = found.cache
@@ -35,6 +34,18 @@ def show_health(
         else:
             print(f"{extra.name} ({extra.purpose}): installed")
     print(f"PyBullet: {'works' if found.physics is None else f'does not work: {found.physics}'}")
+
+
+def _empty() -> None:
+    """Raises Unavailable if anything is left, or there is no such folder to be had."""
+    before, why = cache.contents().size, cache.flaw()
+    cache.empty()
+    if why is not None or cache.contents().entries:
+        raise Unavailable(
+            f"{cache.cache_folder()}: the cache can't be emptied: {why or 'some of it is left'}; "
+            f"name a folder that can be written to ({cache.VARIABLE}), or let it be written to"
+        )
+    print(f"cache: emptied, {_megabytes(before)} freed")
 
 
 def _megabytes(size: int) -> str:

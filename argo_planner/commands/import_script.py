@@ -6,7 +6,7 @@ from typing import Annotated
 import typer
 
 from argo_compiler.errors import Invalid
-from argo_compiler.files.mission_file import mission_text
+from argo_compiler.files.mission_file import decode_mission, mission_text
 from argo_env.planning.opening import open_site
 from argo_planner.terminal.files import (
     STANDARD_OUTPUT,
@@ -33,8 +33,9 @@ def import_script(
 ) -> None:
     """Read a mission script, a bag or an isar mission, and write the mission as JSON."""
     upload = read_upload(script)
-    if kind_of(upload) is SourceKind.MISSION:
-        raise Invalid(f"{script} is no script: `argo run` and `argo compile` take missions")
+    if kind_of(upload) is SourceKind.MISSION and isinstance(upload.content, bytes):
+        decode_mission(upload.content, upload.name)  # says what is wrong with a broken one
+        raise Invalid(f"{script} is a mission already: `argo run` and `argo compile` take it")
     check_outputs([script, site], [output], force=force)
     if output != STANDARD_OUTPUT:
         require_mission_output(output)

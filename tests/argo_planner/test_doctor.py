@@ -55,6 +55,16 @@ def test_a_folder_that_can_not_be_used_is_named_with_the_reason(tmp_path, monkey
     monkeypatch.setenv(cache.VARIABLE, str(tmp_path / "file"))
     assert "nothing can be kept there, so each command builds its site anew: " in argo()
     assert examine().cache.flaw == "Not a directory"
+    refused = CliRunner().invoke(app, ["doctor", "--empty-cache"])
+    assert "the cache can't be emptied: Not a directory; name" in str(refused.exception)
+    assert "emptied, " not in refused.output
+
+
+def test_an_empty_variable_names_no_folder(monkeypatch):
+    monkeypatch.delenv(cache.VARIABLE)
+    usual = cache.cache_folder()
+    monkeypatch.setenv(cache.VARIABLE, "")
+    assert cache.cache_folder() == usual
 
 
 def test_all_extras_for_users_are_looked_at():

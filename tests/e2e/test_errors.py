@@ -90,7 +90,8 @@ def test_an_unknown_word_is_shown_in_its_line_with_what_was_expected(
         (["run", "sheet.txt", "--render", "film.avi"], ".mp4"),
         (["run", "sheet.txt", "--start-area", "2"], "area"),
         (["run", "mission.json"], "mission.json:1:"),
-        (["import", "mission.json", "-o", "m.json"], "is no script"),
+        (["import", "mission.json", "-o", "m.json"], "is not JSON"),
+        (["import", "whole.json", "-o", "m.json"], "whole.json is a mission already"),
         (["import", "sheet.txt", "-o", "sheet.txt"], "input"),
         (["import", "sheet.txt", "-o", "no/such/folder/m.json"], "m.json"),
         (["run", "sheet.txt", "--seed", "x"], "seed"),
@@ -102,6 +103,7 @@ def test_an_unknown_word_is_shown_in_its_line_with_what_was_expected(
 def test_a_bad_request_is_refused(argo, tmp_path: Path, arguments, says) -> None:
     (tmp_path / "sheet.txt").write_text(SHEET)
     (tmp_path / "mission.json").write_text("{not json")
+    (tmp_path / "whole.json").write_text('{"tasks": [{"name": "GO", "action": "MEASURE"}]}')
     (tmp_path / "bad.yaml").write_text("name: bad\ntitel: Bad\n")
     assert says in refused(argo(*arguments, cwd=tmp_path))
 

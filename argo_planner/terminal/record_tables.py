@@ -24,7 +24,8 @@ def show_record(record: RunRecord, console: Console) -> None:
     result = record.result
     limit = f" of at most {clock(result.max_duration)}" if result.max_duration else ""
     touches = f"{len(record.contacts)} contact{'s' if len(record.contacts) != 1 else ''}"
-    docked = {True: "docked", False: "not docked", None: "no docking asked for"}[result.docked]
+    not_docked = "not docked" if result.ended else "not docked yet"
+    docked = {True: "docked", False: not_docked, None: "no docking asked for"}[result.docked]
     console.print(
         f"{clock(result.duration)}{limit}, {result.distance:.1f} m, "
         f"{result.climbed:.1f} m climbed, {touches}, {docked}",

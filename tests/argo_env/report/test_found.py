@@ -84,6 +84,23 @@ def test_the_headline_counts_the_rows_and_says_what_came_of_them(simple, site):
     assert '<td data-name="found by">told</td>' in table
 
 
+def test_a_run_that_was_interrupted_is_not_shown_as_if_it_had_ended(simple, site):
+    fields = {"success": False, "ended": False, "docked": False}
+    result = simple.result.model_copy(update=fields)
+    text = section_of_summary(page(simple.model_copy(update={"result": result}), site))
+    assert '<span class="badge notice">Interrupted</span>' in text
+    assert '<div class="tile "><b>not yet</b><span>docked at the end</span></div>' in text
+    assert "<dd>not at its end</dd>" in text
+    stopped = result.model_copy(update={"ended": True})
+    text = section_of_summary(page(simple.model_copy(update={"result": stopped}), site))
+    assert '<div class="tile bad"><b>no</b><span>docked at the end</span></div>' in text
+    assert "<dd>stopped</dd>" in text
+
+
+def section_of_summary(text):
+    return re.search(r'<header id="summary">.*?</header>', text, re.DOTALL)[0]
+
+
 def test_what_tells_no_place_is_not_drawn_as_if_it_were_there(simple, site):
     at = simple.path[0]
     leak = Anomaly(

@@ -211,7 +211,7 @@ def _may_end_so(record: RunRecord) -> bool:
             return any(isinstance(f, EmergencyStop) and _there(f, now) for f in record.faults)
         return "stands still" in verdict and any(a.kind in answered for a in record.anomalies)
     given_up = record.result.outcome is not Outcome.COMPLETED
-    return given_up and any(a.kind in answered for a in record.findings)
+    return given_up and any(a.kind in answered for a in record.anomalies)
 
 
 def _was_over(record: RunRecord, number: int) -> bool:
@@ -230,7 +230,9 @@ def _was_over(record: RunRecord, number: int) -> bool:
             return not any(isinstance(f, PlatformAlarm) and _there(f, now) for f in faults)
         case "connection":
             everywhere = [
-                f for f in faults if isinstance(f, ConnectionLoss) and f.rect is f.floor is None
+                f
+                for f in faults
+                if isinstance(f, ConnectionLoss) and f.rect is None and f.floor is None
             ]
             return all(f.ends is not None and f.ends <= now for f in everywhere if f.begins <= now)
         case _:
@@ -242,7 +244,7 @@ def _told_again(record: RunRecord, site: Site) -> list[str]:
     """Findings of the robot itself, more than there were faults to lead to them."""
     said = []
     for source in sorted(_TOLD_ONCE):
-        own = [a for a in record.findings if a.source == source]
+        own = [a for a in record.anomalies if a.source == source and not a.over]
         for k, anomaly in enumerate(own):
             begun = {c.begins for a in own[: k + 1] for c in causes_of(a, record.faults, site)}
             if k >= len(begun) > 0:

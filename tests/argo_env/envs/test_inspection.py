@@ -113,6 +113,17 @@ def test_a_camera_that_fails_is_noticed_and_checkpoints_are_given_up(make):
     assert FINDING > 0
 
 
+def test_what_was_stopped_and_released_is_noticed_once(make):
+    env = make()
+    faults = [{"kind": "emergency_stop", "at": 30.0, "until": 40.0}]
+    observation, _ = env.reset(seed=2, options={"faults": faults})
+    farthest = int(np.argmax(np.where(observation["mask"], observation["travel"], 0)[:CHECKPOINTS]))
+    _, _, _, _, info = env.step(farthest)
+    assert info["time"] > 100
+    assert info["found"] == ("emergency_stop",)
+    assert info["terms"]["finding"] == FINDING
+
+
 def test_a_site_with_too_many_checkpoints_is_refused():
     with pytest.raises(ArgoError, match="20 checkpoints"):
         gym.make("argo/Inspect-v0", checkpoints=3, disable_env_checker=True)

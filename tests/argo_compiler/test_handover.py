@@ -125,7 +125,7 @@ def stand(progress):
 
 
 @pytest.mark.rule("H2", "H3", "H4", "H5")
-@settings(max_examples=examples(400), deadline=None)
+@settings(max_examples=examples(200), deadline=None)
 @given(missions(events=False), outcome_lists, st.integers(0, 60), st.data())
 def test_before_by_hand_and_after_are_the_whole_mission(mission, outcomes, at, data):
     assume(not has_errors(check(mission)))
@@ -160,7 +160,7 @@ def test_before_by_hand_and_after_are_the_whole_mission(mission, outcomes, at, d
 
 
 @pytest.mark.rule("H7")
-@settings(max_examples=examples(200), deadline=None)
+@settings(max_examples=examples(100), deadline=None)
 @given(missions(events=False), outcome_lists, st.integers(0, 60), st.integers(0, 30), st.data())
 def test_giving_back_is_a_progress_handed_over_and_gone_on_from(mission, outcomes, at, more, data):
     """A machine that was taken over and given back stands like one restored meanwhile."""

@@ -163,7 +163,7 @@ def test_any_task_of_a_chain_with_rounds_can_be_removed(seed):
     assert all(g.start == g.end == mission.tasks[0].name for g in mission.groups)
 
 
-@settings(max_examples=examples(800))
+@settings(max_examples=examples(300))
 @given(seeds, st.booleans())
 def test_a_task_that_is_added_is_carried_out_between_what_was_there(seed, plain):
     rng = random.Random(seed)

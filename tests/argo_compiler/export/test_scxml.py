@@ -134,13 +134,13 @@ class Chart:
         )
 
 
-@settings(max_examples=examples(50), deadline=None)
+@settings(max_examples=examples(30), deadline=None)
 @given(m.missions(), m.outcome_lists)
 def test_chart_does_what_the_executor_does(mission, outcomes):
     agrees(mission, outcomes)
 
 
-@settings(max_examples=examples(100), deadline=None)
+@settings(max_examples=examples(50), deadline=None)
 @given(
     m.missions(),
     m.outcome_lists,

@@ -180,13 +180,13 @@ class Pair:
         return commands
 
 
-@settings(max_examples=examples(200), deadline=None)
+@settings(max_examples=examples(100), deadline=None)
 @given(missions(), outcome_lists, scripts, st.booleans())
 def test_machine_does_what_the_rules_say(mission, outcomes, script, poll):
     run(mission, outcomes, script, poll)
 
 
-@settings(max_examples=examples(200), deadline=None)
+@settings(max_examples=examples(100), deadline=None)
 @given(busy_missions(), outcome_lists, busy_scripts)
 def test_interruptions_are_what_the_rules_say(mission, outcomes, script):
     run(mission, outcomes, script, poll=False)
@@ -219,7 +219,7 @@ def test_more_ticks_change_nothing(mission, outcomes, script):
 
 
 @pytest.mark.rule("H1", "H2")
-@settings(max_examples=examples(100), deadline=None)
+@settings(max_examples=examples(60), deadline=None)
 @given(missions(), outcome_lists, scripts, st.integers(0, 30), st.sampled_from([0, 0, 7]))
 def test_restored_machine_goes_on_alike(mission, outcomes, script, count, away):
     """Against a machine that a person pauses for as long as the other one is away."""

@@ -54,7 +54,8 @@ def test_a_draw_keeps_the_norms_and_has_what_was_asked_for(family):
     assert not refused & set(draw_site(family, refused=refused)[1].values())
 
 
-@settings(max_examples=examples(2), deadline=None)
+@pytest.mark.long
+@settings(max_examples=examples(5), deadline=None)
 @given(family=small_families)
 def test_every_place_is_reached_from_every_dock_and_back(family, robot, tmp_path_factory):
     navigator = generate(family)

@@ -47,8 +47,15 @@ def follow(drive, path, velocity=None, most=2000, start=None, world=None, touche
     return status, poses
 
 
-@pytest.mark.parametrize("up", [True, False], ids=["up", "down"])
-@pytest.mark.parametrize("tower", TOWERS)
+@pytest.mark.parametrize(
+    ("tower", "up"),
+    [
+        ("west", True),
+        ("east", False),
+        pytest.param("west", False, marks=pytest.mark.long),
+        pytest.param("east", True, marks=pytest.mark.long),
+    ],
+)
 def test_takes_a_storey_of_each_tower(drive, ground, navigator, robot, tower, up):
     """The west tower has one long flight, the east tower two and a landing with a turn."""
     (ax, ay), (bx, by) = TOWERS[tower]

@@ -46,11 +46,12 @@ def draw_site(site: Site, flaws: Sequence[Flaw] = (), standing: Standing | None 
     """A PNG of the floors side by side, with checkpoints, docking stations, places and stairs.
 
     Flaws are numbered where they show, and said below; with `standing`, which deck can be reached
-    is shaded, and which can't is hatched.
+    is shaded, and which can't is hatched, if any docking station is of use.
     """
     sheet = make_sheet(plans_of(site))
     image = sheet.image.copy()
-    if standing is not None:
+    shaded = standing is not None and standing.first_dock is not None
+    if standing is not None and shaded:
         for number in sheet.panels:
             _shade(image, sheet, number, standing)
     draw = ImageDraw.Draw(image)
@@ -67,7 +68,7 @@ def draw_site(site: Site, flaws: Sequence[Flaw] = (), standing: Standing | None 
     wrong = f": {len(flaws)} error{'s' if len(flaws) > 1 else ''}" if flaws else ""
     draw_headline(draw, f"{site.spec.title} ({site.name}){wrong}")
     _draw_north(draw)
-    _draw_legend(draw, sheet, bool(site.places), standing is not None, bool(flaws))
+    _draw_legend(draw, sheet, bool(site.places), shaded, bool(flaws))
     content = io.BytesIO()
     _with_text(image, flaws).reduce(FINER).save(content, "png")
     return content.getvalue()

@@ -248,6 +248,7 @@ def _unpatrolled(navigator: Navigator, floor: FloorSpec) -> Flaw:
         part, rect = min(floor.walkways.items(), key=lambda item: away(item[1], x, y))
         if away(rect, x, y) > TURN:
             continue  # no deck there
+        x, y = min(max(x, rect[0]), rect[2]), min(max(y, rect[1]), rect[3])
         marks.append(Mark(floor.number, float(x), float(y)))
         narrow.append(
             f"the {name} corner, {place(x, y)}, where `{part}` is {min(_size(rect)):.2f} m wide"

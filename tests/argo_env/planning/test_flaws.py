@@ -124,7 +124,7 @@ def fenced_off(site):
         ),
         (
             l_shaped,
-            "too narrow, or not free: the south-east corner, (8.80, 0.60), where `arm` is 0.80 m",
+            "too narrow, or not free: the south-east corner, (8.80, 1.00), where `arm` is 0.80 m",
         ),
         (
             lambda site: site["floors"][0].update(railed=True),

@@ -164,7 +164,8 @@ def _carry_out() -> int:
             ignore_signals()
             sys.stdout.flush()
     except BaseException as error:
-        if raised.came is not None:  # whatever has been made of it
+        told = isinstance(error, SystemExit) and error.code not in {None, 0}
+        if raised.came is not None and not told:  # whatever has been made of it
             print("argo: interrupted", file=sys.stderr)
             return raised.came.status
         return _status(error)

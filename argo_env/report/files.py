@@ -9,6 +9,7 @@ from argo_env.report.html import page
 from argo_env.run.record import RunRecord
 from argo_env.site import Site
 
+RECORD = "report.json"
 PAGE = "report.html"
 """the file of a report that a person opens"""
 
@@ -23,7 +24,7 @@ def write_report(record: RunRecord, site: Site, folder: Path) -> Path:
         raise Conflict(
             f"the record is of a run on site `{record.site}`, not on `{site.name}`: load that site"
         )
-    contents = {"report.json": to_json(record).encode(), PAGE: page(record, site).encode()}
+    contents = {RECORD: to_json(record).encode(), PAGE: page(record, site).encode()}
     try:
         write_folder(folder, contents)
     except OSError as error:

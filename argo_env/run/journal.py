@@ -30,6 +30,7 @@ VERSION = 3
 """of the journal's format"""
 MAX_BYTES = 1_000_000_000  # of a journal; the longest run takes some 20 MB
 _MARK = "argo journal"
+_FLAGS = os.O_RDWR | os.O_APPEND | os.O_CLOEXEC
 
 ModelT = TypeVar("ModelT", bound=Model)
 
@@ -103,7 +104,7 @@ class Journal(Observer, Closing):
         before = self.header.fingerprints
         source = self.header.spec.source
         now = fingerprints(site, self.header.spec)
-        if source is not None and not os.path.exists(source):
+        if source is not None and not os.path.isfile(source):
             now["mission file"] = before.get("mission file", "")
         changed = [
             f"{what} (was {before.get(what, 'absent')}, is {now.get(what, 'absent')})"
@@ -128,7 +129,7 @@ def fingerprints(site: OpenedSite, spec: RunSpec) -> dict[str, str]:
         for field, value in model.model_dump(mode="json").items():
             found[f"{what}'s {field}"] = _digest(json.dumps(value))
     source = None if spec.source is None else Path(spec.source)
-    if source is not None and os.path.exists(source):
+    if source is not None and os.path.isfile(source):  # a pipe can't be read once more
         try:
             found["mission file"] = _digest(source.read_bytes())
         except OSError as error:
@@ -167,7 +168,10 @@ def create_journal(path: Path, header: Header, replace: bool = False) -> Journal
     # The header is written under another name, so that a journal is never without it.
     draft = path.with_name(path.name + ".new")
     line = _line(0, header)
-    file = _open(draft, os.O_CREAT)
+    try:
+        file = os.open(draft, os.O_CREAT | _FLAGS, 0o644)
+    except OSError as error:
+        _refuse_writing(path, error)
     try:
         _lock(file, path)
         if os.path.exists(path) and not replace:
@@ -182,7 +186,7 @@ def create_journal(path: Path, header: Header, replace: bool = False) -> Journal
     except OSError as error:
         os.close(file)
         draft.unlink(missing_ok=True)
-        _refuse(path, f"can't be written: {error.strerror}; choose another place", kind=Unavailable)
+        _refuse_writing(path, error)
     except ArgoError:
         os.close(file)
         raise
@@ -270,9 +274,9 @@ def _payload(line: bytes) -> dict[str, object] | None:
     return data if isinstance(data, dict) else None
 
 
-def _open(path: Path, flags: int = 0) -> int:
+def _open(path: Path) -> int:
     try:
-        return os.open(path, flags | os.O_RDWR | os.O_APPEND | os.O_CLOEXEC, 0o644)
+        return os.open(path, _FLAGS)
     except FileNotFoundError:
         raise NotFound(
             f"{path}: there is no such journal: a run begins one", remedies=(Remedy.KEEP_JOURNAL,)
@@ -332,3 +336,7 @@ def _refuse(
     path: Path, message: str, *remedies: Remedy, kind: type[ArgoError] = Invalid
 ) -> NoReturn:
     raise kind(f"{path}: {message}", remedies=remedies) from None
+
+
+def _refuse_writing(path: Path, error: OSError) -> NoReturn:
+    _refuse(path, f"can't be written: {error.strerror}; choose another place", kind=Unavailable)

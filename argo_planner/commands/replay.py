@@ -13,9 +13,11 @@ from argo_env.formatting import clock
 from argo_env.pictures import check_film
 from argo_env.recording.reader import Recording, read_recording
 from argo_env.robot.spec import load_robot
+from argo_planner.terminal.conclusion import Conclusion
 from argo_planner.terminal.files import check_outputs
+from argo_planner.terminal.kept import Kept, require_no_unfinished
 from argo_planner.terminal.options import Force
-from argo_planner.terminal.run_display import conclude
+from argo_planner.terminal.signals import first_signal_deferred
 from argo_planner.terminal.verbosity import is_quiet
 from argo_planner.use_cases.reporting import REPORT_FILES
 
@@ -33,6 +35,8 @@ def replay(
     force: Force = False,
 ) -> None:
     """Show what was recorded of a run, and make its report and its film again."""
+    if not force:
+        require_no_unfinished(report)
     check_outputs([recording], [render], [(report, REPORT_FILES)], force)
     if render:
         check_film(render)
@@ -53,7 +57,10 @@ def replay(
         )
     count = sum(found.messages.values())
     took = f"Reading {count} messages took {time.monotonic() - begun:.1f} s."
-    conclude(record, found.site, load_robot(record.robot), took, report, render)
+    with first_signal_deferred() as interruption:
+        Conclusion(report, render, Kept(recording=recording), interruption).conclude(
+            record, found.site, load_robot(record.robot), took
+        )
 
 
 def _show_rest(recording: Recording) -> None:

@@ -1,6 +1,8 @@
 """`argo resume`: a run goes on from its journal."""
 
+import os
 import time
+from collections.abc import Callable
 from contextlib import ExitStack
 from pathlib import Path
 from typing import Annotated
@@ -18,17 +20,23 @@ from argo_env.run.record import RunRecord
 from argo_env.run.session import resume
 from argo_env.run.simulation import LoggedEvents
 from argo_env.run.spec import logged
+from argo_planner.terminal.conclusion import Conclusion
 from argo_planner.terminal.events import KINDS, parse_events
 from argo_planner.terminal.files import check_outputs
+from argo_planner.terminal.kept import JOURNAL, Kept, is_reported, require_no_unfinished
 from argo_planner.terminal.options import Force
-from argo_planner.terminal.run_display import RunDisplay, conclude
+from argo_planner.terminal.run_display import RunDisplay
+from argo_planner.terminal.signals import first_signal_deferred
 from argo_planner.terminal.verbosity import is_quiet
 from argo_planner.use_cases.reporting import REPORT_FILES
 
 
 def resume_run(
     journal: Annotated[
-        Path, typer.Argument(metavar="JOURNAL", help="the file that `argo run --journal` kept")
+        Path,
+        typer.Argument(
+            metavar="JOURNAL", help="the file that `argo run` kept, such as DIR/run.journal"
+        ),
     ],
     report: Annotated[
         Path | None, typer.Option("--report", metavar="DIR", help="folder for the report")
@@ -45,17 +53,32 @@ def resume_run(
         Path | None,
         typer.Option("--record", metavar="FILE.mcap", help="record the rest of the run"),
     ] = None,
+    render: Annotated[
+        Path | None,
+        typer.Option("--render", metavar="FILE.mp4|FILE.gif", help="film the whole run"),
+    ] = None,
     force: Force = False,
 ) -> None:
     """Go on with a run whose process has died, from its journal."""
-    check_outputs([journal], [recording], [(report, REPORT_FILES)], force)
+    check_outputs([journal], [recording, render], (), force)
     if recording:
         check_recording(recording)
-    if report:
-        make_folder(report)
+    if render:
+        from argo_env.pictures import check_film
+
+        check_film(render)
     events = logged(*parse_events(event or []))
     console = Console(stderr=True, highlight=False, quiet=is_quiet())
     with open_journal(journal) as book:
+        if report and not force:
+            if os.path.realpath(report / JOURNAL) != os.path.realpath(journal):
+                require_no_unfinished(report)
+            if not is_reported(book, report):
+                check_outputs([journal], (), [(report, REPORT_FILES)])
+        if report:
+            make_folder(report)
+        if events:
+            book.require_going_on()
         site = open_site(book.header.spec.site)
         book.require_unchanged(site)
         at = book.entries[-1].t if book.entries else 0.0
@@ -64,20 +87,27 @@ def resume_run(
         else:
             site.prepare()
             console.print(f"The run goes on at {at:g} s.")
-        begun = time.monotonic()
-        record, loss = _go_on(book, site, events, recording)
-    seconds = time.monotonic() - begun
-    speed = (record.result.duration - at) / max(1e-9, seconds)
-    took = f"The rest took {seconds:.1f} s: {speed:.0f} times real time."
-    if book.ended:
-        took = f"Reading the journal took {seconds:.1f} s."
-    if recording:
-        took += f"\nRecording: {escape(f'{recording}{loss}')}"
-    conclude(record, site.site, site.robot, took, report)
+        with first_signal_deferred() as interruption:
+            conclusion = Conclusion(report, render, Kept(journal), interruption)
+            begun = time.monotonic()
+            with conclusion.telling_the_way_on():
+                record, loss = _go_on(book, site, events, recording, interruption)
+            seconds = time.monotonic() - begun
+            speed = (record.result.duration - at) / max(1e-9, seconds)
+            took = f"The rest took {seconds:.1f} s: {speed:.0f} times real time."
+            if book.ended:
+                took = f"Reading the journal took {seconds:.1f} s."
+            if recording:
+                took += f"\nRecording: {escape(f'{recording}{loss}')}"
+            conclusion.conclude(record, site.site, site.robot, took)
 
 
 def _go_on(
-    book: Journal, site: OpenedSite, events: LoggedEvents, recording: Path | None
+    book: Journal,
+    site: OpenedSite,
+    events: LoggedEvents,
+    recording: Path | None,
+    interrupted: Callable[[], bool],
 ) -> tuple[RunRecord, str]:
     """The rest of the run, with its progress shown, and what its recording lacks."""
     spec = book.header.spec
@@ -89,5 +119,5 @@ def _go_on(
             source = Path(spec.source) if spec.source else None
             recorder = stack.enter_context(recording_to(recording, source, display.warn))
             observers.append(recorder)
-        record = resume(book, site, observers=observers, events=events)
+        record = resume(book, site, observers=observers, events=events, interrupted=interrupted)
     return record, f": {recorder.loss}" if recorder and recorder.loss else ""

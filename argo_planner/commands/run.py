@@ -2,6 +2,7 @@
 
 import os
 import time
+from collections.abc import Callable
 from contextlib import ExitStack
 from dataclasses import dataclass
 from pathlib import Path
@@ -22,11 +23,14 @@ from argo_env.run.record import RunRecord
 from argo_env.run.session import simulate
 from argo_env.run.spec import RunSpec, logged
 from argo_planner.terminal.completion import among
+from argo_planner.terminal.conclusion import Conclusion
 from argo_planner.terminal.events import KINDS, parse_events, parse_values
 from argo_planner.terminal.files import check_outputs, read_upload
 from argo_planner.terminal.importing import import_shown
+from argo_planner.terminal.kept import JOURNAL, Kept, require_no_unfinished
 from argo_planner.terminal.options import EndArea, Force, Optimise, SiteOption, Source, StartArea
-from argo_planner.terminal.run_display import RunDisplay, conclude
+from argo_planner.terminal.run_display import RunDisplay
+from argo_planner.terminal.signals import first_signal_deferred
 from argo_planner.use_cases.reporting import REPORT_FILES
 from argo_planner.use_cases.running import NO_MISSION, require_possible, with_mission
 
@@ -48,15 +52,20 @@ class _Outputs:
     force: bool
     """whether what is there already is replaced"""
 
+    @property
+    def keeping(self) -> Path | None:
+        """The journal: the one that is named, or one in the report's folder."""
+        return self.journal or (self.report and self.report / JOURNAL)
+
     def check(self, *inputs: Path | str | None) -> None:
         """Raises ArgoError where something can't be written, or is one of the inputs; folders are
         made now."""
-        if self.journal:
-            require_free(self.journal, self.force)
+        if not self.force:
+            require_no_unfinished(self.report, self.journal)
         check_outputs(
             [self.source, *inputs],
             [self.render, self.recording, self.journal],
-            [(self.report, REPORT_FILES)],
+            [(self.report, REPORT_FILES if self.journal else (*REPORT_FILES, JOURNAL))],
             self.force,
         )
         if self.pace is not None and not self.gui:
@@ -72,6 +81,8 @@ class _Outputs:
             check_recording(self.recording)
         if self.report:
             make_folder(self.report)
+        if self.keeping:
+            require_free(self.keeping, self.force)
 
 
 def run(
@@ -115,7 +126,10 @@ def run(
     journal: Annotated[
         Path | None,
         typer.Option(
-            "--journal", metavar="FILE", help="keep the run on disk, for `argo resume FILE`"
+            "--journal",
+            metavar="FILE",
+            help=f"keep the run on disk, for `argo resume FILE`; with --report, DIR/{JOURNAL} if "
+            "not given",
         ),
     ] = None,
     gui: Annotated[bool, typer.Option("--gui", help="open PyBullet's window")] = False,
@@ -165,22 +179,31 @@ def run(
     spec = with_mission(spec, imported, reordering)
     opened.prepare()
     loaded = time.monotonic()
-    record, loss = _carry_out(spec, opened, outputs)
-    ended = time.monotonic()
-    took = (
-        f"Loading took {loaded - started:.1f} s, the run {ended - loaded:.1f} s: "
-        f"{record.result.duration / max(1e-9, ended - loaded):.0f} times real time."
+    with first_signal_deferred() as interruption:
+        conclusion = Conclusion(report, render, Kept(outputs.keeping, recording), interruption)
+        with conclusion.telling_the_way_on():
+            record, loss = _carry_out(spec, opened, outputs, interruption)
+        took = _took(record, loaded - started, time.monotonic() - loaded)
+        if recording:
+            took += f"\nRecording: {escape(f'{recording}{loss}')}"
+        conclusion.conclude(record, opened.site, opened.robot, took)
+
+
+def _took(record: RunRecord, loading: float, running: float) -> str:
+    """How long loading and running took (s), in words."""
+    return (
+        f"Loading took {loading:.1f} s, the run {running:.1f} s: "
+        f"{record.result.duration / max(1e-9, running):.0f} times real time."
     )
-    if recording:
-        took += f"\nRecording: {escape(f'{recording}{loss}')}"
-    conclude(record, opened.site, opened.robot, took, report, render)
 
 
 def _read_faults(path: Path) -> FaultText:
     return decode_faults(read_bytes(path, "file of faults", MAX_BYTES), str(path))
 
 
-def _carry_out(spec: RunSpec, site: OpenedSite, outputs: _Outputs) -> tuple[RunRecord, str]:
+def _carry_out(
+    spec: RunSpec, site: OpenedSite, outputs: _Outputs, interrupted: Callable[[], bool]
+) -> tuple[RunRecord, str]:
     """The run, with its progress shown, and what its recording lacks."""
     recorder = None
     with ExitStack() as stack:
@@ -197,9 +220,10 @@ def _carry_out(spec: RunSpec, site: OpenedSite, outputs: _Outputs) -> tuple[RunR
             spec,
             site,
             observers=observers,
-            journal=outputs.journal,
+            journal=outputs.keeping,
             replace=outputs.force,
             gui=outputs.gui,
             pace=(outputs.pace or DEFAULT_PACE) if outputs.gui else None,
+            interrupted=interrupted,
         )
     return record, f": {recorder.loss}" if recorder and recorder.loss else ""

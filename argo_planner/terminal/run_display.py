@@ -1,29 +1,21 @@
-"""What a person sees of a run: its progress and readings while it goes on, then its results."""
+"""What a person sees of a run while it goes on: its progress and readings."""
 
-from pathlib import Path
 from typing import Self
 
-import typer
 from rich.console import Console
 from rich.markup import escape
 from rich.progress import BarColumn, Progress, TextColumn, TimeElapsedColumn
 
 from argo_env.closing import Closing
-from argo_env.faults.kinds import changed_site
-from argo_env.report.files import PAGE
-from argo_env.robot.spec import RobotSpec
 from argo_env.run.action import ActionUnderWay
 from argo_env.run.log import Entry
 from argo_env.run.machine import Machine
 from argo_env.run.observer import Observer
-from argo_env.run.record import Anomaly, Reading, RunRecord
+from argo_env.run.record import Anomaly, Reading
 from argo_env.run.rig import Rig
 from argo_env.run.spec import RunSpec
 from argo_env.site import Site
-from argo_planner.terminal.files import write_content
-from argo_planner.terminal.record_tables import show_record
 from argo_planner.terminal.verbosity import is_quiet
-from argo_planner.use_cases.reporting import report_files
 
 
 class RunDisplay(Observer, Closing):
@@ -31,7 +23,7 @@ class RunDisplay(Observer, Closing):
 
     def __init__(self, total: float | None) -> None:
         """`total`: the mission's longest duration (s), if it has one."""
-        self._progress = _progress()
+        self._progress = progress_bar()
         self._bar = self._progress.add_task("setting off", total=total)
         self._site: Site | None = None
 
@@ -81,44 +73,8 @@ class RunDisplay(Observer, Closing):
         self._progress.stop()
 
 
-def conclude(
-    record: RunRecord,
-    site: Site,
-    robot: RobotSpec,
-    took: str,
-    report: Path | None,
-    render: Path | None = None,
-) -> None:
-    """Shows the results and writes what was asked for; exits with status 1 if it is no success."""
-    console = Console()
-    show_record(record, console)
-    if not is_quiet():
-        console.print(took, soft_wrap=True)
-    if report:
-        write_content(report, report_files(record, site, robot))
-        console.print(f"Report: {escape(str(report / PAGE))}", soft_wrap=True)
-    if render:
-        _film(record, site, robot, render)
-        console.print(f"Film: {escape(str(render))}", soft_wrap=True)
-    if not record.result.success:
-        raise typer.Exit(1)
-
-
-def _film(record: RunRecord, site: Site, robot: RobotSpec, file: Path) -> None:
-    from argo_env.pictures import write_film
-
-    with _progress() as progress:
-        bar = progress.add_task("filming", total=1.0)
-        write_film(
-            record,
-            changed_site(site, record.faults),
-            robot,
-            file,
-            progress=lambda share: progress.update(bar, completed=share),
-        )
-
-
-def _progress() -> Progress:
+def progress_bar() -> Progress:
+    """A bar on standard error, gone when it ends; nothing where only results are to be shown."""
     return Progress(
         TextColumn("{task.description:<24}"),
         BarColumn(),

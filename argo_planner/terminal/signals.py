@@ -27,7 +27,7 @@ class Interrupted(BaseException):
         """that the process exits with, as shells tell it"""
 
 
-class Interruption:
+class SignalWatch:
     """Whether a signal has come. Holds it."""
 
     def __init__(self) -> None:
@@ -35,6 +35,11 @@ class Interruption:
 
     def __call__(self) -> bool:
         return self.came is not None
+
+    def require_none(self) -> None:
+        """Raises Interrupted if one has come."""
+        if self.came is not None:
+            raise self.came
 
 
 def end_at_once() -> None:
@@ -48,10 +53,10 @@ def ignore_signals() -> None:
         signal.signal(number, signal.SIG_IGN)
 
 
-def raise_interrupted() -> Interruption:
+def raise_interrupted() -> SignalWatch:
     """From now on a signal raises Interrupted, wherever the program is. What is returned says later
     whether that has happened, as what a library makes of it may be another exception."""
-    raised = Interruption()
+    raised = SignalWatch()
 
     def interrupt(number: int, _: FrameType | None) -> None:
         raised.came = Interrupted(number)
@@ -72,10 +77,10 @@ def raise_interrupted() -> Interruption:
 
 
 @contextmanager
-def first_signal_deferred() -> Iterator[Interruption]:
+def first_signal_deferred() -> Iterator[SignalWatch]:
     """Within the context the first signal is only noted, and what it gives says so; the next one is
     answered as before."""
-    deferred = Interruption()
+    deferred = SignalWatch()
     before = {number: signal.getsignal(number) for number in _NUMBERS}
 
     def restore() -> None:

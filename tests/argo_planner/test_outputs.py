@@ -8,7 +8,7 @@ from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 from typer.testing import CliRunner
 
-from argo_compiler.errors import ArgoError, Conflict, Invalid, Remedy, Unavailable
+from argo_compiler.errors import ArgoError, Conflict, Invalid, Remedy
 from argo_compiler.files.mission_file import write_mission
 from argo_compiler.files.writing import write_folder
 from argo_planner.cli import app
@@ -34,7 +34,7 @@ SCRIPT = "Mission Protocol #1\n1. Start in starting area 1.\n2. Check checkpoint
         ("export m.json --to flexbe -o m.json", "is a file"),
         ("route m.json --requirements r.yaml -o r.yaml", "is the input"),
         ("run m.json --record m.json", "m.json"),
-        ("run m.json --faults f.yaml --journal f.yaml", "is there already"),
+        ("run m.json --faults f.yaml --journal f.yaml", "is the input"),
         ("run m.json --faults f.yaml --journal f.yaml --force", "is the input"),
         ("run m.json --journal new.mcap --record new.mcap", "twice"),
         ("run m.json --report m.json", "is a file"),
@@ -223,10 +223,12 @@ def test_an_old_report_stays_whole_where_the_disk_is_full(room: int) -> None:
         old = {"report/report.html": b"old", "report/report.json": b"old", "report/my.txt": b"old"}
         write_folder(disk, old)
         filler = fill(disk, leave=room * 4096)
-        error = invoke(f"run m.json --drive route --force --report {disk / 'report'}").exception
+        report = disk / "report"
+        result = invoke(f"run m.json --drive route --force --journal kept --report {report}")
         filler.unlink()
-        after = contents(disk)
-        assert {name: after[name] for name in old} == old
-        assert not [path for path in disk.rglob("*") if path.name.startswith(".")]
-    assert isinstance(error, Unavailable)
-    assert "No space left on device" in str(error)
+        assert contents(disk) == old
+        assert sorted(path.name for path in disk.iterdir()) == ["report"]
+    assert result.exit_code == 2
+    assert "MEASURE 1" in result.stdout
+    assert "No space left on device" in result.stderr
+    assert result.stderr.endswith(f"made by: argo resume kept --report {report}\n")

@@ -2,6 +2,7 @@
 
 import json
 import os
+import signal
 import subprocess
 import sys
 from collections.abc import Callable, Iterator
@@ -35,10 +36,16 @@ class ForkedArgo:
         output, errors = (file.read_text(encoding="utf-8") for file in files)
         return subprocess.CompletedProcess(arguments, status, output, errors)
 
-    def kill(self, *arguments: object, output: Path, after: float | None) -> int:
-        """Runs a command, adds what it prints to a file and kills it after a time (s); its exit
-        status, -9 if it was killed."""
-        return self._carry_out(arguments, ROOT, output, output, after)
+    def kill(
+        self,
+        *arguments: object,
+        output: Path,
+        after: float | None,
+        number: signal.Signals = signal.SIGKILL,
+    ) -> int:
+        """Runs a command, adds what it prints to a file and kills it after a time (s), or sends it
+        another signal; its exit status, -9 if it was killed."""
+        return self._carry_out(arguments, ROOT, output, output, after, number)
 
     def open(self, site: object) -> None:
         """Makes a site ready for all later commands."""
@@ -51,6 +58,7 @@ class ForkedArgo:
         stdout: Path,
         stderr: Path,
         after: float | None,
+        number: signal.Signals = signal.SIGKILL,
     ) -> int:
         return self._ask(
             {
@@ -60,6 +68,7 @@ class ForkedArgo:
                 "stdout": str(stdout),
                 "stderr": str(stderr),
                 "after": after,
+                "signal": number,
             }
         )
 

@@ -3,12 +3,12 @@
 Loads the commands once. Then each line of standard input is a JSON object: `{"open": site}` makes
 a site ready for all that follow; any other is a command that a forked process carries out:
 `arguments`, `cwd`, `environment`, the files that `stdout` and `stderr` are added to, and `after`
-how many seconds it is killed if it still runs (null: never). The answer is the exit status.
+how many seconds it is sent the `signal` if it still runs (null: never). The answer is the exit
+status.
 """
 
 import json
 import os
-import signal
 import sys
 import time
 import traceback
@@ -18,11 +18,13 @@ from typing import Any
 
 from argo_env.planning import open_site
 from argo_planner.cli import ArgoCommands, main
+from argo_planner.terminal.signals import end_at_once
 
 
 def serve() -> None:
     for command in ArgoCommands.lazy_commands:
         import_module(command.module)
+    end_at_once()  # as `argo` itself begins
     kept = []
     for line in sys.stdin:
         request = json.loads(line)
@@ -35,7 +37,10 @@ def serve() -> None:
         if child == 0:
             # Not `exit`: the parent's buffers and handlers are not ours.
             os._exit(_status(lambda request=request: _carry_out(request)))
-        print(os.waitstatus_to_exitcode(_end_of(child, request["after"])), flush=True)
+        print(
+            os.waitstatus_to_exitcode(_end_of(child, request["after"], request["signal"])),
+            flush=True,
+        )
 
 
 def _carry_out(request: dict[str, Any]) -> None:
@@ -68,8 +73,9 @@ def _status(act: Callable[[], None]) -> int:
     return 1
 
 
-def _end_of(child: int, after: float | None) -> int:
-    """Waits for the end of a process, and kills it after a time (s) if it has not come by then."""
+def _end_of(child: int, after: float | None, number: int) -> int:
+    """Waits for the end of a process, and sends it a signal after a time (s) if it has not come by
+    then."""
     deadline = time.monotonic() + (after or 0.0)
     while after is not None and time.monotonic() < deadline:
         ended, status = os.waitpid(child, os.WNOHANG)
@@ -77,7 +83,7 @@ def _end_of(child: int, after: float | None) -> int:
             return status
         time.sleep(0.001)
     if after is not None:
-        os.kill(child, signal.SIGKILL)
+        os.kill(child, number)
     return os.waitpid(child, 0)[1]
 
 

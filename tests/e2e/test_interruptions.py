@@ -2,13 +2,34 @@
 shown."""
 
 import os
+import random
+import re
+import shlex
 import signal
 import subprocess
 import sys
+import time
+from itertools import count
 from pathlib import Path
 
 import pytest
+import yaml
 
+from argo_compiler.files.mission_file import write_mission
+from argo_env.run.journal import open_journal
+from argo_env.run.record import RunRecord
+from tests.e2e.test_journal import (
+    ANNOUNCED,
+    LONGEST,
+    OPTIONS,
+    PLAN,
+    announced,
+    require_complete,
+    settings,
+)
+from tests.yard import SITE, measure, mission, simulated, yard
+
+INTERRUPTIONS = 50
 FULL = Path("/dev/full")
 STATUS = {signal.SIGINT: 130, signal.SIGTERM: 143}
 
@@ -93,3 +114,186 @@ def test_output_that_has_no_room_is_told(arguments: list[str]) -> None:
         said = process.stderr.read()
     assert process.returncode == 2
     assert said == "argo: the output can't be written: No space left on device\n"
+
+
+@pytest.fixture(scope="module")
+def folder(tmp_path_factory, argo) -> Path:
+    folder = tmp_path_factory.mktemp("interrupted")
+    (folder / "yard.yaml").write_text(yaml.safe_dump(SITE), encoding="utf-8")
+    write_mission(PLAN, folder / "plan.json")
+    write_mission(mission(measure(1)), folder / "short.json")
+    argo.open(folder / "yard.yaml")
+    return folder
+
+
+@pytest.fixture(scope="module")
+def navigator():
+    return yard()
+
+
+def run_of(folder: Path, seed: int = 3) -> tuple[object, ...]:
+    """The arguments of a run of the plan."""
+    return (
+        "run", folder / "plan.json", "--site", folder / "yard.yaml", "--seed", seed, *OPTIONS,
+    )  # fmt: skip
+
+
+def reported(folder: Path) -> RunRecord:
+    return RunRecord.model_validate_json((folder / "report.json").read_bytes())
+
+
+def interrupted_when_it_reads(number: int, *arguments: object) -> tuple[int, str, str]:
+    """What comes of a run that gets the signal when it has told its first reading: the exit status,
+    and what it has printed."""
+    with started(*arguments) as process:
+        said = ""
+        while not ANNOUNCED.match(line := process.stderr.readline()):
+            assert line, said
+            said += line
+        process.send_signal(number)
+        said += line + process.stderr.read()
+        shown = process.stdout.read()
+    assert "Traceback" not in said + shown
+    return process.returncode, shown, said
+
+
+def test_an_interrupted_run_is_reported_and_goes_on(argo, folder, navigator, tmp_path) -> None:
+    report = tmp_path / "re port"
+    status, shown, said = interrupted_when_it_reads(
+        signal.SIGINT, *run_of(folder), "--report", report
+    )
+    assert status == 130
+    assert "MEASURE 1" in shown
+    assert "the mission is not at its end after" in shown
+    so_far = reported(report)
+    assert not so_far.result.ended
+    assert len(so_far.readings) == len(ANNOUNCED.findall(said)) > 0
+    last = said.splitlines()[-1]
+    assert re.match(r"argo: interrupted at \d+ s; go on with: argo resume ", last)
+    go_on = shlex.split(last.partition("go on with: argo ")[2])
+    assert go_on == ["resume", str(report / "run.journal"), "--report", str(report)]
+
+    refused = argo(*run_of(folder), "--report", report)
+    assert refused.returncode == 2
+    assert f"go on with it: {last.partition('with: ')[2]}" in refused.stderr
+    with open_journal(report / "run.journal"):
+        refused = argo(*run_of(folder), "--report", report, "--force")
+    assert (refused.returncode, refused.stderr.count("in use")) == (2, 1)
+    assert reported(report) == so_far
+
+    result = argo(*go_on)
+    assert result.returncode == 0, result.stderr
+    record = reported(report)
+    told = [
+        (float(t), task, int(id), float(value))
+        for t, task, id, value in ANNOUNCED.findall(said + result.stderr)
+    ]
+    require_complete(record, simulated(PLAN, navigator, **settings(3)), told)
+    assert record.readings[: len(so_far.readings)] == so_far.readings
+
+    again = argo("resume", report / "run.journal", "--report", report)
+    assert (again.returncode, reported(report)) == (0, record)
+    late = argo("resume", report / "run.journal", "--event", "5=pause")
+    assert (late.returncode, late.stderr.count("the run has ended, at")) == (2, 1)
+    # What was finished is not replaced by a run that tells something else.
+    (report / "other.journal").write_bytes(
+        b"".join((report / "run.journal").read_bytes().splitlines(keepends=True)[:20])
+    )
+    kept = argo("resume", report / "other.journal", "--report", report)
+    assert (kept.returncode, kept.stderr.count("is there already")) == (2, 1)
+    assert reported(report) == record
+
+
+def test_an_interrupted_run_that_is_recorded_only(argo, folder, tmp_path) -> None:
+    recording = tmp_path / "run.mcap"
+    status, shown, said = interrupted_when_it_reads(
+        signal.SIGTERM, *run_of(folder), "--record", recording
+    )
+    assert status == 143
+    assert "nothing is kept to go on from, as --report or --journal would have it" in said
+    assert f"what was done is shown by: argo replay {recording};" in said
+    again = argo("replay", recording, "--report", tmp_path / "again")
+    assert again.returncode == 1
+    verdict = next(line for line in shown.splitlines() if "not at its end" in line)
+    assert verdict in again.stdout
+    assert not reported(tmp_path / "again").result.ended
+
+
+def test_interrupted_before_the_first_step(argo, folder, navigator, tmp_path) -> None:
+    report = tmp_path / "report"
+    with started(*run_of(folder), "--report", report) as process:
+        while not (report / "run.journal").exists():
+            assert process.poll() is None
+            time.sleep(0.001)
+        process.send_signal(signal.SIGINT)
+        shown, said = process.communicate()
+    assert (process.returncode, "Traceback" in said) == (130, False)
+    assert "not at its end" in shown
+    assert not reported(report).result.ended
+    result = argo("resume", report / "run.journal", "--report", report)
+    assert result.returncode == 0, result.stderr
+    require_complete(reported(report), simulated(PLAN, navigator, **settings(3)), ())
+
+
+@pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM], ids=lambda n: n.name)
+def test_a_search_for_the_best_order_is_interrupted(missions: Path, number) -> None:
+    environment = {**os.environ, "PYTHONPROFILEIMPORTTIME": "1"}
+    sheet = missions / "any_order.txt"
+    with started("route", sheet, "--time-limit", 100, env=environment) as process:
+        for line in process.stderr:
+            if line.endswith(" ortools.sat.python.cp_model\n"):
+                process.send_signal(number)
+            assert "Traceback" not in line
+    assert process.returncode == STATUS[number]
+
+
+@pytest.mark.parametrize("closed", [True, False], ids=["closed", "full"])
+def test_a_run_whose_output_goes_nowhere_is_reported(folder, tmp_path, closed: bool) -> None:
+    reading, writing = os.pipe()
+    os.close(reading)
+    if not closed:
+        os.close(writing)
+        writing = os.open(FULL, os.O_WRONLY)
+    short = ("run", folder / "short.json", "--site", folder / "yard.yaml")
+    with started(*short, "--report", tmp_path / "report", stdout=writing) as process:
+        os.close(writing)
+        said = process.stderr.read()
+    assert process.returncode == (141 if closed else 2)
+    assert "Traceback" not in said
+    assert said.count("the output can't be written") == (0 if closed else 1)
+    assert reported(tmp_path / "report").result.success
+
+
+@pytest.mark.long
+def test_runs_that_are_interrupted_lose_nothing(argo, folder, navigator) -> None:
+    """At random moments, from the first one on."""
+    rng = random.Random(16)
+    sent, statuses, seeds = 0, [], count()
+    while sent < INTERRUPTIONS:
+        seed = next(seeds)
+        report = folder / f"report {seed}"
+        told, status = [], None
+        for process in count():
+            output = folder / f"{seed}-{process}.txt"
+            journal = report / "run.journal"
+            begin = ("resume", journal) if journal.exists() else run_of(folder, seed)
+            number = rng.choice(list(STATUS))
+            after = rng.uniform(0.0, LONGEST) if sent < INTERRUPTIONS else None
+            status = argo.kill(
+                *begin, "--report", report, output=output, after=after, number=number
+            )
+            said = output.read_text(encoding="utf-8") if output.exists() else ""
+            assert "Traceback" not in said
+            assert "ignored" not in said
+            told += announced(output)
+            statuses.append(status)
+            if status == 0:
+                break
+            assert status == STATUS[number], said
+            sent += 1
+            if journal.exists() and "go on with" in said:
+                assert {(r.t, r.task) for r in reported(report).readings} >= {
+                    (t, task) for t, task, *_ in told
+                }
+        require_complete(reported(report), simulated(PLAN, navigator, **settings(seed)), told)
+    print(f"{sent} interruptions, {statuses.count(0)} runs to their end")

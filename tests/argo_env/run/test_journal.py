@@ -13,7 +13,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 import argo_env.run.journal
-from argo_compiler.errors import ArgoError, Conflict, Remedy
+from argo_compiler.errors import ArgoError, Conflict, Remedy, Unavailable
 from argo_compiler.hfsm import (
     ActionFailed,
     ActionStopped,
@@ -223,7 +223,7 @@ def test_interrupted_after_any_step(navigator, whole, tmp_path):
     """The record is the reference's so far, and the journal goes on to all of it."""
     reference, path = whole.record, tmp_path / "run.journal"
     steps = round(reference.result.duration / 0.1)
-    for n in range(0, steps, 1 if CAMPAIGN else 61):
+    for n in range(0, steps, 1 if CAMPAIGN else 101):
         path.unlink(missing_ok=True)
         looks = count()
         with create_journal(path, header(navigator)) as journal:
@@ -440,6 +440,11 @@ class TestRefusals:
         assert (caught.value.remedies, caught.value.about) == ((Remedy.RESUME,), str(path))
         assert path.read_bytes() == before
         assert list(tmp_path.iterdir()) == [path]
+
+    @pytest.mark.skipif(not Path("/proc").is_dir(), reason="needs a folder without room for files")
+    def test_a_place_where_nothing_can_be_made_is_named_as_it_was_given(self, navigator):
+        with pytest.raises(Unavailable, match=r"^/proc/j: .*choose another"):
+            create_journal(Path("/proc/j"), header(navigator))
 
     def test_killed_while_the_first_line_was_written(self, navigator, tmp_path):
         """The draft of the first line that another process has left is no obstacle."""

@@ -1,0 +1,120 @@
+"""The end of a run: what was asked for is written, then shown; what is missing is said."""
+
+from pathlib import Path
+
+import pytest
+import typer
+
+from argo_env.pictures import write_film
+from argo_planner.terminal.conclusion import Conclusion
+from argo_planner.terminal.kept import Kept
+from argo_planner.terminal.signals import Interrupted, SignalWatch
+from argo_planner.use_cases.reporting import REPORT_FILES
+from tests.yard import fast_rig, measure, mission, run_with, yard
+
+
+@pytest.fixture(scope="module")
+def navigator():
+    return yard()
+
+
+@pytest.fixture(scope="module")
+def record(navigator):
+    return run_with(mission(measure(1)), fast_rig(navigator))
+
+
+@pytest.fixture
+def conclude(record, navigator, tmp_path, monkeypatch, capsys):
+    """Ends the run, which is kept in `run.journal`; the exit status and what is printed."""
+    monkeypatch.chdir(tmp_path)
+    Path("run.journal").write_text("the run")
+    files = dict.fromkeys(REPORT_FILES, b"in short")
+    monkeypatch.setattr("argo_planner.terminal.conclusion.report_files", lambda *_: files)
+
+    def end(report=None, render=None, kept=Kept(Path("run.journal")), came=None):  # noqa: B008
+        interruption = SignalWatch()
+        interruption.came = came
+        status = 0
+        try:
+            Conclusion(
+                report and Path(report), render and Path(render), kept, interruption
+            ).conclude(record, navigator.site, navigator.robot, "It took no time.")
+        except typer.Exit as end:
+            status = end.exit_code
+        return status, *capsys.readouterr()
+
+    return end
+
+
+def test_the_results_are_written_before_they_are_shown(conclude, monkeypatch):
+    def full(*_, **__):
+        raise Interrupted(2)
+
+    monkeypatch.setattr("argo_planner.terminal.conclusion.show_record", full)
+    with pytest.raises(Interrupted):
+        conclude(report="report")
+    assert {path.name for path in Path("report").iterdir()} == set(REPORT_FILES)
+
+
+def test_a_report_that_cannot_be_written(conclude):
+    Path("report/report.html").mkdir(parents=True)
+    status, shown, said = conclude(report="report")
+    assert status == 2
+    assert "MEASURE 1" in shown
+    assert "Is a directory" in said
+    assert said.endswith(
+        "argo: not written: report; made by: argo resume run.journal --report report\n"
+    )
+
+
+def test_a_report_that_cannot_be_written_of_a_run_that_was_not_kept(conclude):
+    Path("report/report.html").mkdir(parents=True)
+    status, _, said = conclude(report="report", kept=Kept())
+    assert (status, said.splitlines()[-1]) == (
+        2, "argo: not written: report, and the run was not kept",
+    )  # fmt: skip
+
+
+def test_the_report_is_still_written_when_the_process_is_interrupted_and_the_film_is_not(conclude):
+    status, shown, said = conclude("report", "run.gif", came=Interrupted(15))
+    assert status == 143
+    assert "Report: report/report.html" in shown
+    assert not Path("run.gif").exists()
+    assert said.endswith(
+        "argo: not written: run.gif; made by: argo resume run.journal --render run.gif\n"
+    )
+
+
+def test_an_interruption_when_all_is_written_changes_nothing(conclude):
+    status, shown, said = conclude("report", came=Interrupted(2))
+    assert status == 0
+    assert "Report: report/report.html" in shown
+    assert "not written" not in said
+
+
+def test_a_second_signal_ends_the_report(conclude, monkeypatch):
+    def interrupted(*_):
+        raise Interrupted(2)
+
+    monkeypatch.setattr("argo_planner.terminal.conclusion.report_files", interrupted)
+    status, shown, said = conclude("report", came=Interrupted(2))
+    assert status == 130
+    assert "MEASURE 1" in shown
+    assert said.endswith("made by: argo resume run.journal --report report\n")
+
+
+def test_a_film_is_interrupted_between_two_pictures(conclude, monkeypatch):
+    def filming(*arguments, progress, **options):
+        def told(share):
+            if share > 0.1:
+                raise Interrupted(2)
+            progress(share)
+
+        write_film(*arguments, progress=told, **options)
+
+    monkeypatch.setattr("argo_env.pictures.write_film", filming)
+    status, shown, said = conclude(render="run.gif", kept=Kept(recording=Path("run.journal")))
+    assert status == 130
+    assert "MEASURE 1" in shown
+    assert said.endswith("made by: argo replay run.journal --render run.gif\n")
+    assert [path.name for path in Path().iterdir()] == ["run.journal"]

@@ -163,7 +163,7 @@ def _fault(kind: str, record: RunRecord, rng: np.random.Generator) -> dict[str, 
             fault |= {"floor": sample.floor, "place": (x, y)}
         case "missing_plate":
             fault |= {"floor": sample.floor, "rect": around(0.3)}
-        case "gas_leak" | "hot_spot":
+        case "gas_leak":  # a hot spot is on equipment: in mid-air it is placed on what is behind
             fault["place"] = (round(x + 0.6, 2), round(y + 0.6, 2), round(sample.z + 0.9, 2))
         case "low_battery":
             fault["charge"] = round(float(rng.uniform(0.195, 0.21)), 4)

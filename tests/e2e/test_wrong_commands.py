@@ -88,7 +88,7 @@ WRONG = {
     "run s.txt --value 1=4.2bar": "4.2bar",
     "run s.txt --value gauge=3": "gauge",
     "run s.txt --value 1=1e99": "1e+99",
-    "run s.txt --value 77=1": "77",
+    "run s.txt --value 77=1": "has no checkpoint 77; there are: 1 to 20",
     "run s.txt --event gas_leak": "gas_leak",
     "run s.txt --event 60s=gas_leak": "60s",
     "run s.txt --event 60=gasleak": "gasleak",

@@ -24,11 +24,12 @@ class StageLines:
         now = self._clock()
         if stage != self._stage:
             self._stage, self._begun = stage, now
-        if stage is None or share is None or now - self._written < EVERY:
+        if stage is None or now - self._written < EVERY:
             return
         self._written = now
-        line = f"{stage}: {share:.0%}" + (f", {detail}" if detail else "")
-        if share > 0.0:
+        parts = [] if share is None else [f"{share:.0%}"]
+        parts += [detail] if detail else []
+        if share:
             left = (now - self._begun) * (1.0 - share) / share
-            line += f", about {left:.0f} s left"
-        self._write(line)
+            parts.append(f"about {left:.0f} s left")
+        self._write(f"{stage}: {', '.join(parts)}" if parts else f"{stage} …")

@@ -8,6 +8,7 @@ import typer
 from rich.console import Console
 from rich.markup import escape
 
+from argo_compiler.stages import stage
 from argo_env.files.folders import make_folder
 from argo_env.formatting import clock
 from argo_env.pictures import check_film
@@ -41,7 +42,8 @@ def replay(
     if render:
         check_film(render)
     begun = time.monotonic()
-    found = read_recording(recording)
+    with stage("reading the recording"):
+        found = read_recording(recording)
     if found.record is None and not (report or render):
         _show_rest(found)
         raise typer.Exit(1)

@@ -13,6 +13,7 @@ from argo_compiler.files.mission_file import write_mission
 from argo_compiler.files.reading import read_bytes
 from argo_compiler.reorder.requirements import Requirements, What
 from argo_compiler.route.robust_spread import CAUTIOUS, SIMULATED
+from argo_compiler.stages import stage
 from argo_env.files.folders import make_folder
 from argo_env.files.yaml_messages import message_of
 from argo_env.planning.opening import OpenedSite, open_site
@@ -146,7 +147,9 @@ def _prepare(folder: Path, site: OpenedSite, force: bool) -> None:
 def _draw(found: Suggested, site: OpenedSite, folder: Path, console: Console) -> None:
     from argo_env.pictures.route import write_route
 
-    for path in write_route(found.planned, found.route, site.navigator, found.travel, folder):
+    with stage("drawing the order"):
+        paths = write_route(found.planned, found.route, site.navigator, found.travel, folder)
+    for path in paths:
         console.print(f"Picture: {path}", soft_wrap=True, markup=False)
 
 

@@ -111,7 +111,7 @@ class StageDisplay:
 
             self._bar = Progress(
                 TextColumn("{task.description}", markup=False),
-                BarColumn(),
+                BarColumn(bar_width=20),
                 TimeElapsedColumn(),
                 console=console,
                 transient=True,

@@ -3,6 +3,13 @@ import pytest
 from argo_compiler.catalog import Catalog
 from argo_env.navigation import Navigator
 from argo_env.planning.opening import OpenedSite, open_site
+from argo_planner.terminal import stage_display
+
+
+@pytest.fixture(autouse=True)
+def no_stages(monkeypatch: pytest.MonkeyPatch) -> None:
+    """On a busy machine anything may take so long that it is shown."""
+    monkeypatch.setattr(stage_display, "AFTER", float("inf"))
 
 
 @pytest.fixture(scope="session")

@@ -162,7 +162,7 @@ def test_what_is_said_of_an_order_can_be_verified(argo, source):
 
 
 def test_an_order_that_is_wrongly_said_to_be_the_best_is_a_defect(argo, source, monkeypatch):
-    def turned(problem, *_):
+    def turned(problem, *_, **__):
         route = Tour(tuple(range(problem.size))[::-1])
         cost = evaluate(problem, route).cost(problem.objective)
         return RouteSuggestion(route, 0, 0, cost, cost, proven=True)

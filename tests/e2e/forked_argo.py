@@ -18,7 +18,11 @@ from typing import Any
 
 from argo_env.planning import open_site
 from argo_planner.cli import ArgoCommands, main
+from argo_planner.terminal import stage_display
 from argo_planner.terminal.signals import end_at_once
+
+# On a busy machine anything may take so long that it is shown.
+stage_display.AFTER = float("inf")
 
 
 def serve() -> None:

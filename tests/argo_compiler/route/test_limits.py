@@ -40,7 +40,7 @@ def clashing(size: int) -> RouteProblem:
 @pytest.mark.parametrize("kind", KINDS)
 def test_the_first_solver_finds_a_route(kind: str, size: int) -> None:
     problem = of_kind(kind, size)
-    made = suggest_route(problem, stop=FirstFeasible(), solvers=["first rules"])
+    made = suggest_route(problem, stop=FirstFeasible(), solvers=["first rules"], clock=Clock(1e-6))
     assert made.route is not None
     assert evaluate(problem, made.route).feasible
 

@@ -29,7 +29,7 @@ from tests.e2e.test_journal import (
 )
 from tests.yard import SITE, measure, mission, simulated, yard
 
-INTERRUPTIONS = 50
+INTERRUPTIONS = int(os.environ.get("ARGO_INTERRUPTIONS", "50"))
 FULL = Path("/dev/full")
 STATUS = {signal.SIGINT: 130, signal.SIGTERM: 143}
 

@@ -185,7 +185,7 @@ def test_kill_and_resume_by_the_command(
     ("arguments", "says"),
     [
         (["run", "plan.json", "--event", "60=flood"], "no event `flood`; there are: gas_leak"),
-        (["run", "plan.json", "--journal", "plan.json"], "is there already"),
+        (["run", "plan.json", "--journal", "plan.json"], "is the input"),
         (["resume", "plan.json"], "is no journal"),
     ],
 )

@@ -29,7 +29,7 @@ _GAS_STAYS = 120.0  # s in which gas that has escaped disperses
 _GAS_REACHES = 25.0  # m
 _SPOT_OFF = 2.5  # m that a hot spot's place may be wrong
 _BESIDE = 0.35  # m beside an obstacle, or the edge of a hole, that may be taken for it
-_SLOW = 0.6  # share of its speed below which a drive is out of order
+_SLOW = 0.7  # share of its speed below which a drive may be found out of order: 0.6, as measured
 _DRIVE_LOOKS_BACK = 10.0 + 1.0  # s, the window of the drive's watch and its period
 
 _OBSTACLES = (Brick, BlockedStairs, MissingPlate)

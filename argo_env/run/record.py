@@ -82,7 +82,7 @@ class TaskRun(Model):
     climbed: float
     """m upwards"""
     measuring: tuple[tuple[float, float], ...] | None = None
-    """s, from when to when it measured, arm included; more than once if it looked from several
+    """s, the start and end of each measurement, arm included; several if it looked from several
     places. None: not told, as in old records"""
 
     @property

@@ -3,12 +3,14 @@
 from collections.abc import Sequence
 from dataclasses import dataclass
 from importlib import import_module
+from itertools import pairwise
 from typing import Any, ClassVar
 
 import typer
 from typer.core import TyperCommand, TyperGroup
 from typer.main import get_command
 
+from argo_compiler.errors import Invalid
 from argo_compiler.garbage_collector import collector_held
 from argo_planner.terminal.verbosity import common_options
 
@@ -37,8 +39,23 @@ class LazyGroup(TyperGroup):
     def resolve_command(self, ctx: Any, args: list[str]) -> Any:
         """The command that is called, with its parameters."""
         name, listed, rest = super().resolve_command(ctx, args)
+        if not ctx.resilient_parsing:
+            _require_said(rest)
         called = next((c for c in self.lazy_commands if c.name == name), None)
         return name, load_command(called) if called else listed, rest
+
+
+def _require_said(arguments: Sequence[str]) -> None:
+    """Raises Invalid where one is empty, as in `--report "$UNSET"`: what is named so would be the
+    current folder."""
+    for before, argument in pairwise(("", *arguments)):
+        option, equals, value = argument.partition("=")
+        if not argument:
+            option = before
+        elif not (equals and option.startswith("--") and not value):
+            continue
+        place = f"{option}: its value" if option.startswith("-") else "an argument"
+        raise Invalid(f"{place} is empty; say what is meant, or leave it out")
 
 
 def load_command(command: LazyCommand) -> Any:

@@ -1,12 +1,26 @@
 """Folders that results are written to."""
 
+import errno
+import os
 from pathlib import Path
 
-from argo_compiler.errors import Unavailable
+from argo_compiler.errors import Conflict, Unavailable
+
+
+def check_folder(path: Path) -> None:
+    """Raises ArgoError if it is no folder and can't be made one. To be called before long work."""
+    above = path.absolute()
+    while not os.path.lexists(above):
+        above = above.parent
+    if not os.path.isdir(above):
+        file = "is" if above == path.absolute() else f"can't be made a folder: {above} is"
+        raise Conflict(f"{path}: {file} a file, and a folder is asked for; choose another")
+    if not (os.path.isdir(path) or os.access(above, os.W_OK | os.X_OK)):
+        raise Unavailable(f"{path}: can't be made a folder: {os.strerror(errno.EACCES)}")
 
 
 def make_folder(path: Path) -> None:
-    """Makes the folder now, so that no work is lost for want of a place for its results. Raises
+    """Makes the folder, so that no work is lost for want of a place for its results. Raises
     ArgoError if that is impossible."""
     try:
         path.mkdir(parents=True, exist_ok=True)

@@ -75,12 +75,12 @@ def resume_run(
                 require_no_unfinished(report)
             if not is_reported(book, report):
                 check_outputs([journal], (), [(report, REPORT_FILES)])
-        if report:
-            make_folder(report)
         if events:
             book.require_going_on()
         site = open_site(book.header.spec.site)
         book.require_unchanged(site)
+        if report:
+            make_folder(report)  # now: what is refused before leaves none behind
         at = book.entries[-1].t if book.entries else 0.0
         if book.ended:
             console.print(f"The run had ended already, at {at:g} s; these are its results.")

@@ -104,7 +104,7 @@ def suggest_order(
         refuse_areas(upload.name, start_area, end_area)
     opened = open_site(site)
     if pictures:
-        _prepare(pictures, opened, force)
+        _check_pictures(pictures, opened, force)
     imported = import_shown(upload, opened, start_area, end_area)
     if robust:
         require_limit(imported.mission, wanted)
@@ -136,17 +136,17 @@ def _read(requirements: Path | None) -> Requirements:
     return parse_requirements(content, str(requirements))
 
 
-def _prepare(folder: Path, site: OpenedSite, force: bool) -> None:
-    """Makes the folder of pictures. Raises ArgoError if there are such pictures in it already."""
+def _check_pictures(folder: Path, site: OpenedSite, force: bool) -> None:
+    """Raises ArgoError if there are such pictures in the folder already."""
     from argo_env.pictures.route import picture_names
 
     check_outputs([], folders=[(folder, picture_names(site.site))], force=force)
-    make_folder(folder)
 
 
 def _draw(found: Suggested, site: OpenedSite, folder: Path, console: Console) -> None:
     from argo_env.pictures.route import write_route
 
+    make_folder(folder)
     with stage("drawing the order"):
         paths = write_route(found.planned, found.route, site.navigator, found.travel, folder)
     for path in paths:

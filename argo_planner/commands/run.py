@@ -58,8 +58,7 @@ class _Outputs:
         return self.journal or (self.report and self.report / JOURNAL)
 
     def check(self, *inputs: Path | str | None) -> None:
-        """Raises ArgoError where something can't be written, or is one of the inputs; folders are
-        made now."""
+        """Raises ArgoError where something can't be written, or is one of the inputs."""
         if not self.force:
             require_no_unfinished(self.report, self.journal)
         check_outputs(
@@ -79,9 +78,7 @@ class _Outputs:
             from argo_env.recording.files import check_recording
 
             check_recording(self.recording)
-        if self.report:
-            make_folder(self.report)
-        if self.keeping:
+        if self.keeping and os.path.exists(self.keeping):
             require_free(self.keeping, self.force)
 
 
@@ -177,6 +174,8 @@ def run(
 
         imported, reordering = optimise_shown(imported, opened)
     spec = with_mission(spec, imported, reordering)
+    if report:
+        make_folder(report)  # now: what is refused before leaves none behind
     opened.prepare()
     loaded = time.monotonic()
     with first_signal_deferred() as interruption:

@@ -13,6 +13,7 @@ from argo_compiler.files.reading import read_bytes
 from argo_compiler.files.writing import check_place, is_stream, write_folder, write_whole
 from argo_compiler.ros import is_bag
 from argo_compiler.script.syntax.reading import MAX_BYTES
+from argo_env.files.folders import check_folder
 from argo_planner.use_cases.importing import Upload
 
 STANDARD_OUTPUT = Path("-")
@@ -44,13 +45,14 @@ def check_outputs(
     that are to be written in them.
     """
     single = [file for file in files if file is not None and not is_stream(file)]
-    several = []
+    several: list[Path] = []
+    together: list[Path] = []
     for folder, names in folders:
         if folder is not None:
-            if os.path.exists(folder) and not os.path.isdir(folder):
-                raise Conflict(f"{folder}: is a file, and a folder is asked for; choose another")
+            check_folder(folder)
+            together.append(folder)
             several += [folder / name for name in names]
-    _keep_apart(inputs, [*single, *several])
+    _keep_apart(inputs, [*single, *several, *together])
     for output in (*single, *several):
         if output == STANDARD_OUTPUT:
             continue

@@ -66,6 +66,12 @@ WRONG = {
     "run s.txt --faults s.txt": "s.txt",
     "sites m.json": "m.json",
     "run faults.yaml": "faults.yaml",
+    # places for results
+    "run no.txt --report new": "no.txt",
+    "run s.txt --report a/new --faults fire.yaml": "fire.yaml:2:",
+    "route s.txt --budget 1s --pictures new": "",
+    "run s.txt --report s.txt/new": "s.txt/new: can't be made a folder",
+    "run s.txt --report x.mcap --record x.mcap": "x.mcap is to be written twice",
     # files of the wrong kind
     "run list.json": "list.json",
     "run config.json": "config.json",
@@ -100,6 +106,10 @@ WRONG = {
     "run s.txt --pace 2": "--gui",
     "run s.txt --site ''": "site",
     "run s.txt --drive ''": "drive",
+    "run ''": "an argument is empty",
+    "run s.txt --report ''": "--report: its value is empty",
+    "run s.txt --report=": "--report: its value is empty",
+    "import s.txt -o ''": "-o: its value is empty",
     "route s.txt --budget 'a while'": "a while",
     "route s.txt --budget -5min": "-5min",
     "route s.txt --before 1": "--before",

@@ -15,6 +15,27 @@ from argo_compiler.garbage_collector import collector_held
 from argo_planner.terminal.verbosity import common_options
 
 
+class _Command(TyperCommand):
+    """Says what is wrong with an option in the words of the messages about files."""
+
+    def parse_args(self, ctx: Any, args: list[str]) -> list[str]:
+        """The arguments that are left; raises UsageError."""
+        for word in (argument.partition("=")[0] for argument in args):
+            # It would be read as letters of their own: -report as -r -e -p ...
+            if word[:2] != "--" and any(f"-{word}" in option.opts for option in self.params):
+                raise Invalid(f"no option {word}; is -{word} meant?")
+        try:
+            return super().parse_args(ctx, args)
+        except typer.BadParameter as error:
+            from pydantic import ValidationError
+
+            from argo_env.files.yaml_messages import message_of
+
+            if isinstance(error.__cause__, ValidationError):
+                error.message = message_of(error.__cause__.errors(include_url=False)[0], ())
+            raise
+
+
 @dataclass(frozen=True)
 class LazyCommand:
     """A command by its name, where its function is found, and the line that lists it."""
@@ -64,7 +85,7 @@ def load_command(command: LazyCommand) -> Any:
     # What is imported stays: to look for garbage in it takes a tenth of a short command's time.
     with collector_held():
         module = import_module(command.module)
-    app.command(command.name)(getattr(module, command.function))
+    app.command(command.name, cls=_Command)(getattr(module, command.function))
     loaded = get_command(app)
     loaded.params += _common_parameters()
     return loaded

@@ -41,6 +41,9 @@ from argo_compiler.il.subjects import Subjects
 MAX_BYTES = 50_000_000
 """Far above any mission (10,000 tasks take 4 MB), far below what would exhaust the memory."""
 
+_RECORD = {"mission", "result", "trace"}
+"""fields of a run's record, which has a version of its own"""
+
 
 @dataclass(frozen=True)
 class MissionFile:
@@ -93,6 +96,8 @@ def decode_mission(content: bytes, source_name: str) -> MissionFile:
     faults = [*_duplicate_keys(text)] if repeats else []
     if not isinstance(data, dict):
         _refuse(source_name, text, [*faults, _not_a_mission()])
+    if _RECORD.issubset(data):
+        _refuse(source_name, text, [*faults, _a_record()])
     present = migrate(data)
     version = present.get("version", VERSION)
     if version != VERSION or isinstance(version, bool):
@@ -193,6 +198,12 @@ def _not_a_mission() -> UnplacedDiagnostic:
         "file.not-a-mission",
         "is not a mission: the JSON is no object",
         f'a mission begins with {{"version": {VERSION}, "tasks": [',
+    )
+
+
+def _a_record() -> UnplacedDiagnostic:
+    return unplaced(
+        "file.not-a-mission", "is not a mission but the report of a run", "name the mission's file"
     )
 
 

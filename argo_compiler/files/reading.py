@@ -11,6 +11,8 @@ from argo_compiler.errors import ArgoError, Invalid, NotFound
 from argo_compiler.files.encodings import encoding_of
 
 _PART = 1 << 20
+_DOCUMENTS = {b"%PDF-": "PDF", rb"{\rtf": "RTF"}
+"""how documents begin that may look like text"""
 
 
 class FileProblem(StrEnum):
@@ -117,6 +119,10 @@ def decode_text(content: bytes, name: object, thing: str) -> str:
 
     Raises UnreadableFile if it is binary or in another encoding.
     """
+    for beginning, kind in _DOCUMENTS.items():
+        if content.startswith(beginning):
+            message = f"is no plain text but a document ({kind})"
+            raise UnreadableFile(name, FileProblem.NOT_TEXT, message, "save it as plain text")
     encoding = encoding_of(content)
     try:
         text = "\0" if encoding is None else content.decode(encoding).removeprefix("\ufeff")

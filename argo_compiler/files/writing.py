@@ -33,6 +33,8 @@ def check_place(file: Path) -> None:
     place = Path(os.path.realpath(file)) if os.path.islink(file) else file.absolute()
     if os.path.isdir(place):
         raise Conflict(f"{file}: is a folder; choose another name")
+    if os.path.isfile(place.parent):
+        raise Conflict(f"{file}: {file.parent} is a file and no folder; choose another")
     if not os.path.isdir(place.parent):
         raise NotFound(f"{file}: there is no folder {file.parent}; make it, or choose another")
     if not os.access(place.parent, os.W_OK | os.X_OK):

@@ -5,7 +5,6 @@ from typing import TYPE_CHECKING, ClassVar, Literal, Self
 import numpy as np
 from pydantic import Field
 
-from argo_compiler.errors import NotFound
 from argo_env.faults.fault import Fault, TimedFault
 from argo_env.seeding import draw
 from argo_env.site import Site
@@ -59,9 +58,8 @@ class ConnectionLoss(TimedFault):
     """None: every floor"""
 
     def settled(self, site: Site, rng: np.random.Generator) -> Self:
-        known = [f.number for f in site.spec.floors]
-        if self.floor is not None and self.floor not in known:
-            raise NotFound(f"site {site.name} has no floor {self.floor}")
+        if self.floor is not None:
+            site.floor(self.floor)
         return super().settled(site, rng)
 
     def begin(self, targets: "FaultTargets", now: float) -> None:  # noqa: ARG002

@@ -88,7 +88,7 @@ class Brick(Fault):
         assert self.floor is not None
         assert self.place is not None
         assert self.yaw is not None
-        z = _floor(site, self.floor).z + self.size[2] / 2
+        z = site.floor(self.floor).z + self.size[2] / 2
         box = Box((*self.place, z), self.size, (0.0, 0.0, math.radians(self.yaw)))
         return (*site.elements, Element(_new_name(site, "brick"), Role.STRUCTURE, (box,), "brick"))
 
@@ -121,7 +121,7 @@ class MissingPlate(Fault):
     def changed(self, site: Site) -> tuple[Element, ...]:
         assert self.floor is not None
         assert self.rect is not None
-        z, rect = _floor(site, self.floor).z, self.rect
+        z, rect = site.floor(self.floor).z, self.rect
         return tuple(
             replace(e, solids=tuple(p for s in e.solids for p in _without(s, rect, z)))
             if e.role is Role.DECK
@@ -158,7 +158,7 @@ class BlockedStairs(Fault):
     def changed(self, site: Site) -> tuple[Element, ...]:
         assert self.floor is not None
         tower = next(t for t in site.spec.towers if t.name == self.tower)
-        barriers = _barriers(tower, _floor(site, self.floor).z)
+        barriers = _barriers(tower, site.floor(self.floor).z)
         name = _new_name(site, f"barrier of the {self.tower}")
         return (*site.elements, Element(name, Role.STRUCTURE, barriers, "brick"))
 
@@ -212,7 +212,7 @@ def _place(
     drawn = floors[int(rng.integers(len(floors)))]
     if number is None and place is not None:
         raise Invalid("a place without a floor: give the `floor` as well")
-    floor = drawn if number is None else _floor(site, number)
+    floor = drawn if number is None else site.floor(number)
     x0, y0, x1, y1 = list(floor.walkways.values())[int(rng.integers(len(floor.walkways)))]
     x, y = (
         float(rng.uniform(a + m, b - m))
@@ -221,13 +221,6 @@ def _place(
         )
     )  # fmt: skip
     return floor, (round(x, 3), round(y, 3)) if place is None else place
-
-
-def _floor(site: Site, number: int) -> FloorSpec:
-    for floor in site.spec.floors:
-        if floor.number == number:
-            return floor
-    raise NotFound(f"site {site.name} has no floor {number}")
 
 
 def _holds(rect: Rect, place: Point) -> bool:

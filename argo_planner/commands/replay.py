@@ -76,7 +76,7 @@ def _show_rest(recording: Recording) -> None:
         )
     ended = ", ".join(f"{run.task} ({run.outcome})" for run in recording.tasks[-3:]) or "none"
     console.print(
-        f"{len(recording.tasks)} tasks have ended, the last: {escape(ended)}.", soft_wrap=True
+        f"Tasks that have ended: {len(recording.tasks)}; the last: {escape(ended)}.", soft_wrap=True
     )
     loss = escape(recording.loss)
     console.print(

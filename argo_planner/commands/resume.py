@@ -11,6 +11,7 @@ import typer
 from rich.console import Console
 from rich.markup import escape
 
+from argo_compiler.errors import Invalid
 from argo_env.files.folders import make_folder
 from argo_env.planning.opening import OpenedSite, open_site
 from argo_env.recording.files import check_recording, recording_to
@@ -60,6 +61,8 @@ def resume_run(
     force: Force = False,
 ) -> None:
     """Go on with a run whose process has died, from its journal."""
+    if os.path.isfile(journal / JOURNAL):
+        raise Invalid(f"{journal}: is a folder; name the journal in it: {journal / JOURNAL}")
     check_outputs([journal], [recording, render], (), force)
     if recording:
         check_recording(recording)

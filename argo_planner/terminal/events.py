@@ -22,7 +22,7 @@ def parse_events(options: list[str]) -> list[tuple[float, Event]]:
         if not (equals and 0.0 <= time_s < math.inf):
             raise Invalid(f"--event {option}: write TIME=KIND in s, such as 60=gas_leak")
         try:
-            events.append((time_s, event_named(name)))
+            events.append((time_s, event_named(name.strip())))
         except ArgoError as error:
             raise Invalid(f"--event {option}: {error}") from None
     return sorted(events, key=lambda event: event[0])

@@ -15,6 +15,10 @@ ORIGINALS = os.environ.get("ARGO_ORIGINALS")
 
 Argo = Callable[..., subprocess.CompletedProcess[str]]
 
+if signal.getsignal(signal.SIGINT) is signal.SIG_IGN:
+    # A suite that a script runs in the background ignores Ctrl-C, and so would what it starts.
+    signal.signal(signal.SIGINT, signal.default_int_handler)
+
 
 class ForkedArgo:
     """Runs `argo` in processes that need no time to load: forked from one that has loaded it.

@@ -59,6 +59,10 @@ class LazyGroup(TyperGroup):
     # What runs, helps or completes a command comes by here; what lists them does not.
     def resolve_command(self, ctx: Any, args: list[str]) -> Any:
         """The command that is called, with its parameters."""
+        if not ctx.resilient_parsing and any(
+            f"--{args[0]}" in option.opts for option in self.get_params(ctx)
+        ):
+            raise Invalid(f"no command {args[0]}; is --{args[0]} meant?")
         name, listed, rest = super().resolve_command(ctx, args)
         if not ctx.resilient_parsing:
             _require_said(rest)

@@ -38,7 +38,7 @@ WRONG = {
     "check s.txt --site darmstad": "darmstad",
     "schema missions": "missions",
     "-version": "No such option",
-    "help": "help",
+    "help": "is --help meant?",
     # missing
     "run": "SCRIPT|MISSION",
     "check": "SCRIPT|MISSION",

@@ -109,7 +109,7 @@ WRONG = {
     # results as scripts
     "run out": "out: error: is a directory",
     "run out/report.json": "out/report.json: error: is not a mission but the report of a run",
-    "run out/run.journal": "out/run.journal:1:1: error: this is neither",
+    "run out/run.journal": "hint: a sheet begins like",
     "run run.mcap": "run.mcap: error: can't be read as a bag",
     # scripts and missions with a mistake
     "run ninety-nine.txt": "ninety-nine.txt:4:10: error: there is no checkpoint #99",
@@ -128,6 +128,9 @@ WRONG = {
     "check future.json": "future.json:2:2: error: has version 3",
     "run twins.json": "more than one task is named 'A'",
     "run minus.json": "max_duration: input should be greater than 0",
+    # options for commands
+    "version": "is --version meant?",
+    "verbose run s.txt": "is --verbose meant?",
     # files of faults
     "run s.txt --faults field.yaml": "is `temperature` meant?",
     "run s.txt --faults minutes.yaml": "minutes.yaml:3:9: error: faults[0].at: `at` has",
@@ -248,6 +251,7 @@ def test_what_is_wrong_is_said_and_every_file_is_as_it_was(argo, folder: Path, l
     assert "Traceback" not in said
     assert WRONG[line] in said
     assert contents(folder) == before
+    assert max(map(len, result.stderr.splitlines()), default=0) < 400
 
 
 def test_of_a_recording_that_breaks_off_what_is_there_is_shown(argo, folder: Path) -> None:

@@ -6,12 +6,13 @@ from collections.abc import Sequence
 from dataclasses import dataclass, field
 from functools import cached_property
 
-from argo_compiler.diagnostics import Diagnostic, Severity, Span
+from argo_compiler.diagnostics import MAX_EXCERPT, Diagnostic, Severity, Span
 from argo_compiler.errors import Remedy
 
 MAX_LINE = 2000
 """characters in a line; a longer one is refused unread"""
 
+_BEGINNING = 80
 _MOST_KEPT = 500
 """errors; further ones are counted, but not kept"""
 _LINE_END = re.compile(r"\r\n|\r|\n")
@@ -150,7 +151,7 @@ class Diagnostics:
             self.errors += 1
             if self.errors > _MOST_KEPT:
                 return
-        excerpt = _printable(self.source.lines[span.line - 1]) if span else None
+        excerpt = _excerpt(self.source.lines[span.line - 1], span) if span else None
         self.entries.append(
             Diagnostic(
                 code=f"script.{code}",
@@ -173,9 +174,11 @@ def _place(diagnostic: Diagnostic) -> tuple[bool, int, int]:
     return (span is None, span.line if span else 0, span.column if span else 0)
 
 
-def _printable(line: str) -> str:
-    if len(line) > MAX_LINE:
-        line = f"{line[:80]} ..."
+def _excerpt(line: str, span: Span) -> str:
+    """What is shown of a line: of a long one the beginning, if the mark is there."""
+    marked = span.column + span.length <= _BEGINNING
+    if len(line) > MAX_LINE or (len(line) > MAX_EXCERPT and marked):
+        line = f"{line[:_BEGINNING]} ..."
     if line.replace("\t", " ").isprintable():
         return line
     # Control characters would reach the user's terminal.

@@ -60,7 +60,7 @@ def replay(
     count = sum(found.messages.values())
     took = f"Reading {count} messages took {time.monotonic() - begun:.1f} s."
     with first_signal_deferred() as interruption:
-        Conclusion(report, render, Kept(recording=recording), interruption).conclude(
+        Conclusion(report, render, Kept(recording=recording, force=force), interruption).conclude(
             record, found.site, load_robot(record.robot), took
         )
 

@@ -91,7 +91,7 @@ def resume_run(
             site.prepare()
             console.print(f"The run goes on at {at:g} s.")
         with first_signal_deferred() as interruption:
-            conclusion = Conclusion(report, render, Kept(journal), interruption)
+            conclusion = Conclusion(report, render, Kept(journal, force=force), interruption)
             begun = time.monotonic()
             with conclusion.telling_the_way_on():
                 record, loss = _go_on(book, site, events, recording, interruption)

@@ -179,7 +179,9 @@ def run(
     opened.prepare()
     loaded = time.monotonic()
     with first_signal_deferred() as interruption:
-        conclusion = Conclusion(report, render, Kept(outputs.keeping, recording), interruption)
+        conclusion = Conclusion(
+            report, render, Kept(outputs.keeping, recording, force), interruption
+        )
         with conclusion.telling_the_way_on():
             record, loss = _carry_out(spec, opened, outputs, interruption)
         took = _took(record, loaded - started, time.monotonic() - loaded)

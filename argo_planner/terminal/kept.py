@@ -23,6 +23,8 @@ class Kept:
 
     journal: Path | None = None
     recording: Path | None = None
+    force: bool = False
+    """whether the run replaces what is there already, as then does what goes on with it"""
 
     def command(self, report: Path | None = None, render: Path | None = None) -> str | None:
         """What goes on with the run, or makes its results anew; None: nothing can."""
@@ -35,6 +37,8 @@ class Kept:
         for option, place in (("--report", report), ("--render", render)):
             if place is not None:
                 words += [option, str(place)]
+        if self.force and (report or render):
+            words.append("--force")
         return shlex.join(words)
 
     def way_on(self, report: Path | None, render: Path | None) -> str:

@@ -118,3 +118,13 @@ def test_a_film_is_interrupted_between_two_pictures(conclude, monkeypatch):
     assert "MEASURE 1" in shown
     assert said.endswith("made by: argo replay run.journal --render run.gif\n")
     assert [path.name for path in Path().iterdir()] == ["run.journal"]
+
+
+def test_what_makes_it_anew_replaces_what_the_run_was_to_replace(conclude):
+    Path("run.gif").write_bytes(b"an older film")
+    status, _, said = conclude(
+        render="run.gif", kept=Kept(Path("run.journal"), force=True), came=Interrupted(15)
+    )
+    assert status == 143
+    assert Path("run.gif").read_bytes() == b"an older film"
+    assert said.endswith("made by: argo resume run.journal --render run.gif --force\n")

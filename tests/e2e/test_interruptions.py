@@ -204,6 +204,20 @@ def test_an_interrupted_run_is_reported_and_goes_on(argo, folder, navigator, tmp
     assert reported(report) == record
 
 
+def test_what_goes_on_with_a_run_replaces_what_that_was_to_replace(folder, tmp_path) -> None:
+    film = tmp_path / "run.gif"
+    film.write_bytes(b"an older film")
+    status, _, said = interrupted_when_it_reads(
+        signal.SIGTERM,
+        *run_of(folder), "--journal", tmp_path / "run.journal", "--render", film, "--force",
+    )  # fmt: skip
+    assert status == 143
+    assert film.read_bytes() == b"an older film"
+    assert said.endswith(
+        f"go on with: argo resume {tmp_path}/run.journal --render {film} --force\n"
+    )
+
+
 def test_an_interrupted_run_that_is_recorded_only(argo, folder, tmp_path) -> None:
     recording = tmp_path / "run.mcap"
     status, shown, said = interrupted_when_it_reads(

@@ -4,7 +4,7 @@ import errno
 import os
 import secrets
 import shutil
-from collections.abc import Iterator, Mapping
+from collections.abc import Callable, Iterator, Mapping
 from contextlib import contextmanager, suppress
 from pathlib import Path
 
@@ -114,13 +114,33 @@ def _swap(folder: Path, names: list[str], old: Path, new: Path) -> None:
         for name in names:
             (new / name).replace(folder / name)
     except BaseException:
-        for name in reversed(names):
-            if not os.path.lexists(new / name):
-                (folder / name).unlink(missing_ok=True)
-        for name in names:
-            if os.path.lexists(old / name):
-                (old / name).replace(folder / name)
+        _insist(lambda: _swap_back(folder, names, old, new))
         raise
+
+
+def _swap_back(folder: Path, names: list[str], old: Path, new: Path) -> None:
+    """Takes a swap back, however far that one or this has come."""
+    for name in reversed(names):
+        if os.path.lexists(folder / name) and not os.path.lexists(new / name):
+            (folder / name).replace(new / name)
+    for name in names:
+        if os.path.lexists(old / name):
+            (old / name).replace(folder / name)
+
+
+def _insist(act: Callable[[], None]) -> None:
+    """Does what can be done again, and again where it is interrupted; only then raises that."""
+    interruption = None
+    while True:
+        try:
+            act()
+            break
+        except Exception:
+            raise
+        except BaseException as error:
+            interruption = error
+    if interruption:
+        raise interruption
 
 
 def _behind_links(path: Path) -> Path:
@@ -140,7 +160,7 @@ def _drafts_in(folder: Path) -> Iterator[Path]:
         drafts.mkdir()
         yield drafts
     finally:
-        shutil.rmtree(drafts, ignore_errors=True)
+        _insist(lambda: shutil.rmtree(drafts, ignore_errors=True))
 
 
 def _finish(draft: Path, path: Path) -> None:

@@ -1,4 +1,4 @@
-"""Signals that ask the process to end: Ctrl-C (SIGINT) and SIGTERM.
+"""Signals that ask the process to end: Ctrl-C (SIGINT), SIGTERM, and a closed terminal (SIGHUP).
 
 Imported before anything else, so it brings next to nothing. A signal that whoever started the
 process has it ignore, as `nohup` does, stays ignored.
@@ -11,7 +11,7 @@ from collections.abc import Callable, Iterator
 from contextlib import contextmanager, suppress
 from types import FrameType
 
-_NUMBERS = (signal.SIGINT, signal.SIGTERM)
+_NUMBERS = (signal.SIGINT, signal.SIGTERM, signal.SIGHUP)
 _AGAIN = 0.01
 """s until an interruption that was lost is tried again"""
 

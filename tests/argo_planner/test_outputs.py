@@ -231,4 +231,4 @@ def test_an_old_report_stays_whole_where_the_disk_is_full(room: int) -> None:
     assert result.exit_code == 2
     assert "MEASURE 1" in result.stdout
     assert "No space left on device" in result.stderr
-    assert result.stderr.endswith(f"made by: argo resume kept --report {report}\n")
+    assert result.stderr.endswith(f"made by: argo resume kept --report {report} --force\n")

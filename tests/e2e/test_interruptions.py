@@ -31,7 +31,7 @@ from tests.yard import SITE, measure, mission, simulated, yard
 
 INTERRUPTIONS = int(os.environ.get("ARGO_INTERRUPTIONS", "50"))
 FULL = Path("/dev/full")
-STATUS = {signal.SIGINT: 130, signal.SIGTERM: 143}
+STATUS = {signal.SIGINT: 130, signal.SIGTERM: 143, signal.SIGHUP: 129}
 
 
 def started(*arguments: object, **options) -> subprocess.Popen[str]:
@@ -54,6 +54,7 @@ def started(*arguments: object, **options) -> subprocess.Popen[str]:
     [
         (signal.SIGINT, "argo_planner.terminal.signals"),
         (signal.SIGTERM, "argo_planner.cli"),
+        (signal.SIGHUP, "argo_planner.cli"),
         (signal.SIGINT, "numpy"),
         (signal.SIGTERM, "argo_planner.terminal.run_display"),
     ],
@@ -218,12 +219,11 @@ def test_what_goes_on_with_a_run_replaces_what_that_was_to_replace(folder, tmp_p
     )
 
 
-def test_an_interrupted_run_that_is_recorded_only(argo, folder, tmp_path) -> None:
+@pytest.mark.parametrize("number", [signal.SIGTERM, signal.SIGHUP], ids=lambda n: n.name)
+def test_an_interrupted_run_that_is_recorded_only(argo, folder, tmp_path, number) -> None:
     recording = tmp_path / "run.mcap"
-    status, shown, said = interrupted_when_it_reads(
-        signal.SIGTERM, *run_of(folder), "--record", recording
-    )
-    assert status == 143
+    status, shown, said = interrupted_when_it_reads(number, *run_of(folder), "--record", recording)
+    assert status == STATUS[number]
     assert "nothing is kept to go on from, as --report or --journal would have it" in said
     assert f"what was done is shown by: argo replay {recording};" in said
     again = argo("replay", recording, "--report", tmp_path / "again")

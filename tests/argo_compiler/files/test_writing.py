@@ -139,6 +139,26 @@ def test_whoever_is_interrupted_leaves_all_old_or_all_new(tmp_path, monkeypatch,
         assert contents(tmp_path) == FILES
 
 
+@pytest.mark.parametrize("steps", range(1, 6))
+@pytest.mark.parametrize("more", range(1, 6))
+def test_whoever_is_interrupted_again_loses_nothing(tmp_path, monkeypatch, steps, more):
+    """The second time while the old files are moved back."""
+    old = {"data.json": b"old data", "page.html": b"old page"}
+    write_folder(tmp_path, old)
+    replace, done = Path.replace, []
+
+    def interrupted(self, target):
+        done.append(replace(self, target))
+        if len(done) in {steps, steps + more}:
+            raise KeyboardInterrupt
+
+    monkeypatch.setattr(Path, "replace", interrupted)
+    with pytest.raises(KeyboardInterrupt):
+        write_folder(tmp_path, FILES)
+    assert contents(tmp_path) == old
+    assert sorted(p.name for p in tmp_path.iterdir()) == ["data.json", "page.html"]
+
+
 _PAGE = 4096  # bytes
 
 

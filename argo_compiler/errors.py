@@ -24,6 +24,7 @@ class Remedy(StrEnum):
     RUN_ANEW = "run-anew"
     RECORD = "record"
     REPLACE = "replace"
+    REPLAY = "replay"
     SHOW_REST = "show-rest"
 
 

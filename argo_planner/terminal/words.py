@@ -21,6 +21,7 @@ _WORDS = {
     Remedy.SEARCH_LONGER: "--time-limit",
     Remedy.KEEP_JOURNAL: "argo run --journal",
     Remedy.RESUME: "argo resume {about}",
+    Remedy.REPLAY: "argo replay {about}",
     Remedy.RUN_ANEW: "argo run",
     Remedy.RECORD: "argo run --record",
     Remedy.REPLACE: "--force",

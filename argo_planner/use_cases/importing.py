@@ -1,6 +1,7 @@
 """Missions from what someone hands in: scripts, missions, bags and other tools' missions."""
 
 import logging
+import os
 import re
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
@@ -18,6 +19,7 @@ from argo_compiler.diagnostics import (
 )
 from argo_compiler.errors import Invalid, Remedy
 from argo_compiler.files.mission_file import MissionFile, decode_mission
+from argo_compiler.files.reading import opened
 from argo_compiler.il import Mission
 from argo_compiler.isar import find_definition, from_isar
 from argo_compiler.ros import decode_bag, is_bag_content, read_bag
@@ -29,6 +31,9 @@ _log = logging.getLogger(__name__)
 
 _BRACE = re.compile(rb"(\xef\xbb\xbf|\xff\xfe|\xfe\xff)?[\s\0]*\{")
 """how JSON begins that is no list, in any encoding"""
+_JOURNAL = re.compile(rb'[0-9a-f]{8} \{"n":0,')
+_RECORDING = re.compile(rb"\x89MCAP0.{11,16}\x04\x00\x00\x00argo", re.DOTALL)
+"""how journals and recordings of runs begin"""
 
 
 class SourceKind(StrEnum):
@@ -96,8 +101,10 @@ def load(
 ) -> Loaded:
     """The mission in an upload; whether it makes sense is for `check`.
 
-    Raises DiagnosticError, or Invalid where areas are chosen for what has them already.
+    Raises DiagnosticError, or Invalid for what is kept of a run, and where areas are chosen for
+    what has them already.
     """
+    _refuse_runs(upload)
     kind, name = kind_of(upload), upload.name
     _log.info("%s is read as a %s", name, kind)
     if kind is not SourceKind.SCRIPT:
@@ -117,6 +124,26 @@ def load(
             return Loaded(file.mission, (), file)
         case SourceKind.SCRIPT:
             return _load_script(upload.content, name, catalog, start_area, end_area)
+
+
+def _refuse_runs(upload: Upload) -> None:
+    """Raises Invalid for the journal or the recording of a run."""
+    beginning = b""
+    if isinstance(upload.content, bytes):
+        beginning = upload.content[:64]
+    elif isinstance(upload.content, Path) and os.path.isfile(upload.content):
+        with opened(upload.content, "bag") as file:
+            beginning = file.read(64)
+    for begins, what, remedy in (
+        (_JOURNAL, "journal", Remedy.RESUME),
+        (_RECORDING, "recording", Remedy.REPLAY),
+    ):
+        if begins.match(beginning):
+            raise Invalid(
+                f"{upload.name}: is no mission but the {what} of a run",
+                remedies=(remedy,),
+                about=upload.name,
+            )
 
 
 def _load_script(

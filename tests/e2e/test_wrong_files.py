@@ -109,8 +109,8 @@ WRONG = {
     # results as scripts
     "run out": "out: error: is a directory",
     "run out/report.json": "out/report.json: error: is not a mission but the report of a run",
-    "run out/run.journal": "hint: a sheet begins like",
-    "run run.mcap": "run.mcap: error: can't be read as a bag",
+    "run out/run.journal": "but the journal of a run (argo resume out/run.journal)",
+    "run run.mcap": "run.mcap: is no mission but the recording of a run (argo replay run.mcap)",
     # scripts and missions with a mistake
     "run ninety-nine.txt": "ninety-nine.txt:4:10: error: there is no checkpoint #99",
     "compile ninety-nine.txt -o c.json --mermaid c.mmd": "ninety-nine.txt:4:10:",

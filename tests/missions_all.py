@@ -18,6 +18,11 @@ FLOATS = st.floats(allow_nan=False, allow_infinity=False)
 TEXTS = st.text(st.characters(exclude_categories=["Cs"]), max_size=6)
 
 
+def carried_missions() -> st.SearchStrategy[Mission]:
+    """Those that ROS messages say in whole: what was left out is not in them."""
+    return missions().map(lambda mission: mission.model_copy(update={"left_out": ()}))
+
+
 def missions() -> st.SearchStrategy[Mission]:
     """Missions of the right shape; few of them make sense. Integers have up to 64 bits."""
     return _models(Mission)

@@ -29,7 +29,7 @@ from argo_compiler.ros import (
 from argo_compiler.ros import types as ros_types
 from argo_compiler.ros.package import SPECIFICATION
 from tests.conftest import examples
-from tests.missions_all import missions
+from tests.missions_all import carried_missions
 
 PLAN = Mission(
     designation="Öl #1",
@@ -74,7 +74,7 @@ def refusal(path):
 
 @pytest.mark.parametrize("form", FORMS)
 @settings(max_examples=examples(8), deadline=None)
-@given(mission=missions())
+@given(mission=carried_missions())
 def test_every_mission_comes_back_unchanged(tmp_path_factory, form, mission):
     path = write(tmp_path_factory.mktemp("bag"), form, mission)
     assert is_bag(path)

@@ -28,7 +28,7 @@ from argo_compiler.ros import (
 )
 from argo_compiler.ros.package import SPECIFICATION, definitions
 from tests.conftest import examples
-from tests.missions_all import FLOATS, missions
+from tests.missions_all import FLOATS, carried_missions
 
 VERSIONS = pytest.mark.parametrize("types", [ros1_types(), ros2_types()], ids=["ros1", "ros2"])
 
@@ -46,7 +46,7 @@ TYPE_HASH = "RIHS01_5f48a25d0aa7552b4ee9792a4ec686e4164a191a611cc79aec7942843513
 
 @VERSIONS
 @settings(max_examples=examples(60), deadline=None)
-@given(mission=missions())
+@given(mission=carried_missions())
 @example(mission=Mission())
 def test_every_mission_comes_back_unchanged(types, mission):
     content = types.encode(to_message(mission, types))

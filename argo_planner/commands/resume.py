@@ -2,8 +2,6 @@
 
 import os
 import time
-from collections.abc import Callable
-from contextlib import ExitStack
 from pathlib import Path
 from typing import Annotated
 
@@ -13,20 +11,17 @@ from rich.markup import escape
 
 from argo_compiler.errors import Invalid
 from argo_env.files.folders import make_folder
-from argo_env.planning.opening import OpenedSite, open_site
-from argo_env.recording.files import check_recording, recording_to
-from argo_env.run.journal import Journal, open_journal
-from argo_env.run.observer import Observer
-from argo_env.run.record import RunRecord
+from argo_env.planning.opening import open_site
+from argo_env.recording.files import check_recording
+from argo_env.run.journal import open_journal
 from argo_env.run.session import resume
-from argo_env.run.simulation import LoggedEvents
 from argo_env.run.spec import logged
 from argo_planner.terminal.conclusion import Conclusion
 from argo_planner.terminal.events import KINDS, parse_events
 from argo_planner.terminal.files import check_outputs
 from argo_planner.terminal.kept import JOURNAL, Kept, is_reported, require_no_unfinished
 from argo_planner.terminal.options import Force
-from argo_planner.terminal.run_display import RunDisplay
+from argo_planner.terminal.run_display import carry_out_shown
 from argo_planner.terminal.signals import first_signal_deferred
 from argo_planner.terminal.verbosity import is_quiet
 from argo_planner.use_cases.reporting import REPORT_FILES
@@ -94,33 +89,19 @@ def resume_run(
             conclusion = Conclusion(report, render, Kept(journal, force=force), interruption)
             begun = time.monotonic()
             with conclusion.telling_the_way_on():
-                record, loss = _go_on(book, site, events, recording, interruption)
+                record, recorded = carry_out_shown(
+                    book.header.spec.mission.max_duration,
+                    recording,
+                    Path(book.header.spec.source) if book.header.spec.source else None,
+                    lambda observers: resume(
+                        book, site, observers=observers, events=events, interrupted=interruption
+                    ),
+                )
             seconds = time.monotonic() - begun
             speed = (record.result.duration - at) / max(1e-9, seconds)
             took = f"The rest took {seconds:.1f} s: {speed:.0f} times real time."
             if book.ended:
                 took = f"Reading the journal took {seconds:.1f} s."
-            if recording:
-                took += f"\nRecording: {escape(f'{recording}{loss}')}"
+            if recorded:
+                took += f"\n{escape(recorded)}"
             conclusion.conclude(record, site.site, site.robot, took)
-
-
-def _go_on(
-    book: Journal,
-    site: OpenedSite,
-    events: LoggedEvents,
-    recording: Path | None,
-    interrupted: Callable[[], bool],
-) -> tuple[RunRecord, str]:
-    """The rest of the run, with its progress shown, and what its recording lacks."""
-    spec = book.header.spec
-    recorder = None
-    with ExitStack() as stack:
-        display = stack.enter_context(RunDisplay(spec.mission.max_duration))
-        observers: list[Observer] = [display]
-        if recording:
-            source = Path(spec.source) if spec.source else None
-            recorder = stack.enter_context(recording_to(recording, source, display.warn))
-            observers.append(recorder)
-        record = resume(book, site, observers=observers, events=events, interrupted=interrupted)
-    return record, f": {recorder.loss}" if recorder and recorder.loss else ""

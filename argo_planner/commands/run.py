@@ -2,8 +2,6 @@
 
 import os
 import time
-from collections.abc import Callable
-from contextlib import ExitStack
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Annotated
@@ -15,10 +13,9 @@ from argo_compiler.errors import Invalid
 from argo_compiler.files.reading import read_bytes
 from argo_env.faults.reading import MAX_BYTES, FaultText, decode_faults
 from argo_env.files.folders import make_folder
-from argo_env.planning.opening import OpenedSite, open_site
+from argo_env.planning.opening import open_site
 from argo_env.run.drives_and_sensors import DRIVES, SENSORS
 from argo_env.run.journal import require_free
-from argo_env.run.observer import Observer
 from argo_env.run.record import RunRecord
 from argo_env.run.session import simulate
 from argo_env.run.spec import RunSpec, logged
@@ -29,7 +26,7 @@ from argo_planner.terminal.files import check_outputs, read_upload
 from argo_planner.terminal.importing import import_shown
 from argo_planner.terminal.kept import JOURNAL, Kept, require_no_unfinished
 from argo_planner.terminal.options import EndArea, Force, Optimise, SiteOption, Source, StartArea
-from argo_planner.terminal.run_display import RunDisplay
+from argo_planner.terminal.run_display import carry_out_shown
 from argo_planner.terminal.signals import first_signal_deferred
 from argo_planner.use_cases.reporting import REPORT_FILES
 from argo_planner.use_cases.running import NO_MISSION, require_possible, with_mission
@@ -183,10 +180,24 @@ def run(
             report, render, Kept(outputs.keeping, recording, force), interruption
         )
         with conclusion.telling_the_way_on():
-            record, loss = _carry_out(spec, opened, outputs, interruption)
+            record, recorded = carry_out_shown(
+                spec.mission.max_duration,
+                recording,
+                source,
+                lambda observers: simulate(
+                    spec,
+                    opened,
+                    observers=observers,
+                    journal=outputs.keeping,
+                    replace=force,
+                    gui=gui,
+                    pace=(pace or DEFAULT_PACE) if gui else None,
+                    interrupted=interruption,
+                ),
+            )
         took = _took(record, loaded - started, time.monotonic() - loaded)
-        if recording:
-            took += f"\nRecording: {escape(f'{recording}{loss}')}"
+        if recorded:
+            took += f"\n{escape(recorded)}"
         conclusion.conclude(record, opened.site, opened.robot, took)
 
 
@@ -200,31 +211,3 @@ def _took(record: RunRecord, loading: float, running: float) -> str:
 
 def _read_faults(path: Path) -> FaultText:
     return decode_faults(read_bytes(path, "file of faults", MAX_BYTES), str(path))
-
-
-def _carry_out(
-    spec: RunSpec, site: OpenedSite, outputs: _Outputs, interrupted: Callable[[], bool]
-) -> tuple[RunRecord, str]:
-    """The run, with its progress shown, and what its recording lacks."""
-    recorder = None
-    with ExitStack() as stack:
-        display = stack.enter_context(RunDisplay(spec.mission.max_duration))
-        observers: list[Observer] = [display]
-        if outputs.recording:
-            from argo_env.recording.files import recording_to
-
-            recorder = stack.enter_context(
-                recording_to(outputs.recording, outputs.source, display.warn)
-            )
-            observers.append(recorder)
-        record = simulate(
-            spec,
-            site,
-            observers=observers,
-            journal=outputs.keeping,
-            replace=outputs.force,
-            gui=outputs.gui,
-            pace=(outputs.pace or DEFAULT_PACE) if outputs.gui else None,
-            interrupted=interrupted,
-        )
-    return record, f": {recorder.loss}" if recorder and recorder.loss else ""

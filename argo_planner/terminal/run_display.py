@@ -1,5 +1,8 @@
 """What a person sees of a run while it goes on: its progress and readings."""
 
+from collections.abc import Callable, Sequence
+from contextlib import ExitStack
+from pathlib import Path
 from typing import Self
 
 from rich.console import Console
@@ -11,7 +14,7 @@ from argo_env.run.action import ActionUnderWay
 from argo_env.run.log import Entry
 from argo_env.run.machine import Machine
 from argo_env.run.observer import Observer
-from argo_env.run.record import Anomaly, Reading
+from argo_env.run.record import Anomaly, Reading, RunRecord
 from argo_env.run.rig import Rig
 from argo_env.run.spec import RunSpec
 from argo_env.site import Site
@@ -71,6 +74,29 @@ class RunDisplay(Observer, Closing):
     def close(self) -> None:
         """Ends the display; what it has shown stays."""
         self._progress.stop()
+
+
+def carry_out_shown(
+    total: float | None,
+    recording: Path | None,
+    source: Path | None,
+    carry_out: Callable[[Sequence[Observer]], RunRecord],
+) -> tuple[RunRecord, str]:
+    """A run that is carried out with the observers which show its progress and record it, and a
+    line about the recording, empty without one.
+
+    `total`: as of RunDisplay; `source`: the file that the mission was read from.
+    """
+    with ExitStack() as stack:
+        display = stack.enter_context(RunDisplay(total))
+        if recording is None:
+            return carry_out([display]), ""
+        # What this needs is not there without the extra.
+        from argo_env.recording.files import recording_to
+
+        recorder = stack.enter_context(recording_to(recording, source, display.warn))
+        record = carry_out([display, recorder])
+    return record, f"Recording: {recording}" + (f": {recorder.loss}" if recorder.loss else "")
 
 
 def progress_bar() -> Progress:

@@ -15,9 +15,12 @@ ORIGINALS = os.environ.get("ARGO_ORIGINALS")
 
 Argo = Callable[..., subprocess.CompletedProcess[str]]
 
-if signal.getsignal(signal.SIGINT) is signal.SIG_IGN:
-    # A suite that a script runs in the background ignores Ctrl-C, and so would what it starts.
-    signal.signal(signal.SIGINT, signal.default_int_handler)
+
+def answer_signals() -> None:
+    """For a new process: a suite that runs in the background may have to ignore some signals, and
+    what it starts would as well."""
+    for number in (signal.SIGINT, signal.SIGTERM, signal.SIGHUP):
+        signal.signal(number, signal.SIG_DFL)
 
 
 class ForkedArgo:
@@ -93,6 +96,7 @@ def argo(tmp_path_factory: pytest.TempPathFactory) -> Iterator[ForkedArgo]:
         stdin=subprocess.PIPE,
         stdout=subprocess.PIPE,
         text=True,
+        preexec_fn=answer_signals,
     ) as process:
         argo = ForkedArgo(process, tmp_path_factory.mktemp("argo"))
         argo.open("umad")

@@ -18,6 +18,7 @@ import yaml
 from argo_compiler.files.mission_file import write_mission
 from argo_env.run.journal import open_journal
 from argo_env.run.record import RunRecord
+from tests.e2e.conftest import answer_signals
 from tests.e2e.test_journal import (
     ANNOUNCED,
     LONGEST,
@@ -44,6 +45,7 @@ def started(*arguments: object, **options) -> subprocess.Popen[str]:
             "stderr": subprocess.PIPE,
             "text": True,
             "env": {**os.environ, "COLUMNS": "120"},
+            "preexec_fn": answer_signals,
             **options,
         },
     )

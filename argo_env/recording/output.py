@@ -10,10 +10,14 @@ from argo_compiler.errors import Unavailable
 class UnwritableRecording(Unavailable):
     """The recording can't be written any further."""
 
-    def __init__(self, path: Path, error: OSError) -> None:
-        super().__init__(f"{path}: the recording can't be written any further: {error.strerror}")
-        self.reason = error.strerror
-        """in the words of the system"""
+    def __init__(self, path: Path, reason: str) -> None:
+        """The `reason` is in the words of the system."""
+        super().__init__(f"{path}: the recording can't be written any further: {reason}")
+        self.path = path
+        self.reason = reason
+
+    def __reduce__(self) -> tuple[object, ...]:
+        return type(self), (self.path, self.reason), vars(self)
 
 
 class RecordingFile:
@@ -45,7 +49,7 @@ class RecordingFile:
             self._failed = True
             with suppress(OSError):  # no file but a device
                 os.ftruncate(self._file.fileno(), self._kept)
-            raise UnwritableRecording(self._path, error) from error
+            raise UnwritableRecording(self._path, error.strerror or str(error)) from error
         self._size += len(data)
         return len(data)
 

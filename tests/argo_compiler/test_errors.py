@@ -19,6 +19,7 @@ from argo_compiler.errors import (
     Unreachable,
 )
 from argo_compiler.files.reading import FileError, FileProblem, NoFile, UnreadableFile
+from argo_env.recording.output import UnwritableRecording
 
 FINDINGS = (
     Diagnostic(
@@ -41,6 +42,7 @@ MADE = [
     DiagnosticError("a.txt", FINDINGS),
     *(kind(FINDINGS) for kind in (EditError, EditNotFound, EditInvalid, EditConflict)),
     *(kind(*FILE) for kind in (FileError, NoFile, UnreadableFile)),
+    UnwritableRecording(Path("a.mcap"), "No space left on device"),
 ]
 
 

@@ -29,7 +29,7 @@ def task_names(draw, least=1, most=9):
 def conditions(draw):
     low = draw(st.integers(0, 4))
     return Condition(
-        type=draw(st.sampled_from(ConditionType)),
+        type=draw(st.sampled_from([t for t in ConditionType if t.compares])),
         object_id=draw(st.sampled_from(OBJECTS)),
         param1=low,
         param2=draw(st.integers(low + 1, 6)),

@@ -37,6 +37,8 @@ class Scale:
     def satisfying(self, condition: Condition) -> int:
         """The regions whose values satisfy a condition on this object, its age apart."""
         low, high = condition.param1, condition.param2
+        if low is None:
+            return 0
         if condition.type is ConditionType.LESS:
             return self._below(low, condition.inclusive)
         if condition.type is ConditionType.GREATER:
@@ -94,7 +96,8 @@ def make_scale(conditions: Iterable[Condition], range_: Interval | None) -> Scal
     """The regions for the conditions on one object, measured values lying in `range_`."""
     bounds: set[float] = set()
     for condition in conditions:
-        bounds.add(condition.param1)
+        if condition.param1 is not None:
+            bounds.add(condition.param1)
         if condition.param2 is not None:
             bounds.add(condition.param2)
     if range_ is not None:

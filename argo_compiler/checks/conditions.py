@@ -46,9 +46,21 @@ class ConditionChecks:
 
 
 def _check_bounds(at: str, task: Task, condition: Condition, field: str) -> Iterator[Diagnostic]:
+    if not condition.type.compares:
+        yield from _check_state(at, task, condition, field)
+        return
     low, high = condition.param1, condition.param2
     which = f"a {condition.type} condition of task '{task.name}'"
-    if condition.type is not ConditionType.WITHIN:
+    if low is None:
+        yield diagnostic_about(
+            at,
+            task,
+            "il.condition-bound",
+            f"{which} has no param1",
+            "give it as the bound that the value is compared with",
+            field=field,
+        )
+    elif condition.type is not ConditionType.WITHIN:
         if high is not None:
             yield diagnostic_about(
                 at,
@@ -76,4 +88,35 @@ def _check_bounds(at: str, task: Task, condition: Condition, field: str) -> Iter
             f"{which} never holds: no value lies between {low:g} and {high:g}",
             "param1 is the lower bound, param2 the upper one",
             field=field,
+        )
+
+
+def _check_state(at: str, task: Task, condition: Condition, field: str) -> Iterator[Diagnostic]:
+    """What a condition that looks at the state of a reading has too much or too little of."""
+    which = f"a {condition.type} condition of task '{task.name}'"
+    if condition.type is ConditionType.STALE and condition.max_age is None:
+        yield diagnostic_about(
+            at,
+            task,
+            "il.stale-without-age",
+            f"{which} has no max_age",
+            "say from which age on (s) a value is stale",
+            field=field,
+        )
+    unused = {
+        "param1": condition.param1 is not None,
+        "param2": condition.param2 is not None,
+        "inclusive": condition.inclusive,
+        "max_age": condition.max_age is not None
+        and condition.type in (ConditionType.UNREADABLE, ConditionType.FAILED),
+    }
+    for name in (name for name, given in unused.items() if given):
+        yield diagnostic_about(
+            at,
+            task,
+            "il.unused-field",
+            f"{which} has a {name}, which has no effect",
+            "remove it",
+            Severity.WARNING,
+            f"{field}.{name}",
         )

@@ -105,7 +105,7 @@ def _check_until(
         )
         return
     other = first.get(reaction.until) if reaction.until else None
-    if other and other.response is not Response.REPORT and other.priority > reaction.priority:
+    if other and other.response is not Response.REPORT and other.rank > reaction.rank:
         yield diagnostic_about(
             at,
             reaction,

@@ -227,9 +227,9 @@ class _Tree:
         if condition.max_age is not None:
             tests.append(f"(now - time_{k}) <= {number(condition.max_age)}")
         if condition.type is ConditionType.LESS:
-            tests.append(f"value_{k} {less} {number(condition.param1)}")
+            tests.append(f"value_{k} {less} {number(condition.param1 or 0.0)}")
         else:
-            tests.append(f"value_{k} {more} {number(condition.param1)}")
+            tests.append(f"value_{k} {more} {number(condition.param1 or 0.0)}")
         if condition.type is ConditionType.WITHIN:
             tests.append(f"value_{k} {less} {number(condition.param2 or 0.0)}")
         return " && ".join(f"({test})" for test in tests)

@@ -222,7 +222,7 @@ class _Document:
     def _holds(self, condition: Condition) -> str:
         k = self.ids.objects[condition.object_id]
         less = "<=" if condition.inclusive else "<"
-        low = number(condition.param1)
+        low = number(condition.param1 or 0.0)
         value = f"value_{k}"
         tests = [f"known_{k} == 1"]
         if condition.max_age is not None:

@@ -97,7 +97,7 @@ class ControlRegion:
                 first += (
                     f"(since_{r.event} == 0 || since_{mine.event} < since_{r.event})"
                     for r in self.own.values()
-                    if r.priority == mine.priority and r is not mine
+                    if r.rank == mine.rank and r is not mine
                 )
                 if mine.response is Response.ABORT:
                     self._then(" && ".join(first), None, [("outcome", ABORTED)])
@@ -120,7 +120,7 @@ class ControlRegion:
         with self._state(id, {"initial": f"{id}_{'drive' if drives else 'arrive'}"}):
             for kind in self.kinds:
                 self._occurs(kind, reaction)
-            higher = [r for r in self.own.values() if r.priority > reaction.priority]
+            higher = [r for r in self.own.values() if r.rank > reaction.rank]
             for r in higher:
                 waits = f"paused == 1 && since_{r.event} != 0"
                 self._go("resume", "choose", None, [("paused", 0)], cond=waits)
@@ -162,7 +162,7 @@ class ControlRegion:
             gives_up = [(f"since_{reaction.event}", 0), ("paused", 1)]
             self._go("action.failed", "stopped", None, gives_up, cond=failed)
         self._go("pause", None, None, [("paused", 1), ("mode", 2)])
-        higher = [r for r in self.own.values() if r.priority > reaction.priority]
+        higher = [r for r in self.own.values() if r.rank > reaction.rank]
         resumed = " && ".join(["paused == 1", *(f"since_{r.event} == 0" for r in higher)])
         self._go("resume", None, None, [("paused", 0), ("mode", 1)], cond=resumed)
 
@@ -185,7 +185,7 @@ class ControlRegion:
         if own is not None:
             aborts = own.response is Response.ABORT
             cond = f"since_{kind} == 0"
-            if active is None or own.priority > active.priority:
+            if active is None or own.rank > active.rank:
                 if aborts:
                     self._go(f"event.{kind}", None, None, [("outcome", ABORTED)], cond=cond)
                 elif active is not None:

@@ -3,7 +3,7 @@
 from collections.abc import Callable
 from typing import Any
 
-VERSION = 2
+VERSION = 3
 """of the mission format that is written"""
 
 
@@ -22,4 +22,8 @@ def _to_2(data: dict[str, Any]) -> dict[str, Any]:
     return {**data, "version": 2}
 
 
-_STEPS: dict[object, Callable[[dict[str, Any]], dict[str, Any]]] = {1: _to_2}
+def _to_3(data: dict[str, Any]) -> dict[str, Any]:
+    return {**data, "version": 3}
+
+
+_STEPS: dict[object, Callable[[dict[str, Any]], dict[str, Any]]] = {1: _to_2, 2: _to_3}

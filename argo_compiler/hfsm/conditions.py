@@ -15,8 +15,10 @@ class Measured:
 
 
 def comparison(condition: Condition) -> Callable[[float], bool]:
-    """The test that a condition makes of a value, its age apart."""
+    """The test that a LESS, GREATER or WITHIN makes of a value, its age apart."""
     low, high = condition.param1, condition.param2
+    if low is None:
+        return lambda _: False
     if condition.type is ConditionType.LESS:
         return (lambda value: value <= low) if condition.inclusive else (lambda value: value < low)
     if condition.type is ConditionType.GREATER:
@@ -46,6 +48,8 @@ def words(condition: Condition) -> str:
     """The condition as text, such as `2 < #4 < 5.5, at most 60 s old`."""
     name = f"#{condition.object_id}"
     equal = "=" if condition.inclusive else ""
+    if not condition.type.compares:
+        return _words_of_state(condition, name)
     if condition.type is ConditionType.LESS:
         text = f"{name} <{equal} {condition.param1:g}"
     elif condition.type is ConditionType.GREATER:
@@ -55,3 +59,15 @@ def words(condition: Condition) -> str:
     if condition.max_age is not None:
         text += f", at most {condition.max_age:g} s old"
     return text
+
+
+def _words_of_state(condition: Condition, name: str) -> str:
+    match condition.type:
+        case ConditionType.UNREADABLE:
+            return f"{name} unreadable"
+        case ConditionType.FAILED:
+            return f"{name} failed"
+        case ConditionType.STALE:
+            return f"{name} older than {condition.max_age or 0:g} s"
+    age = "" if condition.max_age is None else f", at most {condition.max_age:g} s old"
+    return f"{name} abnormal{age}"

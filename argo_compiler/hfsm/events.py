@@ -12,10 +12,17 @@ if TYPE_CHECKING:  # progress tells an outcome, which is defined here
 
 @dataclass(frozen=True, slots=True)
 class ActionSucceeded:
-    """The running action has ended well. `value`: what a MEASURE read, if it is a number."""
+    """The running action has ended well. `value`: what a MEASURE read, if it is a number.
+
+    The `id` is that of the command which started the action. An end without one is taken for that
+    of the action that runs, so a driver that may deliver an end twice gives it.
+    """
 
     task: str
     value: float | None = None
+    abnormal: bool = False
+    """whether the value lies outside the checkpoint's nominal range"""
+    id: int | None = None
 
 
 @dataclass(frozen=True, slots=True)
@@ -24,6 +31,9 @@ class ActionFailed:
 
     task: str
     reason: str
+    unreadable: bool = False
+    """MEASURE: whether the robot looked at the checkpoint, and could not read a value"""
+    id: int | None = None
 
 
 @dataclass(frozen=True, slots=True)
@@ -31,6 +41,16 @@ class ActionStopped:
     """An action that was to be cancelled has ended, its clean-up done."""
 
     task: str
+    id: int | None = None
+
+
+@dataclass(frozen=True, slots=True)
+class ReadingGiven:
+    """Somebody else tells the value of a checkpoint, read now: an instrument, or a person."""
+
+    object_id: str
+    value: float
+    abnormal: bool = False
 
 
 @dataclass(frozen=True, slots=True)
@@ -77,7 +97,7 @@ class Cancel:
 
 
 ActionEnded = ActionSucceeded | ActionFailed | ActionStopped
-Event = ActionEnded | Tick | Occurred | Pause | Resume | TakeOver | GiveBack | Cancel
+Event = ActionEnded | Tick | Occurred | ReadingGiven | Pause | Resume | TakeOver | GiveBack | Cancel
 
 
 @dataclass(frozen=True, slots=True)
@@ -85,6 +105,10 @@ class StartAction:
     """Carry out the task's action and report its end by an event."""
 
     task: Task
+    id: int = 0
+    """of this action, from 1; none is given twice in a run. The end of the action has it as well"""
+    not_before: float | None = None
+    """s on the executor's clock before which the robot does not begin at the place (W4)"""
 
 
 @dataclass(frozen=True, slots=True)
@@ -93,6 +117,8 @@ class CancelAction:
 
     task: str
     reason: str
+    id: int = 0
+    """of the action"""
 
 
 Command = StartAction | CancelAction
@@ -103,6 +129,8 @@ class Outcome(StrEnum):
 
     COMPLETED = "completed"
     """all was done that the plan asked for"""
+    COMPLETED_WITH_FAILURES = "completed with failures"
+    """the plan came to its end, and a task that is not optional had failed for good"""
     RETURNED = "returned"
     """at the dock, after a failure or an event"""
     SHELTERED = "sheltered"

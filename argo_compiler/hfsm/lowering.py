@@ -30,6 +30,7 @@ from argo_compiler.il import (
     Action,
     Group,
     Mission,
+    Mode,
     OnFailure,
     Reaction,
     Response,
@@ -96,9 +97,10 @@ class _Lowering:
             leaves=(*leaves, *self._return_leaf()),
             reactions=tuple(
                 _reaction_state(reaction, self.mission)
-                for reaction in sorted(self.mission.reactions, key=lambda r: -r.priority)
+                for reaction in sorted(self.mission.reactions, key=lambda r: r.rank, reverse=True)
             ),
             max_duration=self.mission.max_duration,
+            supervised=self.mission.mode is Mode.SUPERVISORY,
         )
 
     def _initial(self) -> str:
@@ -145,6 +147,8 @@ class _Lowering:
                 duration=r.group.max_repeat_duration,
                 stop=r.group.stop,
                 count_interruptions=r.group.count_interruptions,
+                every=r.group.every,
+                until=r.group.until,
             ),
             transitions=(repeat, onward),
             timeout=_timeout(r.group),
@@ -173,7 +177,29 @@ class _Lowering:
             parent=self._composite_id(parent),
             task=task,
             transitions=(*conditional, last),
-            failure=_FAILURES.get(task.on_failure),
+            failure=self._failure(parent, task),
+            missed=self._missed(parent, task),
+        )
+
+    def _failure(self, inside: int | None, task: Task) -> StateTransition | None:
+        """What follows when the task has failed for good; None: what follows any other end."""
+        if task.on_failure is not OnFailure.BRANCH or task.failure_target is None:
+            return _FAILURES.get(task.on_failure)
+        return StateTransition(
+            kind=TransitionKind.FAILURE,
+            target=task_id(task.failure_target),
+            domain=self._domain(inside, task.failure_target),
+        )
+
+    def _missed(self, inside: int | None, task: Task) -> StateTransition | None:
+        """What follows when the task's hard window is over; None: what follows a failure."""
+        window = task.window
+        if window is None or not window.hard or window.missed_target is None:
+            return None
+        return StateTransition(
+            kind=TransitionKind.MISSED,
+            target=task_id(window.missed_target),
+            domain=self._domain(inside, window.missed_target),
         )
 
     def _return_leaf(self) -> tuple[Leaf, ...]:
@@ -224,7 +250,7 @@ def _reaction_state(reaction: Reaction, mission: Mission) -> ReactionState:
         task = Task(
             name=reaction_task_name(reaction.event),
             action=Action.WAYPOINT,
-            pose=mission.dock if returns else reaction.pose,
+            pose=(reaction.pose or mission.dock) if returns else reaction.pose,
         )
     return ReactionState(id=reaction_id(reaction.event), reaction=reaction, task=task)
 

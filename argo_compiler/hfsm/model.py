@@ -17,6 +17,9 @@ the IL to run or export a machine:
   cancelled, and the composite's round has ended. As its time is up, it wants no other.
 - An action that failed is tried again `task.retries` times. Then the leaf's `failure` is taken, or
   without one the leaf's transitions as after any other end.
+- A leaf whose task has a hard window takes `missed` when that is over, or without one what follows
+  a failure.
+- A leaf whose task is a WAIT has no action: it ends by time, an event or conditions (`task.wait`).
 - A reaction is entered when its event occurs. It suspends the mission, which keeps its states.
 """
 
@@ -68,7 +71,9 @@ class TransitionKind(StrEnum):
     TIMEOUT = "timeout"
     """the composite's time is up"""
     FAILURE = "failure"
-    """the action has failed for good, and the task says not to go on then"""
+    """the action has failed for good, and the task says what follows then"""
+    MISSED = "missed"
+    """the task's hard window is over"""
 
 
 class StateTransition(Model):
@@ -96,6 +101,10 @@ class RepeatRule(Model):
     """what happens when the duration is over in the middle of a round"""
     count_interruptions: bool = False
     """whether the duration goes on while the mission is interrupted"""
+    every: float = Field(default=0.0, ge=0)
+    """s from the beginning of one round to that of the next; 0: at once"""
+    until: tuple[Condition, ...] = ()
+    """no other round is wanted once all of these hold; none: not looked at"""
 
 
 class Composite(Model):
@@ -129,6 +138,8 @@ class Leaf(Model):
     """for the end of the action, in the order in which they are tried"""
     failure: StateTransition | None = None
     """for an action that failed for good; None: `transitions`"""
+    missed: StateTransition | None = None
+    """for a hard window that is over; None: `failure`, or else `transitions`"""
 
     @property
     def source(self) -> Span | None:
@@ -147,16 +158,18 @@ class ReactionState(Model):
 class Hfsm(Model):
     """A machine. The composite `mission` begins in its `initial` state and ends in `final`."""
 
-    version: Literal[2] = 2
+    version: Literal[3] = 3
     """of this format"""
     composites: tuple[Composite, ...]
     """the mission first, each one before those that lie in it"""
     leaves: tuple[Leaf, ...]
     """in the mission's order"""
     reactions: tuple[ReactionState, ...] = ()
-    """by priority, the greatest first; one for each event"""
+    """by rank, the greatest first; one for each event"""
     max_duration: float | None = None
     """s since the mission's start, interruptions included, after which TIME_UP occurs"""
+    supervised: bool = False
+    """whether it is paused as soon as it is started, and begins when a person lets it (M9)"""
     final: Literal["done"] = DONE
 
     @property
@@ -169,6 +182,8 @@ class Hfsm(Model):
             yield from leaf.transitions
             if leaf.failure:
                 yield leaf.failure
+            if leaf.missed:
+                yield leaf.missed
         for composite in self.composites:
             yield from composite.transitions
             if composite.timeout:

@@ -53,7 +53,7 @@ class Reactions:
         if known or own is None or own.state.reaction.response is Response.REPORT:
             return None
         active = self.active
-        if active is not None and own.priority <= active.reaction.priority:
+        if active is not None and own.rank <= active.reaction.rank:
             if active.reaction.until is not kind:
                 self.wait(own)
             return None
@@ -70,10 +70,14 @@ class Reactions:
 
     def next(self) -> Pending | None:
         """Takes the reaction whose turn it is off the waiting ones: it may interrupt the active."""
-        first = min(self.waiting, key=lambda p: (-p.reaction.priority, p.order), default=None)
+        first = min(
+            self.waiting,
+            key=lambda p: (*(-part for part in p.reaction.rank), p.order),
+            default=None,
+        )
         if first is None:
             return None
-        if self.active is not None and first.reaction.priority <= self.active.reaction.priority:
+        if self.active is not None and first.reaction.rank <= self.active.reaction.rank:
             return None
         self.waiting.remove(first)
         return first

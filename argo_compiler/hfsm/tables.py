@@ -88,8 +88,8 @@ class ReactionNode:
     start: tuple[StartAction, ...]
 
     @property
-    def priority(self) -> int:
-        return self.state.reaction.priority
+    def rank(self) -> tuple[int, int]:
+        return self.state.reaction.rank
 
 
 @dataclass(slots=True, eq=False)

@@ -50,6 +50,8 @@ def validate(hfsm: "Hfsm") -> None:
         check(leaf.id, leaf.parent, leaf.transitions, leaf.parent)
         if leaf.failure:
             check(leaf.id, leaf.parent, (leaf.failure,), "")
+        if leaf.missed:
+            check(leaf.id, leaf.parent, (leaf.missed,), "")
         last = leaf.transitions[-1] if leaf.transitions else None
         if last is None or last.kind != "default" or last.conditions:
             raise ValueError(f"the last transition of '{leaf.id}' may be impossible")
@@ -60,7 +62,8 @@ def validate(hfsm: "Hfsm") -> None:
         if composite.id not in completed:
             continue
         last = composite.transitions[-1] if composite.transitions else None
-        endless = composite.repeat and not (composite.repeat.count or composite.repeat.duration)
+        repeat = composite.repeat
+        endless = repeat and not (repeat.count or repeat.duration or repeat.until)
         if last is None or (last.kind != "default" and not endless) or last.conditions:
             raise ValueError(f"the last transition of '{composite.id}' may be impossible")
 

@@ -1,6 +1,7 @@
 """The intermediate language: missions as data, and what their tasks and groups are made of."""
 
 from argo_compiler.il.mission import (
+    DEFAULT_PRIORITIES,
     Action,
     Afterwards,
     Condition,
@@ -16,10 +17,13 @@ from argo_compiler.il.mission import (
     Response,
     Stop,
     Task,
+    TimeWindow,
     Transition,
+    WaitRule,
 )
 
 __all__ = [
+    "DEFAULT_PRIORITIES",
     "Action",
     "Afterwards",
     "Condition",
@@ -35,5 +39,7 @@ __all__ = [
     "Response",
     "Stop",
     "Task",
+    "TimeWindow",
     "Transition",
+    "WaitRule",
 ]

@@ -21,6 +21,8 @@ class Action(StrEnum):
     START = "START"
     WAYPOINT = "WAYPOINT"
     MEASURE = "MEASURE"
+    WAIT = "WAIT"
+    """stand still; the machine does it by itself, and the robot is told nothing"""
 
 
 class Mode(StrEnum):
@@ -45,11 +47,28 @@ class Stop(StrEnum):
 
 
 class ConditionType(StrEnum):
-    """The comparisons of table 3.1 of the thesis, its misprint for GREATER corrected."""
+    """The comparisons of table 3.1 of the thesis, its misprint for GREATER corrected, and what else
+    a reading may be."""
 
     LESS = "MEASURED_VALUE_LESS"
     GREATER = "MEASURED_VALUE_GREATER"
     WITHIN = "MEASURED_VALUE_WITHIN"
+    UNREADABLE = "READING_UNREADABLE"
+    """the checkpoint was looked at, and no value could be read"""
+    FAILED = "READING_FAILED"
+    """the last measurement gave no value, for whatever reason; unreadable is one of them"""
+    STALE = "READING_STALE"
+    """there is a value, and it is older than `max_age`"""
+    ABNORMAL = "READING_ABNORMAL"
+    """there is a value, and it lies outside the checkpoint's nominal range"""
+
+    @property
+    def compares(self) -> bool:
+        """Whether it compares the value with bounds."""
+        return self in _COMPARISONS
+
+
+_COMPARISONS = frozenset([ConditionType.LESS, ConditionType.GREATER, ConditionType.WITHIN])
 
 
 class OnFailure(StrEnum):
@@ -61,6 +80,8 @@ class OnFailure(StrEnum):
     """drive to the mission's `dock` and end there"""
     ABORT = "abort"
     """end where the robot stands"""
+    BRANCH = "branch"
+    """go on with the task's `failure_target`"""
 
 
 class EventKind(StrEnum):
@@ -118,26 +139,48 @@ class Afterwards(StrEnum):
     """the mission is over"""
 
 
+DEFAULT_PRIORITIES = {
+    EventKind.EMERGENCY_STOP: 100,
+    EventKind.GAS_LEAK: 90,
+    EventKind.PLATFORM_ALARM: 90,
+    EventKind.HOT_SPOT: 70,
+    EventKind.DYSFUNCTION: 60,
+    EventKind.LOW_BATTERY: 50,
+    EventKind.TIME_UP: 40,
+    EventKind.CONNECTION_LOST: 30,
+    EventKind.NEGATIVE_OBSTACLE: 20,
+    EventKind.POSITIVE_OBSTACLE: 20,
+    EventKind.ABNORMAL_SOUND: 10,
+    EventKind.ABNORMAL_READING: 10,
+    EventKind.ALL_CLEAR: 0,
+    EventKind.BATTERY_CHARGED: 0,
+    EventKind.CONNECTION_RESTORED: 0,
+}
+"""The priority of a reaction that gives none, by how bad its event is: dangers to people first,
+then to the robot, then to the mission."""
+
+
 class Condition(Model):
-    """A test of the last value measured at a checkpoint.
+    """A test of the last reading of a checkpoint.
 
     LESS: value < param1. GREATER: value > param1. WITHIN: param1 < value < param2. With `inclusive`
-    the bounds themselves count as well. A value that was never measured, or is older than
-    `max_age`, makes the condition false.
+    the bounds themselves count as well. The other types look at what the reading is, and have no
+    bounds. Without a value, or with one that is older than `max_age`, a comparison is false.
     """
 
     type: ConditionType
     id: str = ""
     """a name for people; the machine does not use it"""
     object_id: str
-    """the checkpoint whose value is compared"""
-    param1: float
+    """the checkpoint whose reading is looked at"""
+    param1: float | None = None
+    """the bound, for LESS, GREATER and WITHIN"""
     param2: float | None = None
     """upper bound, for WITHIN only"""
     inclusive: bool = False
     """whether the bounds are among the values that satisfy it (at least, at most)"""
     max_age: float | None = Field(default=None, gt=0)
-    """s; None: a value never becomes stale"""
+    """s; None: a value never becomes too old. STALE needs one"""
 
 
 class Transition(Model):
@@ -148,11 +191,45 @@ class Transition(Model):
 
 
 class JointState(Model):
-    """Positions of named joints, for semi-autonomous actions (thesis 4.4)."""
+    """Where named joints are to be during the action, for semi-autonomous ones (thesis 4.4)."""
 
     names: tuple[str, ...]
-    positions: tuple[float, ...]
-    """rad or m, one for each name"""
+    positions: tuple[float, ...] = ()
+    """rad or m, one for each name, or none at all"""
+    velocities: tuple[float, ...] = ()
+    """rad/s or m/s, likewise"""
+    efforts: tuple[float, ...] = ()
+    """Nm or N, likewise"""
+
+
+class WaitRule(Model):
+    """How long a WAIT lasts: for a time, or until something has happened.
+
+    Either `duration` is given, or `event`, `conditions` or both of them, of which the first ends
+    the wait.
+    """
+
+    duration: float | None = Field(default=None, ge=0)
+    """s since the task was come to; 0: a place where ways meet, at which nothing is done"""
+    event: EventKind | None = None
+    """until this occurs; what occurred before the task was come to does not count"""
+    conditions: tuple[Condition, ...] = ()
+    """until all of them hold"""
+    limit: float | None = Field(default=None, gt=0)
+    """s, with `event` or `conditions`: then the task has failed"""
+
+
+class TimeWindow(Model):
+    """When a task is to be done, in s since the mission's start."""
+
+    earliest: float = Field(default=0.0, ge=0)
+    """before this, the robot goes there and waits at the place"""
+    latest: float | None = Field(default=None, gt=0)
+    """by when the task has to have ended; None: any time"""
+    hard: bool = True
+    """whether the task has failed if it has not ended at `latest`; else it is done all the same"""
+    missed_target: str | None = None
+    """the task that follows if a hard window is missed; None: as after any other failure"""
 
 
 class Task(Model):
@@ -165,13 +242,29 @@ class Task(Model):
     object_id: str | None = None
     """MEASURE: the checkpoint"""
     pose: Pose | None = None
-    """WAYPOINT and START: where"""
+    """WAYPOINT: where to. START: where the robot stands at the beginning. MEASURE: where it is to
+    stand when it measures; None: wherever it sees the checkpoint from"""
+    wait: WaitRule | None = None
+    """WAIT: how long"""
     velocity: float | None = Field(default=None, gt=0)
-    """m/s on the way to the next task; None: the robot's planning speed"""
+    """m/s on the way to this task, wherever the robot comes from; None: its planning speed"""
     joint_states: JointState | None = None
     retries: int = Field(default=0, ge=0)
     """how often a failed action is tried again before it counts as failed"""
     on_failure: OnFailure = OnFailure.CONTINUE
+    failure_target: str | None = None
+    """BRANCH: the task that follows"""
+    time_limit: float | None = Field(default=None, gt=0)
+    """s for each attempt, the way there included, after which it has failed; None: no limit"""
+    reading_limit: float | None = Field(default=None, gt=0)
+    """MEASURE: s that the robot tries to read the value, after which it is unreadable; None: as
+    long as the robot does by itself"""
+    optional: bool = False
+    """whether the mission is complete without it: an order that has too little time may leave it
+    out, and its failure does not count as one of the mission"""
+    priority: int = Field(default=1, ge=1, le=1_000_000)
+    """what it is worth where not all can be done; the machine does not use it"""
+    window: TimeWindow | None = None
     transitions: tuple[Transition, ...] = ()
     source: Span | None = None
     """where a script asked for it"""
@@ -180,8 +273,8 @@ class Task(Model):
 class Group(Model):
     """A round: the tasks from `start` to `end` in the mission's order, repeated.
 
-    With both a count and a duration, whichever comes first ends it; with neither it is endless and
-    some transition must leave it. `/` in the name nests: `Alpha/Beta` lies inside `Alpha`.
+    Of count, duration and `until`, whichever comes first ends it; with none of them it is endless
+    and some transition must leave it. `/` in the name nests: `Alpha/Beta` lies inside `Alpha`.
     """
 
     name: str = Field(min_length=1)
@@ -194,6 +287,12 @@ class Group(Model):
     count_interruptions: bool = False
     """whether the time of pauses, reactions and supervision counts as part of the duration"""
     stop: Stop = Stop.HARD
+    every: float = Field(default=0.0, ge=0)
+    """s on the group's clock from the beginning of one round to that of the next. The plan does not
+    drift: round n is due (n - 1) times this after the group was entered, and one that is late
+    begins at once. 0: a round begins when the one before has ended"""
+    until: tuple[Condition, ...] = ()
+    """no other round begins once all of these hold at the end of one; none: not looked at"""
     source: Span | None = None
 
 
@@ -201,28 +300,47 @@ class Reaction(Model):
     """What to do when an event occurs. A mission has at most one for each kind of event.
 
     The response is carried out, then `until` is waited for, if given, then `afterwards` is done.
-    A reaction of higher priority interrupts one of lower priority; see `docs/language.md`.
+    A reaction of higher rank interrupts one of lower rank; see `docs/language.md`.
     """
 
     event: EventKind
     response: Response
     pose: Pose | None = None
-    """SAFE_AREA: where to"""
+    """SAFE_AREA: where to. RETURN: to which dock; None: the mission's"""
+    area: int | None = None
+    """RETURN: the starting area that `pose` is the dock of, for people"""
     until: EventKind | None = None
     """PAUSE, RETURN, SAFE_AREA: stand still until this event occurs, or a person resumes"""
     afterwards: Afterwards = Afterwards.END
     """RETURN and SAFE_AREA only: a PAUSE is followed by the mission, a REPORT interrupts nothing,
     an ABORT is the end"""
-    priority: int = 0
-    """the greater one goes first"""
+    hold_limit: float | None = Field(default=None, gt=0)
+    """s that it stands still at most; None: no limit"""
+    on_limit: Afterwards = Afterwards.WAIT
+    """what happens when that time is over: RESUME goes on as if `until` had occurred, WAIT pauses
+    the mission, END ends it"""
+    priority: int | None = None
+    """the greater one goes first; None: by how bad the event is, see `DEFAULT_PRIORITIES`"""
     source: Span | None = None
+
+    @property
+    def rank(self) -> tuple[int, int]:
+        """The greater one goes first: ABORT before all, then the reaction to an emergency stop,
+        then by priority."""
+        safety = 0
+        if self.response is Response.ABORT:
+            safety = 2
+        elif self.event is EventKind.EMERGENCY_STOP:
+            safety = 1
+        given = self.priority
+        return safety, DEFAULT_PRIORITIES[self.event] if given is None else given
 
 
 class Mission(Model):
     """A planned mission: the sheet's header, the tasks in order, the groups over them, and the
     reactions to what may happen."""
 
-    version: Literal[2] = 2
+    version: Literal[3] = 3
     """of this format"""
     designation: str = ""
     site: str = ""

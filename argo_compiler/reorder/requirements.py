@@ -63,7 +63,7 @@ class Priority(Model):
     """what it is worth: as much as possible is won in sum. A group's counts once"""
 
 
-class TimeWindow(Model):
+class RequiredWindow(Model):
     """When something has to begin, counted from the mission's start."""
 
     what: What
@@ -71,7 +71,7 @@ class TimeWindow(Model):
     latest: Seconds | None = None
 
     @model_validator(mode="after")
-    def _ordered(self) -> "TimeWindow":
+    def _ordered(self) -> "RequiredWindow":
         if self.latest is not None and self.latest < self.earliest:
             raise ValueError(f"latest {self.latest:g} s is before earliest {self.earliest:g} s")
         return self
@@ -97,7 +97,7 @@ class Requirements(Model):
     optional: tuple[Priority, ...] = ()
     before: tuple[Sequence, ...] = ()
     """sequences in which each comes before all that follow, whichever of them are left out"""
-    windows: tuple[TimeWindow, ...] = ()
+    windows: tuple[RequiredWindow, ...] = ()
     likelihoods: tuple[Likelihood, ...] = ()
     """where all conditional ways of a task have one, its ways are reckoned on average, not in the
     worst case"""

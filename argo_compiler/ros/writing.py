@@ -121,7 +121,7 @@ class _Writer:
             response=self.numbers.response[reaction.response],
             until=0 if reaction.until is None else self.numbers.event[reaction.until],
             afterwards=self.numbers.afterwards[reaction.afterwards],
-            priority=_integer(f"{place}.priority", reaction.priority, "int64"),
+            priority=_integer(f"{place}.priority", reaction.rank[1], "int64"),
             **self._pose(reaction.pose),
             **_source(place, reaction.source),
         )

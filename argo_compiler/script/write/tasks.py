@@ -118,7 +118,7 @@ def condition(c: Condition) -> str:
     details = []
     if c.id:
         details.append(f"called {quote(c.id)}")
-    low, high = number(c.param1), None if c.param2 is None else number(c.param2)
+    low, high = number(c.param1 or 0.0), None if c.param2 is None else number(c.param2)
     if c.type is ConditionType.WITHIN:
         if high is None:
             raise UnwritableError("a WITHIN condition has no second bound")

@@ -37,7 +37,7 @@ STEPS = 80
 def conditions(draw, objects=OBJECTS):
     low = draw(st.integers(-1, 6))
     return Condition(
-        type=draw(st.sampled_from(ConditionType)),
+        type=draw(st.sampled_from([t for t in ConditionType if t.compares])),
         object_id=draw(st.sampled_from(objects)),
         param1=low,
         param2=draw(st.integers(low + 1, 7)),

@@ -51,7 +51,7 @@ def new_task(mission: Mission, rng: random.Random) -> Task:
 
 
 def condition(rng: random.Random) -> Condition:
-    kind, low = rng.choice(list(ConditionType)), rng.randint(0, 5)
+    kind, low = rng.choice([t for t in ConditionType if t.compares]), rng.randint(0, 5)
     return Condition(
         type=kind,
         object_id=str(rng.randint(1, 20)),

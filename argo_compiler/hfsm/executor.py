@@ -92,14 +92,14 @@ class Executor:
         """
         executor = cls(hfsm)
         control = executor._control
-        control.now = _seconds(now)
-        control.place = place_of(control.tables, progress, now, _seconds(away))
+        control.course.now = _seconds(now)
+        control.course.place = place_of(control.tables, progress, now, _seconds(away))
         control.reactions = reactions_of(control.tables, progress)
-        control.reactions.visit = control.place.new_visit()
-        control.by_hand = queues(progress.by_hand)
-        control.time_up = progress.time_up
+        control.reactions.visit = control.course.place.new_visit()
+        control.course.by_hand = queues(progress.by_hand)
+        control.course.time_up = progress.time_up
         control.paused = progress.paused
-        control.outcome = progress.outcome
+        control.course.outcome = progress.outcome
         executor._fresh = False
         executor._began = now - (progress.elapsed + away)
         executor._ended_before = progress.ended
@@ -112,15 +112,15 @@ class Executor:
         self._require_order(now)
         self._started = True
         control = self._control
-        control.now = now
+        control.course.now = now
         if self._fresh:
             self._began = now
-            control.place.enter(control.tables.initial, now)
-        control.note(Cause.START if self._fresh else Cause.RESTORE, source=None)
+            control.course.place.enter(control.tables.initial, now)
+        control.course.note(Cause.START if self._fresh else Cause.RESTORE, source=None)
         if control.outcome is None:
             limit = control.tables.max_duration
-            if limit is not None and not control.time_up:
-                control.time_up_at = max(self._began + limit, now)
+            if limit is not None and not control.course.time_up:
+                control.course.time_up_at = max(self._began + limit, now)
             if not control.interrupted:
                 control.go_on()
             control.settle()
@@ -132,11 +132,11 @@ class Executor:
         if not self._started or isinstance(event, _ABOUT_ACTIONS):
             self._require_running(event)
         control = self._control
-        place = control.place
-        if now > place.due or now > control.time_up_at:
+        place = control.course.place
+        if now > place.due or now > control.course.time_up_at:
             # The next float below `now` stands for all times before it.
             control.let_pass(math.nextafter(now, -math.inf))
-        control.now = now
+        control.course.now = now
         if isinstance(event, _ENDS):
             self._end_action(event)
         elif control.outcome is None:
@@ -164,22 +164,22 @@ class Executor:
         if not self._started:
             raise ValueError("the executor has not been started: call start first")
         control = self._control
-        now, place = control.now, control.place
+        now, place = control.course.now, control.course.place
         reaction, waiting = reaction_progress(control.reactions)
-        ended = (EndedTask(task=t, failure=f, by_hand=h) for t, f, h in control.ended)
+        ended = (EndedTask(task=t, failure=f, by_hand=h) for t, f, h in control.course.ended)
         return Progress(
-            active=control.active,
+            active=control.course.active,
             attempt=place.attempt,
             groups=group_progress(place, now),
             values=value_progress(place, now),
             ended=(*self._ended_before, *ended),
             elapsed=now - self._began,
-            time_up=control.time_up,
+            time_up=control.course.time_up,
             paused=control.paused,
             reaction=reaction,
             waiting=waiting,
             outcome=control.outcome,
-            by_hand=remaining_by_hand(control.by_hand),
+            by_hand=remaining_by_hand(control.course.by_hand),
         )
 
     @property
@@ -195,7 +195,7 @@ class Executor:
     @property
     def active(self) -> str | None:
         """The name of the task that the mission stands at; None before its start and at its end."""
-        return self._control.active
+        return self._control.course.active
 
     @property
     def running(self) -> Task | None:
@@ -226,7 +226,7 @@ class Executor:
         """
         if not self._started:
             return ()
-        place, active = self._control.place, self._control.reactions.active
+        place, active = self._control.course.place, self._control.reactions.active
         groups = (frame.group.id for frame in place.frames)
         reaction = () if active is None else (active.node.state.id,)
         return (MISSION, *groups, DONE if place.leaf is None else place.leaf.id, *reaction)
@@ -240,18 +240,18 @@ class Executor:
     @property
     def values(self) -> Mapping[str, Measured]:
         """What was measured last, by object_id."""
-        place = self._control.place
+        place = self._control.course.place
         return {id: Measured(v, at - place.shift) for id, (v, at) in place.values.items()}
 
     @property
     def rounds(self) -> Mapping[str, int]:
         """The round, from 1, that each active group is in, by the group's name."""
-        return {frame.group.name: frame.round for frame in self._control.place.frames}
+        return {frame.group.name: frame.round for frame in self._control.course.place.frames}
 
     @property
     def trace(self) -> tuple[TraceEntry, ...]:
         """All that has happened since `start`, in order."""
-        return tuple(map(entry, self._control.trace))
+        return tuple(map(entry, self._control.course.trace))
 
     def _command(self) -> tuple[Command, ...]:
         """Starts what is to run, once what is not has ended."""
@@ -270,11 +270,11 @@ class Executor:
     def _wanted(self) -> tuple[LeafNode | None, int, tuple[StartAction, ...]]:
         """The leaf, the visit and the command of the action that is to run; visit 0: none."""
         control = self._control
-        active, leaf = control.reactions.active, control.place.leaf
+        active, leaf = control.reactions.active, control.course.place.leaf
         if control.outcome is not None or control.paused:
             return None, 0, ()
         if active is None:
-            return (None, 0, ()) if leaf is None else (leaf, control.place.visit, leaf.start)
+            return (None, 0, ()) if leaf is None else (leaf, control.course.place.visit, leaf.start)
         if control.reactions.phase is Phase.DRIVING:
             return None, control.reactions.visit, active.node.start
         return None, 0, ()
@@ -286,7 +286,7 @@ class Executor:
             return f"reaction to {self.reaction.replace('_', ' ')}"
         if self.paused:
             return "the mission is paused"
-        trace = reversed(self._control.trace)
+        trace = reversed(self._control.course.trace)
         timed_out = next((one.timed_out for one in trace if one.timed_out is not None), "")
         return f"the time of '{timed_out}' is up"
 
@@ -307,18 +307,18 @@ class Executor:
                 control.fail_drive(reason)
         elif isinstance(event, ActionSucceeded):
             if event.value is not None and leaf.measures is not None:
-                clock = control.now + control.place.shift
-                control.place.values[leaf.measures] = event.value, clock
-            if self._running_visit == control.place.visit:
-                control.leave(leaf, None)
+                clock = control.course.now + control.course.place.shift
+                control.course.place.values[leaf.measures] = event.value, clock
+            if self._running_visit == control.course.place.visit:
+                control.course.leave(leaf, None)
             else:
-                control.leave_late(leaf)
+                control.course.leave_late(leaf)
         elif reason is not None:
-            control.fail(leaf, reason)
+            control.course.fail(leaf, reason)
 
     def _require_order(self, now: float) -> None:
-        if not self._control.now <= _seconds(now):
-            before = self._control.now
+        if not self._control.course.now <= _seconds(now):
+            before = self._control.course.now
             raise ValueError(f"time runs backwards: {now:g} s comes after {before:g} s")
 
     def _require_running(self, event: Event) -> None:

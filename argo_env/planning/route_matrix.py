@@ -63,22 +63,17 @@ def mission_ways(
     ]
     start = travel.start(mission)
     standings = _standings(places, start, travel)
-    first = next((t.velocity for t in mission.tasks if t.action is Action.START), None)
-    velocities = [*(t.velocity for t in tasks), first, *(None for _ in docks)]
     origins = [*standings[: len(tasks)], start, *standings[len(tasks) :]]
     if len(places) <= MOST_PLANNED:
-        time, energy = _planned(origins, velocities, places, travel)
+        time, energy = _planned(origins, places, travel)
     else:
         time, energy = _over_lattice(origins, places, standings, navigator, travel)
+        slowed = {k for k, task in enumerate(places) if task.velocity is not None}
         for row, origin in enumerate(each(_PLANNING, origins)):
             near = np.argsort(time[row], kind="stable")[:NEAREST].tolist()
-            chosen = [places[k] for k in near]
-            time[row, near], energy[row, near] = _planned_from(origin, None, chosen, travel)
-        slowed = [k for k, velocity in enumerate(velocities) if velocity is not None]
-        rows = _planned(
-            [origins[k] for k in slowed], [velocities[k] for k in slowed], places, travel
-        )
-        time[slowed], energy[slowed] = rows
+            chosen = sorted(slowed.union(near))
+            ways = _planned_from(origin, [places[k] for k in chosen], travel)
+            time[row, chosen], energy[row, chosen] = ways
     work = np.array([travel.work(task) for task in places])
     return TravelMatrix(
         tuple(task.name for task in tasks),
@@ -120,25 +115,21 @@ def _leg(travel: SiteTravel, start: Pose, task: Task) -> Leg:
 
 
 def _planned(
-    origins: Sequence[Pose],
-    velocities: Sequence[float | None],
-    places: Sequence[Task],
-    travel: SiteTravel,
+    origins: Sequence[Pose], places: Sequence[Task], travel: SiteTravel
 ) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
     """Times (s) and energies (Wh) of planned ways; inf where there is none."""
     time = np.full((len(origins), len(places)), np.inf)
     energy = time.copy()
-    rows = list(zip(origins, velocities, strict=True))
-    for row, (origin, velocity) in enumerate(each(_PLANNING, rows)):
-        time[row], energy[row] = _planned_from(origin, velocity, places, travel)
+    for row, origin in enumerate(each(_PLANNING, origins)):
+        time[row], energy[row] = _planned_from(origin, places, travel)
     return time, energy
 
 
 def _planned_from(
-    origin: Pose, velocity: float | None, places: Sequence[Task], travel: SiteTravel
+    origin: Pose, places: Sequence[Task], travel: SiteTravel
 ) -> tuple[list[float], list[float]]:
     """The same from one place."""
-    legs = [travel.leg(origin, task, velocity) for task in places]
+    legs = [travel.leg(origin, task, task.velocity) for task in places]
     time = [leg.duration if isinstance(leg, Leg) else np.inf for leg in legs]
     return time, [leg.energy if isinstance(leg, Leg) else np.inf for leg in legs]
 

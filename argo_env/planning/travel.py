@@ -31,7 +31,7 @@ class SiteTravel:
         self._parts = on.parts
         self.time_step = time_step
         self._ways: dict[tuple[Pose, str | Pose | None], Path | NoWay] = {}
-        self._legs: dict[tuple[Pose, str | Pose | None, float | None], Leg | NoWay] = {}
+        self._legs: dict[tuple[Pose, str | Pose | None, Action, float | None], Leg | NoWay] = {}
 
     @property
     def _navigator(self) -> "Navigator":
@@ -70,7 +70,7 @@ class SiteTravel:
 
     def way(self, origin: Pose, task: Task) -> Path:
         """The way to the task's place. Raises ArgoError if there is none."""
-        way = self._way(origin, task.object_id if task.action is Action.MEASURE else task.pose)
+        way = self._way(origin, task.pose or task.object_id)
         if isinstance(way, NoWay):
             raise Unreachable(f"the robot can't carry out task '{task.name}': {way.reason}")
         return way
@@ -78,8 +78,10 @@ class SiteTravel:
     def leg(self, origin: Standing, task: Task, velocity: float | None) -> Leg | NoWay:
         """The way to the task's place at `velocity` (m/s), and its action."""
         assert isinstance(origin, Pose)
-        place = task.object_id if task.action is Action.MEASURE else task.pose
-        key = origin, place, velocity
+        if task.action is Action.WAIT:
+            return Leg(0.0, 0.0, origin)
+        place = task.pose or task.object_id
+        key = origin, place, task.action, velocity
         if key not in self._legs:
             way = self._way(origin, place)
             work = self.work(task)

@@ -4,7 +4,7 @@ import math
 from collections.abc import Callable
 
 from argo_compiler.errors import ArgoError, Unreachable
-from argo_compiler.hfsm import ActionFailed, ActionStopped, ActionSucceeded
+from argo_compiler.hfsm import ActionFailed, ActionStopped, ActionSucceeded, StartAction
 from argo_compiler.il import Action, Task
 from argo_compiler.model import Pose
 from argo_env.drives.drive import DriveStatus
@@ -15,12 +15,14 @@ from argo_env.robot.pose import BodyPose
 from argo_env.run.record import DIGITS, Reading, TaskRun
 from argo_env.run.rig import Rig
 from argo_env.sensing.sensor import Measurement, MeasurementError, PoorViewError
+from argo_env.site import SiteCheckpoint
 
 ActionEnd = ActionSucceeded | ActionFailed | ActionStopped
 
 RETREAT = 1.0
 """m that the robot goes back where it is cornered"""
 _NEAR = 0.15  # m: a cell's diagonal
+_INSTANT = 1e-9  # s
 
 TURNS = (0.0, math.radians(55.0), math.radians(-55.0))
 """rad that the face of a checkpoint is taken to be turned against the plan, one view after the
@@ -30,26 +32,28 @@ other: it may be turned by up to 90 degrees, and is read at up to 60 degrees"""
 class ActionUnderWay:
     """The action of one task. Changes with every step, from the first one to its end.
 
-    A measurement takes the robot's measuring time: a third each to raise the arm, to look and to
-    stow the arm. An action that is cancelled cleans up before it ends: the robot comes to rest, and
-    an arm that has been raised is stowed. Once it has looked, it ends as if it had not been
-    cancelled.
+    The robot drives to the place, and stands there until the time at which it may begin. A
+    measurement takes the robot's measuring time: a third each to raise the arm, to look and to
+    stow the arm. An action that is cancelled, or has tried to read as long as it may, cleans up
+    before it ends: the robot comes to rest, and an arm that has been raised is stowed. Once it has
+    looked, it ends as if it had not been cancelled.
     """
 
     def __init__(
         self,
-        task: Task,
-        velocity: float | None,
+        start: StartAction,
         rig: Rig,
         started: float,
         distance_before: float,
         climbed_before: float,
         came: Path | None = None,
     ) -> None:
-        """`velocity` (m/s) is that of the way there, None the robot's own; then when (s) and after
-        what way (m) it was started, and the path that the robot `came` by."""
-        self.task = task
-        self._started = started
+        """What the machine asks for; then when (s) and after what way (m) it was started, and the
+        path that the robot `came` by."""
+        self.task = task = start.task
+        self._id = start.id
+        self._not_before = -math.inf if start.not_before is None else start.not_before
+        self._started = self._now = started
         self._distance_before = distance_before
         self._climbed_before = climbed_before
         self.cancelled: str | None = None
@@ -61,18 +65,22 @@ class ActionUnderWay:
         """the way there, once it is planned"""
         self.came = came
         """the path that the robot came by, back along which it goes where it is cornered"""
-        self._velocity = velocity
+        self._velocity = task.velocity
         self._rig = rig
         self._retreated = False
         self._views = 0  # that have been gone to
+        self._looked = False
+        self._give_up_at = math.inf  # s, when it has tried to read as long as it may
         self._left = 0.0  # s of the measurement, or until the arm is stowed
         self._measured: list[tuple[float, float]] = []  # s, from when to when
         self._since: float | None = None  # s, when the measurement began
+        self._early: float | None = None  # s, when it came to the place too early to begin
         self._phase: Callable[[], ActionEnd | None] = self._set_off
 
     def step(self, now: float) -> ActionEnd | None:
         """Goes on for one time step of the drive, up to time `now` (s); returns how the action has
         ended, if it has."""
+        self._now = now
         end = self._phase()
         if self._since is None and self.measuring:
             self._since = now
@@ -90,17 +98,15 @@ class ActionUnderWay:
         if self.cancelled is not None:
             return
         self.cancelled, self.interrupted = reason, interrupted
-        if self._phase == self._set_off:
+        if self._phase in (self._set_off, self._stand):
             self._phase = self._stop
+        elif self._phase in (self._brake_unread, self._stow_unread):
+            pass  # it cleans up already
         elif self._phase in (self._drive, self._turn_off, self._retreat):
             self._rig.drive.halt()
             self._phase = self._brake
-        else:
-            third = self._rig.navigator.robot.sensor.stowing_time
-            raised_for = self._measuring_time - self._left
-            if raised_for < 2 * third:
-                self._left = min(raised_for, third)
-                self._phase = self._stow
+        elif not self._has_looked:
+            self._begin_to_stow(self._stow)
 
     def detour(self, rig: Rig) -> None:
         """Goes on with a rig whose navigator knows of something new in the way. If the present way
@@ -118,14 +124,13 @@ class ActionUnderWay:
     @property
     def measuring(self) -> bool:
         """Whether the arm is in motion or raised."""
-        return self._phase in (self._measure, self._stow)
+        return self._phase in (self._measure, self._stow, self._stow_unread)
 
     def reading(self, now: float) -> Reading | None:
         """What was measured, at time `now` (s), if anything was."""
         if self.measurement is None:
             return None
-        checkpoint = self._rig.navigator.site.checkpoint(self._checkpoint_id())
-        value = self.measurement.value
+        checkpoint, value = self._checkpoint(), self.measurement.value
         return Reading(
             checkpoint=checkpoint.id,
             name=checkpoint.name,
@@ -138,7 +143,7 @@ class ActionUnderWay:
             nominal=checkpoint.nominal,
             normal=checkpoint.nominal.contains(value),
             distance=round(self.measurement.distance, DIGITS),
-            views=self._views,
+            views=max(1, self._views),
             confidence=round(self.measurement.confidence, DIGITS),
         )
 
@@ -165,6 +170,8 @@ class ActionUnderWay:
             distance=round(distance - self._distance_before, DIGITS),
             climbed=round(climbed - self._climbed_before, DIGITS),
             measuring=(*self._measured, *under_way),
+            early=None if self._early is None else (self._early, min(now, self._not_before)),
+            unmoved=self._unmoved(),
         )
 
     @property
@@ -184,9 +191,9 @@ class ActionUnderWay:
                 return self._go_back()
             if self._views > 1:
                 return self._look_again(str(error))
-            return ActionFailed(self.task.name, str(error))
+            return self._failed(str(error))
         except ArgoError as error:
-            return ActionFailed(self.task.name, str(error))
+            return self._failed(str(error))
         self.path = self.came = path
         drive.begin(path, self._velocity)
         self._phase = self._drive
@@ -218,34 +225,61 @@ class ActionUnderWay:
                 return following()
 
     def _drive(self) -> ActionEnd | None:
+        if self._tried_enough:
+            self._rig.drive.halt()
+            self._phase = self._brake_unread
+            return self._brake_unread()
         match self._rig.drive.step():
             case DriveStatus.MOVING:
                 return None
             case DriveStatus.FAILED:
                 return self._drive_failed()
-            case DriveStatus.ARRIVED if self.task.action is Action.MEASURE:
-                self._left = self._measuring_time
-                self._rig.world.move_arm(self._rig.navigator.robot.arm_raised)
-                self._phase = self._measure
-                return None
             case DriveStatus.ARRIVED:
-                return ActionSucceeded(self.task.name)
+                return self._arrived()
+
+    def _arrived(self) -> ActionEnd | None:
+        """Begins at the place, unless it is too early."""
+        if self._now < self._not_before - _INSTANT:
+            self._early = self._now if self._early is None else self._early
+            self._phase = self._stand
+            return None
+        if self.task.action is not Action.MEASURE:
+            return ActionSucceeded(self.task.name, id=self._id)
+        limit = self.task.reading_limit
+        if limit is not None and not self._looked:
+            self._give_up_at = min(self._give_up_at, self._now + limit)
+        self._left = self._measuring_time
+        self._rig.world.move_arm(self._raised())
+        self._phase = self._measure
+        return None
+
+    def _stand(self) -> ActionEnd | None:
+        return self._arrived()
 
     def _measure(self) -> ActionEnd | None:
-        if not self._time_over():
+        over = self._time_over()
+        if not self._has_looked and self._tried_enough:
+            self._begin_to_stow(self._stow_unread)
             return None
+        if not over:
+            return None
+        self._looked = True
         try:
             self.measurement = self._rig.sensor.measure(self._checkpoint_id(), self._rig.drive.pose)
         except PoorViewError as error:
             return self._look_again(str(error))
         except MeasurementError as error:
-            return ActionFailed(self.task.name, str(error))
-        return ActionSucceeded(self.task.name, self.measurement.value)
+            return self._failed(str(error))
+        value = self.measurement.value
+        abnormal = not self._checkpoint().nominal.contains(value)
+        return ActionSucceeded(self.task.name, value, abnormal, self._id)
 
     def _look_again(self, failure: str) -> ActionEnd | None:
-        """Goes to the next view, as of a face that is turned; with none left, `failure` stands."""
+        """Goes to the next view, as of a face that is turned; with none left, or where the mission
+        says from where to look, `failure` stands."""
         navigator, pose = self._rig.navigator, self._rig.drive.pose
-        while self.cancelled is None and self._views < len(TURNS):
+        last = self.task.pose is not None or self.cancelled is not None
+        while not last and self._views < len(TURNS):
             turned = TURNS[self._views]
             self._views += 1
             try:
@@ -257,7 +291,33 @@ class ActionUnderWay:
             self._rig.drive.begin(path, self._velocity)
             self._phase = self._drive
             return None
-        return ActionFailed(self.task.name, failure)
+        return self._failed(failure)
+
+    def _brake_unread(self) -> ActionEnd | None:
+        return self._then(self._not_read)
+
+    def _stow_unread(self) -> ActionEnd | None:
+        return self._not_read() if self._time_over() else None
+
+    def _not_read(self) -> ActionEnd:
+        assert self.task.reading_limit is not None
+        self._looked = True
+        return self._failed(f"not read within {self.task.reading_limit:g} s")
+
+    @property
+    def _tried_enough(self) -> bool:
+        return self._now >= self._give_up_at - _INSTANT
+
+    def _begin_to_stow(self, phase: Callable[[], ActionEnd | None]) -> None:
+        """Stows the arm, as far as it has been raised."""
+        third = self._rig.navigator.robot.sensor.stowing_time
+        self._left = min(self._measuring_time - self._left, third)
+        self._phase = phase
+
+    @property
+    def _has_looked(self) -> bool:
+        """Of a measurement under way: whether only the arm is left to be stowed."""
+        return self._left <= self._rig.navigator.robot.sensor.stowing_time + _INSTANT
 
     def _brake(self) -> ActionEnd | None:
         return self._then(self._stop)
@@ -266,10 +326,13 @@ class ActionUnderWay:
         return self._stop() if self._time_over() else None
 
     def _stop(self) -> ActionEnd:
-        return ActionStopped(self.task.name)
+        return ActionStopped(self.task.name, self._id)
 
     def _drive_failed(self) -> ActionFailed:
-        return ActionFailed(self.task.name, self._rig.drive.failure or "the drive failed")
+        return self._failed(self._rig.drive.failure or "the drive failed")
+
+    def _failed(self, reason: str) -> ActionFailed:
+        return ActionFailed(self.task.name, reason, self._looked, self._id)
 
     def _time_over(self) -> bool:
         self._left -= self._rig.drive.time_step
@@ -277,7 +340,7 @@ class ActionUnderWay:
 
     def _path(self) -> Path:
         start = _standing(self._rig.drive.pose)
-        if self.task.action is Action.MEASURE:
+        if self.task.action is Action.MEASURE and self.task.pose is None:
             self._views = max(1, self._views)
             turned = TURNS[self._views - 1]
             return self._rig.navigator.plan_to_view(start, self._checkpoint_id(), turned)
@@ -285,9 +348,33 @@ class ActionUnderWay:
             raise Unreachable(f"task {self.task.name} has no pose")
         return self._rig.navigator.plan(start, self.task.pose)
 
+    def _checkpoint(self) -> SiteCheckpoint:
+        """The task's checkpoint; ArgoError if the site does not have it."""
+        return self._rig.navigator.site.measured_by(self.task.object_id)
+
     def _checkpoint_id(self) -> int:
-        """The number of the task's checkpoint; ArgoError if the site does not have it."""
-        return self._rig.navigator.site.measured_by(self.task.object_id).id
+        return self._checkpoint().id
+
+    def _unmoved(self) -> tuple[str, ...]:
+        """The joints that the task asks for, and nothing in the world moves."""
+        joints = self.task.joint_states
+        moves = self._rig.watches_world and self.task.action is Action.MEASURE
+        moved = _asked(self.task).keys() & self._rig.navigator.robot.arm_raised if moves else ()
+        return () if joints is None else tuple(n for n in joints.names if n not in moved)
+
+    def _raised(self) -> dict[str, float]:
+        """The arm's joints (deg) when it measures: where the mission wants them, or the robot."""
+        raised = self._rig.navigator.robot.arm_raised
+        return raised | {name: at for name, at in _asked(self.task).items() if name in raised}
+
+
+def _asked(task: Task) -> dict[str, float]:
+    """Where the task wants joints to be (deg)."""
+    joints = task.joint_states
+    if joints is None or not joints.positions:
+        return {}
+    asked = zip(joints.names, joints.positions, strict=False)
+    return {name: math.degrees(at) for name, at in asked}
 
 
 def _is_free(navigator: Navigator, pose: BodyPose) -> bool:

@@ -15,7 +15,6 @@ from argo_env.run.scheduled_events import GivenEvents
 from argo_env.run.spec import RunSpec
 from argo_env.run.summary import make_record
 from argo_env.run.vehicle import Vehicle, way_come
-from argo_env.run.velocity import WayVelocity
 
 
 class Course:
@@ -35,7 +34,6 @@ class Course:
         self._time_step = vehicle.rig.drive.time_step
         self._vehicle = vehicle
         self._interruptions = InterruptionWatch()
-        self._velocity = WayVelocity(spec.mission)
         self._came: Path | None = None
 
     @property
@@ -75,8 +73,6 @@ class Course:
         if entry.task:
             self._came = (self.action and self.action.path) or self._came
             self.action = None
-            if entry.task.outcome == "done":
-                self._velocity.arrived(entry.task.task)
         for event in entry.events:
             if not self.machine.finished:
                 self.obey(self.machine.handle(event.original(), self.now))
@@ -89,10 +85,10 @@ class Course:
         odometry = self._vehicle.odometry
         for command in commands:
             match command:
-                case StartAction(task):
+                case StartAction():
                     self.action = ActionUnderWay(
-                        task, self._velocity.to(task), self._vehicle.rig,
-                        self.now, odometry.distance, odometry.climbed, self._came,
+                        command, self._vehicle.rig, self.now,
+                        odometry.distance, odometry.climbed, self._came,
                     )  # fmt: skip
                 case CancelAction(_, reason):
                     if self.action:

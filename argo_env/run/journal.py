@@ -26,7 +26,7 @@ from argo_env.run.log import Entry
 from argo_env.run.observer import Observer
 from argo_env.run.spec import RunSpec
 
-VERSION = 3
+VERSION = 4
 """of the journal's format"""
 MAX_BYTES = 1_000_000_000  # of a journal; the longest run takes some 20 MB
 _MARK = "argo journal"
@@ -39,7 +39,7 @@ class Header(Model):
     """The first line: what the run is made from."""
 
     format: Literal["argo journal"] = "argo journal"
-    version: Literal[3] = 3
+    version: Literal[4] = 4
     spec: RunSpec
     fingerprints: dict[str, str]
     """of all that must be the same when the run goes on, by what it is"""

@@ -25,6 +25,7 @@ from argo_compiler.hfsm import (
     TakeOver,
     Tick,
 )
+from argo_compiler.hfsm.events import ReadingGiven
 from argo_compiler.il import EventKind
 from argo_compiler.model import Model
 from argo_env.faults.kinds import AnyFault
@@ -48,6 +49,7 @@ _EVENTS: dict[str, type[Event]] = {
     "stopped": ActionStopped,
     "tick": Tick,
     "occurred": Occurred,
+    "reading_given": ReadingGiven,
     "pause": Pause,
     "resume": Resume,
     "take_over": TakeOver,
@@ -55,7 +57,7 @@ _EVENTS: dict[str, type[Event]] = {
     "cancel": Cancel,
 }
 _NAMES = {cls: name for name, cls in _EVENTS.items()}
-FROM_OUTSIDE = frozenset({"occurred", "pause", "resume", "take_over", "give_back", "cancel"})
+FROM_OUTSIDE = frozenset(_EVENTS) - {"succeeded", "failed", "stopped", "tick"}
 """The kinds of events that a run may be told; the others it makes itself."""
 
 
@@ -63,11 +65,15 @@ class LoggedEvent(Model):
     """An event as data; the fields that its kind has not are left out."""
 
     kind: Literal[
-        "succeeded", "failed", "stopped", "tick", "occurred", "pause", "resume", "take_over",
-        "give_back", "cancel",
+        "succeeded", "failed", "stopped", "tick", "occurred", "reading_given", "pause", "resume",
+        "take_over", "give_back", "cancel",
     ]  # fmt: skip
     task: str | None = None
+    id: int | None = None
+    object_id: str | None = None
     value: float | None = None
+    abnormal: bool | None = None
+    unreadable: bool | None = None
     reason: str | None = None
     event: EventKind | None = None
     detail: str | None = None

@@ -84,6 +84,10 @@ class TaskRun(Model):
     measuring: tuple[tuple[float, float], ...] | None = None
     """s, the start and end of each measurement, arm included; several if it looked from several
     places. None: not told, as in old records"""
+    early: tuple[float, float] | None = None
+    """s, from when to when it stood at the place, as the task's window had not begun yet"""
+    unmoved: tuple[str, ...] = ()
+    """the joints that the task asks for, and this robot or its simulation does not move"""
 
     @property
     def measured_for(self) -> float:

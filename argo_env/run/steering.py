@@ -16,6 +16,7 @@ from argo_compiler.hfsm import (
     Resume,
     TakeOver,
 )
+from argo_compiler.hfsm.events import ReadingGiven
 from argo_compiler.il import Mission
 from argo_env.faults.fault import Fault, TimedFault
 from argo_env.faults.kinds import AnyFault, settle_one
@@ -38,9 +39,11 @@ class StopRun:
     reason: str = "it was stopped by a person"
 
 
-Steering = Pause | Resume | TakeOver | GiveBack | Cancel | Occurred | ReachIn | StopRun
+Steering = (
+    Pause | Resume | TakeOver | GiveBack | Cancel | Occurred | ReadingGiven | ReachIn | StopRun
+)
 
-_TO_THE_MACHINE = (Pause, Resume, TakeOver, GiveBack, Cancel, Occurred)
+_TO_THE_MACHINE = (Pause, Resume, TakeOver, GiveBack, Cancel, Occurred, ReadingGiven)
 
 
 def check_event(event: Steering, mission: Mission) -> Event:

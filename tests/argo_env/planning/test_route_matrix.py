@@ -67,7 +67,9 @@ def test_many_places_are_reckoned_over_the_lattice(navigator, monkeypatch):
     monkeypatch.setattr(route_matrix, "NEAREST", 1)
     rough = mission_ways(written, navigator, SiteTravel(navigator))
     assert np.array_equal(rough.work, exact.work)
-    assert np.array_equal(rough.time[1], exact.time[1])  # a way with a speed of its own is planned
+    assert np.array_equal(
+        rough.time[:, 1], exact.time[:, 1]
+    )  # a way with a speed of its own is planned
     away = ~np.eye(4, 3, dtype=bool)
     assert np.abs(rough.time - exact.time)[away].sum() <= 0.2 * exact.time[away].sum()
     assert (rough.energy >= exact.energy - 1e-9)[2:][away[2:]].all()

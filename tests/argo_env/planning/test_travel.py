@@ -56,9 +56,9 @@ def test_protocol_2_lies_between_the_bounds(shipped, catalog, travel, protocol_r
     assert found.duration.most.value - found.duration.least.value < 0.15 * simulated
 
 
-def test_velocities_count_for_the_way_to_the_next_task(navigator, catalog, travel):
-    start = Task(name="S", action=Action.START, velocity=0.2)
-    mission = chain(start, measure(1, velocity=0.8), measure(4), start_area=1)
+def test_velocities_count_for_the_way_to_the_task(navigator, catalog, travel):
+    start = Task(name="S", action=Action.START)
+    mission = chain(start, measure(1, velocity=0.2), measure(4, velocity=0.8), start_area=1)
     found = analyse(mission, catalog, travel)
     record = simulated(mission, navigator)
     assert found.duration.most.value == pytest.approx(record.result.duration, abs=STEP)

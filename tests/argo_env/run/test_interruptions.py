@@ -221,7 +221,7 @@ class TestReactions:
         assert "of at most 20 s" in record.result.verdict
 
     def test_velocity_of_the_way_after_an_interruption(self, navigator):
-        """The way is still that from the task before, and a reaction has its own speed."""
+        """The way is still that to the same task, and a reaction has the planning speed."""
         shelter = react(
             EventKind.GAS_LEAK, Response.SAFE_AREA, pose=SHELTER, afterwards=Afterwards.RESUME
         )
@@ -229,7 +229,7 @@ class TestReactions:
         plan = mission(a, b, waypoint("C", 2.05, 2.05), reactions=(shelter,))
         rig = fast_rig(navigator)
         run_with(plan, rig, events=logged((16.0, Occurred(EventKind.GAS_LEAK))))
-        assert rig.drive.velocities == [None, 0.2, None, 0.2, 0.3]
+        assert rig.drive.velocities == [0.2, None, 0.2, 0.3, None]
 
 
 def test_velocity_of_a_way_back_to_the_same_task(navigator):
@@ -237,7 +237,7 @@ def test_velocity_of_a_way_back_to_the_same_task(navigator):
     plan = mission(waypoint("A", 3.05, 2.05, velocity=0.2), groups=(again,))
     rig = fast_rig(navigator)
     run_with(plan, rig)
-    assert rig.drive.velocities == [None, 0.2]
+    assert rig.drive.velocities == [0.2, 0.2]
 
 
 class TestFailures:

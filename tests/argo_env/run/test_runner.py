@@ -241,12 +241,12 @@ def test_area_that_the_site_does_not_have(navigator, areas):
 
 
 @pytest.mark.rule("T6")
-def test_velocity_is_that_of_the_way_to_the_next_task(navigator):
+def test_velocity_is_that_of_the_way_to_the_task(navigator):
     record = simulated(
         mission(
-            start(velocity=0.2),
-            waypoint("A", 11.05, -2.05, velocity=0.3),
-            waypoint("B", 14.05, -2.05),
+            start(velocity=0.1),
+            waypoint("A", 11.05, -2.05, velocity=0.2),
+            waypoint("B", 14.05, -2.05, velocity=0.3),
             waypoint("C", 17.05, -2.05),
         ),
         navigator,

@@ -105,9 +105,7 @@ def test_resumed_while_it_is_held_or_just_released(ground, tmp_path, until):
 
 def test_the_shift_to_where_a_way_begins_is_a_part_of_it(ground):
     # At a snail's pace a robot that was stopped beside the lattice takes seconds for it.
-    plan = mission(waypoint("A", 2.05, 2.55))
-    first, *others = plan.tasks
-    plan = plan.model_copy(update={"tasks": (first.model_copy(update={"velocity": 0.02}), *others)})
+    plan = mission(waypoint("A", 2.05, 2.55, velocity=0.02))
     events = logged((56.8, Pause()), (61.8, Resume()))
     record = simulated(plan, ground, drive="route", events=events)
     assert [run.outcome for run in record.tasks] == ["interrupted", "done"]

@@ -1,44 +1,80 @@
 """What interrupts a mission under way: events and the reactions to them, and persons."""
 
+import math
 from collections import deque
 from collections.abc import Sequence
 
 from argo_compiler.hfsm.course import Course
 from argo_compiler.hfsm.events import Outcome
-from argo_compiler.hfsm.progress import ByHand, Phase
-from argo_compiler.hfsm.reactions import Pending, Reactions
+from argo_compiler.hfsm.interrupts import Effect, Stage, Trigger
+from argo_compiler.hfsm.progress import ByHand
 from argo_compiler.hfsm.restoring import queues
-from argo_compiler.hfsm.tables import Tables
+from argo_compiler.hfsm.standing import InterruptState, TakenRow, advance
+from argo_compiler.hfsm.tables import ReactionNode, Tables
 from argo_compiler.hfsm.trace import Cause
-from argo_compiler.il import Afterwards, EventKind, Response
+from argo_compiler.il import EventKind
+
+_PLAN_ENDS = (Trigger.DONE, Trigger.ENDED)
 
 
 class Control:
-    """A mission's course, the reactions and the persons that interrupt it. It changes with each
-    step, and knows nothing of what runs."""
+    """A mission's course, and who has the robot. It changes with each step, and knows nothing of
+    what runs. What follows from what is in the table (`argo_compiler.hfsm.interrupts`); here it is
+    told to the course and to the trace."""
 
     def __init__(self, tables: Tables) -> None:
         self.tables = tables
         self.course = Course(tables)
-        self.reactions = Reactions()
-        self.paused = False
+        self.standing = InterruptState()
+        self.drive_visit = 0
+        """the number of the active reaction's drive, among the visits"""
+        self.held_since = 0.0
+        """s, when the present hold began"""
+        self.hold_due = math.inf
+        """when its limit is over (s)"""
+        self._reactions = {event: node.state.reaction for event, node in tables.reactions.items()}
 
     @property
     def outcome(self) -> Outcome | None:
         return self.course.outcome
 
     @property
+    def paused(self) -> bool:
+        return self.standing.paused
+
+    @property
+    def active(self) -> ReactionNode | None:
+        """The active reaction."""
+        active = self.standing.active
+        return None if active is None else self.tables.reactions[active]
+
+    @property
     def interrupted(self) -> bool:
-        return self.paused or self.reactions.active is not None
+        return self.standing.stage is not Stage.GOING
+
+    @property
+    def driving(self) -> bool:
+        return self.standing.stage is Stage.DRIVING
 
     @property
     def holding(self) -> bool:
-        return self.reactions.active is not None and self.reactions.phase is Phase.HOLDING
+        return self.standing.stage is Stage.HOLDING
 
     @property
     def due(self) -> float:
         """When something comes about by time alone (s); infinite if nothing does."""
-        return self.course.due
+        return min(self.course.due, self.hold_due)
+
+    def begin(self, supervised: bool) -> None:
+        """The mission begins, under supervision or not, or goes on as it was restored."""
+        if supervised:
+            self.pause("it begins under supervision")
+        if self.interrupted:
+            self.course.interrupt()
+        else:
+            self.course.go_on()
+        self._advance(Trigger.ALWAYS)
+        self.settle()
 
     # Time
 
@@ -52,111 +88,40 @@ class Control:
         """All that comes about now without an action."""
         course = self.course
         while course.outcome is None:
-            if course.time_is_up:
+            if course.place.leaf is None and not self.interrupted:
+                course.step()
+                self._advance(Trigger.DONE)
+            elif course.time_is_up:
                 self.occur(EventKind.TIME_UP, "")
+            elif self.hold_due <= course.now:
+                self._advance(Trigger.LIMIT)
             elif self.interrupted or not course.step():
                 break
-        if course.outcome is not None:
-            self.paused = False
-            self.reactions.clear()
+        if course.outcome is not None and self.standing.outcome is None:
+            self._advance(Trigger.ENDED)
 
     # Events and reactions
 
     def occur(self, kind: EventKind, detail: str) -> None:
-        """Reports an event and begins the reaction to it, if there is one and its turn is now."""
+        """Reports an event, and does what the mission has for it."""
         if kind is EventKind.TIME_UP:
             self.course.mark_time_up()
         self.course.note(Cause.REPORT, event=kind, detail=detail)
-        own = self.tables.reactions.get(kind)
-        begun = self.reactions.occur(kind, own, self.paused)
-        if begun is not None:
-            self._begin(begun)
-        else:
-            self._check_hold()
+        self._advance(Trigger.EVENT, kind)
 
-    def _begin(self, pending: Pending) -> None:
-        reaction = pending.reaction
-        self.course.note(Cause.REACTION, event=reaction.event, detail=str(reaction.response))
-        if reaction.response is Response.ABORT:
-            self.end(Outcome.ABORTED, Cause.END, event=reaction.event)
-            return
-        self.course.interrupt()
-        self.reactions.begin(pending)
-        self.reactions.visit = self.course.place.new_visit()
-        if reaction.response is Response.PAUSE:
-            self.hold()
-        else:
-            self.reactions.phase = Phase.DRIVING
+    def arrive(self) -> None:
+        """The active reaction is where it wants to be."""
+        self._advance(Trigger.DRIVEN)
 
     def fail_drive(self, reason: str) -> None:
         """The active reaction can't be carried out."""
-        active = self.reactions.active
-        assert active is not None
-        reaction = active.reaction
-        if reaction.afterwards is Afterwards.END:
-            self.end(Outcome.FAILED, Cause.FAILURE, event=reaction.event, failure=reason)
-        else:
-            self.reactions.active = None
-            self.pause(event=reaction.event, failure=reason)
-
-    def hold(self) -> None:
-        """The active reaction is where it wants to be."""
-        active = self.reactions.active
-        assert active is not None
-        self.reactions.phase = Phase.HOLDING
-        reaction = active.reaction
-        waits = reaction.until is not None or reaction.response is Response.PAUSE
-        if waits and not active.over:
-            self.course.note(Cause.HOLD, event=reaction.event)
-        else:
-            self._end_hold()
-
-    def _check_hold(self) -> None:
-        active = self.reactions.active
-        if active is not None and active.over and self.holding and not self.paused:
-            self._end_hold()
-
-    def _end_hold(self) -> None:
-        active = self.reactions.active
-        assert active is not None
-        reaction = active.reaction
-        self.reactions.active = None
-        if reaction.response is Response.PAUSE or reaction.afterwards is Afterwards.RESUME:
-            if not self.paused:
-                self._take_up(reaction.event)
-        elif reaction.afterwards is Afterwards.WAIT:
-            self.pause(event=reaction.event)
-        else:
-            returned = reaction.response is Response.RETURN
-            outcome = Outcome.RETURNED if returned else Outcome.SHELTERED
-            self.end(outcome, Cause.END, event=reaction.event)
-
-    def _take_up(self, over: EventKind | None = None) -> None:
-        """The next reaction that waits, or else the mission."""
-        following = self.reactions.next()
-        if following is not None:
-            self._begin(following)
-        elif self.reactions.active is None:
-            if over is not None:
-                self.course.note(Cause.MISSION, event=over)
-            self.go_on()
-        else:
-            self._check_hold()
-
-    def go_on(self) -> None:
-        """The mission takes up its place again."""
-        self.course.go_on()
-        self.settle()
+        self._advance(Trigger.STUCK, failure=reason)
 
     # Persons
 
-    def pause(
-        self, event: EventKind | None = None, failure: str | None = None, detail: str = ""
-    ) -> None:
-        """Stands still until a person resumes, who may have paused it, or a reaction did."""
-        self.paused = True
-        self.course.interrupt()
-        self.course.note(Cause.PAUSE, event=event, failure=failure, detail=detail)
+    def pause(self, detail: str = "") -> None:
+        """A person pauses the mission."""
+        self._advance(Trigger.PAUSE, detail=detail)
 
     def give_back(self, by_hand: Sequence[ByHand]) -> None:
         """A person lets the mission go on, and has done these meanwhile."""
@@ -166,22 +131,88 @@ class Control:
         self.resume()
 
     def resume(self) -> None:
-        if self.paused:
-            self.paused = False
-            self.course.note(Cause.RESUME)
-            self._take_up()
-        elif self.reactions.active is not None and self.holding:
-            self.course.note(Cause.RESUME, event=self.reactions.active.reaction.event)
-            self._end_hold()
+        """A person lets the mission go on, or ends a hold."""
+        self._advance(Trigger.RESUME)
 
-    def end(
+    def cancel(self) -> None:
+        """A person ends the mission."""
+        self._advance(Trigger.CANCEL)
+
+    # The table
+
+    def _advance(
         self,
-        outcome: Outcome,
-        cause: Cause,
+        trigger: Trigger,
         event: EventKind | None = None,
         failure: str | None = None,
+        detail: str = "",
     ) -> None:
+        over: EventKind | None = None
+        outcome = self.course.outcome
+        for step in advance(self.standing, self._reactions, trigger, event, outcome):
+            self.standing = step.after
+            if step.row.effects and step.row.effects[-1] is Effect.DROP:
+                over = step.before.active
+            self._carry_out(step, trigger, event, failure, detail, over)
+        self._time_the_hold()
+
+    def _carry_out(
+        self,
+        step: TakenRow,
+        trigger: Trigger,
+        event: EventKind | None,
+        failure: str | None,
+        detail: str,
+        over: EventKind | None,
+    ) -> None:
+        """Tells the course and the trace of a row that was taken."""
+        course, row, active = self.course, step.row, step.before.active
+        if step.before.stage is Stage.GOING and row.target is not None:
+            course.interrupt()
+        if row.trigger is Trigger.LIMIT and row.target is not None:
+            course.note(Cause.LIMIT, event=active)
+        if Effect.PAUSE in row.effects:
+            reason = None if row.trigger is Trigger.PAUSE else active
+            course.note(Cause.PAUSE, event=reason, failure=failure, detail=detail)
+        elif row.trigger is Trigger.RESUME and step.after != step.before:
+            course.note(Cause.RESUME, event=None if step.before.paused else active)
+        if row.target is Stage.BEGINNING:
+            began = self.active
+            assert began is not None
+            self._note_reaction(began)
+            self.drive_visit = course.place.new_visit()
+        elif row.target is Stage.HOLDING:
+            self.held_since = course.now
+            course.note(Cause.HOLD, event=active)
+        elif row.target is Stage.GOING:
+            if over is not None:
+                course.note(Cause.MISSION, event=over)
+            course.go_on()
+        elif row.target is Stage.ENDING and trigger not in _PLAN_ENDS:
+            self._end(step, event, failure)
+
+    def _end(self, step: TakenRow, event: EventKind | None, failure: str | None) -> None:
         """Ends the mission at once, whatever it was doing."""
-        self.paused = False
-        self.reactions.clear()
-        self.course.end(outcome, cause, event, failure)
+        outcome = step.after.outcome
+        assert outcome is not None
+        ended_by = step.before.active
+        cause = Cause.FAILURE if step.row.trigger is Trigger.STUCK else Cause.END
+        if step.row.trigger is Trigger.CANCEL:
+            cause, ended_by = Cause.CANCEL, None
+        elif event is not None and step.row.trigger is Trigger.EVENT:
+            self._note_reaction(self.tables.reactions[event])
+            ended_by = event
+        self.course.end(outcome, cause, ended_by, failure)
+
+    def _note_reaction(self, node: ReactionNode) -> None:
+        reaction = node.state.reaction
+        self.course.note(Cause.REACTION, event=reaction.event, detail=str(reaction.response))
+
+    def _time_the_hold(self) -> None:
+        self.hold_due = math.inf
+        active = self.active
+        if active is None or not self.holding or self.paused:
+            return
+        limit = active.state.reaction.hold_limit
+        if limit is not None:
+            self.hold_due = max(self.held_since + limit, self.course.now)

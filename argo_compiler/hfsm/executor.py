@@ -23,14 +23,14 @@ from argo_compiler.hfsm.events import (
     TakeOver,
 )
 from argo_compiler.hfsm.model import DONE, MISSION, Hfsm
-from argo_compiler.hfsm.progress import EndedTask, Phase, Progress
+from argo_compiler.hfsm.progress import EndedTask, Progress
 from argo_compiler.hfsm.restoring import (
     group_progress,
     place_of,
     queues,
     reaction_progress,
-    reactions_of,
     remaining_by_hand,
+    standing_of,
     value_progress,
 )
 from argo_compiler.hfsm.tables import LeafNode, tables
@@ -94,11 +94,10 @@ class Executor:
         control = executor._control
         control.course.now = _seconds(now)
         control.course.place = place_of(control.tables, progress, now, _seconds(away))
-        control.reactions = reactions_of(control.tables, progress)
-        control.reactions.visit = control.course.place.new_visit()
+        control.standing = standing_of(control.tables, progress)
+        control.drive_visit = control.course.place.new_visit()
         control.course.by_hand = queues(progress.by_hand)
         control.course.time_up = progress.time_up
-        control.paused = progress.paused
         control.course.outcome = progress.outcome
         executor._fresh = False
         executor._began = now - (progress.elapsed + away)
@@ -121,9 +120,7 @@ class Executor:
             limit = control.tables.max_duration
             if limit is not None and not control.course.time_up:
                 control.course.time_up_at = max(self._began + limit, now)
-            if not control.interrupted:
-                control.go_on()
-            control.settle()
+            control.begin(self._fresh and self.hfsm.supervised)
         return self._command()
 
     def handle(self, event: Event, now: float) -> tuple[Command, ...]:
@@ -132,8 +129,7 @@ class Executor:
         if not self._started or isinstance(event, _ABOUT_ACTIONS):
             self._require_running(event)
         control = self._control
-        place = control.course.place
-        if now > place.due or now > control.course.time_up_at:
+        if now > control.due:
             # The next float below `now` stands for all times before it.
             control.let_pass(math.nextafter(now, -math.inf))
         control.course.now = now
@@ -143,16 +139,16 @@ class Executor:
             match event:
                 case Occurred(kind, detail):
                     control.occur(kind, detail)
-                case Pause() if not control.paused:
+                case Pause():
                     control.pause()
-                case TakeOver() if not control.paused:
+                case TakeOver():
                     control.pause(detail="a person takes over")
                 case Resume():
                     control.resume()
                 case GiveBack(by_hand):
                     control.give_back(by_hand)
                 case Cancel():
-                    control.end(Outcome.CANCELLED, Cause.CANCEL)
+                    control.cancel()
         control.settle()
         return self._command()
 
@@ -165,7 +161,7 @@ class Executor:
             raise ValueError("the executor has not been started: call start first")
         control = self._control
         now, place = control.course.now, control.course.place
-        reaction, waiting = reaction_progress(control.reactions)
+        reaction, waiting = reaction_progress(control.standing)
         ended = (EndedTask(task=t, failure=f, by_hand=h) for t, f, h in control.course.ended)
         return Progress(
             active=control.course.active,
@@ -210,8 +206,7 @@ class Executor:
     @property
     def reaction(self) -> EventKind | None:
         """The event whose reaction is active."""
-        active = self._control.reactions.active
-        return None if active is None else active.reaction.event
+        return self._control.standing.active
 
     @property
     def holding(self) -> bool:
@@ -226,9 +221,9 @@ class Executor:
         """
         if not self._started:
             return ()
-        place, active = self._control.course.place, self._control.reactions.active
+        place, active = self._control.course.place, self._control.active
         groups = (frame.group.id for frame in place.frames)
-        reaction = () if active is None else (active.node.state.id,)
+        reaction = () if active is None else (active.state.id,)
         return (MISSION, *groups, DONE if place.leaf is None else place.leaf.id, *reaction)
 
     @property
@@ -270,13 +265,13 @@ class Executor:
     def _wanted(self) -> tuple[LeafNode | None, int, tuple[StartAction, ...]]:
         """The leaf, the visit and the command of the action that is to run; visit 0: none."""
         control = self._control
-        active, leaf = control.reactions.active, control.course.place.leaf
+        active, leaf = control.active, control.course.place.leaf
         if control.outcome is not None or control.paused:
             return None, 0, ()
         if active is None:
             return (None, 0, ()) if leaf is None else (leaf, control.course.place.visit, leaf.start)
-        if control.reactions.phase is Phase.DRIVING:
-            return None, control.reactions.visit, active.node.start
+        if control.driving:
+            return None, control.drive_visit, active.start
         return None, 0, ()
 
     def _reason(self) -> str:
@@ -299,10 +294,10 @@ class Executor:
         self._running = None
         self._cancelling = False
         if leaf is None:
-            if control.reactions.active is None or control.reactions.visit != self._running_visit:
+            if not control.driving or control.drive_visit != self._running_visit:
                 return
             if isinstance(event, ActionSucceeded):
-                control.hold()
+                control.arrive()
             elif reason is not None:
                 control.fail_drive(reason)
         elif isinstance(event, ActionSucceeded):

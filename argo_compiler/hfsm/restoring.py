@@ -4,6 +4,7 @@ from collections import deque
 from collections.abc import Iterable, Mapping
 
 from argo_compiler.errors import Conflict
+from argo_compiler.hfsm.interrupts import Stage
 from argo_compiler.hfsm.model import RETURN, task_id
 from argo_compiler.hfsm.progress import (
     ByHand,
@@ -14,10 +15,10 @@ from argo_compiler.hfsm.progress import (
     ValueProgress,
     Waiting,
 )
-from argo_compiler.hfsm.reactions import Reactions
 from argo_compiler.hfsm.rounds_and_clocks import Configuration, Frame
-from argo_compiler.hfsm.tables import GroupNode, LeafNode, ReactionNode, Tables
-from argo_compiler.il import EventKind, Response
+from argo_compiler.hfsm.standing import InterruptState, Pending, drives
+from argo_compiler.hfsm.tables import GroupNode, LeafNode, Tables
+from argo_compiler.il import EventKind, Reaction, Response
 from argo_compiler.il.reserved import RETURN_TASK
 
 _OTHER = "use the mission that it was saved from, or match it to this one first"
@@ -46,24 +47,26 @@ def place_of(tables: Tables, progress: Progress, now: float, away: float) -> Con
     return place
 
 
-def reactions_of(tables: Tables, progress: Progress) -> Reactions:
-    """The reactions that are active and wait.
+def standing_of(tables: Tables, progress: Progress) -> InterruptState:
+    """Who has the robot: the reactions that are active and wait, and whether it is paused.
 
     Raises:
-        ArgoError: the machine does not have them.
+        ArgoError: the machine does not have the reactions.
     """
-    reactions = Reactions()
-    if progress.reaction is not None:
-        now = progress.reaction
-        active = reactions.wait(_reaction(tables, now.event), now.over)
-        if active.reaction.response is Response.ABORT:
-            raise _no_reaction(now.event)
-        reactions.waiting.remove(active)
-        reactions.begin(active)
-        reactions.phase = now.phase if active.node.start else Phase.HOLDING
-    for waiting in progress.waiting:
-        reactions.wait(_reaction(tables, waiting.event), waiting.over)
-    return reactions
+    if progress.outcome is not None:
+        return InterruptState(Stage.ENDING, outcome=progress.outcome)
+    active = progress.reaction
+    pending = tuple(
+        Pending(_reaction(tables, waiting.event).event, waiting.over)
+        for waiting in ((active,) if active else ()) + progress.waiting
+    )
+    stage = Stage.CHOOSING if pending else Stage.GOING
+    if active is not None:
+        driving = active.phase is Phase.DRIVING and drives(_reaction(tables, active.event))
+        stage = Stage.DRIVING if driving else Stage.HOLDING
+    elif progress.paused:
+        stage = Stage.STOPPED
+    return InterruptState(stage, progress.paused, None if active is None else active.event, pending)
 
 
 def group_progress(place: Configuration, now: float) -> tuple[GroupProgress, ...]:
@@ -87,19 +90,13 @@ def value_progress(place: Configuration, now: float) -> tuple[ValueProgress, ...
     )
 
 
-def reaction_progress(reactions: Reactions) -> tuple[Reacting | None, tuple[Waiting, ...]]:
+def reaction_progress(standing: InterruptState) -> tuple[Reacting | None, tuple[Waiting, ...]]:
     """The active reaction and those that wait."""
-    active = reactions.active
-    return (
-        None
-        if active is None
-        else Reacting(event=active.reaction.event, over=active.over, phase=reactions.phase),
-        tuple(
-            Waiting(event=pending.reaction.event, over=pending.over)
-            for pending in reactions.pending()
-            if pending is not active
-        ),
-    )
+    waiting = tuple(Waiting(event=p.event, over=p.over) for p in standing.waiting)
+    if standing.active is None:
+        return None, waiting
+    phase = Phase.DRIVING if standing.stage is Stage.DRIVING else Phase.HOLDING
+    return Reacting(event=standing.active, over=standing.over, phase=phase), waiting
 
 
 def queues(done: Iterable[ByHand]) -> dict[str, deque[ByHand]]:
@@ -138,14 +135,12 @@ def _groups(leaf: LeafNode, progress: Progress) -> list[GroupNode]:
     return groups
 
 
-def _reaction(tables: Tables, event: EventKind) -> ReactionNode:
-    reaction = tables.reactions.get(event)
-    if reaction is None or reaction.state.reaction.response is Response.REPORT:
-        raise _no_reaction(event)
+def _reaction(tables: Tables, event: EventKind) -> Reaction:
+    """The reaction to an event. One that aborts is neither active nor waits."""
+    node = tables.reactions.get(event)
+    reaction = None if node is None else node.state.reaction
+    if reaction is None or reaction.response in (Response.REPORT, Response.ABORT):
+        raise Conflict(
+            f"the progress has a reaction to {event}, which the mission does not have; {_OTHER}"
+        )
     return reaction
-
-
-def _no_reaction(event: EventKind) -> Conflict:
-    return Conflict(
-        f"the progress has a reaction to {event}, which the mission does not have; {_OTHER}"
-    )

@@ -29,6 +29,8 @@ class Cause(StrEnum):
     """the reaction to an event begins"""
     HOLD = "hold"
     """a reaction stands still and waits"""
+    LIMIT = "limit of the hold"
+    """it stands still no longer"""
     MISSION = "mission goes on"
     PAUSE = "pause"
     RESUME = "resume"

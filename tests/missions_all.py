@@ -64,7 +64,8 @@ def _mended(limits: tuple[Any, ...]) -> Any:
             if isinstance(limit, annotated_types.MinLen):
                 return value or "x"
             if isinstance(limit, annotated_types.Ge | annotated_types.Gt):
-                return abs(value) if abs(value) <= 2**63 - 1 or isinstance(value, float) else 0
+                most = next((o.le for o in limits if isinstance(o, annotated_types.Le)), 2**63 - 1)
+                return abs(value) if abs(value) <= most or isinstance(value, float) else 1
         return value
 
     return mend

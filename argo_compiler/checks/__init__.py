@@ -7,6 +7,7 @@ mission has no agreed meaning and can't be lowered; a warning, that it has one t
 from argo_compiler.catalog import Catalog
 from argo_compiler.checks.groups import check_groups
 from argo_compiler.checks.header import check_header
+from argo_compiler.checks.instant_loops import check_instant_loops
 from argo_compiler.checks.reactions import check_reactions
 from argo_compiler.checks.tasks import TaskChecks
 from argo_compiler.diagnostics import Diagnostic, Severity
@@ -37,6 +38,7 @@ def check(mission: Mission, catalog: Catalog | None = None) -> tuple[Diagnostic,
         known = None if catalog is None else frozenset(str(c.id) for c in catalog.checkpoints)
     return (
         *TaskChecks(mission, known).diagnostics(),
+        *check_instant_loops(mission),
         *check_groups(mission),
         *check_reactions(mission),
         *check_header(mission, catalog),

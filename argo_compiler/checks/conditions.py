@@ -5,12 +5,12 @@ from dataclasses import dataclass
 
 from argo_compiler.checks.diagnostic import diagnostic_about
 from argo_compiler.diagnostics import Diagnostic, Severity
-from argo_compiler.il import Condition, ConditionType, Task
+from argo_compiler.il import Condition, ConditionType, Group, Task
 
 
 @dataclass(frozen=True)
 class ConditionChecks:
-    """What is known of the checkpoints that a condition may compare."""
+    """What is known of the checkpoints that a condition may look at."""
 
     measured: set[str | None]
     """by the mission's tasks"""
@@ -18,43 +18,49 @@ class ConditionChecks:
     """on the site; None: not known"""
 
     def diagnostics(
-        self, at: str, task: Task, condition: Condition, field: str
+        self, at: str, part: Task | Group, condition: Condition, field: str
     ) -> Iterator[Diagnostic]:
-        """What is wrong with a condition of the task whose subject is `at`, in that field."""
-        yield from _check_bounds(at, task, condition, field)
+        """What is wrong with a condition of the part whose subject is `at`, in that field."""
+        which = f"a {condition.type} condition of {_name(part)}"
+        yield from _check_bounds(at, part, condition, field, which)
         if self.known is not None and condition.object_id not in self.known:
             yield diagnostic_about(
                 at,
-                task,
+                part,
                 "il.unknown-object",
-                f"task '{task.name}' names checkpoint '{condition.object_id}', which the site does "
-                "not have",
+                f"{_name(part)} names checkpoint '{condition.object_id}', which the site does not "
+                "have",
                 "use the number of a checkpoint in the site's catalogue",
                 field=field + ".object_id",
             )
         elif condition.object_id not in self.measured:
             yield diagnostic_about(
                 at,
-                task,
+                part,
                 "il.never-measured",
-                f"a condition of task '{task.name}' compares checkpoint '{condition.object_id}', "
-                "which no task measures, so it never holds",
-                f"measure checkpoint '{condition.object_id}' before this task",
+                f"a condition of {_name(part)} looks at checkpoint '{condition.object_id}', which "
+                "no task measures, so it never holds unless somebody else tells a value",
+                f"measure checkpoint '{condition.object_id}' before",
                 Severity.WARNING,
                 field + ".object_id",
             )
 
 
-def _check_bounds(at: str, task: Task, condition: Condition, field: str) -> Iterator[Diagnostic]:
+def _name(part: Task | Group) -> str:
+    return f"{'task' if isinstance(part, Task) else 'group'} '{part.name}'"
+
+
+def _check_bounds(
+    at: str, part: Task | Group, condition: Condition, field: str, which: str
+) -> Iterator[Diagnostic]:
     if not condition.type.compares:
-        yield from _check_state(at, task, condition, field)
+        yield from _check_state(at, part, condition, field, which)
         return
     low, high = condition.param1, condition.param2
-    which = f"a {condition.type} condition of task '{task.name}'"
     if low is None:
         yield diagnostic_about(
             at,
-            task,
+            part,
             "il.condition-bound",
             f"{which} has no param1",
             "give it as the bound that the value is compared with",
@@ -64,7 +70,7 @@ def _check_bounds(at: str, task: Task, condition: Condition, field: str) -> Iter
         if high is not None:
             yield diagnostic_about(
                 at,
-                task,
+                part,
                 "il.unused-field",
                 f"{which} has a param2, which has no effect",
                 "only WITHIN has an upper bound as well: remove it",
@@ -74,7 +80,7 @@ def _check_bounds(at: str, task: Task, condition: Condition, field: str) -> Iter
     elif high is None:
         yield diagnostic_about(
             at,
-            task,
+            part,
             "il.within-bounds",
             f"{which} has no param2",
             "give it as the upper bound",
@@ -83,7 +89,7 @@ def _check_bounds(at: str, task: Task, condition: Condition, field: str) -> Iter
     elif low > high or (low == high and not condition.inclusive):
         yield diagnostic_about(
             at,
-            task,
+            part,
             "il.within-bounds",
             f"{which} never holds: no value lies between {low:g} and {high:g}",
             "param1 is the lower bound, param2 the upper one",
@@ -91,13 +97,14 @@ def _check_bounds(at: str, task: Task, condition: Condition, field: str) -> Iter
         )
 
 
-def _check_state(at: str, task: Task, condition: Condition, field: str) -> Iterator[Diagnostic]:
+def _check_state(
+    at: str, part: Task | Group, condition: Condition, field: str, which: str
+) -> Iterator[Diagnostic]:
     """What a condition that looks at the state of a reading has too much or too little of."""
-    which = f"a {condition.type} condition of task '{task.name}'"
     if condition.type is ConditionType.STALE and condition.max_age is None:
         yield diagnostic_about(
             at,
-            task,
+            part,
             "il.stale-without-age",
             f"{which} has no max_age",
             "say from which age on (s) a value is stale",
@@ -113,7 +120,7 @@ def _check_state(at: str, task: Task, condition: Condition, field: str) -> Itera
     for name in (name for name, given in unused.items() if given):
         yield diagnostic_about(
             at,
-            task,
+            part,
             "il.unused-field",
             f"{which} has a {name}, which has no effect",
             "remove it",

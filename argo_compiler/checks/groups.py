@@ -7,8 +7,9 @@ another one if and only if its name says so.
 from bisect import bisect_left
 from collections.abc import Iterator
 
+from argo_compiler.checks.diagnostic import diagnostic_about
 from argo_compiler.diagnostics import Diagnostic, Severity
-from argo_compiler.il import Action, Group, Mission, Stop
+from argo_compiler.il import Action, Group, Mission, Stop, Task
 from argo_compiler.il.grouping import GroupNesting, GroupRange, group_ranges, parent_name
 from argo_compiler.il.subjects import Subjects
 from argo_compiler.nearest_name import nearest_name
@@ -37,6 +38,7 @@ def check_groups(mission: Mission) -> tuple[Diagnostic, ...]:
     ]
     if not diagnostics and ranges:
         diagnostics += _check_endless(mission, subjects)
+        diagnostics += _check_leaving(mission, subjects)
     return (*diagnostics, *_check_unused(mission.groups, subjects))
 
 
@@ -191,10 +193,65 @@ def _check_unused(groups: tuple[Group, ...], subjects: Subjects) -> Iterator[Dia
                 ".count_interruptions",
             )
             yield diagnostic.model_copy(update={"severity": Severity.WARNING})
+        if group.max_repeat_count == 1:
+            for field in (f for f in ("every", "until") if getattr(group, f)):
+                diagnostic = _error(
+                    subjects.group(i),
+                    group,
+                    "il.unused-field",
+                    f"group '{group.name}' has one round only, so its `{field}` has no effect",
+                    "remove it, or allow more rounds",
+                    f".{field}",
+                )
+                yield diagnostic.model_copy(update={"severity": Severity.WARNING})
+
+
+def _check_leaving(mission: Mission, subjects: Subjects) -> Iterator[Diagnostic]:
+    """Each way that leaves a repeated group before the end of its round (G14).
+
+    Endless groups have no other way out, and groups of one round nothing to lose.
+    """
+    layout = GroupNesting.of(mission)
+    position = {task.name: i for i, task in enumerate(mission.tasks)}
+    for i, task in enumerate(mission.tasks):
+        if layout.innermost[i] is None:
+            continue
+        for field, target in _ways_out(task):
+            to = position.get(target)
+            inside, left = layout.innermost[i], None
+            unconditional = field is None
+            while inside is not None and to is not None and not layout.ranges[inside].contains(to):
+                r = layout.ranges[inside]
+                ends = unconditional and r.last == i
+                if not ends and r.group.max_repeat_count != 1 and not _endless(r.group):
+                    left = r.group
+                inside = layout.parent[inside]
+            if left is None:
+                continue
+            yield diagnostic_about(
+                subjects.task(i),
+                task,
+                "il.leaves-round",
+                f"the way from task '{task.name}' to '{target}' leaves the rounds of group "
+                f"'{left.name}' before they are over",
+                f"lead it to '{left.end}' if the round is to be completed",
+                Severity.WARNING,
+                field or ".transitions",
+            )
+
+
+def _ways_out(task: Task) -> Iterator[tuple[str | None, str]]:
+    """The targets of a task's ways with their fields; None for the unconditional one."""
+    for k, transition in enumerate(task.transitions):
+        yield f".transitions[{k}].target" if transition.conditions else None, transition.target
+    if task.failure_target is not None:
+        yield ".failure_target", task.failure_target
+    if task.window is not None and task.window.missed_target is not None:
+        yield ".window.missed_target", task.window.missed_target
 
 
 def _endless(group: Group) -> bool:
-    return not group.max_repeat_count and not group.max_repeat_duration
+    return not (group.max_repeat_count or group.max_repeat_duration or group.until)
 
 
 def _timed_out(group: Group) -> bool:
@@ -245,7 +302,7 @@ def _target_bounds(mission: Mission, layout: GroupNesting) -> tuple[list[int], l
         innermost = layout.innermost[i]
         if innermost is None:
             continue
-        targets = [position.get(t.target, i) for t in task.transitions if t.conditions]
+        targets = [position.get(target, i) for field, target in _ways_out(task) if field]
         if _goes_on(layout, i):
             default = next((t.target for t in task.transitions if not t.conditions), None)
             targets.append(end if default is None else position.get(default, i))

@@ -17,6 +17,7 @@ def check_reactions(mission: Mission) -> Iterator[Diagnostic]:
     for reaction in mission.reactions:
         first.setdefault(reaction.event, reaction)
     subjects = Subjects(mission)
+    ranked: dict[tuple[int, int], Reaction] = {}
     for i, reaction in enumerate(mission.reactions):
         at = subjects.reaction(i)
         if first[reaction.event] is not reaction:
@@ -29,6 +30,9 @@ def check_reactions(mission: Mission) -> Iterator[Diagnostic]:
                 field=".event",
             )
         yield from _check_places(at, reaction, mission)
+        yield from _check_rank(at, reaction, ranked)
+        if reaction.response is not Response.REPORT:
+            ranked.setdefault(reaction.rank, reaction)
         yield from _check_unused(at, reaction)
         if reaction.response in _HOLDS and reaction.until is not None:
             yield from _check_until(at, reaction, first)
@@ -56,21 +60,51 @@ def _check_places(at: str, reaction: Reaction, mission: Mission) -> Iterator[Dia
             "give the reaction a `pose`",
             field=".response",
         )
-    if reaction.response is Response.RETURN and mission.dock is None:
+    if reaction.response is Response.RETURN and mission.dock is None and reaction.pose is None:
         yield diagnostic_about(
             at,
             reaction,
             "il.no-dock",
             f"the robot is to return to the dock on {reaction.event}, but the mission has no dock",
-            "give the mission the pose of its docking station as `dock`",
+            "give the mission the pose of its docking station as `dock`, or the reaction a `pose`",
             field=".response",
         )
+
+
+def _check_rank(
+    at: str, reaction: Reaction, ranked: dict[tuple[int, int], Reaction]
+) -> Iterator[Diagnostic]:
+    """Of two reactions of one rank the later one waits; `ranked` are those that stand before."""
+    other = ranked.get(reaction.rank)
+    if (
+        other is None
+        or reaction.response in (Response.REPORT, Response.ABORT)
+        or other.event is reaction.event
+        or other.until is reaction.event
+        or reaction.until is other.event
+    ):
+        return
+    yield diagnostic_about(
+        at,
+        reaction,
+        "il.equal-priority",
+        f"the reactions to {other.event} and {reaction.event} have the same priority "
+        f"{reaction.rank[1]}: the one whose event occurs later waits until the other is over",
+        "give the more urgent one the higher priority",
+        Severity.WARNING,
+        ".priority",
+    )
 
 
 def _check_unused(at: str, reaction: Reaction) -> Iterator[Diagnostic]:
     response = reaction.response
     unused = {
-        "pose": reaction.pose is not None and response is not Response.SAFE_AREA,
+        "pose": reaction.pose is not None and response not in _DRIVES,
+        "area": reaction.area is not None
+        and (response is not Response.RETURN or reaction.pose is None),
+        "hold_limit": reaction.hold_limit is not None
+        and (response not in _HOLDS or (response is not Response.PAUSE and reaction.until is None)),
+        "on_limit": reaction.on_limit is not Afterwards.WAIT and reaction.hold_limit is None,
         "until": reaction.until is not None and response not in _HOLDS,
         "afterwards": reaction.afterwards is not Afterwards.END
         and response not in _DRIVES

@@ -4,6 +4,13 @@ from collections.abc import Iterable, Iterator
 
 from argo_compiler.checks.conditions import ConditionChecks
 from argo_compiler.checks.diagnostic import diagnostic_about
+from argo_compiler.checks.timing import (
+    check_failure,
+    check_unused_fields,
+    check_wait,
+    check_window,
+    is_plain,
+)
 from argo_compiler.diagnostics import Diagnostic, Severity
 from argo_compiler.il import Action, Mission, OnFailure, Task
 from argo_compiler.il.reserved import RESERVED_NAMES
@@ -14,12 +21,15 @@ MANY_RETRIES = 100
 """that few actions are worth; more look like a mission that hangs"""
 
 # Looked up in the enumeration, each would take as long as the rest of a comparison.
-_START, _WAYPOINT, _MEASURE, _RETURN = (
+_START, _WAYPOINT, _MEASURE, _RETURN, _WAIT = (
     Action.START,
     Action.WAYPOINT,
     Action.MEASURE,
     OnFailure.RETURN,
+    Action.WAIT,
 )
+
+_TARGET = ".transitions[{}].target"
 
 _MOST_HINTS = 20
 """missing names for which a similar one is looked up"""
@@ -58,21 +68,48 @@ class TaskChecks:
             elif action is _WAYPOINT:
                 if task.pose is None:
                     yield _no_pose(self.subjects.task(i), task)
+            elif action is _WAIT:
+                yield from check_wait(self.subjects.task(i), task)
+                yield from check_unused_fields(self.subjects.task(i), task)
             else:
                 starts += 1
                 if starts > 1:
                     yield self._second_start(self.subjects.task(i), task)
-                yield from _unused_by_start(self.subjects.task(i), task)
+                yield from check_unused_fields(self.subjects.task(i), task)
+            if not is_plain(task):
+                yield from self._timing(self.subjects.task(i), task)
             transitions = task.transitions
             if len(transitions) != 1 or transitions[0].conditions:
                 yield from self._branching(self.subjects.task(i), task)
             elif transitions[0].target not in targets:
-                yield self._wrong_target(self.subjects.task(i), task, 0)
+                at = self.subjects.task(i)
+                yield self._wrong_target(at, task, transitions[0].target, _TARGET.format(0))
             if task.retries > MANY_RETRIES:
                 yield _many_retries(self.subjects.task(i), task)
             if task.joint_states is not None:
                 yield from _check_joints(self.subjects.task(i), task)
         yield from _check_returns(self.mission, self.subjects)
+        for i, group in enumerate(self.mission.groups):
+            for n, condition in enumerate(group.until):
+                at = self.subjects.group(i)
+                yield from self.conditions.diagnostics(at, group, condition, f".until[{n}]")
+
+    def _timing(self, at: str, task: Task) -> Iterator[Diagnostic]:
+        """What a task says about failing, waiting and time windows."""
+        if task.action in (_WAYPOINT, _MEASURE):
+            yield from check_unused_fields(at, task)
+        yield from check_failure(at, task)
+        yield from check_window(at, task)
+        for n, condition in enumerate(task.wait.conditions if task.wait else ()):
+            field = f".wait.conditions[{n}]"
+            yield from self.conditions.diagnostics(at, task, condition, field)
+        missed = task.window.missed_target if task.window else None
+        for field, target in (
+            (".failure_target", task.failure_target),
+            (".window.missed_target", missed),
+        ):
+            if target is not None and target not in self.targets:
+                yield self._wrong_target(at, task, target, field)
 
     def _second_start(self, at: str, task: Task) -> Diagnostic:
         return diagnostic_about(
@@ -88,7 +125,7 @@ class TaskChecks:
         unconditional = 0
         for k, transition in enumerate(task.transitions):
             if transition.target not in self.targets:
-                yield self._wrong_target(at, task, k)
+                yield self._wrong_target(at, task, transition.target, _TARGET.format(k))
             unconditional += not transition.conditions
             for n, condition in enumerate(transition.conditions):
                 field = f".transitions[{k}].conditions[{n}]"
@@ -124,9 +161,7 @@ class TaskChecks:
                 ".transitions",
             )
 
-    def _wrong_target(self, at: str, task: Task, k: int) -> Diagnostic:
-        target = task.transitions[k].target
-        field = f".transitions[{k}].target"
+    def _wrong_target(self, at: str, task: Task, target: str, field: str) -> Diagnostic:
         if target in self.names:
             return diagnostic_about(
                 at,
@@ -208,21 +243,6 @@ def _no_pose(at: str, task: Task) -> Diagnostic:
     )
 
 
-def _unused_by_start(at: str, task: Task) -> Iterator[Diagnostic]:
-    unused = {"retries": task.retries != 0, "on_failure": task.on_failure != OnFailure.CONTINUE}
-    for field in (field for field, given in unused.items() if given):
-        yield diagnostic_about(
-            at,
-            task,
-            "il.unused-field",
-            f"the START task '{task.name}' has no action that could fail, so its {field} has no "
-            "effect",
-            "remove it",
-            Severity.WARNING,
-            f".{field}",
-        )
-
-
 def _many_retries(at: str, task: Task) -> Diagnostic:
     return diagnostic_about(
         at,
@@ -239,8 +259,16 @@ def _check_joints(at: str, task: Task) -> Iterator[Diagnostic]:
     joints = task.joint_states
     if joints is None:
         return
-    if len(joints.names) != len(joints.positions):
-        fault = f"names {len(joints.names)} joints and gives {len(joints.positions)} positions"
+    given = {
+        "positions": len(joints.positions),
+        "velocities": len(joints.velocities),
+        "efforts": len(joints.efforts),
+    }
+    odd = [f"{n} {what}" for what, n in given.items() if n not in (0, len(joints.names))]
+    if odd:
+        fault = f"names {len(joints.names)} joints and gives {' and '.join(odd)}"
+    elif not any(given.values()):
+        fault = "names joints and does not say where they are to be"
     elif len(set(joints.names)) != len(joints.names):
         fault = "names a joint twice"
     else:
@@ -250,7 +278,7 @@ def _check_joints(at: str, task: Task) -> Iterator[Diagnostic]:
         task,
         "il.joint-states",
         f"task '{task.name}' {fault}",
-        "give one position for each joint, and each joint once",
+        "give one for each joint or none at all, and each joint once",
         field=".joint_states",
     )
 

@@ -19,7 +19,7 @@ from argo_compiler.files.json_places import (
     find_places,
     format_path,
 )
-from argo_compiler.files.migration import VERSION, migrate
+from argo_compiler.files.migration import VERSION, migrate, updated
 from argo_compiler.files.mission_data import (
     MAX_FAULTS,
     UnplacedDiagnostic,
@@ -51,6 +51,8 @@ class MissionFile:
 
     mission: Mission
     text: str
+    changes: tuple[Diagnostic, ...] = ()
+    """what a file of an older version says that can't be said any more; no places yet"""
 
     def placed(self, diagnostics: Iterable[Diagnostic]) -> tuple[Diagnostic, ...]:
         """The diagnostics with their places in the file, by their subjects.
@@ -98,14 +100,15 @@ def decode_mission(content: bytes, source_name: str) -> MissionFile:
         _refuse(source_name, text, [*faults, _not_a_mission()])
     if _RECORD.issubset(data):
         _refuse(source_name, text, [*faults, _a_record()])
-    present = migrate(data)
+    present, written_as = migrate(data)
     version = present.get("version", VERSION)
     if version != VERSION or isinstance(version, bool):
         _refuse(source_name, text, [*faults, _unsupported(version)])
     result = to_mission(present)
     if isinstance(result, list) or faults:
         _refuse(source_name, text, faults + (result if isinstance(result, list) else []))
-    return MissionFile(result, text)
+    mission, changes = updated(result, written_as)
+    return MissionFile(mission, text, changes)
 
 
 def write_mission(mission: Mission, path: Path) -> None:

@@ -121,7 +121,7 @@ def load(
             return Loaded(imported.mission, imported.diagnostics, None)
         case SourceKind.MISSION:
             file = decode_mission(upload.content, name)
-            return Loaded(file.mission, (), file)
+            return Loaded(file.mission, file.placed(file.changes), file)
         case SourceKind.SCRIPT:
             return _load_script(upload.content, name, catalog, start_area, end_area)
 

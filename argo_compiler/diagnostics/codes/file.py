@@ -1,6 +1,6 @@
 """The codes of diagnostics about mission files."""
 
-from argo_compiler.diagnostics.codes.code import error
+from argo_compiler.diagnostics.codes.code import error, warning
 
 FILE = {
     "file.directory": error("A folder stands where a file is read.", "Name the file in it."),
@@ -8,6 +8,11 @@ FILE = {
         "An object of the JSON file has the same field twice; readers would disagree on which "
         "one counts.",
         "Remove one of the two.",
+    ),
+    "file.meaning-changed": warning(
+        "The file has an older version of the mission format, and says something that does not "
+        "mean the same any more.",
+        "Look at what is named, and save the mission anew.",
     ),
     "file.missing": error("There is no such file.", "Check the path."),
     "file.not-a-mission": error(

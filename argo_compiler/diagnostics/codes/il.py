@@ -3,6 +3,14 @@
 from argo_compiler.diagnostics.codes.code import error, warning
 
 IL = {
+    "il.branch-without-target": error(
+        "A task is to go on elsewhere when it has failed, and does not say where.",
+        "Give it a `failure_target`, or another `on_failure`.",
+    ),
+    "il.condition-bound": error(
+        "A LESS, GREATER or WITHIN condition has no bound.",
+        "Give the bound that the value is compared with as `param1`.",
+    ),
     "il.duplicate-group": error(
         "Two groups have the same name.", "Give each group a name of its own."
     ),
@@ -22,6 +30,12 @@ IL = {
         "can be taken leaves it, and no group around it runs out of time.",
         "Give it `max_repeat_count` or `max_repeat_duration`, or a conditional transition out of "
         "it.",
+    ),
+    "il.equal-priority": warning(
+        "Two reactions have the same priority: the one whose event occurs later waits until the "
+        "other is over.",
+        "Give the more urgent one the higher `priority`; ABORT and the reaction to an emergency "
+        "stop need none.",
     ),
     "il.group-duration": error(
         "The time of a group with `stop` hard is up before any action could be carried out.",
@@ -51,9 +65,20 @@ IL = {
         "Two groups have the same tasks, and neither name says which one lies inside.",
         "Name the inner one `Outer/Inner`.",
     ),
+    "il.instant-loop": error(
+        "Nothing on a way that leads round in a circle takes any time, so the mission might never "
+        "come to the next moment.",
+        "Let a WAIT on it last, give the group `every` or few rounds, or take a hard window away.",
+    ),
     "il.joint-states": error(
-        "The joints and positions of a task's joint states do not belong to each other.",
-        "Give exactly one position for each joint, and each joint once.",
+        "The joints and positions, velocities or efforts of a task's joint states do not belong "
+        "to each other.",
+        "Give exactly one for each joint, or none at all, and each joint once.",
+    ),
+    "il.leaves-round": warning(
+        "A branch leaves a repeated group before the end of its round, and with it the rounds that "
+        "are left.",
+        "Lead it to the group's end if the round is to be completed; else nothing is to be done.",
     ),
     "il.left-out": warning(
         "Tasks were taken away when the mission's order was chosen, as they did not fit into its "
@@ -97,6 +122,10 @@ IL = {
     ),
     "il.safe-area-without-pose": error(
         "A SAFE_AREA reaction does not say where the safe area is.", "Give the reaction a `pose`."
+    ),
+    "il.stale-without-age": error(
+        "A STALE condition does not say from which age on a value is stale.",
+        "Give it a `max_age` in seconds.",
     ),
     "il.start-as-target": error(
         "A transition leads to the START task, which is only where the mission begins.",
@@ -146,6 +175,18 @@ IL = {
     "il.unused-field": warning(
         "A field is given where it has no effect.",
         "Remove it, or change what it should have an effect on.",
+    ),
+    "il.wait-rule": error(
+        "A WAIT does not say how long it lasts, or says it in two ways.",
+        "Give its `wait` a `duration`, or else an `event`, `conditions` or both.",
+    ),
+    "il.wait-without-limit": warning(
+        "A WAIT for an event or a value has no limit: if that never comes, it lasts for ever.",
+        "Give its `wait` a `limit`, and the task an `on_failure`.",
+    ),
+    "il.window-order": error(
+        "A time window ends before it begins, so the task can't be done in it.",
+        "`latest` comes after `earliest`; both count from the mission's start in seconds.",
     ),
     "il.waypoint-without-pose": error(
         "A WAYPOINT task does not say where it leads.", "Give it a `pose`."

@@ -85,7 +85,7 @@ def test_every_mission_is_written_and_read_back(mission):
         (Group, {"name": "G", "start": "A", "end": "B", "max_repeat_duration": float("inf")}),
         (Condition, {"type": ConditionType.LESS, "object_id": "1", "param1": float("nan")}),
         (Condition, {"type": ConditionType.LESS, "object_id": "1", "param1": 1, "max_age": 0}),
-        (Mission, {"version": 3}),
+        (Mission, {"version": 2}),
         (Mission, {"max_duration": 0}),
     ],
 )

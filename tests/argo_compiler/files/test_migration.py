@@ -1,0 +1,176 @@
+"""Files of older versions: they mean what they meant, or a warning says what changed."""
+
+import json
+
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from argo_compiler.files.mission_file import decode_mission
+from argo_compiler.il import Action, Group, Mission, Stop, Task, Transition
+from argo_compiler.il.velocities import BEGINNING, of_ways_on, of_ways_there, ways
+from argo_compiler.model import Pose
+
+DOCK = {"x": 0.0, "y": 0.0, "z": 0.0, "yaw": 0.0}
+
+
+def read(version=2, **data):
+    return decode_mission(json.dumps({"version": version, **data}).encode(), "old.json")
+
+
+def task(name, *targets, velocity=None, action="MEASURE", **fields):
+    data = {"name": name, "action": action, "transitions": [{"target": t} for t in targets]}
+    if action == "MEASURE":
+        data["object_id"] = "1"
+    if velocity is not None:
+        data["velocity"] = velocity
+    return data | fields
+
+
+def velocities(mission):
+    return {task.name: task.velocity for task in mission.tasks}
+
+
+@pytest.mark.rule("M6", "T6")
+@pytest.mark.parametrize("version", [1, 2])
+def test_the_velocity_of_the_way_on_becomes_that_of_the_way_there(version):
+    start = task("S", "A", action="START", velocity=0.2)
+    file = read(version, tasks=[start, task("A", "B", velocity=0.3), task("B")])
+    assert velocities(file.mission) == {"S": None, "A": 0.2, "B": 0.3}
+    assert file.mission.version == 3
+    assert not file.changes
+
+
+@pytest.mark.rule("M6")
+def test_where_velocities_differ_the_slowest_is_taken_and_said():
+    file = read(
+        tasks=[task("A", "C", velocity=0.3), task("B", "C", velocity=0.5), task("C", "B")],
+    )
+    assert velocities(file.mission)["C"] == 0.3
+    (change,) = file.changes
+    assert change.code == "file.meaning-changed"
+    assert "'C'" in change.message
+    (placed,) = file.placed(file.changes)
+    assert placed.span is not None
+
+
+def test_the_next_round_is_a_way_too():
+    groups = [{"name": "G", "start": "A", "end": "B", "max_repeat_count": 3}]
+    file = read(
+        tasks=[
+            task("S", "A", action="START", velocity=0.2),
+            task("A", "B", velocity=0.4),
+            task("B", velocity=0.2),
+        ],
+        groups=groups,
+    )
+    assert velocities(file.mission) == {"S": None, "A": 0.2, "B": 0.4}
+    assert not file.changes
+
+
+@pytest.mark.rule("M6")
+@pytest.mark.parametrize(
+    ("data", "said"),
+    [
+        ({"mode": "supervisory", "tasks": [task("A")]}, "begins paused"),
+        ({"tasks": [task("A", pose=DOCK)]}, "was never used"),
+        (
+            {
+                "tasks": [
+                    task("A")
+                    | {
+                        "transitions": [
+                            {
+                                "target": "A",
+                                "conditions": [
+                                    {"type": "MEASURED_VALUE_LESS", "object_id": "1", "param1": 1}
+                                ],
+                            }
+                        ]
+                    }
+                ]
+            },
+            "earlier measurement",
+        ),
+        (
+            {
+                "tasks": [task("A")],
+                "reactions": [
+                    {"event": "low_battery", "response": "pause", "priority": 3},
+                    {"event": "emergency_stop", "response": "abort", "priority": 1},
+                ],
+            },
+            "before all others",
+        ),
+    ],
+)
+def test_what_does_not_mean_the_same_is_said(data, said):
+    file = read(**data)
+    (change,) = file.changes
+    assert said in change.message
+    assert change.hint
+    assert not decode_mission(
+        json.dumps({**file.mission.model_dump(mode="json")}).encode(), "new.json"
+    ).changes
+
+
+def test_priorities_and_unused_poses_stay_what_they_were():
+    file = read(
+        dock=DOCK,
+        tasks=[task("A")],
+        reactions=[
+            {"event": "gas_leak", "response": "return", "pose": {**DOCK, "x": 9.0}},
+            {"event": "low_battery", "response": "return", "priority": 2},
+        ],
+    )
+    assert [(r.priority, r.pose) for r in file.mission.reactions] == [(0, None), (2, None)]
+
+
+@st.composite
+def routes(draw):
+    """Missions in which each task is come to at one velocity."""
+    names = [f"T{i}" for i in range(draw(st.integers(1, 6)))]
+    speeds = st.sampled_from([None, 0.2, 0.4])
+    tasks = tuple(
+        Task(
+            name=name,
+            action=Action.WAYPOINT,
+            pose=Pose(x=0, y=0, z=0, yaw=0),
+            velocity=draw(speeds),
+            transitions=tuple(
+                Transition(target=target)
+                for target in draw(st.lists(st.sampled_from(names), max_size=1))
+            ),
+        )
+        for name in names
+    )
+    first, last = sorted(draw(st.tuples(*[st.integers(0, len(names) - 1)] * 2)))
+    group = Group(
+        name="G",
+        start=names[first],
+        end=names[last],
+        max_repeat_count=2,
+        max_repeat_duration=draw(st.sampled_from([0, 60])),
+        stop=draw(st.sampled_from(Stop)),
+    )
+    return Mission(tasks=tasks, groups=draw(st.sampled_from([(), (group,)])))
+
+
+@settings(max_examples=200, deadline=None)
+@given(routes())
+def test_each_way_keeps_its_velocity_or_its_task_is_named(mission):
+    there, differ = of_ways_there(mission)
+    on, now = velocities(mission), velocities(there)
+    for source, target in ways(mission):
+        old = None if source == BEGINNING else on[source]
+        assert now[target] == old or target in differ
+
+
+@settings(max_examples=200, deadline=None)
+@given(routes())
+def test_both_conventions_say_the_same_where_one_can_say_what_the_other_does(mission):
+    on, differ = of_ways_on(mission)
+    if not differ:
+        there, _ = of_ways_there(on)
+        reached = {target for _, target in ways(mission)}
+        assert all(velocities(there)[t] == velocities(mission)[t] for t in reached)

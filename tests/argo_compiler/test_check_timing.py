@@ -1,0 +1,227 @@
+"""What `check` finds about waiting, time windows, failing, readings, rounds and ranks."""
+
+import pytest
+
+from argo_compiler.checks import check
+from argo_compiler.diagnostics import Severity
+from argo_compiler.il import (
+    Action,
+    Condition,
+    ConditionType,
+    JointState,
+    Mission,
+    Reaction,
+    Task,
+    TimeWindow,
+    Transition,
+    WaitRule,
+)
+from argo_compiler.model import Pose
+from tests.argo_compiler.test_check import CHAIN, chain, codes, group, measure, when
+
+HERE = Pose(x=0, y=0, z=0, yaw=0)
+
+
+SECOND = WaitRule(duration=1)
+
+
+def wait(name, *targets, rule=SECOND, **fields):
+    ways = tuple(Transition(target=target) for target in targets)
+    return Task(name=name, action=Action.WAIT, wait=rule, transitions=ways, **fields)
+
+
+def one(*tasks, **fields):
+    (finding,) = check(Mission(tasks=tasks, **fields))
+    return finding
+
+
+@pytest.mark.rule("T1")
+@pytest.mark.parametrize(
+    "rule",
+    [
+        None,
+        WaitRule(),
+        WaitRule(limit=3),
+        WaitRule(duration=3, event="all_clear"),
+        WaitRule(duration=3, conditions=(Condition(type="READING_FAILED", object_id="1"),)),
+    ],
+)
+def test_a_wait_says_how_long_in_one_way(rule):
+    findings = check(Mission(tasks=(measure("A", "W"), wait("W", rule=rule))))
+    assert "il.wait-rule" in [finding.code for finding in findings]
+
+
+def test_a_wait_without_a_limit_is_named():
+    finding = one(wait("W", rule=WaitRule(event="all_clear")))
+    assert (finding.code, finding.severity) == ("il.wait-without-limit", Severity.WARNING)
+
+
+@pytest.mark.parametrize(
+    ("task", "field"),
+    [
+        (wait("A", object_id="1"), "object_id"),
+        (wait("A", retries=2), "retries"),
+        (wait("A", rule=WaitRule(duration=3, limit=5)), "wait.limit"),
+        (measure("A", wait=WaitRule(duration=3)), "wait"),
+        (measure("A", failure_target="A"), "failure_target"),
+        (measure("A", window=TimeWindow(latest=9, hard=False, missed_target="A")), "window.missed"),
+        (measure("A", window=TimeWindow(earliest=9, missed_target="A")), "window.missed"),
+        (Task(name="A", action="WAYPOINT", pose=HERE, reading_limit=3), "reading_limit"),
+        (
+            measure("A", "A", when("A", ConditionType.FAILED, low=3)),
+            "param1",
+        ),
+    ],
+)
+def test_what_has_no_effect_is_named(task, field):
+    finding = one(task)
+    assert (finding.code, finding.severity) == ("il.unused-field", Severity.WARNING)
+    assert field in finding.subject
+
+
+@pytest.mark.parametrize(
+    ("code", "task"),
+    [
+        ("il.branch-without-target", measure("A", on_failure="branch")),
+        ("il.unknown-target", measure("A", on_failure="branch", failure_target="Z")),
+        ("il.unknown-target", measure("A", window=TimeWindow(latest=9, missed_target="Z"))),
+        ("il.window-order", measure("A", window=TimeWindow(earliest=9, latest=9))),
+        ("il.condition-bound", measure("A", "A", when("A", low=None))),
+        ("il.stale-without-age", measure("A", "A", when("A", ConditionType.STALE, low=None))),
+        ("il.joint-states", measure("A", joint_states=JointState(names=["a"], efforts=[1, 2]))),
+        ("il.joint-states", measure("A", joint_states=JointState(names=["a"]))),
+    ],
+)
+def test_errors_of_what_tasks_say_about_time(code, task):
+    finding = one(task)
+    assert (finding.code, finding.severity) == (code, Severity.ERROR)
+    assert finding.hint
+
+
+@pytest.mark.rule("T10")
+def test_joint_states_may_give_any_of_the_three():
+    joints = JointState(names=["a", "b"], velocities=[1, 2])
+    assert codes(chain(tasks=(measure("A", joint_states=joints),))) == []
+
+
+LATE = TimeWindow(latest=60)
+ZERO = WaitRule(duration=0)
+
+
+@pytest.mark.rule("W7")
+@pytest.mark.parametrize(
+    ("tasks", "groups", "circle"),
+    [
+        ((wait("A", "A", rule=ZERO),), (), True),
+        ((wait("A", "B", rule=ZERO), wait("B", "A", rule=ZERO)), (), True),
+        ((wait("A", "B", rule=ZERO), wait("B", "A")), (), False),
+        ((wait("A", "B", rule=ZERO), measure("B", "A")), (), False),
+        ((wait("A", "B", rule=ZERO), measure("B", "A", window=LATE)), (), True),
+        (
+            (
+                wait("A", "B", rule=ZERO),
+                measure("B", "A", window=TimeWindow(latest=60, missed_target="C")),
+                measure("C"),
+            ),
+            (),
+            False,
+        ),
+        ((measure("A", window=LATE),), (group("G", "A", "A", 1000),), False),
+        ((measure("A", window=LATE),), (group("G", "A", "A", 1001),), True),
+        ((measure("A", window=LATE),), (group("G", "A", "A", 0, max_repeat_duration=9),), True),
+        ((measure("A", window=LATE),), (group("G", "A", "A", 5000, every=9),), False),
+        (
+            (measure("A", window=LATE),),
+            (group("G", "A", "A", 100), group("G/H", "A", "A", 100)),
+            True,
+        ),
+    ],
+)
+def test_no_circle_takes_no_time(tasks, groups, circle):
+    found = codes(Mission(tasks=tasks, groups=groups))
+    assert ("il.instant-loop" in found) == circle
+
+
+@pytest.mark.rule("G14")
+def test_each_branch_that_leaves_a_round_is_named():
+    leaving = (
+        measure("A", "B", when("D")),
+        measure("B", "C", on_failure="branch", failure_target="D"),
+        measure("C", "D", window=TimeWindow(latest=9, missed_target="D")),
+        measure("D"),
+    )
+    findings = check(chain(group("G", "A", "C", 3), tasks=leaving))
+    assert [f.subject for f in findings if f.code == "il.leaves-round"] == [
+        "tasks['A'].transitions[1].target",
+        "tasks['B'].failure_target",
+        "tasks['C'].window.missed_target",
+    ]
+    assert codes(chain(group("G", "A", "C", 3))) == []
+    # A single round loses none, and an endless group has no other way out.
+    assert "il.leaves-round" not in codes(chain(group("G", "A", "C", 1), tasks=leaving))
+    assert "il.leaves-round" not in codes(chain(group("G", "A", "C", 0), tasks=leaving))
+
+
+def test_the_end_of_an_inner_group_may_leave_the_outer_one():
+    groups = (group("G", "A", "C", 3), group("G/H", "A", "B", 2))
+    tasks = (measure("A", "B"), measure("B", "D"), measure("C", "D"), measure("D"))
+    assert codes(chain(*groups, tasks=tasks)) == ["il.leaves-round"]
+
+
+@pytest.mark.rule("G9")
+def test_a_group_that_ends_by_a_condition_is_not_endless():
+    until = (Condition(type="MEASURED_VALUE_LESS", object_id="1", param1=3),)
+    assert codes(chain(group("G", "A", "C", 0, until=until))) == []
+    assert codes(chain(group("G", "A", "C", 0))) == ["il.endless-group"]
+    odd = (Condition(type="MEASURED_VALUE_LESS", object_id="9", param1=3),)
+    assert codes(chain(group("G", "A", "C", 2, until=odd))) == ["il.never-measured"]
+
+
+@pytest.mark.parametrize("field", ["every", "until"])
+def test_what_one_round_does_not_need_is_named(field):
+    value = {"every": 9.0, "until": (Condition(type="READING_FAILED", object_id="1"),)}[field]
+    assert codes(chain(group("G", "A", "C", 1, **{field: value}))) == ["il.unused-field"]
+
+
+def reactions(*pairs):
+    return Mission(tasks=CHAIN, dock=HERE, reactions=[Reaction(**fields) for fields in pairs])
+
+
+@pytest.mark.rule("R7")
+@pytest.mark.parametrize(
+    ("first", "second", "told"),
+    [
+        ({"priority": 1}, {"priority": 1}, True),
+        ({"priority": 1}, {"priority": 2}, False),
+        ({}, {}, False),
+        ({"priority": 1}, {"priority": 1, "response": "report"}, False),
+        ({"priority": 1}, {"priority": 1, "response": "abort"}, False),
+        ({"priority": 1, "until": "hot_spot"}, {"priority": 1}, False),
+    ],
+)
+def test_reactions_of_which_one_would_wait_are_named(first, second, told):
+    mission = reactions(
+        {"event": "gas_leak", "response": "return", **first},
+        {"event": "hot_spot", "response": "pause", **second},
+    )
+    assert codes(mission) == (["il.equal-priority"] if told else [])
+
+
+def test_a_reaction_may_return_to_a_dock_of_its_own():
+    own = {"event": "gas_leak", "response": "return", "pose": HERE, "area": 2}
+    assert codes(Mission(tasks=CHAIN, reactions=[Reaction(**own)])) == []
+    assert codes(reactions({"event": "gas_leak", "response": "return", "area": 2})) == [
+        "il.unused-field"
+    ]
+
+
+@pytest.mark.parametrize(
+    "fields",
+    [
+        {"response": "return", "hold_limit": 3},
+        {"response": "abort", "hold_limit": 3},
+        {"response": "pause", "on_limit": "end"},
+    ],
+)
+def test_limits_of_holds_that_are_not_there_are_named(fields):
+    assert codes(reactions({"event": "gas_leak", **fields})) == ["il.unused-field"]

@@ -6,11 +6,14 @@ from argo_compiler.il import (
     Action,
     Condition,
     ConditionType,
+    EventKind,
     Group,
     OnFailure,
     Stop,
     Task,
+    TimeWindow,
     Transition,
+    WaitRule,
 )
 from argo_compiler.model import Pose
 
@@ -35,6 +38,51 @@ def conditions(draw):
         param2=draw(st.integers(low + 1, 6)),
         inclusive=draw(st.booleans()),
         max_age=draw(st.one_of(st.none(), st.integers(1, 6))),
+    )
+
+
+@st.composite
+def conditions_of_readings(draw, ages=True):
+    """Of all types: comparisons, and what else a reading may be; without `ages`, of any age."""
+    types = [t for t in ConditionType if ages or t is not ConditionType.STALE]
+    type = draw(st.sampled_from([*types, ConditionType.LESS, ConditionType.GREATER]))
+    if type.compares:
+        found = draw(conditions()).model_copy(update={"type": type})
+        return found if ages else found.model_copy(update={"max_age": None})
+    oldest = {
+        ConditionType.STALE: st.integers(1, 6),
+        ConditionType.ABNORMAL: st.one_of(st.none(), st.integers(1, 6)),
+    }
+    return Condition(
+        type=type,
+        object_id=draw(st.sampled_from(OBJECTS)),
+        max_age=draw(oldest.get(type, st.none())) if ages else None,
+    )
+
+
+@st.composite
+def wait_rules(draw, events=(EventKind.ALL_CLEAR,)):
+    """For a time or none, or until something, mostly with a limit."""
+    until = draw(st.sampled_from(["time", "event", "conditions", "either"]))
+    if until == "time":
+        return WaitRule(duration=draw(st.sampled_from([0, 0, 1, 2, 3, 5])))
+    held = st.lists(conditions_of_readings(), min_size=1, max_size=2).map(tuple)
+    return WaitRule(
+        event=None if until == "conditions" else draw(st.sampled_from(events)),
+        conditions=() if until == "event" else draw(held),
+        limit=draw(st.sampled_from([None, 1, 4, 8, 12])),
+    )
+
+
+@st.composite
+def windows(draw, names, late=12):
+    """Hard ones with a place to go on at or none, and soft ones; `late` is about the last time."""
+    earliest = draw(st.one_of(st.just(0), st.integers(0, late)))
+    latest = draw(st.sampled_from([None, *(earliest + s for s in (1, 2, 4, late))]))
+    hard = latest is not None and draw(st.sampled_from([True, True, False]))
+    target = st.one_of(st.none(), st.sampled_from(names))
+    return TimeWindow(
+        earliest=earliest, latest=latest, hard=hard, missed_target=draw(target) if hard else None
     )
 
 
@@ -81,8 +129,11 @@ def starts(draw, names):
 
 
 @st.composite
-def groups_over(draw, names, interruptions=True):
-    """Ranges that lie in each other or apart, named by their nesting."""
+def groups_over(draw, names, interruptions=True, plans=False, until=None):
+    """Ranges that lie in each other or apart, named by their nesting.
+
+    With `plans`, rounds may be due at times; `until` draws the conditions for no other round.
+    """
     ends = st.integers(0, len(names) - 1)
     kept = []
     for a, b in draw(st.lists(st.tuples(ends, ends), max_size=5)):
@@ -104,6 +155,8 @@ def groups_over(draw, names, interruptions=True):
                 max_repeat_duration=draw(st.sampled_from([0, 0, 1, 2, 3, 5, 8, 13])),
                 count_interruptions=interruptions and draw(st.booleans()),
                 stop=draw(st.sampled_from(Stop)),
+                every=draw(st.sampled_from([0, 0, 2, 4, 7])) if plans else 0,
+                until=() if until is None else tuple(draw(st.lists(until, max_size=2))),
             )
         )
     return tuple(draw(st.permutations(groups)))

@@ -68,8 +68,8 @@ class Site:
 
     def outcome(self, name, number):
         # Not the same for all tasks, but the same in each run.
-        duration, value, failed, _, _ = self.outcomes[(number * 3 + len(name)) % len(self.outcomes)]
-        return duration, value if name.startswith("M") else None, failed
+        doing = self.outcomes[(number * 3 + len(name)) % len(self.outcomes)]
+        return doing.seconds, doing.value if name.startswith("M") else None, doing.failed
 
     def run(self, executor, now, visits):
         """Until so many visits have ended, or the mission has."""

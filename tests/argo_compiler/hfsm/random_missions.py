@@ -1,34 +1,120 @@
 """Random missions of the whole language, and what happens to them."""
 
+from dataclasses import dataclass
+from functools import partial
+
 from hypothesis import strategies as st
 
-from argo_compiler.hfsm import Cancel, Occurred, Pause, Resume
+from argo_compiler.hfsm import (
+    ByHand,
+    Cancel,
+    GiveBack,
+    Occurred,
+    Pause,
+    Resume,
+    TakeOver,
+)
+from argo_compiler.hfsm.events import ReadingGiven
 from argo_compiler.il import (
+    Action,
     Afterwards,
     EventKind,
     Group,
     Mission,
+    Mode,
+    OnFailure,
     Reaction,
     Response,
+    Task,
+    WaitRule,
 )
-from tests.mission_parts import HERE, groups_over, starts, task_names, tasks_named
+from tests.mission_parts import (
+    HERE,
+    OBJECTS,
+    conditions_of_readings,
+    groups_over,
+    starts,
+    tasks_named,
+    transitions,
+    wait_rules,
+    windows,
+)
 
 EVENTS = (
     EventKind.GAS_LEAK,
     EventKind.LOW_BATTERY,
-    EventKind.PLATFORM_ALARM,
+    EventKind.EMERGENCY_STOP,
     EventKind.ALL_CLEAR,
 )
 
 
+@dataclass(frozen=True)
+class Doing:
+    """How an action goes: for how long (s) and with what result; if it is cancelled, how long its
+    clean-up takes (s), and whether it reports its result after all."""
+
+    seconds: int
+    value: int | None = None
+    abnormal: bool = False
+    failed: bool = False
+    unreadable: bool = False
+    clean_up: int = 0
+    late: bool = False
+
+
+doings = st.builds(
+    Doing,
+    seconds=st.integers(0, 4),
+    value=st.one_of(st.integers(0, 6), st.integers(0, 6), st.none()),
+    abnormal=st.booleans(),
+    failed=st.sampled_from([False, False, True]),
+    unreadable=st.booleans(),
+    clean_up=st.integers(0, 2),
+    late=st.booleans(),
+)
+outcome_lists = st.lists(doings, min_size=1, max_size=8)
+
+
+@st.composite
+def task_names(draw, least=1, most=9):
+    """M and a number for tasks that measure, W for waypoints, T for waits."""
+    kinds = draw(st.lists(st.sampled_from("MMWT"), min_size=least, max_size=most))
+    return [f"{kind}{i}" for i, kind in enumerate(kinds)]
+
+
+@st.composite
+def tasks_of_all_kinds(draw, name, names, index, timed=True):
+    """Actions with limits and windows, and waits; not `timed`: nothing but what the clocks of
+    groups say hangs on when it is done."""
+    ways = transitions(names, index, partial(conditions_of_readings, ages=timed))
+    if name.startswith("T"):
+        policy = draw(st.sampled_from(OnFailure)) if timed else OnFailure.CONTINUE
+        rule = draw(wait_rules(EVENTS)) if timed else WaitRule(duration=0)
+        task = Task(name=name, action=Action.WAIT, wait=rule, on_failure=policy)
+    else:
+        task = draw(tasks_named(name, names, index))
+    fields = {"transitions": draw(ways), "optional": draw(st.booleans())}
+    if task.on_failure is OnFailure.BRANCH:
+        fields["failure_target"] = draw(st.sampled_from(names))
+    if timed and task.action is not Action.WAIT:
+        fields["time_limit"] = draw(st.sampled_from([None, None, None, 1, 2, 3]))
+    if timed and draw(st.sampled_from([False, False, True])):
+        fields["window"] = draw(windows(names))
+    return task.model_copy(update=fields)
+
+
 @st.composite
 def missions(draw, events=True):
-    """Missions of up to nine tasks; without `events` nothing interrupts them but a person."""
+    """Missions of up to nine tasks; without `events` nothing but a person interrupts them, and
+    nothing hangs on the time but the clocks of groups."""
     names = draw(task_names())
-    tasks = [draw(tasks_named(name, names, i)) for i, name in enumerate(names)]
+    tasks = [draw(tasks_of_all_kinds(name, names, i, events)) for i, name in enumerate(names)]
+    modes = [Mode.AUTONOMOUS] * 5 + [Mode.SUPERVISORY] * events
+    until = conditions_of_readings(ages=events)
     return Mission(
+        mode=draw(st.sampled_from(modes)),
         tasks=(*draw(starts(names)), *tasks),
-        groups=draw(groups_over(names, interruptions=events)),
+        groups=draw(groups_over(names, interruptions=events, plans=events, until=until)),
         reactions=tuple(draw(reactions())) if events else (),
         max_duration=draw(st.sampled_from([None, None, 3, 10, 30])) if events else None,
         dock=HERE,
@@ -42,51 +128,99 @@ def reactions(draw, events=(*EVENTS, EventKind.TIME_UP), least=0):
     for event in kinds:
         response = draw(st.sampled_from(Response))
         others = [other for other in EVENTS if other in events and other is not event]
+        drives = response in (Response.RETURN, Response.SAFE_AREA)
         until = draw(st.sampled_from([None, *others]))
+        holds = response is Response.PAUSE or (drives and until is not None)
+        limit = draw(st.sampled_from([None, 1, 2, 4])) if holds else None
         found.append(
             Reaction(
                 event=event,
                 response=response,
                 pose=HERE if response is Response.SAFE_AREA else None,
-                until=until,
+                until=until if holds else None,
                 afterwards=draw(st.sampled_from(Afterwards)),
-                priority=draw(st.integers(0, 2)),
+                hold_limit=limit,
+                on_limit=draw(st.sampled_from(Afterwards)) if limit else Afterwards.WAIT,
+                priority=draw(st.one_of(st.none(), st.integers(0, 2))),
             )
         )
     return found
 
 
-happenings = st.one_of(
-    st.sampled_from(EVENTS).map(Occurred),
-    st.sampled_from(EVENTS).map(Occurred),
-    st.sampled_from([Pause(), Resume(), Resume()]),
-    st.sampled_from([Pause(), Resume(), Cancel()]),
-)
+@st.composite
+def handworks(draw, names):
+    """What a person did with a task: done or skipped."""
+    name = draw(st.sampled_from(names))
+    measured = name.startswith("M") and draw(st.booleans())
+    return ByHand(
+        task=name,
+        value=draw(st.integers(0, 6)) if measured else None,
+        abnormal=measured and draw(st.booleans()),
+        duration=draw(st.integers(0, 4)),
+        skipped=not measured and draw(st.booleans()),
+        age=draw(st.one_of(st.none(), st.integers(0, 5))),
+    )
 
-# What happens besides, and how many seconds after the happening before.
-scripts = st.lists(st.tuples(st.integers(0, 6), happenings), max_size=8)
 
-# How long an action takes (s), what it reads, whether it fails; if it is cancelled, how long its
-# clean-up takes, and whether it reports its result after all.
-outcome_lists = st.lists(
-    st.tuples(
-        st.integers(0, 4),
-        st.one_of(st.none(), st.integers(0, 6)),
-        st.booleans(),
-        st.integers(0, 2),
-        st.booleans(),
-    ),
-    min_size=1,
-    max_size=8,
-)
+def expected(mission):
+    """The events that the mission waits for or reacts to; those that time brings come by time."""
+    events = [task.wait.event for task in mission.tasks if task.wait is not None] * 3
+    for reaction in mission.reactions:
+        events += [reaction.event, reaction.until]
+    return [event for event in events if event not in (None, EventKind.TIME_UP)]
+
+
+@st.composite
+def scripts(draw, mission, most=8):
+    """What happens besides the ends of actions: how many seconds after the happening before, and
+    what it is."""
+    names = [task.name for task in mission.tasks if task.action is not Action.START]
+    occurs = st.sampled_from([*EVENTS, *expected(mission)]).map(Occurred)
+    given = st.builds(
+        ReadingGiven, st.sampled_from(OBJECTS), st.integers(0, 6), abnormal=st.booleans()
+    )
+    alone = st.one_of(occurs, occurs, given).map(lambda one: (one,))
+    happenings = st.one_of(
+        alone,
+        alone,
+        st.sampled_from([(Pause(), Resume()), (Resume(),), (Pause(), Resume()), (Cancel(),)]),
+        st.lists(handworks(names), max_size=4).map(
+            lambda done: (TakeOver(), GiveBack(tuple(done)))
+        ),
+    )
+    script = []
+    if mission.mode is Mode.SUPERVISORY:
+        script.append((draw(st.integers(0, 3)), Resume()))
+    for together in draw(st.lists(happenings, min_size=draw(st.integers(0, 3)), max_size=most)):
+        script += [(draw(st.integers(0, 5)), one) for one in together]
+    return script
+
+
+@dataclass(frozen=True)
+class Case:
+    """A mission, how its actions go, in turn, and what happens besides."""
+
+    mission: Mission
+    doings: list[Doing]
+    script: list[tuple[int, object]]
+
+
+@st.composite
+def cases(draw, of=None):
+    mission = draw(missions() if of is None else of)
+    return Case(mission, draw(outcome_lists), draw(scripts(mission)))
 
 
 @st.composite
 def busy_missions(draw):
     """Missions that go on and on, and are interrupted all the time."""
     two = (
-        draw(tasks_named("M0", ["M0", "W1"], 0)).model_copy(update={"object_id": "1"}),
-        draw(tasks_named("W1", ["M0", "W1"], 1)).model_copy(update={"transitions": ()}),
+        draw(tasks_named("M0", ["M0", "W1"], 0)).model_copy(
+            update={"object_id": "1", "failure_target": "W1"}
+        ),
+        draw(tasks_named("W1", ["M0", "W1"], 1)).model_copy(
+            update={"transitions": (), "failure_target": "M0"}
+        ),
     )
     limit = draw(st.sampled_from([0, 0, 5, 9]))
     group = Group(
@@ -96,6 +230,7 @@ def busy_missions(draw):
         max_repeat_count=50,
         max_repeat_duration=limit,
         count_interruptions=draw(st.booleans()),
+        every=draw(st.sampled_from([0, 0, 5])),
     )
     return Mission(
         tasks=two,
@@ -107,15 +242,14 @@ def busy_missions(draw):
 
 BUSY = (EventKind.GAS_LEAK, EventKind.LOW_BATTERY, EventKind.ALL_CLEAR)
 
-busy_scripts = st.lists(
-    st.tuples(
-        st.integers(0, 4),
-        st.one_of(
-            st.sampled_from(BUSY).map(Occurred),
-            st.sampled_from(BUSY).map(Occurred),
-            st.sampled_from([Pause(), Resume()]),
-        ),
-    ),
-    min_size=4,
-    max_size=12,
-)
+
+@st.composite
+def busy_cases(draw):
+    mission = draw(busy_missions())
+    happenings = st.one_of(
+        st.sampled_from(BUSY).map(Occurred),
+        st.sampled_from(BUSY).map(Occurred),
+        st.sampled_from([Pause(), Resume()]),
+    )
+    script = st.lists(st.tuples(st.integers(0, 4), happenings), min_size=4, max_size=12)
+    return Case(mission, draw(outcome_lists), draw(script))

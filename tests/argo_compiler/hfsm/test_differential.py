@@ -1,6 +1,7 @@
 """Random missions through the machine and through a reference interpreter of the IL."""
 
 from dataclasses import replace
+from enum import StrEnum
 from itertools import cycle, tee
 
 import pytest
@@ -8,7 +9,7 @@ from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 
 from argo_compiler.checks import check
-from argo_compiler.diagnostics import Severity
+from argo_compiler.diagnostics import has_errors
 from argo_compiler.hfsm import (
     ActionFailed,
     ActionStopped,
@@ -16,6 +17,7 @@ from argo_compiler.hfsm import (
     CancelAction,
     Cause,
     Executor,
+    GiveBack,
     Hfsm,
     Pause,
     Progress,
@@ -25,14 +27,9 @@ from argo_compiler.hfsm import (
     lower,
 )
 from argo_compiler.hfsm.model import RETURN
+from argo_compiler.hfsm.progress import Phase
 from argo_compiler.il import Action
-from tests.argo_compiler.hfsm.random_missions import (
-    busy_missions,
-    busy_scripts,
-    missions,
-    outcome_lists,
-    scripts,
-)
+from tests.argo_compiler.hfsm.random_missions import busy_cases, cases, missions
 from tests.argo_compiler.hfsm.reference import Reference
 from tests.conftest import examples
 
@@ -40,16 +37,24 @@ STEPS = 60
 MOVES = {Cause.START, Cause.CONDITION, Cause.REPEAT, Cause.DEFAULT, Cause.TIMEOUT}
 
 
+class Hears(StrEnum):
+    """When a driver tells its executor the time."""
+
+    DEADLINES = "at its deadlines"
+    SECONDS = "every second"
+    EVENTS = "when something happens"
+
+
 class World:
     """Carries out what an executor asks for; `seen` is what it was asked, and when."""
 
-    def __init__(self, executor, outcomes, script, poll=False, now=0):
+    def __init__(self, executor, case, hears=Hears.DEADLINES, now=0):
         self.executor = executor
-        self.outcomes = cycle(outcomes)
+        self.doings = cycle(case.doings)
         self.script = []
-        for wait, happening in script:
-            self.script.append(((self.script[-1][0] if self.script else 0) + wait, happening))
-        self.poll = poll
+        for wait, happening in case.script:
+            self.script.append(((self.script[-1][0] if self.script else now) + wait, happening))
+        self.hears = hears
         self.now = now
         self.running = None
         self.ends_at = None
@@ -59,58 +64,85 @@ class World:
     def start(self):
         self.note(self.executor.start(self.now))
 
+    def run(self):
+        self.start()
+        for _ in range(STEPS):
+            if not self.step():
+                break
+
     def note(self, commands):
         for command in commands:
-            kind, name = read(command)
-            self.seen.append((self.now, kind, name))
-            if kind is StartAction:
+            self.seen.append((self.now, *read(command, self.now)))
+            if isinstance(command, StartAction):
                 assert self.running is None
-                self.running, self.outcome = name, next(self.outcomes)
-                duration, value, failed, _, _ = self.outcome
-                self.ends_at = self.now + duration
-                self.ending = result(name, value, failed)
+                self.running, self.doing = command, next(self.doings)
+                begins = self.now if self.doing.failed else max(self.now, command.not_before or 0)
+                self.ends_at = begins + self.doing.seconds
+                self.ending = result(command, self.doing)
             else:
-                assert self.running == name
-                _, value, failed, clean_up, late = self.outcome
-                self.ends_at = self.now + clean_up
-                self.ending = result(name, value, failed) if late else ActionStopped(name)
+                assert self.running.id == command.id
+                self.ends_at = self.now + self.doing.clean_up
+                if not self.doing.late:
+                    self.ending = ActionStopped(command.task, id=command.id)
 
     def step(self):
         """The next thing that happens; False: nothing will."""
-        due = self.executor.next_deadline
         happening = self.script[0][0] if self.script else None
-        times = [t for t in (self.ends_at, happening, due) if t is not None]
+        times = [t for t in (self.ends_at, happening) if t is not None]
+        due = self.executor.next_deadline
+        if due is not None and not (times and self.hears is Hears.EVENTS):
+            times.append(due)
         if not times:
             return False
-        if self.poll and self.now + 1 < min(times):
-            self.now += 1
-            self.note(self.executor.handle(Tick(), self.now))
-            return True
-        self.now = min(times)
-        if self.now == self.ends_at:
-            ending, self.running, self.ends_at = self.ending, None, None
-            self.note(self.executor.handle(ending, self.now))
-        elif self.now == happening:
-            self.note(self.executor.handle(self.script.pop(0)[1], self.now))
+        if self.hears is Hears.SECONDS and self.now + 1 < min(times):
+            self.tell(Tick(), self.now + 1)
+        elif min(times) == self.ends_at:
+            ending, now = self.ending, self.ends_at
+            self.running = self.ends_at = None
+            self.tell(ending, now)
+            if now % 2:  # a driver that delivers it twice
+                self.tell(ending, now)
+        elif min(times) == happening:
+            self.happens(self.script.pop(0)[1], happening)
         else:
-            self.note(self.executor.handle(Tick(), self.now))
+            self.tell(Tick(), due)
         return True
 
+    def happens(self, happening, now):
+        """A person gives back what they have taken, and when it stands still."""
+        if isinstance(happening, GiveBack):
+            if self.running is not None:
+                self.script.insert(0, (self.ends_at, happening))
+                return
+            if not self.executor.paused:
+                happening = Tick()
+        self.tell(happening, now)
 
-def read(command):
-    if isinstance(command, StartAction):
-        return StartAction, command.task.name
-    return CancelAction, command.task
+    def tell(self, event, now):
+        self.now = now
+        self.note(self.executor.handle(event, now))
 
 
-def result(name, value, failed):
-    if failed:
-        return ActionFailed(name, "failed")
-    return ActionSucceeded(name, value if name.startswith("M") else None)
+def read(command, now):
+    """A command in the reference's words."""
+    if isinstance(command, CancelAction):
+        return CancelAction, command.task, command.id, None
+    begins = command.not_before
+    begins = None if begins is None or begins <= now else begins
+    return StartAction, command.task.name, command.id, begins
+
+
+def result(command, doing):
+    name = command.task.name
+    if doing.failed:
+        return ActionFailed(name, "failed", doing.unreadable, id=command.id)
+    if command.task.action is not Action.MEASURE:
+        return ActionSucceeded(name, id=command.id)
+    return ActionSucceeded(name, doing.value, doing.abnormal, id=command.id)
 
 
 def machine(mission):
-    assume(all(d.severity is not Severity.ERROR for d in check(mission)))
+    assume(not has_errors(check(mission)))
     return lower(mission)
 
 
@@ -129,31 +161,53 @@ def reports(executor):
 
 def where(executor):
     progress = executor.progress()
+    task = progress.active
+    begun = task is not None and progress.round_of is None
+    reaction = progress.reaction
     return {
-        "outcome": str(executor.outcome) if executor.outcome else None,
-        "paused": executor.paused,
-        "reaction": executor.reaction,
-        "task": executor.active,
-        "rounds": dict(executor.rounds),
-        "values": {v.object_id: (v.value, v.age) for v in progress.values},
-        "ended": [(e.task, e.failure) for e in progress.ended],
+        "outcome": progress.outcome,
+        "paused": progress.paused,
+        "reaction": (reaction.event, reaction.over) if reaction else None,
+        "held": reaction.held if reaction and reaction.phase is Phase.HOLDING else None,
+        "waiting": [(w.event, w.over) for w in progress.waiting],
+        "task": task,
+        "attempt": progress.attempt if task else None,
+        "since": progress.since if begun else None,
+        "round_of": progress.round_of,
+        "groups": {g.group: (g.round, g.elapsed) for g in progress.groups},
+        "readings": {r.object_id: (r.kind, r.value, r.abnormal, r.age) for r in progress.readings},
+        "tallies": {t.task: (t.done, t.failed, t.by_hand) for t in progress.tallies},
+        "failed": progress.failed,
         "elapsed": progress.elapsed,
-        "clocks": {g.group: g.elapsed for g in progress.groups},
+        "by_hand": [(done.task, done.age or 0) for done in progress.by_hand],
     }
 
 
 def where_reference(reference):
-    active = reference.active
+    active, task = reference.active, reference.current
+    begun = task is not None and reference.round_of is None
     return {
         "outcome": reference.outcome,
         "paused": reference.paused,
-        "reaction": active.reaction.event if active else None,
-        "task": reference.current,
-        "rounds": reference.round,
-        "values": {id: (value, reference.age[id]) for id, value in reference.values.items()},
-        "ended": reference.done,
+        "reaction": (active.reaction.event, active.until_occurred) if active else None,
+        "held": active.held if active and active.there else None,
+        "waiting": [
+            (a.reaction.event, a.until_occurred) for a in reference.alarms if a is not active
+        ],
+        "task": task,
+        "attempt": reference.failures if task else None,
+        "since": reference.since if begun else None,
+        "round_of": reference.round_of,
+        "groups": {g: (reference.round[g], clock) for g, clock in reference.clock.items()},
+        "readings": {
+            id: (r.kind, r.value, r.abnormal, r.age) for id, r in reference.readings.items()
+        },
+        "tallies": {
+            task: (t["done"], t["failed"], t["by_hand"]) for task, t in reference.tallies.items()
+        },
+        "failed": reference.failed,
         "elapsed": reference.elapsed,
-        "clocks": reference.clock,
+        "by_hand": [(work.what.task, work.age) for work in reference.by_hand],
     }
 
 
@@ -168,51 +222,48 @@ class Pair:
     def next_deadline(self):
         return self.executor.next_deadline
 
+    @property
+    def paused(self):
+        return self.executor.paused
+
     def start(self, now):
-        return self.agree(self.executor.start(now), self.reference.start(now))
+        return self.agree(self.executor.start(now), self.reference.start(now), now)
 
     def handle(self, event, now):
-        return self.agree(self.executor.handle(event, now), self.reference.handle(event, now))
+        return self.agree(self.executor.handle(event, now), self.reference.handle(event, now), now)
 
-    def agree(self, commands, expected):
-        assert [read(command) for command in commands] == expected
+    def agree(self, commands, expected, now):
+        assert [read(command, now) for command in commands] == expected
         assert where(self.executor) == where_reference(self.reference)
         return commands
 
 
 @settings(max_examples=examples(100), deadline=None)
-@given(missions(), outcome_lists, scripts, st.booleans())
-def test_machine_does_what_the_rules_say(mission, outcomes, script, poll):
-    run(mission, outcomes, script, poll)
+@given(cases(), st.sampled_from(Hears))
+def test_machine_does_what_the_rules_say(case, hears):
+    compare(case, hears)
 
 
 @settings(max_examples=examples(100), deadline=None)
-@given(busy_missions(), outcome_lists, busy_scripts)
-def test_interruptions_are_what_the_rules_say(mission, outcomes, script):
-    run(mission, outcomes, script, poll=False)
+@given(busy_cases())
+def test_interruptions_are_what_the_rules_say(case):
+    compare(case, Hears.DEADLINES)
 
 
-def run(mission, outcomes, script, poll):
-    pair = Pair(mission)
-    world = World(pair, outcomes, script, poll)
-    world.start()
-    for _ in range(STEPS):
-        if not world.step():
-            break
+def compare(case, hears):
+    pair = Pair(case.mission)
+    World(pair, case, hears).run()
     assert steps(pair.executor) == pair.reference.steps
     assert reports(pair.executor) == pair.reference.events
 
 
 @settings(max_examples=examples(40), deadline=None)
-@given(missions(), outcome_lists, scripts)
-def test_more_ticks_change_nothing(mission, outcomes, script):
-    hfsm = machine(mission)
-    worlds = [World(Executor(hfsm), outcomes, script, poll) for poll in (False, True)]
+@given(cases())
+def test_more_ticks_change_nothing(case):
+    hfsm = machine(case.mission)
+    worlds = [World(Executor(hfsm), case, hears) for hears in (Hears.DEADLINES, Hears.SECONDS)]
     for world in worlds:
-        world.start()
-        for _ in range(STEPS):
-            if not world.step():
-                break
+        world.run()
     until = min(world.now for world in worlds)
     seen = [[one for one in world.seen if one[0] < until] for world in worlds]
     assert seen[0] == seen[1]
@@ -220,11 +271,11 @@ def test_more_ticks_change_nothing(mission, outcomes, script):
 
 @pytest.mark.rule("H1", "H2")
 @settings(max_examples=examples(60), deadline=None)
-@given(missions(), outcome_lists, scripts, st.integers(0, 30), st.sampled_from([0, 0, 7]))
-def test_restored_machine_goes_on_alike(mission, outcomes, script, count, away):
+@given(cases(), st.integers(0, 30), st.sampled_from([0, 0, 7]))
+def test_restored_machine_goes_on_alike(case, count, away):
     """Against a machine that a person pauses for as long as the other one is away."""
-    hfsm = machine(mission)
-    world = World(Executor(hfsm), outcomes, script)
+    hfsm = machine(case.mission)
+    world = World(Executor(hfsm), case)
     world.start()
     for _ in range(count):
         if not world.step():
@@ -234,7 +285,7 @@ def test_restored_machine_goes_on_alike(mission, outcomes, script, count, away):
         world.note(executor.handle(Pause(), world.now))
     while world.running:
         world.ends_at = world.now
-        world.ending = ActionStopped(world.running)
+        world.ending = ActionStopped(world.running.task.name, id=world.running.id)
         world.step()
     text = executor.progress().model_dump_json()
     world.now += away
@@ -248,8 +299,8 @@ def test_restored_machine_goes_on_alike(mission, outcomes, script, count, away):
     )
     other.start(later)
     assert Progress.model_validate_json(other.progress().model_dump_json()) == executor.progress()
-    rest = World(other, outcomes, script, now=later)
-    rest.outcomes, world.outcomes = tee(world.outcomes)
+    rest = World(other, case, now=later)
+    rest.doings, world.doings = tee(world.doings)
     shift = later - world.now
     world.script = [(at + away, happening) for at, happening in world.script]
     rest.script = [(at + shift, happening) for at, happening in world.script]

@@ -1,17 +1,46 @@
 """Handing a mission over to a person and back: what they did, and a plan that they edited."""
 
 from collections.abc import Iterator, Sequence
+from typing import TypeVar
 
 from argo_compiler.diagnostics import Diagnostic, Severity
 from argo_compiler.hfsm.progress import ByHand, GroupProgress, Progress
 from argo_compiler.il import Action, Mission, OnFailure, Response
 from argo_compiler.il.grouping import group_ranges
 from argo_compiler.il.reserved import RETURN_TASK
+from argo_compiler.model import Model
+
+AnyModel = TypeVar("AnyModel", bound=Model)
 
 
-def hand_over(progress: Progress, by_hand: Sequence[ByHand]) -> Progress:
-    """The progress with what a person did or skipped since, in the order in which they did it."""
-    return progress.model_copy(update={"by_hand": (*progress.by_hand, *by_hand)})
+def hand_over(progress: Progress, by_hand: Sequence[ByHand], away: float = 0.0) -> Progress:
+    """The progress, `away` seconds later, with what a person did or skipped meanwhile, in the order
+    in which they did it. Their ages count from now on, when the robot is given back."""
+    aged = later(progress, away)
+    return aged.model_copy(update={"by_hand": (*aged.by_hand, *by_hand)})
+
+
+def later(progress: Progress, away: float) -> Progress:
+    """The progress after time away (s), in which nothing happened (rule H2)."""
+    if not away >= 0:
+        raise ValueError(f"{away} is no time in seconds")
+    return progress.model_copy(
+        update={
+            "since": progress.since + away,
+            "elapsed": progress.elapsed + away,
+            "groups": tuple(
+                _plus(group, "elapsed", away) if group.counts_interruptions else group
+                for group in progress.groups
+            ),
+            "readings": tuple(_plus(reading, "age", away) for reading in progress.readings),
+            "reaction": progress.reaction and _plus(progress.reaction, "held", away),
+            "by_hand": tuple(_plus(done, "age", away) for done in progress.by_hand),
+        }
+    )
+
+
+def _plus(model: AnyModel, field: str, seconds: float) -> AnyModel:
+    return model.model_copy(update={field: (getattr(model, field) or 0.0) + seconds})
 
 
 def match(progress: Progress, mission: Mission) -> tuple[Progress | None, tuple[Diagnostic, ...]]:
@@ -27,7 +56,13 @@ def match(progress: Progress, mission: Mission) -> tuple[Progress | None, tuple[
         return None, errors
     groups, of_groups = _groups(progress, mission)
     done, of_done = _by_hand(progress, mission)
-    matched = progress.model_copy(update={"groups": groups, "by_hand": done})
+    planned = {g.name for g in mission.groups if g.every} & {g.group for g in groups}
+    update = {
+        "groups": groups,
+        "round_of": progress.round_of if progress.round_of in planned else None,
+        "by_hand": done,
+    }
+    matched = progress.model_copy(update=update)
     matched, of_reactions = _reactions(matched, mission)
     return matched, (*of_groups, *of_done, *of_reactions)
 

@@ -12,8 +12,10 @@ __all__ = [
     "Cancel",
     "CancelAction",
     "Cause",
+    "CheckpointReading",
     "Command",
     "Composite",
+    "EndedVisit",
     "Event",
     "Executor",
     "GiveBack",
@@ -25,11 +27,15 @@ __all__ = [
     "Pause",
     "Progress",
     "ReactionState",
+    "ReadingGiven",
+    "ReadingKind",
+    "ReadingProgress",
     "RepeatRule",
     "Resume",
     "StartAction",
     "StateTransition",
     "TakeOver",
+    "TaskTally",
     "Tick",
     "TraceEntry",
     "TransitionKind",
@@ -37,7 +43,7 @@ __all__ = [
 ]
 
 if TYPE_CHECKING:
-    from argo_compiler.hfsm.conditions import Measured
+    from argo_compiler.hfsm.conditions import CheckpointReading, Measured
     from argo_compiler.hfsm.events import (
         ActionFailed,
         ActionStopped,
@@ -50,12 +56,13 @@ if TYPE_CHECKING:
         Occurred,
         Outcome,
         Pause,
+        ReadingGiven,
         Resume,
         StartAction,
         TakeOver,
         Tick,
     )
-    from argo_compiler.hfsm.executor import Executor
+    from argo_compiler.hfsm.executor import EndedVisit, Executor
     from argo_compiler.hfsm.lowering import lower
     from argo_compiler.hfsm.model import (
         Composite,
@@ -66,13 +73,19 @@ if TYPE_CHECKING:
         StateTransition,
         TransitionKind,
     )
-    from argo_compiler.hfsm.progress import ByHand, Progress
+    from argo_compiler.hfsm.progress import (
+        ByHand,
+        Progress,
+        ReadingKind,
+        ReadingProgress,
+        TaskTally,
+    )
     from argo_compiler.hfsm.trace import Cause, TraceEntry
 else:
     __getattr__, __dir__ = lazy_names(
         __name__,
         {
-            "conditions": ["Measured"],
+            "conditions": ["CheckpointReading", "Measured"],
             "events": [
                 "ActionFailed",
                 "ActionStopped",
@@ -85,12 +98,13 @@ else:
                 "Occurred",
                 "Outcome",
                 "Pause",
+                "ReadingGiven",
                 "Resume",
                 "StartAction",
                 "TakeOver",
                 "Tick",
             ],
-            "executor": ["Executor"],
+            "executor": ["EndedVisit", "Executor"],
             "lowering": ["lower"],
             "model": [
                 "Composite",
@@ -101,7 +115,7 @@ else:
                 "StateTransition",
                 "TransitionKind",
             ],
-            "progress": ["ByHand", "Progress"],
+            "progress": ["ByHand", "Progress", "ReadingKind", "ReadingProgress", "TaskTally"],
             "trace": ["Cause", "TraceEntry"],
         },
     )

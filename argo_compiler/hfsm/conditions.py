@@ -1,8 +1,9 @@
-"""Conditions: when they hold, and how people read them."""
+"""Readings and conditions: when conditions hold, and how people read them."""
 
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 
+from argo_compiler.hfsm.progress import ReadingKind
 from argo_compiler.il import Condition, ConditionType
 
 
@@ -12,6 +13,45 @@ class Measured:
 
     value: float
     time: float
+
+
+@dataclass(frozen=True, slots=True)
+class CheckpointReading:
+    """What came of the last measurement at a checkpoint (C3), and when (s)."""
+
+    kind: ReadingKind
+    time: float
+    value: float | None = None
+    """of the kind VALUE, in the checkpoint's unit"""
+    abnormal: bool = False
+
+
+Test = Callable[[CheckpointReading, float], bool]
+"""Whether a condition holds for the reading of its checkpoint at a time (s)."""
+
+
+def reading_test(condition: Condition) -> Test:
+    """The test that a condition makes of a reading; without a reading it does not hold (C4, C7)."""
+    max_age = condition.max_age
+    match condition.type:
+        case ConditionType.UNREADABLE:
+            return lambda reading, _: reading.kind is ReadingKind.UNREADABLE
+        case ConditionType.FAILED:
+            return lambda reading, _: reading.kind is not ReadingKind.VALUE
+        case ConditionType.STALE:
+            return lambda reading, now: (
+                max_age is not None and reading.value is not None and now - reading.time > max_age
+            )
+        case ConditionType.ABNORMAL:
+            return lambda reading, now: (
+                reading.abnormal and (max_age is None or not now - reading.time > max_age)
+            )
+    compare = comparison(condition)
+    if max_age is None:
+        return lambda reading, _: (value := reading.value) is not None and compare(value)
+    return lambda reading, now: (
+        (value := reading.value) is not None and compare(value) and not now - reading.time > max_age
+    )
 
 
 def comparison(condition: Condition) -> Callable[[float], bool]:
@@ -30,18 +70,14 @@ def comparison(condition: Condition) -> Callable[[float], bool]:
     return lambda value: low < value < high
 
 
-def holds(condition: Condition, values: Mapping[str, Measured], now: float) -> bool:
-    """Whether a condition holds for the values last measured (by object_id) at time `now`.
+def holds(condition: Condition, readings: Mapping[str, CheckpointReading], now: float) -> bool:
+    """Whether a condition holds for the readings (by object_id) at time `now`.
 
-    A value that was never measured, or is older than `max_age`, makes it false. One that is exactly
-    `max_age` old still counts.
+    A checkpoint that has none makes it false, and a value that is older than `max_age` does. One
+    that is exactly `max_age` old still counts.
     """
-    measured = values.get(condition.object_id)
-    if measured is None:
-        return False
-    if condition.max_age is not None and now - measured.time > condition.max_age:
-        return False
-    return comparison(condition)(measured.value)
+    reading = readings.get(condition.object_id)
+    return reading is not None and reading_test(condition)(reading, now)
 
 
 def words(condition: Condition) -> str:

@@ -1,14 +1,12 @@
 """What interrupts a mission under way: events and the reactions to them, and persons."""
 
 import math
-from collections import deque
 from collections.abc import Sequence
 
 from argo_compiler.hfsm.course import Course
 from argo_compiler.hfsm.events import Outcome
 from argo_compiler.hfsm.interrupts import Effect, Stage, Trigger
 from argo_compiler.hfsm.progress import ByHand
-from argo_compiler.hfsm.restoring import queues
 from argo_compiler.hfsm.standing import InterruptState, TakenRow, advance
 from argo_compiler.hfsm.tables import ReactionNode, Tables
 from argo_compiler.hfsm.trace import Cause
@@ -91,6 +89,8 @@ class Control:
             if course.place.leaf is None and not self.interrupted:
                 course.step()
                 self._advance(Trigger.DONE)
+            elif not self.interrupted and course.end_wait():
+                continue
             elif course.time_is_up:
                 self.occur(EventKind.TIME_UP, "")
             elif self.hold_due <= course.now:
@@ -104,8 +104,7 @@ class Control:
 
     def occur(self, kind: EventKind, detail: str) -> None:
         """Reports an event, and does what the mission has for it."""
-        if kind is EventKind.TIME_UP:
-            self.course.mark_time_up()
+        self.course.occur(kind)
         self.course.note(Cause.REPORT, event=kind, detail=detail)
         self._advance(Trigger.EVENT, kind)
 
@@ -125,9 +124,7 @@ class Control:
 
     def give_back(self, by_hand: Sequence[ByHand]) -> None:
         """A person lets the mission go on, and has done these meanwhile."""
-        self.course.place.set_aside(sum(done.duration for done in by_hand), self.course.now)
-        for task, queue in queues(by_hand).items():
-            self.course.by_hand.setdefault(task, deque()).extend(queue)
+        self.course.give_by_hand(by_hand, self.course.now)
         self.resume()
 
     def resume(self) -> None:

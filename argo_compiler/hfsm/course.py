@@ -2,14 +2,18 @@
 
 import math
 from collections import deque
+from collections.abc import Iterable
 
+from argo_compiler.hfsm.conditions import CheckpointReading, words
 from argo_compiler.hfsm.events import Outcome
 from argo_compiler.hfsm.model import RETURN
-from argo_compiler.hfsm.progress import ByHand
+from argo_compiler.hfsm.progress import ByHand, ReadingKind
 from argo_compiler.hfsm.rounds_and_clocks import Configuration
 from argo_compiler.hfsm.tables import CompiledTransition, LeafNode, Tables
 from argo_compiler.hfsm.trace import Cause, RawEntry
 from argo_compiler.il import EventKind
+
+_OVER = "its time window is over"
 
 
 class Course:
@@ -21,13 +25,18 @@ class Course:
     def __init__(self, tables: Tables) -> None:
         self.tables = tables
         self.place = Configuration(tables)
-        self.by_hand: dict[str, deque[ByHand]] = {}
+        self.by_hand: dict[str, deque[tuple[ByHand, float]]] = {}
+        """by task, with the time (s) when each was done"""
         self.now = -math.inf
         """s, of the last step"""
         self.time_up_at = math.inf
         """when TIME_UP occurs (s); infinite when it has, or never will"""
         self.time_up = False
+        self.failed = False
+        """whether a failure counts as one of the mission"""
         self.outcome: Outcome | None = None
+        self.tallies: dict[str, list[int]] = {}
+        """by task, how many visits have ended: done, failed, by hand"""
         # What has been decides nothing, so it is only ever added to.
         self.trace: list[RawEntry] = []
         self.ended: list[tuple[str, str | None, bool]] = []
@@ -40,17 +49,30 @@ class Course:
     @property
     def due(self) -> float:
         """When something comes about by time alone (s); infinite if nothing does."""
-        return min(self.place.due, self.time_up_at)
+        place = self.place
+        return min(place.due, place.own_due, self.time_up_at)
 
     @property
     def time_is_up(self) -> bool:
-        """Whether TIME_UP occurs now, before all else."""
-        return self.time_up_at <= min(self.place.due, self.now)
+        """Whether TIME_UP occurs now."""
+        return self.time_up_at <= self.now
 
-    def mark_time_up(self) -> None:
-        """TIME_UP has occurred, by itself or because somebody said so."""
-        self.time_up = True
-        self.time_up_at = math.inf
+    def occur(self, kind: EventKind) -> None:
+        """Takes note of an event: TIME_UP, or what a WAIT waits for."""
+        if kind is EventKind.TIME_UP:
+            self.time_up = True
+            self.time_up_at = math.inf
+        place, leaf = self.place, self.place.leaf
+        if leaf is None or leaf.wait is None or leaf.wait.event is not kind or place.round_of:
+            return
+        place.visit.occurred = True
+        place.find_own_due()
+
+    def give_by_hand(self, done: Iterable[ByHand], now: float) -> None:
+        """What a person did counts for the next visits of these tasks."""
+        for one in done:
+            at = now - (one.age or 0.0)
+            self.by_hand.setdefault(one.task, deque()).append((one, at))
 
     def interrupt(self) -> None:
         """The mission stands still, if it does not yet."""
@@ -60,50 +82,142 @@ class Course:
         """The mission takes up its place again."""
         self.place.go_on(self.now)
 
-    def step(self) -> bool:
-        """One thing that comes about now without an action: the end, a time-out, a task that was
-        done by hand; whether there was one. The mission is not interrupted.
+    def end_wait(self) -> bool:
+        """Ends the WAIT that the mission stands at, if it is over now; whether it was.
 
-        What was done by hand counts for a visit in which an action would be started, so time-outs
-        come before it.
+        The mission is not interrupted. What was done by hand comes before it, but after time-outs.
         """
-        if self.place.leaf is None:
-            self.outcome = Outcome.COMPLETED
-            self.time_up_at = math.inf
-        elif self.place.due <= self.now:
-            self._leave_group()
+        place, visit = self.place, self.place.visit
+        if place.own_due > self.now:
+            return False
+        leaf = visit.leaf
+        if leaf is None or leaf.wait is None or place.round_of or leaf.name in self.by_hand:
+            return False
+        if visit.wait_at(place.began) > self.now:
+            return False
+        wait = leaf.wait
+        if wait.duration is not None:
+            why = f"waited {wait.duration:g} s"
+        elif visit.occurred:
+            assert wait.event is not None
+            why = f"{wait.event.replace('_', ' ')} has occurred"
         else:
-            return self._pass_over()
+            visit.look_at = math.inf
+            if not wait.guards or not place.hold(wait.guards, self.now):
+                place.find_own_due()
+                return False
+            why = " and ".join(map(words, wait.conditions))
+        self.leave(leaf, why)
         return True
 
-    def fail(self, leaf: LeafNode, reason: str) -> None:
+    def step(self) -> bool:
+        """One thing that comes about now without an action: the end, a time-out, a task that was
+        done by hand, what the visit's own times bring about; whether there was one. The mission is
+        not interrupted.
+        """
+        place = self.place
+        leaf = place.leaf
+        if leaf is None:
+            failed = self.failed
+            self.outcome = Outcome.COMPLETED_WITH_FAILURES if failed else Outcome.COMPLETED
+            self.time_up_at = math.inf
+        elif place.due <= self.now:
+            self._leave_group()
+        elif self.by_hand and leaf.id != RETURN and leaf.name in self.by_hand:
+            self._pass_over(leaf)
+        elif place.own_due <= self.now:
+            return self._own_time(leaf)
+        else:
+            return False
+        return True
+
+    def _own_time(self, leaf: LeafNode) -> bool:
+        """What the visit's own times bring about now, other than the end of a WAIT."""
+        place, visit = self.place, self.place.visit
+        if visit.missed_at(place.began) <= self.now:
+            self._fail_for_good(leaf, _OVER, leaf.missed or leaf.failure)
+        elif visit.action_due <= self.now:
+            self.fail(leaf, f"not done within {leaf.time_limit:g} s")
+        elif place.round_of is not None:
+            frame = place.round_of
+            place.begin_round(self.now)
+            self.note(Cause.ROUND, detail=f"{frame.round} of '{frame.group.name}'")
+        elif visit.limit_at <= self.now:
+            assert leaf.wait is not None
+            self._fail_for_good(leaf, f"waited {leaf.wait.limit:g} s in vain", leaf.failure)
+        else:
+            return False
+        return True
+
+    def limit_action(self, seconds: float, not_before: float | None) -> None:
+        """The action of the present visit has been started, and has a time limit."""
+        begins = self.now if not_before is None else max(self.now, not_before)
+        self.place.visit.action_due = begins + seconds
+        self.place.find_own_due()
+
+    def unlimit_action(self) -> None:
+        """The action that ran has ended."""
+        if self.place.visit.action_due < math.inf:
+            self.place.visit.action_due = math.inf
+            self.place.find_own_due()
+
+    def measure(self, leaf: LeafNode, value: float | None, abnormal: bool) -> None:
+        """The action of a task has ended well, with what it read."""
+        if leaf.measures is None:
+            return
+        if value is None:
+            self._read(leaf.measures, ReadingKind.UNREADABLE)
+        else:
+            self.tell(leaf.measures, value, abnormal, self.now)
+
+    def tell(self, object_id: str, value: float, abnormal: bool, at: float) -> None:
+        """A value was read at a checkpoint at the time `at` (s)."""
+        reading = CheckpointReading(ReadingKind.VALUE, at, value, abnormal)
+        self.place.read(object_id, reading, self.now)
+
+    def fail(self, leaf: LeafNode, reason: str, unreadable: bool = False) -> None:
         """The action of the task that the mission stands at has failed."""
-        if self.place.attempt < leaf.retries:
-            self.place.attempt += 1
+        visit = self.place.visit
+        if visit.attempt < leaf.retries:
+            visit.attempt += 1
+            visit.action_due = math.inf
+            self.place.find_own_due()
             self.note(Cause.RETRY, failure=reason)
         elif leaf.id == RETURN:
             self.end(Outcome.FAILED, Cause.FAILURE, failure=reason)
-        elif leaf.failure is None:
-            self.leave(leaf, reason)
-        elif leaf.failure.target is None:
-            self.ended.append((leaf.name, reason, False))
+        else:
+            self._fail_for_good(leaf, reason, leaf.failure, unreadable)
+
+    def _fail_for_good(
+        self,
+        leaf: LeafNode,
+        reason: str,
+        way: CompiledTransition | None,
+        unreadable: bool = False,
+    ) -> None:
+        if leaf.measures is not None:
+            self._read(leaf.measures, ReadingKind.UNREADABLE if unreadable else ReadingKind.FAILED)
+        self.failed = self.failed or not leaf.optional
+        self._count(leaf, failure=reason)
+        if way is None:
+            self._take(leaf.ways, reason)
+        elif way.target is None:
             self.end(Outcome.ABORTED, Cause.FAILURE, failure=reason)
         else:
-            self.ended.append((leaf.name, reason, False))
-            self._take((leaf.failure,), failure=reason)
+            self._take((way,), reason)
 
-    def leave(self, leaf: LeafNode, failure: str | None) -> None:
+    def leave(self, leaf: LeafNode, detail: str = "") -> None:
         """The mission goes on from a task that has ended."""
         if leaf.id == RETURN:
             self.end(Outcome.RETURNED, Cause.END)
             return
-        self.ended.append((leaf.name, failure, False))
-        self._take(leaf.ways, failure)
+        self._count(leaf)
+        self._take(leaf.ways, detail=detail)
 
     def leave_late(self, leaf: LeafNode) -> None:
         """A task has been done that the mission had left before."""
         if leaf.id != RETURN:
-            self.ended.append((leaf.name, None, False))
+            self._count(leaf)
             self.note(Cause.LATE, detail=leaf.name)
 
     def end(
@@ -135,12 +249,26 @@ class Course:
             RawEntry(self.now, origin, target, cause, failure=failure, event=event, detail=detail)
         )
 
+    def _count(self, leaf: LeafNode, failure: str | None = None, by_hand: bool = False) -> None:
+        """A visit of a task has ended."""
+        name = leaf.name
+        tally = self.tallies.get(name)
+        if tally is None:
+            tally = self.tallies[name] = [0, 0, 0]
+        tally[2 if by_hand else 0 if failure is None else 1] += 1
+        self.ended.append((name, failure, by_hand))
+
+    def _read(self, object_id: str, kind: ReadingKind) -> None:
+        """A measurement gave no value."""
+        self.place.read(object_id, CheckpointReading(kind, self.now), self.now)
+
     def _take(
         self,
         ways: tuple[CompiledTransition, ...],
         failure: str | None = None,
         timed_out: str | None = None,
         by_hand: ByHand | None = None,
+        detail: str = "",
     ) -> None:
         place = self.place
         source = place.leaf
@@ -158,26 +286,26 @@ class Course:
                 failure,
                 by_hand=by_hand is not None,
                 skipped=by_hand is not None and by_hand.skipped,
+                detail=detail,
             )
         )
 
-    def _pass_over(self) -> bool:
-        """Ends the present task if it was done by hand; whether it was."""
-        leaf = self.place.leaf
-        if not self.by_hand or leaf is None or leaf.id == RETURN:
-            return False
-        queue = self.by_hand.get(leaf.name)
-        if queue is None:
-            return False
-        done = queue.popleft()
+    def _pass_over(self, leaf: LeafNode) -> None:
+        """The present task was done by hand, so it has ended."""
+        queue = self.by_hand[leaf.name]
+        done, at = queue.popleft()
         if not queue:
             del self.by_hand[leaf.name]
+        if self.place.round_of is not None:
+            self.place.begin_round(self.now)
         self.place.advance_clocks(done.duration, self.now)
-        if done.value is not None and leaf.measures is not None and not done.skipped:
-            self.place.values[leaf.measures] = done.value, self.now + self.place.shift
-        self.ended.append((leaf.name, None, True))
+        if leaf.measures is not None:
+            if done.value is None or done.skipped:
+                self.place.read(leaf.measures, None, self.now)
+            else:
+                self.tell(leaf.measures, done.value, done.abnormal, at)
+        self._count(leaf, by_hand=True)
         self._take(leaf.ways, by_hand=done)
-        return True
 
     def _leave_group(self) -> None:
         """The time of a group is up."""

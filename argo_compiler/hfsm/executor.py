@@ -1,9 +1,12 @@
 """The executor: a machine under way, driven by events and a virtual clock."""
 
 import math
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping, Sequence
+from contextlib import contextmanager
+from dataclasses import dataclass
+from numbers import Real
 
-from argo_compiler.hfsm.conditions import Measured
+from argo_compiler.hfsm.conditions import CheckpointReading, Measured
 from argo_compiler.hfsm.control import Control
 from argo_compiler.hfsm.events import (
     ActionEnded,
@@ -18,30 +21,44 @@ from argo_compiler.hfsm.events import (
     Occurred,
     Outcome,
     Pause,
+    ReadingGiven,
     Resume,
     StartAction,
     TakeOver,
+    Tick,
 )
 from argo_compiler.hfsm.model import DONE, MISSION, Hfsm
-from argo_compiler.hfsm.progress import EndedTask, Progress
+from argo_compiler.hfsm.progress import ByHand, Progress
 from argo_compiler.hfsm.restoring import (
+    by_hand_progress,
     group_progress,
     place_of,
-    queues,
     reaction_progress,
-    remaining_by_hand,
+    reading_progress,
     standing_of,
-    value_progress,
+    tally_progress,
 )
 from argo_compiler.hfsm.tables import LeafNode, tables
 from argo_compiler.hfsm.trace import Cause, TraceEntry, entry
+from argo_compiler.hfsm.views import View
 from argo_compiler.il import EventKind, Task
 
 _ENDS = (ActionSucceeded, ActionFailed, ActionStopped)
-_ABOUT_ACTIONS = (*_ENDS, GiveBack)
+_EVENTS = frozenset(
+    [*_ENDS, Tick, Occurred, ReadingGiven, Pause, Resume, TakeOver, GiveBack, Cancel]
+)
 
 MAX_TIME_S = 1e12
 """The range of the mission's clock: some 30,000 years."""
+
+
+@dataclass(frozen=True, slots=True)
+class EndedVisit:
+    """A visit of a task that has ended, and why it failed for good if it did."""
+
+    task: str
+    failure: str | None = None
+    by_hand: bool = False
 
 
 class Executor:
@@ -59,9 +76,15 @@ class Executor:
     time-outs at `now`. A time-out is dated when the time was up, not when the executor heard of it,
     so a driver that comes late gets the same machine.
 
-    Calls that can't be right raise ValueError and change nothing: before `start`, at an earlier
-    time than the call before, the end of an action that does not run, and what a person did by hand
-    while an action still runs.
+    Calls that can't be right raise ValueError and change nothing: what is no event, before `start`,
+    at an earlier time than the call before, the end of an action that does not run or with another
+    id than its command's, a value that is no finite number, and what a person did by hand while an
+    action still runs.
+
+    One thread at a time: nobody waits for a lock. A call of `start`, `handle` or `progress` while
+    another one is under way, from whatever thread, is refused likewise, and what is read meanwhile
+    may be half of a step. Drivers with several threads put events into a queue, from which one
+    thread hands them on.
     """
 
     def __init__(self, hfsm: Hfsm) -> None:
@@ -70,75 +93,99 @@ class Executor:
         self._started = False
         self._fresh = True
         """whether the mission begins with `start`, rather than goes on"""
-        self._began = 0.0
-        """s, when the mission began"""
-        self._ended_before: tuple[EndedTask, ...] = ()
         self._running: Task | None = None
         self._running_leaf: LeafNode | None = None
         """None: the drive of a reaction"""
         self._running_visit = 0
+        self._running_attempt = 0
+        self._last_id = 0
+        """of the last command that started an action"""
         self._cancelling = False
+        # Whoever calls takes the turn and puts it back. `pop` is one step for other threads, too,
+        # and unlike a lock a list can be copied.
+        self._turn = [None]
 
     @classmethod
     def restore(cls, hfsm: Hfsm, progress: Progress, now: float, away: float = 0.0) -> "Executor":
         """An executor that goes on from `progress` at time `now`; call `start` next.
 
-        `away` is the time (s) since the progress was taken. It makes values older, and counts for
-        the mission's duration and for groups that count interruptions. The durations of what was
-        done by hand are part of it: their clocks run when the machine comes to the task.
+        `away` is the time (s) since the progress was taken. It counts for the mission's duration,
+        for waits and holds and for groups that count interruptions, and makes readings older, also
+        what was done by hand and has an age. What has none was done now.
 
         Raises:
             ArgoError: the progress is not one of this machine.
         """
         executor = cls(hfsm)
         control = executor._control
-        control.course.now = _seconds(now)
-        control.course.place = place_of(control.tables, progress, now, _seconds(away))
+        course = control.course
+        course.now = _seconds(now)
+        course.place = place_of(control.tables, progress, now, _seconds(away))
         control.standing = standing_of(control.tables, progress)
-        control.drive_visit = control.course.place.new_visit()
-        control.course.by_hand = queues(progress.by_hand)
-        control.course.time_up = progress.time_up
-        control.course.outcome = progress.outcome
+        control.drive_visit = course.place.new_visit()
+        if progress.reaction is not None:
+            control.held_since = now - progress.reaction.held - away
+        for done in progress.by_hand:
+            course.give_by_hand((done,), now if done.age is None else now - away)
+        for tally in progress.tallies:
+            course.tallies[tally.task] = [tally.done, tally.failed, tally.by_hand]
+        course.failed = progress.failed
+        course.time_up = progress.time_up
+        course.outcome = progress.outcome
         executor._fresh = False
-        executor._began = now - (progress.elapsed + away)
-        executor._ended_before = progress.ended
         return executor
 
     def start(self, now: float) -> tuple[Command, ...]:
         """Starts the mission, or lets a restored one go on; returns what to do first."""
-        if self._started:
-            raise ValueError("the executor has been started already")
-        self._require_order(now)
-        self._started = True
-        control = self._control
-        control.course.now = now
-        if self._fresh:
-            self._began = now
-            control.course.place.enter(control.tables.initial, now)
-        control.course.note(Cause.START if self._fresh else Cause.RESTORE, source=None)
-        if control.outcome is None:
-            limit = control.tables.max_duration
-            if limit is not None and not control.course.time_up:
-                control.course.time_up_at = max(self._began + limit, now)
-            control.begin(self._fresh and self.hfsm.supervised)
-        return self._command()
+        with self._alone():
+            if self._started:
+                raise ValueError("the executor has been started already")
+            self._require_order(now)
+            self._started = True
+            control = self._control
+            course = control.course
+            course.now = now
+            if self._fresh:
+                course.place.began = now
+                course.place.enter(control.tables.initial, now)
+            course.note(Cause.START if self._fresh else Cause.RESTORE, source=None)
+            if control.outcome is None:
+                limit = control.tables.max_duration
+                if limit is not None and not course.time_up:
+                    course.time_up_at = max(course.place.began + limit, now)
+                supervised = self.hfsm.supervised and course.active is not None
+                control.begin(self._fresh and supervised)
+            return self._command()
 
     def handle(self, event: Event, now: float) -> tuple[Command, ...]:
         """Takes note of an event at time `now` (s); returns the one thing to do next, if any."""
-        self._require_order(now)
-        if not self._started or isinstance(event, _ABOUT_ACTIONS):
-            self._require_running(event)
+        try:
+            turn = self._turn.pop()
+        except IndexError:
+            raise ValueError(_BUSY) from None
+        try:
+            self._require_order(now)
+            self._require_sense(event)
+            return self._handle(event, now)
+        finally:
+            self._turn.append(turn)
+
+    def _handle(self, event: Event, now: float) -> tuple[Command, ...]:
         control = self._control
+        course = control.course
         if now > control.due:
             # The next float below `now` stands for all times before it.
             control.let_pass(math.nextafter(now, -math.inf))
-        control.course.now = now
+        course.now = now
         if isinstance(event, _ENDS):
             self._end_action(event)
         elif control.outcome is None:
             match event:
                 case Occurred(kind, detail):
                     control.occur(kind, detail)
+                case ReadingGiven(object_id, value, abnormal):
+                    course.tell(object_id, value, abnormal, now)
+                    course.note(Cause.READING, detail=f"#{object_id} = {value:g}")
                 case Pause():
                     control.pause()
                 case TakeOver():
@@ -157,25 +204,33 @@ class Executor:
 
         An action that still runs is not part of it: pause first and await its end.
         """
-        if not self._started:
-            raise ValueError("the executor has not been started: call start first")
+        with self._alone():
+            if not self._started:
+                raise ValueError(_NOT_STARTED)
+            return self._progress()
+
+    def _progress(self) -> Progress:
         control = self._control
-        now, place = control.course.now, control.course.place
-        reaction, waiting = reaction_progress(control.standing)
-        ended = (EndedTask(task=t, failure=f, by_hand=h) for t, f, h in control.course.ended)
+        course, place = control.course, control.course.place
+        now, visit = course.now, place.visit
+        reaction, waiting = reaction_progress(control.standing, now - control.held_since)
         return Progress(
-            active=control.course.active,
-            attempt=place.attempt,
+            active=course.active,
+            attempt=visit.attempt,
+            since=0.0 if visit.leaf is None else now - visit.since,
+            occurred=visit.occurred,
+            round_of=None if place.round_of is None else place.round_of.group.name,
             groups=group_progress(place, now),
-            values=value_progress(place, now),
-            ended=(*self._ended_before, *ended),
-            elapsed=now - self._began,
-            time_up=control.course.time_up,
+            readings=reading_progress(place, now),
+            tallies=tally_progress(course.tallies),
+            failed=course.failed,
+            elapsed=now - place.began,
+            time_up=course.time_up,
             paused=control.paused,
             reaction=reaction,
             waiting=waiting,
             outcome=control.outcome,
-            by_hand=remaining_by_hand(control.course.by_hand),
+            by_hand=by_hand_progress(course.by_hand, now),
         )
 
     @property
@@ -228,15 +283,23 @@ class Executor:
 
     @property
     def next_deadline(self) -> float | None:
-        """When the time of a group with a hard stop, or the mission's, is up next (s)."""
+        """When something comes about by time alone next (s)."""
         due = self._control.due
         return due if self._started and due < math.inf else None
 
     @property
+    def readings(self) -> Mapping[str, CheckpointReading]:
+        """What came of the last measurement, by object_id."""
+        return dict(self._control.course.place.readings)
+
+    @property
     def values(self) -> Mapping[str, Measured]:
-        """What was measured last, by object_id."""
-        place = self._control.course.place
-        return {id: Measured(v, at - place.shift) for id, (v, at) in place.values.items()}
+        """The readings that have a value, by object_id."""
+        return {
+            id: Measured(reading.value, reading.time)
+            for id, reading in self._control.course.place.readings.items()
+            if reading.value is not None
+        }
 
     @property
     def rounds(self) -> Mapping[str, int]:
@@ -244,35 +307,66 @@ class Executor:
         return {frame.group.name: frame.round for frame in self._control.course.place.frames}
 
     @property
-    def trace(self) -> tuple[TraceEntry, ...]:
-        """All that has happened since `start`, in order."""
-        return tuple(map(entry, self._control.course.trace))
+    def trace(self) -> Sequence[TraceEntry]:
+        """All that has happened since `start`, in order; an entry is made when it is looked at."""
+        return View(self._control.course.trace, entry)
+
+    @property
+    def ended(self) -> Sequence[EndedVisit]:
+        """The visits that have ended since `start`, in order. A cancelled action has ended none."""
+        return View(self._control.course.ended, _ended_visit)
+
+    @contextmanager
+    def _alone(self) -> Iterator[None]:
+        """No other call begins until this one has ended."""
+        try:
+            turn = self._turn.pop()
+        except IndexError:
+            raise ValueError(_BUSY) from None
+        try:
+            yield
+        finally:
+            self._turn.append(turn)
 
     def _command(self) -> tuple[Command, ...]:
         """Starts what is to run, once what is not has ended."""
-        leaf, visit, start = self._wanted()
+        leaf, task, visit, attempt = self._wanted()
         if self._running is not None:
-            if self._cancelling or visit == self._running_visit:
+            same = visit == self._running_visit and attempt == self._running_attempt
+            if self._cancelling or same:
                 return ()
             self._cancelling = True
-            return (CancelAction(self._running.name, self._reason()),)
-        if start:
-            self._running = start[0].task
-            self._running_leaf = leaf
-            self._running_visit = visit
-        return start
+            return (CancelAction(self._running.name, self._reason(), self._last_id),)
+        if task is None:
+            return ()
+        self._running = task
+        self._running_leaf = leaf
+        self._running_visit = visit
+        self._running_attempt = attempt
+        self._last_id += 1
+        not_before = None
+        if leaf is not None and leaf.earliest:
+            not_before = self._control.course.place.began + leaf.earliest
+        if leaf is not None and leaf.time_limit is not None:
+            self._control.course.limit_action(leaf.time_limit, not_before)
+        return (StartAction(task, self._last_id, not_before),)
 
-    def _wanted(self) -> tuple[LeafNode | None, int, tuple[StartAction, ...]]:
-        """The leaf, the visit and the command of the action that is to run; visit 0: none."""
+    def _wanted(self) -> tuple[LeafNode | None, Task | None, int, int]:
+        """The leaf, the task, the visit and the attempt of the action that is to run; no task, and
+        visit 0: none."""
         control = self._control
-        active, leaf = control.active, control.course.place.leaf
-        if control.outcome is not None or control.paused:
-            return None, 0, ()
+        if control.course.outcome is not None or control.paused:
+            return _NOTHING
+        active, place = control.active, control.course.place
         if active is None:
-            return (None, 0, ()) if leaf is None else (leaf, control.course.place.visit, leaf.start)
+            visit = place.visit
+            leaf = visit.leaf
+            if leaf is None or leaf.wait is not None or place.round_of is not None:
+                return _NOTHING
+            return leaf, leaf.task, visit.number, visit.attempt
         if control.driving:
-            return None, control.drive_visit, active.start
-        return None, 0, ()
+            return None, active.task, control.drive_visit, 0
+        return _NOTHING
 
     def _reason(self) -> str:
         if self._control.outcome is not None:
@@ -281,16 +375,20 @@ class Executor:
             return f"reaction to {self.reaction.replace('_', ' ')}"
         if self.paused:
             return "the mission is paused"
-        trace = reversed(self._control.course.trace)
-        timed_out = next((one.timed_out for one in trace if one.timed_out is not None), "")
-        return f"the time of '{timed_out}' is up"
+        for one in reversed(self._control.course.trace):
+            if one.timed_out is not None:
+                return f"the time of '{one.timed_out}' is up"
+            if one.failure is not None:
+                return one.failure
+        return "its turn is over"
 
     def _end_action(self, event: ActionEnded) -> None:
         control, leaf = self._control, self._running_leaf
-        reason = None
-        if isinstance(event, ActionFailed) and not self._cancelling:
-            # A failure may be the work of the cancellation, so then it counts as a stop.
-            reason = event.reason if self._wanted()[1] == self._running_visit else None
+        course = control.course
+        _, _, visit, attempt = self._wanted()
+        wanted = visit == self._running_visit and attempt == self._running_attempt
+        # A failure may be the work of the cancellation, so then it counts as a stop.
+        failed = isinstance(event, ActionFailed) and wanted and not self._cancelling
         self._running = None
         self._cancelling = False
         if leaf is None:
@@ -298,43 +396,73 @@ class Executor:
                 return
             if isinstance(event, ActionSucceeded):
                 control.arrive()
-            elif reason is not None:
-                control.fail_drive(reason)
-        elif isinstance(event, ActionSucceeded):
-            if event.value is not None and leaf.measures is not None:
-                clock = control.course.now + control.course.place.shift
-                control.course.place.values[leaf.measures] = event.value, clock
-            if self._running_visit == control.course.place.visit:
-                control.course.leave(leaf, None)
+            elif isinstance(event, ActionFailed) and failed:
+                control.fail_drive(event.reason)
+            return
+        course.unlimit_action()
+        if isinstance(event, ActionSucceeded):
+            course.measure(leaf, event.value, event.abnormal)
+            if self._running_visit == course.place.visit.number:
+                course.leave(leaf)
             else:
-                control.course.leave_late(leaf)
-        elif reason is not None:
-            control.course.fail(leaf, reason)
+                course.leave_late(leaf)
+        elif isinstance(event, ActionFailed) and failed:
+            course.fail(leaf, event.reason, event.unreadable)
 
     def _require_order(self, now: float) -> None:
         if not self._control.course.now <= _seconds(now):
             before = self._control.course.now
             raise ValueError(f"time runs backwards: {now:g} s comes after {before:g} s")
 
-    def _require_running(self, event: Event) -> None:
-        running = self._running
+    def _require_sense(self, event: Event) -> None:
         if not self._started:
-            raise ValueError("the executor has not been started: call start first")
-        if isinstance(event, GiveBack) and event.by_hand and running is not None:
-            raise ValueError(f"{event} comes while the action of '{running.name}' still runs")
-        if not isinstance(event, _ENDS):
-            return
+            raise ValueError(_NOT_STARTED)
+        kind = type(event)
+        if kind not in _EVENTS:
+            raise ValueError(f"{event!r} is no event: give an instance of one")
+        if isinstance(event, _ENDS):
+            self._require_end(event)
+        elif isinstance(event, Occurred):
+            if not isinstance(event.event, EventKind):
+                raise ValueError(f"{event.event!r} is no kind of event: give an EventKind")
+        elif isinstance(event, ReadingGiven):
+            if not isinstance(event.object_id, str) or not _finite(event.value):
+                raise ValueError(f"{event} is no reading: it needs a checkpoint and a finite value")
+        elif isinstance(event, GiveBack):
+            if not all(isinstance(done, ByHand) for done in event.by_hand):
+                raise ValueError(f"{event} has something else than ByHand")
+            if event.by_hand and self._running is not None:
+                running = self._running.name
+                raise ValueError(f"{event} comes while the action of '{running}' still runs")
+
+    def _require_end(self, event: ActionEnded) -> None:
+        running = self._running
         if running is None:
             raise ValueError(f"{event} comes while no action runs")
         if event.task != running.name:
             raise ValueError(f"{event} is about a task that does not run; '{running.name}' does")
+        if event.id is not None and event.id != self._last_id:
+            raise ValueError(f"{event} is about another action: number {self._last_id} runs")
         if isinstance(event, ActionSucceeded) and event.value is not None:
             if self._running_leaf is None or self._running_leaf.measures is None:
                 raise ValueError(f"{event} has a value, but the task measures nothing")
-            if not math.isfinite(event.value):
+            if not _finite(event.value):
                 raise ValueError(f"{event} has no usable value: report that the action failed")
         if isinstance(event, ActionStopped) and not self._cancelling:
             raise ValueError(f"{event} comes for an action that was not cancelled")
+
+
+_BUSY = "another call of the executor is under way: one thread at a time, and none from inside"
+_NOT_STARTED = "the executor has not been started: call start first"
+_NOTHING = (None, None, 0, 0)
+
+
+def _ended_visit(kept: tuple[str, str | None, bool]) -> EndedVisit:
+    return EndedVisit(*kept)
+
+
+def _finite(value: object) -> bool:
+    return isinstance(value, Real) and math.isfinite(value)
 
 
 def _seconds(now: float) -> float:

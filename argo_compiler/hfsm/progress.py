@@ -15,22 +15,39 @@ class GroupProgress(Model):
     group: str
     round: int = Field(ge=1)
     elapsed: float = Field(ge=0)
+    counts_interruptions: bool = False
+    """whether time away is added to its clock"""
 
 
-class ValueProgress(Model):
-    """The last value measured at a checkpoint and its age (s)."""
+class ReadingKind(StrEnum):
+    """What came of the last measurement at a checkpoint (C3)."""
+
+    VALUE = "value"
+    UNREADABLE = "unreadable"
+    FAILED = "failed"
+
+
+class ReadingProgress(Model):
+    """The reading of a checkpoint and its age (s)."""
 
     object_id: str
-    value: float
+    kind: ReadingKind = ReadingKind.VALUE
+    value: float | None = None
+    """of the kind VALUE"""
+    abnormal: bool = False
     age: float = Field(ge=0)
 
 
-class EndedTask(Model):
-    """A visit of a task that has ended, and why it failed for good if it did."""
+class TaskTally(Model):
+    """How often visits of a task have ended."""
 
     task: str
-    failure: str | None = None
-    by_hand: bool = False
+    done: int = Field(default=0, ge=0)
+    """by the robot"""
+    failed: int = Field(default=0, ge=0)
+    """for good"""
+    by_hand: int = Field(default=0, ge=0)
+    """done or skipped by a person"""
 
 
 class ByHand(Model):
@@ -39,10 +56,14 @@ class ByHand(Model):
     task: str
     value: float | None = None
     """what was read, for MEASURE"""
+    abnormal: bool = False
+    """whether the value lies outside the checkpoint's nominal range"""
     duration: float = Field(default=0.0, ge=0)
     """s that it took, for the clocks of groups"""
     skipped: bool = False
     """left out, rather than done"""
+    age: float | None = Field(default=None, ge=0)
+    """s ago that it was done; None: when the robot is given back"""
 
 
 class Phase(StrEnum):
@@ -64,6 +85,8 @@ class Reacting(Waiting):
     """The reaction under way."""
 
     phase: Phase
+    held: float = Field(default=0.0, ge=0)
+    """HOLDING: s that it has held"""
 
 
 class Progress(Model):
@@ -73,11 +96,20 @@ class Progress(Model):
     """the task it stands at; None: nothing is left to do"""
     attempt: int = Field(default=0, ge=0)
     """how often the action has failed in this visit of the task"""
+    since: float = Field(default=0.0, ge=0)
+    """s since this visit began"""
+    occurred: bool = False
+    """whether the event that this visit waits for has occurred"""
+    round_of: str | None = None
+    """the group whose round begins with this visit and is not due yet, or was not when the mission
+    was interrupted; None: no round has to be waited for"""
     groups: tuple[GroupProgress, ...] = ()
     """those that the active task lies in, outermost first"""
-    values: tuple[ValueProgress, ...] = ()
-    ended: tuple[EndedTask, ...] = ()
-    """in order, once for each visit that has ended; a cancelled action has not"""
+    readings: tuple[ReadingProgress, ...] = ()
+    tallies: tuple[TaskTally, ...] = ()
+    """of all tasks of which a visit has ended; a cancelled action has not ended one"""
+    failed: bool = False
+    """whether a failure counts as one of the mission (M3)"""
     elapsed: float = Field(default=0.0, ge=0)
     """s since the mission's start, interruptions included"""
     time_up: bool = False

@@ -112,8 +112,11 @@ class _Reach:
 
     def _follow(self, leaf: LeafNode, under_way: int) -> None:
         self._take(leaf.ways, under_way)
-        if leaf.failure is not None:
-            self._add(leaf.failure.target, min(under_way, leaf.failure.keep))
+        missable = leaf.latest is not None
+        if missable and leaf.missed is not None:
+            self._take((leaf.missed,), under_way)
+        if leaf.failure is not None and (leaf.may_fail or (missable and leaf.missed is None)):
+            self._take((leaf.failure,), under_way)
         for group in _outward(leaf):
             if (group.id, under_way, True) in self._looked_at:
                 break
@@ -147,7 +150,7 @@ class _Reach:
                     last = group.depth < under_way and self._last_round[group.depth]
                     if group.count != 1 and not last:
                         self._add(way.target, min(under_way, way.keep))
-                    if not group.count and not group.duration:
+                    if not group.count and not group.duration and not group.until:
                         break
             time_up = False
 
@@ -169,7 +172,7 @@ def _in_last_round(leaf: LeafNode, progress: tuple[GroupProgress, ...]) -> list[
             p is not None
             and bool(
                 (group.count and p.round >= group.count)
-                or (group.duration and p.elapsed >= group.duration)
+                or (group.duration and max(p.elapsed, p.round * group.every) >= group.duration)
             )
         )
     return found[::-1]

@@ -1,9 +1,10 @@
 """From where a machine stands to progress, and back."""
 
 from collections import deque
-from collections.abc import Iterable, Mapping
+from collections.abc import Mapping
 
 from argo_compiler.errors import Conflict
+from argo_compiler.hfsm.conditions import CheckpointReading
 from argo_compiler.hfsm.interrupts import Stage
 from argo_compiler.hfsm.model import RETURN, task_id
 from argo_compiler.hfsm.progress import (
@@ -12,12 +13,14 @@ from argo_compiler.hfsm.progress import (
     Phase,
     Progress,
     Reacting,
-    ValueProgress,
+    ReadingProgress,
+    TaskTally,
     Waiting,
 )
 from argo_compiler.hfsm.rounds_and_clocks import Configuration, Frame
 from argo_compiler.hfsm.standing import InterruptState, Pending, drives
 from argo_compiler.hfsm.tables import GroupNode, LeafNode, Tables
+from argo_compiler.hfsm.visits import Visit
 from argo_compiler.il import EventKind, Reaction, Response
 from argo_compiler.il.reserved import RETURN_TASK
 
@@ -31,19 +34,35 @@ def place_of(tables: Tables, progress: Progress, now: float, away: float) -> Con
         ArgoError: the progress is not one of this machine.
     """
     place = Configuration(tables)
-    place.visit = place.new_visit()
-    place.attempt = progress.attempt
+    place.began = now - progress.elapsed - away
+    leaf = None if progress.active is None else _leaf(tables, progress.active)
+    place.visit = Visit(
+        leaf,
+        place.new_visit(),
+        now - progress.since - away,
+        progress.attempt,
+        progress.occurred,
+        look_at=now,
+    )
     if progress.paused or progress.reaction:
         place.interrupted_at = now
-    # What was done by hand took its part of the time away; its clocks run when it is come to.
-    away = max(0.0, away - sum(done.duration for done in progress.by_hand))
-    place.values = {v.object_id: (v.value, now - v.age - away) for v in progress.values}
-    if progress.active is None:
+    place.readings = {
+        r.object_id: CheckpointReading(r.kind, now - r.age - away, r.value, r.abnormal)
+        for r in progress.readings
+    }
+    if leaf is None:
         return place
-    place.leaf = _leaf(tables, progress.active)
-    for group, known in zip(_groups(place.leaf, progress), progress.groups, strict=True):
+    for group, known in zip(_groups(leaf, progress), progress.groups, strict=True):
         elapsed = known.elapsed + (away if group.counts_interruptions else 0.0)
         place.frames.append(Frame(group, known.round, now - elapsed))
+    if progress.round_of is not None:
+        waited = (f for f in place.frames if f.group.name == progress.round_of and f.group.every)
+        place.round_of = next(waited, None)
+        if place.round_of is None:
+            raise Conflict(
+                f"the progress waits for a round of group '{progress.round_of}', of which task "
+                f"'{leaf.name}' is not in a planned round; {_OTHER}"
+            )
     return place
 
 
@@ -70,46 +89,64 @@ def standing_of(tables: Tables, progress: Progress) -> InterruptState:
 
 
 def group_progress(place: Configuration, now: float) -> tuple[GroupProgress, ...]:
-    """The active groups, outermost first."""
+    """The active groups, outermost first. The clocks of those that a round is awaited for have not
+    begun."""
+    begun = len(place.frames) if place.round_of is None else place.round_of.group.depth + 1
     return tuple(
         GroupProgress(
             group=frame.group.name,
             round=frame.round,
-            elapsed=max(0.0, place.clock(now, frame.group) - frame.entered),
+            elapsed=max(0.0, place.clock(now, frame.group) - frame.entered) if i < begun else 0.0,
+            counts_interruptions=frame.group.counts_interruptions,
         )
-        for frame in place.frames
+        for i, frame in enumerate(place.frames)
     )
 
 
-def value_progress(place: Configuration, now: float) -> tuple[ValueProgress, ...]:
-    """The values with their ages."""
-    clock = now + place.shift
+def reading_progress(place: Configuration, now: float) -> tuple[ReadingProgress, ...]:
+    """The readings with their ages."""
     return tuple(
-        ValueProgress(object_id=id, value=value, age=max(0.0, clock - measured))
-        for id, (value, measured) in place.values.items()
+        ReadingProgress(
+            object_id=id,
+            kind=reading.kind,
+            value=reading.value,
+            abnormal=reading.abnormal,
+            age=max(0.0, now - reading.time),
+        )
+        for id, reading in place.readings.items()
     )
 
 
-def reaction_progress(standing: InterruptState) -> tuple[Reacting | None, tuple[Waiting, ...]]:
-    """The active reaction and those that wait."""
+def tally_progress(tallies: Mapping[str, list[int]]) -> tuple[TaskTally, ...]:
+    """How often visits of each task have ended."""
+    return tuple(
+        TaskTally(task=task, done=done, failed=failed, by_hand=by_hand)
+        for task, (done, failed, by_hand) in tallies.items()
+    )
+
+
+def reaction_progress(
+    standing: InterruptState, held: float
+) -> tuple[Reacting | None, tuple[Waiting, ...]]:
+    """The active reaction, which has held so long (s) if it holds, and those that wait."""
     waiting = tuple(Waiting(event=p.event, over=p.over) for p in standing.waiting)
     if standing.active is None:
         return None, waiting
-    phase = Phase.DRIVING if standing.stage is Stage.DRIVING else Phase.HOLDING
-    return Reacting(event=standing.active, over=standing.over, phase=phase), waiting
+    active = Reacting(event=standing.active, over=standing.over, phase=Phase.DRIVING)
+    if standing.stage is Stage.HOLDING:
+        active = active.model_copy(update={"phase": Phase.HOLDING, "held": max(0.0, held)})
+    return active, waiting
 
 
-def queues(done: Iterable[ByHand]) -> dict[str, deque[ByHand]]:
-    """What was done by hand, by task."""
-    found: dict[str, deque[ByHand]] = {}
-    for one in done:
-        found.setdefault(one.task, deque()).append(one)
-    return found
-
-
-def remaining_by_hand(queues: Mapping[str, deque[ByHand]]) -> tuple[ByHand, ...]:
-    """What was done by hand and has not been come to."""
-    return tuple(one for queue in queues.values() for one in queue)
+def by_hand_progress(
+    queues: Mapping[str, deque[tuple[ByHand, float]]], now: float
+) -> tuple[ByHand, ...]:
+    """What was done by hand and has not been come to, with its age."""
+    return tuple(
+        done.model_copy(update={"age": max(0.0, now - at)})
+        for queue in queues.values()
+        for done, at in queue
+    )
 
 
 def _leaf(tables: Tables, name: str) -> LeafNode:

@@ -1,9 +1,11 @@
-"""Where a mission stands: its task, its groups with their rounds and clocks, and its values."""
+"""Where a mission stands: its task, its groups with their rounds and clocks, and its readings."""
 
 import math
 from dataclasses import dataclass
 
-from argo_compiler.hfsm.tables import CompiledTransition, GroupNode, LeafNode, Tables
+from argo_compiler.hfsm.conditions import CheckpointReading
+from argo_compiler.hfsm.tables import CompiledTransition, GroupNode, Guard, LeafNode, Tables
+from argo_compiler.hfsm.visits import Visit
 
 
 @dataclass(slots=True, eq=False)
@@ -18,40 +20,40 @@ class Frame:
 class Configuration:
     """The one place of a mission. It changes with each step.
 
-    There are two clocks. That of the values is `now` and the durations of what was done by hand.
-    That of the groups stands besides while the mission is interrupted, except for groups that
-    count interruptions.
+    Visits and readings go by the executor's clock. That of the groups stands while the mission is
+    interrupted, and what was done by hand advances it, except for groups that count interruptions.
     """
 
     __slots__ = (
         "_has_hard_groups",
-        "attempt",
+        "began",
+        "by_hand_s",
         "due",
         "frames",
         "interrupted_at",
-        "leaf",
-        "shift",
+        "own_due",
+        "readings",
+        "round_of",
         "stood",
         "timed_out",
-        "values",
         "visit",
         "visits",
     )
 
     def __init__(self, tables: Tables) -> None:
         self._has_hard_groups = tables.has_hard_groups
-        self.leaf: LeafNode | None = None
+        self.began = 0.0
+        """s, when the mission was started"""
         self.visits = 0
         """how many visits there have been; the drives of reactions count as well"""
-        self.visit = 0
-        """the number of the present one: tells two visits of a task apart"""
-        self.attempt = 0
-        """failures of the action in this visit"""
+        self.visit = Visit(None, 0, 0.0)
         self.frames: list[Frame] = []
         """the active groups, outermost first"""
-        self.values: dict[str, tuple[float, float]] = {}
-        """the last value by checkpoint, and the clock when it was measured"""
-        self.shift = 0.0
+        self.round_of: Frame | None = None
+        """the one whose round begins with this visit and has not begun yet"""
+        self.readings: dict[str, CheckpointReading] = {}
+        """by checkpoint"""
+        self.by_hand_s = 0.0
         """s that were done by hand"""
         self.stood = 0.0
         """s of interruptions that are over"""
@@ -61,6 +63,13 @@ class Configuration:
         """when the time of a group with a hard stop is up next (s); never while interrupted"""
         self.timed_out: GroupNode | None = None
         """that group; of several at the same time the outermost, as leaving it leaves them all"""
+        self.own_due = math.inf
+        """when the present visit's own times bring something about (s); never while interrupted"""
+
+    @property
+    def leaf(self) -> LeafNode | None:
+        """The task that the mission stands at."""
+        return self.visit.leaf
 
     def new_visit(self) -> int:
         self.visits += 1
@@ -74,6 +83,8 @@ class Configuration:
         self, ways: tuple[CompiledTransition, ...], now: float
     ) -> tuple[CompiledTransition, GroupNode | None]:
         """Goes the first way that can be taken; returns it and the group that is repeated."""
+        if self.round_of is not None:
+            self.begin_round(now)
         while True:
             for way in ways:
                 if self._possible(way, now):
@@ -85,6 +96,8 @@ class Configuration:
         if repeated is not None:
             self.frames[repeated.depth].round += 1
         self._enter(way.target, way.keep, way.domain, now)
+        if repeated is not None and repeated.every:
+            self._await_round(self.frames[repeated.depth], now)
         return way, repeated
 
     def enter(self, leaf: LeafNode | None, now: float) -> None:
@@ -94,34 +107,79 @@ class Configuration:
     def interrupt(self, now: float) -> None:
         if self.interrupted_at is None:
             self.interrupted_at = now
-            self.due = math.inf
+            self.due = self.own_due = self.visit.action_due = math.inf
 
     def go_on(self, now: float) -> None:
         """The groups' clocks run again; what is due by now is due now."""
         if self.interrupted_at is not None:
             self.stood += now - self.interrupted_at
             self.interrupted_at = None
+        self.look(now)
         self._find_due(now)
 
     def advance_clocks(self, seconds: float, now: float) -> None:
         """Adds the time that a task done by hand took."""
-        self.shift += seconds
-        self._find_due(now)
+        if seconds:
+            self.by_hand_s += seconds
+            self._find_due(now)
 
-    def set_aside(self, seconds: float, now: float) -> None:
-        """So much of the present interruption went into what was done by hand: its time is added
-        when the machine comes to that, and is no part of the interruption."""
-        if self.interrupted_at is not None:
-            part = min(seconds, now - self.interrupted_at)
-            self.shift -= part
-            self.stood -= part
+    def read(self, object_id: str, reading: CheckpointReading | None, now: float) -> None:
+        """Takes note of a reading, or that there is none any more."""
+        if reading is None:
+            self.readings.pop(object_id, None)
+        else:
+            self.readings[object_id] = reading
+        if self.visit.leaf is not None and self.visit.leaf.wait is not None:
+            self.look(now)
+
+    def look(self, now: float) -> None:
+        """The conditions of a WAIT are looked at now, or as soon as the mission goes on."""
+        self.visit.look_at = now
+        self.find_own_due()
+
+    def hold(self, guards: tuple[Guard, ...], now: float) -> bool:
+        """Whether all of the conditions hold."""
+        readings = self.readings
+        for object_id, test in guards:
+            reading = readings.get(object_id)
+            if reading is None or not test(reading, now):
+                return False
+        return True
+
+    def begin_round(self, now: float) -> None:
+        """The round that was waited for begins, and with it this visit."""
+        frame = self.round_of
+        assert frame is not None
+        self.round_of = None
+        self.visit.since = self.visit.look_at = now
+        for inner in self.frames[frame.group.depth + 1 :]:
+            inner.entered = self.clock(now, inner.group)
+        self._find_due(now)
+        self.find_own_due()
+
+    @property
+    def round_at(self) -> float:
+        """When the round that is waited for is due (s), if no clock stands."""
+        frame = self.round_of
+        return math.inf if frame is None else self._round_at(frame)
+
+    def find_own_due(self) -> None:
+        """What the present visit waits for may have changed."""
+        visit, leaf = self.visit, self.visit.leaf
+        self.own_due = math.inf
+        if leaf is None or self.interrupted_at is not None:
+            return
+        if self.round_of is not None:
+            self.own_due = min(visit.missed_at(self.began), self.round_at)
+        elif leaf.timed or visit.action_due < math.inf:
+            self.own_due = visit.due(self.began)
 
     def leave(self) -> None:
         """The mission has ended, whatever it was doing."""
-        self.leaf = None
-        self.visit = self.new_visit()
+        self.visit = Visit(None, self.new_visit(), 0.0)
         self.frames.clear()
-        self.due = math.inf
+        self.round_of = None
+        self.due = self.own_due = math.inf
 
     def _possible(self, way: CompiledTransition, now: float) -> bool:
         group = way.repeats
@@ -129,22 +187,20 @@ class Configuration:
             frame = self.frames[group.depth]
             if group.count and frame.round >= group.count:
                 return False
-            return not group.duration or self._at(now, group) < self._time_up(frame)
-        for object_id, test, max_age in way.guards:
-            measured = self.values.get(object_id)
-            if measured is None or not test(measured[0]):
+            if group.duration and (
+                self._at(now, group) >= self._time_up(frame)
+                or frame.round * group.every >= group.duration
+            ):
                 return False
-            if max_age is not None and now + self.shift - measured[1] > max_age:
-                return False
-        return True
+            return not group.until or not self.hold(group.until, now)
+        return self.hold(way.guards, now)
 
     def _enter(
         self, leaf: LeafNode | None, keep: int, domain: GroupNode | None, now: float
     ) -> None:
         """Leaves all below `domain`, which is the last of `keep` groups, and enters the leaf."""
-        self.leaf = leaf
-        self.visits = self.visit = self.visits + 1
-        self.attempt = 0
+        self.visits += 1
+        self.visit = Visit(leaf, self.visits, now, look_at=now)
         frames = self.frames
         changed = len(frames) > keep
         if changed:
@@ -159,12 +215,28 @@ class Configuration:
             frames.extend(reversed(entered))
         if changed and self._has_hard_groups:
             self._find_due(now)
+        self.own_due = math.inf
+        if leaf is not None and leaf.timed:
+            self.find_own_due()
+
+    def _await_round(self, frame: Frame, now: float) -> None:
+        if self._round_at(frame) > self._at(now, frame.group):
+            self.round_of = frame
+            self._find_due(now)
+            self.find_own_due()
+
+    def _round_at(self, frame: Frame) -> float:
+        group = frame.group
+        return frame.entered + (frame.round - 1) * group.every - self._ahead(group)
 
     def _find_due(self, now: float) -> None:
         self.due = math.inf
         if self.interrupted_at is not None:
             return
-        for frame in self.frames:
+        begun = self.frames
+        if self.round_of is not None:
+            begun = begun[: self.round_of.group.depth + 1]
+        for frame in begun:
             if frame.group.hard:
                 at = max(self._time_up(frame), now)
                 if at < self.due:
@@ -178,7 +250,7 @@ class Configuration:
 
     def _ahead(self, group: GroupNode) -> float:
         """How far a group's clock is ahead of time (s), or behind it."""
-        return self.shift if group.counts_interruptions else self.shift - self.stood
+        return 0.0 if group.counts_interruptions else self.by_hand_s - self.stood
 
     def _time_up(self, frame: Frame) -> float:
         """When the duration of a group is over (s), if its clock stood no more."""

@@ -1,11 +1,9 @@
 """The tables that an executor runs on: a machine whose states know each other directly."""
 
-from collections.abc import Callable
 from dataclasses import dataclass, field
 
 from argo_compiler.garbage_collector import collector_held
-from argo_compiler.hfsm.conditions import comparison
-from argo_compiler.hfsm.events import StartAction
+from argo_compiler.hfsm.conditions import Test, reading_test
 from argo_compiler.hfsm.model import (
     MISSION,
     Composite,
@@ -16,7 +14,7 @@ from argo_compiler.hfsm.model import (
     TransitionKind,
 )
 from argo_compiler.hfsm.trace import Cause
-from argo_compiler.il import Action, Condition, EventKind, Stop, Task
+from argo_compiler.il import Action, Condition, EventKind, Stop, Task, WaitRule
 
 _CAUSES = {
     TransitionKind.CONDITIONAL: Cause.CONDITION,
@@ -24,10 +22,16 @@ _CAUSES = {
     TransitionKind.DEFAULT: Cause.DEFAULT,
     TransitionKind.TIMEOUT: Cause.TIMEOUT,
     TransitionKind.FAILURE: Cause.FAILURE,
+    TransitionKind.MISSED: Cause.MISSED,
 }
 
-Guard = tuple[str, Callable[[float], bool], float | None]
-"""A condition: the checkpoint, the test of its value, and its greatest age (s)."""
+Guard = tuple[str, Test]
+"""A condition: the checkpoint, and the test of its reading."""
+
+
+def guards(conditions: tuple[Condition, ...]) -> tuple[Guard, ...]:
+    """Conditions as an executor looks at them."""
+    return tuple((condition.object_id, reading_test(condition)) for condition in conditions)
 
 
 @dataclass(slots=True, eq=False)
@@ -60,32 +64,61 @@ class GroupNode:
     counts_interruptions: bool
     hard: bool
     """whether a time-out leaves it"""
+    every: float
+    """s from one round to the next; 0: at once"""
+    until: tuple[Guard, ...]
     ways: tuple[CompiledTransition, ...] = ()
     timeout: CompiledTransition | None = None
 
 
+@dataclass(frozen=True, slots=True, eq=False)
+class WaitNode:
+    """How long a WAIT lasts."""
+
+    duration: float | None
+    event: EventKind | None
+    guards: tuple[Guard, ...]
+    conditions: tuple[Condition, ...]
+    limit: float | None
+
+
 @dataclass(slots=True, eq=False)
 class LeafNode:
-    """A task, with the command that starts its action."""
+    """A task, with what its action and its own times need."""
 
     id: str
     name: str
     task: Task
     parent: GroupNode | None
-    start: tuple[StartAction, ...]
     retries: int
+    optional: bool
     measures: str | None
     """the checkpoint, for MEASURE"""
+    wait: WaitNode | None
+    """for WAIT, which has no action"""
+    earliest: float
+    """s since the mission's start; 0: any time"""
+    latest: float | None
+    """s since the mission's start, for a hard window"""
+    time_limit: float | None
+    timed: bool
+    """whether its own times bring something about while the machine stands at it"""
     ways: tuple[CompiledTransition, ...] = ()
     failure: CompiledTransition | None = None
+    missed: CompiledTransition | None = None
+
+    @property
+    def may_fail(self) -> bool:
+        """Whether it can fail for good other than by its window."""
+        return self.wait is None or self.wait.limit is not None
 
 
 @dataclass(slots=True, eq=False)
 class ReactionNode:
-    """A reaction, with the command that starts its drive."""
+    """A reaction, with the task of its drive."""
 
     state: ReactionState
-    start: tuple[StartAction, ...]
+    task: Task | None
 
     @property
     def rank(self) -> tuple[int, int]:
@@ -120,7 +153,7 @@ def _tables(hfsm: Hfsm) -> Tables:
         domain = None if transition.domain is None else groups.get(transition.domain)
         return CompiledTransition(
             cause=_CAUSES[transition.kind],
-            guards=tuple((c.object_id, comparison(c), c.max_age) for c in transition.conditions),
+            guards=guards(transition.conditions),
             conditions=transition.conditions,
             target=None if transition.target is None else leaves.get(transition.target),
             keep=0 if domain is None else domain.depth + 1,
@@ -133,6 +166,7 @@ def _tables(hfsm: Hfsm) -> Tables:
         node = leaves[leaf.id]
         node.ways = tuple(map(way, leaf.transitions))
         node.failure = None if leaf.failure is None else way(leaf.failure)
+        node.missed = None if leaf.missed is None else way(leaf.missed)
     for composite in hfsm.composites[1:]:
         group = groups[composite.id]
         group.ways = tuple(map(way, composite.transitions))
@@ -142,10 +176,7 @@ def _tables(hfsm: Hfsm) -> Tables:
         leaves=leaves,
         groups=groups,
         reactions={
-            state.reaction.event: ReactionNode(
-                state, () if state.task is None else (StartAction(state.task),)
-            )
-            for state in hfsm.reactions
+            state.reaction.event: ReactionNode(state, state.task) for state in hfsm.reactions
         },
         max_duration=hfsm.max_duration,
         has_hard_groups=any(group.hard for group in groups.values()),
@@ -164,17 +195,30 @@ def _group(composite: Composite, groups: dict[str, GroupNode]) -> GroupNode:
         duration=repeat.duration if repeat else 0.0,
         counts_interruptions=bool(repeat and repeat.count_interruptions),
         hard=composite.timeout is not None and bool(repeat and repeat.stop is Stop.HARD),
+        every=repeat.every if repeat else 0.0,
+        until=guards(repeat.until) if repeat else (),
     )
 
 
 def _leaf(leaf: Leaf, groups: dict[str, GroupNode]) -> LeafNode:
-    task = leaf.task
+    task, window = leaf.task, leaf.task.window
+    latest = window.latest if window is not None and window.hard else None
+    wait = _wait(task.wait) if task.action is Action.WAIT and task.wait is not None else None
     return LeafNode(
         id=leaf.id,
         name=task.name,
         task=task,
         parent=groups.get(leaf.parent),
-        start=(StartAction(task),),
-        retries=task.retries,
+        retries=0 if wait is not None else task.retries,
+        optional=task.optional,
         measures=task.object_id if task.action is Action.MEASURE else None,
+        wait=wait,
+        earliest=0.0 if window is None else window.earliest,
+        latest=latest,
+        time_limit=task.time_limit,
+        timed=wait is not None or latest is not None,
     )
+
+
+def _wait(rule: WaitRule) -> WaitNode:
+    return WaitNode(rule.duration, rule.event, guards(rule.conditions), rule.conditions, rule.limit)

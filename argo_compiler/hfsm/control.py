@@ -3,7 +3,7 @@
 import math
 from collections.abc import Sequence
 
-from argo_compiler.hfsm.course import Course
+from argo_compiler.hfsm.course import MissionCourse
 from argo_compiler.hfsm.events import Outcome
 from argo_compiler.hfsm.interrupts import Effect, Stage, Trigger
 from argo_compiler.hfsm.progress import ByHand
@@ -22,7 +22,7 @@ class Control:
 
     def __init__(self, tables: Tables) -> None:
         self.tables = tables
-        self.course = Course(tables)
+        self.course = MissionCourse(tables)
         self.standing = InterruptState()
         self.drive_visit = 0
         """the number of the active reaction's drive, among the visits"""

@@ -16,7 +16,7 @@ from argo_compiler.il import EventKind
 _OVER = "its time window is over"
 
 
-class Course:
+class MissionCourse:
     """Where the mission stands and how it goes on. It changes with each step.
 
     It knows nothing of reactions and persons, nor of what runs: `interrupt` and `go_on` tell it.

@@ -20,7 +20,7 @@ from argo_compiler.hfsm.progress import (
 from argo_compiler.hfsm.rounds_and_clocks import Configuration, Frame
 from argo_compiler.hfsm.standing import InterruptState, Pending, drives
 from argo_compiler.hfsm.tables import GroupNode, LeafNode, Tables
-from argo_compiler.hfsm.visits import Visit
+from argo_compiler.hfsm.visits import TaskVisit
 from argo_compiler.il import EventKind, Reaction, Response
 from argo_compiler.il.reserved import RETURN_TASK
 
@@ -36,7 +36,7 @@ def place_of(tables: Tables, progress: Progress, now: float, away: float) -> Con
     place = Configuration(tables)
     place.began = now - progress.elapsed - away
     leaf = None if progress.active is None else _leaf(tables, progress.active)
-    place.visit = Visit(
+    place.visit = TaskVisit(
         leaf,
         place.new_visit(),
         now - progress.since - away,

@@ -5,7 +5,7 @@ from dataclasses import dataclass
 
 from argo_compiler.hfsm.conditions import CheckpointReading
 from argo_compiler.hfsm.tables import CompiledTransition, GroupNode, Guard, LeafNode, Tables
-from argo_compiler.hfsm.visits import Visit
+from argo_compiler.hfsm.visits import TaskVisit
 
 
 @dataclass(slots=True, eq=False)
@@ -46,7 +46,7 @@ class Configuration:
         """s, when the mission was started"""
         self.visits = 0
         """how many visits there have been; the drives of reactions count as well"""
-        self.visit = Visit(None, 0, 0.0)
+        self.visit = TaskVisit(None, 0, 0.0)
         self.frames: list[Frame] = []
         """the active groups, outermost first"""
         self.round_of: Frame | None = None
@@ -176,7 +176,7 @@ class Configuration:
 
     def leave(self) -> None:
         """The mission has ended, whatever it was doing."""
-        self.visit = Visit(None, self.new_visit(), 0.0)
+        self.visit = TaskVisit(None, self.new_visit(), 0.0)
         self.frames.clear()
         self.round_of = None
         self.due = self.own_due = math.inf
@@ -200,7 +200,7 @@ class Configuration:
     ) -> None:
         """Leaves all below `domain`, which is the last of `keep` groups, and enters the leaf."""
         self.visits += 1
-        self.visit = Visit(leaf, self.visits, now, look_at=now)
+        self.visit = TaskVisit(leaf, self.visits, now, look_at=now)
         frames = self.frames
         changed = len(frames) > keep
         if changed:

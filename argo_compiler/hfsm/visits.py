@@ -7,7 +7,7 @@ from argo_compiler.hfsm.tables import LeafNode
 
 
 @dataclass(slots=True, eq=False)
-class Visit:
+class TaskVisit:
     """The machine's stay at a task. It changes while the machine stands there."""
 
     leaf: LeafNode | None

@@ -1,6 +1,6 @@
 """The machines that a simulation drives: what it asks of them, and one without a fixed mission."""
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from typing import Protocol
 
 from argo_compiler.errors import Conflict
@@ -42,7 +42,7 @@ class Machine(Protocol):
     @property
     def rounds(self) -> Mapping[str, int]: ...
     @property
-    def trace(self) -> tuple[TraceEntry, ...]: ...
+    def trace(self) -> Sequence[TraceEntry]: ...
 
     def start(self, now: float) -> tuple[Command, ...]: ...
     def handle(self, event: Event, now: float) -> tuple[Command, ...]: ...
@@ -75,18 +75,21 @@ class OpenMachine:
         joined = last.model_copy(update={"transitions": (Transition(target=task.name),)})
         mission = self.mission.model_copy(update={"tasks": (*before, joined, task)})
         executor = Executor(lower(mission))
-        executor.start(self._began)
+        begun = [*executor.start(self._began)]
         told: list[tuple[Event, float]] = []
         for event, at in self._told:
             told.append((event, at))
-            if any(isinstance(c, CancelAction) for c in executor.handle(event, at)) and (
+            commands = executor.handle(event, at)
+            begun += commands
+            if any(isinstance(c, CancelAction) for c in commands) and (
                 executor.running is not None and executor.running.name == task.name
             ):
                 # In truth it has not begun yet.
                 told.append((ActionStopped(task.name), at))
-                executor.handle(*told[-1])
+                begun += executor.handle(*told[-1])
         self.mission, self._executor, self._told = mission, executor, told
-        return () if executor.running is None else (StartAction(executor.running),)
+        starts = [command for command in begun if isinstance(command, StartAction)]
+        return () if executor.running is None else (starts[-1],)
 
     def close(self) -> None:
         """No task will follow: the mission ends with those that were given."""
@@ -143,5 +146,5 @@ class OpenMachine:
         return self._executor.rounds
 
     @property
-    def trace(self) -> tuple[TraceEntry, ...]:
+    def trace(self) -> Sequence[TraceEntry]:
         return self._executor.trace

@@ -9,6 +9,7 @@ from argo_compiler.hfsm import (
     ActionSucceeded,
     CancelAction,
     Cause,
+    EndedVisit,
     Executor,
     Measured,
     Pause,
@@ -34,26 +35,26 @@ def executor(mission):
 
 class TestCommands:
     def test_start_and_end_of_actions(self, executor, mission):
-        assert executor.start(5) == (StartAction(mission.tasks[0]),)
+        assert executor.start(5) == (StartAction(mission.tasks[0], 1),)
         assert executor.handle(Tick(), 6) == ()
-        assert executor.handle(ActionSucceeded("A", 2.5), 7) == (StartAction(mission.tasks[1]),)
+        assert executor.handle(ActionSucceeded("A", 2.5), 7) == (StartAction(mission.tasks[1], 2),)
         assert executor.values == {"A": Measured(2.5, 7)}
 
     def test_time_out_cancels(self, executor, mission):
         executor.start(0)
         executor.handle(ActionSucceeded("A"), 1)
         assert executor.next_deadline == 11
-        assert executor.handle(Tick(), 11) == (CancelAction("B", "the time of 'G' is up"),)
+        assert executor.handle(Tick(), 11) == (CancelAction("B", "the time of 'G' is up", 2),)
         assert executor.next_deadline is None
         assert executor.active == "D"
         assert executor.handle(Tick(), 12) == ()
-        assert executor.handle(ActionStopped("B"), 13) == (StartAction(mission.tasks[3]),)
+        assert executor.handle(ActionStopped("B"), 13) == (StartAction(mission.tasks[3], 3),)
 
     def test_late_driver_gets_the_same_machine(self, executor, mission):
         executor.start(0)
         executor.handle(ActionSucceeded("A"), 1)
         commands = executor.handle(ActionSucceeded("B", 3.0), 20)
-        assert commands == (StartAction(mission.tasks[3]),)
+        assert commands == (StartAction(mission.tasks[3], 3),)
         assert executor.values["B"] == Measured(3, 20)
         assert [entry.time for entry in executor.trace[-2:]] == [11, 20]
         assert executor.trace[-1].cause is Cause.LATE
@@ -65,14 +66,14 @@ class TestCommands:
         executor.start(0)
         (cancel,) = executor.handle(Tick(), 3.5)
         assert isinstance(cancel, CancelAction)
-        assert executor.handle(ActionStopped("A"), 3.5) == (StartAction(mission.tasks[0]),)
+        assert executor.handle(ActionStopped("A"), 3.5) == (StartAction(mission.tasks[0], 2),)
         assert [entry.time for entry in executor.trace] == [0, 1, 2, 3]
 
     def test_task_that_leads_to_itself_is_started_again(self, build):
         mission = build("A", ways={"A": ["A"]})
         executor = Executor(lower(mission))
         executor.start(0)
-        assert executor.handle(ActionSucceeded("A"), 0) == (StartAction(mission.tasks[0]),)
+        assert executor.handle(ActionSucceeded("A"), 0) == (StartAction(mission.tasks[0], 2),)
 
     def test_end_of_the_mission(self, build):
         executor = Executor(lower(build("A")))
@@ -182,12 +183,19 @@ class TestProgress:
         assert json.loads(written) == {
             "active": "C",
             "attempt": 0,
-            "groups": [{"group": "G", "round": 1, "elapsed": 3}],
-            "values": [{"object_id": "A", "value": 7, "age": 3}],
-            "ended": [
-                {"task": "A", "failure": None, "by_hand": False},
-                {"task": "B", "failure": "dark", "by_hand": False},
+            "since": 0,
+            "occurred": False,
+            "round_of": None,
+            "groups": [{"group": "G", "round": 1, "elapsed": 3, "counts_interruptions": False}],
+            "readings": [
+                {"object_id": "A", "kind": "value", "value": 7, "abnormal": False, "age": 3},
+                {"object_id": "B", "kind": "failed", "value": None, "abnormal": False, "age": 0},
             ],
+            "tallies": [
+                {"task": "A", "done": 1, "failed": 0, "by_hand": 0},
+                {"task": "B", "done": 0, "failed": 1, "by_hand": 0},
+            ],
+            "failed": True,
             "elapsed": 4,
             "time_up": False,
             "paused": False,
@@ -197,18 +205,19 @@ class TestProgress:
             "by_hand": [],
         }
         later = Executor.restore(lower(mission), Progress.model_validate_json(written), 100)
-        assert later.start(100) == (StartAction(mission.tasks[2]),)
+        assert later.start(100) == (StartAction(mission.tasks[2], 1),)
         assert later.next_deadline == 107
         assert later.values == {"A": Measured(7, 97)}
         assert later.trace[0].cause is Cause.RESTORE
         later.handle(ActionSucceeded("C"), 101)
-        assert [ended.task for ended in later.progress().ended] == ["A", "B", "C"]
+        assert later.ended == (EndedVisit("C"),)
+        assert [tally.task for tally in later.progress().tallies] == ["A", "B", "C"]
 
     def test_time_that_was_up_before(self, executor, mission):
         executor.start(0)
         executor.handle(ActionSucceeded("A"), 1)
         later = Executor.restore(lower(mission), executor.progress(), 50)
-        assert later.start(70) == (StartAction(mission.tasks[3]),)
+        assert later.start(70) == (StartAction(mission.tasks[3], 1),)
         assert later.trace[-1].time == 70
 
     def test_ended_mission_stays_ended(self, build):

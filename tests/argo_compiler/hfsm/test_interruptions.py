@@ -88,12 +88,12 @@ class TestFailures:
         play = Play(plan(task("A", "A", retries=1)))
         assert play.at(1, badly("A")) == ["+A"]
         assert play.trace[-1].cause is Cause.RETRY
-        assert play.progress().ended == ()
+        assert play.ended == ()
         assert play.at(2, badly("A")) == ["+A"]
         assert play.trace[-1].cause is Cause.DEFAULT
         assert play.at(3, badly("A")) == ["+A"]
         assert play.trace[-1].cause is Cause.RETRY
-        assert [e.failure for e in play.progress().ended] == ["stuck"]
+        assert [e.failure for e in play.ended] == ["stuck"]
 
     @pytest.mark.rule("T8")
     @pytest.mark.parametrize(
@@ -305,7 +305,7 @@ class TestPersons:
         assert play.at(2, well("A", 4.0)) == []
         assert (play.active, play.values["A"].value) == ("B", 4)
         assert play.at(3, Resume()) == ["+B"]
-        assert [e.task for e in play.progress().ended] == ["A"]
+        assert [e.task for e in play.ended] == ["A"]
 
     @pytest.mark.rule("I3")
     def test_failure_while_cancelled_is_a_stop(self):

@@ -3,7 +3,7 @@
 import pytest
 
 from argo_compiler.diagnostics import DiagnosticError
-from argo_compiler.hfsm import Cause, Executor, lower
+from argo_compiler.hfsm import Cause, Executor, ReadingKind, lower
 from argo_compiler.il import (
     Action,
     Condition,
@@ -68,13 +68,15 @@ class TestTasks:
         assert executor.trace[1].failure == "no view"
         assert str(executor.trace[1]) == "1 s: A -> B (default; failed: no view)"
 
-    @pytest.mark.rule("T8", "C3", "C6")
-    def test_failure_leaves_the_value_measured_before(self, build, drive):
+    @pytest.mark.rule("T8", "C3", "C4", "C6")
+    def test_failure_takes_the_place_of_the_value_before(self, build, drive):
         executor = drive(build("A B", ways={"B": [when("A", greater("B", 0))]}), reads={"B": [1]})
         assert executor.values["B"].value == 0
         mission = build("A", ways={"A": [when("A", greater("A", 0))]})
         executor = drive(mission, reads={"A": [4, None, 0]})
-        assert [entry.failure for entry in executor.trace[1:]] == [None, "no view", None]
+        assert [entry.failure for entry in executor.trace[1:]] == [None, "no view"]
+        assert executor.readings["A"].kind is ReadingKind.FAILED
+        assert executor.values == {}
 
     @pytest.mark.rule("C5")
     @pytest.mark.parametrize(("takes", "reached"), [(5.0, "A"), (5.5, "end")])
@@ -121,7 +123,8 @@ class TestTasks:
     @pytest.mark.rule("C4")
     @pytest.mark.parametrize("type", ConditionType)
     def test_what_was_never_measured_holds_never(self, build, drive, path, type):
-        never = Condition(type=type, object_id="B", param1=0, param2=1)
+        bounds = {"param1": 0, "param2": 1} if type.compares else {"max_age": 1}
+        never = Condition(type=type, object_id="B", **bounds)
         mission = build("A B C", ways={"A": [when("C", never), "B"]})
         assert path(drive(mission)).startswith("A@0 B@1")
 

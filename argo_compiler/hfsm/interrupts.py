@@ -4,7 +4,7 @@ It is data: the executor looks its rows up (`argo_compiler.hfsm.standing`), and 
 `argo export` is written from the same rows. Rules are those of `docs/language.md`.
 
 Rows of a state and a trigger are tried in order, and the first whose `when` all hold and of whose
-`unless` none does is taken. After each row, those of `Trigger.ALWAYS` are tried until none is
+`unless` none does is taken. After each row, those of `Trigger.ALWAYS` are tried until none can be
 taken. Guards look at what was so before the row, effects are carried out in order.
 """
 
@@ -216,7 +216,6 @@ def _rows() -> Iterable[InterruptRow]:
     yield row("R3", _STABLE, on.LIMIT)
     yield row("M3", (to.ENDING,), on.CANCEL)
     yield row("M3", (to.ENDING,), on.ENDED)
-    yield row("R2", _STABLE, on.ALWAYS)
 
 
 TABLE: tuple[InterruptRow, ...] = tuple(_rows())

@@ -66,7 +66,7 @@ def advance(
     steps: list[TakenRow] = []
     while True:
         row = _row(standing, reactions, trigger, event)
-        if row is None or (trigger is Trigger.ALWAYS and row.target is None):
+        if row is None:
             return tuple(steps)
         before = standing
         for effect in row.effects:

@@ -1,0 +1,218 @@
+"""The table of interruptions, checked in all states that it can come to.
+
+For each set of reactions, everything that may happen is tried in every state that can be reached,
+so that sequences of any length are covered. What has to be so is taken from the rules, and each
+step is compared with `interrupt_rules`, which has no table.
+"""
+
+from itertools import product
+
+import pytest
+
+from argo_compiler.hfsm import Outcome
+from argo_compiler.hfsm.interrupts import ACTIVE, ROWS, TABLE, TRANSIENT, Given, Stage, Trigger
+from argo_compiler.hfsm.standing import InterruptState, advance
+from argo_compiler.il import Afterwards, EventKind, Reaction, Response
+from argo_compiler.model import Pose
+from tests.argo_compiler.hfsm.interrupt_rules import Alarmed, Rules
+
+EVENTS = (EventKind.GAS_LEAK, EventKind.LOW_BATTERY, EventKind.EMERGENCY_STOP)
+CLEAR = EventKind.ALL_CLEAR
+HERE = Pose(x=0, y=0, z=0)
+SUPERVISED = InterruptState(Stage.STOPPED, paused=True)
+
+STABLE = tuple(stage for stage in Stage if stage not in TRANSIENT)
+GIVEN_OF_EVENTS = {Given.ABORTS, Given.REACTS, Given.NEW, Given.HIGHER, Given.AWAITED}
+
+
+def variants(
+    event,
+    untils,
+    responses=tuple(Response),
+    afterwards=tuple(Afterwards),
+    limits=(None, *Afterwards),
+):
+    """The reactions to an event, their priority apart."""
+    made = [{"response": r} for r in (Response.REPORT, Response.ABORT) if r in responses]
+    for response in (r for r in responses if r not in (Response.REPORT, Response.ABORT)):
+        pauses = response is Response.PAUSE
+        for until, after, limit in product(untils, afterwards, limits):
+            held = pauses or until is not None
+            if (pauses and after is not afterwards[0]) or (limit is not None and not held):
+                continue
+            limited = {} if limit is None else {"hold_limit": 10, "on_limit": limit}
+            pose = HERE if response is Response.SAFE_AREA else None
+            fields = {"response": response, "until": until, "pose": pose, **limited}
+            made.append(fields | ({} if pauses else {"afterwards": after}))
+    return [{"event": event, **fields} for fields in made]
+
+
+def sets(size, untils, priorities, **kinds):
+    """All sets of that many reactions."""
+    events = EVENTS[:size]
+    for fields in product(*(variants(event, untils, **kinds) for event in events)):
+        for given in product(priorities, repeat=size):
+            yield tuple(
+                Reaction(**one, priority=priority)
+                for one, priority in zip(fields, given, strict=True)
+            )
+
+
+def happenings(reactions):
+    kinds = {CLEAR, *(reaction.event for reaction in reactions)}
+    kinds |= {reaction.until for reaction in reactions if reaction.until}
+    yield from ((Trigger.EVENT, kind) for kind in sorted(kinds))
+    yield from ((t, None) for t in Trigger if t not in (Trigger.ALWAYS, Trigger.EVENT))
+
+
+def by_rules(rules, state, trigger, event):
+    match trigger:
+        case Trigger.EVENT:
+            return rules.occurs(state, event)
+        case Trigger.DONE:
+            return rules.plan_ends(state, "completed", whenever=False)
+        case Trigger.ENDED:
+            return rules.plan_ends(state, "returned", whenever=True)
+    return {
+        Trigger.PAUSE: rules.pauses,
+        Trigger.RESUME: rules.resumes,
+        Trigger.CANCEL: rules.cancels,
+        Trigger.DRIVEN: rules.drive_succeeds,
+        Trigger.STUCK: rules.drive_fails,
+        Trigger.LIMIT: rules.limit_is_over,
+    }[trigger](state)
+
+
+def in_words_of_the_rules(state):
+    return Alarmed(
+        paused=state.paused,
+        alarms=tuple((pending.event, pending.over) for pending in state.pending),
+        at=state.active,
+        there=state.stage is Stage.HOLDING,
+        outcome=state.outcome and str(state.outcome),
+    )
+
+
+def explore(reactions, taken):
+    """Walks through all states; the rows that were taken, with the stage, are added to `taken`."""
+    known = {reaction.event: reaction for reaction in reactions}
+    rules = Rules(reactions)
+    states = [InterruptState(), SUPERVISED]
+    seen = set(states)
+    everything = list(happenings(reactions))
+    for before in states:
+        for trigger, event in everything:
+            plan = Outcome.COMPLETED if trigger is Trigger.DONE else Outcome.RETURNED
+            rows = advance(before, known, trigger, event, plan)
+            taken.update((row.row, row.before.stage) for row in rows)
+            after = rows[-1].after
+            expected = by_rules(rules, in_words_of_the_rules(before), trigger, event)
+            assert in_words_of_the_rules(after) == expected, (reactions, before, trigger, event)
+            holds_what_must(known, before, trigger, event, rows)
+            if after not in seen:
+                seen.add(after)
+                states.append(after)
+    return len(states), len(states) * len(everything)
+
+
+def holds_what_must(known, before, trigger, event, rows):
+    """What follows from the rules, whatever the table says."""
+    after = rows[-1].after
+    own = known.get(event)
+    live = before.outcome is None
+    assert after.stage in STABLE
+    assert (after.active is not None) == (after.stage in ACTIVE)
+    assert (after.outcome is not None) == (after.stage is Stage.ENDING)
+    if not live:
+        assert after == before
+        return
+    if trigger is Trigger.CANCEL:
+        assert after.outcome is Outcome.CANCELLED
+    if own is not None and own.response is Response.ABORT:
+        assert after.outcome is Outcome.ABORTED
+    if after.outcome is not None:
+        return
+    # A person's pause lasts until a person ends it, and meanwhile nothing goes on.
+    if before.paused and trigger is not Trigger.RESUME:
+        assert after.paused
+    if trigger is Trigger.PAUSE:
+        assert after.paused
+    assert not (after.paused and after.stage is Stage.GOING)
+    # No reaction that waits is lost without having had its turn, and none that has to begin.
+    pending = [one.event for one in after.pending]
+    had_its_turn = {row.after.active for row in rows}
+    assert {one.event for one in before.waiting} <= {*pending, *had_its_turn}
+    assert len(pending) == len(set(pending))
+    if own is not None and own.response is not Response.REPORT:
+        active = known.get(before.active)
+        ends_a_hold = active is not None and active.until is event
+        if not (ends_a_hold and own.rank <= active.rank):
+            assert event in {*pending, *had_its_turn, *(p.event for p in before.pending)}
+    # Whoever has the robot ranks highest, unless a person has to let it go on.
+    if not after.paused:
+        ranks = [known[one.event].rank for one in after.waiting]
+        if after.active is None:
+            assert not ranks
+        else:
+            assert all(rank <= known[after.active].rank for rank in ranks)
+            equal = [e for e in pending if known[e].rank == known[after.active].rank]
+            assert equal[0] is after.active
+    # A hold ends by its event, a person, its limit, or one of higher rank.
+    left = before.stage is Stage.HOLDING and after.active is not before.active
+    if left:
+        hold = known[before.active]
+        awaited = trigger is Trigger.EVENT and hold.until is event and not before.paused
+        higher = own is not None and own.rank > hold.rank
+        assert awaited or higher or trigger in (Trigger.RESUME, Trigger.LIMIT)
+
+
+def explore_all(many):
+    """Explores sets of reactions; returns how many, with how many states and steps."""
+    taken, count, states, steps = set(), 0, 0, 0
+    for reactions in many:
+        here, tried = explore(reactions, taken)
+        count, states, steps = count + 1, states + here, steps + tried
+    return taken, (count, states, steps)
+
+
+# A safe area differs from the dock in the outcome only, which one reaction alone shows.
+PAIRED = (Response.REPORT, Response.ABORT, Response.PAUSE, Response.RETURN)
+PLAIN = {"afterwards": (Afterwards.RESUME,), "limits": (None,)}
+
+
+@pytest.mark.rule("R1", "R2", "R3", "R4", "R6", "R7", "R8", "R9", "R10", "I1", "I2", "M9")
+def test_one_reaction_alone_and_two_that_interrupt_each_other():
+    one, _ = explore_all(sets(1, (None, CLEAR), (1,)))
+    two, _ = explore_all(sets(2, (CLEAR, EVENTS[1]), (1, 2), responses=PAIRED[1:], **PLAIN))
+    assert {(row, stage) for row in TABLE for stage in row.stages} == one | two
+
+
+@pytest.mark.long
+@pytest.mark.rule("R7", "R9", "R10")
+def test_all_pairs_and_three_reactions():
+    _, pairs = explore_all(sets(2, (None, CLEAR, EVENTS[1]), (1, 2), responses=PAIRED))
+    three = sets(3, (None, CLEAR, EVENTS[0]), (1, 2), responses=PAIRED[1:], **PLAIN)
+    _, threes = explore_all(three)
+    print("sets, states, steps:", pairs, threes)
+
+
+def test_each_stage_has_a_row_for_whatever_happens():
+    for stage in STABLE:
+        for trigger in set(Trigger) - {Trigger.ALWAYS}:
+            last = ROWS[stage, trigger][-1]
+            assert not last.when, (stage, trigger)
+            assert not last.unless, (stage, trigger)
+    for stage in TRANSIENT:
+        last = ROWS[stage, Trigger.ALWAYS][-1]
+        assert not last.when
+        assert not last.unless
+
+
+def test_rows_ask_only_for_what_is_there():
+    """Nothing of an event where there is none, nothing of an active reaction where none is."""
+    of_active = set(Given) - GIVEN_OF_EVENTS - {Given.PAUSED, Given.SOME_WAITS}
+    of_active |= {Given.HIGHER, Given.AWAITED}
+    for row in TABLE:
+        asked = {*row.when, *row.unless}
+        assert row.trigger is Trigger.EVENT or not asked & GIVEN_OF_EVENTS
+        assert not asked & of_active or set(row.stages) <= set(ACTIVE)

@@ -11,6 +11,7 @@ import annotated_types
 from hypothesis import strategies as st
 
 from argo_compiler.il import Mission
+from argo_compiler.il.velocities import of_ways_on, of_ways_there
 from argo_compiler.model import Model
 
 INTEGERS = st.integers(-(2**63), 2**63 - 1)
@@ -19,8 +20,17 @@ TEXTS = st.text(st.characters(exclude_categories=["Cs"]), max_size=6)
 
 
 def carried_missions() -> st.SearchStrategy[Mission]:
-    """Those that ROS messages say in whole: what was left out is not in them."""
-    return missions().map(lambda mission: mission.model_copy(update={"left_out": ()}))
+    """Those that ROS messages say in whole: what was left out is not in them, and velocities are
+    those of the way on."""
+    return missions().map(_carried)
+
+
+def _carried(mission: Mission) -> Mission:
+    mission, differ = of_ways_there(mission.model_copy(update={"left_out": ()}))
+    if not differ and of_ways_there(of_ways_on(mission)[0]) == (mission, ()):
+        return mission
+    tasks = tuple(task.model_copy(update={"velocity": None}) for task in mission.tasks)
+    return mission.model_copy(update={"tasks": tasks})
 
 
 def missions() -> st.SearchStrategy[Mission]:
@@ -77,6 +87,8 @@ def _kept(value: Any, limits: tuple[Any, ...]) -> bool:
         if isinstance(limit, annotated_types.Gt)
         else value >= limit.ge
         if isinstance(limit, annotated_types.Ge)
+        else value <= limit.le
+        if isinstance(limit, annotated_types.Le)
         else True
         for limit in limits
     )

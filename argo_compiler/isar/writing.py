@@ -61,6 +61,10 @@ def _unsaid(mission: Mission) -> Iterator[Diagnostic]:
             ("a failure policy", task.on_failure is not OnFailure.CONTINUE),
             ("a velocity", task.velocity is not None),
             ("joint states", task.joint_states is not None),
+            ("a limit of time", task.time_limit is not None),
+            ("a limit for its reading", task.reading_limit is not None),
+            ("a window", task.window is not None),
+            ("a wait", task.wait is not None and task.wait.duration != 0),
         ):
             if given:
                 yield refusal(
@@ -70,12 +74,17 @@ def _unsaid(mission: Mission) -> Iterator[Diagnostic]:
                     task.source,
                 )
     for group in mission.groups:
-        if group.max_repeat_duration:
+        how = (
+            ("for a time", group.max_repeat_duration > 0),
+            ("at set times", group.every > 0),
+            ("until its conditions hold", bool(group.until)),
+        )
+        for words in (words for words, given in how if given):
             yield refusal(
                 "isar-group",
-                f"group '{group.name}' is repeated for a time; isar repeats nothing, and only a "
+                f"group '{group.name}' is repeated {words}; isar repeats nothing, and only a "
                 "number of rounds can be written out",
-                "limit it by max_repeat_count",
+                "leave that out, and limit it by max_repeat_count",
                 group.source,
             )
     for reaction in mission.reactions:

@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING
 from argo_compiler.lazy_names import lazy_names
 
 __all__ = [
+    "Received",
     "RosTypes",
     "Storage",
     "decode_bag",
@@ -35,7 +36,7 @@ if TYPE_CHECKING:
         to_ros2_bag,
     )
     from argo_compiler.ros.package import message_package
-    from argo_compiler.ros.reading import from_message
+    from argo_compiler.ros.reading import Received, from_message
     from argo_compiler.ros.types import RosTypes, ros1_types, ros2_types
     from argo_compiler.ros.writing import to_message
 else:
@@ -52,7 +53,7 @@ else:
                 "to_ros2_bag",
             ],
             "package": ["message_package"],
-            "reading": ["from_message"],
+            "reading": ["Received", "from_message"],
             "types": ["RosTypes", "ros1_types", "ros2_types"],
             "writing": ["to_message"],
         },

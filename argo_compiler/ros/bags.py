@@ -19,7 +19,7 @@ from argo_compiler.ros.compression import (
     check_ros1_chunks,
 )
 from argo_compiler.ros.package import SPECIFICATION
-from argo_compiler.ros.reading import from_message
+from argo_compiler.ros.reading import Received, from_message
 from argo_compiler.ros.types import RosTypes, ros1_types, ros2_types
 from argo_compiler.ros.writing import to_message
 
@@ -120,7 +120,7 @@ def _latched() -> Any:
     )
 
 
-def read_bag(path: Path, source_name: str | None = None) -> Mission:
+def read_bag(path: Path, source_name: str | None = None) -> Received:
     """The mission on the topic /mission of a ROS 1 bag, a rosbag2 folder, or one of its files.
 
     The same mission may be there several times, as it is when a latched topic is recorded.
@@ -160,7 +160,7 @@ def read_bag(path: Path, source_name: str | None = None) -> Mission:
     return from_message(message, types, name)
 
 
-def decode_bag(content: bytes | Mapping[str, bytes], source_name: str) -> Mission:
+def decode_bag(content: bytes | Mapping[str, bytes], source_name: str) -> Received:
     """The same of a bag's bytes, or of the files of a rosbag2 folder by their names. Raises as
     `read_bag`, and Invalid for names that lead out of the folder."""
     with tempfile.TemporaryDirectory() as folder:

@@ -22,8 +22,15 @@ class Numbers:
         self.order = types.numbers("MissionSpecification", Order, "ORDER_")
         self.action = types.numbers("MissionTask", Action)
         self.on_failure = types.numbers("MissionTask", OnFailure, "ON_FAILURE_")
-        self.condition = types.numbers("MissionCondition", ConditionType, "MEASURED_VALUE_")
+        # Some compare a value, others look at the reading: the constants have two prefixes.
+        self.condition = {
+            type: types.constant("MissionCondition", type.value) for type in ConditionType
+        }
         self.stop = types.numbers("MissionGroup", Stop)
+        self.hard = {
+            hard: types.constant("MissionWindow", name)
+            for hard, name in ((True, "HARD"), (False, "SOFT"))
+        }
         self.event = types.numbers("MissionReaction", EventKind)
         self.response = types.numbers("MissionReaction", Response, "RESPONSE_")
         self.afterwards = types.numbers("MissionReaction", Afterwards, "AFTERWARDS_")

@@ -1,21 +1,31 @@
-"""ROS messages become missions."""
+"""ROS messages become missions, with the velocities of the way to each task."""
 
 from collections.abc import Iterable, Mapping
-from enum import Enum
+from dataclasses import dataclass
 from typing import Any, NoReturn, TypeVar
 
 from pydantic import ValidationError
 
 from argo_compiler.diagnostics import Diagnostic, DiagnosticError, Severity
-from argo_compiler.il import Mission
+from argo_compiler.diagnostics.subject import subject_of
+from argo_compiler.il import EventKind, Mission
+from argo_compiler.il.velocities import of_ways_there
 from argo_compiler.quaternions import to_yaw
 from argo_compiler.ros.numbers import Numbers
 from argo_compiler.ros.types import RosTypes
 
-E = TypeVar("E", bound=Enum)
+E = TypeVar("E")
 
 
-def from_message(message: Any, types: RosTypes, source_name: str) -> Mission:
+@dataclass(frozen=True)
+class Received:
+    """The mission of a message, and warnings about what it could not take over."""
+
+    mission: Mission
+    diagnostics: tuple[Diagnostic, ...] = ()
+
+
+def from_message(message: Any, types: RosTypes, source_name: str) -> Received:
     """The mission of a MissionSpecification; whether it makes sense is for `check`.
 
     Raises DiagnosticError for what a mission can't hold, by the path of the field.
@@ -23,7 +33,7 @@ def from_message(message: Any, types: RosTypes, source_name: str) -> Mission:
     reader = _Reader(types, source_name)
     data = reader.mission(message)
     try:
-        return Mission.model_validate(data)
+        mission, differ = of_ways_there(Mission.model_validate(data))
     except ValidationError as error:
         diagnostics = [
             _diagnostic(
@@ -32,6 +42,18 @@ def from_message(message: Any, types: RosTypes, source_name: str) -> Mission:
             for e in error.errors(include_url=False)
         ]
         raise DiagnosticError(source_name, diagnostics) from None
+    return Received(mission, tuple(_slowest(task) for task in differ))
+
+
+def _slowest(task: str) -> Diagnostic:
+    return Diagnostic(
+        code="ros.velocity",
+        severity=Severity.WARNING,
+        message=f"'{task}' is driven to at different velocities, by where the robot comes from: it "
+        "has the slowest of them",
+        hint="a velocity belongs to the way to a task: set it there",
+        subject=subject_of("tasks", task),
+    )
 
 
 class _Reader:
@@ -76,17 +98,23 @@ class _Reader:
             "object_id": m.object_id if m.has_object_id else None,
             "velocity": m.velocity or None,
             "pose": self._pose(f"{place}.pose", m.pose, m.yaw) if m.has_pose else None,
-            "joint_states": self._joints(place, m.joint_states) if m.has_joint_states else None,
+            "joint_states": _joints(m.joint_states) if m.has_joint_states else None,
+            "wait": self._wait(place, m.wait) if m.has_wait else None,
+            "window": self._window(place, m.window) if m.has_window else None,
+            "time_limit": m.time_limit or None,
+            "reading_limit": m.reading_limit or None,
+            "optional": m.optional,
+            "priority": m.priority or 1,
             "retries": m.retries,
             "on_failure": self._member(
                 f"{place}.on_failure", self.numbers.on_failure, m.on_failure
             ),
+            "failure_target": m.failure_target if m.has_failure_target else None,
             "transitions": tuple(
                 {
                     "target": transition.target,
-                    "conditions": tuple(
-                        self._condition(f"{place}.transitions[{i}].conditions[{j}]", condition)
-                        for j, condition in enumerate(transition.conditions)
+                    "conditions": self._conditions(
+                        f"{place}.transitions[{i}].conditions", transition.conditions
                     ),
                 }
                 for i, transition in enumerate(m.transitions)
@@ -94,12 +122,34 @@ class _Reader:
             "source": _span(m),
         }
 
+    def _wait(self, place: str, m: Any) -> dict[str, Any]:
+        return {
+            "duration": m.duration if m.has_duration else None,
+            "event": self._event(f"{place}.wait.event", m.event),
+            "conditions": self._conditions(f"{place}.wait.conditions", m.conditions),
+            "limit": m.limit or None,
+        }
+
+    def _window(self, place: str, m: Any) -> dict[str, Any]:
+        return {
+            "earliest": m.earliest,
+            "latest": m.latest or None,
+            "hard": self._member(f"{place}.window.kind", self.numbers.hard, m.kind),
+            "missed_target": m.missed_target if m.has_missed_target else None,
+        }
+
+    def _event(self, place: str, number: int) -> EventKind | None:
+        return self._member(place, self.numbers.event, number) if number else None
+
+    def _conditions(self, place: str, messages: Iterable[Any]) -> tuple[dict[str, Any], ...]:
+        return tuple(self._condition(f"{place}[{i}]", m) for i, m in enumerate(messages))
+
     def _condition(self, place: str, m: Any) -> dict[str, Any]:
         return {
             "type": self._member(f"{place}.type", self.numbers.condition, m.type),
             "id": m.id,
             "object_id": m.object_id,
-            "param1": m.param1,
+            "param1": m.param1 if m.has_param1 else None,
             "param2": m.param2 if m.has_param2 else None,
             "inclusive": m.inclusive,
             "max_age": m.max_age or None,
@@ -114,6 +164,8 @@ class _Reader:
             "max_repeat_duration": m.max_repeat_duration,
             "count_interruptions": m.count_interruptions,
             "stop": self._member(f"{place}.stop", self.numbers.stop, m.stop),
+            "every": m.every,
+            "until": self._conditions(f"{place}.until", m.until),
             "source": _span(m),
         }
 
@@ -123,11 +175,14 @@ class _Reader:
             "event": self._member(f"{place}.event", events, m.event),
             "response": self._member(f"{place}.response", self.numbers.response, m.response),
             "pose": self._pose(f"{place}.pose", m.pose, m.yaw) if m.has_pose else None,
-            "until": self._member(f"{place}.until", events, m.until) if m.until else None,
+            "area": m.area if m.has_area else None,
+            "until": self._event(f"{place}.until", m.until),
             "afterwards": self._member(
                 f"{place}.afterwards", self.numbers.afterwards, m.afterwards
             ),
-            "priority": m.priority,
+            "hold_limit": m.hold_limit or None,
+            "on_limit": self._member(f"{place}.on_limit", self.numbers.afterwards, m.on_limit),
+            "priority": m.priority if m.has_priority else None,
             "source": _span(m),
         }
 
@@ -144,22 +199,27 @@ class _Reader:
             )
         return {"x": m.position.x, "y": m.position.y, "z": m.position.z, "yaw": yaw}
 
-    def _joints(self, place: str, m: Any) -> dict[str, Any]:
-        if len(m.velocity) or len(m.effort):
-            _refuse(
-                self.source_name,
-                "ros.joint-states",
-                f"{place}.joint_states: has velocities or efforts, which a mission does not hold",
-                "leave them empty",
-            )
-        return {"names": tuple(m.name), "positions": tuple(m.position.tolist())}
-
     def _member(self, place: str, numbers: Mapping[E, int], number: int) -> E:
         for member, value in numbers.items():
             if value == number:
                 return member
-        known = ", ".join(f"{value} {member.name}" for member, value in numbers.items())
+        known = ", ".join(f"{value} {_name(member)}" for member, value in numbers.items())
         _refuse(self.source_name, "ros.wrong-field", f"{place}: is {number}", f"known are {known}")
+
+
+def _joints(m: Any) -> dict[str, Any]:
+    return {
+        "names": tuple(m.name),
+        "positions": tuple(m.position.tolist()),
+        "velocities": tuple(m.velocity.tolist()),
+        "efforts": tuple(m.effort.tolist()),
+    }
+
+
+def _name(member: object) -> str:
+    if isinstance(member, bool):
+        return "HARD" if member else "SOFT"
+    return getattr(member, "name", str(member))
 
 
 def _span(m: Any) -> dict[str, int] | None:

@@ -40,19 +40,27 @@ class RosTypes:
             },
         )
 
-    def joint_state(self, names: tuple[str, ...], positions: tuple[float, ...]) -> Any:
-        """A sensor_msgs/JointState with names and positions only."""
+    def joint_state(
+        self,
+        names: tuple[str, ...] = (),
+        positions: tuple[float, ...] = (),
+        velocities: tuple[float, ...] = (),
+        efforts: tuple[float, ...] = (),
+    ) -> Any:
+        """A sensor_msgs/JointState without a header."""
         import numpy as np
 
-        return self._make(
-            "sensor_msgs/msg/JointState",
-            {"name": list(names), "position": np.array(positions, dtype=np.float64)},
-        )
+        values = {"position": positions, "velocity": velocities, "effort": efforts}
+        arrays = {name: np.array(given, dtype=np.float64) for name, given in values.items()}
+        return self._make("sensor_msgs/msg/JointState", {"name": list(names), **arrays})
 
     def numbers(self, message: str, values: type[E], prefix: str = "") -> dict[E, int]:
         """The constants that a message has for the members of an enumeration."""
-        constants = self.store.types[f"{PACKAGE}/msg/{message}"]
-        return {value: getattr(constants, prefix + value.name) for value in values}
+        return {v: self.constant(message, prefix + v.name) for v in values}
+
+    def constant(self, message: str, name: str) -> int:
+        """A constant of a message, by its name there."""
+        return int(getattr(self.store.types[f"{PACKAGE}/msg/{message}"], name))
 
     def encode(self, mission: Any) -> bytes:
         """A MissionSpecification as bytes: CDR in ROS 2."""

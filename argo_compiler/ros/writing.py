@@ -4,7 +4,18 @@ from typing import Any, NoReturn
 
 from argo_compiler.diagnostics import Diagnostic, DiagnosticError, Severity, Span
 from argo_compiler.diagnostics.subject import subject_of
-from argo_compiler.il import Condition, Group, Mission, Reaction, Task
+from argo_compiler.il import (
+    Condition,
+    EventKind,
+    Group,
+    JointState,
+    Mission,
+    Reaction,
+    Task,
+    TimeWindow,
+    WaitRule,
+)
+from argo_compiler.il.velocities import of_ways_on, of_ways_there
 from argo_compiler.model import Pose
 from argo_compiler.quaternions import to_quaternion
 from argo_compiler.ros.numbers import Numbers
@@ -14,11 +25,29 @@ _MAX = {"int64": 2**63 - 1, "uint64": 2**64 - 1}
 
 
 def to_message(mission: Mission, types: RosTypes) -> Any:
-    """The mission as a MissionSpecification.
+    """The mission as a MissionSpecification, whose velocities are those of the way on.
 
-    Raises DiagnosticError for an integer beyond 64 bits and a text that can't be UTF-8.
+    Raises DiagnosticError for an integer beyond 64 bits, a text that can't be UTF-8, and velocities
+    that depend on more than the task that the robot comes from.
     """
-    return _Writer(types).mission(mission)
+    return _Writer(types).mission(_with_velocities_on(mission))
+
+
+def _with_velocities_on(mission: Mission) -> Mission:
+    """The mission with the velocity of the way from each task, as the messages have it."""
+    on, _ = of_ways_on(mission)
+    back, differ = of_ways_there(on)
+    for task, read in zip(mission.tasks, back.tasks, strict=True):
+        if task.velocity != read.velocity or task.name in differ:
+            given = "no velocity" if task.velocity is None else f"{task.velocity:g} m/s"
+            _refuse(
+                "velocity",
+                f"{subject_of('tasks', task.name)}.velocity: a message has the velocity of the way "
+                f"on from a task, whichever task follows: it can't say {given} on all ways to this "
+                "task and another one on other ways from there",
+                "give all tasks that may follow the same task one velocity",
+            )
+    return on
 
 
 class _Writer:
@@ -55,8 +84,6 @@ class _Writer:
 
     def _task(self, task: Task) -> Any:
         place = subject_of("tasks", task.name)
-        joints = task.joint_states
-        names = () if joints is None else joints.names
         return self.types.new(
             "MissionTask",
             action=self.numbers.action[task.action],
@@ -65,18 +92,25 @@ class _Writer:
             has_object_id=task.object_id is not None,
             object_id=_text(f"{place}.object_id", task.object_id or ""),
             velocity=task.velocity or 0.0,
-            has_joint_states=joints is not None,
-            joint_states=self.types.joint_state(
-                tuple(_text(f"{place}.joint_states", name) for name in names),
-                () if joints is None else joints.positions,
-            ),
+            has_joint_states=task.joint_states is not None,
+            joint_states=self._joints(place, task.joint_states),
+            has_wait=task.wait is not None,
+            wait=self._wait(place, task.wait or WaitRule()),
+            has_window=task.window is not None,
+            window=self._window(place, task.window or TimeWindow()),
+            time_limit=task.time_limit or 0.0,
+            reading_limit=task.reading_limit or 0.0,
+            optional=task.optional,
+            priority=task.priority,
             retries=_integer(f"{place}.retries", task.retries, "uint64"),
             on_failure=self.numbers.on_failure[task.on_failure],
+            has_failure_target=task.failure_target is not None,
+            failure_target=_text(f"{place}.failure_target", task.failure_target or ""),
             transitions=[
                 self.types.new(
                     "MissionTransition",
                     target=_text(f"{place}.transitions", transition.target),
-                    conditions=[self._condition(place, c) for c in transition.conditions],
+                    conditions=self._conditions(f"{place}.transitions", transition.conditions),
                 )
                 for transition in task.transitions
             ],
@@ -84,13 +118,47 @@ class _Writer:
             **_source(place, task.source),
         )
 
+    def _joints(self, place: str, joints: JointState | None) -> Any:
+        if joints is None:
+            return self.types.joint_state()
+        names = tuple(_text(f"{place}.joint_states", name) for name in joints.names)
+        return self.types.joint_state(names, joints.positions, joints.velocities, joints.efforts)
+
+    def _wait(self, place: str, wait: WaitRule) -> Any:
+        return self.types.new(
+            "MissionWait",
+            has_duration=wait.duration is not None,
+            duration=0.0 if wait.duration is None else wait.duration,
+            event=self._event(wait.event),
+            conditions=self._conditions(f"{place}.wait", wait.conditions),
+            limit=wait.limit or 0.0,
+        )
+
+    def _window(self, place: str, window: TimeWindow) -> Any:
+        missed = window.missed_target
+        return self.types.new(
+            "MissionWindow",
+            earliest=window.earliest,
+            latest=window.latest or 0.0,
+            kind=self.numbers.hard[window.hard],
+            has_missed_target=missed is not None,
+            missed_target=_text(f"{place}.window", missed or ""),
+        )
+
+    def _event(self, event: EventKind | None) -> int:
+        return 0 if event is None else self.numbers.event[event]
+
+    def _conditions(self, place: str, conditions: tuple[Condition, ...]) -> list[Any]:
+        return [self._condition(place, condition) for condition in conditions]
+
     def _condition(self, place: str, condition: Condition) -> Any:
         return self.types.new(
             "MissionCondition",
             type=self.numbers.condition[condition.type],
-            id=_text(f"{place}.transitions", condition.id),
-            object_id=_text(f"{place}.transitions", condition.object_id),
-            param1=condition.param1,
+            id=_text(place, condition.id),
+            object_id=_text(place, condition.object_id),
+            has_param1=condition.param1 is not None,
+            param1=0.0 if condition.param1 is None else condition.param1,
             has_param2=condition.param2 is not None,
             param2=0.0 if condition.param2 is None else condition.param2,
             inclusive=condition.inclusive,
@@ -110,6 +178,8 @@ class _Writer:
             max_repeat_duration=group.max_repeat_duration,
             count_interruptions=group.count_interruptions,
             stop=self.numbers.stop[group.stop],
+            every=group.every,
+            until=self._conditions(f"{place}.until", group.until),
             **_source(place, group.source),
         )
 
@@ -119,9 +189,14 @@ class _Writer:
             "MissionReaction",
             event=self.numbers.event[reaction.event],
             response=self.numbers.response[reaction.response],
-            until=0 if reaction.until is None else self.numbers.event[reaction.until],
+            has_area=reaction.area is not None,
+            area=_integer(f"{place}.area", reaction.area or 0, "int64"),
+            until=self._event(reaction.until),
             afterwards=self.numbers.afterwards[reaction.afterwards],
-            priority=_integer(f"{place}.priority", reaction.rank[1], "int64"),
+            hold_limit=reaction.hold_limit or 0.0,
+            on_limit=self.numbers.afterwards[reaction.on_limit],
+            has_priority=reaction.priority is not None,
+            priority=_integer(f"{place}.priority", reaction.priority or 0, "int64"),
             **self._pose(reaction.pose),
             **_source(place, reaction.source),
         )

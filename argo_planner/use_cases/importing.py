@@ -22,7 +22,7 @@ from argo_compiler.files.mission_file import MissionFile, decode_mission
 from argo_compiler.files.reading import opened
 from argo_compiler.il import Mission
 from argo_compiler.isar import find_definition, from_isar
-from argo_compiler.ros import decode_bag, is_bag_content, read_bag
+from argo_compiler.ros import Received, decode_bag, is_bag_content, read_bag
 from argo_compiler.script.syntax.source import Source as Script
 from argo_compiler.stages import stage
 from argo_env.planning.opening import OpenedSite
@@ -110,12 +110,12 @@ def load(
     if kind is not SourceKind.SCRIPT:
         refuse_areas(name, start_area, end_area)
     if isinstance(upload.content, Path):
-        return Loaded(read_bag(upload.content, name), (), None)
+        return _received(read_bag(upload.content, name))
     if not isinstance(upload.content, bytes):
-        return Loaded(decode_bag(upload.content, name), (), None)
+        return _received(decode_bag(upload.content, name))
     match kind:
         case SourceKind.BAG:
-            return Loaded(decode_bag(upload.content, name), (), None)
+            return _received(decode_bag(upload.content, name))
         case SourceKind.ISAR:
             imported = from_isar(find_definition(upload.content), name, catalog)
             return Loaded(imported.mission, imported.diagnostics, None)
@@ -124,6 +124,10 @@ def load(
             return Loaded(file.mission, file.placed(file.changes), file)
         case SourceKind.SCRIPT:
             return _load_script(upload.content, name, catalog, start_area, end_area)
+
+
+def _received(received: Received) -> Loaded:
+    return Loaded(received.mission, received.diagnostics, None)
 
 
 def _refuse_runs(upload: Upload) -> None:

@@ -15,7 +15,7 @@ EXPORT = {
         "Limit its groups, and lead no transition back.",
     ),
     "export.isar-group": error(
-        "A group is repeated for a time; for isar, rounds can only be counted.",
+        "A group is repeated other than a number of times; for isar, rounds can only be counted.",
         "Limit it by `max_repeat_count`.",
     ),
     "export.isar-mode": error(
@@ -49,6 +49,10 @@ EXPORT = {
     "export.reaction": error(
         "A reaction can't be said in this format.",
         "Let the robot's own tree or behaviour react, with the mission's inside it.",
+    ),
+    "export.velocity": error(
+        "A message has the velocity of the way on from a task, and those of the ways differ.",
+        "Give all tasks that may follow the same task one velocity.",
     ),
     "export.too-long": error(
         "The duration of a group is longer than a Timeout node takes.", "Shorten it."

@@ -21,7 +21,7 @@ def test_bags_are_written_as_the_exporter_says(tmp_path, name):
         path.mkdir()
         for file, content in exported.items():
             (path / file).write_bytes(content)
-    assert read_bag(path) == PLAN
+    assert read_bag(path).mission == PLAN
 
 
 def test_the_package_is_written_whatever_the_mission():

@@ -24,7 +24,9 @@ from argo_compiler.il import (
     Reaction,
     Response,
     Task,
+    TimeWindow,
     Transition,
+    WaitRule,
 )
 from argo_compiler.isar import InspectionView, from_isar, read_isar, to_isar
 from argo_compiler.model import Pose
@@ -136,6 +138,15 @@ def test_counted_groups_are_written_out():
     assert "".join(task["tag"] for task in data["tasks"]) == "12211221"
 
 
+def test_where_ways_only_meet_nothing_is_written():
+    join = Task(name="J", action=Action.WAIT, wait=WaitRule(duration=0))
+    mission = Mission(
+        tasks=(measure("A", "1", "J"), join),
+        groups=(Group(name="G", start="A", end="J", max_repeat_count=2),),
+    )
+    assert [task["id"] for task in export(mission)["tasks"]] == ["A", "A (2)"]
+
+
 def test_the_last_way_to_the_dock_is_the_way_home():
     dock = Pose(x=0, y=0, z=0, yaw=1)
     home = Task(name="home", action=Action.WAYPOINT, pose=dock)
@@ -166,6 +177,38 @@ LOW = Condition(type=ConditionType.LESS, object_id="1", param1=1)
             Mission(tasks=(measure("A", "1", joint_states=JointState(names=(), positions=())),)),
             "isar-task",
             "'A' has joint states",
+        ),
+        (Mission(tasks=(measure("A", "1", time_limit=9),)), "isar-task", "'A' has a limit of time"),
+        (
+            Mission(tasks=(measure("A", "1", reading_limit=9),)),
+            "isar-task",
+            "'A' has a limit for its reading",
+        ),
+        (
+            Mission(tasks=(measure("A", "1", window=TimeWindow(latest=9)),)),
+            "isar-task",
+            "'A' has a window",
+        ),
+        (
+            Mission(tasks=(Task(name="W", action=Action.WAIT, wait=WaitRule(duration=9)),)),
+            "isar-task",
+            "'W' has a wait",
+        ),
+        (
+            Mission(
+                tasks=(measure("A", "1"),),
+                groups=(Group(name="G", start="A", end="A", max_repeat_count=2, every=9),),
+            ),
+            "isar-group",
+            "'G' is repeated at set times",
+        ),
+        (
+            Mission(
+                tasks=(measure("A", "1"),),
+                groups=(Group(name="G", start="A", end="A", until=(LOW,)),),
+            ),
+            "isar-group",
+            "'G' is repeated until",
         ),
         (
             Mission(

@@ -78,7 +78,7 @@ def refusal(path):
 def test_every_mission_comes_back_unchanged(tmp_path_factory, form, mission):
     path = write(tmp_path_factory.mktemp("bag"), form, mission)
     assert is_bag(path)
-    assert read_bag(path).model_dump_json() == mission.model_dump_json()
+    assert read_bag(path).mission.model_dump_json() == mission.model_dump_json()
 
 
 @pytest.mark.parametrize("form", FORMS)
@@ -90,7 +90,7 @@ def test_equal_missions_make_equal_bags(form):
 def test_files_of_a_rosbag2_are_read_by_themselves(tmp_path, storage):
     (data,) = write(tmp_path, storage).glob("mission.*")
     assert is_bag(data)
-    assert read_bag(data) == PLAN
+    assert read_bag(data).mission == PLAN
 
 
 @pytest.mark.parametrize("storage", Storage)
@@ -109,7 +109,7 @@ def test_what_is_recognised_as_a_bag(tmp_path):
     assert not is_bag(tmp_path / "missing.txt")
     assert is_bag(tmp_path / "renamed")
     assert is_bag(tmp_path / "missing.bag")
-    assert read_bag(tmp_path / "renamed") == PLAN
+    assert read_bag(tmp_path / "renamed").mission == PLAN
 
 
 def test_what_is_no_bag(tmp_path):
@@ -158,7 +158,7 @@ def test_bags_of_other_definitions(tmp_path):
 
 def test_several_missions_are_refused_and_repetitions_are_not(tmp_path):
     repeated = ros1_bag(tmp_path / "1.bag", [encoded(PLAN)] * 3)
-    assert read_bag(repeated) == PLAN
+    assert read_bag(repeated).mission == PLAN
     several = ros1_bag(tmp_path / "2.bag", [encoded(PLAN), encoded(Mission())])
     assert refusal(several).code == "ros.several-missions"
 
@@ -187,7 +187,7 @@ def test_broken_bags_end_in_a_message(tmp_path_factory, form, data):
     file.write_bytes(content)
     # A byte may have been changed in a text, or not at all: then it is a mission.
     with suppress(DiagnosticError):
-        assert isinstance(read_bag(path), Mission)
+        assert isinstance(read_bag(path).mission, Mission)
 
 
 @pytest.mark.parametrize("form", FORMS)
@@ -208,7 +208,7 @@ def test_compressed_ros_1_bags_are_read_if_they_do_not_burst(tmp_path, monkeypat
     with writer:
         connection = writer.add_connection("/mission", SPECIFICATION, typestore=ros1_types().store)
         writer.write(connection, 1, encoded(PLAN))
-    assert read_bag(path) == PLAN
+    assert read_bag(path).mission == PLAN
     monkeypatch.setattr(compression, "MAX_CHUNK_BYTES", 100)
     assert refusal(path).code == "ros.compressed"
 
@@ -232,7 +232,7 @@ def test_compressed_mcap_chunks_are_read_if_they_do_not_burst(tmp_path, monkeypa
         connection = writer.add_connection("/mission", SPECIFICATION, typestore=types.store)
         writer.write(connection, 1, types.encode(to_message(PLAN, types)))
     assert b"zstd" in (path / "bag.mcap").read_bytes()
-    assert read_bag(path) == PLAN
+    assert read_bag(path).mission == PLAN
     monkeypatch.setattr(compression, "MAX_CHUNK_BYTES", 100)
     assert refusal(path).code == "ros.compressed"
     assert refusal(path / "bag.mcap").code == "ros.compressed"

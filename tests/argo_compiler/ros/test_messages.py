@@ -7,7 +7,7 @@ import pytest
 from hypothesis import example, given, settings
 from hypothesis import strategies as st
 
-from argo_compiler.diagnostics import DiagnosticError
+from argo_compiler.diagnostics import DiagnosticError, Severity
 from argo_compiler.il import (
     Action,
     EventKind,
@@ -17,6 +17,9 @@ from argo_compiler.il import (
     Reaction,
     Response,
     Task,
+    TimeWindow,
+    Transition,
+    WaitRule,
 )
 from argo_compiler.model import Pose
 from argo_compiler.ros import (
@@ -33,15 +36,17 @@ from tests.missions_all import FLOATS, carried_missions
 VERSIONS = pytest.mark.parametrize("types", [ros1_types(), ros2_types()], ids=["ros1", "ros2"])
 
 MD5 = {
-    "MissionCondition": "69191ebaf9edf61ebc61d3cef1e20932",
-    "MissionGroup": "4bc930166bfc849b3edd644d928bd131",
-    "MissionReaction": "74c86b44cbe829fa74577b11abf486ce",
-    "MissionSpecification": "386ae4047552ccd4eb43836c23ea9856",
-    "MissionTask": "6b3230ef9bbc9b47aa0829a98693ea59",
-    "MissionTransition": "3931aca7bfe094f6c3be4bc482d2116f",
+    "MissionCondition": "37bb38f28a9ee4916e2aa13f33536b1a",
+    "MissionGroup": "fa096b920fc904334a3cb2c3e623c801",
+    "MissionReaction": "4c1d53fb9d6809f83c45fe2885455a18",
+    "MissionSpecification": "022e5b7c4086d54ad1940136ea930951",
+    "MissionTask": "ba474aa67ef363b700dc70312a631fdc",
+    "MissionTransition": "b65ba9fbcf3464c147446c00ea22c9c8",
+    "MissionWait": "512b5531cbafc73bf63f3925a8b25653",
+    "MissionWindow": "f61671b5696223a94cb58f0e3cf0ab2f",
 }
-"""As `genmsg` 0.6 of ROS 1 computes them from the same files."""
-TYPE_HASH = "RIHS01_5f48a25d0aa7552b4ee9792a4ec686e4164a191a611cc79aec79428435130e54"
+"""As rosbags computes them from the same files."""
+TYPE_HASH = "RIHS01_dc1030b6ce594b1199014b6988cf3ed9b783ec19edad2a7f119df22ff022024e"
 
 
 @VERSIONS
@@ -50,7 +55,7 @@ TYPE_HASH = "RIHS01_5f48a25d0aa7552b4ee9792a4ec686e4164a191a611cc79aec7942843513
 @example(mission=Mission())
 def test_every_mission_comes_back_unchanged(types, mission):
     content = types.encode(to_message(mission, types))
-    back = from_message(types.decode(content), types, "bag")
+    back = from_message(types.decode(content), types, "bag").mission
     assert back == mission
     assert back.model_dump_json() == mission.model_dump_json()  # the sign of 0, int and float
 
@@ -64,7 +69,7 @@ def test_ros_1_and_ros_2_bytes_say_the_same():
     content = ros1.encode(to_message(mission, ros1))
     # JointState differs by the header's sequence number, so that rosbags has to convert it.
     converted = bytes(ros2.store.ros1_to_cdr(content, SPECIFICATION))
-    assert from_message(ros2.decode(converted), ros2, "bag") == mission
+    assert from_message(ros2.decode(converted), ros2, "bag").mission == mission
 
 
 @pytest.mark.parametrize("message", MD5)
@@ -114,7 +119,7 @@ def test_poses_keep_their_last_digit_and_whole_turns(yaw, x):
     message = to_message(mission, types)
     q = message.dock.orientation
     assert math.hypot(q.x, q.y, q.z, q.w) == pytest.approx(1)
-    assert from_message(message, types, "bag") == mission
+    assert from_message(message, types, "bag").mission == mission
 
 
 @settings(deadline=None)
@@ -130,7 +135,7 @@ def test_the_orientation_counts_where_the_heading_is_another(yaw, size, sign, pl
     message.dock.orientation.z *= sign * size
     message.dock.orientation.w *= sign * size
     message.dock_yaw = planned
-    read = from_message(message, types, "bag").dock.yaw
+    read = from_message(message, types, "bag").mission.dock.yaw
     assert math.cos(read - yaw) == pytest.approx(1)
     assert read == planned or -math.pi <= read <= math.pi
 
@@ -155,7 +160,14 @@ def test_orientations_that_are_no_heading_are_refused(orientation, reason):
 def plan():
     types = ros2_types()
     joints = JointState(names=("arm",), positions=(1.0,))
-    task = Task(name="A", action=Action.MEASURE, object_id="1", joint_states=joints)
+    task = Task(
+        name="A",
+        action=Action.MEASURE,
+        object_id="1",
+        joint_states=joints,
+        wait=WaitRule(event=EventKind.ALL_CLEAR),
+        window=TimeWindow(latest=60.0),
+    )
     mission = Mission(
         tasks=(task,),
         groups=(Group(name="G", start="A", end="A", max_repeat_count=2),),
@@ -168,7 +180,7 @@ def plan():
     ("change", "said"),
     [
         (lambda m: setattr(m, "version", 0), "has version 0 of the messages"),
-        (lambda m: setattr(m, "version", 3), "has version 3 of the messages"),
+        (lambda m: setattr(m, "version", 2), "has version 2 of the messages"),
         (lambda m: setattr(m, "mode", 7), "mode: is 7"),
         (lambda m: setattr(m, "max_duration", -1.0), "max_duration: "),
         (lambda m: setattr(m, "max_duration", math.inf), "max_duration: "),
@@ -176,7 +188,9 @@ def plan():
         (lambda m: setattr(m.tasks[0], "name", ""), "tasks[0].name: "),
         (lambda m: setattr(m.tasks[0], "velocity", math.nan), "tasks[0].velocity: "),
         (lambda m: setattr(m.tasks[0], "on_failure", 9), "tasks[0].on_failure: is 9"),
-        (lambda m: setattr(m.tasks[0].joint_states, "effort", [1.0]), "tasks[0].joint_states: "),
+        (lambda m: setattr(m.tasks[0].window, "kind", 2), "tasks[0].window.kind: is 2"),
+        (lambda m: setattr(m.tasks[0].wait, "event", 99), "tasks[0].wait.event: is 99"),
+        (lambda m: setattr(m.tasks[0], "time_limit", -1.0), "tasks[0].time_limit: "),
         (lambda m: setattr(m.groups[0], "stop", 2), "groups[0].stop: is 2"),
         (lambda m: setattr(m.reactions[0], "event", 0), "reactions[0].event: is 0"),
         (lambda m: setattr(m.reactions[0], "until", 99), "reactions[0].until: is 99"),
@@ -195,7 +209,7 @@ def test_flags_decide_whether_a_field_counts():
     message, types = plan()
     message.current, message.start_area, message.tasks[0].source_line = "A", 3, 7
     message.tasks[0].has_object_id = False
-    read = from_message(message, types, "bag")
+    read = from_message(message, types, "bag").mission
     assert (read.current, read.start_area, read.dock) == (None, None, None)
     assert (read.tasks[0].source, read.tasks[0].object_id) == (None, None)
 
@@ -221,5 +235,76 @@ def test_the_largest_numbers_fit():
         tasks=(Task(name="A", action=Action.START, retries=2**64 - 1),), start_area=-(2**63)
     )
     assert (
-        from_message(types.decode(types.encode(to_message(mission, types))), types, "") == mission
+        from_message(types.decode(types.encode(to_message(mission, types))), types, "").mission
+        == mission
     )
+
+
+def driven(name, velocity, *targets, **fields):
+    ways = tuple(Transition(target=target) for target in targets)
+    pose = Pose(x=1, y=2, z=3)
+    return Task(
+        name=name,
+        action=Action.WAYPOINT,
+        pose=pose,
+        velocity=velocity,
+        transitions=ways,
+        **fields,
+    )
+
+
+START = Task(name="S", action=Action.START, transitions=(Transition(target="A"),))
+
+
+@pytest.mark.rule("T6")
+def test_velocities_in_a_message_are_those_of_the_way_on():
+    types = ros2_types()
+    mission = Mission(
+        tasks=(START, driven("A", 0.5, "B"), driven("B", 0.25, "C"), driven("C", None))
+    )
+    message = to_message(mission, types)
+    assert [task.velocity for task in message.tasks] == [0.5, 0.25, 0.0, 0.0]
+    assert from_message(message, types, "bag").mission == mission
+
+
+@pytest.mark.parametrize(
+    ("tasks", "groups", "named"),
+    [
+        ((driven("A", 0.5, "B"), driven("B", None)), (), "A"),  # no START has its velocity
+        (
+            (
+                START,
+                driven("A", None, "B", failure_target="C"),
+                driven("B", 0.5),
+                driven("C", None),
+            ),
+            (),
+            "C",
+        ),
+        (
+            (START, driven("A", 0.5, "B"), driven("B", None)),
+            (Group(name="G", start="A", end="A", max_repeat_count=2),),
+            "B",
+        ),
+        ((START, driven("A", None), driven("B", 0.5)), (), "B"),  # nothing leads there
+    ],
+)
+def test_velocities_that_differ_by_what_follows_are_refused(tasks, groups, named):
+    with pytest.raises(DiagnosticError) as caught:
+        to_message(Mission(tasks=tasks, groups=groups), ros1_types())
+    (finding,) = caught.value.diagnostics
+    assert finding.code == "export.velocity"
+    assert finding.message.startswith(f"tasks['{named}'].velocity: ")
+
+
+def test_a_task_that_is_driven_to_at_several_velocities_has_the_slowest_and_a_warning():
+    types = ros2_types()
+    message = to_message(
+        Mission(tasks=(START, driven("A", None, "B"), driven("B", None, "B"))), types
+    )
+    message.tasks[1].velocity, message.tasks[2].velocity = 0.5, 0.25
+    received = from_message(message, types, "bag")
+    assert [task.velocity for task in received.mission.tasks] == [None, None, 0.25]
+    assert [(d.code, d.severity) for d in received.diagnostics] == [
+        ("ros.velocity", Severity.WARNING)
+    ]

@@ -174,7 +174,11 @@ LOW = Condition(type=ConditionType.LESS, object_id="1", param1=1)
             "'A' has a failure policy",
         ),
         (
-            Mission(tasks=(measure("A", "1", joint_states=JointState(names=(), positions=())),)),
+            Mission(
+                tasks=(
+                    measure("A", "1", joint_states=JointState(names=("arm",), positions=(1.0,))),
+                )
+            ),
             "isar-task",
             "'A' has joint states",
         ),

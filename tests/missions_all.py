@@ -70,25 +70,31 @@ def _mended(limits: tuple[Any, ...]) -> Any:
     """Turns most values into allowed ones, so that few have to be thrown away."""
 
     def mend(value: Any) -> Any:
-        for limit in limits:
-            if isinstance(limit, annotated_types.MinLen):
-                return value or "x"
-            if isinstance(limit, annotated_types.Ge | annotated_types.Gt):
-                most = next((o.le for o in limits if isinstance(o, annotated_types.Le)), 2**63 - 1)
-                return abs(value) if abs(value) <= most or isinstance(value, float) else 1
-        return value
+        if any(isinstance(limit, annotated_types.MinLen) for limit in limits):
+            return value or "x"
+        least, most = _least(limits), _most(limits)
+        if least is not None and value < least:
+            value = -value
+        return value if most is None or value <= most else most
 
     return mend
 
 
+def _least(limits: tuple[Any, ...]) -> Any:
+    for limit in limits:
+        if isinstance(limit, annotated_types.Ge):
+            return limit.ge
+        if isinstance(limit, annotated_types.Gt):
+            return limit.gt
+    return None
+
+
+def _most(limits: tuple[Any, ...]) -> Any:
+    return next((limit.le for limit in limits if isinstance(limit, annotated_types.Le)), None)
+
+
 def _kept(value: Any, limits: tuple[Any, ...]) -> bool:
-    return all(
-        value > limit.gt
-        if isinstance(limit, annotated_types.Gt)
-        else value >= limit.ge
-        if isinstance(limit, annotated_types.Ge)
-        else value <= limit.le
-        if isinstance(limit, annotated_types.Le)
-        else True
-        for limit in limits
-    )
+    least, most = _least(limits), _most(limits)
+    if any(isinstance(limit, annotated_types.Gt) and value <= limit.gt for limit in limits):
+        return False
+    return (least is None or value >= least) and (most is None or value <= most)

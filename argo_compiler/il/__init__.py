@@ -2,6 +2,7 @@
 
 from argo_compiler.il.mission import (
     DEFAULT_PRIORITIES,
+    MAX_TIME_S,
     Action,
     Afterwards,
     Condition,
@@ -24,6 +25,7 @@ from argo_compiler.il.mission import (
 
 __all__ = [
     "DEFAULT_PRIORITIES",
+    "MAX_TIME_S",
     "Action",
     "Afterwards",
     "Condition",

@@ -14,6 +14,12 @@ from pydantic import Field
 from argo_compiler.diagnostics import Span
 from argo_compiler.model import Model, Pose
 
+MAX_TIME_S = 1e12
+"""of each time in a mission: some 30,000 years, as far as a clock in s counts milliseconds"""
+MAX_COUNT = 1_000_000_000
+"""of rounds, and of the numbers that rank reactions and tell areas apart"""
+MAX_RETRIES = 1_000_000
+
 
 class Action(StrEnum):
     """What a task does. START only says where the mission begins; the machine passes over it."""
@@ -179,7 +185,7 @@ class Condition(Model):
     """upper bound, for WITHIN only"""
     inclusive: bool = False
     """whether the bounds are among the values that satisfy it (at least, at most)"""
-    max_age: float | None = Field(default=None, gt=0)
+    max_age: float | None = Field(default=None, gt=0, le=MAX_TIME_S)
     """s; None: a value never becomes too old. STALE needs one"""
 
 
@@ -209,22 +215,22 @@ class WaitRule(Model):
     the wait.
     """
 
-    duration: float | None = Field(default=None, ge=0)
+    duration: float | None = Field(default=None, ge=0, le=MAX_TIME_S)
     """s since the task was come to; 0: a place where ways meet, at which nothing is done"""
     event: EventKind | None = None
     """until this occurs; what occurred before the task was come to does not count"""
     conditions: tuple[Condition, ...] = ()
     """until all of them hold"""
-    limit: float | None = Field(default=None, gt=0)
+    limit: float | None = Field(default=None, gt=0, le=MAX_TIME_S)
     """s, with `event` or `conditions`: then the task has failed"""
 
 
 class TimeWindow(Model):
     """When a task is to be done, in s since the mission's start."""
 
-    earliest: float = Field(default=0.0, ge=0)
+    earliest: float = Field(default=0.0, ge=0, le=MAX_TIME_S)
     """before this, the robot goes there and waits at the place"""
-    latest: float | None = Field(default=None, gt=0)
+    latest: float | None = Field(default=None, gt=0, le=MAX_TIME_S)
     """by when the task has to have ended; None: any time"""
     hard: bool = True
     """whether the task has failed if it has not ended at `latest`; else it is done all the same"""
@@ -249,14 +255,14 @@ class Task(Model):
     velocity: float | None = Field(default=None, gt=0)
     """m/s on the way to this task, wherever the robot comes from; None: its planning speed"""
     joint_states: JointState | None = None
-    retries: int = Field(default=0, ge=0)
+    retries: int = Field(default=0, ge=0, le=MAX_RETRIES)
     """how often a failed action is tried again before it counts as failed"""
     on_failure: OnFailure = OnFailure.CONTINUE
     failure_target: str | None = None
     """BRANCH: the task that follows"""
-    time_limit: float | None = Field(default=None, gt=0)
+    time_limit: float | None = Field(default=None, gt=0, le=MAX_TIME_S)
     """s for each attempt, the way there included, after which it has failed; None: no limit"""
-    reading_limit: float | None = Field(default=None, gt=0)
+    reading_limit: float | None = Field(default=None, gt=0, le=MAX_TIME_S)
     """MEASURE: s that the robot tries to read the value, after which it is unreadable; None: as
     long as the robot does by itself"""
     optional: bool = False
@@ -280,14 +286,14 @@ class Group(Model):
     name: str = Field(min_length=1)
     start: str
     end: str
-    max_repeat_count: int = Field(default=0, ge=0)
+    max_repeat_count: int = Field(default=0, ge=0, le=MAX_COUNT)
     """rounds in all; 0: no limit"""
-    max_repeat_duration: float = Field(default=0.0, ge=0)
+    max_repeat_duration: float = Field(default=0.0, ge=0, le=MAX_TIME_S)
     """s on the mission's clock since the group was entered; 0: no limit"""
     count_interruptions: bool = False
     """whether the time of pauses, reactions and supervision counts as part of the duration"""
     stop: Stop = Stop.HARD
-    every: float = Field(default=0.0, ge=0)
+    every: float = Field(default=0.0, ge=0, le=MAX_TIME_S)
     """s on the group's clock from the beginning of one round to that of the next. The plan does not
     drift: round n is due (n - 1) times this after the group was entered, and one that is late
     begins at once. 0: a round begins when the one before has ended"""
@@ -307,19 +313,19 @@ class Reaction(Model):
     response: Response
     pose: Pose | None = None
     """SAFE_AREA: where to. RETURN: to which dock; None: the mission's"""
-    area: int | None = None
+    area: int | None = Field(default=None, ge=-MAX_COUNT, le=MAX_COUNT)
     """RETURN: the starting area that `pose` is the dock of, for people"""
     until: EventKind | None = None
     """PAUSE, RETURN, SAFE_AREA: stand still until this event occurs, or a person resumes"""
     afterwards: Afterwards = Afterwards.END
     """RETURN and SAFE_AREA only: a PAUSE is followed by the mission, a REPORT interrupts nothing,
     an ABORT is the end"""
-    hold_limit: float | None = Field(default=None, gt=0)
+    hold_limit: float | None = Field(default=None, gt=0, le=MAX_TIME_S)
     """s that it stands still at most; None: no limit"""
     on_limit: Afterwards = Afterwards.WAIT
     """what happens when that time is over: RESUME goes on as if `until` had occurred, WAIT pauses
     the mission, END ends it"""
-    priority: int | None = None
+    priority: int | None = Field(default=None, ge=-MAX_COUNT, le=MAX_COUNT)
     """the greater one goes first; None: by how bad the event is, see `DEFAULT_PRIORITIES`"""
     source: Span | None = None
 
@@ -346,10 +352,10 @@ class Mission(Model):
     site: str = ""
     """the site that poses and checkpoints belong to"""
     mode: Mode = Mode.AUTONOMOUS
-    max_duration: float | None = Field(default=None, gt=0)
+    max_duration: float | None = Field(default=None, gt=0, le=MAX_TIME_S)
     """s since the mission's start, interruptions included; None: no limit"""
-    start_area: int | None = None
-    end_area: int | None = None
+    start_area: int | None = Field(default=None, ge=-MAX_COUNT, le=MAX_COUNT)
+    end_area: int | None = Field(default=None, ge=-MAX_COUNT, le=MAX_COUNT)
     """where the mission ends docked; None: it ends where its last task ends"""
     dock: Pose | None = None
     """the docking station that RETURN drives to"""

@@ -8,7 +8,7 @@ from typing import Any, ClassVar, NamedTuple, TypeVar
 
 from argo_compiler.catalog import CheckpointKind
 from argo_compiler.diagnostics import Span
-from argo_compiler.il import Mode, Order
+from argo_compiler.il import MAX_TIME_S, Mode, Order
 from argo_compiler.script.syntax import quantities
 from argo_compiler.script.syntax.shapes import Syntax, SyntaxNode
 from argo_compiler.script.syntax.source import Diagnostics, ScriptText
@@ -264,6 +264,12 @@ class Builder:
             self.diagnostics.error(
                 "duration", "a duration of zero", span, "write, say, `10 minutes`"
             )
+        elif seconds > MAX_TIME_S:
+            message = (
+                f"a duration of {seconds:g} s is too long: at most {MAX_TIME_S:g} s are counted"
+            )
+            self.diagnostics.error("duration", message, span, "write a shorter one")
+            seconds = MAX_TIME_S
         elif any(a.unit <= b.unit for a, b in pairwise(times)):
             hint = "write hours before minutes before seconds, each once: `1 h 30 min`"
             self.diagnostics.error(

@@ -7,7 +7,7 @@ import pytest
 from hypothesis import example, given, settings
 from hypothesis import strategies as st
 
-from argo_compiler.diagnostics import DiagnosticError, Severity
+from argo_compiler.diagnostics import DiagnosticError, Severity, Span
 from argo_compiler.il import (
     Action,
     EventKind,
@@ -217,7 +217,10 @@ def test_flags_decide_whether_a_field_counts():
 @pytest.mark.parametrize(
     ("task", "said"),
     [
-        (Task(name="A", action=Action.START, retries=2**64), "tasks['A'].retries: 184467"),
+        (
+            Task(name="A", action=Action.START, source=Span(line=2**63, column=1, length=1)),
+            "tasks['A'].source.line: 9223372",
+        ),
         (Task(name="A", action=Action.START, group="\ud800"), "tasks['A'].group: is no text"),
     ],
 )
@@ -232,7 +235,15 @@ def test_what_a_message_can_not_hold_is_refused_by_its_place(task, said):
 def test_the_largest_numbers_fit():
     types = ros1_types()
     mission = Mission(
-        tasks=(Task(name="A", action=Action.START, retries=2**64 - 1),), start_area=-(2**63)
+        tasks=(
+            Task(
+                name="A",
+                action=Action.START,
+                retries=10**6,
+                source=Span(line=2**63 - 1, column=1, length=1),
+            ),
+        ),
+        start_area=-(10**9),
     )
     assert (
         from_message(types.decode(types.encode(to_message(mission, types))), types, "").mission

@@ -13,7 +13,7 @@ from argo_env.report.charge import charge_curve
 from argo_env.report.elevation import elevation
 from argo_env.report.machine import drawable, machine
 from argo_env.report.plan import floor_plan, visited_floors
-from argo_env.report.rounds import blocks, with_waits
+from argo_env.report.rounds import blocks, repeat_rules, with_readings, with_waits
 from argo_env.report.svg import Node, clean, drawing, markup, node
 from argo_env.report.timeline import is_untold, timeline
 from argo_env.report.track import colour
@@ -29,6 +29,7 @@ def page(record: RunRecord, site: Site) -> str:
     """The whole report as one HTML page that needs no other file."""
     floors = visited_floors(record)
     found = blocks(record.hfsm, record.tasks)
+    stood = waits(record)
     others = [str(f.number) for f in site.spec.floors if f.number not in floors]
     return _template().render(
         record=record,
@@ -39,15 +40,19 @@ def page(record: RunRecord, site: Site) -> str:
         missed=record.missed_faults,
         failed=[t for t in record.tasks if t.outcome == "failed"],
         readings=[(reading, markup(_bar(reading))) for reading in record.readings],
-        timeline=markup(timeline(record)) if record.tasks else None,
+        timeline=markup(timeline(record)) if record.tasks or record.waits else None,
+        waits=stood,
+        rounds=with_readings(record),
+        rules=repeat_rules(record),
         charge=None if (curve := charge_curve(record)) is None else markup(curve),
         plans=[(n, markup(floor_plan(site, record, n))) for n in floors],
         unvisited=others,
         elevation=markup(elevation(site, record)) if record.path else None,
         ramp=", ".join(colour(i / 6) for i in range(7)),
-        blocks=list(zip(found, with_waits(found, waits(record)), strict=True)),
+        blocks=list(zip(found, with_waits(found, stood), strict=True)),
         docking=_docking(record.mission),
         machine=markup(machine(record.hfsm)) if drawable(record.hfsm) else None,
+        ways_of_failure=any(leaf.failure or leaf.missed for leaf in record.hfsm.leaves),
         mermaid=to_mermaid(record.hfsm),
     )
 

@@ -29,6 +29,7 @@ _DECISION = "decide "
 """with a composite's id: the row in which its ways on are chosen"""
 
 _INITIAL = "initial"
+_AFTER_FAILURES = {TransitionKind.FAILURE: "failed", TransitionKind.MISSED: "time window missed"}
 
 
 @dataclass
@@ -139,6 +140,8 @@ def _ways(hfsm: Hfsm) -> Iterator[_Way]:
     for leaf in hfsm.leaves:
         for transition in leaf.transitions:
             yield _way(leaf.id, transition, None)
+        for transition in filter(None, (leaf.failure, leaf.missed)):
+            yield _way(leaf.id, transition, None)
     for group in hfsm.composites:
         for transition in group.transitions:
             yield _way(_DECISION + group.id, transition, group)
@@ -155,6 +158,8 @@ def _way(source: str, transition: StateTransition, group: Composite | None) -> _
 def _label(transition: StateTransition, group: Composite | None) -> str:
     if transition.kind is TransitionKind.CONDITIONAL:
         return " and ".join(words(condition) for condition in transition.conditions)
+    if transition.kind in _AFTER_FAILURES:
+        return _AFTER_FAILURES[transition.kind]
     if group is None or group.repeat is None:
         return ""
     if transition.kind is TransitionKind.TIMEOUT:
@@ -166,6 +171,9 @@ def _label(transition: StateTransition, group: Composite | None) -> str:
     if group.repeat.duration:
         whole = ", whole rounds" if group.repeat.stop is Stop.SOFT else ""
         limits.append(f"for {group.repeat.duration:g} s{whole}")
+    limits += [f"every {group.repeat.every:g} s"] if group.repeat.every else []
+    if group.repeat.until:
+        limits.append(f"until {' and '.join(map(words, group.repeat.until))}")
     return ", ".join(limits)
 
 

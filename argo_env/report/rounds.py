@@ -6,10 +6,13 @@ from dataclasses import dataclass
 from itertools import groupby, pairwise
 
 from argo_compiler.hfsm import Composite, Hfsm
+from argo_compiler.hfsm.conditions import words
 from argo_compiler.hfsm.model import task_id
+from argo_compiler.il import Condition
 from argo_compiler.il.reserved import RESERVED_NAMES
+from argo_env.formatting import clock
 from argo_env.report.waiting import Wait
-from argo_env.run.record import TaskRun
+from argo_env.run.record import GivenValue, Reading, RoundRun, RunRecord, TaskRun
 
 
 @dataclass(frozen=True)
@@ -85,6 +88,43 @@ def with_waits(
             rounds.append(tuple(sorted(rows, key=lambda row: row.start)))
         result.append(tuple(rounds))
     return tuple(result)
+
+
+def with_readings(record: RunRecord) -> list[tuple[RoundRun, str]]:
+    """The rounds whose beginnings are planned or whose end is decided, each with the values, as
+    they were at its end, that its group repeats until."""
+    until = {c.name: c.repeat.until for c in record.hfsm.composites[1:] if c.repeat}
+    return [
+        (one, _values(record, until.get(one.group, ()), one.ended) if one.ended else "")
+        for one in record.rounds
+    ]
+
+
+def repeat_rules(record: RunRecord) -> list[str]:
+    """What the plan says of these rounds, for each of their groups a sentence."""
+    rules = []
+    for group in record.hfsm.composites[1:]:
+        repeat = group.repeat
+        if repeat is None or not (repeat.every or repeat.until):
+            continue
+        said = [f"a round every {repeat.every:g} s"] if repeat.every else []
+        said += [f"until {' and '.join(map(words, repeat.until))}"] if repeat.until else []
+        said += [f"{repeat.count} rounds at most"] if repeat.count else []
+        said += [f"for {repeat.duration:g} s at most"] if repeat.duration else []
+        rules.append(f"{group.name}: {', '.join(said)}.")
+    return rules
+
+
+def _values(record: RunRecord, until: Sequence[Condition], at: float) -> str:
+    """The last value before the time `at` (s) of each checkpoint that the conditions look at."""
+    said = []
+    for id in dict.fromkeys(condition.object_id for condition in until):
+        told: list[Reading | GivenValue] = [*record.readings, *record.given_values]
+        before = [one for one in told if str(one.checkpoint) == id and one.t <= at]
+        last = max(before, key=lambda one: one.t, default=None)
+        text = "no value" if last is None else f"{last.value:.4g} {last.unit} at {clock(last.t)}"
+        said.append(f"#{id}: {text}")
+    return ", ".join(said)
 
 
 def _last_leaf(hfsm: Hfsm, group: Composite) -> str:

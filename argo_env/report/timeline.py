@@ -1,6 +1,7 @@
 """The tasks along the simulated time: a row for each task, a bar for each run."""
 
 import math
+from collections.abc import Iterator
 
 from argo_compiler.il import Action
 from argo_env.formatting import clock
@@ -18,7 +19,9 @@ _STEPS = (1, 2, 5, 10, 15, 30, 60, 120, 300, 600, 900, 1800, 3600)
 
 def timeline(record: RunRecord) -> Node:
     """All runs of tasks, with the rounds of groups above and the measurements as dots."""
-    rows = {name: i for i, name in enumerate(dict.fromkeys(run.task for run in record.tasks))}
+    begun = [(run.start, run.task) for run in record.tasks]
+    begun += [(wait.start, wait.task) for wait in record.waits]
+    rows = {name: i for i, name in enumerate(dict.fromkeys(name for _, name in sorted(begun)))}
     end = max([record.result.duration, *(run.end for run in record.tasks), 1.0])
     px = (WIDTH - LABELS - 20) / end
     bottom = HEAD + ROW * len(rows)
@@ -32,6 +35,10 @@ def timeline(record: RunRecord) -> Node:
         parts.append(label)
     for run in record.tasks:
         parts += _bars(run, HEAD + ROW * rows[run.task], px)
+    for name, start, until, said in _waiting(record):
+        if name in rows:
+            parts.append(_bar(start, until, HEAD + ROW * rows[name], px, "waiting", said))
+    parts += _windows(record, rows, px)
     for reading in record.readings:
         if reading.task in rows:
             mark = node(
@@ -62,20 +69,61 @@ def _bars(run: TaskRun, y: float, px: float) -> list[Node]:
     for start, end in run.measuring or ():
         said = f"{run.task}: measuring, {clock(start)} to {clock(end)}"
         spans.append((start, end, f"measuring {run.outcome}", said))
-    bars = []
-    for start, end, class_, title in spans:
-        bar = node(
-            "rect",
-            x=LABELS + start * px,
-            y=y + 4,
-            width=max((end - start) * px, 1.5),
-            height=ROW - 8,
-            rx=2.0,
-            class_=class_,
-        )
-        bar.append(node("title", text=title))
-        bars.append(bar)
-    return bars
+    return [_bar(start, end, y, px, class_, title) for start, end, class_, title in spans]
+
+
+def _bar(start: float, end: float, y: float, px: float, class_: str, title: str) -> Node:
+    bar = node(
+        "rect",
+        x=LABELS + start * px,
+        y=y + 4,
+        width=max((end - start) * px, 1.5),
+        height=ROW - 8,
+        rx=2.0,
+        class_=class_,
+    )
+    bar.append(node("title", text=title))
+    return bar
+
+
+def _waiting(record: RunRecord) -> Iterator[tuple[str, float, float, str]]:
+    """What the mission waited for: the row, from when to when (s), and what it says."""
+    for wait in record.waits:
+        text = f"{wait.task}: waits for {wait.what}, {clock(wait.start)} to {clock(wait.end)}"
+        yield wait.task, wait.start, wait.end, text + (f": {wait.why}" if wait.why else "")
+    for run in record.tasks:
+        if run.early is not None:
+            since, until = run.early
+            yield (
+                run.task,
+                since,
+                until,
+                f"{run.task}: at its place, too early until {clock(until)}",
+            )
+    first = {c.name: c.initial for c in record.hfsm.composites[1:]}
+    names = {leaf.id: leaf.task.name for leaf in record.hfsm.leaves}
+    for each in record.rounds:
+        until = each.began or each.ended or record.result.duration
+        if until > each.since:
+            said = f"round {each.number} of {each.group} is due at {clock(until)}"
+            yield names[first[each.group]], each.since, until, said
+
+
+def _windows(record: RunRecord, rows: dict[str, int], px: float) -> Iterator[Node]:
+    """A bracket over the row of a task from the begin to the end of its window."""
+    end = record.result.duration
+    for run in {run.task: run for run in record.windows}.values():
+        if run.task not in rows or run.earliest > end:
+            continue
+        left, right = run.earliest, min(run.latest or math.inf, end)
+        y = HEAD + ROW * rows[run.task] + 2
+        line = f"M{LABELS + left * px:.1f},{y + 4:g}v-4H{LABELS + right * px:.1f}"
+        line += "v4" if run.latest is not None and run.latest <= end else ""
+        mark = node("path", d=line, class_="window" if run.hard else "window soft")
+        kind = "hard" if run.hard else "soft"
+        until = "" if run.latest is None else f" to {clock(run.latest)}"
+        mark.append(node("title", text=f"{kind} time window, {clock(run.earliest)}{until}"))
+        yield mark
 
 
 def time_axis(end: float, px: float, top: float, bottom: float) -> list[Node]:

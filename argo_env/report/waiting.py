@@ -1,5 +1,6 @@
-"""What the robot waited for: the parts of pauses and reactions in which it stood still."""
+"""What the robot waited for: planned waits, and what of pauses and reactions it stood still."""
 
+from collections.abc import Iterator
 from dataclasses import dataclass
 
 from argo_env.run.record import Interruption, RunRecord
@@ -21,7 +22,29 @@ class Wait:
 
 
 def waits(record: RunRecord) -> tuple[Wait, ...]:
-    """When the robot stood still in pauses and reactions, in the order of time."""
+    """When the robot stood still: at WAITs, for time windows and rounds, in pauses and reactions;
+    in the order of time."""
+    found = [*_planned(record), *_interrupted(record)]
+    return tuple(sorted(found, key=lambda wait: wait.start))
+
+
+def _planned(record: RunRecord) -> Iterator[Wait]:
+    """What the mission itself waits for."""
+    end = record.result.duration
+    for wait in record.waits:
+        yield Wait(f"{wait.what} ({wait.task})", wait.start, wait.end, wait.ended)
+    for run in record.tasks:
+        if run.early is not None:
+            what = f"the time window ({run.task})"
+            yield Wait(what, *run.early, run.early[1] < end)
+    for each in record.rounds:
+        until = min(filter(None, (each.began, each.ended, end)))
+        if each.due is not None and each.due > each.since and until - each.since >= MOMENT:
+            yield Wait(f"the next round ({each.group})", each.since, until, until < end)
+
+
+def _interrupted(record: RunRecord) -> list[Wait]:
+    """The parts of pauses and reactions in which it stood still."""
     found = []
     until = {reaction.event: reaction.until for reaction in record.mission.reactions}
     before: Interruption | None = None
@@ -37,7 +60,7 @@ def waits(record: RunRecord) -> tuple[Wait, ...]:
             what = f"{awaited.replace('_', ' ') if awaited else 'a person'} ({cause})"
             found.append(Wait(what, since, each.end, each.end < record.result.duration))
         before = each
-    return tuple(found)
+    return found
 
 
 def _last(record: RunRecord) -> Interruption | None:

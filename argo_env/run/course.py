@@ -11,8 +11,10 @@ from argo_env.run.log import Entry, LoggedEvent, RunLog
 from argo_env.run.machine import Machine
 from argo_env.run.perception import blockage
 from argo_env.run.record import RunRecord, TaskRun
+from argo_env.run.rounds import RoundWatch
 from argo_env.run.scheduled_events import GivenEvents
 from argo_env.run.spec import RunSpec
+from argo_env.run.steering import as_seen_on
 from argo_env.run.summary import make_record
 from argo_env.run.vehicle import Vehicle, way_come
 
@@ -31,9 +33,11 @@ class Course:
         """time steps of the drive since the run began"""
         self.now = 0.0
         """s of simulated time"""
+        self._mission = spec.mission
         self._time_step = vehicle.rig.drive.time_step
         self._vehicle = vehicle
         self._interruptions = InterruptionWatch()
+        self._rounds = RoundWatch()
         self._came: Path | None = None
 
     @property
@@ -55,7 +59,7 @@ class Course:
             t=self.now,
             given=self.given.occurred,
             running=self._running,
-            events=tuple(LoggedEvent.of(event) for event in events),
+            events=tuple(LoggedEvent.of(self._seen(event)) for event in events),
             task=task,
             sample=sample,
             **self._vehicle.state(),
@@ -76,9 +80,14 @@ class Course:
         for event in entry.events:
             if not self.machine.finished:
                 self.obey(self.machine.handle(event.original(), self.now))
-                self._interruptions.look(self.machine, self.now)
+                self._look()
         if closed and self.action:
             self.action.detour(self._vehicle.rig)
+
+    def start(self) -> None:
+        """Starts the machine."""
+        self.obey(self.machine.start(self.now))
+        self._look()
 
     def obey(self, commands: Sequence[Command]) -> None:
         """Does what the machine asks for."""
@@ -136,7 +145,16 @@ class Course:
     def record(self, spec: RunSpec, present: Entry | None = None) -> RunRecord:
         """The record of the run as far as its log goes, or up to the `present` entry."""
         log = self.log if present is None else self.log.with_entry(present)
-        return make_record(spec, self._vehicle.rig, self.machine, log, self._interruptions)
+        return make_record(
+            spec, self._vehicle.rig, self.machine, log, self._interruptions, self._rounds
+        )
+
+    def _seen(self, event: Event) -> Event:
+        return as_seen_on(self.log.site, self._mission, event)
+
+    def _look(self) -> None:
+        for watch in (self._interruptions, self._rounds):
+            watch.look(self.machine, self.now)
 
     @property
     def _running(self) -> str | None:

@@ -33,4 +33,7 @@ def standstill(now: float, machine: Machine, rig: Rig, log: RunLog) -> str | Non
             return None
     why = "held by its emergency stop" if held else "waiting for an event"
     why = "paused" if machine.paused else why
-    return f"the robot stands still since {since:.0f} s, {why}, and nothing more occurs"
+    stands = f"the robot stands still since {since:.0f} s, {why}, and nothing more occurs"
+    if machine.paused and machine.hfsm.supervised and not log.tasks:
+        stands += ": a supervisory mission begins when a person resumes it (the event `resume`)"
+    return stands

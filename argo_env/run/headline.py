@@ -21,7 +21,8 @@ class Tone(StrEnum):
     GOOD = "good"
     """nothing: all is as it should be"""
     NOTICE = "notice"
-    """to look at what was noticed, though the mission is a success; or to let the run go on"""
+    """to look at what was noticed or what failed, though the mission came to its end; or to let the
+    run go on"""
     BAD = "bad"
     """the mission is no success"""
 
@@ -30,7 +31,8 @@ class Headline(Model):
     """How a run went, in a line."""
 
     word: str
-    """`Success`, `No success`, `Interrupted`, or such as `Done, 2 findings`"""
+    """`Success`, `No success`, `Completed with failures`, `Interrupted`, or such as
+    `Done, 2 findings`"""
     text: str
     """the rest, without a full stop"""
     tone: Tone
@@ -46,6 +48,7 @@ def headline(record: "RunRecord") -> Headline:
         f"{len(things)} {name}{'s' if len(things) > 1 else ''}"
         for name, things in (
             ("finding", record.findings),
+            ("late task", record.late),
             ("contact", record.contacts),
             ("mishap", record.mishaps),
         )
@@ -54,6 +57,8 @@ def headline(record: "RunRecord") -> Headline:
     noticed = _noticed(record)
     if not result.success:
         word, tone = ("No success", Tone.BAD) if result.ended else ("Interrupted", Tone.NOTICE)
+        if result.only_failures:
+            word, tone = "Completed with failures", Tone.NOTICE
         text = f"{result.verdict}. {counts}: {noticed}" if counts else result.verdict
         return Headline(word=word, text=text, tone=tone)
     if not counts:
@@ -66,6 +71,7 @@ def headline(record: "RunRecord") -> Headline:
 def _noticed(record: "RunRecord") -> str:
     """The things to look at, in words; of many the first."""
     said = [in_words(finding) for finding in record.findings]
+    said += [f"{run.task} ended after its time window" for run in record.late]
     said += [f"{c.link} touched {c.element} at {clock(c.start)}" for c in record.contacts]
     said += [f"{m.trouble} at {clock(m.t)}" for m in record.mishaps]
     times = list(Counter(said).items())

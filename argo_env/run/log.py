@@ -36,6 +36,7 @@ from argo_env.run.record import (
     TOLD,
     Anomaly,
     Contact,
+    GivenValue,
     Mishap,
     PathSample,
     Reading,
@@ -194,15 +195,39 @@ class Entry(Model):
             if event.event is not None
         )
 
+    def given_values(self, site: Site) -> tuple[GivenValue, ...]:
+        """The values of checkpoints that the robot was told."""
+        given = []
+        for event in self.events:
+            if event.kind == "reading_given" and event.value is not None:
+                checkpoint = site.measured_by(event.object_id)
+                given.append(
+                    GivenValue(
+                        t=self.t,
+                        checkpoint=checkpoint.id,
+                        name=checkpoint.name,
+                        value=event.value,
+                        unit=checkpoint.unit,
+                        normal=checkpoint.nominal.contains(event.value),
+                    )
+                )
+        return tuple(given)
+
+
+_LISTS = (
+    "tasks", "readings", "given_values", "anomalies", "mishaps", "contacts", "path", "resumed",
+)  # fmt: skip
+
 
 class RunLog:
     """What the record is made from. Grows as entries are added."""
 
     def __init__(self, site: Site) -> None:
-        self._site = site
+        self.site = site
         self.last: Entry | None = None
         self.tasks: list[TaskRun] = []
         self.readings: list[Reading] = []
+        self.given_values: list[GivenValue] = []
         self.anomalies: list[Anomaly] = []
         self.mishaps: list[Mishap] = []
         self.last_event = 0.0
@@ -217,7 +242,8 @@ class RunLog:
             self.tasks.append(entry.task)
         if entry.reading:
             self.readings.append(entry.reading)
-        self.anomalies += (*entry.found, *entry.told(self._site))
+        self.given_values += entry.given_values(self.site)
+        self.anomalies += (*entry.found, *entry.told(self.site))
         self.mishaps += entry.mishaps
         if entry.events:
             self.last_event = entry.t
@@ -229,8 +255,8 @@ class RunLog:
 
     def with_entry(self, entry: Entry) -> "RunLog":
         """Another log, with one more entry; this one stays as it is."""
-        other = RunLog(self._site)
-        for name in ("tasks", "readings", "anomalies", "mishaps", "contacts", "path", "resumed"):
+        other = RunLog(self.site)
+        for name in _LISTS:
             setattr(other, name, list(getattr(self, name)))
         other.last_event = self.last_event
         other.add(entry)
@@ -238,7 +264,7 @@ class RunLog:
 
     def _sample(self, entry: Entry) -> PathSample:
         x, y, z, yaw, pitch = (round(v, DIGITS) for v in entry.pose)
-        floor = self._site.floor_at(entry.pose[2])
+        floor = self.site.floor_at(entry.pose[2])
         charge = None if entry.charge is None else round(entry.charge, DIGITS)
         return PathSample(
             t=entry.t, x=x, y=y, z=z, yaw=yaw, pitch=pitch, floor=floor, charge=charge

@@ -5,6 +5,7 @@ same mission, site and seed give the same record.
 """
 
 from collections.abc import Sequence
+from enum import StrEnum
 
 from pydantic import computed_field, model_validator
 
@@ -239,6 +240,85 @@ class Interruption(Model):
         return f"reaction to {self.event.replace('_', ' ')}"
 
 
+class WaitRun(Model):
+    """The mission stood at a WAIT."""
+
+    task: str
+    what: str
+    """it waited for, in words"""
+    start: float
+    """s"""
+    end: float
+    """s"""
+    ended: bool
+    """whether that was its end, or that of the run"""
+    failure: str | None = None
+    """why it failed, if it did: its limit or its window was over"""
+    why: str | None = None
+    """what ended it, in words"""
+
+
+class WindowKept(StrEnum):
+    """What came of a task's time window."""
+
+    KEPT = "kept"
+    LATE = "late"
+    """done all the same, as the window is soft"""
+    MISSED = "missed"
+    FAILED = "failed"
+    """for another reason"""
+    LEFT = "left"
+    """the visit was ended from outside: by a group's time, a person or a reaction"""
+    OPEN = "open"
+    """the run ended, or stands, in the middle of it"""
+    NOT_VISITED = "not visited"
+
+
+class WindowRun(Model):
+    """One visit of a task that has a time window, or none."""
+
+    task: str
+    earliest: float
+    """s"""
+    latest: float | None
+    """s"""
+    hard: bool
+    visited: float | None
+    """s, when the mission came to it"""
+    ended: float | None
+    """s"""
+    kept: WindowKept
+
+
+class RoundRun(Model):
+    """A round of a group that begins them at their times, or repeats until a condition holds."""
+
+    group: str
+    number: int
+    """from 1"""
+    since: float
+    """s, when the group was entered, or the round before had ended"""
+    due: float | None = None
+    """s, for groups with `every`"""
+    began: float | None = None
+    """s; None: the mission left the group, or the run ended, before it was due"""
+    ended: float | None = None
+    """s; None: the run ended before"""
+
+
+class GivenValue(Model):
+    """A value of a checkpoint that somebody told the run."""
+
+    t: float
+    """s"""
+    checkpoint: int
+    name: str
+    value: float
+    unit: str
+    normal: bool
+    """whether it lies in the nominal range"""
+
+
 class TraceStep(Model):
     """One step of the state machine."""
 
@@ -289,11 +369,17 @@ class Result(Model):
     climbed: float
     """m"""
 
+    @property
+    def only_failures(self) -> bool:
+        """Whether the plan came to its end, and nothing but failed tasks is missing."""
+        at_its_end = self.outcome is Outcome.COMPLETED_WITH_FAILURES
+        return at_its_end and self.within_max_duration and self.docked is not False
+
 
 class RunRecord(Model):
     """A whole run."""
 
-    version: int = 4
+    version: int = 5
     """of this format"""
     mission: Mission
     hfsm: Hfsm
@@ -311,6 +397,13 @@ class RunRecord(Model):
     trace: tuple[TraceStep, ...]
     path: tuple[PathSample, ...]
     interruptions: tuple[Interruption, ...] = ()
+    waits: tuple[WaitRun, ...] = ()
+    """what the mission waited for, in the order of time"""
+    windows: tuple[WindowRun, ...] = ()
+    """what came of time windows"""
+    rounds: tuple[RoundRun, ...] = ()
+    """of groups with `every` or `until`"""
+    given_values: tuple[GivenValue, ...] = ()
     mishaps: tuple[Mishap, ...] = ()
     """what the drive had trouble with, in the order of time"""
     anomalies: tuple[Anomaly, ...] = ()
@@ -351,6 +444,11 @@ class RunRecord(Model):
     def headline(self) -> Headline:
         """How the run went, in a line."""
         return headline(self)
+
+    @property
+    def late(self) -> tuple[WindowRun, ...]:
+        """The visits that ended after their soft window."""
+        return tuple(run for run in self.windows if run.kept is WindowKept.LATE)
 
     @property
     def missed_faults(self) -> tuple[AnyFault, ...]:

@@ -59,7 +59,7 @@ def simulate(
     site = site or open_site(spec.site)
     require_site(site, spec)
     check_spec(spec, site.site)
-    check_given(spec.events, spec.mission)
+    check_given(spec.events, spec.mission, site.site)
     machine = Executor(lower(spec.mission))
     _log.info(
         "a run on %s: drive %s, sensor %s, seed %d", site.name, spec.drive, spec.sensor, spec.seed

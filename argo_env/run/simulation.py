@@ -79,7 +79,7 @@ class Simulation(Closing):
         self._record: RunRecord | None = None
         require_site(site, spec)
         require_machine(machine, spec)
-        check_given([*spec.events, *events], spec.mission)
+        check_given([*spec.events, *events], spec.mission, site.site)
         with ExitStack() as stack:
             self._vehicle = Vehicle(rig or fit_out(spec, site.navigator, gui, stack))
             self._course = Course(machine, self._vehicle, spec)
@@ -166,7 +166,7 @@ class Simulation(Closing):
                 self._tell(self._course.entry().model_copy(update={"faults": (settled,)}))
                 self._vehicle.let_faults_happen(self.now)
             case _:
-                checked = check_event(event, self._spec.mission)
+                checked = check_event(event, self._spec.mission, self.rig.navigator.site)
                 if isinstance(checked, GiveBack):
                     require_at_rest(self.machine)
                 self._tell(self._course.entry([checked]))
@@ -223,7 +223,7 @@ class Simulation(Closing):
     def _set_up(self, past: Sequence[Entry]) -> None:
         """Puts everything to where the run begins, or goes on."""
         course = self._course
-        course.obey(course.machine.start(self.now))
+        course.start()
         for entry in past:
             course.replay(entry)
         last = course.log.last

@@ -1,9 +1,9 @@
 """What a run may be told from outside while it goes on, and what of that makes no sense."""
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
-from argo_compiler.errors import ArgoError, Conflict, Invalid
+from argo_compiler.errors import ArgoError, Conflict, Invalid, NotFound
 from argo_compiler.handover import match
 from argo_compiler.hfsm import (
     ByHand,
@@ -23,6 +23,7 @@ from argo_env.faults.kinds import AnyFault, settle_one
 from argo_env.run.log import LoggedEvent, require_from_outside, require_time
 from argo_env.run.machine import Machine
 from argo_env.run.rig import Rig
+from argo_env.site import Site
 
 
 @dataclass(frozen=True, slots=True)
@@ -46,28 +47,25 @@ Steering = (
 _TO_THE_MACHINE = (Pause, Resume, TakeOver, GiveBack, Cancel, Occurred, ReadingGiven)
 
 
-def check_event(event: Steering, mission: Mission) -> Event:
-    """The event as one for the machine of the mission; Invalid if nobody outside can tell it."""
+def check_event(event: Steering, mission: Mission, site: Site) -> Event:
+    """The event as one for the machine of the mission; Invalid if nobody outside can tell it,
+    NotFound for a checkpoint that the site does not have."""
     if not isinstance(event, _TO_THE_MACHINE):
         raise Invalid(f"{event!r} is nothing that a run can be told from outside")
     logged = LoggedEvent.of(event)
-    require_from_outside(logged)
-    if logged.by_hand:
-        _check_by_hand(logged.by_hand, mission)
+    _check(logged, mission, site)
     return logged.original()
 
 
-def check_given(events: Sequence[tuple[float, LoggedEvent]], mission: Mission) -> None:
+def check_given(events: Sequence[tuple[float, LoggedEvent]], mission: Mission, site: Site) -> None:
     """Raises Invalid for events and times (s) that no run of the mission can be given."""
     for t, event in events:
         if not isinstance(event, LoggedEvent):
             raise Invalid(f"{event!r} is no event as data: make it one with `logged`")
         try:
             require_time(t)
-            require_from_outside(event)
-            if event.by_hand:
-                _check_by_hand(event.by_hand, mission)
-        except Invalid as error:
+            _check(event, mission, site)
+        except (Invalid, NotFound) as error:
             raise Invalid(f"the event {event.kind} given at {t:g} s: {error}") from None
 
 
@@ -87,6 +85,39 @@ def require_taken_over(machine: Machine, now: float) -> None:
             f"the robot was to be given back by {now:g} s, and nobody has taken it over: the "
             f"action of task '{machine.running.name}' runs. Give a take-over before that"
         )
+
+
+def as_seen_on(site: Site, mission: Mission, event: Event) -> Event:
+    """The event with what the site tells of it: whether values that a person gives are abnormal."""
+
+    def abnormal(object_id: str | None, value: float) -> bool:
+        return any(
+            str(c.id) == object_id and not c.nominal.contains(value) for c in site.checkpoints
+        )
+
+    match event:
+        case ReadingGiven():
+            odd = event.abnormal or abnormal(event.object_id, event.value)
+            return replace(event, abnormal=odd)
+        case GiveBack(done):
+            seen = []
+            for one in done:
+                task = mission.task(one.task)
+                odd = one.abnormal
+                if task is not None and one.value is not None:
+                    odd = odd or abnormal(task.object_id, one.value)
+                seen.append(one.model_copy(update={"abnormal": odd}))
+            return GiveBack(tuple(seen))
+    return event
+
+
+def _check(event: LoggedEvent, mission: Mission, site: Site) -> None:
+    """Raises Invalid or NotFound for what a run of the mission can't be told."""
+    require_from_outside(event)
+    if event.by_hand:
+        _check_by_hand(event.by_hand, mission)
+    if event.object_id is not None:
+        site.measured_by(event.object_id)
 
 
 def _check_by_hand(done: Sequence[ByHand], mission: Mission) -> None:

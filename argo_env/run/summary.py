@@ -5,17 +5,26 @@ from argo_env.run.log import RunLog
 from argo_env.run.machine import Machine
 from argo_env.run.record import RunRecord, TraceStep
 from argo_env.run.rig import Rig
+from argo_env.run.rounds import RoundWatch
 from argo_env.run.spec import RunSpec
+from argo_env.run.stays import stays_of, waits_of, windows_of
 from argo_env.run.verdict import judge
 
 
 def make_record(
-    spec: RunSpec, rig: Rig, machine: Machine, log: RunLog, interruptions: InterruptionWatch
+    spec: RunSpec,
+    rig: Rig,
+    machine: Machine,
+    log: RunLog,
+    interruptions: InterruptionWatch,
+    rounds: RoundWatch,
 ) -> RunRecord:
     """The record of a run with this log, whose machine stands like this."""
     site = rig.navigator.site
     assert log.last is not None
-    trace = machine.trace
+    trace = tuple(machine.trace)
+    stays = tuple(stays_of(trace))
+    windows = windows_of(spec.mission, stays)
     result = judge(
         spec.mission,
         machine.hfsm,
@@ -23,6 +32,8 @@ def make_record(
         log,
         machine.outcome if machine.finished else None,
         trace,
+        stays,
+        windows,
     )
     return RunRecord(
         mission=spec.mission,
@@ -42,6 +53,10 @@ def make_record(
         ),
         path=tuple(log.path),
         interruptions=interruptions.all(log.last.t),
+        waits=waits_of(spec.mission, stays, log.last.t),
+        windows=windows,
+        rounds=rounds.all(),
+        given_values=tuple(log.given_values),
         mishaps=tuple(log.mishaps),
         anomalies=tuple(log.anomalies),
         faults=rig.schedule.faults if rig.schedule else (),

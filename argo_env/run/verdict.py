@@ -11,7 +11,8 @@ from argo_env.navigation.path import wrap
 from argo_env.robot.pose import BodyPose
 from argo_env.run.headline import AS_PLANNED
 from argo_env.run.log import RunLog
-from argo_env.run.record import DIGITS, Result, TaskRun
+from argo_env.run.record import DIGITS, Result, TaskRun, WindowKept, WindowRun
+from argo_env.run.stays import Stay
 
 DOCKED_DISTANCE = 0.1  # m
 DOCKED_ANGLE = math.radians(5.0)
@@ -36,11 +37,16 @@ def at_dock(pose: BodyPose, dock: Pose) -> bool:
     return away <= DOCKED_DISTANCE and abs(wrap(pose.yaw - dock.yaw)) <= DOCKED_ANGLE
 
 
-def failed_tasks(runs: Sequence[TaskRun], trace: Sequence[TraceEntry]) -> tuple[str, ...]:
-    """The tasks that failed and were not tried again, by name and in order."""
+def failed_tasks(
+    runs: Sequence[TaskRun], trace: Sequence[TraceEntry], stays: Sequence[Stay]
+) -> tuple[str, ...]:
+    """The tasks that failed for good, by name and in order."""
     retried = {(e.time, e.source) for e in trace if e.cause is Cause.RETRY}
-    failed = [r.task for r in runs if r.outcome == "failed" and (r.end, r.task) not in retried]
-    return tuple(dict.fromkeys(failed))
+    failed = [
+        (r.end, r.task) for r in runs if r.outcome == "failed" and (r.end, r.task) not in retried
+    ]
+    failed += [(s.end, s.task) for s in stays if s.failure is not None and s.end is not None]
+    return tuple(dict.fromkeys(task for _, task in sorted(failed, key=lambda f: f[0])))
 
 
 def judge(
@@ -50,8 +56,11 @@ def judge(
     log: RunLog,
     outcome: Outcome | None,
     trace: Sequence[TraceEntry],
+    stays: Sequence[Stay],
+    windows: Sequence[WindowRun],
 ) -> Result:
-    """How the mission ended: the machine with `outcome`, by the steps of its `trace`.
+    """How the mission ended: the machine with `outcome`, by the steps of its `trace`, the visits of
+    tasks and what came of their windows.
 
     An `outcome` of None is that of a run that was stopped before, or is still under way.
     """
@@ -64,10 +73,18 @@ def judge(
         missing.append(f"the mission is not at its end after {now:.0f} s")
     elif outcome is None:
         missing.append(last.stopped or f"it was stopped after {now:.0f} s")
-    elif outcome is not Outcome.COMPLETED:
+    elif outcome in _ENDINGS:
         missing.append(_ENDINGS[outcome])
-    if failed := failed_tasks(log.tasks, trace):
-        missing.append(f"failed: {', '.join(failed)}")
+    optional = {task.name for task in mission.tasks if task.optional}
+    failed = failed_tasks(log.tasks, trace, stays)
+    needed = [name for name in failed if name not in optional]
+    missed = {run.task for run in windows if run.kept is WindowKept.MISSED}
+    for what, names in (
+        ("failed", [name for name in needed if name not in missed]),
+        ("missed the time window", [name for name in needed if name in missed]),
+    ):
+        if names:
+            missing.append(f"{what}: {', '.join(names)}")
     if limit is not None and now > limit:
         missing.append(f"it took {now:.0f} s of at most {limit:.0f} s")
     if docked is False and last.ended:
@@ -79,7 +96,7 @@ def judge(
     return Result(
         success=success,
         ended=last.ended,
-        verdict=_praise(hfsm, log.tasks, trace) if success else "; ".join(missing),
+        verdict=_praise(hfsm, log.tasks, trace, stays, failed) if success else "; ".join(missing),
         outcome=outcome,
         duration=now,
         max_duration=limit,
@@ -90,12 +107,18 @@ def judge(
     )
 
 
-def _praise(hfsm: Hfsm, runs: Sequence[TaskRun], trace: Sequence[TraceEntry]) -> str:
-    """The verdict of a success: a plan with conditions may pass tasks over, and a person may have
-    done or skipped some."""
+def _praise(
+    hfsm: Hfsm,
+    runs: Sequence[TaskRun],
+    trace: Sequence[TraceEntry],
+    stays: Sequence[Stay],
+    failed: Sequence[str],
+) -> str:
+    """The verdict of a success: a plan with conditions may pass tasks over, a person may have done
+    or skipped some, and optional ones may have failed."""
     by_hand, skipped = _by_hand(trace, skipped=False), _by_hand(trace, skipped=True)
     done = {run.task for run in runs if run.outcome != "interrupted"} | RESERVED_NAMES
-    ended = done.union(by_hand, skipped)
+    ended = done.union(by_hand, skipped, (stay.task for stay in stays if stay.end is not None))
     passed_over = [leaf.task.name for leaf in hfsm.leaves if leaf.task.name not in ended]
     said = ["the plan was carried out"]
     if passed_over:
@@ -104,6 +127,8 @@ def _praise(hfsm: Hfsm, runs: Sequence[TaskRun], trace: Sequence[TraceEntry]) ->
         said.append(f"done by hand: {', '.join(by_hand)}")
     if skipped:
         said.append(f"skipped by a person: {', '.join(skipped)}")
+    if failed:
+        said.append(f"failed, and optional: {', '.join(failed)}")
     return "; ".join(said) if len(said) > 1 else AS_PLANNED
 
 

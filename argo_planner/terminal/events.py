@@ -4,9 +4,9 @@ import math
 
 from argo_compiler.errors import ArgoError, Conflict, Invalid
 from argo_compiler.hfsm import Event
-from argo_planner.use_cases.running import EVENTS, event_named
+from argo_planner.use_cases.running import EVENTS, READING, event_named
 
-KINDS = ", ".join(EVENTS)
+KINDS = f"{', '.join(EVENTS)}, {READING}:ID=VALUE"
 """what may stand for KIND in `--event TIME=KIND`"""
 
 

@@ -1,9 +1,11 @@
 """Runs of missions: what they are told, and the spec that `argo_env.run.session` carries out."""
 
 import logging
+import math
 
 from argo_compiler.errors import Invalid, NotFound
-from argo_compiler.hfsm import Cancel, Event, Occurred, Pause, Resume, lower
+from argo_compiler.hfsm import Cancel, Event, GiveBack, Occurred, Pause, Resume, TakeOver, lower
+from argo_compiler.hfsm.events import ReadingGiven
 from argo_compiler.il import EventKind, Mission
 from argo_env.faults.reading import FaultText
 from argo_env.planning.opening import OpenedSite
@@ -21,18 +23,36 @@ EVENTS: dict[str, Event] = {
     **{str(kind): Occurred(kind) for kind in EventKind if kind is not EventKind.TIME_UP},
     "pause": Pause(),
     "resume": Resume(),
+    "take_over": TakeOver(),
+    "give_back": GiveBack(),
     "cancel": Cancel(),
 }
 """What a run can be told, by name."""
+READING = "reading"
+"""with what was read: `reading:8=4.2`"""
 
 
 def event_named(name: str) -> Event:
     """The event of that name. Raises NotFound if there is none, Invalid if it can't be told."""
+    kind, _, said = name.partition(":")
+    if kind == READING:
+        return _reading(said)
     if name == EventKind.TIME_UP:
         raise Invalid("it occurs by itself, at the mission's max_duration")
     if name not in EVENTS:
-        raise NotFound(f"no event `{name}`; there are: {', '.join(EVENTS)}")
+        raise NotFound(f"no event `{name}`; there are: {', '.join(EVENTS)}, {READING}:ID=VALUE")
     return EVENTS[name]
+
+
+def _reading(said: str) -> ReadingGiven:
+    id, _, value = said.partition("=")
+    try:
+        read = float(value)
+    except ValueError:
+        read = math.nan
+    if not id.strip() or not math.isfinite(read):
+        raise Invalid(f"write {READING}:ID=VALUE, such as {READING}:8=4.2")
+    return ReadingGiven(id.strip(), read)
 
 
 def require_possible(spec: RunSpec, site: OpenedSite, faults: FaultText | None) -> None:

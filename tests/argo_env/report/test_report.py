@@ -69,7 +69,7 @@ def test_json_reads_back(tmp_path, site, record):
     assert path == tmp_path / "new" / "folder" / "report.html"
     text = path.with_name("report.json").read_text(encoding="utf-8")
     assert RunRecord.model_validate_json(text) == record
-    assert text.startswith('{\n  "version": 4,\n  "mission": {\n    "version": 2,')
+    assert text.startswith('{\n  "version": 5,\n  "mission": {\n    "version": 3,')
     assert len(re.findall(r'^    {"t": .*"pitch"', text, re.MULTILINE)) == len(record.path)
 
 

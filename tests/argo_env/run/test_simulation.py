@@ -260,7 +260,7 @@ class TestSteering:
         assert sum("done by hand" in cause for cause in causes) == 2
         (pause,) = record.interruptions
         assert (pause.start, pause.event) == (4.0, None)
-        assert simulation.machine.progress().values[0].value == 4.25
+        assert simulation.machine.progress().readings[0].value == 4.25
 
     @pytest.mark.parametrize(
         ("done", "says"),

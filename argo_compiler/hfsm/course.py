@@ -3,6 +3,7 @@
 import math
 from collections import deque
 from collections.abc import Iterable
+from typing import NamedTuple
 
 from argo_compiler.hfsm.conditions import CheckpointReading, words
 from argo_compiler.hfsm.events import Outcome
@@ -16,6 +17,16 @@ from argo_compiler.il import EventKind
 _OVER = "its time window is over"
 
 
+class DoneByHand(NamedTuple):
+    """What a person did and the machine has not come to."""
+
+    number: int
+    """in the order in which they were given"""
+    what: ByHand
+    at: float
+    """s, when it was done"""
+
+
 class MissionCourse:
     """Where the mission stands and how it goes on. It changes with each step.
 
@@ -25,8 +36,9 @@ class MissionCourse:
     def __init__(self, tables: Tables) -> None:
         self.tables = tables
         self.place = Configuration(tables)
-        self.by_hand: dict[str, deque[tuple[ByHand, float]]] = {}
-        """by task, with the time (s) when each was done"""
+        self.by_hand: dict[str, deque[DoneByHand]] = {}
+        """by task"""
+        self._given_by_hand = 0
         self.now = -math.inf
         """s, of the last step"""
         self.time_up_at = math.inf
@@ -71,8 +83,9 @@ class MissionCourse:
     def give_by_hand(self, done: Iterable[ByHand], now: float) -> None:
         """What a person did counts for the next visits of these tasks."""
         for one in done:
-            at = now - (one.age or 0.0)
-            self.by_hand.setdefault(one.task, deque()).append((one, at))
+            self._given_by_hand += 1
+            done = DoneByHand(self._given_by_hand, one, now - (one.age or 0.0))
+            self.by_hand.setdefault(one.task, deque()).append(done)
 
     def interrupt(self) -> None:
         """The mission stands still, if it does not yet."""
@@ -93,7 +106,7 @@ class MissionCourse:
         leaf = visit.leaf
         if leaf is None or leaf.wait is None or place.round_of or leaf.name in self.by_hand:
             return False
-        if visit.wait_at(place.began) > self.now:
+        if not visit.wait_at(place.began) <= self.now <= visit.missed_at(place.began):
             return False
         wait = leaf.wait
         if wait.duration is not None:
@@ -160,6 +173,13 @@ class MissionCourse:
         if self.place.visit.action_due < math.inf:
             self.place.visit.action_due = math.inf
             self.place.find_own_due()
+
+    def by_hand_progress(self) -> tuple[ByHand, ...]:
+        """What a person did and the machine has not come to, with its age."""
+        left = sorted(done for queue in self.by_hand.values() for done in queue)
+        return tuple(
+            what.model_copy(update={"age": max(0.0, self.now - at)}) for _, what, at in left
+        )
 
     def measure(self, leaf: LeafNode, value: float | None, abnormal: bool) -> None:
         """The action of a task has ended well, with what it read."""
@@ -293,7 +313,7 @@ class MissionCourse:
     def _pass_over(self, leaf: LeafNode) -> None:
         """The present task was done by hand, so it has ended."""
         queue = self.by_hand[leaf.name]
-        done, at = queue.popleft()
+        _, done, at = queue.popleft()
         if not queue:
             del self.by_hand[leaf.name]
         if self.place.round_of is not None:

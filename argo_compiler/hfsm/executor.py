@@ -30,7 +30,6 @@ from argo_compiler.hfsm.events import (
 from argo_compiler.hfsm.model import DONE, MISSION, Hfsm
 from argo_compiler.hfsm.progress import ByHand, Progress
 from argo_compiler.hfsm.restoring import (
-    by_hand_progress,
     group_progress,
     place_of,
     reaction_progress,
@@ -179,13 +178,13 @@ class Executor:
         course.now = now
         if isinstance(event, _ENDS):
             self._end_action(event)
+        elif isinstance(event, ReadingGiven):
+            course.tell(event.object_id, event.value, event.abnormal, now)
+            course.note(Cause.READING, detail=f"#{event.object_id} = {event.value:g}")
         elif control.outcome is None:
             match event:
                 case Occurred(kind, detail):
                     control.occur(kind, detail)
-                case ReadingGiven(object_id, value, abnormal):
-                    course.tell(object_id, value, abnormal, now)
-                    course.note(Cause.READING, detail=f"#{object_id} = {value:g}")
                 case Pause():
                     control.pause()
                 case TakeOver():
@@ -230,7 +229,7 @@ class Executor:
             reaction=reaction,
             waiting=waiting,
             outcome=control.outcome,
-            by_hand=by_hand_progress(course.by_hand, now),
+            by_hand=course.by_hand_progress(),
         )
 
     @property

@@ -1,6 +1,5 @@
 """From where a machine stands to progress, and back."""
 
-from collections import deque
 from collections.abc import Mapping
 
 from argo_compiler.errors import Conflict
@@ -8,7 +7,6 @@ from argo_compiler.hfsm.conditions import CheckpointReading
 from argo_compiler.hfsm.interrupts import Stage
 from argo_compiler.hfsm.model import RETURN, task_id
 from argo_compiler.hfsm.progress import (
-    ByHand,
     GroupProgress,
     Phase,
     Progress,
@@ -136,17 +134,6 @@ def reaction_progress(
     if standing.stage is Stage.HOLDING:
         active = active.model_copy(update={"phase": Phase.HOLDING, "held": max(0.0, held)})
     return active, waiting
-
-
-def by_hand_progress(
-    queues: Mapping[str, deque[tuple[ByHand, float]]], now: float
-) -> tuple[ByHand, ...]:
-    """What was done by hand and has not been come to, with its age."""
-    return tuple(
-        done.model_copy(update={"age": max(0.0, now - at)})
-        for queue in queues.values()
-        for done, at in queue
-    )
 
 
 def _leaf(tables: Tables, name: str) -> LeafNode:

@@ -34,7 +34,9 @@ from tests.argo_compiler.hfsm.reference import Reference
 from tests.conftest import examples
 
 STEPS = 60
-MOVES = {Cause.START, Cause.CONDITION, Cause.REPEAT, Cause.DEFAULT, Cause.TIMEOUT}
+MOVES = {
+    Cause.START, Cause.CONDITION, Cause.REPEAT, Cause.DEFAULT, Cause.TIMEOUT, Cause.MISSED,
+}  # fmt: skip
 
 
 class Hears(StrEnum):
@@ -101,7 +103,8 @@ class World:
             self.running = self.ends_at = None
             self.tell(ending, now)
             if now % 2:  # a driver that delivers it twice
-                self.tell(ending, now)
+                with pytest.raises(ValueError, match="no action|does not run|another action"):
+                    self.tell(ending, now)
         elif min(times) == happening:
             self.happens(self.script.pop(0)[1], happening)
         else:
@@ -116,7 +119,7 @@ class World:
                 return
             if not self.executor.paused:
                 happening = Tick()
-        self.tell(happening, now)
+        self.tell(happening, max(now, self.now))
 
     def tell(self, event, now):
         self.now = now

@@ -185,9 +185,13 @@ SCRIPT = {
         "Check whether a line is missing or in the wrong place.",
     ),
     "script.speed-shared": warning(
-        "A speed holds for every way that leads on from the task before, not only for the one that "
-        "the script says it of.",
+        "A speed holds for every way that leads to a task, not only for the one that the script "
+        "says it of.",
         "Plan a waypoint in between if the other ways are to be driven at another speed.",
+    ),
+    "script.speed-unused": warning(
+        "A task is to be left at a speed, but the mission ends with it.",
+        "Give the speed to the task that the way leads to.",
     ),
     "script.step-range": error(
         "Steps are named the wrong way round, or several where one is meant.",

@@ -1,12 +1,19 @@
 """From a plan to the tasks and groups of a mission: names, transitions, nesting."""
 
 from collections import Counter
-from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from collections.abc import Iterable, Mapping, Sequence
 
 from argo_compiler.diagnostics import Span
 from argo_compiler.il import Action, Group, Stop, Task, Transition
-from argo_compiler.script.resolve.plan import Home, Item, Plan, PlannedGroup, ResolvedBranch
+from argo_compiler.script.resolve.plan import (
+    MEETING,
+    Home,
+    Item,
+    Plan,
+    PlannedGroup,
+    ResolvedBranch,
+)
+from argo_compiler.script.resolve.rounds import PlannedRange, close_rounds
 from argo_compiler.script.syntax.commands import Plain
 from argo_compiler.script.syntax.source import Diagnostics
 from argo_compiler.script.syntax.spelling import alternatives, nearest
@@ -27,18 +34,6 @@ def assemble(
     return _Assembly(plan, diagnostics, steps or {}).result()
 
 
-@dataclass(slots=True)
-class _Range:
-    """A round with its place in the list of tasks."""
-
-    round: PlannedGroup
-    first: int
-    last: int
-    order: int
-    base: str = ""
-    name: str = ""
-
-
 class _Assembly:
     """A plan on its way to tasks and groups."""
 
@@ -46,7 +41,11 @@ class _Assembly:
         self.plan = plan
         self.diagnostics = diagnostics
         self.steps = steps
-        self.items = list(plan)
+        self._take_stock()
+
+    def _take_stock(self) -> None:
+        """The items of the plan as it is now, with their names."""
+        self.items = list(self.plan)
         self.at = {id(item): i for i, item in enumerate(self.items)}
         self.names = self._name_tasks()
         self.by_name: dict[str, int] = {}
@@ -54,9 +53,17 @@ class _Assembly:
             self.by_name.setdefault(name, i)
 
     def result(self) -> tuple[tuple[Task, ...], tuple[Group, ...]]:
-        ranges, shown = self._groups()
-        self._spread_speeds({r.last for r in ranges})
-        tasks = tuple(self._task(i, item, shown[i]) for i, item in enumerate(self.items))
+        ranges = [r for i, round_ in enumerate(self.plan.rounds) if (r := self._range(i, round_))]
+        before = len(self.items)
+        self.following = close_rounds(self.plan, ranges, self.diagnostics)
+        if len(self.following) > before:
+            self._take_stock()
+        shown = self._nest(ranges)
+        ways = [self._transitions(item) for item in self.items]
+        speeds = self._speeds(ways, ranges)
+        tasks = tuple(
+            self._task(i, item, shown[i], ways[i], speeds[i]) for i, item in enumerate(self.items)
+        )
         groups = tuple(
             Group(
                 name=r.name,
@@ -98,7 +105,7 @@ class _Assembly:
 
         return [name(item.base) if item.name is None else item.name for item in self.items]
 
-    def _range_names(self, ranges: list[_Range]) -> None:
+    def _range_names(self, ranges: list[PlannedRange]) -> None:
         own = {r.round.name for r in ranges if r.round.name is not None}
         used: Counter[str] = Counter()
         for r in ranges:
@@ -150,17 +157,12 @@ class _Assembly:
 
     # ---- groups
 
-    def _groups(self) -> tuple[list[_Range], list[str]]:
-        """The groups in the order of the script, and the innermost one's name for each task."""
-        ranges = [r for i, round_ in enumerate(self.plan.rounds) if (r := self._range(i, round_))]
+    def _nest(self, ranges: list[PlannedRange]) -> list[str]:
+        """Names the groups; the innermost one's name for each task."""
         self._range_names(ranges)
-
-        def key(r: _Range) -> tuple[int, int, int, int]:
-            return (r.first, -r.last, (r.round.name or "").count("/"), -r.order)
-
-        nested = sorted(ranges, key=key)
+        nested = sorted(ranges, key=lambda r: r.key)
         shown = [""] * len(self.items)
-        around: list[_Range] = []
+        around: list[PlannedRange] = []
         ends = 0
         for i in range(len(self.items)):
             while around and around[-1].last < i:
@@ -179,9 +181,9 @@ class _Assembly:
                 around.append(r)
             if around:
                 shown[i] = around[-1].name
-        return ranges, shown
+        return shown
 
-    def _range(self, order: int, round_: PlannedGroup) -> _Range | None:
+    def _range(self, order: int, round_: PlannedGroup) -> PlannedRange | None:
         first: int | None
         last: int | None
         if round_.first is not None and round_.last is not None:
@@ -204,66 +206,101 @@ class _Assembly:
                 "step-range", message, round_.span, "write the earlier one first"
             )
             return None
-        return _Range(round_, first, last, order)
+        return PlannedRange(round_, first, last, order)
 
     # ---- speeds
 
-    def _spread_speeds(self, ends: set[int]) -> None:
-        """Gives the speed of the way to a task to the task before it; `ends` are those of rounds.
+    def _speeds(
+        self, ways: Sequence[tuple[Transition, ...]], ranges: Sequence[PlannedRange]
+    ) -> list[float | None]:
+        """The speed of the way to each task: what is said of it, or of leaving a task before it."""
+        speeds = [item.arriving for item in self.items]
+        if all(item.leaving is None for item in self.items):
+            return speeds
+        sources: list[dict[int, None]] = [{} for _ in self.items]
+        for i, transitions in enumerate(ways):
+            for way in transitions:
+                sources[self.by_name[way.target]][i] = None
+        for r in ranges:
+            if r.round.limits.count != 1:
+                sources[r.first][r.last] = None
+        left = {j for froms in sources for j in froms}
+        for i, item in enumerate(self.items):
+            if item.leaving is not None and i not in left:
+                message = "no way leads on from here, so there is none that could have this speed"
+                hint = "write `at 0.3 m/s` for the way to a task"
+                self.diagnostics.warning("speed-unused", message, item.source, hint)
+        self._pass_on(sources)
+        for i, froms in enumerate(sources):
+            self._leave_at(i, speeds, [self.items[j] for j in froms])
+        return [
+            speeds[i] if item.action is not Action.WAIT else item.arriving
+            for i, item in enumerate(self.items)
+        ]
 
-        In a mission a task has one speed for all ways that lead on from it, so that is said where
-        there are others.
-        """
-        for item in self.items:
-            if item.arriving is None or item.before is None:
-                continue
-            before = item.before
-            if before.leaving not in (None, item.arriving):
-                message = f"two speeds for one way: {before.leaving:g} and {item.arriving:g} m/s"
-                self.diagnostics.error("two-speeds", message, item.source, "leave one of them out")
-            before.leaving = item.arriving
-            branches = any(leg.alternatives for leg in before.routes or ())
-            if branches or self.at[id(before)] in ends:
-                name = self.names[self.at[id(before)]]
-                message = (
-                    f"{item.arriving:g} m/s will be the speed of all ways from '{name}', also of "
-                    + ("those that its conditions lead to" if branches else "the next round's")
-                )
-                hint = f"plan a waypoint after '{name}' if the other ways are not to be that fast"
-                self.diagnostics.warning("speed-shared", message, item.source, hint)
-        for item in self.items:
+    def _pass_on(self, sources: Sequence[Iterable[int]]) -> None:
+        """Lets places that take no time be left at the speed of the task before them."""
+        targets: list[list[int]] = [[] for _ in self.items]
+        for i, froms in enumerate(sources):
+            for j in froms:
+                targets[j].append(i)
+        work = [i for i, item in enumerate(self.items) if item.leaving is not None]
+        while work:
+            item = self.items[work[-1]]
+            for i in targets[work.pop()]:
+                place = self.items[i]
+                if place.action is Action.WAIT and place.leaving is None:
+                    place.leaving = item.leaving
+                    work.append(i)
+
+    def _leave_at(self, i: int, speeds: list[float | None], froms: Sequence[Item]) -> None:
+        """Gives a task the speed at which those before it are left."""
+        others = [item for item in froms if item.leaving is None]
+        for item in froms:
             if item.leaving is None:
-                item.leaving = item.passing
+                continue
+            said, speeds[i] = speeds[i], item.leaving
+            if said is not None and said != item.leaving:
+                message = f"two speeds for one way: {item.leaving:g} and {said:g} m/s"
+                self.diagnostics.error("two-speeds", message, item.source, "leave one of them out")
+            if others and self.items[i].arriving is None:
+                elsewhere = ", ".join(f"'{self.names[self.at[id(o)]]}'" for o in others[:3])
+                message = (
+                    f"{item.leaving:g} m/s will be the speed of all ways to '{self.names[i]}', "
+                    f"also from {elsewhere}"
+                )
+                hint = f"plan a waypoint before '{self.names[i]}' if these are not to be that fast"
+                self.diagnostics.warning("speed-shared", message, item.source, hint)
 
     # ---- tasks
 
-    def _task(self, i: int, item: Item, group: str) -> Task:
+    def _task(
+        self,
+        i: int,
+        item: Item,
+        group: str,
+        transitions: tuple[Transition, ...],
+        velocity: float | None,
+    ) -> Task:
         return Task(
             name=self.names[i],
             action=item.action,
             group=group if item.shown_in is None else item.shown_in,
             object_id=item.object_id,
             pose=item.pose,
-            velocity=item.leaving,
+            wait=MEETING if item.action is Action.WAIT else None,
+            velocity=velocity,
             joint_states=item.joints,
             retries=item.retries,
             on_failure=item.on_failure,
-            transitions=self._transitions(item),
+            transitions=transitions,
             source=item.source,
         )
 
     def _next(self, item: Item) -> str | None:
-        """The task that follows the item and its detours; None: the mission ends."""
-        while item.returns is not None:
-            item = item.returns
-        while item.detour is not None:
-            item = item.detour
-        following = item.after
-        while following is not None and following.action is Action.START:
-            following = following.after
-        if following is None or following.apart:
-            return None
-        return self.names[self.at[id(following)]]
+        """The task that follows the item; None: the mission ends."""
+        following = self.following[id(item)]
+        return None if following is None else self.names[self.at[id(following)]]
 
     def _transitions(self, item: Item) -> tuple[Transition, ...]:
         if not item.routes:

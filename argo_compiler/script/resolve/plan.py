@@ -8,7 +8,7 @@ from dataclasses import dataclass
 
 from argo_compiler.diagnostics import Span
 from argo_compiler.editing.linked import Linked, LinkedList
-from argo_compiler.il import Action, Condition, JointState, OnFailure
+from argo_compiler.il import Action, Condition, JointState, OnFailure, WaitRule
 from argo_compiler.model import Pose
 from argo_compiler.script.syntax.commands import Limits, Plain
 from argo_compiler.script.syntax.terms import StepRef
@@ -32,9 +32,7 @@ class Item(Linked):
     arriving: float | None = None
     """m/s on the way to it"""
     leaving: float | None = None
-    """m/s on the way to the next"""
-    passing: float | None = None
-    """m/s on the way to the next where neither of the two says it"""
+    """m/s on all ways that lead on from it"""
     retries: int = 0
     on_failure: OnFailure = OnFailure.CONTINUE
     joints: JointState | None = None
@@ -53,6 +51,8 @@ class ResolvedBranch:
     alternatives: tuple[tuple[Condition, ...], ...]
     target: "Plain | StepRef | Item | Home"
     span: Span
+    otherwise: bool = False
+    """whether it is one of several cases; without it, unconditional is what comes then"""
 
 
 @dataclass(frozen=True, slots=True)
@@ -76,6 +76,13 @@ class PlannedGroup:
     steps: StepRef | None = None
     whole: bool = False
     """over all tasks but START"""
+    after: Item | None = None
+    """the place behind it, where it is decided how the mission goes on after the last round"""
+
+    @property
+    def title(self) -> str:
+        """What it is called in the names of its places."""
+        return self.name or self.base
 
 
 class Plan(LinkedList[Item]):
@@ -104,3 +111,12 @@ def waypoint_item(pose: Pose, source: Span | None) -> Item:
 def measure_item(checkpoint: int, source: Span | None) -> Item:
     """One measurement."""
     return Item(f"MEASURE {checkpoint}", Action.MEASURE, source, object_id=str(checkpoint))
+
+
+def place_item(name: str, source: Span | None) -> Item:
+    """A place of no duration, at which ways meet."""
+    return Item(name, Action.WAIT, source)
+
+
+MEETING = WaitRule(duration=0)
+"""how long such a place takes"""

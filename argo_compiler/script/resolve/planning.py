@@ -19,6 +19,7 @@ from argo_compiler.script.resolve.plan import (
     ResolvedBranch,
     dock_item,
     measure_item,
+    place_item,
     start_item,
     waypoint_item,
 )
@@ -33,6 +34,7 @@ from argo_compiler.script.syntax.commands import (
     Go,
     Manner,
     Measure,
+    Meet,
     Move,
     Patrol,
     Plain,
@@ -49,6 +51,7 @@ from argo_compiler.script.syntax.spelling import alternatives
 from argo_compiler.script.syntax.terms import (
     DockLocation,
     FloorName,
+    Location,
     PlaceLocation,
     Reference,
     StepRef,
@@ -80,6 +83,9 @@ class Planner:
         self.start_at: Span | None = None
         self.docked: Item | None = None
         self.homes: list[ResolvedBranch] = []
+        self.failure_docks: list[DockLocation] = []
+        self.ended: PlannedGroup | None = None
+        """the round that the last command asked for"""
         self.events: dict[str, Span] = {}
         self.done = False
         self.done_is_news = True
@@ -99,9 +105,13 @@ class Planner:
                 self.diagnostics.error("after-done", "this comes after `Done!`", command.span, hint)
             self.done_is_news = False
             return
+        if not isinstance(command, Amend):
+            self.ended = None
         match command:
             case Measure():
                 self._planned(command, self._measure(command))
+            case Meet():
+                self._meet(command)
             case Go():
                 self._go(command)
             case SetStart():
@@ -149,6 +159,8 @@ class Planner:
         self._find_dock()
         for leg in self.homes:
             self._lead_home(leg)
+        for dock in self.failure_docks:
+            self._check_failure_dock(dock)
 
     def current_name(self, protocol: Protocol, tasks: Sequence[Task]) -> str | None:
         """The name of the task that the header gives as the current one."""
@@ -244,6 +256,18 @@ class Planner:
             self.plan.append(last)
         leg.target = last
 
+    def _check_failure_dock(self, dock: DockLocation) -> None:
+        """That a return after a failure is to the dock that the mission has."""
+        area = self.lookup.area(dock.area.value, dock.span) if dock.area else None
+        if area is None or area.dock == self.dock:
+            return
+        message = (
+            f"after a failure the robot returns to the mission's dock, which is not that of "
+            f"starting area {area.number}"
+        )
+        hint = f"leave the area out, or let the mission end there: `End area: {area.number}`"
+        self.diagnostics.error("failure", message, dock.span, hint)
+
     # ---- what it does
 
     def _may_go_on(self, span: Span) -> bool:
@@ -305,6 +329,12 @@ class Planner:
             self.last_measured = checkpoints[-1]
         return items
 
+    def _meet(self, command: Meet) -> None:
+        if self._may_go_on(command.span):
+            item = place_item(str(Action.WAIT), command.span)
+            self._append(item)
+            self._planned(command, [item])
+
     def _go(self, command: Go) -> None:
         if not self._may_go_on(command.span):
             return
@@ -327,9 +357,15 @@ class Planner:
         return waypoint_item(pose, command.span)
 
     def _patrol(self, command: Patrol) -> None:
-        if self._may_go_on(command.span):
-            for items in self._rounds(command, None):
-                self._planned(command, items)
+        if not self._may_go_on(command.span):
+            return
+        for items in self._rounds(command, None):
+            self.step += items
+            self.recent = items
+            self._furnish(command, items)
+            self.ended = self.plan.rounds[-1]
+        if self.ended is not None:
+            self._follow(self.ended, command.routes)
 
     def _rounds(self, command: Patrol, after: Item | None) -> list[list[Item]]:
         """Plans the rounds of a patrol: one for each floor, or one through the places."""
@@ -410,23 +446,20 @@ class Planner:
             items[0].name = command.name
             self.named[command.name] = items[0]
         if command.manner is not None:
-            self._apply(command.manner, items, isinstance(command, Patrol), command.span)
+            self._apply(command.manner, items, command.span)
 
-    def _apply(self, manner: Manner, items: list[Item], patrol: bool, span: Span) -> None:
-        if manner.speed is not None and patrol:
-            items[0].arriving = manner.speed
-            items[-1].passing = manner.speed
-            for item in items[1:]:
-                item.arriving = manner.speed
+    def _apply(self, manner: Manner, items: list[Item], span: Span) -> None:
         pose = self.locator.point(manner.pose) if manner.pose is not None else None
         joints = manner.joints
         for item in items:
-            if manner.speed is not None and not patrol:
+            if manner.speed is not None:
                 item.arriving = manner.speed
             if manner.retries is not None:
                 item.retries = manner.retries
             if manner.on_failure is not None:
                 item.on_failure = manner.on_failure
+                if manner.failure_dock is not None:
+                    self.failure_docks.append(manner.failure_dock)
             if joints is not None:
                 item.joints = JointState(names=joints.names, positions=joints.positions)
             if manner.shown_in is not None:
@@ -443,6 +476,11 @@ class Planner:
             items[-1].leaving = manner.leaving
 
     def _amend(self, command: Amend) -> None:
+        if self.ended is not None and command.routes:
+            if command.manner is not None and self.recent:
+                self._apply(command.manner, self.recent, command.span)
+            self._follow(self.ended, command.routes)
+            return
         if not self.recent or (not self.recent[-1].listed and self.recent[-1] is not self.start):
             if self.whole:
                 message = "there is no task before this that it could belong to"
@@ -450,8 +488,54 @@ class Planner:
                 self.diagnostics.error("no-task", message, command.span, hint)
             return
         if command.manner is not None:
-            self._apply(command.manner, self.recent, False, command.span)
+            self._apply(command.manner, self.recent, command.span)
         self._add_routes(self.recent[-1], command.routes)
+
+    # ---- what follows a round
+
+    def _follow(self, round_: PlannedGroup, routes: Sequence[Branch]) -> None:
+        """Adds routes behind the last round: at a place of its own, which the mission comes to when
+        the time is up as well. What is done in any case leads on from the last task."""
+        if not routes:
+            return
+        decides = any(route.alternatives or isinstance(route.target, tuple) for route in routes)
+        if round_.last is not None and round_.after is None and not decides:
+            self._add_routes(round_.last, routes)
+            return
+        if round_.after is None:
+            last = self._last_of(round_)
+            if last is None:
+                return
+            while last.detour is not None:
+                last = last.detour
+            round_.after = place_item(f"after '{round_.title}'", round_.span)
+            self._insert(last, round_.after)
+            self.step.append(round_.after)
+        self._add_routes(round_.after, routes)
+
+    def _last_of(self, round_: PlannedGroup) -> Item | None:
+        """The last task of a round, which has to be planned before what follows it."""
+        if round_.last is not None:
+            return round_.last
+        found: Item | None = None
+        if round_.steps is None:
+            items = [item for item in self.plan if item.action is not Action.START]
+            while items and items[-1].docks:
+                items.pop()
+            if items:
+                round_.first, found = items[0], items[-1]
+                round_.last = found
+        else:
+            point = round_.steps.first if round_.steps.last is None else round_.steps.last
+            items = [named] if (named := self.named.get(str(point))) else []
+            if isinstance(point, int):
+                items = self.steps.get(point) or []
+            found = next((item for item in reversed(items) if item.listed), None)
+        if found is None and self.whole:
+            message = "not all steps of this repetition are in the plan at this point"
+            hint = "write it behind them, with what follows it"
+            self.diagnostics.error("not-planned", message, round_.span, hint)
+        return found
 
     # ---- routes
 
@@ -460,7 +544,7 @@ class Planner:
             found = resolve_alternatives(route.alternatives, self._compared, self.diagnostics)
             if route.alternatives and not found:
                 continue
-            leg = ResolvedBranch(found, Plain.GO_ON, route.span)
+            leg = ResolvedBranch(found, Plain.GO_ON, route.span, route.otherwise)
             if item.routes is None:
                 item.routes = []
             item.routes.append(leg)
@@ -544,34 +628,46 @@ class Planner:
         if steps is not None:
             points = [str(p) for p in (steps.first, steps.last) if p is not None]
             base = f"Repeat {' to '.join(points)}".replace("/", "-")
-        self.plan.rounds.append(
-            PlannedGroup(
-                base, limits, command.span, name=command.name, steps=steps, whole=steps is None
-            )
+        self.ended = PlannedGroup(
+            base, limits, command.span, name=command.name, steps=steps, whole=steps is None
         )
+        self.plan.rounds.append(self.ended)
+        self._follow(self.ended, command.routes)
 
     def _react(self, command: React) -> None:
-        before = self.events.get(command.event)
-        if before is not None:
-            message = f"line {before.line} already says what to do in this event"
-            hint = "leave one of the two out"
-            self.diagnostics.error("second-reaction", message, command.span, hint)
-            return
-        self.events[command.event] = command.span
-        pose = None
-        if command.location is not None:
-            pose, _ = self.locator.locate(command.location, "end")
-        self.reactions.append(
-            Reaction(
-                event=command.event,
-                response=command.response,
-                pose=pose,
-                until=command.until,
-                afterwards=command.afterwards,
-                priority=command.priority,
-                source=command.span,
+        pose, area = self._refuge(command.location)
+        for event in command.events:
+            before = self.events.get(event)
+            if before is not None:
+                message = f"line {before.line} already says what to do in this event"
+                hint = "leave one of the two out"
+                self.diagnostics.error("second-reaction", message, command.span, hint)
+                continue
+            self.events[event] = command.span
+            self.reactions.append(
+                Reaction(
+                    event=event,
+                    response=command.response,
+                    pose=pose,
+                    area=area,
+                    until=command.until,
+                    afterwards=command.afterwards,
+                    priority=command.priority,
+                    source=command.span,
+                )
             )
-        )
+
+    def _refuge(self, location: Location | None) -> tuple[Pose | None, int | None]:
+        """Where a reaction drives to, and the starting area if it is the dock of one that is named;
+        this need not be the one in which the mission ends."""
+        if location is None:
+            return None, None
+        if isinstance(location, DockLocation):
+            if location.area is None:
+                return None, None
+            area = self.lookup.area(location.area.value, location.span)
+            return (area.dock, area.number) if area else (None, None)
+        return self.locator.locate(location, "end")[0], None
 
     # ---- changes of the plan
 

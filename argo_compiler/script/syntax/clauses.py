@@ -159,6 +159,7 @@ class LineBuilder(Builder):
     recharge, home, in_circles = _flag("recharge"), _flag("home"), _flag("nothing")
     soft, hard, endless = _flag("soft"), _flag("hard"), _flag("endless")
     included, excluded = _flag("included"), _flag("excluded")
+    meet = _flag("meet")
     it = _flag("it")
 
     hint_label = designation_label = site_label = anomaly_label = Builder.label_end

@@ -53,6 +53,8 @@ class Branch(Node):
     """none: unconditional"""
     target: "Plain | StepRef | DockLocation | tuple[Command, ...]"
     """commands are carried out in this case only"""
+    otherwise: bool = False
+    """whether it is the case in which no condition holds; without it, unconditional means then"""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -73,6 +75,8 @@ class Manner:
     """m/s on the way to the task after"""
     retries: int | None = None
     on_failure: OnFailure | None = None
+    failure_dock: DockLocation | None = None
+    """the docking station that is named for a failure"""
     joints: Joints | None = None
     shown_in: str | None = None
     object_id: str | None = None
@@ -123,6 +127,11 @@ class Measure(Planned):
     """`Check the checkpoint #14`: one more measurement, after what was asked for so far."""
 
     checkpoints: tuple[Reference, ...]
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Meet(Planned):
+    """`Go on here`: a place of no duration, at which nothing is done and ways meet."""
 
 
 class Side(StrEnum):
@@ -185,18 +194,21 @@ class Repeat(Node):
     steps: StepRef | None
     """None: all"""
     limits: Limits
+    routes: tuple[Branch, ...] = ()
+    """where the mission goes on behind the last round"""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class React(Node):
     """`If a gas leak is detected, report it and return to the docking station`."""
 
-    event: EventKind
+    events: tuple[EventKind, ...]
+    """each of them has this reaction"""
     response: Response
     location: Location | None = None
     until: EventKind | None = None
     afterwards: Afterwards = Afterwards.END
-    priority: int = 0
+    priority: int | None = None
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -205,5 +217,17 @@ class Done(Node):
 
 
 Command = (
-    SetStart | Patrol | Measure | Add | Go | Amend | Delete | Move | Replace | Repeat | React | Done
+    SetStart
+    | Patrol
+    | Measure
+    | Meet
+    | Add
+    | Go
+    | Amend
+    | Delete
+    | Move
+    | Replace
+    | Repeat
+    | React
+    | Done
 )

@@ -23,6 +23,7 @@ from argo_compiler.script.syntax.commands import (
     Limits,
     Manner,
     Measure,
+    Meet,
     Move,
     Patrol,
     Plain,
@@ -65,11 +66,11 @@ class _Draft:
     routes: list["_Path"] = field(default_factory=list)
     here: bool = False
     # of a reaction
-    event: EventKind | None = None
+    events: list[EventKind] = field(default_factory=list)
     response: Response | None = None
     until: EventKind | None = None
     afterwards: Afterwards = Afterwards.END
-    priority: int = 0
+    priority: int | None = None
     reported: bool = False
 
 
@@ -82,6 +83,7 @@ class _Path:
     alternatives: list[list[Comparison]] | None
     """None: unconditional"""
     target: Plain | StepRef | DockLocation | None = None
+    otherwise: bool = False
     drafts: list[_Draft] = field(default_factory=list)
 
 
@@ -141,7 +143,7 @@ class SentenceBuilder:
             self._begin_if(clause, clauses, i)
         elif kind == "otherwise":
             self._close_path()
-            self.path = _Path(clause.start, clause.end, None)
+            self.path = _Path(clause.start, clause.end, None, otherwise=True)
             self.mode = "then"
             self.wanted = clause
         elif kind == "unless":
@@ -168,7 +170,8 @@ class SentenceBuilder:
         self._close_path()
         if clause.kind == "occasion" or kind == "event":
             self._open("react", clause, None)
-            self.drafts[-1].event = clause.value
+            if clause.kind == "occasion":
+                self.drafts[-1].events.append(clause.value)
             self.mode = "react"
         elif kind == "fails":
             self.mode = "failure"
@@ -329,6 +332,7 @@ class SentenceBuilder:
                 policy = OnFailure.RETURN
             case "go" if isinstance(clause.value, DockLocation):
                 policy = OnFailure.RETURN
+                self._manners().failure_dock = clause.value
             case _:
                 if self.wanted is None:
                     self.mode = "plain"
@@ -348,7 +352,7 @@ class SentenceBuilder:
         drives = draft.response in (Response.RETURN, Response.SAFE_AREA)
         match clause.kind:
             case "event":
-                draft.event = clause.value
+                self._event(clause, draft)
             case "report":
                 draft.reported = True
             case "home":
@@ -356,8 +360,7 @@ class SentenceBuilder:
             case "go":
                 dock = isinstance(clause.value, DockLocation)
                 self._respond(clause, draft, Response.RETURN if dock else Response.SAFE_AREA)
-                if not dock:
-                    draft.things = [clause.value]
+                draft.things = [clause.value]
             case "pause":
                 if draft.response is None:
                     draft.response = Response.PAUSE
@@ -397,6 +400,17 @@ class SentenceBuilder:
         draft.end = clause.end
         self.wanted = None
         return True
+
+    def _event(self, clause: Clause, draft: _Draft) -> None:
+        """One more event with the same reaction."""
+        if draft.events and (draft.response or draft.reported or draft.until):
+            hint = "write a sentence of its own for it, or name it before the response"
+            self._misfit(clause, "this event stands behind the response", "reaction", hint)
+        elif draft.events and "or" not in self.joints and self.joints != {"comma"}:
+            hint = "join them by `or`: `if a gas leak or a hot spot is detected, ...`"
+            self._misfit(clause, "a reaction is one to each single event", "reaction", hint)
+        elif clause.value not in draft.events:
+            draft.events.append(clause.value)
 
     def _respond(self, clause: Clause, draft: _Draft, response: Response) -> None:
         if draft.response is not None and draft.response is not Response.PAUSE:
@@ -513,6 +527,8 @@ class SentenceBuilder:
             case "start here":
                 self._open("start", clause, clause.value)
                 self.drafts[-1].here = True
+            case "meet":
+                self._open("meet", clause, None)
             case "repeat":
                 self._open("repeat", clause, clause.value)
             case "done":
@@ -552,7 +568,7 @@ class SentenceBuilder:
                 hint = "after a condition the mission can go to a step, drive or measure"
                 self._misfit(clause, message, "route", hint)
             self.drafts.append(draft)
-            if kind in _TASKS:
+            if kind in _NAMED:
                 self.owner = draft
         self.last = draft
 
@@ -645,20 +661,32 @@ class SentenceBuilder:
                     self._missing(draft.start, draft.end, "by what", "`by checkpoint #2`")
                 return Replace(span=span, thing=things[0], by=draft.anchor)
             case "repeat":
-                steps = things[0] if things else None
-                limits = draft.limits or Limits()
-                return Repeat(span=span, name=draft.name, steps=steps, limits=limits)
+                return self._repeat(draft, span)
+            case "meet":
+                return Meet(span=span, **planned)
             case "react":
                 return self._react(draft, span)
             case "done":
                 return Done(span=span)
         return Amend(span=span, **planned)
 
+    def _repeat(self, draft: _Draft, span: Span) -> Repeat:
+        if draft.manner is not None:
+            hint = "say it of the steps that are repeated"
+            message = "a repetition has no way of its own to be carried out"
+            self.diagnostics.error("stray-clause", message, span, hint)
+        return Repeat(
+            span=span,
+            name=draft.name,
+            steps=draft.things[0] if draft.things else None,
+            limits=draft.limits or Limits(),
+            routes=tuple([self._route(path) for path in draft.routes]),
+        )
+
     def _react(self, draft: _Draft, span: Span) -> React:
-        assert draft.event is not None
         return React(
             span=span,
-            event=draft.event,
+            events=tuple(draft.events),
             response=draft.response or Response.REPORT,
             location=draft.things[0] if draft.things else None,
             until=draft.until,
@@ -675,12 +703,15 @@ class SentenceBuilder:
             span=self.text.span(path.start, path.end),
             alternatives=tuple(alternatives),
             target=target,
+            otherwise=path.otherwise,
         )
 
 
-_TASKS = frozenset(["start", "patrol", "measure", "add", "go", "amend"])
+_TASKS = frozenset(["start", "patrol", "measure", "meet", "add", "go", "amend"])
 _NAMED = _TASKS | {"repeat"}
-_OPENERS = frozenset(["name", "measure", "go", "patrol", "repeat", "set start", "add", "done"])
+_OPENERS = frozenset(
+    ["name", "measure", "go", "meet", "patrol", "repeat", "set start", "add", "done"]
+)
 _LIMITS = frozenset(["rounds", "for", "soft", "hard", "endless", "included", "excluded"])
 _TESTS = frozenset(["subject", "it", "comparison"])
 

@@ -12,6 +12,7 @@ from argo_compiler.diagnostics import DiagnosticError
 from argo_compiler.diagnostics.subject import subject_of
 from argo_compiler.il import Afterwards, Mission, Mode, Order, Reaction, Response
 from argo_compiler.model import Pose
+from argo_compiler.script.write.sayable import require_sayable
 from argo_compiler.script.write.steps import Steps, unwritable, write_steps
 from argo_compiler.script.write.tasks import Places
 from argo_compiler.script.write.text import (
@@ -31,6 +32,10 @@ _RESPONSES = {
     Response.RETURN: "return to the docking station",
     Response.ABORT: "abort the mission",
 }
+_SAID = frozenset(
+    ["event", "response", "pose", "area", "until", "afterwards", "priority", "source"]
+)
+"""the fields of a reaction that a script can say"""
 
 
 def format_script(mission: Mission, catalog: Catalog) -> str:
@@ -120,23 +125,38 @@ def default_dock(mission: Mission, catalog: Catalog) -> Pose | None:
 
 
 def _reaction(reaction: Reaction, places: Places) -> str:
+    require_sayable(reaction, _SAID)
     pose = reaction.pose
     clauses = [f"On {_event(reaction.event)}:"]
     if reaction.response is not Response.SAFE_AREA:
         clauses[0] += f" {_RESPONSES[reaction.response]}"
-        if pose is not None:
+        if reaction.area is not None:
+            clauses[0] += _in_area(reaction, places)
+        elif pose is not None:
             clauses.append(f"at {point(pose)}")
     elif pose is None:
         raise UnwritableError("it has no pose")
+    elif reaction.area is not None:
+        raise UnwritableError("a safe area has no number: its `area`")
     else:
         clauses[0] += f" go to {places.location(pose)}"
     if reaction.until is not None:
         clauses.append(f"until {_event(reaction.until)}")
     if reaction.afterwards is not Afterwards.END:
         clauses.append(f"afterwards {reaction.afterwards}")
-    if reaction.priority:
+    if reaction.priority is not None:
         clauses.append(f"priority {reaction.priority}")
     return ",\n".join(clauses)
+
+
+def _in_area(reaction: Reaction, places: Places) -> str:
+    """The area in whose docking station a return ends."""
+    area = reaction.area
+    if reaction.response is not Response.RETURN or area is None or area < 0:
+        raise UnwritableError("only a return leads to the docking station of an area: its `area`")
+    if places.dock(area) != reaction.pose:
+        raise UnwritableError(f"its pose is not that of the docking station in area {area}: `area`")
+    return f" in starting area {area}"
 
 
 def _event(event: str) -> str:

@@ -10,6 +10,7 @@ from argo_compiler.diagnostics.subject import subject_of
 from argo_compiler.il import Action, Group, Mission, Stop, Task, Transition
 from argo_compiler.il.grouping import GroupNesting
 from argo_compiler.model import Pose
+from argo_compiler.script.write.sayable import require_sayable
 from argo_compiler.script.write.tasks import (
     Places,
     TaskContext,
@@ -24,6 +25,20 @@ from argo_compiler.script.write.text import (
     statement,
     times,
 )
+
+_SAID = frozenset(
+    [
+        "name",
+        "start",
+        "end",
+        "max_repeat_count",
+        "max_repeat_duration",
+        "count_interruptions",
+        "stop",
+        "source",
+    ]
+)
+"""the fields of a group that a script can say"""
 
 
 @dataclass
@@ -122,7 +137,7 @@ class _Writer:
     def _around(self, i: int) -> TaskContext:
         inner = self.layout.innermost[i]
         group = "" if inner is None else self.layout.ranges[inner].group.name
-        return TaskContext(self.following[i], group, self.steps)
+        return TaskContext(self.following[i], group, bool(self.layout.ending[i]), self.steps)
 
     def _write_task(self, i: int) -> None:
         task = self.tasks[i]
@@ -184,6 +199,7 @@ class _Writer:
             r = self.layout.ranges[place]
             before, furthest = furthest, max(furthest, r.last)
             limited = group.max_repeat_count or group.max_repeat_duration
+            limited = limited and not (group.every or group.until)
             if before >= r.first or r.last - r.first >= longest or not limited:
                 continue
             number = floors.get(tuple(task.pose for task in self.tasks[r.first : r.last + 1]))
@@ -246,6 +262,7 @@ class _Writer:
         return lines
 
     def _repeat(self, index: int, group: Group) -> str:
+        require_sayable(group, _SAID)
         points = [self.steps.get(name, name) for name in dict.fromkeys((group.start, group.end))]
         base = f"Repeat {' to '.join(map(str, points))}".replace("/", "-")
         name = self._group_name(index, base)
@@ -286,6 +303,9 @@ def _default_names(tasks: tuple[Task, ...]) -> list[bool]:
     used: Counter[str] = Counter()
     found = []
     for task in tasks:
+        if task.action is Action.WAIT:
+            found.append(False)  # a person gives it a name of its own
+            continue
         if task.action is Action.WAYPOINT:
             base, default = "WAYPOINT", f"WAYPOINT {used['WAYPOINT'] + 1}"
         else:

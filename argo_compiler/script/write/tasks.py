@@ -12,10 +12,12 @@ from argo_compiler.il import (
     OnFailure,
     Task,
     Transition,
+    WaitRule,
 )
 from argo_compiler.model import Pose
 from argo_compiler.script.syntax.protocol import protocol_grammar
 from argo_compiler.script.syntax.shapes import StumbleError
+from argo_compiler.script.write.sayable import require_sayable
 from argo_compiler.script.write.text import UnwritableError, duration, number, point, quote, times
 
 _WORDS = re.compile(r"[a-z]+(?: [a-z]+)*")
@@ -24,6 +26,24 @@ _ON_FAILURE = {
     OnFailure.RETURN: "if it fails return to the docking station",
     OnFailure.ABORT: "if it fails abort the mission",
 }
+_SAID = frozenset(
+    [
+        "name",
+        "action",
+        "group",
+        "object_id",
+        "pose",
+        "wait",
+        "velocity",
+        "joint_states",
+        "retries",
+        "on_failure",
+        "transitions",
+        "source",
+    ]
+)
+"""the fields of a task that a script can say"""
+_SAID_OF_JOINTS = frozenset(["names", "positions"])
 
 
 class Places:
@@ -31,11 +51,16 @@ class Places:
 
     def __init__(self, catalog: Catalog) -> None:
         self._areas = {area.dock: area.number for area in reversed(catalog.areas)}
+        self._docks = {area.number: area.dock for area in reversed(catalog.areas)}
         self._names = {place.pose: _name(place.name) for place in reversed(catalog.places)}
 
     def name(self, pose: Pose) -> str | None:
         """What the site calls the place with this pose."""
         return self._names.get(pose)
+
+    def dock(self, area: int) -> Pose | None:
+        """The docking station in the starting area of this number."""
+        return self._docks.get(area)
 
     def location(self, pose: Pose) -> str:
         """The pose as a place or area of the site if it is one, else in coordinates."""
@@ -60,26 +85,32 @@ class TaskContext:
     """the next task of the mission's list"""
     group: str
     """the innermost group around it"""
+    ends: bool
+    """whether a round ends with it"""
     steps: Mapping[str, int]
     """the steps of those tasks that can be named by one"""
 
 
 def clauses(task: Task, around: TaskContext) -> Iterator[str]:
     """All that the task has besides its name and its command."""
-    if task.action is Action.MEASURE and task.pose is not None:
+    require_sayable(task, _SAID if task.action is Action.WAIT else _SAID - {"wait"})
+    if task.action in (Action.MEASURE, Action.WAIT) and task.pose is not None:
         yield f"standing at {point(task.pose)}"
     if task.action is not Action.MEASURE and task.object_id is not None:
         yield f"about object {quote(task.object_id)}"
     if task.joint_states is not None:
+        require_sayable(task.joint_states, _SAID_OF_JOINTS, "joint_states.")
         names = ",\n".join(quote(name) for name in task.joint_states.names)
         positions = ",\n".join(number(value) for value in task.joint_states.positions)
         yield f"with joints [{names}]\nat [{positions}]"
     if task.group != around.group:
         yield f"shown in {quote(task.group)}"
     if task.velocity is not None:
-        yield f"leaving at {number(task.velocity)} m/s"
+        yield f"at {number(task.velocity)} m/s"
     if task.retries:
         yield f"retry {times(task.retries)}"
+    if task.on_failure is OnFailure.BRANCH:
+        raise UnwritableError("can't be said in a script yet: `on_failure` branch")
     if task.on_failure is not OnFailure.CONTINUE:
         yield _ON_FAILURE[task.on_failure]
     yield from _ways(task.transitions, around)
@@ -88,7 +119,8 @@ def clauses(task: Task, around: TaskContext) -> Iterator[str]:
 def _ways(transitions: tuple[Transition, ...], around: TaskContext) -> Iterator[str]:
     """The transitions, except for what is meant if nothing is said."""
     conditional = any(t.conditions for t in transitions)
-    word = "otherwise" if conditional else "then"
+    # Otherwise is one of the cases in a round; what comes then, comes after the last round.
+    word = "otherwise" if conditional and not around.ends else "then"
     unconditional = False
     for i, transition in enumerate(transitions):
         if transition.conditions:
@@ -118,7 +150,9 @@ def condition(c: Condition) -> str:
     details = []
     if c.id:
         details.append(f"called {quote(c.id)}")
-    low, high = number(c.param1 or 0.0), None if c.param2 is None else number(c.param2)
+    if not c.type.compares or c.param1 is None:
+        raise UnwritableError(f"can't be said in a script yet: a condition of type {c.type}")
+    low, high = number(c.param1), None if c.param2 is None else number(c.param2)
     if c.type is ConditionType.WITHIN:
         if high is None:
             raise UnwritableError("a WITHIN condition has no second bound")
@@ -155,6 +189,10 @@ def command(task: Task, places: Places) -> str:
         return f"check checkpoint #{_checkpoint(task.object_id)}"
     if task.action is Action.START:
         return "start here" if task.pose is None else f"start here at {point(task.pose)}"
+    if task.action is Action.WAIT:
+        if task.wait != WaitRule(duration=0):
+            raise UnwritableError("can't be said in a script yet: how it waits (`wait`)")
+        return "go on here"
     if task.pose is None:
         raise UnwritableError("it is a waypoint without a pose")
     return f"go to {places.location(task.pose)}"

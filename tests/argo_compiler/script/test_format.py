@@ -59,7 +59,7 @@ Anomaly specification: "anything \\u002aodd\\u002a"
 2. Patrol floor 1 for 10 min.
 3. Check checkpoint #2.
 4. Check checkpoint #14; retry twice; if it fails abort the mission.
-5. "gate": go to (1, 2, 0) heading 90 degrees; leaving at 0.25 m/s.
+5. "gate": go to (1, 2, 0) heading 90 degrees; at 0.25 m/s.
 6. Check checkpoint #14; if checkpoint #14 is above 2.5, go to step 3; otherwise end the mission.
 7. Return to the docking station in starting area 1.
 

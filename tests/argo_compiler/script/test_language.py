@@ -254,11 +254,35 @@ def test_places(said: str, pose: Pose, catalog: Catalog) -> None:
     assert planned(f"Go to {said}", catalog).tasks[-1].pose == pose
 
 
-def test_the_speed_of_a_way_belongs_to_the_task_before(catalog: Catalog) -> None:
-    mission = planned("Check checkpoints #2 and #3 at 0.3 m/s, leaving at 3.6 km/h", catalog)
-    assert [t.velocity for t in mission.tasks] == [None, None, None, 0.3, 0.3, 1.0]
-    around = planned("Patrol floor 1 twice at 0.3 m/s", catalog)
-    assert [t.velocity for t in around.tasks][3:] == [0.3] * 5
+@pytest.mark.rule("T6")
+@pytest.mark.parametrize(
+    ("line", "speeds"),
+    [
+        ("Check checkpoints #2 and #3 at 0.3 m/s", [0.3, 0.3]),
+        ("Check #2 at 0.3 m/s, leaving at 3.6 km/h.\n6. Check #3", [0.3, 1.0]),
+        ("Check #2.\n6. Check #3 at 0.5 m/s.\n7. Move #3 before #2", [0.5, None]),
+        ("Patrol floor 1 twice at 0.3 m/s.\n6. Check #2", [0.3] * 4 + [None]),
+        (
+            "Check #2, leaving at 0.2 m/s; if it is above 3, check #3; otherwise check #5",
+            [None, 0.2, 0.2],
+        ),
+        (
+            "Check #2, leaving at 0.2 m/s.\n6. Repeat step 5 once; if #2 is above 3, check #3.\n"
+            "7. Check #5",
+            [None, None, 0.2, 0.2],
+        ),
+    ],
+)
+def test_a_speed_belongs_to_the_way_to_a_task(
+    line: str, speeds: list[float | None], catalog: Catalog
+) -> None:
+    mission = import_script(f"{PLAN}5. {line}\n", catalog).mission
+    assert [t.velocity for t in mission.tasks][:4] == [None] * 4
+    assert [t.velocity for t in mission.tasks][4:] == speeds
+
+
+def test_a_speed_at_which_nothing_is_left_is_said(catalog: Catalog) -> None:
+    assert codes(f"{PLAN}5. Check #2, leaving at 0.1 m/s\n", catalog) == ["speed-unused"]
 
 
 @pytest.mark.parametrize(
@@ -393,6 +417,41 @@ def test_reactions(
     assert (reaction.pose is not None) == (response is Response.SAFE_AREA)
 
 
+@pytest.mark.parametrize(
+    "line",
+    [
+        "If a gas leak or a hot spot is detected, return to the docking station and wait",
+        "If a gas leak, a hot spot or an abnormal sound is detected, pause until all clear",
+        "In case of a dysfunction or low battery: report it",
+    ],
+)
+def test_each_event_of_a_sentence_has_its_reaction(line: str, catalog: Catalog) -> None:
+    reactions = planned(line, catalog).reactions
+    words = [word for word in _EVENTS if word.replace("_", " ") in line]
+    assert [r.event for r in reactions] == [EventKind(word) for word in words]
+    assert len({r.model_copy(update={"event": EventKind.GAS_LEAK}) for r in reactions}) == 1
+
+
+_EVENTS = ("gas_leak", "hot_spot", "abnormal_sound", "dysfunction", "low_battery")
+
+
+@pytest.mark.rule("R2")
+def test_a_reaction_keeps_the_dock_that_it_names(catalog: Catalog) -> None:
+    lines = "On low battery: go to the docking station in starting area 2, recharge and resume"
+    mission = planned(f"Return to the docking station in starting area 1.\n{lines}", catalog)
+    (reaction,) = mission.reactions
+    assert (reaction.response, reaction.area) == (Response.RETURN, 2)
+    assert reaction.pose == catalog.area(2).dock != mission.dock
+    with pytest.raises(DiagnosticError, match="no starting area 7"):
+        planned(lines.replace("2", "7"), catalog)
+
+
+@pytest.mark.rule("R7")
+def test_without_a_priority_the_event_decides(catalog: Catalog) -> None:
+    said = "On low battery: pause, priority 0\nOn gas leak: pause"
+    assert [r.priority for r in planned(said, catalog).reactions] == [0, None]
+
+
 # ---- changes of the plan, the header, the course of lines
 
 
@@ -489,6 +548,11 @@ def test_a_statement_goes_on_in_the_next_line(catalog: Catalog) -> None:
         ("Check #2. Check #1e999", "number"),
         ("Check #2; if it fails, check #3", "failure"),
         ("Check #2 at 0.3 m/s, leaving at 0.2 m/s; go to (1, 2, 3) at 0.1 m/s", "two-speeds"),
+        ("Repeat step 2 twice at 0.3 m/s", "stray-clause"),
+        ("Repeat steps 6 to 7 twice; if #1 is above 2, check #2.\n6. Check #2", "not-planned"),
+        ("If a gas leak and a hot spot is detected, report it", "reaction"),
+        ("On gas leak: report it, hot spot", "reaction"),
+        ("Check #2; if it fails, return to the docking station in starting area 2", "failure"),
     ],
 )
 def test_what_is_wrong(line: str, code: str, catalog: Catalog) -> None:
@@ -498,8 +562,10 @@ def test_what_is_wrong(line: str, code: str, catalog: Catalog) -> None:
 @pytest.mark.parametrize(
     "lines",
     [
-        "5. Patrol floor 1 twice.\n6. Go to the front of the site at 0.1 m/s.",
-        "5. Check #1. If it is above 4, go to step 3.\n6. Check #2 at 0.1 m/s.",
+        "5. Check #1. If it is above 4, go to step 7.\n"
+        "6. Check #2, leaving at 0.1 m/s.\n7. Check #3.",
+        "5. Check #1.\n6. Check #2, leaving at 0.1 m/s; go to step 5.",
+        "5. Check #1.\n6. Check #2, leaving at 0.1 m/s.\n7. Repeat steps 5 to 6 twice.",
     ],
 )
 def test_a_speed_that_other_ways_share_is_said(lines: str, catalog: Catalog) -> None:

@@ -131,6 +131,7 @@ class Executor:
         course.failed = progress.failed
         course.time_up = progress.time_up
         course.outcome = progress.outcome
+        executor._last_id = progress.actions
         executor._fresh = False
         return executor
 
@@ -223,6 +224,7 @@ class Executor:
             readings=reading_progress(place, now),
             tallies=tally_progress(course.tallies),
             failed=course.failed,
+            actions=self._last_id,
             elapsed=now - place.began,
             time_up=course.time_up,
             paused=control.paused,

@@ -110,6 +110,8 @@ class Progress(Model):
     """of all tasks of which a visit has ended; a cancelled action has not ended one"""
     failed: bool = False
     """whether a failure counts as one of the mission (M3)"""
+    actions: int = Field(default=0, ge=0)
+    """how many have been started, so that none of those that follow has the id of one of them"""
     elapsed: float = Field(default=0.0, ge=0)
     """s since the mission's start, interruptions included"""
     time_up: bool = False

@@ -103,7 +103,7 @@ class World:
             self.running = self.ends_at = None
             self.tell(ending, now)
             if now % 2:  # a driver that delivers it twice
-                with pytest.raises(ValueError, match="no action|does not run|another action"):
+                with pytest.raises(ValueError, match=r"no action|does not run|another action"):
                     self.tell(ending, now)
         elif min(times) == happening:
             self.happens(self.script.pop(0)[1], happening)

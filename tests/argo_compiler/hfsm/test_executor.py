@@ -196,6 +196,7 @@ class TestProgress:
                 {"task": "B", "done": 0, "failed": 1, "by_hand": 0},
             ],
             "failed": True,
+            "actions": 3,
             "elapsed": 4,
             "time_up": False,
             "paused": False,
@@ -205,7 +206,7 @@ class TestProgress:
             "by_hand": [],
         }
         later = Executor.restore(lower(mission), Progress.model_validate_json(written), 100)
-        assert later.start(100) == (StartAction(mission.tasks[2], 1),)
+        assert later.start(100) == (StartAction(mission.tasks[2], 4),)
         assert later.next_deadline == 107
         assert later.values == {"A": Measured(7, 97)}
         assert later.trace[0].cause is Cause.RESTORE
@@ -217,7 +218,7 @@ class TestProgress:
         executor.start(0)
         executor.handle(ActionSucceeded("A"), 1)
         later = Executor.restore(lower(mission), executor.progress(), 50)
-        assert later.start(70) == (StartAction(mission.tasks[3], 1),)
+        assert later.start(70) == (StartAction(mission.tasks[3], 3),)
         assert later.trace[-1].time == 70
 
     def test_ended_mission_stays_ended(self, build):

@@ -15,6 +15,7 @@ from argo_compiler.analysis.study import Study
 from argo_compiler.analysis.transitions import transitions
 from argo_compiler.analysis.travel import Travel
 from argo_compiler.analysis.values import find_paths, make_fields
+from argo_compiler.analysis.worst import worst_duration
 from argo_compiler.catalog import Catalog
 from argo_compiler.hfsm.lowering import lower
 from argo_compiler.il import Mission
@@ -47,10 +48,11 @@ def analyse(
         names = ", ".join(sorted(fields.scales.keys() - fields.shift.keys())[:10])
         unjudged.append(f"the values of some checkpoints along the paths ({names})")
     found = [*unreachable_tasks(study), *transitions(study), *endings(study)]
+    worst = None if study.extent is None else worst_duration(study)
     if study.extent is None:
         unjudged.append("loops and durations")
     elif travel is not None:
-        found += limits(study, travel)
+        found += limits(study, travel, worst)
         old = stale(study)
         if old is None:
             unjudged.append("ages of values")
@@ -64,6 +66,7 @@ def analyse(
         ends=_reach(study, flow.done),
         duration=None if extent is None else extent.duration,
         energy=None if extent is None else extent.energy,
+        duration_with_failures=worst,
         unjudged=tuple(unjudged),
     )
 

@@ -7,6 +7,7 @@ from argo_compiler.analysis.facts import Bound, Bounds, Stretch
 from argo_compiler.analysis.flow import Flow
 from argo_compiler.analysis.legs import Legs
 from argo_compiler.analysis.levels import LevelGraph, Levels, Loop
+from argo_compiler.analysis.moments import TaskEnd, moments
 from argo_compiler.analysis.rounds import Out
 from argo_compiler.analysis.values import Paths
 
@@ -21,6 +22,8 @@ class Extent:
     duration: Bounds | None
     energy: Bounds | None
     loops: tuple[Loop, ...]
+    moments: tuple[TaskEnd, ...] = ()
+    """of each leaf, where durations are known"""
 
 
 def too_many_cuts(flow: Flow) -> bool:
@@ -41,12 +44,30 @@ def measure(flow: Flow, paths: Paths, legs: Legs, endless: bool) -> Extent:
     levels = Levels(flow, paths, legs)
     level = levels.mission()
     duration = energy = None
+    ended: tuple[TaskEnd, ...] = ()
     ends = [way for way in level.outs if way[1][1] == flow.done]
-    if ends and legs.travel is not None:
+    # What can't be done as planned fails: then nothing is known of a path without failures.
+    if ends and legs.travel is not None and not legs.too_slow:
         endless = endless or bool(levels.loops)
         duration = _bounds(flow, legs, level, "time", endless)
         energy = _bounds(flow, legs, level, "energy", endless)
-    return Extent(duration, energy, tuple(levels.loops.values()))
+        ended = moments(levels, level)
+    return Extent(duration, energy, tuple(levels.loops.values()), ended)
+
+
+def longest(flow: Flow, paths: Paths, legs: Legs) -> float:
+    """s at most from the mission's start to its end; infinite if there is no bound. Raises
+    BoundsTooLargeError."""
+    levels = Levels(flow, paths, legs)
+    level = levels.mission()
+    if levels.loops:
+        return math.inf
+    most = 0.0
+    for node, (source, target), cost, _ in level.outs:
+        if target == flow.done:
+            end = level.most["time"][node] + cost.time.most + legs.last_clean_up(source)
+            most = max(most, end)
+    return most
 
 
 def _bounds(
@@ -91,6 +112,9 @@ def _path(
         if isinstance(key, int):
             if flow.is_leaf(key):
                 reversed_path.append(Stretch(task=flow.leaves[key].name, until=distance[node]))
+        elif len(key) == 2:
+            name = flow.leaves[key[1]].name
+            reversed_path.append(Stretch(task=name, missed=True, until=distance[node]))
         else:
             assert out is not None
             span = getattr(out.cost, quantity)

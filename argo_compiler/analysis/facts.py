@@ -51,13 +51,15 @@ class Stretch(Model):
     task: str | None = None
     group: str | None = None
     rounds: int = 1
+    missed: bool = False
+    """whether the task's window was over before it had ended"""
     until: float
     """when it has ended, counted from the mission's start (s, or Wh)"""
 
     @property
     def words(self) -> str:
         if self.task is not None:
-            return self.task
+            return f"{self.task} missed" if self.missed else self.task
         return f"'{self.group}' x {self.rounds} round{'s' if self.rounds != 1 else ''}"
 
 
@@ -70,7 +72,8 @@ class Bound(Model):
 
 
 class Bounds(Model):
-    """What the mission takes from its start to its end if no action fails and nothing happens."""
+    """What the mission takes from its start to its end if no action fails and nothing happens, be
+    it that its time is up: as if there was no reaction to that."""
 
     least: Bound
     most: Bound
@@ -88,6 +91,9 @@ class Analysis(Model):
     """s; None without travel times, or where the mission can't end"""
     energy: Bounds | None = None
     """Wh"""
+    duration_with_failures: Bound | None = None
+    """s at most whatever fails and occurs, reactions included, if no person interrupts; a `value`
+    of None: there is no bound. None: it was not looked at"""
     unjudged: tuple[str, ...] = ()
     """what was left out because the mission is too large or too deeply nested, in words"""
 

@@ -8,7 +8,7 @@ up, whatever was under way; and one node is the end of the mission.
 from dataclasses import dataclass, field
 
 from argo_compiler.hfsm.model import MISSION, Hfsm, Leaf, StateTransition
-from argo_compiler.il import Action, Condition, Mission, Stop
+from argo_compiler.il import Action, Condition, Mission, Stop, WaitRule
 
 NOWHERE = -1
 """the parent of what lies directly in the mission"""
@@ -32,14 +32,23 @@ class GroupFlow:
     duration: float
     hard: bool
     """whether a time-out ends the round"""
+    every: float = 0.0
+    """s from the beginning of one round to that of the next; 0: at once"""
+    until: tuple[Condition, ...] = ()
+    """no other round begins once all of these hold"""
 
     @property
     def may_repeat(self) -> bool:
         return self.count != 1
 
     @property
-    def may_end(self) -> bool:
+    def limited(self) -> bool:
+        """Whether a count or a time ends it, whatever is measured."""
         return self.count > 0 or self.duration > 0
+
+    @property
+    def may_end(self) -> bool:
+        return self.limited or bool(self.until)
 
     def holds(self, leaf: int) -> bool:
         return self.first <= leaf <= self.last
@@ -58,10 +67,34 @@ class LeafFlow:
     """the node after a failure for good, where that is not the same as any other end"""
     measures: str | None
     """the object whose value its action measures"""
+    missed: int | None = None
+    """the node after a missed window, where that is not the same as after a failure for good"""
 
     @property
     def name(self) -> str:
         return self.leaf.task.name
+
+    @property
+    def wait(self) -> WaitRule | None:
+        """How long it lasts, of a task that runs no action."""
+        return self.leaf.task.wait if self.leaf.task.action is Action.WAIT else None
+
+    @property
+    def earliest(self) -> float:
+        """s since the mission's start before which it does not begin at its place."""
+        window = self.leaf.task.window
+        return 0.0 if window is None else window.earliest
+
+    @property
+    def deadline(self) -> float | None:
+        """s since the mission's start at which it has failed if it has not ended; None: never."""
+        window = self.leaf.task.window
+        return window.latest if window is not None and window.hard else None
+
+    @property
+    def may_give_up(self) -> bool:
+        """Whether it is a wait that fails if nothing ends it in time."""
+        return self.wait is not None and self.wait.limit is not None
 
 
 @dataclass(frozen=True)
@@ -71,7 +104,6 @@ class Flow:
     leaves: tuple[LeafFlow, ...]
     groups: tuple[GroupFlow, ...]
     initial: int
-    start_velocity: float | None
     depth: tuple[int, ...] = field(default=())
     """of each group: how many groups are around it"""
     timed: tuple[bool, ...] = field(default=())
@@ -123,12 +155,10 @@ class _Builder:
             around = group.parent
             depth.append(depth[around] + 1 if around >= 0 else 0)
             timed.append(group.hard or (around >= 0 and timed[around]))
-        start = next((t for t in self.mission.tasks if t.action is Action.START), None)
         return Flow(
             leaves=tuple(self._leaf_flow(leaf) for leaf in self.hfsm.leaves),
             groups=groups,
             initial=self.number.get(self.hfsm.mission.initial, self.done),
-            start_velocity=None if start is None else start.velocity,
             depth=tuple(depth),
             timed=tuple(timed),
         )
@@ -147,6 +177,7 @@ class _Builder:
             tail=self._node(last),
             failure=None if leaf.failure is None else self._node(leaf.failure),
             measures=leaf.task.object_id if leaf.task.action is Action.MEASURE else None,
+            missed=None if leaf.missed is None else self._node(leaf.missed),
         )
 
     def _group_flows(self) -> tuple[GroupFlow, ...]:
@@ -178,6 +209,8 @@ class _Builder:
                     count=repeat.count,
                     duration=repeat.duration,
                     hard=repeat.duration > 0 and repeat.stop is Stop.HARD,
+                    every=repeat.every,
+                    until=repeat.until,
                 )
             )
         return tuple(flows)

@@ -2,13 +2,14 @@
 
 import math
 from collections import deque
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 from dataclasses import dataclass
 
 from argo_compiler.analysis.flow import Flow
+from argo_compiler.analysis.graph import components
 from argo_compiler.analysis.travel import Leg, NoWay, Standing, Travel
 from argo_compiler.analysis.values import Paths
-from argo_compiler.il import Mission
+from argo_compiler.il import Mission, Task
 
 BEGIN = "begin"
 """the source of the first step"""
@@ -17,7 +18,7 @@ ANY = "any"
 _STANDINGS = (
     4  # of one leaf that are told apart: from where a checkpoint is read depends on the way
 )
-_ROUNDS = 8  # over cuts that lead to cuts, before what they take is unbounded
+_WAITING_PLACES = 64  # of one wait, likewise
 
 
 @dataclass(frozen=True, slots=True)
@@ -65,16 +66,30 @@ class Cost:
 
 
 FREE = Cost(NOTHING, NOTHING)
+_UNLIMITED = Cost(QuantityRange(0.0, math.inf), QuantityRange(0.0, math.inf))
 
 Source = int | tuple[str, int] | str
-"""Where a step begins: after a leaf, BEGIN, ANY, ("cut", g) when the time of group g was up, or
-("repeat", g) at the end of a round of it, whatever ended last."""
+"""Where a step begins: after a leaf, BEGIN, ANY, ("cut", g) when the time of group g was up,
+("missed", i) when the window of leaf i was over, or ("repeat", g) at the end of a round of g,
+whatever ended last."""
+
+
+@dataclass(frozen=True, slots=True)
+class Whereabouts:
+    """Where the robot is: at a standing, or somewhere on its way to it."""
+
+    standing: Standing
+    on_way_to: int | None = None
+    """the leaf whose action was cancelled on the way; None: it stands there"""
 
 
 class Legs:
-    """The steps of a mission without failures. Holds what was asked of the travel before.
+    """The steps of a mission. Holds what was asked of the travel before.
 
-    Without travel all steps are free.
+    Without travel all steps are free. If the paths have failures, any action may fail, at the
+    latest when it would have been done, and is tried again as its task says. Then only what a step
+    takes at most is right, and where a failed action has left the robot is known less well: between
+    two places of the plan of which one follows the other.
     """
 
     def __init__(self, flow: Flow, paths: Paths, travel: Travel | None, mission: Mission) -> None:
@@ -83,56 +98,104 @@ class Legs:
         self.travel = travel
         self.blocked: dict[int, str] = {}
         """leaves that there is a standing without a way from, and why"""
-        self.standings: list[list[Standing]] = [[] for _ in flow.leaves]
+        self.places: list[list[Whereabouts]] = [[] for _ in flow.leaves]
+        """where the robot may be after each leaf"""
+        self.too_slow: dict[int, float] = {}
+        """leaves that can't be done within their time limit, and what they take (s) at least"""
+        self.too_many = False
+        """whether there are waits at more places than are told apart"""
+        self.standing_power = 0.0 if travel is None else travel.standing_power
         self._steps: dict[tuple[Source, int], Cost] = {}
-        self._cuts: dict[int, list[tuple[int, int]]] = {}
-        self._into: list[Cost | None] = [None] * len(flow.leaves)
-        self._work: dict[int, tuple[float, float]] = {}
+        self._before: list[list[Whereabouts]] = [[] for _ in flow.leaves]
+        """where it may be before each leaf, as far as that matters for what follows"""
+        self._origins: list[dict[Standing, None]] = [{} for _ in flow.leaves]
+        """where it may stand before each leaf that it goes to from there"""
+        self._cuts: dict[Source, dict[tuple[int, int], None]] = {}
+        """for each source, the leaf that the robot was on the way to, and the one that follows"""
+        self._work: dict[int, Cost] = {}
+        self._round_starts = frozenset(g.start for g in flow.groups if g.every)
+        self._pending: deque[tuple[int, Whereabouts, bool]] = deque()
         if travel is not None:
             self._spread(travel, mission)
-            self._measure_cuts(travel.clean_up)
+            self._measure_cuts(travel)
             self._join_repeats()
+            self._compare_limits()
+            if paths.failures:
+                self._try_again(travel.clean_up)
             for (_, target), cost in list(self._steps.items()):
                 self._join(ANY, target, cost)
 
     def step(self, source: Source, target: int) -> Cost:
-        """The way from a source to a leaf, and the leaf's action."""
+        """The way from a source to a leaf, and the leaf's action, whenever its turn comes."""
+        cost = self.way(source, target)
+        if self.travel is None or not self.flow.is_leaf(target):
+            return cost
+        earliest = self.flow.leaves[target].earliest
+        if not earliest:
+            return cost
+        most = max(cost.time.most, earliest + self.work(target).time.most)
+        waiting = QuantityRange(0.0, self.standing_power * earliest / 3600)
+        return Cost(QuantityRange(cost.time.least, most), cost.energy + waiting)
+
+    def way(self, source: Source, target: int) -> Cost:
+        """The same, if the robot does not have to wait at the place."""
         if self.travel is None or not self.flow.is_leaf(target):
             return FREE
         return self._steps.get((source, target), FREE)
 
+    def missing(self, source: Source, target: int) -> Cost:
+        """What passes from a source until the hard window of a leaf is over."""
+        cost = self.step(source, target)
+        deadline = self.flow.leaves[target].deadline
+        assert deadline is not None
+        return Cost(
+            QuantityRange(0.0, min(cost.time.most, deadline)), QuantityRange(0.0, cost.energy.most)
+        )
+
+    def work(self, leaf: int) -> Cost:
+        """What the action of a leaf takes at its place."""
+        return self._work.get(leaf, FREE)
+
     def steps(self) -> dict[object, list[tuple[object, float]]]:
         """What may come next after each leaf and each cut, and the least time (s) it takes."""
         following: dict[object, list[tuple[object, float]]] = {}
-        cut_at: dict[int, list[int]] = {}
-        for group, ways in self._cuts.items():
-            for x in {x for x, _ in ways}:
-                cut_at.setdefault(x, []).append(group)
         for (source, target), cost in self._steps.items():
-            if isinstance(source, int) or (isinstance(source, tuple) and source[0] == "cut"):
-                after = following.setdefault(source, [])
-                after.append((target, cost.time.least))
-                after += [(("cut", group), 0.0) for group in cut_at.get(target, ())]
+            if isinstance(source, str) or (not isinstance(source, int) and source[0] == "repeat"):
+                continue
+            after = following.setdefault(source, [])
+            after.append((target, cost.time.least))
+            # It may be cancelled as soon as it is begun.
+            after += [(cut, 0.0) for cut, _ in self._cut_ways(target)]
         return following
 
     def last_clean_up(self, source: Source) -> float:
         """s at most until the mission has ended, if it ends after this source."""
-        cut = isinstance(source, tuple) and source[0] == "cut"
-        return self.travel.clean_up if cut and self.travel is not None else 0.0
+        if self.travel is None or isinstance(source, str):
+            return 0.0
+        if isinstance(source, int):
+            cancelled = any(place.on_way_to is not None for place in self.places[source])
+        else:
+            cancelled = source[0] in ("cut", "missed")
+        return self.travel.clean_up if cancelled else 0.0
 
     def _successors(self, leaf: int) -> Iterator[tuple[Source, int]]:
-        """The leaves that may follow a leaf whose action ended, or was cut."""
-        flow, paths = self.flow, self.paths
-        for target in paths.targets(flow, leaf):
+        """The leaves that may follow a leaf that has ended, or was cancelled."""
+        for target in self.paths.targets(self.flow, leaf):
             yield from ((leaf, t) for t in self._resolve(target))
+        yield from self._cut_ways(leaf)
+
+    def _cut_ways(self, leaf: int) -> Iterator[tuple[Source, int]]:
+        """The leaves that may follow a leaf whose time was up."""
+        flow = self.flow
         group = flow.leaves[leaf].parent
         while group >= 0 and flow.timed[group]:
             if flow.groups[group].hard:
-                yield from ((("cut", group), t) for t in self._onward(group))
+                for t in self._resolve(flow.groups[group].onward):
+                    yield ("cut", group), t
             group = flow.groups[group].parent
-
-    def _onward(self, group: int) -> tuple[int, ...]:
-        return self._resolve(self.flow.groups[group].onward)
+        for target in self.paths.after_missing(flow, leaf):
+            for t in self._resolve(target):
+                yield ("missed", leaf), t
 
     def _resolve(self, node: int) -> tuple[int, ...]:
         """The leaves that a node leads to at once."""
@@ -151,56 +214,78 @@ class Legs:
         return tuple(found)
 
     def _spread(self, travel: Travel, mission: Mission) -> None:
-        """Where the robot may stand after each leaf, and the steps between."""
+        """Where the robot may be after each leaf, and the steps between."""
         flow = self.flow
         if not flow.is_leaf(flow.initial):
             return
-        pending: deque[tuple[int, Standing]] = deque()
-        first = travel.start(mission)
-        self._walk(travel, BEGIN, first, flow.initial, flow.start_velocity, pending)
-        after: list[list[tuple[Source, int]] | None] = [None] * len(flow.leaves)
-        while pending:
-            leaf, standing = pending.popleft()
-            ways = after[leaf]
+        self._walk(travel, BEGIN, Whereabouts(travel.start(mission)), flow.initial)
+        ended: list[list[tuple[Source, int]] | None] = [None] * len(flow.leaves)
+        while self._pending:
+            leaf, place, before = self._pending.popleft()
+            ways = ended[leaf]
             if ways is None:
-                ways = after[leaf] = list(dict.fromkeys(self._successors(leaf)))
+                ways = ended[leaf] = list(dict.fromkeys(self._successors(leaf)))
             for source, target in ways:
-                if source == leaf:
-                    velocity = flow.leaves[leaf].leaf.task.velocity
-                    self._walk(travel, leaf, standing, target, velocity, pending)
-                else:
-                    assert isinstance(source, tuple)
-                    self._cuts.setdefault(source[1], []).append((leaf, target))
-                    velocity = flow.leaves[leaf].leaf.task.velocity
-                    self._walk(travel, None, standing, target, velocity, pending, cut_at=leaf)
+                if source != leaf:
+                    at = place if before else Whereabouts(place.standing, leaf)
+                    self._walk(travel, source, at, target)
+                elif not before or flow.leaves[leaf].wait is not None:
+                    self._walk(travel, source, place, target)
+                    if self.paths.failures and not before:
+                        self._walk(travel, source, Whereabouts(place.standing, leaf), target)
 
-    def _walk(
-        self,
-        travel: Travel,
-        source: Source | None,
-        standing: Standing,
-        target: int,
-        velocity: float | None,
-        pending: deque[tuple[int, Standing]],
-        cut_at: int | None = None,
-    ) -> None:
-        leg = travel.leg(standing, self.flow.leaves[target].leaf.task, velocity)
+    def _walk(self, travel: Travel, source: Source, place: Whereabouts, target: int) -> None:
+        leaf = self.flow.leaves[target]
+        if leaf.wait is not None:
+            self._join(source, target, self._waiting(target))
+            self._work[target] = FREE
+            if self._note(self._before[target], place, target, before=True):
+                self.places[target].append(place)
+            return
+        task = leaf.leaf.task
+        leg = travel.leg(place.standing, task, task.velocity)
         if isinstance(leg, NoWay):
             self.blocked.setdefault(target, leg.reason)
-            leg = Leg(0.0, 0.0, standing)
-        cost = Cost(
-            QuantityRange(leg.duration, leg.duration), QuantityRange(leg.energy, leg.energy)
+            leg = Leg(0.0, 0.0, place.standing)
+        if place.on_way_to is None:
+            self._join(source, target, _cost(leg))
+            self._origins[target].setdefault(place.standing)
+        else:
+            self._cuts.setdefault(source, {})[place.on_way_to, target] = None
+        work = Cost(
+            QuantityRange(leg.work, leg.work), QuantityRange(leg.work_energy, leg.work_energy)
         )
-        work = self._work.get(target, (math.inf, math.inf))
-        self._work[target] = min(work[0], leg.work), min(work[1], leg.work_energy)
-        self._join(_rest(cut_at) if source is None else source, target, cost)
-        if source is not None:
-            into = self._into[target]
-            self._into[target] = cost if into is None else into | cost
-        there = self.standings[target]
-        if leg.arrival not in there and len(there) < _STANDINGS:
-            there.append(leg.arrival)
-            pending.append((target, leg.arrival))
+        known = self._work.get(target)
+        self._work[target] = work if known is None else known | work
+        if place.on_way_to is not None or leaf.deadline is not None or target in self._round_starts:
+            # It may be cancelled before it is begun.
+            self._note(self._before[target], place, target, before=True)
+        self._note(self.places[target], Whereabouts(leg.arrival), target, before=False)
+
+    def _note(
+        self, known: list[Whereabouts], place: Whereabouts, leaf: int, *, before: bool
+    ) -> bool:
+        """Whether a place is a new one; it is gone on from then."""
+        if place in known:
+            return False
+        if len(known) >= (_WAITING_PLACES if before else _STANDINGS):
+            self.too_many = self.too_many or before
+            return False
+        known.append(place)
+        self._pending.append((leaf, place, before))
+        return True
+
+    def _waiting(self, leaf: int) -> Cost:
+        """What a WAIT takes, its window apart."""
+        rule = self.flow.leaves[leaf].wait
+        assert rule is not None
+        if rule.duration is not None:
+            time = QuantityRange(rule.duration, rule.duration)
+        else:
+            time = QuantityRange(0.0, math.inf if rule.limit is None else rule.limit)
+        # At a dock it takes nothing from the battery.
+        energy = self.standing_power * time.most / 3600 if self.standing_power else 0.0
+        return Cost(time, QuantityRange(0.0, energy))
 
     def _join(self, source: Source, target: int, cost: Cost) -> None:
         known = self._steps.get((source, target))
@@ -214,7 +299,12 @@ class Legs:
             for i, leaf in enumerate(flow.leaves)
             if self.paths.reached(i) and self.paths.tail_possible(flow, i)
         ]
-        ends += [(("cut", g), flow.groups[g].onward) for g in self._cuts]
+        ends += [
+            (("missed", i), leaf.tail)
+            for i, leaf in enumerate(flow.leaves)
+            if leaf.deadline is not None
+        ]
+        ends += [(("cut", i), group.onward) for i, group in enumerate(flow.groups) if group.hard]
         for source, node in ends:
             group = flow.group_of_round_end(node)
             while group is not None:
@@ -223,42 +313,148 @@ class Legs:
                     self._join(("repeat", group), start, self._steps[source, start])
                 group = flow.group_of_round_end(flow.groups[group].onward)
 
-    def _measure_cuts(self, clean_up: float) -> None:
-        """What the way takes from wherever the time of a group was up.
+    def _compare_limits(self) -> None:
+        fastest: dict[int, float] = {}
+        for (_, target), cost in self._steps.items():
+            fastest[target] = min(fastest.get(target, math.inf), cost.time.least)
+        for target, taken in fastest.items():
+            limit = self.flow.leaves[target].leaf.task.time_limit
+            if limit is not None and taken > limit:
+                self.too_slow[target] = taken
+
+    def _try_again(self, clean_up: float) -> None:
+        """The steps with all attempts, each as long as the first one at most."""
+        longest: dict[int, Cost] = {}
+        for (source, target), cost in self._steps.items():
+            leaf = self.flow.leaves[target]
+            if leaf.wait is not None:
+                continue
+            task = leaf.leaf.task
+            attempt = cost.time.most
+            if task.time_limit is not None:
+                attempt = min(attempt, task.time_limit + clean_up)
+            tries = task.retries + 1
+            spent = Cost(
+                QuantityRange(0.0, (attempt + clean_up) * tries),
+                QuantityRange(0.0, cost.energy.most * tries),
+            )
+            self._steps[source, target] = spent
+            longest[target] = longest.get(target, FREE) | spent
+        self._work |= longest
+
+    def onward(self, leaf: int, target: Task) -> Cost | NoWay:
+        """The way to any other task from where the robot is after a leaf."""
+        assert self.travel is not None
+        cost = FREE
+        for place in self.places[leaf]:
+            leg = self.travel.leg(place.standing, target, target.velocity)
+            if isinstance(leg, NoWay):
+                return leg
+            cost = cost | _cost(leg)
+        return cost
+
+    def way_back(self, leaf: int, target: Task) -> Cost | NoWay:
+        """The same from wherever it is on the way to the leaf, or after it."""
+        assert self.travel is not None
+        onward = self.onward(leaf, target)
+        if isinstance(onward, NoWay) or self.flow.leaves[leaf].wait is not None:
+            return onward
+        ways = _CutWays(self.flow, self.travel, self._origins, self.places)
+        return onward + ways.rest(leaf, target.velocity)
+
+    def _measure_cuts(self, travel: Travel) -> None:
+        """What the way takes from wherever the robot was when an action was cancelled.
 
         The robot was on its way to a leaf x, or at its action: it could have gone on there and then
-        to the target, so the rest of that step and the way from x are enough, after cleaning up. It
-        may almost be there, so the target's action is the least.
+        to the target, at the target's speed, so the rest of that step and the way from x are
+        enough, after cleaning up. It may almost be there, so the target's action is the least.
         """
-        most = {i: cost for i, cost in enumerate(self._into) if cost is not None}
-        for attempt in range(_ROUNDS):
-            changed = False
-            for group, ways in self._cuts.items():
-                for x, target in set(ways):
-                    if x not in most:
-                        continue
-                    time, energy = most[x].time.most, most[x].energy.most
-                    if x != target:
-                        onward = self._steps[_rest(x), target]
-                        time, energy = time + onward.time.most, energy + onward.energy.most
-                    if attempt == _ROUNDS - 1:
-                        time = energy = math.inf
-                    work, work_energy = self._work[target]
-                    rest = Cost(
-                        QuantityRange(min(work, time), time),
-                        QuantityRange(min(work_energy, energy), energy),
-                    )
-                    into = most.get(target)
-                    joined = rest if into is None else into | rest
-                    changed = changed or joined != into
-                    most[target] = joined
-                    waited = Cost(QuantityRange(0.0, clean_up), NOTHING)
-                    self._join(("cut", group), target, rest + waited)
-            if not changed:
-                return
+        ways = _CutWays(self.flow, travel, self._origins, self.places)
+        if not self.paths.failures:
+            ways.chain(self._cuts)
+        for source, pairs in self._cuts.items():
+            for x, target in pairs:
+                most = ways.most(x, target)
+                work = self.work(target)
+                rest = Cost(
+                    QuantityRange(min(work.time.least, most.time.most), most.time.most),
+                    QuantityRange(min(work.energy.least, most.energy.most), most.energy.most),
+                )
+                waited = Cost(QuantityRange(0.0, travel.clean_up), NOTHING)
+                self._join(source, target, rest + waited)
 
 
-def _rest(leaf: int | None) -> tuple[str, int]:
-    """The key of the way from a leaf at which the time was up."""
-    assert leaf is not None
-    return ("rest", leaf)
+class _CutWays:
+    """The longest ways from where an action was cancelled. Keeps those that it has found."""
+
+    def __init__(
+        self,
+        flow: Flow,
+        travel: Travel,
+        origins: list[dict[Standing, None]],
+        places: list[list[Whereabouts]],
+    ) -> None:
+        self.flow = flow
+        self.travel = travel
+        self.origins = origins
+        self.places = places
+        self.detours: list[list[int]] = []
+        """for each leaf, those that the robot may have been on the way to when it was begun"""
+        self.cut: set[int] = set()
+        self._found: dict[tuple[int, float | None], Cost] = {}
+        self._parts: list[list[int]] | None = None
+
+    def chain(self, cuts: dict[Source, dict[tuple[int, int], None]]) -> None:
+        """From now on, cancelled actions may follow each other."""
+        self.detours = [[] for _ in self.flow.leaves]
+        for pairs in cuts.values():
+            for x, target in pairs:
+                self.cut.add(x)
+                if x != target and x not in self.detours[target]:
+                    self.detours[target].append(x)
+
+    def most(self, x: int, target: int) -> Cost:
+        """From on the way to x to another leaf, at most."""
+        velocity = self.flow.leaves[target].leaf.task.velocity
+        cost = self.rest(x, velocity)
+        return cost if x == target else cost + self._between(x, target, velocity)
+
+    def rest(self, x: int, velocity: float | None) -> Cost:
+        """The rest of the way to x at a speed, at most."""
+        if (x, velocity) not in self._found:
+            if self.detours:
+                self._measure(velocity)
+            else:
+                self._found[x, velocity] = self._to(self.origins[x], x, velocity)
+        return self._found[x, velocity]
+
+    def _measure(self, velocity: float | None) -> None:
+        """The longest way to each leaf at a speed, from wherever the robot may be before it."""
+        if self._parts is None:
+            self._parts = components(self.detours)
+        for part in self._parts:
+            endless = len(part) > 1
+            for x in self.cut.intersection(part):
+                cost = self._to(self.origins[x], x, velocity)
+                for y in self.detours[x]:
+                    if endless:
+                        break
+                    cost = cost | (self._found[y, velocity] + self._between(y, x, velocity))
+                self._found[x, velocity] = _UNLIMITED if endless else cost
+
+    def _between(self, x: int, target: int, velocity: float | None) -> Cost:
+        standings = [place.standing for place in self.places[x]]
+        return self._to(standings, target, velocity)
+
+    def _to(self, standings: Iterable[Standing], target: int, velocity: float | None) -> Cost:
+        task = self.flow.leaves[target].leaf.task
+        cost = FREE
+        for standing in standings:
+            leg = self.travel.leg(standing, task, velocity)
+            if not isinstance(leg, NoWay):
+                cost = cost | _cost(leg)
+        return cost
+
+
+def _cost(leg: Leg) -> Cost:
+    return Cost(QuantityRange(leg.duration, leg.duration), QuantityRange(leg.energy, leg.energy))

@@ -8,22 +8,26 @@ limits shows as a cycle within a level.
 
 import heapq
 import math
-from collections.abc import Generator
+from collections.abc import Generator, Iterator
 from dataclasses import dataclass, field
-from typing import cast
+from typing import TypeGuard, cast
 
 from argo_compiler.analysis.flow import NOWHERE, Flow
 from argo_compiler.analysis.graph import components, is_loop
-from argo_compiler.analysis.legs import ANY, BEGIN, FREE, Cost, Legs, QuantityRange, Source
+from argo_compiler.analysis.legs import ANY, BEGIN, FREE, NOTHING, Cost, Legs, QuantityRange, Source
 from argo_compiler.analysis.rounds import GroupRound, Out, Rounds, WayOut, combine
 from argo_compiler.analysis.values import Paths
 
 WORK = 400_000
 """steps after which the search is given up"""
+_SOON = 1e-9  # s: sums of floats are not exact
 _SOURCES = 8  # of one entry of a group that are told apart
 
-Key = int | tuple[int, int, Source]
-"""a leaf, or (group, leaf it is entered at, from where)"""
+Entry = tuple[int, int, Source]
+"""(group, leaf it is entered at, from where)"""
+
+Key = int | tuple[str, int] | Entry
+"""a leaf that has ended, ("missed", leaf) when its window was over, or a group"""
 
 
 class BoundsTooLargeError(Exception):
@@ -38,6 +42,10 @@ class Hop:
     cost: Cost
     out: Out | None
     """how the group was left, if a group is"""
+    before: Cost = FREE
+    """the part of it that is over when the target's turn has come"""
+    way: QuantityRange = NOTHING
+    """s that the rest takes if no window has to be waited for"""
 
 
 @dataclass
@@ -48,8 +56,8 @@ class LevelGraph:
     hops: list[list[Hop]] = field(default_factory=list)
     outs: list[tuple[int, WayOut, Cost, Out | None]] = field(default_factory=list)
     """node, how the level is left or its round ends, what it takes from the node on"""
-    first: Cost = FREE
-    """until the first node"""
+    firsts: list[Hop] = field(default_factory=list)
+    """the steps to the first nodes"""
     least: dict[str, list[float]] = field(default_factory=dict)
     most: dict[str, list[float]] = field(default_factory=dict)
     least_before: dict[str, list[tuple[int, Out | None] | None]] = field(default_factory=dict)
@@ -76,8 +84,10 @@ class Levels:
         self.legs = legs
         self.loops: dict[tuple[tuple[int, ...], tuple[int, ...]], Loop] = {}
         self._work = work
-        self._rounds: dict[tuple[int, int, Source], Rounds] = {}
+        self.rounds: dict[Entry, Rounds] = {}
         self._later: dict[int, GroupRound] = {}
+        self._graphs: dict[Entry, LevelGraph] = {}
+        self._later_graphs: dict[int, LevelGraph] = {}
         self._sources: dict[tuple[int, int], set[Source]] = {}
         self._children: list[list[int]] = [[] for _ in range(len(flow.groups) + 1)]
         for number, group in enumerate(flow.groups):
@@ -87,9 +97,9 @@ class Levels:
         """The level of the mission. Raises TooLargeError."""
         # Levels are computed inside each other; a stack of generators instead of calls, as groups
         # may nest deeper than calls can.
-        stack: list[Generator[tuple[int, int, Source], Rounds, LevelGraph | Rounds]]
+        stack: list[Generator[Entry, Rounds, LevelGraph | Rounds]]
         stack = [self._level(NOWHERE, self.flow.initial, BEGIN)]
-        keys: list[tuple[int, int, Source] | None] = [None]
+        keys: list[Entry | None] = [None]
         answer: Rounds | None = None
         while True:
             try:
@@ -99,27 +109,34 @@ class Levels:
                 key = keys.pop()
                 if key is None:
                     return cast(LevelGraph, stop.value)
-                answer = self._rounds[key] = cast(Rounds, stop.value)
+                answer = self.rounds[key] = cast(Rounds, stop.value)
                 continue
-            answer = self._rounds.get(wanted)
+            answer = self.rounds.get(wanted)
             if answer is None:
                 stack.append(self._group(*wanted))
                 keys.append(wanted)
 
-    def _group(
-        self, group: int, entry: int, source: Source
-    ) -> Generator[tuple[int, int, Source], Rounds, Rounds]:
+    def graphs_of(self, entry: Entry) -> Iterator[LevelGraph]:
+        """The first round of a group that is entered so, and each other one."""
+        yield self._graphs[entry]
+        if entry[0] in self._later_graphs:
+            yield self._later_graphs[entry[0]]
+
+    def _group(self, group: int, entry: int, source: Source) -> Generator[Entry, Rounds, Rounds]:
         """All rounds of a group, entered at a leaf from a source."""
-        first = self._round(group, (yield from self._level(group, entry, source)))
+        graph = yield from self._level(group, entry, source)
+        self._graphs[group, entry, source] = graph
+        first = self._round(group, graph)
         flow = self.flow.groups[group]
         later = None
         if flow.may_repeat and first.ends:
             if group not in self._later:
                 level = yield from self._level(group, flow.start, ("repeat", group))
+                self._later_graphs[group] = level
                 self._later[group] = self._round(group, level)
             # The way back to the start depends on what ended last.
             later = self._later[group]
-        rounds = combine(group, flow, first, later)
+        rounds = combine(group, flow, first, later, self.legs.standing_power)
         timed = flow.parent >= 0 and self.flow.timed[flow.parent]
         if rounds.unlimited and not timed:
             self._note_loop((), (group,), left=bool(rounds.outs))
@@ -137,15 +154,16 @@ class Levels:
             else:
                 at = exits.get((source, target))
                 exits[source, target] = total if at is None else at | total
-        energy = level.first.energy.most
+        energy = time = 0.0
         for node, key in enumerate(level.keys):
-            inside = 0.0 if isinstance(key, int) else self._rounds[key].energy
-            energy = max(energy, level.most["energy"][node] + inside)
-        return GroupRound(ends, exits, energy)
+            inside = self.rounds[key] if is_entry(key) else None
+            energy = max(energy, level.most["energy"][node] + (inside.energy if inside else 0.0))
+            time = max(time, level.most["time"][node] + (inside.time if inside else 0.0))
+        return GroupRound(ends, exits, energy, time)
 
     def _level(
         self, level: int, entry: int, source: Source
-    ) -> Generator[tuple[int, int, Source], Rounds, LevelGraph]:
+    ) -> Generator[Entry, Rounds, LevelGraph]:
         """The graph of a level that is entered at a leaf from a source, with its distances."""
         graph = LevelGraph()
         number: dict[Key, int] = {}
@@ -157,32 +175,43 @@ class Levels:
                 graph.hops.append([])
             return number[key]
 
+        def hops(last: Source, target: int, cost: Cost, out: Out | None) -> Iterator[Hop]:
+            """The steps to a leaf of the level: it may end, or its window may be over."""
+            following = self._key(level, target, last)
+            if not isinstance(following, int):
+                yield Hop(node(following), cost, out, cost)
+                return
+            step, way = self.legs.step(last, target), self.legs.way(last, target).time
+            yield Hop(node(following), cost + step, out, cost, way)
+            if self.flow.leaves[target].deadline is not None and self.legs.travel is not None:
+                missed = cost + self.legs.missing(last, target)
+                yield Hop(node(("missed", target)), missed, out, cost, way)
+
         if not self.flow.is_leaf(entry):
             graph.outs.append((0, (source, entry), FREE, None))
-            graph.keys.append(entry)
-            graph.hops.append([])
+            graph.firsts.append(Hop(node(entry), FREE, None))
             self._measure(graph, level)
             return graph
-        first = self._key(level, entry, source)
-        graph.first = self.legs.step(source, entry) if isinstance(first, int) else FREE
-        node(first)
+        graph.firsts += hops(source, entry, FREE, None)
         at = 0
         while at < len(graph.keys):
             key = graph.keys[at]
             ways: list[tuple[WayOut, Cost, Out | None]]
             if isinstance(key, int):
                 ways = [((key, t), FREE, None) for t in self.paths.targets(self.flow, key)]
-            else:
+            elif is_entry(key):
                 rounds = yield key
                 ways = [(way, out.cost, out) for way, out in rounds.outs.items()]
+            else:
+                missed = cast(tuple[str, int], key)
+                after = self.paths.after_missing(self.flow, missed[1])
+                ways = [((missed, t), FREE, None) for t in after]
             self._work -= 1 + len(ways)
             if self._work < 0:
                 raise BoundsTooLargeError
             for (last, target), cost, out in ways:
                 if self.flow.is_leaf(target) and self._holds(level, target):
-                    following = self._key(level, target, last)
-                    step = self.legs.step(last, target) if isinstance(following, int) else FREE
-                    graph.hops[at].append(Hop(node(following), cost + step, out))
+                    graph.hops[at] += hops(last, target, cost, out)
                 else:
                     graph.outs.append((at, (last, target), cost, out))
             at += 1
@@ -227,14 +256,15 @@ class Levels:
                     inside = set(part)
                     self._note_loop(
                         tuple(sorted(k for k in keys if isinstance(k, int))),
-                        tuple(sorted({k[0] for k in keys if not isinstance(k, int)})),
+                        tuple(sorted({k[0] for k in keys if is_entry(k)})),
                         left=any(out[0] in inside for out in graph.outs)
                         or any(t not in inside for node in part for t in successors[node]),
                     )
         order = [node for part in reversed(parts) for node in part]
         for measure in ("time", "energy"):
-            _least(graph, measure)
-            _most(graph, measure, order, looping)
+            clock = _Clock(self.legs) if level < 0 and measure == "time" else None
+            _most(graph, measure, order, looping, clock)
+            _least(graph, measure, clock)
 
     def _note_loop(self, leaves: tuple[int, ...], groups: tuple[int, ...], *, left: bool) -> None:
         known = self.loops.get((leaves, groups))
@@ -251,36 +281,107 @@ def _spans(level: LevelGraph, node: int) -> Cost:
     )
 
 
-def _least(graph: LevelGraph, measure: str) -> None:
-    """Dijkstra's algorithm."""
+class _Clock:
+    """The time since the mission's start, which windows go by."""
+
+    def __init__(self, legs: Legs) -> None:
+        self.legs = legs
+
+    def soonest(self, hop: Hop, key: Key, here: float, latest_here: float) -> float:
+        """When a step is over at the soonest; infinite if it can't be taken."""
+        begun = here + hop.before.time.least
+        leaf = self._window(key)
+        if leaf is None:
+            return here + hop.cost.time.least
+        flow = self.legs.flow.leaves[leaf]
+        work = self.legs.work(leaf).time
+        if isinstance(key, int):
+            ended = max(begun + hop.way.least, flow.earliest + work.least)
+            late = flow.deadline is not None and ended > flow.deadline + _SOON
+            return math.inf if late else ended
+        assert flow.deadline is not None
+        ended = max(latest_here + hop.before.time.most + hop.way.most, flow.earliest + work.most)
+        return max(begun, flow.deadline) if ended >= flow.deadline - _SOON else math.inf
+
+    def latest(self, hop: Hop, key: Key, here: float) -> float:
+        """When a step is over at the latest; minus infinity if it can't be taken."""
+        begun = here + hop.before.time.most
+        leaf = self._window(key)
+        if leaf is None:
+            return here + hop.cost.time.most
+        flow = self.legs.flow.leaves[leaf]
+        ended = max(begun + hop.way.most, flow.earliest + self.legs.work(leaf).time.most)
+        if isinstance(key, int):
+            return ended if flow.deadline is None else min(ended, flow.deadline + _SOON)
+        assert flow.deadline is not None
+        return max(begun, flow.deadline) if ended >= flow.deadline - _SOON else -math.inf
+
+    def _window(self, key: Key) -> int | None:
+        """The leaf of a step whose window is to be looked at."""
+        if is_entry(key):
+            return None
+        leaf = key if isinstance(key, int) else key[1]
+        flow = self.legs.flow
+        windowed = flow.is_leaf(leaf) and flow.leaves[leaf].leaf.task.window is not None
+        return leaf if windowed and self.legs.travel is not None else None
+
+
+def is_entry(key: Key) -> TypeGuard[Entry]:
+    """Whether a node is a group."""
+    return isinstance(key, tuple) and len(key) == 3
+
+
+def _least(graph: LevelGraph, measure: str, clock: _Clock | None) -> None:
+    """Dijkstra's algorithm. With a clock, times are those since the mission's start."""
     distance = [math.inf] * len(graph.keys)
     before: list[tuple[int, Out | None] | None] = [None] * len(graph.keys)
-    distance[0] = getattr(graph.first, measure).least
-    heap = [(distance[0], 0)]
+    heap: list[tuple[float, int]] = []
+
+    def reach(hop: Hop, here: float, node: int | None) -> None:
+        if clock is None:
+            there = here + getattr(hop.cost, measure).least
+        else:
+            latest = 0.0 if node is None else graph.most[measure][node]
+            there = clock.soonest(hop, graph.keys[hop.target], here, latest)
+        if there < distance[hop.target]:
+            distance[hop.target] = there
+            before[hop.target] = None if node is None else (node, hop.out)
+            heapq.heappush(heap, (there, hop.target))
+
+    for hop in graph.firsts:
+        reach(hop, 0.0, None)
     while heap:
         here, node = heapq.heappop(heap)
         if here > distance[node]:
             continue
         for hop in graph.hops[node]:
-            there = here + getattr(hop.cost, measure).least
-            if there < distance[hop.target]:
-                distance[hop.target] = there
-                before[hop.target] = node, hop.out
-                heapq.heappush(heap, (there, hop.target))
+            reach(hop, here, node)
     graph.least[measure], graph.least_before[measure] = distance, before
 
 
-def _most(graph: LevelGraph, measure: str, order: list[int], looping: list[bool]) -> None:
+def _most(
+    graph: LevelGraph, measure: str, order: list[int], looping: list[bool], clock: _Clock | None
+) -> None:
     """The longest ways; without bound in loops and after them."""
     distance = [-math.inf] * len(graph.keys)
     before: list[tuple[int, Out | None] | None] = [None] * len(graph.keys)
-    distance[0] = getattr(graph.first, measure).most
+
+    def reach(hop: Hop, here: float, node: int | None) -> None:
+        if clock is None:
+            there = here + getattr(hop.cost, measure).most
+        else:
+            there = clock.latest(hop, graph.keys[hop.target], here)
+        if there > distance[hop.target]:
+            distance[hop.target] = there
+            before[hop.target] = None if node is None else (node, hop.out)
+
+    for hop in graph.firsts:
+        reach(hop, 0.0, None)
     for node in order:
+        if distance[node] == -math.inf:
+            continue
         if looping[node]:
             distance[node] = math.inf
         for hop in graph.hops[node]:
-            there = distance[node] + getattr(hop.cost, measure).most
-            if there > distance[hop.target]:
-                distance[hop.target] = there
-                before[hop.target] = node, hop.out
+            reach(hop, distance[node], node)
     graph.most[measure], graph.most_before[measure] = distance, before

@@ -4,31 +4,53 @@ import heapq
 import math
 from collections.abc import Callable, Iterator
 
+from argo_compiler.analysis.bounds import Extent
 from argo_compiler.analysis.facts import Bound, Bounds, Stretch
-from argo_compiler.analysis.study import Study
+from argo_compiler.analysis.quantities import energy_words, time_words
+from argo_compiler.analysis.study import Study, listed
 from argo_compiler.analysis.travel import NoWay, Travel
+from argo_compiler.analysis.values import told_by_others
+from argo_compiler.analysis.windows import time_limits, windows
 from argo_compiler.diagnostics import Diagnostic, Severity
 from argo_compiler.diagnostics.subject import subject_of
 from argo_compiler.hfsm.conditions import words
-from argo_compiler.il import Action, OnFailure, Response, Task
+from argo_compiler.il import (
+    Action,
+    Afterwards,
+    ConditionType,
+    EventKind,
+    OnFailure,
+    Reaction,
+    Response,
+    Task,
+)
 from argo_compiler.model import Pose
 
 AGE_WORK = 3_000_000
 """steps that ages of values may take to look at"""
+RESERVE_SHARE = 0.2
+"""of the battery that is to be left at the dock: the charge that the robot calls low"""
 _SHOWN = 8  # stretches of a path that a message spells out
 
 
-def limits(study: Study, travel: Travel) -> Iterator[Diagnostic]:
-    """What travel times and energy say about the mission."""
+def limits(study: Study, travel: Travel, worst: Bound | None = None) -> Iterator[Diagnostic]:
+    """What travel times and energy say about the mission. `worst` is how long it takes at most,
+    whatever fails and occurs."""
     yield from _blocked(study)
     yield from _blocked_retreats(study, travel)
+    yield from time_limits(study)
     extent = study.extent
     if extent is None or extent.duration is None or extent.energy is None:
         return
     if study.mission.max_duration is not None:
-        yield from _too_long(study, extent.duration, study.mission.max_duration)
+        if any(r.event is EventKind.TIME_UP and ends_mission(r) for r in study.mission.reactions):
+            yield from _cut_short(study, extent, study.mission.max_duration, worst)
+        else:
+            yield from _too_long(study, extent.duration, study.mission.max_duration)
+    yield from windows(study, extent.moments)
     if travel.battery is not None:
         yield from _too_far(study, extent.energy, travel.battery)
+        yield from _no_way_back(study, extent.energy, travel)
 
 
 def _blocked(study: Study) -> Iterator[Diagnostic]:
@@ -77,8 +99,9 @@ def _too_long(study: Study, duration: Bounds, limit: float) -> Iterator[Diagnost
         yield study.diagnostic(
             "too-long",
             Severity.ERROR,
-            f"the mission takes at least {time_words(least)}, longer than its maximum duration of "
-            f"{time_words(limit)} (shortest: {path_words(duration.least, time_words)})",
+            f"the mission takes at least {time_words(least)} if nothing fails, longer than its "
+            f"maximum duration of {time_words(limit)} (shortest: "
+            f"{path_words(duration.least, time_words)})",
             "leave out tasks, shorten groups, or allow more time",
             subject="max_duration",
         )
@@ -103,14 +126,43 @@ def _too_long(study: Study, duration: Bounds, limit: float) -> Iterator[Diagnost
         )
 
 
+def _cut_short(
+    study: Study, extent: Extent, limit: float, worst: Bound | None
+) -> Iterator[Diagnostic]:
+    """What the plan loses when a reaction to TIME_UP ends the mission."""
+    assert extent.duration is not None
+    most = extent.duration.most.value
+    if most is not None and most <= limit:
+        return
+    own = [i for i in range(len(study.flow.leaves)) if study.is_own(i) and study.nominal.reached(i)]
+    lost = [study.name(i) for i in own if limit < extent.moments[i].soonest < math.inf]
+    unsure = [
+        study.name(i) for i in own if extent.moments[i].soonest <= limit < extent.moments[i].latest
+    ]
+    up_to = "without limit" if most is None else f"up to {time_words(most)}"
+    ends = "the reaction to time_up ends it then"
+    if worst is not None and worst.value is not None:
+        ends += f", after {time_words(worst.value)} at most"
+    yield study.diagnostic(
+        "cut-short",
+        Severity.WARNING,
+        f"the plan may take {up_to}, longer than the mission's maximum duration of "
+        f"{time_words(limit)}: {ends}"
+        + (f"; if nothing fails, {listed(lost)} will not be done by then" if lost else "")
+        + (f"; {listed(unsure)} may not be done, or not in all rounds" if unsure else ""),
+        "leave out tasks, shorten groups, or allow more time",
+        subject="max_duration",
+    )
+
+
 def _too_far(study: Study, energy: Bounds, battery: float) -> Iterator[Diagnostic]:
     least, most = energy.least.value, energy.most.value
-    if least is not None and least > battery:
+    if least is not None and least > battery and not _may_charge(study):
         yield study.diagnostic(
             "battery-exceeded",
             Severity.ERROR,
-            f"the mission needs at least {energy_words(least)}, and the battery gives "
-            f"{energy_words(battery)} (least: {path_words(energy.least, energy_words)})",
+            f"the mission needs at least {energy_words(least)} if nothing fails, and the battery "
+            f"gives {energy_words(battery)} (least: {path_words(energy.least, energy_words)})",
             "leave out tasks or rounds, or charge in between",
             subject="tasks",
         )
@@ -127,16 +179,68 @@ def _too_far(study: Study, energy: Bounds, battery: float) -> Iterator[Diagnosti
         )
 
 
+def _may_charge(study: Study) -> bool:
+    """Whether the robot may stand at a dock for a while, which charges it."""
+    waits = any(leaf.wait is not None or leaf.earliest for leaf in study.flow.leaves)
+    return waits or any(group.every for group in study.flow.groups)
+
+
+def _no_way_back(study: Study, energy: Bounds, travel: Travel) -> Iterator[Diagnostic]:
+    """From which task on the battery may not suffice for the way back, on the path that needs the
+    most."""
+    dock, battery, most = study.mission.dock, travel.battery, energy.most.value
+    if dock is None or battery is None or most is None or most > battery:
+        return
+    home = Task(name="home", action=Action.WAYPOINT, pose=dock)
+    leaves = {leaf.name: i for i, leaf in enumerate(study.flow.leaves)}
+    members = {g.name: range(g.first, g.last + 1) for g in study.flow.groups}
+    for stretch in energy.most.path:
+        after = [leaves[stretch.task]] if stretch.task is not None else members[stretch.group or ""]
+        back = 0.0
+        for leaf in after:
+            way = study.legs.onward(leaf, home)
+            if not isinstance(way, NoWay):
+                back = max(back, way.energy.most)
+        if stretch.until + back + RESERVE_SHARE * battery > battery:
+            yield study.diagnostic(
+                "no-way-back",
+                Severity.WARNING,
+                f"after {stretch.words} the battery may not suffice for the way back to the dock "
+                f"with a reserve of {RESERVE_SHARE:.0%}: by then up to "
+                f"{energy_words(stretch.until)} are used, the way back needs up to "
+                f"{energy_words(back)}, and the battery gives {energy_words(battery)}",
+                "leave out tasks or rounds, charge in between, or react to low_battery",
+                after[0],
+            )
+            return
+
+
+def ends_mission(reaction: Reaction) -> bool:
+    """Whether a reaction ends the mission, unless it holds for ever."""
+    match reaction.response:
+        case Response.ABORT:
+            return True
+        case Response.RETURN | Response.SAFE_AREA:
+            return reaction.afterwards is Afterwards.END
+        case Response.PAUSE:
+            limited = reaction.hold_limit is not None and reaction.until is None
+            return limited and reaction.on_limit is Afterwards.END
+    return False
+
+
 def stale(study: Study) -> Iterator[Diagnostic] | None:
     """Conditions whose value is always older than their `max_age`, or None if that is too much to
     look at."""
     flow = study.flow
     asked: dict[str, list[tuple[int, int, int]]] = {}
+    told = told_by_others(flow)
     for i, leaf in enumerate(flow.leaves):
         for k, (conditions, _) in enumerate(leaf.conditional):
             for c, condition in enumerate(conditions):
                 o = condition.object_id
-                aged = condition.max_age is not None and o != leaf.measures
+                aged = condition.max_age is not None and o != leaf.measures and o not in told
+                if condition.type is ConditionType.STALE:
+                    continue
                 if aged and study.nominal.reached(i):
                     asked.setdefault(o, []).append((i, k, c))
     steps = study.legs.steps()
@@ -161,8 +265,9 @@ def _stale(
                 yield study.diagnostic(
                     "always-stale",
                     Severity.WARNING,
-                    f"a condition of task '{study.name(leaf)}' never holds: {words(condition)}, "
-                    f"but from the measurement to here it takes at least {time_words(youngest)}",
+                    f"a condition of task '{study.name(leaf)}' never holds if nothing fails: "
+                    f"{words(condition)}, but from the measurement to here it takes at least "
+                    f"{time_words(youngest)}",
                     f"measure checkpoint {o} again before, or allow a greater age",
                     leaf,
                     study.indices(leaf)[k],
@@ -190,22 +295,6 @@ def _ages(
                 count += 1
                 heapq.heappush(heap, (there, count, target))
     return age
-
-
-def time_words(seconds: float) -> str:
-    """`47 s`, `12 min 30 s`, `2 h 5 min`."""
-    if seconds < 60:
-        return f"{seconds:.3g} s"
-    minutes, rest = divmod(round(seconds), 60)
-    if minutes < 60:
-        return f"{minutes} min {rest} s" if rest else f"{minutes} min"
-    hours, minutes = divmod(minutes, 60)
-    return f"{hours} h {minutes} min" if minutes else f"{hours} h"
-
-
-def energy_words(energy: float) -> str:
-    """`120 Wh`."""
-    return f"{energy:.3g} Wh" if energy < 1000 else f"{energy:.0f} Wh"
 
 
 def path_words(bound: Bound, quantity_words: Callable[[float], str]) -> str:

@@ -39,6 +39,9 @@ def _ways_in(study: Study, lost: list[int]) -> dict[int, Ways]:
                 _note(study, found[target], i, k)
         if leaf.tail in found and leaf.tail != i:
             _note(study, found[leaf.tail], i, None)
+        for way in (leaf.failure, leaf.missed):
+            if way in found and way != i and not study.all.reached(i):
+                found[way][1].append(study.name(i))
     for number, group in enumerate(flow.groups):
         if group.onward not in found:
             continue

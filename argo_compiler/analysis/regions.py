@@ -2,9 +2,9 @@
 
 The bounds that a mission compares an object with cut the line of values into finitely many regions:
 the bounds themselves, the open intervals between them, and the two rays outside. A set of regions
-is a number with one bit each, from the lowest region up. One more bit, the topmost, says that there
-may be no value. The sets of all objects lie beside each other in one long number, so that joining
-what is known on two paths is a single `|`.
+is a number with one bit each, from the lowest region up. Three more bits, the topmost, say that
+there may be no reading, an unreadable one, or a failed one. The sets of all objects lie beside each
+other in one long number, so that joining what is known on two paths is a single `|`.
 """
 
 from bisect import bisect_left
@@ -23,19 +23,44 @@ class Scale:
     """ascending; region 2k + 1 is bound k itself, region 2k lies below it"""
     possible: int
     """the regions that a measured value can lie in"""
+    abnormal: int = -1
+    """the regions of values that the robot may call abnormal; -1: all of them"""
 
     @property
     def missing(self) -> int:
-        """The bit for: there may be no value."""
+        """The bit for: there may be no reading."""
         return 1 << (2 * len(self.bounds) + 1)
+
+    @property
+    def unreadable(self) -> int:
+        """The bit for: the reading may be unreadable."""
+        return self.missing << 1
+
+    @property
+    def failed(self) -> int:
+        """The bit for: the reading may have failed otherwise."""
+        return self.missing << 2
+
+    @property
+    def without_value(self) -> int:
+        return self.missing | self.unreadable | self.failed
 
     @property
     def width(self) -> int:
         """How many bits a set takes."""
-        return 2 * len(self.bounds) + 2
+        return 2 * len(self.bounds) + 4
 
     def satisfying(self, condition: Condition) -> int:
-        """The regions whose values satisfy a condition on this object, its age apart."""
+        """What a reading may be that satisfies a condition on this object, its age apart."""
+        match condition.type:
+            case ConditionType.UNREADABLE:
+                return self.unreadable
+            case ConditionType.FAILED:
+                return self.unreadable | self.failed
+            case ConditionType.STALE:
+                return self.missing - 1
+            case ConditionType.ABNORMAL:
+                return (self.missing - 1) & self.abnormal
         low, high = condition.param1, condition.param2
         if low is None:
             return 0
@@ -92,23 +117,33 @@ class Scale:
         return everything & ~self._below(bound, not inclusive)
 
 
-def make_scale(conditions: Iterable[Condition], range_: Interval | None) -> Scale:
-    """The regions for the conditions on one object, measured values lying in `range_`."""
+def make_scale(
+    conditions: Iterable[Condition], range_: Interval | None, nominal: Interval | None = None
+) -> Scale:
+    """The regions for the conditions on one object, measured values lying in `range_`, and those
+    that are called abnormal outside `nominal`."""
     bounds: set[float] = set()
+    abnormal = False
     for condition in conditions:
+        abnormal = abnormal or condition.type is ConditionType.ABNORMAL
         if condition.param1 is not None:
             bounds.add(condition.param1)
         if condition.param2 is not None:
             bounds.add(condition.param2)
     if range_ is not None:
         bounds |= {range_.low, range_.high}
+    if abnormal and nominal is not None:
+        bounds |= {nominal.low, nominal.high}
     # -0.0 and 0.0 are one bound: a set keeps one of two equal floats.
     ordered = tuple(sorted(bounds))
     scale = Scale(ordered, 0)
     possible = scale.missing - 1
     if range_ is not None:
         possible &= scale._above(range_.low, True) & scale._below(range_.high, True)
-    return Scale(ordered, possible)
+    if not abnormal or nominal is None:
+        return Scale(ordered, possible)
+    normal = scale._above(nominal.low, True) & scale._below(nominal.high, True)
+    return Scale(ordered, possible, (scale.missing - 1) & ~normal)
 
 
 @dataclass(frozen=True)
@@ -116,7 +151,7 @@ class Fields:
     """Where the set of each object lies in the long number."""
 
     scales: Mapping[str, Scale]
-    """of every object that a condition compares"""
+    """of every object that a condition looks at"""
     shift: Mapping[str, int]
     """of those that are kept track of along the paths"""
     width: int
@@ -135,7 +170,7 @@ class Fields:
         scale = self.scales[object_id]
         shift = self.shift.get(object_id)
         if shift is None:
-            return scale.possible | scale.missing
+            return scale.possible | scale.without_value
         return (state >> shift) & ((1 << scale.width) - 1)
 
     def set(self, state: int, object_id: str, regions: int) -> int:

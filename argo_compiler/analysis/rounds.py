@@ -8,6 +8,7 @@ from argo_compiler.analysis.flow import GroupFlow
 from argo_compiler.analysis.legs import NOTHING, Cost, QuantityRange, Source
 
 _SLACK = 1e-9  # of a round: sums of floats are not exact
+_EXACT = 1e12  # rounds; more of them are not counted
 
 WayOut = tuple[Source, int]
 """how a group is left: what ended last, and the node that is next"""
@@ -38,6 +39,8 @@ class GroupRound:
     """where the group is left within the round"""
     energy: float
     """Wh at most at any moment of it"""
+    time: float
+    """s at most that it may go on, be it without coming to an end"""
 
     @property
     def end(self) -> Cost | None:
@@ -51,6 +54,8 @@ class Rounds:
     outs: Mapping[WayOut, Out]
     energy: float
     """Wh at most at any moment inside"""
+    time: float
+    """s at most that may be spent inside"""
     unlimited: bool
     """rounds may follow each other without any limit of the group's own"""
 
@@ -63,23 +68,37 @@ def union(costs: Iterable[Cost]) -> Cost | None:
     return joined
 
 
-def combine(number: int, group: GroupFlow, first: GroupRound, later: GroupRound | None) -> Rounds:
-    """The ways out of group `number` when its first round is `first`, and each other `later`."""
-    return _Combination(number, group, first, later).rounds()
+def combine(
+    number: int,
+    group: GroupFlow,
+    first: GroupRound,
+    later: GroupRound | None,
+    standing_power: float = 0.0,
+) -> Rounds:
+    """The ways out of group `number` when its first round is `first`, and each other `later`.
+    `standing_power` (W) is drawn while a round is not due."""
+    return _Combination(number, group, first, later, standing_power).rounds()
 
 
 class _Combination:
     def __init__(
-        self, number: int, group: GroupFlow, first: GroupRound, later: GroupRound | None
+        self,
+        number: int,
+        group: GroupFlow,
+        first: GroupRound,
+        later: GroupRound | None,
+        standing_power: float,
     ) -> None:
         self.number = number
         self.group = group
         self.first = first
         self.later = later
+        self.standing_power = standing_power
         self.first_end = first.end
         self.period = None if later is None else later.end
+        self.every = group.every
         self.limit = group.duration or math.inf
-        self.count = group.count or math.inf
+        self.count = min(group.count or math.inf, _due_before(self.limit, self.every))
         self.fewest, self.most = self._range()
         self.outs: dict[WayOut, Out] = {}
 
@@ -92,22 +111,29 @@ class _Combination:
         return Rounds(
             outs=self.outs,
             energy=self._energy_inside(),
-            unlimited=repeats and not self.group.may_end,
+            time=self._time_inside(),
+            unlimited=repeats and not self.group.limited,
         )
 
     def _range(self) -> tuple[float, float]:
-        """How many rounds are completed at least when the time is up, and begun at most."""
+        """How many rounds are completed at least when the group ends with one, and begun at
+        most."""
         end, period = self.first_end, self.period
         if end is None:
             return 0, 1
         fewest: float
         most: float
-        if end.time.most >= self.limit or period is None:
+        if self.group.until or end.time.most >= self.limit or period is None:
             fewest = 1
         elif math.isinf(self.limit):
             fewest = math.inf
         else:
-            fewest = 1 + _rounds_up(self.limit - end.time.most, period.time.most, -1)
+            # With a period each round begins after the one before, or when it is due.
+            first = max(end.time.most, period.time.most if self.every else 0.0)
+            longest = max(period.time.most, self.every)
+            fewest = 1
+            if first < self.limit:
+                fewest += _rounds_up(self.limit - first, longest, -1)
         over = end.time.least > self.limit or (end.time.least == self.limit and not self.group.hard)
         if over or self.later is None or self.count == 1:
             most = 1
@@ -125,7 +151,40 @@ class _Combination:
             return None
         if rounds == 1:
             return self.first_end
-        return None if self.period is None else self.first_end + self.period.times(rounds - 1)
+        if self.period is None:
+            return None
+        cost = self.first_end + self.period.times(rounds - 1)
+        if not self.every:
+            return cost
+        # The last round that had to be waited for is the second one, or the last of all, or none.
+        time = QuantityRange(
+            max(cost.time.least, self._planned(rounds, self.period.time.least)),
+            max(cost.time.most, self._planned(rounds, self.period.time.most)),
+        )
+        return Cost(time, cost.energy + self._standing(rounds))
+
+    def _planned(self, rounds: float, period: float) -> float:
+        """When so many rounds are over if one of them had to be waited for."""
+        if math.isinf(rounds):
+            return math.inf
+        return max(self.every + (rounds - 1) * period, (rounds - 1) * self.every + period)
+
+    def _begun(self, rounds: float) -> Cost:
+        """When the last of so many rounds begins: two or more, and no more than two if only the
+        first one comes to its end."""
+        before = self._after(rounds - 1)
+        assert before is not None
+        if not self.every:
+            return before
+        due = (rounds - 1) * self.every
+        time = QuantityRange(max(before.time.least, due), max(before.time.most, due))
+        return Cost(time, before.energy + self._standing(rounds))
+
+    def _standing(self, rounds: float) -> QuantityRange:
+        """Wh while rounds are not due."""
+        if not self.standing_power:
+            return NOTHING
+        return QuantityRange(0.0, self.standing_power * (rounds - 1) * self.every / 3600)
 
     def _leave_within(self) -> None:
         """By transitions of members."""
@@ -133,15 +192,16 @@ class _Combination:
             self._add(way, cost, 1, 1)
         if self.later is None or self.first_end is None or self.most < 2:
             return
-        between = NOTHING if self.period is None else self.period.time.times(self.most - 2)
-        energy = NOTHING if self.period is None else self.period.energy.times(self.most - 2)
+        soonest, latest = self._begun(2), self._begun(self.most)
         for way, cost in self.later.exits.items():
-            soonest = self.first_end + cost
+            least = soonest.time.least + cost.time.least
             # No round begins after the limit.
-            latest = min(soonest.time.most + between.most, self.limit + cost.time.most)
+            most = min(latest.time.most, self.limit) + cost.time.most
             later = Cost(
-                QuantityRange(soonest.time.least, max(latest, soonest.time.least)),
-                QuantityRange(soonest.energy.least, soonest.energy.most + energy.most),
+                QuantityRange(least, max(most, least)),
+                QuantityRange(
+                    soonest.energy.least + cost.energy.least, latest.energy.most + cost.energy.most
+                ),
             )
             self._add(way, later, 2, self.most)
 
@@ -161,6 +221,8 @@ class _Combination:
         if self.first_end is None or not self.group.may_end:
             return None, 0, 0
         by_count = None if math.isinf(self.count) else self._after(self.count)
+        if self.group.until:
+            return self._end_by_value()
         if math.isinf(self.limit):
             return by_count, self.count, self.count
         if self.group.hard:
@@ -173,23 +235,46 @@ class _Combination:
         if by_count is not None:
             least = min(least, by_count.time.least)
         last = self._after(self.most)
-        round_most = 0.0 if self.period is None else self.period.time.most
-        most = max(self.first_end.time.most, self.limit + round_most)
-        if last is not None:
-            most = min(most, last.time.most)
+        most = self._longest(last)
         energy = by_time.energy | (last or by_time).energy
         return Cost(QuantityRange(min(least, most), most), energy), self.fewest, self.most
 
+    def _end_by_value(self) -> tuple[Cost, float, float]:
+        """After any round, if what it is repeated until holds then."""
+        assert self.first_end is not None
+        last = self._after(self.most)
+        if last is None:
+            return self.first_end, 1, 1
+        ends = self.first_end | last
+        most = max(self._longest(last), ends.time.least)
+        return Cost(QuantityRange(ends.time.least, most), ends.energy), 1, self.most
+
+    def _longest(self, last: Cost | None) -> float:
+        """s after which a round that was completed has been the last one."""
+        assert self.first_end is not None
+        round_most = 0.0 if self.period is None else self.period.time.most
+        most = max(self.first_end.time.most, self.limit + round_most)
+        return most if last is None else min(most, last.time.most)
+
     def _time_out(self) -> None:
-        end = self._after(self.count) if not math.isinf(self.count) else None
-        if end is not None and end.time.most < self.limit:
+        # Rounds need not come to their end before the time is up.
+        first = self.first.time
+        longest = 0.0
+        if self.later is not None:
+            longest = max(self.later.time, self.every)
+            first = max(first, self.later.time if self.every else 0.0)
+        all_rounds = first
+        if self.count > 1 and self.later is not None:
+            all_rounds += longest * (self.count - 1) if longest else 0.0
+        if all_rounds < self.limit:
             return
         completed = 0.0
-        if self.first_end is not None and self.first_end.time.most <= self.limit:
-            completed = self.fewest
-            if self.period is not None and completed > 1:
+        if self.first_end is not None and first <= self.limit:
+            completed = 1.0
+            if self.period is not None and self.count > 1 and first < self.limit:
                 # The round that reaches the limit is not among those completed for sure.
-                completed -= 1
+                completed = max(1.0, _rounds_up(self.limit - first, longest, -1))
+            completed = min(completed, self.count)
         least = self._after(1 if math.isinf(completed) else completed)
         cost = Cost(
             QuantityRange(self.limit, self.limit),
@@ -201,11 +286,15 @@ class _Combination:
     def _energy_inside(self) -> float:
         energy = self.first.energy
         if self.later is not None and self.first_end is not None and self.most >= 2:
-            before = self.first_end.energy.most
-            if self.period is not None:
-                before += self.period.energy.times(self.most - 2).most
-            energy = max(energy, before + self.later.energy)
+            energy = max(energy, self._begun(self.most).energy.most + self.later.energy)
         return energy
+
+    def _time_inside(self) -> float:
+        time = self.first.time
+        if self.later is not None and self.first_end is not None and self.most >= 2:
+            begun = min(self._begun(self.most).time.most, self.limit)
+            time = max(time, begun + self.later.time)
+        return min(time, self.limit) if self.group.hard else time
 
     def _add(self, way: WayOut, cost: Cost, fewest: float, most: float) -> None:
         if self.group.hard and not (isinstance(way[0], tuple) and way[0] == ("cut", self.number)):
@@ -216,6 +305,18 @@ class _Combination:
         out = Out(cost, fewest, most)
         known = self.outs.get(way)
         self.outs[way] = out if known is None else known | out
+
+
+def _due_before(limit: float, every: float) -> float:
+    """How many rounds are due before a time is up, if one is due each so many seconds."""
+    if not every or limit / every > _EXACT:
+        return math.inf
+    rounds = math.ceil(limit / every)
+    while (rounds - 1) * every >= limit:
+        rounds -= 1
+    while rounds * every < limit:
+        rounds += 1
+    return rounds
 
 
 def _filled(time: float, period: float, side: int) -> float:

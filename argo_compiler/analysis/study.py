@@ -65,6 +65,8 @@ class Study:
         """None where the mission is too large or too deeply nested to measure."""
         if too_many_cuts(self.flow):
             return None
+        if self.legs.too_many:
+            return None
         try:
             return measure(self.flow, self.nominal, self.legs, endless=bool(self.traps))
         except BoundsTooLargeError:
@@ -120,6 +122,7 @@ class Study:
             return
         if flow.is_leaf(node):
             yield from self.nominal.targets(flow, node)
+            yield from self.nominal.after_missing(flow, node)
             parent = flow.leaves[node].parent
             if parent >= 0 and flow.timed[parent]:
                 yield flow.time_up(parent)

@@ -61,10 +61,10 @@ def _why_not(study: Study, condition: Condition, taken: int, before: int) -> str
     if there & satisfying:
         return None
     name = _object_name(study, condition.object_id)
-    if not scale.possible & satisfying:
+    if condition.type.compares and not scale.possible & satisfying:
         return f"{name} shows {scale.words(scale.possible)}, so {words(condition)} never holds"
     _, at_first = _there(study, condition, before)
-    if not at_first & ~scale.missing:
+    if condition.type.compares and not at_first & (scale.missing - 1):
         looked = study.all.fields.scales[condition.object_id].possible
         if condition.object_id in study.all.fields.shift and looked:
             return (
@@ -73,7 +73,9 @@ def _why_not(study: Study, condition: Condition, taken: int, before: int) -> str
             )
     if at_first & satisfying:
         return "its conditions exclude each other"
-    values = scale.words(at_first & ~scale.missing)
+    if not condition.type.compares:
+        return f"the reading of {name} is never such that {words(condition)} here"
+    values = scale.words(at_first & (scale.missing - 1))
     return f"the value of {name} can only be {values} here, so {words(condition)} never holds"
 
 
@@ -142,7 +144,7 @@ def _always(study: Study, leaf: int, k: int) -> bool:
         o = condition.object_id
         there = fields.get(looks[0].state, o)
         if o == fresh:
-            there &= ~fields.scales[o].missing
+            there &= ~fields.scales[o].without_value
         if there & ~fields.scales[o].satisfying(condition):
             return False
     return True

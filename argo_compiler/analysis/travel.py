@@ -47,6 +47,11 @@ class Travel(Protocol):
         """s at most from the cancellation of an action until the next one can start."""
         ...
 
+    @property
+    def standing_power(self) -> float:
+        """W that the robot draws while it stands and waits."""
+        ...
+
     def start(self, mission: Mission) -> Standing:
         """Where the robot stands when the mission begins. Raises ArgoError if it can't."""
         ...

@@ -1,20 +1,24 @@
-"""What values may be when a task has ended, over all paths, and which transitions that leaves.
+"""What readings may be when a task has ended, over all paths, and which transitions that leaves.
 
 A fixed point over the flow graph: at each node the set of regions that the last value of each
-object may lie in, and whether it may be missing. A transition that is taken narrows the sets to
-what its conditions say, one that is passed over to what they exclude. All sets are as large as they
-could be or larger, so what can't happen here can't happen at all.
+object may lie in, and whether it may be missing, unreadable or failed. A transition that is taken
+narrows the sets to what its conditions say, one that is passed over to what they exclude. All sets
+are as large as they could be or larger, so what can't happen here can't happen at all.
+
+A value may also come late: an action that is cancelled may still succeed, while the machine
+already stands at a WAIT that follows. And a WAIT for conditions waits for values that others tell,
+which may be at any time. Such values are not narrowed.
 """
 
 import heapq
 from collections import Counter
-from collections.abc import Iterable, Iterator
+from collections.abc import Callable, Iterable, Iterator
 from dataclasses import dataclass
 
 from argo_compiler.analysis.flow import Flow, LeafFlow
-from argo_compiler.analysis.regions import Fields, Scale, make_scale
+from argo_compiler.analysis.regions import Fields, Scale, make_scale, sum_bits
 from argo_compiler.catalog import Catalog
-from argo_compiler.il import Condition
+from argo_compiler.il import Condition, ConditionType
 
 TRACKED_BITS = 800_000_000
 """of all nodes together; beyond, the objects that need the most are not kept track of"""
@@ -44,6 +48,8 @@ class Paths:
     looks: tuple[tuple[GuardStatus, ...], ...]
     """of each leaf: its conditional transitions, up to the last one that may be looked at, and
     then, if it may be, the tail"""
+    failures: bool = False
+    """whether any action may fail"""
 
     def reached(self, node: int) -> bool:
         return self.states[node] is not None
@@ -55,13 +61,28 @@ class Paths:
         return len(self.looks[leaf]) > len(flow.leaves[leaf].conditional)
 
     def targets(self, flow: Flow, leaf: int) -> Iterator[int]:
-        """The nodes that may come next when the action of a leaf has ended."""
+        """The nodes that may come next when a leaf has ended, or failed as it may."""
         ways = flow.leaves[leaf].conditional
         for look, (_, target) in zip(self.looks[leaf], ways, strict=False):
             if look.possible:
                 yield target
         if self.tail_possible(flow, leaf):
             yield flow.leaves[leaf].tail
+        failure = flow.leaves[leaf].failure
+        if failure is not None and (self.failures or flow.leaves[leaf].may_give_up):
+            yield failure
+
+    def after_missing(self, flow: Flow, leaf: int) -> Iterator[int]:
+        """The nodes that may come next when the hard window of a leaf is over."""
+        here = flow.leaves[leaf]
+        if here.deadline is None:
+            return
+        if here.missed is not None:
+            yield here.missed
+        elif here.failure is not None:
+            yield here.failure
+        else:
+            yield from self.targets(flow, leaf)
 
 
 def make_fields(flow: Flow, catalog: Catalog | None, bits: int = TRACKED_BITS) -> Fields:
@@ -69,7 +90,9 @@ def make_fields(flow: Flow, catalog: Catalog | None, bits: int = TRACKED_BITS) -
 
     Objects that are compared where they were not just measured come first: those need it most.
     """
-    ranges = {} if catalog is None else {str(c.id): c.range for c in catalog.checkpoints}
+    known = (
+        {} if catalog is None else {str(c.id): (c.range, c.nominal) for c in catalog.checkpoints}
+    )
     compared: dict[str, list[Condition]] = {}
     remote: Counter[str] = Counter()
     for leaf in flow.leaves:
@@ -77,7 +100,11 @@ def make_fields(flow: Flow, catalog: Catalog | None, bits: int = TRACKED_BITS) -
             for condition in conditions:
                 compared.setdefault(condition.object_id, []).append(condition)
                 remote[condition.object_id] += condition.object_id != leaf.measures
-    scales = {o: make_scale(c, ranges.get(o)) for o, c in compared.items()}
+    for group in flow.groups:
+        for condition in group.until:
+            compared.setdefault(condition.object_id, []).append(condition)
+            remote[condition.object_id] += 1
+    scales = {o: make_scale(c, *known.get(o, (None, None))) for o, c in compared.items()}
     shift: dict[str, int] = {}
     width = 0
     for o in sorted(scales, key=lambda o: (not remote[o], scales[o].width)):
@@ -90,6 +117,16 @@ def make_fields(flow: Flow, catalog: Catalog | None, bits: int = TRACKED_BITS) -
 def find_paths(flow: Flow, fields: Fields, failures: bool) -> Paths:
     """The fixed point. With `failures` any action may fail and any measurement lack its value."""
     return _Search(flow, fields, failures).run()
+
+
+def told_by_others(flow: Flow) -> frozenset[str]:
+    """The objects whose values a WAIT waits for: nothing that the robot does brings them."""
+    return frozenset(
+        condition.object_id
+        for leaf in flow.leaves
+        if leaf.wait is not None
+        for condition in leaf.wait.conditions
+    )
 
 
 class _Search:
@@ -111,9 +148,11 @@ class _Search:
         self.waiting: list[tuple[tuple[int, int], int]] = []
         self.queued = [False] * flow.size
         self.satisfying: dict[tuple[object, ...], int] = {}
+        self.told = sum_bits(self._values(o) for o in told_by_others(flow))
+        self.late = _late_values(flow, self._values)
 
     def run(self) -> Paths:
-        self._reach(self.flow.initial, self.fields.unmeasured)
+        self._reach(self.flow.initial, self.fields.unmeasured | self.told)
         while self.waiting:
             node = heapq.heappop(self.waiting)[1]
             self.queued[node] = False
@@ -125,7 +164,7 @@ class _Search:
             else ()
             for i in range(len(self.flow.leaves))
         )
-        return Paths(self.fields, tuple(self.states), looks)
+        return Paths(self.fields, tuple(self.states), looks, self.failures)
 
     def _reach(self, node: int, state: int) -> None:
         known = self.states[node]
@@ -146,7 +185,7 @@ class _Search:
         for o in self.fields.shift:
             if self.fields.get(known, o) != self.fields.get(joined, o):
                 scale = self.fields.scales[o]
-                joined = self.fields.set(joined, o, scale.possible | scale.missing)
+                joined = self.fields.set(joined, o, scale.possible | scale.without_value)
         return joined
 
     def _ways(self, node: int) -> Iterator[tuple[int, int]]:
@@ -159,8 +198,10 @@ class _Search:
             for look, target, taken in self._look(node, self._after(node)):
                 if look.possible:
                     yield target, taken
-            if self.failures and leaf.failure is not None:
-                yield leaf.failure, state
+            if leaf.failure is not None and (self.failures or self._fails_by_itself(leaf)):
+                yield leaf.failure, self._unmeasured(leaf, state)
+            if leaf.missed is not None:
+                yield leaf.missed, self._unmeasured(leaf, state) | self._measured(leaf, state)
             if leaf.parent >= 0 and flow.timed[leaf.parent]:
                 # An action that is cancelled may still report its value.
                 yield flow.time_up(leaf.parent), state | self._measured(leaf, state)
@@ -170,10 +211,7 @@ class _Search:
         ended = flow.group_of_round_end(node)
         if ended is not None:
             group = flow.groups[ended]
-            if group.may_repeat:
-                yield group.start, state
-            if group.may_end:
-                yield group.onward, state
+            yield from self._after_round(ended, state)
             return
         number = node - len(flow.leaves) - len(flow.groups)
         group = flow.groups[number]
@@ -182,54 +220,107 @@ class _Search:
         if group.parent >= 0 and flow.timed[group.parent]:
             yield flow.time_up(group.parent), state
 
+    def _after_round(self, number: int, state: int) -> Iterator[tuple[int, int]]:
+        """Where to go on at the end of a round."""
+        group = self.flow.groups[number]
+        look, ended, repeated = self._test(group.until, state, None)
+        by_value = bool(group.until)
+        changing = self.late[self.flow.round_end(number)] | self.told
+        if group.may_repeat and not (by_value and look.certain):
+            yield group.start, repeated | changing if by_value else state
+        if group.limited:
+            yield group.onward, state
+        elif by_value and look.possible:
+            yield group.onward, ended | changing
+
+    def _fails_by_itself(self, leaf: LeafFlow) -> bool:
+        """Whether a leaf may fail although no action does."""
+        return leaf.may_give_up or (leaf.deadline is not None and leaf.missed is None)
+
+    def _values(self, object_id: str) -> int:
+        """The set in which an object has any value."""
+        shift = self.fields.shift.get(object_id)
+        return 0 if shift is None else self.fields.scales[object_id].possible << shift
+
     def _measured(self, leaf: LeafFlow, state: int) -> int:
+        """After a measurement that succeeded."""
         object_id = leaf.measures
         if object_id is None or object_id not in self.fields.scales:
             return state
-        return self.fields.set(state, object_id, self.fields.scales[object_id].possible)
+        return self.fields.set(state, object_id, self.fields.scales[object_id].possible) | self.told
+
+    def _unmeasured(self, leaf: LeafFlow, state: int) -> int:
+        """After one that failed for good."""
+        object_id = leaf.measures
+        if object_id is None or object_id not in self.fields.scales:
+            return state
+        scale = self.fields.scales[object_id]
+        # What is done by hand without a value leaves none; it is no failure, but comes here too.
+        none = scale.without_value if self.failures else scale.failed
+        return self.fields.set(state, object_id, none) | self.told
 
     def _after(self, node: int) -> int:
-        """The values when the action of a leaf has ended."""
+        """The values when a leaf has ended."""
         state = self.states[node]
         assert state is not None
-        measured = self._measured(self.flow.leaves[node], state)
-        return state | measured if self.failures else measured
+        leaf = self.flow.leaves[node]
+        measured = self._measured(leaf, state)
+        if self.failures or self._may_go_on_unmeasured(leaf):
+            measured |= self._unmeasured(leaf, state)
+        return measured
+
+    def _may_go_on_unmeasured(self, leaf: LeafFlow) -> bool:
+        """Whether a window that is missed counts as the end of the task."""
+        return leaf.deadline is not None and leaf.missed is None and leaf.failure is None
 
     def _look(self, node: int, state: int) -> Iterator[tuple[GuardStatus, int, int]]:
         """The transitions of a leaf as long as they may be looked at: what is known of each, where
         it leads, and the values if it is taken."""
         leaf = self.flow.leaves[node]
-        fields = self.fields
         # What was just measured is there and new, tracked or not.
-        fresh = None if self.failures else leaf.measures
+        fresh = None if self.failures or self._may_go_on_unmeasured(leaf) else leaf.measures
+        changing = self.told if leaf.wait is None else self.told | self.late[node]
+        state |= changing
         for conditions, target in leaf.conditional:
-            taken = state
-            possible = True
-            unsure = []
-            for condition in conditions:
-                o = condition.object_id
-                satisfying = self._satisfying(condition)
-                there = self._there(taken, o, fresh)
-                possible = possible and bool(there & satisfying)
-                taken = fields.set(taken, o, there & satisfying)
-                timely = condition.max_age is None or o == fresh
-                if not timely or self._there(state, o, fresh) & ~satisfying:
-                    unsure.append((condition, timely))
-            certain = possible and not unsure
-            yield GuardStatus(possible, certain, state), target, taken
-            if certain:
+            look, taken, rest = self._test(conditions, state, fresh)
+            yield look, target, taken | changing
+            if look.certain:
                 return
-            if len(unsure) == 1 and unsure[0][1]:
-                condition = unsure[0][0]
-                rest = self._there(state, condition.object_id, fresh)
-                rest &= ~self._satisfying(condition)
-                state = fields.set(state, condition.object_id, rest)
+            state = rest | changing
         yield GuardStatus(True, True, state), leaf.tail, state
+
+    def _test(
+        self, conditions: tuple[Condition, ...], state: int, fresh: str | None
+    ) -> tuple[GuardStatus, int, int]:
+        """Whether conditions hold, and the values if they do and if they don't."""
+        fields = self.fields
+        taken = state
+        possible = True
+        unsure = []
+        for condition in conditions:
+            o = condition.object_id
+            satisfying = self._satisfying(condition)
+            there = self._there(taken, o, fresh)
+            possible = possible and bool(there & satisfying)
+            if o == fresh and condition.type is ConditionType.STALE:
+                possible = False
+            taken = fields.set(taken, o, there & satisfying)
+            # Those two say nothing of a value when they don't hold.
+            timely = condition.type not in (ConditionType.STALE, ConditionType.ABNORMAL)
+            timely = timely and (condition.max_age is None or o == fresh)
+            if not timely or self._there(state, o, fresh) & ~satisfying:
+                unsure.append((condition, timely))
+        rest = state
+        if len(unsure) == 1 and unsure[0][1]:
+            condition = unsure[0][0]
+            left = self._there(state, condition.object_id, fresh) & ~self._satisfying(condition)
+            rest = fields.set(state, condition.object_id, left)
+        return GuardStatus(possible, possible and not unsure, state), taken, rest
 
     def _there(self, state: int, object_id: str, fresh: str | None) -> int:
         there = self.fields.get(state, object_id)
         if object_id == fresh and object_id not in self.fields.shift:
-            return there & ~self.fields.scales[object_id].missing
+            return there & ~self.fields.scales[object_id].without_value
         return there
 
     def _satisfying(self, condition: Condition) -> int:
@@ -243,5 +334,50 @@ class _Search:
 
 
 def objects_of(conditions: Iterable[Condition]) -> frozenset[str]:
-    """The objects whose values the conditions compare."""
+    """The objects whose readings the conditions look at."""
     return frozenset(c.object_id for c in conditions)
+
+
+def _late_values(flow: Flow, values: Callable[[str], int]) -> list[int]:
+    """For each node, the values that may come while the machine stands there, from an action that
+    is being cancelled."""
+    late = [0] * flow.size
+    pending = [
+        i
+        for i, leaf in enumerate(flow.leaves)
+        if leaf.measures is not None and values(leaf.measures)
+    ]
+    ways = [_ways_while_cancelling(flow, node) for node in range(flow.size)] if pending else []
+    while pending:
+        node = pending.pop()
+        passed = late[node]
+        if flow.is_leaf(node):
+            measured = flow.leaves[node].measures
+            passed |= values(measured) if measured is not None else 0
+        for target in ways[node]:
+            if passed | late[target] != late[target]:
+                late[target] |= passed
+                pending.append(target)
+    return late
+
+
+def _ways_while_cancelling(flow: Flow, node: int) -> tuple[int, ...]:
+    """What may follow a node before an action that is being cancelled has ended."""
+    if node == flow.done:
+        return ()
+    if not flow.is_leaf(node):
+        ended = flow.group_of_round_end(node)
+        if ended is not None:
+            return flow.groups[ended].start, flow.groups[ended].onward
+        group = flow.groups[node - len(flow.leaves) - len(flow.groups)]
+        around = group.parent >= 0 and flow.timed[group.parent]
+        return (group.onward, *((flow.time_up(group.parent),) if around else ()))
+    leaf = flow.leaves[node]
+    found = []
+    if leaf.wait is not None or leaf.deadline is not None or leaf.leaf.task.time_limit is not None:
+        found += [target for _, target in leaf.conditional]
+        found += [leaf.tail]
+        found += [way for way in (leaf.failure, leaf.missed) if way is not None]
+    if leaf.parent >= 0 and flow.timed[leaf.parent]:
+        found.append(flow.time_up(leaf.parent))
+    return tuple(found)

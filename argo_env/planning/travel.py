@@ -46,6 +46,11 @@ class SiteTravel:
         return self._robot.battery
 
     @property
+    def standing_power(self) -> float:
+        """W."""
+        return self._robot.power.standing
+
+    @property
     def clean_up(self) -> float:
         """s, to stow the arm."""
         return self._stepped(self._robot.sensor.stowing_time) + self.time_step

@@ -8,7 +8,7 @@ from rich.console import Console
 from rich.markup import escape
 from rich.table import Table
 
-from argo_compiler.analysis.limits import time_words
+from argo_compiler.analysis.quantities import time_words
 from argo_compiler.il import Mission, Order
 from argo_compiler.route.evaluation import evaluate
 from argo_compiler.route.robust_spread import TravelSpread

@@ -15,6 +15,11 @@ ANALYSIS = {
         "Some path needs more energy than the battery gives.",
         "Limit what is repeated, or react to `low_battery`.",
     ),
+    "analysis.cut-short": warning(
+        "The plan may take longer than the mission's maximum duration, and a reaction to `time_up` "
+        "ends it then.",
+        "Leave out tasks, shorten groups, or allow more time.",
+    ),
     "analysis.end-elsewhere": warning(
         "The mission is to end docked, but some path ends in another place.",
         "Let each path end with a WAYPOINT task at the dock.",
@@ -38,6 +43,14 @@ ANALYSIS = {
     "analysis.no-end": error(
         "No path leads to the end of the mission.",
         "Let some task have no unconditional transition, or leave the loop.",
+    ),
+    "analysis.no-way-back": warning(
+        "On some path the battery may not suffice for the way back to the dock with a reserve.",
+        "Leave out tasks or rounds, charge in between, or react to `low_battery`.",
+    ),
+    "analysis.time-limit": warning(
+        "A task takes longer than its time limit, as planned.",
+        "Give it more time.",
     ),
     "analysis.too-long": error(
         "Even the shortest path takes longer than the mission's maximum duration.",
@@ -63,5 +76,17 @@ ANALYSIS = {
     "analysis.unreachable-task": warning(
         "No path leads to a task.",
         "Lead a transition to it that can be taken, or remove the task.",
+    ),
+    "analysis.window-late": warning(
+        "No path is in time for a task, which is done all the same.",
+        "Do it earlier, or let its window end later.",
+    ),
+    "analysis.window-maybe-missed": warning(
+        "Some path may be too late for a task.",
+        "Do it earlier, or let its window end later.",
+    ),
+    "analysis.window-missed": error(
+        "No path is in time for a task, if nothing fails.",
+        "Do it earlier, or let its window end later.",
     ),
 }

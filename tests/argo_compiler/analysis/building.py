@@ -76,6 +76,7 @@ class Steady:
 
     battery = 100.0
     clean_up = 1.0
+    standing_power = 0.0
 
     def __init__(self, blocked=()):
         self.blocked = blocked

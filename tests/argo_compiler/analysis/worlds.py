@@ -115,6 +115,7 @@ class MadeUpTravel:
         self.seed = seed
         self.clean_up = clean_up
         self.battery = 5.0
+        self.standing_power = 0.0
         self.blocked = blocked
 
     def start(self, mission):  # noqa: ARG002

@@ -1,0 +1,17 @@
+"""Durations and energies in words."""
+
+
+def time_words(seconds: float) -> str:
+    """`47 s`, `12 min 30 s`, `2 h 5 min`."""
+    if seconds < 60:
+        return f"{seconds:.3g} s"
+    minutes, rest = divmod(round(seconds), 60)
+    if minutes < 60:
+        return f"{minutes} min {rest} s" if rest else f"{minutes} min"
+    hours, minutes = divmod(minutes, 60)
+    return f"{hours} h {minutes} min" if minutes else f"{hours} h"
+
+
+def energy_words(energy: float) -> str:
+    """`120 Wh`."""
+    return f"{energy:.3g} Wh" if energy < 1000 else f"{energy:.0f} Wh"

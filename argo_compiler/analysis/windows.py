@@ -1,0 +1,57 @@
+"""Diagnostics about time windows that are over too soon, and time limits that are too short."""
+
+import math
+from collections.abc import Iterator
+
+from argo_compiler.analysis.moments import TaskEnd
+from argo_compiler.analysis.quantities import time_words
+from argo_compiler.analysis.study import Study
+from argo_compiler.diagnostics import Diagnostic, Severity
+
+_SOON = 1e-6  # s: sums of floats are not exact
+
+
+def windows(study: Study, moments: tuple[TaskEnd, ...]) -> Iterator[Diagnostic]:
+    """Tasks that end too late for their window, at the planned times."""
+    for leaf, moment in enumerate(moments):
+        window = study.task(leaf).window
+        if window is None or window.latest is None or not study.nominal.reached(leaf):
+            continue
+        name, latest = study.name(leaf), time_words(window.latest)
+        if moment.soonest > window.latest + _SOON:
+            soonest = ""
+            if math.isfinite(moment.soonest):
+                soonest = f": it ends after {time_words(moment.soonest)} at the soonest"
+            yield study.diagnostic(
+                "window-missed" if window.hard else "window-late",
+                Severity.ERROR if window.hard else Severity.WARNING,
+                f"if nothing fails, no path is in time for task '{name}', which is to have ended "
+                f"{latest} after the mission's start{soonest}",
+                "do it earlier, or let its window end later",
+                leaf,
+            )
+        elif moment.latest > window.latest + _SOON:
+            yield study.diagnostic(
+                "window-maybe-missed",
+                Severity.WARNING,
+                f"task '{name}' may come too late: it is to have ended {latest} after the "
+                "mission's start, and some path may take longer",
+                "do it earlier, or let its window end later"
+                + ("" if not window.hard else ", and say by missed_target what follows"),
+                leaf,
+            )
+
+
+def time_limits(study: Study) -> Iterator[Diagnostic]:
+    """Tasks that can't be done within their time limit, as planned."""
+    for leaf, taken in sorted(study.legs.too_slow.items()):
+        limit = study.task(leaf).time_limit
+        assert limit is not None
+        yield study.diagnostic(
+            "time-limit",
+            Severity.WARNING,
+            f"task '{study.name(leaf)}' takes at least {time_words(taken)} as planned, longer than "
+            f"its time limit of {time_words(limit)}, so it fails",
+            "give it more time",
+            leaf,
+        )

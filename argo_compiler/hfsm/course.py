@@ -84,8 +84,8 @@ class MissionCourse:
         """What a person did counts for the next visits of these tasks."""
         for one in done:
             self._given_by_hand += 1
-            done = DoneByHand(self._given_by_hand, one, now - (one.age or 0.0))
-            self.by_hand.setdefault(one.task, deque()).append(done)
+            given = DoneByHand(self._given_by_hand, one, now - (one.age or 0.0))
+            self.by_hand.setdefault(one.task, deque()).append(given)
 
     def interrupt(self) -> None:
         """The mission stands still, if it does not yet."""

@@ -30,7 +30,7 @@ from argo_compiler.hfsm.progress import (
     GroupProgress,
     Phase,
     Reacting,
-    ValueProgress,
+    ReadingProgress,
     Waiting,
 )
 from argo_compiler.il import (
@@ -74,7 +74,7 @@ class Site:
     def run(self, executor, now, visits):
         """Until so many visits have ended, or the mission has."""
         for _ in range(10 * VISITS):
-            if executor.finished or len(executor.progress().ended) >= visits:
+            if executor.finished or visits_of(executor.progress()) >= visits:
                 return now
             now = self.step(executor, now)
         # The time of a group may be up again and again before any of its tasks has ended.
@@ -112,14 +112,19 @@ class Site:
             executor.handle(ActionStopped(cancel.task), now)
 
 
+def visits_of(progress):
+    """How many visits have ended."""
+    return sum(t.done + t.failed + t.by_hand for t in progress.tallies)
+
+
 def stand(progress):
     """All of a progress but times and persons."""
     return {
-        "ended": [(e.task, e.failure) for e in progress.ended],
+        "ended": {t.task: (t.done + t.by_hand, t.failed) for t in progress.tallies},
         "active": progress.active,
         "attempt": progress.attempt,
         "groups": progress.groups,
-        "values": {v.object_id: (v.value, v.age) for v in progress.values},
+        "readings": {r.object_id: (r.kind, r.value, r.age) for r in progress.readings},
         "outcome": progress.outcome,
     }
 
@@ -136,7 +141,7 @@ def test_before_by_hand_and_after_are_the_whole_mission(mission, outcomes, at, d
     first, site = Executor(lower(mission)), Site(outcomes)
     first.start(0)
     now = 0
-    while not first.finished and now < at and len(first.progress().ended) < VISITS:
+    while not first.finished and now < at and visits_of(first.progress()) < VISITS:
         now = site.step(first, now, until=at)
     site.pause(first, now)
     before = first.progress()
@@ -154,9 +159,9 @@ def test_before_by_hand_and_after_are_the_whole_mission(mission, outcomes, at, d
     after = second.progress()
     if not whole.finished:
         # What was done by hand may have carried it further.
-        once.run(whole, whole_time(whole), len(after.ended))
+        once.run(whole, whole_time(whole), visits_of(after))
     assert stand(after) == stand(whole.progress())
-    assert sum(e.by_hand for e in after.ended) == len(by_hand) - len(after.by_hand)
+    assert sum(t.by_hand for t in after.tallies) == len(by_hand) - len(after.by_hand)
 
 
 @pytest.mark.rule("H7")
@@ -172,7 +177,7 @@ def test_giving_back_is_a_progress_handed_over_and_gone_on_from(mission, outcome
     live, site = Executor(lower(mission)), Site(outcomes)
     live.start(0)
     now = 0
-    while not live.finished and now < at and len(live.progress().ended) < VISITS:
+    while not live.finished and now < at and visits_of(live.progress()) < VISITS:
         now = site.step(live, now, until=at)
     site.pause(live, now, TakeOver())
     before = live.progress()
@@ -235,7 +240,7 @@ class TestByHand:
         assert executor.progress().elapsed == 50
         (command,) = executor.handle(ActionSucceeded("C"), 101)
         assert command.task.name == "B"
-        ended = [(e.task, e.by_hand) for e in executor.progress().ended]
+        ended = [(e.task, e.by_hand) for e in executor.ended]
         assert ended == [("B", True), ("C", False), ("D", True)]
 
     @pytest.mark.rule("H3")
@@ -246,13 +251,13 @@ class TestByHand:
         executor = Executor.restore(lower(mission), done, 0)
         (command,) = executor.start(0)
         assert command.task.name == "D"
-        assert [e.task for e in executor.progress().ended] == ["A"]
+        assert [e.task for e in executor.ended] == ["A"]
 
     def test_waits_while_the_mission_is_paused(self):
         progress = hand_over(Progress(active="A", paused=True), [ByHand(task="A")])
         executor = Executor.restore(lower(line()), progress, 0)
         assert executor.start(0) == ()
-        assert executor.progress().by_hand == progress.by_hand
+        assert executor.progress().by_hand == (ByHand(task="A", age=0),)
         (command,) = executor.handle(Resume(), 1)
         assert command.task.name == "B"
 
@@ -301,13 +306,13 @@ class TestTimeAway:
         counts = Group(name="G", count_interruptions=True, **limits)
         stands = Group(name="G/H", **limits)
         groups = tuple(GroupProgress(group=g, round=1, elapsed=10) for g in ("G", "G/H"))
-        values = (ValueProgress(object_id="A", value=1, age=3),)
-        progress = Progress(active="B", groups=groups, values=values, elapsed=10)
+        readings = (ReadingProgress(object_id="A", value=1, age=3),)
+        progress = Progress(active="B", groups=groups, readings=readings, elapsed=10)
         executor = Executor.restore(lower(line(counts, stands)), progress, 1000, away=20)
         executor.start(1000)
         later = executor.progress()
         assert {g.group: g.elapsed for g in later.groups} == {"G": 30, "G/H": 10}
-        assert (later.values[0].age, later.elapsed) == (23, 30)
+        assert (later.readings[0].age, later.elapsed) == (23, 30)
         assert executor.next_deadline == 1030
 
 

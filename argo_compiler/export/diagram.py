@@ -1,12 +1,12 @@
-"""What drawings of a machine have in common: ids, nesting, and what stands on the arrows."""
+"""What drawings of a machine have in common: ids, nesting, and what stands on boxes and arrows."""
 
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 from dataclasses import dataclass, replace
 
 from argo_compiler.hfsm import Composite, Hfsm, Leaf, StateTransition, TransitionKind
 from argo_compiler.hfsm.conditions import words
 from argo_compiler.hfsm.model import DONE
-from argo_compiler.il import Afterwards, Reaction, Response, Stop
+from argo_compiler.il import Afterwards, Condition, Reaction, Response, Stop, Task, WaitRule
 
 _RESPONSES = {
     Response.REPORT: "report",
@@ -77,8 +77,8 @@ class Drawing:
     def arrows(self) -> Iterator[Arrow]:
         """All transitions: those of the leaves, then those of the groups."""
         for leaf in self.hfsm.leaves:
-            ways = (*leaf.transitions, *((leaf.failure,) if leaf.failure else ()))
-            yield from (self._arrow(self.ids[leaf.id], way) for way in ways)
+            ways = (*leaf.transitions, leaf.failure, leaf.missed)
+            yield from (self._arrow(self.ids[leaf.id], way) for way in ways if way)
         for group in self.hfsm.composites[1:]:
             for way in group.transitions:
                 yield self._arrow(self.choice(group.id), way, group)
@@ -104,9 +104,11 @@ class Drawing:
 def transition_words(transition: StateTransition, group: Composite | None = None) -> str:
     """Why it is taken, as text; empty where nothing has to be said."""
     if transition.kind is TransitionKind.CONDITIONAL:
-        return " and ".join(words(condition) for condition in transition.conditions)
+        return _all_words(transition.conditions)
     if transition.kind is TransitionKind.FAILURE:
         return "failed, abort" if transition.target == DONE else "failed"
+    if transition.kind is TransitionKind.MISSED:
+        return "window missed"
     if group is None or group.repeat is None or transition.kind is TransitionKind.DEFAULT:
         return ""
     if transition.kind is TransitionKind.TIMEOUT:
@@ -117,7 +119,49 @@ def transition_words(transition: StateTransition, group: Composite | None = None
     if group.repeat.duration:
         limits.append(f"for {group.repeat.duration:g} s")
         limits += ["rounds completed"] if group.repeat.stop is Stop.SOFT else []
+        limits += ["interruptions counted"] if group.repeat.count_interruptions else []
+    if group.repeat.every:
+        limits.append(f"every {group.repeat.every:g} s")
+    if group.repeat.until:
+        limits.append(f"until {_all_words(group.repeat.until)}")
     return ", ".join(["repeat", *limits])
+
+
+def task_words(task: Task) -> str:
+    """The task's name, and in brackets how long, when and how fast it is done."""
+    parts = [] if task.wait is None else [_wait_words(task.wait)]
+    if task.velocity is not None:
+        parts.append(f"at {task.velocity:g} m/s")
+    if task.time_limit is not None:
+        parts.append(f"within {task.time_limit:g} s")
+    if task.reading_limit is not None:
+        parts.append(f"read within {task.reading_limit:g} s")
+    if task.retries:
+        parts.append(f"up to {task.retries} retries")
+    if task.window is not None:
+        if task.window.earliest:
+            parts.append(f"not before {task.window.earliest:g} s")
+        if task.window.latest is not None:
+            kind = "by" if task.window.hard else "best by"
+            parts.append(f"{kind} {task.window.latest:g} s")
+    if task.optional:
+        parts.append("optional")
+    if task.priority != 1:
+        parts.append(f"priority {task.priority}")
+    return f"{task.name} ({', '.join(parts)})" if parts else task.name
+
+
+def _wait_words(wait: WaitRule) -> str:
+    if wait.duration is not None:
+        return f"wait {wait.duration:g} s" if wait.duration else "where ways meet"
+    ends = [] if wait.event is None else [wait.event.replace("_", " ")]
+    ends += [_all_words(wait.conditions)] if wait.conditions else []
+    limit = "" if wait.limit is None else f", at most {wait.limit:g} s"
+    return f"wait until {' or '.join(ends)}{limit}"
+
+
+def _all_words(conditions: Iterable[Condition]) -> str:
+    return " and ".join(words(condition) for condition in conditions)
 
 
 def reaction_words(reaction: Reaction) -> str:
@@ -127,6 +171,8 @@ def reaction_words(reaction: Reaction) -> str:
         parts.append(f"until {reaction.until.replace('_', ' ')}")
     if reaction.response in (Response.RETURN, Response.SAFE_AREA):
         parts.append(f"then {_AFTERWARDS[reaction.afterwards]}")
-    if reaction.priority:
+    if reaction.hold_limit is not None:
+        parts.append(f"after {reaction.hold_limit:g} s at most {_AFTERWARDS[reaction.on_limit]}")
+    if reaction.priority is not None:
         parts.append(f"priority {reaction.priority}")
     return f"{reaction.event.replace('_', ' ')}: {', '.join(parts)}"

@@ -1,6 +1,6 @@
 """Graphviz: the machine as a DOT graph, with a cluster for each group."""
 
-from argo_compiler.export.diagram import Arrow, Drawing, reaction_words
+from argo_compiler.export.diagram import Arrow, Drawing, reaction_words, task_words
 from argo_compiler.export.xml import printable
 from argo_compiler.hfsm import Hfsm, Leaf
 
@@ -30,7 +30,9 @@ def _lines(hfsm: Hfsm) -> list[str]:
         if item is None:
             lines.append(f"{indent}}}")
         elif isinstance(item, Leaf):
-            lines.append(f"{indent}{drawing.ids[item.id]} [label={_quoted(item.task.name)}];")
+            lines.append(
+                f"{indent}{drawing.ids[item.id]} [label={_quoted(task_words(item.task))}];"
+            )
         else:
             # Beside the group: an arrow from a cluster's border can't end inside of it.
             lines.append(f'{indent}{drawing.choice(item.id)} [shape=diamond, label=""];')

@@ -2,7 +2,7 @@
 
 import re
 
-from argo_compiler.export.diagram import Drawing, reaction_words
+from argo_compiler.export.diagram import Drawing, reaction_words, task_words
 from argo_compiler.hfsm import Hfsm, Leaf
 
 _END = "[*]"
@@ -40,7 +40,9 @@ def _states(drawing: Drawing) -> list[str]:
         if item is None:
             lines.append(f"{indent}}}")
         elif isinstance(item, Leaf):
-            lines.append(f'{indent}state "{_escape(item.task.name)}" as {drawing.ids[item.id]}')
+            lines.append(
+                f'{indent}state "{_escape(task_words(item.task))}" as {drawing.ids[item.id]}'
+            )
         else:
             lines.append(f"{indent}state {drawing.choice(item.id)} <<choice>>")
             lines.append(f'{indent}state "{_escape(item.name)}" as {drawing.ids[item.id]} {{')

@@ -16,7 +16,9 @@ from argo_compiler.il import (
     Response,
     Stop,
     Task,
+    TimeWindow,
     Transition,
+    WaitRule,
 )
 
 STATE = re.compile(r'state "((?:[\w ,().-]|#\d+;)*)" as (\w+)( \{)?')
@@ -148,3 +150,40 @@ def test_failures_and_reactions():
     assert ("t1", "[*]", "failed, abort") in arrows
     assert labels["e1"] == "gas leak#58; pause, until all clear, priority 2"
     assert parents["e1"] == "reactions"
+
+
+def test_version_3_is_on_the_boxes_and_arrows():
+    hot = Condition(type=ConditionType.GREATER, object_id="B", param1=7.5)
+    unreadable = Condition(type=ConditionType.UNREADABLE, object_id="B")
+    window = TimeWindow(earliest=60, latest=90, missed_target="D")
+    mission = Mission(
+        tasks=(
+            measuring("A", Transition(target="B"), velocity=0.3, time_limit=50, optional=True),
+            measuring(
+                "B",
+                Transition(target="C"),
+                window=window,
+                on_failure=OnFailure.BRANCH,
+                failure_target="C",
+                priority=3,
+            ),
+            Task(
+                name="C",
+                action=Action.WAIT,
+                wait=WaitRule(event=EventKind.ALL_CLEAR, conditions=(unreadable,), limit=20),
+                transitions=(Transition(target="D"),),
+            ),
+            Task(name="D", action=Action.WAIT, wait=WaitRule(duration=5)),
+        ),
+        groups=(Group(name="G", start="A", end="C", max_repeat_count=4, every=600, until=(hot,)),),
+    )
+    _, labels, arrows = read(to_mermaid(lower(mission)))
+    assert {id: label for id, label in labels.items() if id[0] == "t"} == {
+        "t0": "A (at 0.3 m#47;s, within 50 s, optional)",
+        "t1": "B (not before 60 s, by 90 s, priority 3)",
+        "t2": "C (wait until all clear or #35;B unreadable, at most 20 s)",
+        "t3": "D (wait 5 s)",
+    }
+    assert ("t1", "t2", "failed") in arrows
+    assert ("t1", "t3", "window missed") in arrows
+    assert ("r1", "t0", "repeat, up to 4 rounds, every 600 s, until #35;B #62; 7.5") in arrows

@@ -5,7 +5,7 @@ transition has chosen, 0 for the next task; tasks and groups that lie before it 
 tree can leave tasks out, but can't go back other than by a group's rounds.
 """
 
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 
 from argo_compiler.diagnostics import Diagnostic
 from argo_compiler.export.exporter import refusal, refuse
@@ -14,7 +14,9 @@ from argo_compiler.il import (
     Action,
     Condition,
     ConditionType,
+    JointState,
     Mission,
+    Mode,
     OnFailure,
     Response,
     Stop,
@@ -26,25 +28,35 @@ from argo_compiler.model import Pose
 
 MAX_MSEC = 2**32 - 1
 
+_WAY = (
+    ("input_port", "x", "double", "m"),
+    ("input_port", "y", "double", "m"),
+    ("input_port", "z", "double", "m"),
+    ("input_port", "yaw", "double", "rad"),
+    ("input_port", "velocity", "double", "m/s on the way to it; 0: the robot's own"),
+    ("input_port", "not_before", "double", "s on the clock of `Clock`; if it is given, the robot "
+     "waits at the place, and does not begin there before"),
+    ("input_port", "joint_names", "std::string", "separated by ;"),
+    ("input_port", "joint_positions", "std::string", "rad or m, separated by ;"),
+    ("input_port", "joint_velocities", "std::string", "rad/s or m/s, separated by ;"),
+    ("input_port", "joint_efforts", "std::string", "Nm or N, separated by ;"),
+)  # fmt: skip
+
+_READ = ("value", "known", "abnormal", "unreadable", "time")
+"""what a Measure tells, and the entries that keep it"""
+
 _PORTS = {
     "Measure": (
         ("input_port", "object_id", "std::string", "the checkpoint"),
-        ("input_port", "velocity", "double", "m/s on the way to it; 0: the robot's own"),
-        ("input_port", "joint_names", "std::string", "separated by ;"),
-        ("input_port", "joint_positions", "std::string", "rad or m, separated by ;"),
-        ("output_port", "value", "double", "what was read; left alone if that is no number"),
-        ("output_port", "known", "double", "1 if `value` was set; left alone otherwise"),
-        ("output_port", "time", "double", "s on the clock of `Clock`, if `value` was set"),
+        *_WAY,
+        ("input_port", "reading_limit", "double", "s that it tries to read; 0: the robot's own"),
+        ("output_port", "value", "double", "what was read, if that is a number"),
+        ("output_port", "known", "double", "1 if `value` was set, else 0"),
+        ("output_port", "abnormal", "double", "1 if it is outside the nominal range, else 0"),
+        ("output_port", "unreadable", "double", "1 if it was looked at and not read, else 0"),
+        ("output_port", "time", "double", "s on the clock of `Clock`"),
     ),
-    "DriveTo": (
-        ("input_port", "x", "double", "m"),
-        ("input_port", "y", "double", "m"),
-        ("input_port", "z", "double", "m"),
-        ("input_port", "yaw", "double", "rad"),
-        ("input_port", "velocity", "double", "m/s on the way to it; 0: the robot's own"),
-        ("input_port", "joint_names", "std::string", "separated by ;"),
-        ("input_port", "joint_positions", "std::string", "rad or m, separated by ;"),
-    ),
+    "DriveTo": _WAY,
     "Clock": (("output_port", "now", "double", "s on a clock that never runs backwards"),),
 }
 """The nodes that the robot's side provides: direction, name, type and meaning of their ports."""
@@ -73,6 +85,9 @@ class _Tree:
                 self._number(task.object_id)
             for condition in _conditions(task):
                 self._number(condition.object_id)
+        for group in mission.groups:
+            for condition in group.until:
+                self._number(condition.object_id)
         self.group_numbers: dict[str, int] = {}
         self.xml = XmlWriter()
 
@@ -97,9 +112,24 @@ class _Tree:
                     "let the robot's own tree react, with this one as a subtree",
                     reaction.source,
                 )
+        if self.mission.mode is Mode.SUPERVISORY:
+            yield refusal(
+                "supervisory",
+                "the mission begins paused, and a behaviour tree begins when it is ticked",
+                "plan it as autonomous, and tick the tree when a person lets it begin",
+            )
         for task in self.mission.tasks:
             yield from self._task_refusals(task)
+            yield from _time_refusals(task)
         for group in self.mission.groups:
+            if group.every:
+                yield refusal(
+                    "every",
+                    f"group '{group.name}' begins its rounds at set times: no node of "
+                    "BehaviorTree.CPP waits until a time, and a wait between rounds would drift",
+                    "let the rounds follow each other, or export SCXML",
+                    group.source,
+                )
             if group.max_repeat_duration * 1000 > MAX_MSEC:
                 yield refusal(
                     "too-long",
@@ -110,11 +140,14 @@ class _Tree:
 
     def _task_refusals(self, task: Task) -> Iterator[Diagnostic]:
         if task.action is not Action.START:
-            for transition in task.transitions:
-                if self.position[transition.target] <= self.position[task.name]:
+            targets = [transition.target for transition in task.transitions]
+            if task.on_failure is OnFailure.BRANCH and task.failure_target is not None:
+                targets.append(task.failure_target)
+            for target in targets:
+                if self.position[target] <= self.position[task.name]:
                     yield refusal(
                         "backward",
-                        f"the transition of task '{task.name}' back to '{transition.target}' is "
+                        f"the way of task '{task.name}' back to '{target}' is "
                         "none of a group's rounds: a behaviour tree has no such edges",
                         "put the tasks in between into a group",
                         task.source,
@@ -134,6 +167,8 @@ class _Tree:
         xml = self.xml
         with xml.element("Sequence", {"name": self.mission.designation or None}):
             self._script(self._initially())
+            if any(task.window and task.window.earliest for task in self.mission.tasks):
+                xml.add("Clock", {"now": "{began}"})
             # Not recursive, as groups may be nested to any depth.
             opened: list[GroupRange] = []
             ranges = list(reversed(self.layout.ranges))
@@ -154,64 +189,110 @@ class _Tree:
         if self.start is not None:
             targets = [t.target for t in self.start.transitions if not t.conditions]
             first = self.position[targets[0]] if targets else 0
-        velocity = (self.start.velocity if self.start else None) or 0.0
         # An entry keeps the type that it begins with: 0 would never hold 0.5.
         entries = [f"to := {first}", "returning := 0", "outcome := 1", "now := 0.0"]
-        entries.append(f"velocity := {velocity!r}")
+        entries += (f"{name} := 0.0" for name in _READ)
         for k in self.objects.values():
-            entries += (f"{port}_{k} := 0.0" for port in ("known", "value", "time"))
+            entries += (f"{name}_{k} := 0.0" for name in (*_READ, "failed"))
         return "; ".join(entries)
 
     def _task(self, task: Task, ends_group: bool) -> None:
         xml, at = self.xml, self.position[task.name]
         with xml.element("Sequence", {"name": task.name, "_skipIf": f"to > {at}"}):
-            if task.on_failure is OnFailure.CONTINUE:
-                with xml.element("ForceSuccess"):
-                    self._attempts(task)
+            if task.action is Action.WAIT:
+                self._wait(task)
+                self._decide(task, ends_group)
+            elif task.on_failure is OnFailure.CONTINUE:
+                if failed := self._failed(task):
+                    with xml.element("Fallback"):
+                        self._attempts(task)
+                        self._script("; ".join(failed))
+                else:
+                    with xml.element("ForceSuccess"):
+                        self._attempts(task)
                 self._decide(task, ends_group)
             else:
                 with xml.element("Fallback"):
                     with xml.element("Sequence"):
                         self._attempts(task)
                         self._decide(task, ends_group)
-                    if task.on_failure is OnFailure.RETURN:
-                        self._script(f"to := {self.end}; returning := 1")
-                    else:
-                        self._script(f"to := {self.end}; outcome := 5")
+                    self._script("; ".join([*self._failed(task), *self._failure_way(task)]))
 
-    def _attempts(self, task: Task) -> None:
-        if not task.retries:
-            self._action(task)
-            return
-        with self.xml.element("RetryUntilSuccessful", {"num_attempts": task.retries + 1}):
-            self._action(task)
+    def _wait(self, task: Task) -> None:
+        if task.wait is not None and task.wait.duration:
+            self.xml.add("Sleep", {"name": task.name, "msec": _msec(task.wait.duration)})
 
-    def _action(self, task: Task) -> None:
-        joints: Attributes = {}
-        if task.joint_states is not None:
-            joints = {
-                "joint_names": ";".join(task.joint_states.names),
-                "joint_positions": ";".join(number(p) for p in task.joint_states.positions),
-            }
+    def _failed(self, task: Task) -> list[str]:
+        """What becomes of the blackboard when the task has failed for good."""
+        statements = [] if task.optional else ["outcome := 7"]
         if task.action is Action.MEASURE:
             k = self.objects[task.object_id or ""]
-            outputs = {port: f"{{{port}_{k}}}" for port in ("value", "known", "time")}
-            where: Attributes = {"object_id": task.object_id, **outputs}
+            statements += [f"known_{k} := 0.0", f"failed_{k} := 1.0"]
+            statements.append(f"unreadable_{k} := unreadable")
+        return statements
+
+    def _failure_way(self, task: Task) -> list[str]:
+        if task.on_failure is OnFailure.BRANCH:
+            return [f"to := {self.position[task.failure_target or '']}"]
+        if task.on_failure is OnFailure.RETURN:
+            return [f"to := {self.end}", "returning := 1"]
+        return [f"to := {self.end}", "outcome := 5"]
+
+    def _attempts(self, task: Task) -> None:
+        """Until one succeeds, and takes note of its reading."""
+        with self.xml.element("Sequence"):
+            if task.window is not None and task.window.earliest:
+                earliest = number(task.window.earliest)
+                self._script(f"not_before := began + {earliest}")
+            if task.retries:
+                attempts = {"num_attempts": task.retries + 1}
+                with self.xml.element("RetryUntilSuccessful", attempts):
+                    self._attempt(task)
+            else:
+                self._attempt(task)
+            if task.action is Action.MEASURE:
+                k = self.objects[task.object_id or ""]
+                read = [f"{name}_{k} := {name}" for name in _READ if name != "unreadable"]
+                self._script(
+                    "; ".join(
+                        [*read, f"failed_{k} := 1.0 - known", f"unreadable_{k} := 1.0 - known"]
+                    )
+                )
+
+    def _attempt(self, task: Task) -> None:
+        measures = task.action is Action.MEASURE
+        if measures:
+            self.xml.open("Sequence")
+            self._script("unreadable := 0.0")  # also of an attempt that takes too long
+        if task.time_limit is None:
+            self._action(task)
         else:
-            where = _pose_ports(task.pose)
+            with self.xml.element("Timeout", {"msec": _msec(task.time_limit)}):
+                self._action(task)
+        if measures:
+            self.xml.close()
+
+    def _action(self, task: Task) -> None:
+        where: Attributes = _pose_ports(task.pose)
+        if task.action is Action.MEASURE:
+            outputs = {name: f"{{{name}}}" for name in _READ}
+            limit = task.reading_limit or 0.0
+            where = {"object_id": task.object_id, **where, "reading_limit": limit, **outputs}
+        if task.window is not None and task.window.earliest:
+            where = {**where, "not_before": "{not_before}"}
         name = "Measure" if task.action is Action.MEASURE else "DriveTo"
-        self.xml.add(name, {"name": task.name, **where, "velocity": "{velocity}", **joints})
+        velocity = {"velocity": task.velocity or 0.0}
+        self.xml.add(name, {"name": task.name, **where, **velocity, **_joints(task.joint_states)})
 
     def _decide(self, task: Task, ends_group: bool) -> None:
         """Sets `to`. The last condition is looked at first, so that the first one prevails."""
-        if any(condition.max_age is not None for condition in _conditions(task)):
+        if _asks_for_ages(_conditions(task)):
             self.xml.add("Clock", {"now": "{now}"})
         # The unconditional transition of a group's end is for the time after its last round.
         statements = [f"to := {0 if ends_group else self._default(task)}"]
         for transition in reversed([t for t in task.transitions if t.conditions]):
-            holds = " && ".join(f"({self._holds(c)})" for c in transition.conditions)
+            holds = self._all_hold(transition.conditions)
             statements.append(f"to := ({holds}) ? {self.position[transition.target]} : to")
-        statements.append(f"velocity := {task.velocity or 0.0!r}")
         self._script("; ".join(statements))
 
     def _default(self, task: Task) -> int:
@@ -219,20 +300,36 @@ class _Tree:
         to = self.end if target is None else self.position[target]
         return 0 if to == self.position[task.name] + 1 else to
 
+    def _all_hold(self, conditions: Iterable[Condition]) -> str:
+        return " && ".join(f"({self._holds(c)})" for c in conditions)
+
     def _holds(self, condition: Condition) -> str:
         k = self.objects[condition.object_id]
-        less = "<=" if condition.inclusive else "<"
-        more = ">=" if condition.inclusive else ">"
+        age = f"(now - time_{k})"
+        if condition.type is ConditionType.UNREADABLE:
+            return f"unreadable_{k} == 1"
+        if condition.type is ConditionType.FAILED:
+            return f"failed_{k} == 1"
+        if condition.type is ConditionType.STALE:
+            return f"(known_{k} == 1) && ({age} > {number(condition.max_age or 0.0)})"
         tests = [f"known_{k} == 1"]
         if condition.max_age is not None:
-            tests.append(f"(now - time_{k}) <= {number(condition.max_age)}")
-        if condition.type is ConditionType.LESS:
-            tests.append(f"value_{k} {less} {number(condition.param1 or 0.0)}")
+            tests.append(f"{age} <= {number(condition.max_age)}")
+        if condition.type is ConditionType.ABNORMAL:
+            tests.append(f"abnormal_{k} == 1")
         else:
-            tests.append(f"value_{k} {more} {number(condition.param1 or 0.0)}")
-        if condition.type is ConditionType.WITHIN:
-            tests.append(f"value_{k} {less} {number(condition.param2 or 0.0)}")
+            tests += self._comparisons(condition, f"value_{k}")
         return " && ".join(f"({test})" for test in tests)
+
+    def _comparisons(self, condition: Condition, value: str) -> Iterator[str]:
+        less = "<=" if condition.inclusive else "<"
+        more = ">=" if condition.inclusive else ">"
+        if condition.type is ConditionType.LESS:
+            yield f"{value} {less} {number(condition.param1 or 0.0)}"
+        else:
+            yield f"{value} {more} {number(condition.param1 or 0.0)}"
+        if condition.type is ConditionType.WITHIN:
+            yield f"{value} {less} {number(condition.param2 or 0.0)}"
 
     def _open_group(self, r: GroupRange, n: int) -> None:
         xml, group = self.xml, r.group
@@ -242,8 +339,7 @@ class _Tree:
             xml.add("Clock", {"now": f"{{entered_{n}}}"})
         if _is_timed(r):
             xml.open("Fallback")
-            msec = -int(-group.max_repeat_duration * 1000 // 1)
-            xml.open("Timeout", {"msec": msec})
+            xml.open("Timeout", {"msec": _msec(group.max_repeat_duration)})
         xml.open("ForceSuccess")
         xml.open("Repeat", {"num_cycles": -1})
         xml.open("Sequence")
@@ -256,8 +352,12 @@ class _Tree:
         tests = [f"to <= {r.last + 1}"]
         if group.max_repeat_count:
             tests.append(f"round_{n} < {group.max_repeat_count}")
-        if group.max_repeat_duration:
+        if group.max_repeat_duration or _asks_for_ages(group.until):
             xml.add("Clock", {"now": "{now}"})
+        if group.until:
+            self._script(f"over_{n} := ({self._all_hold(group.until)}) ? 1 : 0")
+            tests.append(f"over_{n} == 0")
+        if group.max_repeat_duration:
             tests.append(f"(now - entered_{n}) < {number(group.max_repeat_duration)}")
         xml.add("ScriptCondition", {"code": " && ".join(f"({test})" for test in tests)})
         self._script(f"round_{n} := round_{n} + 1")
@@ -295,6 +395,67 @@ class _Tree:
 def _conditions(task: Task) -> Iterator[Condition]:
     for transition in task.transitions:
         yield from transition.conditions
+
+
+def _time_refusals(task: Task) -> Iterator[Diagnostic]:
+    """What a task asks for that has to do with time, and a tree can't say."""
+    window, wait = task.window, task.wait
+    if wait is not None and wait.duration is None:
+        yield refusal(
+            "wait",
+            f"task '{task.name}' waits for an event or for conditions: no node of "
+            "BehaviorTree.CPP does that",
+            "wait for a time, or export SCXML",
+            task.source,
+        )
+    if window is not None and window.hard and window.latest is not None:
+        yield refusal(
+            "window",
+            f"task '{task.name}' has a hard window: no node of BehaviorTree.CPP ends at a time "
+            "since the mission's start",
+            "make the window soft, or export SCXML",
+            task.source,
+        )
+    if window is not None and window.earliest and (wait is not None or task.time_limit is not None):
+        what = "waits" if wait is not None else "has a time limit"
+        yield refusal(
+            "window",
+            f"task '{task.name}' {what}, and its window begins later: a behaviour tree can't tell "
+            "when that is",
+            "remove one of the two, or export SCXML",
+            task.source,
+        )
+    for what, seconds in (
+        ("the time limit", task.time_limit),
+        ("the wait", None if wait is None else wait.duration),
+    ):
+        if seconds is not None and seconds * 1000 > MAX_MSEC:
+            yield refusal(
+                "too-long",
+                f"{what} of task '{task.name}' is longer than a node takes, {MAX_MSEC / 1000:g} s",
+                span=task.source,
+            )
+
+
+def _msec(seconds: float) -> int:
+    """Whole milliseconds, rounded up."""
+    return -int(-seconds * 1000 // 1)
+
+
+def _joints(joints: JointState | None) -> Attributes:
+    if joints is None:
+        return {}
+    values = {
+        "joint_positions": joints.positions,
+        "joint_velocities": joints.velocities,
+        "joint_efforts": joints.efforts,
+    }
+    listed = {port: ";".join(map(number, given)) for port, given in values.items() if given}
+    return {"joint_names": ";".join(joints.names), **listed}
+
+
+def _asks_for_ages(conditions: Iterable[Condition]) -> bool:
+    return any(condition.max_age is not None for condition in conditions)
 
 
 def _pose_ports(pose: Pose | None) -> Attributes:

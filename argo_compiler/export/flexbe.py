@@ -7,7 +7,7 @@ routes: `enter` at the beginning of a group, `route` where something inside has 
 
 import re
 from bisect import bisect
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterable, Iterator, Mapping
 from importlib.resources import files
 
 from argo_compiler.diagnostics import Diagnostic
@@ -15,12 +15,12 @@ from argo_compiler.export.exporter import refusal, refuse
 from argo_compiler.export.xml import XmlWriter
 from argo_compiler.hfsm import Composite, Hfsm, Leaf, StateTransition, TransitionKind
 from argo_compiler.hfsm.model import DONE, MISSION, RETURN
-from argo_compiler.il import Action, Condition, ConditionType, Mission, Response, Task
+from argo_compiler.il import Action, Condition, ConditionType, Mission, Mode, Response, Task
 
 STATES = "argo_flexbe_states"
 BEHAVIORS = "argo_flexbe_behaviors"
 
-OUTCOMES = ("completed", "returned", "failed", "aborted")
+OUTCOMES = ("completed", "completed_with_failures", "returned", "failed", "aborted")
 
 
 def to_flexbe(mission: Mission, hfsm: Hfsm) -> Mapping[str, bytes]:
@@ -29,7 +29,7 @@ def to_flexbe(mission: Mission, hfsm: Hfsm) -> Mapping[str, bytes]:
     Raises:
         DiagnosticError: the mission has what a behaviour can't say.
     """
-    refuse(_refusals(hfsm))
+    refuse((*_refusals(hfsm), *_time_refusals(mission)))
     name = _identifier(hfsm.mission.name) or "mission"
     sources = files("argo_compiler.export").joinpath("flexbe_states")
     made = {
@@ -38,7 +38,7 @@ def to_flexbe(mission: Mission, hfsm: Hfsm) -> Mapping[str, bytes]:
         if source.name.endswith(".py")
     }
     made[f"{BEHAVIORS}/__init__.py"] = b'"""Missions exported by Argo."""\n'
-    made[f"{BEHAVIORS}/{name}_sm.py"] = _Behavior(mission, hfsm, name).source().encode()
+    made[f"{BEHAVIORS}/{name}_sm.py"] = _Behavior(hfsm, name).source().encode()
     made[f"manifest/{name}.xml"] = _manifest(hfsm, name).encode()
     return made
 
@@ -55,6 +55,42 @@ def _refusals(hfsm: Hfsm) -> Iterator[Diagnostic]:
             )
 
 
+def _time_refusals(mission: Mission) -> Iterator[Diagnostic]:
+    if mission.mode is Mode.SUPERVISORY:
+        yield refusal(
+            "supervisory",
+            "the mission begins paused, and a behaviour begins when it is started",
+            "plan it as autonomous, and start the behaviour when a person lets it begin",
+        )
+    for task in mission.tasks:
+        window, wait = task.window, task.wait
+        if wait is not None and wait.duration is None:
+            yield refusal(
+                "wait",
+                f"task '{task.name}' waits for an event or for conditions, which the states of the "
+                "behaviour do not hear of",
+                "wait for a time, or export SCXML",
+                task.source,
+            )
+        if window is not None and (window.earliest or (window.hard and window.latest is not None)):
+            yield refusal(
+                "window",
+                f"task '{task.name}' has a window, and the states of the behaviour do not know when "
+                "the mission began",
+                "leave out `earliest`, and make it soft, or export SCXML",
+                task.source,
+            )
+    for group in mission.groups:
+        if group.every:
+            yield refusal(
+                "every",
+                f"group '{group.name}' begins its rounds at set times, which the states of the "
+                "behaviour do not do",
+                "let the rounds follow each other, or export SCXML",
+                group.source,
+            )
+
+
 def _manifest(hfsm: Hfsm, name: str) -> str:
     xml = XmlWriter()
     with xml.element("behavior", {"name": name}):
@@ -67,9 +103,7 @@ def _manifest(hfsm: Hfsm, name: str) -> str:
 
 
 class _Behavior:
-    def __init__(self, mission: Mission, hfsm: Hfsm, name: str) -> None:
-        starts = (t.velocity for t in mission.tasks if t.action is Action.START)
-        self.first_velocity = next(starts, None) or 0.0
+    def __init__(self, hfsm: Hfsm, name: str) -> None:
         self.hfsm = hfsm
         self.name = name
         self.composites = {c.id: c for c in hfsm.composites}
@@ -118,7 +152,7 @@ class _Behavior:
 
     def source(self) -> str:
         hfsm = self.hfsm
-        states = ("count", "decide", "measure", "route", "waypoint")
+        states = ("count", "decide", "measure", "route", "wait", "waypoint")
         initial = hfsm.mission.initial
         self.lines += [
             f'"""The mission as a FlexBE behaviour: {self.name}."""',
@@ -145,7 +179,7 @@ class _Behavior:
         self._machine(hfsm.mission, "_state_machine", list(OUTCOMES))
         to = "end" if initial == DONE else self.numbers[initial]
         self.lines += [
-            f"        memory = new_memory({to!r}, {self.first_velocity!r})",
+            f"        memory = new_memory({to!r})",
             "        _state_machine.userdata.memory = memory",
             "        return _state_machine",
         ]
@@ -160,6 +194,7 @@ class _Behavior:
         outcomes = [label for _, label in self.parts[composite.id]]
         if composite.repeat is None:
             ends = {"left": "completed", "end": "completed", "aborted": "aborted"}
+            ends["failures"] = "completed_with_failures"
             self._route("route", composite, [*outcomes, *ends], ends)
         else:
             limit = composite.repeat.duration if composite.timeout else 0.0
@@ -201,38 +236,53 @@ class _Behavior:
                 {"done": "returned", "failed": "failed", "time_up": "route"},
             )
             return
-        failed = decide
-        if leaf.failure is not None:
-            failed = f"{label} failed"
-            to = self._target(leaf.failure, "aborted")
-            arguments = f"outcomes=['to'], ways=[('to', {to!r}, [])], velocity=0.0"
-            self._add(failed, f"DecideState({arguments})", {"to": "route"})
-        self._add(label, self._action(leaf), {"done": decide, "failed": failed, "time_up": "route"})
+        outcomes = {"done": decide, "time_up": "route"}
+        if task.action is Action.WAIT:
+            assert task.wait is not None
+            arguments = f"duration={task.wait.duration or 0.0!r}, depth={self.depths[leaf.parent]}"
+            self._add(label, f"WaitState({arguments})", outcomes)
+        else:
+            outcomes["failed"] = f"{label} failed"
+            self._add(label, self._action(leaf), outcomes)
+            if leaf.failure is None:
+                self._decide(outcomes["failed"], leaf, leaf.transitions, "end", not task.optional)
+            else:
+                ways = (leaf.failure,)
+                self._decide(outcomes["failed"], leaf, ways, "aborted", not task.optional)
+        self._decide(decide, leaf, leaf.transitions, "end")
+
+    def _decide(
+        self,
+        label: str,
+        leaf: Leaf,
+        transitions: Iterable[StateTransition],
+        end: str,
+        fails: bool = False,
+    ) -> None:
         ways = []
-        for transition in leaf.transitions:
-            to = self._target(transition, "end")
+        for transition in transitions:
+            to = self._target(transition, end)
             conditions = [_condition(c) for c in transition.conditions]
             ways.append((self._outcome(leaf.parent, to), to, conditions))
         outcomes = sorted({outcome for outcome, _, _ in ways})
         leave = "route" if leaf.parent == MISSION else "left"
         self._add(
-            decide,
-            f"DecideState(outcomes={outcomes!r}, ways={ways!a}, velocity={task.velocity or 0.0!r})",
+            label,
+            f"DecideState(outcomes={outcomes!r}, ways={ways!a}, fails={fails!r})",
             {outcome: leave if outcome == "left" else outcome for outcome in outcomes},
         )
 
     def _action(self, leaf: Leaf) -> str:
         task = leaf.task
-        joints = task.joint_states
         arguments = (
-            f"retries={task.retries}, depth={self.depths[leaf.parent]}, "
-            f"joint_names={list(joints.names) if joints else []!a}, "
-            f"joint_positions={list(joints.positions) if joints else []!r}"
+            f"task={task.name!a}, pose={_pose(task)!r}, way={_way(task)!a}, "
+            f"retries={task.retries}, time_limit={task.time_limit or 0.0!r}, "
+            f"depth={self.depths[leaf.parent]}"
         )
         if task.action is Action.MEASURE:
-            what = f"object_id={task.object_id!a}"
-            return f"MeasureState(task={task.name!a}, {what}, {arguments})"
-        return f"WaypointState(task={task.name!a}, pose={_pose(task)!r}, {arguments})"
+            limit = f"reading_limit={task.reading_limit or 0.0!r}"
+            return f"MeasureState(object_id={task.object_id!a}, {limit}, {arguments})"
+        return f"WaypointState({arguments})"
 
     def _round(self, composite: Composite) -> None:
         repeat = composite.repeat
@@ -241,7 +291,7 @@ class _Behavior:
         self._add(
             "round",
             f"CountState(depth={self.depths[composite.id]}, count={repeat.count}, "
-            f"duration={repeat.duration!r}, start={self.numbers[composite.initial]}, "
+            f"duration={repeat.duration!r}, until={[_condition(c) for c in repeat.until]!a}, start={self.numbers[composite.initial]}, "
             f"onward={self._target(onward, 'end')!r})",
             {"again": "route", "over": "left"},
         )
@@ -262,10 +312,26 @@ class _Behavior:
         ]
 
 
-def _condition(c: Condition) -> tuple[str, float | None, float | None, bool, float | None]:
+_KINDS = {
+    ConditionType.UNREADABLE: "unreadable",
+    ConditionType.FAILED: "failed",
+    ConditionType.STALE: "stale",
+    ConditionType.ABNORMAL: "abnormal",
+}
+
+
+def _condition(c: Condition) -> tuple[str, str, float | None, float | None, bool, float | None]:
+    if not c.type.compares:
+        return _KINDS[c.type], c.object_id, None, None, False, c.max_age
     low = None if c.type is ConditionType.LESS else c.param1
     high = {ConditionType.LESS: c.param1, ConditionType.GREATER: None}.get(c.type, c.param2)
-    return c.object_id, low, high, c.inclusive, c.max_age
+    return "value", c.object_id, low, high, c.inclusive, c.max_age
+
+
+def _way(task: Task) -> dict[str, object]:
+    joints = None if task.joint_states is None else task.joint_states.model_dump()
+    named = {} if joints is None else {name: list(given) for name, given in joints.items()}
+    return {"velocity": task.velocity or 0.0, "joints": named}
 
 
 def _pose(task: Task) -> list[float]:

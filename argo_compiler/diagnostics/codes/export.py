@@ -4,8 +4,12 @@ from argo_compiler.diagnostics.codes.code import error
 
 EXPORT = {
     "export.backward": error(
-        "A transition leads back outside of a group's rounds; behaviour trees have no such edges.",
+        "A transition or a failure leads back outside of a group's rounds; behaviour trees have no such edges.",
         "Put the tasks in between into a group.",
+    ),
+    "export.every": error(
+        "A group begins its rounds at set times, which this format can't say.",
+        "Let the rounds follow each other, or export SCXML.",
     ),
     "export.isar-empty": error(
         "The mission has no tasks, which isar does not allow.", "Measure something."
@@ -54,7 +58,18 @@ EXPORT = {
         "A message has the velocity of the way on from a task, and those of the ways differ.",
         "Give all tasks that may follow the same task one velocity.",
     ),
+    "export.supervisory": error(
+        "The mission begins paused, which this format can't say.", "Plan it as autonomous."
+    ),
     "export.too-long": error(
-        "The duration of a group is longer than a Timeout node takes.", "Shorten it."
+        "A duration is longer than a node of BehaviorTree.CPP takes.", "Shorten it."
+    ),
+    "export.wait": error(
+        "A task waits for an event or for conditions, which this format can't say.",
+        "Wait for a time, or export SCXML.",
+    ),
+    "export.window": error(
+        "A task has a window that this format can't say.",
+        "Make it soft, or export SCXML.",
     ),
 }

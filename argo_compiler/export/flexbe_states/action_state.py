@@ -9,7 +9,7 @@ from .robot import robot
 class ActionState(EventState):
     """One action of the robot, begun at the first execution and cancelled on leaving."""
 
-    def __init__(self, task, retries, depth, joint_names, joint_positions):
+    def __init__(self, task, way, retries, time_limit, depth):
         super().__init__(
             outcomes=["done", "failed", "time_up"],
             input_keys=["memory"],
@@ -18,9 +18,11 @@ class ActionState(EventState):
         self._task = task
         self._retries = retries
         self._depth = depth
-        self._joints = joint_names, joint_positions
+        self._way = way
+        self._time_limit = time_limit
         self._failures = 0
         self._runs = False
+        self._begun = 0.0
 
     def on_enter(self, _userdata):
         self._failures = 0
@@ -30,21 +32,29 @@ class ActionState(EventState):
         memory = userdata.memory
         result = robot().result() if self._runs else None
         if result is None:
-            target = time_up(self._depth, memory, robot().now())
+            now = robot().now()
+            target = time_up(self._depth, memory, now)
             if target is not None:
                 memory["to"] = target
                 return "time_up"
             if not self._runs:
-                self._begin(memory)
-                self._runs = True
-            return None
+                self._begin()
+                self._runs, self._begun = True, now
+                return None
+            if not self._time_limit or now < self._begun + self._time_limit:
+                return None
+            self._cancel()
+            result = "failed", None
         self._runs = False
         outcome, value = result
         if outcome == "done":
             self._done(memory, value)
             return "done"
         self._failures += 1
-        return "failed" if self._failures > self._retries else None
+        if self._failures <= self._retries:
+            return None
+        self._failed(memory, outcome)
+        return "failed"
 
     def on_exit(self, _userdata):
         self._cancel()
@@ -62,3 +72,6 @@ class ActionState(EventState):
 
     def _done(self, memory, value):
         """Takes note of what was read."""
+
+    def _failed(self, memory, outcome):
+        """Takes note that nothing was read."""

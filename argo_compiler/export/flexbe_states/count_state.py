@@ -2,6 +2,7 @@
 
 from flexbe_core import EventState
 
+from .memory import holds
 from .robot import robot
 
 
@@ -11,6 +12,7 @@ class CountState(EventState):
     -- depth            int       How many groups are around, this one included.
     -- count            int       Rounds in all; 0: no limit.
     -- duration         float     s since the group was entered; 0.0: no limit.
+    -- until            list      Conditions; no other round begins once all hold. [] : none.
     -- start            int       The task that a round begins with.
     -- onward           int       The target after the last round, or `end`.
 
@@ -20,11 +22,12 @@ class CountState(EventState):
     <= over                       The group has ended.
     """
 
-    def __init__(self, depth, count, duration, start, onward):
+    def __init__(self, depth, count, duration, until, start, onward):
         super().__init__(outcomes=["again", "over"], input_keys=["memory"], output_keys=["memory"])
         self._depth = depth
         self._count = count
         self._duration = duration
+        self._until = until
         self._start = start
         self._onward = onward
 
@@ -34,6 +37,9 @@ class CountState(EventState):
         more = not self._count or group["round"] < self._count
         if more and self._duration:
             more = robot().now() - group["entered"] < self._duration
+        if more and self._until:
+            now = robot().now()
+            more = not all(holds(condition, memory, now) for condition in self._until)
         if more:
             group["round"] += 1
         memory["to"] = self._start if more else self._onward

@@ -11,19 +11,19 @@ class DecideState(EventState):
 
     -- outcomes         string[]  The states of this machine that a way begins with, or `left`.
     -- ways             list      Outcome, target, and conditions; the last one has none.
-    -- velocity         float     m/s on the way to the next task; 0.0: the robot's own.
+    -- fails            bool      Whether the mission has failures from here on.
 
     #> memory           dict      What the mission knows.
     """
 
-    def __init__(self, outcomes, ways, velocity):
+    def __init__(self, outcomes, ways, fails=False):
         super().__init__(outcomes=outcomes, input_keys=["memory"], output_keys=["memory"])
         self._ways = ways
-        self._velocity = velocity
+        self._fails = fails
 
     def execute(self, userdata):
         memory, now = userdata.memory, robot().now()
-        memory["velocity"] = self._velocity
+        memory["failures"] = memory["failures"] or self._fails
         for outcome, target, conditions in self._ways:
             if all(holds(condition, memory, now) for condition in conditions):
                 memory["to"] = target

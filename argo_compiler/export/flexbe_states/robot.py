@@ -8,16 +8,28 @@ class Robot:
         """The time on a clock that never runs backwards."""
         raise NotImplementedError
 
-    def measure(self, task, object_id, velocity, joint_names, joint_positions):
-        """Begins to drive to a checkpoint and to measure it. `velocity` 0.0: the robot's own."""
+    def measure(self, task, object_id, pose, reading_limit, velocity, joints):
+        """Begins to drive to a checkpoint and to measure it.
+
+        `pose`: where it stands then, as in `drive`; [] : where it sees the checkpoint from.
+        `reading_limit` is s that it tries to read, 0.0: the robot's own.
+        """
         raise NotImplementedError
 
-    def drive(self, task, pose, velocity, joint_names, joint_positions):
-        """Begins to drive to a pose: x, y, z (m) and yaw (rad)."""
+    def drive(self, task, pose, velocity, joints):
+        """Begins to drive to a pose: x, y, z (m) and yaw (rad).
+
+        `velocity` is m/s, 0.0: the robot's own. `joints` is where joints are to be: a dictionary
+        with `names`, `positions`, `velocities` and `efforts`, or {}.
+        """
         raise NotImplementedError
 
     def result(self):
-        """None while the action runs; then 'failed', or 'done' and the value or None."""
+        """None while the action runs; then how it ended, and the value or None.
+
+        How: 'done', 'failed', or 'unreadable' if a measurement failed as it could not read. The
+        value is a number, or a number and whether it is abnormal.
+        """
         raise NotImplementedError
 
     def cancel(self):

@@ -35,7 +35,9 @@ class RouteState(EventState):
             memory["groups"] = [*memory["groups"][: self._depth - 1], group]
         to = memory["to"]
         if isinstance(to, str):
-            return "left" if self._depth else to
+            if self._depth:
+                return "left"
+            return "failures" if to == "end" and memory["failures"] else to
         if to < 0:
             return "round" if -to == self._depth else "left"
         if not self._firsts or not self._firsts[0] <= to <= self._last:

@@ -9,10 +9,10 @@ class WaypointState(ActionState):
 
     -- task             string    Name of the task.
     -- pose             float[]   x, y, z (m) and yaw (rad).
+    -- way              dict      How it goes there, as `Robot.drive` is told.
     -- retries          int       How often a failed action is tried again.
+    -- time_limit       float     s for each attempt; 0.0: no limit.
     -- depth            int       How many groups are around.
-    -- joint_names      string[]  Joints to move.
-    -- joint_positions  float[]   Their positions (rad or m).
 
     #> memory           dict      What the mission knows.
 
@@ -21,9 +21,9 @@ class WaypointState(ActionState):
     <= time_up                    The time of a group around is up.
     """
 
-    def __init__(self, task, pose, retries, depth, joint_names, joint_positions):
-        super().__init__(task, retries, depth, joint_names, joint_positions)
+    def __init__(self, task, pose, way, retries, time_limit, depth):
+        super().__init__(task, way, retries, time_limit, depth)
         self._pose = pose
 
-    def _begin(self, memory):
-        robot().drive(self._task, self._pose, memory["velocity"], *self._joints)
+    def _begin(self):
+        robot().drive(self._task, self._pose, **self._way)

@@ -13,11 +13,12 @@ ATTRIBUTES = {
     "Repeat": {"num_cycles"},
     "RetryUntilSuccessful": {"num_attempts"},
     "Timeout": {"msec"},
+    "Sleep": {"name", "msec"},
     "Script": {"code"},
     "ScriptCondition": {"code"},
 }
 DECORATORS = {"ForceSuccess", "Repeat", "RetryUntilSuccessful", "Timeout"}
-LEAVES = {"Script", "ScriptCondition"}
+LEAVES = {"Script", "ScriptCondition", "Sleep"}
 
 
 def validate(text):
@@ -50,7 +51,10 @@ def validate(text):
 
 
 class Interpreter:
-    """Runs a tree; `outcomes` gives duration, value and failure of each action in turn."""
+    """Runs a tree; `outcomes` gives duration, value and failure of each action in turn.
+
+    A value of 5 or more is abnormal; a failure that has a value is one of reading.
+    """
 
     def __init__(self, text, outcomes):
         self.root = validate(text)
@@ -58,7 +62,9 @@ class Interpreter:
         self.board = {}
         self.now = 0.0
         self.log = []
+        self.not_before = []
         self.result = None
+        self.sleeps = None
         self.deadlines = []
 
     def run(self, steps):
@@ -68,15 +74,19 @@ class Interpreter:
             next(tree)
             while len(self.log) < steps:
                 # What was started in the moment of a time-out never ran, so it has no outcome yet.
-                duration, *self.result = next(self.outcomes)
-                ends = self.now + duration
+                if self.sleeps is None:
+                    duration, *self.result = next(self.outcomes)
+                    ends = max(self.now, self.not_before[-1]) + duration
+                else:
+                    ends = self.sleeps
                 self.now = min([ends, *(deadline for deadline, _ in self.deadlines)])
                 if ends == self.now:  # an action that ends exactly at a time-out has ended
                     next(tree)
                 while due := [fired for deadline, fired in self.deadlines if deadline <= self.now]:
                     due[0].append(True)
-                    if self.log[-1][0] == self.now:
+                    if self.sleeps is None and self.log[-1][0] == self.now:
                         self.log.pop()
+                    self.sleeps = None
                     next(tree)
         except StopIteration:
             return self.log[:steps], int(self.board["outcome"])
@@ -142,6 +152,12 @@ class Interpreter:
         finally:
             self.deadlines = [d for d in self.deadlines if d[1] is not fired]
 
+    def Sleep(self, node):  # noqa: N802
+        self.sleeps = self.now + int(node.attrib["msec"]) / 1000
+        yield
+        self.sleeps = None
+        return True
+
     def Script(self, node):  # noqa: N802
         for statement in node.attrib["code"].split("; "):
             name, expression = statement.split(" := ")
@@ -159,21 +175,30 @@ class Interpreter:
         yield
 
     def Measure(self, node):  # noqa: N802
-        value = yield from self.act(node)
-        if isinstance(value, (int, float)) and not isinstance(value, bool):
-            for port, read in (("value", value), ("known", 1), ("time", self.now)):
-                self.board[node.attrib[port][1:-1]] = read
-        return value is not False
+        value, failed = yield from self.act(node)
+        known = value is not None and not failed
+        told = {
+            "value": value if known else 0.0,
+            "known": float(known),
+            "abnormal": float(known and value >= 5),
+            "unreadable": float(failed and value is not None or not failed and value is None),
+            "time": self.now,
+        }
+        for port, read in told.items():
+            self.board[node.attrib[port][1:-1]] = read
+        return not failed
 
     def DriveTo(self, node):  # noqa: N802
-        return (yield from self.act(node)) is not False
+        _, failed = yield from self.act(node)
+        return not failed
 
     def act(self, node):
-        """What was read; False if the action failed."""
+        """What was read, and whether the action failed."""
         self.log.append((self.now, node.attrib["name"]))
+        earliest = node.get("not_before")
+        self.not_before.append(0 if earliest is None else self.board[earliest[1:-1]])
         yield
-        value, failed = self.result
-        return False if failed else value
+        return self.result
 
     def value(self, expression):
         if " ? " in expression:

@@ -19,30 +19,31 @@ from argo_compiler.diagnostics import Severity
 from argo_compiler.export.btcpp import to_btcpp
 from argo_compiler.il import Condition, ConditionType, Mission, Task, Transition
 from tests.argo_compiler.export import missions as m
-from tests.argo_compiler.export.test_btcpp import STEPS, codes, executed, sound, task
+from tests.argo_compiler.export.carried import OUTCOMES, carried_missions, executed
+from tests.argo_compiler.export.test_btcpp import STEPS, codes, sound, task
 from tests.conftest import examples
 
 RUNNER = os.environ["ARGO_BTCPP_RUNNER"]
 
 
 @settings(max_examples=examples(40), deadline=None)
-@given(m.structured_missions(timeouts=False), m.outcome_lists)
+@given(carried_missions(timed=False), m.outcome_lists)
 def test_the_library_itself_does_the_same(tmp_path_factory, mission, outcomes):
     sound(mission)
     path = tmp_path_factory.mktemp("tree") / "tree.xml"
     path.write_text(to_btcpp(mission), encoding="utf-8")
     script = "".join(
-        f"{duration} {int(value is not None)} {value or 0} {int(failed)}\n"
+        f"{duration} {int(value is not None)} {value or 0} {int((value or 0) >= 5)} {int(failed)}\n"
         for duration, value, failed in outcomes
     )
     command = [RUNNER, str(path), str(STEPS)]
     done = subprocess.run(command, input=script, capture_output=True, text=True, check=True)
     *lines, last = done.stdout.splitlines()
     log = [(float(t), name) for t, _, name in (line.partition(" ") for line in lines)]
-    expected = executed(mission, outcomes)
+    expected = executed(mission, outcomes, STEPS)
     assert log == expected[0]
     if len(log) < STEPS:
-        assert int(float(last)) == expected[1]
+        assert OUTCOMES[int(float(last)) - 1] == expected[1]
 
 
 @settings(max_examples=examples(40), deadline=None)
@@ -58,7 +59,7 @@ def test_the_library_reads_any_name(tmp_path_factory, name, object_id):
     path = tmp_path_factory.mktemp("tree") / "tree.xml"
     path.write_text(text, encoding="utf-8")
     done = subprocess.run(
-        [RUNNER, str(path), "9"], input="1 1 2 0\n", capture_output=True, text=True, check=True
+        [RUNNER, str(path), "9"], input="1 1 2 0 0\n", capture_output=True, text=True, check=True
     )
     assert done.stdout.splitlines()[-1] == "1"
 
@@ -76,7 +77,7 @@ def test_the_library_compares_numbers_as_they_are(tmp_path, bound, inclusive):
     for value in (math.nextafter(bound, -math.inf), bound, math.nextafter(bound, math.inf)):
         done = subprocess.run(
             [RUNNER, str(tmp_path / "tree.xml"), "9"],
-            input=f"0.5 1 {value!r} 0\n",
+            input=f"0.5 1 {value!r} 0 0\n",
             capture_output=True,
             text=True,
             check=True,

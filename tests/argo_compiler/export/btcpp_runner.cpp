@@ -1,7 +1,8 @@
 // Runs a behaviour tree with stub nodes: `runner TREE.xml STEPS < outcomes`.
 //
 // A line of input is the outcome of an action: its duration (s), whether it reads a value, the
-// value, and whether it fails. They are used in turn. A line of output is the start of an action:
+// value, whether that is abnormal, and whether it fails; one that fails and has a value is one of
+// reading. They are used in turn. A line of output is the start of an action:
 // the time and the node's name. The last line is the blackboard entry `outcome`, or 0.
 //
 //   c++ -std=c++17 -O1 btcpp_runner.cpp -lbehaviortree_cpp -o runner
@@ -19,6 +20,7 @@ struct Outcome
   double duration;
   bool reads;
   double value;
+  bool abnormal;
   bool fails;
 };
 
@@ -38,6 +40,16 @@ const Outcome& act(const std::string& name)
   const Outcome& outcome = outcomes[drawn++ % outcomes.size()];
   now += outcome.duration;
   return outcome;
+}
+
+BT::PortsList way_ports()
+{
+  return { BT::InputPort<double>("x"), BT::InputPort<double>("y"), BT::InputPort<double>("z"),
+           BT::InputPort<double>("yaw"), BT::InputPort<double>("velocity"),
+           BT::InputPort<double>("not_before"), BT::InputPort<std::string>("joint_names"),
+           BT::InputPort<std::string>("joint_positions"),
+           BT::InputPort<std::string>("joint_velocities"),
+           BT::InputPort<std::string>("joint_efforts") };
 }
 
 class Clock : public BT::SyncActionNode
@@ -61,26 +73,23 @@ public:
   using SyncActionNode::SyncActionNode;
   static BT::PortsList providedPorts()
   {
-    return { BT::InputPort<std::string>("object_id"),       BT::InputPort<double>("velocity"),
-             BT::InputPort<std::string>("joint_names"),     BT::InputPort<std::string>("joint_"
-                                                                                       "positions"),
-             BT::OutputPort<double>("value"),               BT::OutputPort<double>("known"),
-             BT::OutputPort<double>("time") };
+    BT::PortsList ports = way_ports();
+    ports.insert({ BT::InputPort<std::string>("object_id"), BT::InputPort<double>("reading_limit"),
+                   BT::OutputPort<double>("value"), BT::OutputPort<double>("known"),
+                   BT::OutputPort<double>("abnormal"), BT::OutputPort<double>("unreadable"),
+                   BT::OutputPort<double>("time") });
+    return ports;
   }
   BT::NodeStatus tick() override
   {
     const Outcome& outcome = act(name());
-    if(outcome.fails)
-    {
-      return BT::NodeStatus::FAILURE;
-    }
-    if(outcome.reads)
-    {
-      setOutput("value", outcome.value);
-      setOutput("known", 1.0);
-      setOutput("time", now);
-    }
-    return BT::NodeStatus::SUCCESS;
+    const bool known = outcome.reads && !outcome.fails;
+    setOutput("value", known ? outcome.value : 0.0);
+    setOutput("known", known ? 1.0 : 0.0);
+    setOutput("abnormal", known && outcome.abnormal ? 1.0 : 0.0);
+    setOutput("unreadable", outcome.reads == outcome.fails ? 1.0 : 0.0);
+    setOutput("time", now);
+    return outcome.fails ? BT::NodeStatus::FAILURE : BT::NodeStatus::SUCCESS;
   }
 };
 
@@ -90,10 +99,7 @@ public:
   using SyncActionNode::SyncActionNode;
   static BT::PortsList providedPorts()
   {
-    return { BT::InputPort<double>("x"),        BT::InputPort<double>("y"),
-             BT::InputPort<double>("z"),        BT::InputPort<double>("yaw"),
-             BT::InputPort<double>("velocity"), BT::InputPort<std::string>("joint_names"),
-             BT::InputPort<std::string>("joint_positions") };
+    return way_ports();
   }
   BT::NodeStatus tick() override
   {
@@ -111,7 +117,8 @@ int main(int argc, char** argv)
   }
   steps = std::atoi(argv[2]);
   Outcome outcome{};
-  while(std::cin >> outcome.duration >> outcome.reads >> outcome.value >> outcome.fails)
+  while(std::cin >> outcome.duration >> outcome.reads >> outcome.value >> outcome.abnormal >>
+        outcome.fails)
   {
     outcomes.push_back(outcome);
   }

@@ -9,7 +9,6 @@ from hypothesis import strategies as st
 from argo_compiler.checks import check
 from argo_compiler.diagnostics import DiagnosticError, Severity
 from argo_compiler.export.btcpp import to_btcpp
-from argo_compiler.hfsm import lower
 from argo_compiler.il import (
     EventKind,
     Group,
@@ -23,39 +22,10 @@ from argo_compiler.il import (
 )
 from tests.argo_compiler.export import missions as m
 from tests.argo_compiler.export.behaviour_tree import Interpreter, validate
-from tests.argo_compiler.export.executing import Executing
+from tests.argo_compiler.export.carried import OUTCOMES, carried_missions, executed
 from tests.conftest import examples
 
-OUTCOMES = ["completed", "returned", "sheltered", "failed", "aborted", "cancelled"]
 STEPS = 40
-
-
-def executed(mission, outcomes, steps=STEPS):
-    """The actions with the times of their starts, and how the mission ended."""
-    machine = Executing(lower(mission))
-    log, drawn = [], []
-
-    def noted():
-        for outcome in cycle(outcomes):
-            drawn.append(outcome)
-            yield outcome
-
-    drive = m.Drive(machine, [], steps=10**6)
-    drive.outcomes = noted()
-    note = machine.note
-
-    def log_starts(commands):
-        started = machine.started
-        note(commands)
-        if machine.started > started:
-            log.append((machine.executor.trace[-1].time, machine.running[1]))
-            if len(log) >= steps:
-                drive.steps = 0
-
-    machine.note = log_starts
-    drive.run()
-    outcome = machine.executor.outcome
-    return log[:steps], None if outcome is None else OUTCOMES.index(outcome) + 1
 
 
 def sound(mission):
@@ -64,14 +34,14 @@ def sound(mission):
 
 
 @settings(max_examples=examples(80), deadline=None)
-@given(m.structured_missions(), m.outcome_lists)
+@given(st.one_of(m.structured_missions(), carried_missions(), carried_missions()), m.outcome_lists)
 def test_tree_does_what_the_executor_does(mission, outcomes):
     sound(mission)
-    expected = executed(mission, outcomes)
+    expected = executed(mission, outcomes, STEPS)
     log, outcome = Interpreter(to_btcpp(mission), cycle(outcomes)).run(STEPS)
     assert log == expected[0]
     if len(log) < STEPS:
-        assert outcome == expected[1]
+        assert OUTCOMES[outcome - 1] == expected[1]
 
 
 @settings(max_examples=examples(40), deadline=None)
@@ -86,7 +56,7 @@ def test_any_mission_is_refused_or_said_right(mission, outcomes):
             assert diagnostic.code == "export.backward"
             assert any(name in diagnostic.message for name in back)
         return
-    assert Interpreter(text, cycle(outcomes)).run(STEPS)[0] == executed(mission, outcomes)[0]
+    assert Interpreter(text, cycle(outcomes)).run(STEPS)[0] == executed(mission, outcomes, STEPS)[0]
 
 
 def task(name, *targets, **fields):

@@ -75,8 +75,8 @@ def _time_refusals(mission: Mission) -> Iterator[Diagnostic]:
         if window is not None and (window.earliest or (window.hard and window.latest is not None)):
             yield refusal(
                 "window",
-                f"task '{task.name}' has a window, and the states of the behaviour do not know when "
-                "the mission began",
+                f"task '{task.name}' has a window, and the states of the behaviour do not know "
+                "when the mission began",
                 "leave out `earliest`, and make it soft, or export SCXML",
                 task.source,
             )
@@ -288,10 +288,11 @@ class _Behavior:
         repeat = composite.repeat
         assert repeat is not None
         onward = next(t for t in composite.transitions if t.kind is not TransitionKind.REPEAT)
+        until = [_condition(c) for c in repeat.until]
         self._add(
             "round",
             f"CountState(depth={self.depths[composite.id]}, count={repeat.count}, "
-            f"duration={repeat.duration!r}, until={[_condition(c) for c in repeat.until]!a}, start={self.numbers[composite.initial]}, "
+            f"duration={repeat.duration!r}, until={until!a}, start={self.numbers[composite.initial]}, "
             f"onward={self._target(onward, 'end')!r})",
             {"again": "route", "over": "left"},
         )

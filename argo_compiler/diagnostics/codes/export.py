@@ -4,7 +4,8 @@ from argo_compiler.diagnostics.codes.code import error
 
 EXPORT = {
     "export.backward": error(
-        "A transition or a failure leads back outside of a group's rounds; behaviour trees have no such edges.",
+        "A transition or a failure leads back outside of a group's rounds; behaviour trees have no "
+        "such edges.",
         "Put the tasks in between into a group.",
     ),
     "export.every": error(

@@ -181,7 +181,7 @@ class Interpreter:
             "value": value if known else 0.0,
             "known": float(known),
             "abnormal": float(known and value >= 5),
-            "unreadable": float(failed and value is not None or not failed and value is None),
+            "unreadable": float(failed == (value is not None)),
             "time": self.now,
         }
         for port, read in told.items():

@@ -28,7 +28,7 @@ BAR = 130.0  # px, width of the bar of a reading
 def page(record: RunRecord, site: Site) -> str:
     """The whole report as one HTML page that needs no other file."""
     floors = visited_floors(record)
-    found = blocks(record.hfsm, record.tasks)
+    found = blocks(record)
     stood = waits(record)
     others = [str(f.number) for f in site.spec.floors if f.number not in floors]
     return _template().render(

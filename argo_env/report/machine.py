@@ -167,13 +167,13 @@ def _label(transition: StateTransition, group: Composite | None) -> str:
     if transition.kind is TransitionKind.DEFAULT:
         return ""
     limits = ["repeat"]
+    if group.repeat.until:
+        limits = [f"repeat until {' and '.join(map(words, group.repeat.until))}"]
     limits += [f"up to {group.repeat.count} rounds"] if group.repeat.count else []
     if group.repeat.duration:
         whole = ", whole rounds" if group.repeat.stop is Stop.SOFT else ""
         limits.append(f"for {group.repeat.duration:g} s{whole}")
     limits += [f"every {group.repeat.every:g} s"] if group.repeat.every else []
-    if group.repeat.until:
-        limits.append(f"until {' and '.join(map(words, group.repeat.until))}")
     return ", ".join(limits)
 
 

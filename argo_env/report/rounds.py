@@ -1,6 +1,7 @@
 """The runs of tasks in blocks: each visit to a group with its rounds, and what lies between."""
 
 import math
+from bisect import bisect_right
 from collections.abc import Sequence
 from dataclasses import dataclass
 from itertools import groupby, pairwise
@@ -38,38 +39,34 @@ class Block:
         return self.rounds[-1][-1].end
 
 
-def blocks(hfsm: Hfsm, runs: Sequence[TaskRun]) -> tuple[Block, ...]:
-    """The runs in their order.
+def blocks(record: RunRecord) -> tuple[Block, ...]:
+    """The runs of a record in their order.
 
-    A round of a group begins with a run of its initial task after its last one, or after one that
-    was cancelled. Where a group and another one in it have both tasks in common, the rounds of the
-    inner one are counted. The drive of a reaction belongs to the visit that it interrupts.
+    Where a group and another one in it begin and end with the same tasks, the rounds of the inner
+    one are counted. The drive of a reaction belongs to the visit that it interrupts.
     """
+    hfsm = record.hfsm
     outermost = _outermost(hfsm)
     groups: list[Composite | None] = []
-    for run in runs:
+    for run in record.tasks:
         around = groups[-1] if groups and run.task in RESERVED_NAMES else None
         groups.append(outermost.get(task_id(run.task), around))
     result = []
-    for id, part in groupby(zip(groups, runs, strict=True), key=lambda pair: _id_of(pair[0])):
+    pairs = zip(groups, record.tasks, strict=True)
+    for id, part in groupby(pairs, key=lambda pair: _id_of(pair[0])):
         visit = tuple(run for _, run in part)
         group = outermost.get(task_id(visit[0].task))
         if id is None or group is None:
             result.append(Block(None, (visit,)))
             continue
-        last = _last_leaf(hfsm, group)
-        begins = [
-            i
-            for i, run in enumerate(visit)
-            if i == 0
-            or (
-                task_id(run.task) == group.initial
-                and (task_id(visit[i - 1].task) == last or visit[i - 1].outcome == "cancelled")
-            )
+        alike = _alike(hfsm, group)
+        begins = [r.began for r in record.rounds if r.group in alike and r.began is not None]
+        numbers = [bisect_right(begins, run.start) for run in visit]
+        rounds = [
+            tuple(run for k, run in zip(numbers, visit, strict=True) if k == number)
+            for number in dict.fromkeys(numbers)
         ]
-        ends = [*begins[1:], len(visit)]
-        rounds = tuple(visit[i:j] for i, j in zip(begins, ends, strict=True))
-        result.append(Block(group.name, rounds))
+        result.append(Block(group.name, tuple(rounds)))
     return tuple(result)
 
 
@@ -95,8 +92,9 @@ def with_readings(record: RunRecord) -> list[tuple[RoundRun, str]]:
     they were at its end, that its group repeats until."""
     until = {c.name: c.repeat.until for c in record.hfsm.composites[1:] if c.repeat}
     return [
-        (one, _values(record, until.get(one.group, ()), one.ended) if one.ended else "")
+        (one, _values(record, until[one.group], one.ended) if one.ended else "")
         for one in record.rounds
+        if one.due is not None or until[one.group]
     ]
 
 
@@ -127,12 +125,14 @@ def _values(record: RunRecord, until: Sequence[Condition], at: float) -> str:
     return ", ".join(said)
 
 
-def _last_leaf(hfsm: Hfsm, group: Composite) -> str:
+def _alike(hfsm: Hfsm, group: Composite) -> frozenset[str]:
+    """The names of the group and of those in it that begin and end with the same tasks."""
     composites = {c.id: c for c in hfsm.composites}
-    last = group.children[-1]
-    while last in composites:
-        last = composites[last].children[-1]
-    return last
+    found = {group.name}
+    while (inner := composites.get(group.children[-1])) and len(group.children) == 1:
+        group = inner
+        found.add(group.name)
+    return frozenset(found)
 
 
 def _id_of(group: Composite | None) -> str | None:

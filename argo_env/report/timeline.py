@@ -12,7 +12,7 @@ from argo_env.run.record import RunRecord, TaskRun
 WIDTH = 1160.0  # px
 LABELS = 210.0  # px for the names of the tasks
 ROW = 24.0  # px
-HEAD = 46.0  # px above the first row, for the rounds
+HEAD = 60.0  # px above the first row, for the rounds
 
 _STEPS = (1, 2, 5, 10, 15, 30, 60, 120, 300, 600, 900, 1800, 3600)
 
@@ -190,7 +190,7 @@ def found_mark(x: float, y: float, number: int, class_: str) -> Node:
 def _rounds(record: RunRecord, px: float, bottom: float) -> list[Node]:
     """A band over each visit to a group, shaded by turns, with the numbers of the rounds."""
     marks = []
-    for block in blocks(record.hfsm, record.tasks):
+    for block in blocks(record):
         if block.group is None:
             continue
         left, width = LABELS + block.start * px, (block.end - block.start) * px

@@ -291,7 +291,7 @@ class WindowRun(Model):
 
 
 class RoundRun(Model):
-    """A round of a group that begins them at their times, or repeats until a condition holds."""
+    """A round of a group."""
 
     group: str
     number: int
@@ -402,7 +402,7 @@ class RunRecord(Model):
     windows: tuple[WindowRun, ...] = ()
     """what came of time windows"""
     rounds: tuple[RoundRun, ...] = ()
-    """of groups with `every` or `until`"""
+    """of groups, in the order in which they could begin"""
     given_values: tuple[GivenValue, ...] = ()
     mishaps: tuple[Mishap, ...] = ()
     """what the drive had trouble with, in the order of time"""

@@ -2,7 +2,7 @@
 
 from dataclasses import dataclass
 
-from argo_compiler.hfsm import Cause, RepeatRule
+from argo_compiler.hfsm import Cause, Hfsm, RepeatRule
 from argo_compiler.hfsm.progress import GroupProgress
 from argo_env.run.machine import Machine
 from argo_env.run.record import RoundRun
@@ -21,38 +21,38 @@ class _Seen:
 
 
 class RoundWatch:
-    """Notes the rounds of groups that begin them at their times, or repeat until a condition holds.
-    Holds those that it has seen."""
+    """Notes the rounds of all groups. Holds those that it has seen."""
 
     def __init__(self) -> None:
         self._rounds: list[RoundRun] = []
         self._groups: dict[str, _Seen] = {}
         self._steps = 0  # of the trace
+        self._hfsm: Hfsm | None = None
+        self._rules: dict[str, RepeatRule] = {}
 
     def look(self, machine: Machine, now: float) -> None:
         """Takes note of how the machine stands at time `now` (s), after each of its steps."""
         new = machine.trace[self._steps :]
         self._steps += len(new)
-        rules = {c.name: c.repeat for c in machine.hfsm.composites[1:] if c.repeat}
-        rules = {name: rule for name, rule in rules.items() if rule.every or rule.until}
+        if machine.hfsm is not self._hfsm:
+            self._hfsm = machine.hfsm
+            self._rules = {c.name: c.repeat for c in machine.hfsm.composites[1:] if c.repeat}
         moved = max((e.time for e in new if e.cause in BEGINNINGS), default=None)
         begun = max((e.time for e in new if e.cause is Cause.ROUND), default=None)
-        if not rules or (moved is None and begun is None):
+        if not self._rules or (moved is None and begun is None):
             return
         progress = machine.progress()
         inside = {} if progress.outcome else {g.group: g for g in progress.groups}
         for name in [name for name in self._groups if name not in inside]:
             self._end(self._groups.pop(name).at, now if moved is None else moved)
         for name, group in inside.items():
-            if name not in rules:
-                continue
             seen, waits = self._groups.get(name), progress.round_of == name
             if moved is not None and (
                 seen is None or group.round != seen.round or group.elapsed < seen.elapsed
             ):
                 if seen is not None:
                     self._end(seen.at, moved)
-                self._rounds.append(_entered(group, rules[name], moved, now, waits))
+                self._rounds.append(_entered(group, self._rules[name], moved, now, waits))
                 at = len(self._rounds) - 1
             elif seen is None:
                 continue

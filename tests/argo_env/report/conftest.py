@@ -9,7 +9,16 @@ from argo_compiler.catalog import CheckpointKind, Interval
 from argo_compiler.diagnostics import Diagnostic, Severity
 from argo_compiler.hfsm import lower
 from argo_compiler.il import Action, Condition, ConditionType, Group, Mission, Task, Transition
-from argo_env.run.record import Contact, PathSample, Reading, Result, RunRecord, TaskRun, TraceStep
+from argo_env.run.record import (
+    Contact,
+    PathSample,
+    Reading,
+    Result,
+    RoundRun,
+    RunRecord,
+    TaskRun,
+    TraceStep,
+)
 from argo_env.site import load_site
 
 CORNERS = ((3.05, -2.55, 0.0), (8.0, -2.0, 0.0), (8.0, 1.5, 0.0), (1.4, 1.5, 0.0), (0.85, 3.5, 0.0))
@@ -160,4 +169,7 @@ def patrol(make):
     group = Group(name="Patrol", start="1", end="2", max_repeat_count=25, max_repeat_duration=600)
     mission = Mission(designation="Patrol", tasks=tuple(tasks), groups=(group,))
     ring = ((7.6, 1.6, 0.0), (12.3, 1.6, 0.0), (12.3, 10.4, 0.0), (1.9, 10.4, 0.0), (1.9, 1.6, 0.0))
-    return make(mission, names * 25, path=along(ring * 25, 600.0, 0.05))
+    rounds = tuple(
+        RoundRun(group="Patrol", number=k + 1, since=24.0 * k, began=24.0 * k) for k in range(25)
+    )
+    return make(mission, names * 25, path=along(ring * 25, 600.0, 0.05), rounds=rounds)

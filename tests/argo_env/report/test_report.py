@@ -12,7 +12,7 @@ from argo_env.report import write_report
 from argo_env.report.html import page
 from argo_env.report.machine import MAX_STATES, machine
 from argo_env.report.rounds import blocks
-from argo_env.run.record import RunRecord
+from argo_env.run.record import RoundRun, RunRecord
 
 SECTIONS = [
     "summary",
@@ -226,5 +226,10 @@ def test_jumps_and_inner_rounds_begin_no_round(make):
     record = make(
         Mission(tasks=(*tasks, last), groups=groups), ["1", "2", "1", "2", "3", "1", "2", "3"]
     )
-    (block,) = blocks(record.hfsm, record.tasks)
+    began = [("Outer", 1, 0), ("Outer/Inner", 1, 0), ("Outer/Inner", 2, 2), ("Outer", 2, 5)]
+    rounds = tuple(
+        RoundRun(group=g, number=n, since=record.tasks[k].start, began=record.tasks[k].start)
+        for g, n, k in began
+    )
+    (block,) = blocks(record.model_copy(update={"rounds": rounds}))
     assert [len(runs) for runs in block.rounds] == [5, 3]

@@ -2,6 +2,7 @@
 
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
+from typing import NamedTuple
 
 from argo_compiler.hfsm.progress import ReadingKind
 from argo_compiler.il import Condition, ConditionType
@@ -15,8 +16,7 @@ class Measured:
     time: float
 
 
-@dataclass(frozen=True, slots=True)
-class CheckpointReading:
+class CheckpointReading(NamedTuple):
     """What came of the last measurement at a checkpoint (C3), and when (s)."""
 
     kind: ReadingKind

@@ -61,7 +61,8 @@ class Control:
     @property
     def due(self) -> float:
         """When something comes about by time alone (s); infinite if nothing does."""
-        return min(self.course.due, self.hold_due)
+        due = self.course.due
+        return due if due < self.hold_due else self.hold_due
 
     def begin(self, supervised: bool) -> None:
         """The mission begins, under supervision or not, or goes on as it was restored."""
@@ -85,17 +86,19 @@ class Control:
     def settle(self) -> None:
         """All that comes about now without an action."""
         course = self.course
+        place = course.place
         while course.outcome is None:
-            if course.place.leaf is None and not self.interrupted:
+            going = self.standing.stage is Stage.GOING
+            if going and place.visit.leaf is None:
                 course.step()
                 self._advance(Trigger.DONE)
-            elif not self.interrupted and course.end_wait():
+            elif going and place.own_due <= course.now and course.end_wait():
                 continue
-            elif course.time_is_up:
+            elif course.time_up_at <= course.now:
                 self.occur(EventKind.TIME_UP, "")
             elif self.hold_due <= course.now:
                 self._advance(Trigger.LIMIT)
-            elif self.interrupted or not course.step():
+            elif not going or not course.step():
                 break
         if course.outcome is not None and self.standing.outcome is None:
             self._advance(Trigger.ENDED)

@@ -14,6 +14,7 @@ from argo_compiler.hfsm.tables import CompiledTransition, LeafNode, Tables
 from argo_compiler.hfsm.trace import Cause, RawEntry
 from argo_compiler.il import EventKind
 
+_VALUE = ReadingKind.VALUE
 _OVER = "its time window is over"
 
 
@@ -62,12 +63,8 @@ class MissionCourse:
     def due(self) -> float:
         """When something comes about by time alone (s); infinite if nothing does."""
         place = self.place
-        return min(place.due, place.own_due, self.time_up_at)
-
-    @property
-    def time_is_up(self) -> bool:
-        """Whether TIME_UP occurs now."""
-        return self.time_up_at <= self.now
+        due = place.due if place.due < place.own_due else place.own_due
+        return due if due < self.time_up_at else self.time_up_at
 
     def occur(self, kind: EventKind) -> None:
         """Takes note of an event: TIME_UP, or what a WAIT waits for."""
@@ -101,8 +98,6 @@ class MissionCourse:
         The mission is not interrupted. What was done by hand comes before it, but after time-outs.
         """
         place, visit = self.place, self.place.visit
-        if place.own_due > self.now:
-            return False
         leaf = visit.leaf
         if leaf is None or leaf.wait is None or place.round_of or leaf.name in self.by_hand:
             return False
@@ -129,7 +124,7 @@ class MissionCourse:
         not interrupted.
         """
         place = self.place
-        leaf = place.leaf
+        leaf = place.visit.leaf
         if leaf is None:
             failed = self.failed
             self.outcome = Outcome.COMPLETED_WITH_FAILURES if failed else Outcome.COMPLETED
@@ -185,15 +180,14 @@ class MissionCourse:
         """The action of a task has ended well, with what it read."""
         if leaf.measures is None:
             return
-        if value is None:
-            self._read(leaf.measures, ReadingKind.UNREADABLE)
-        else:
-            self.tell(leaf.measures, value, abnormal, self.now)
+        kind = ReadingKind.UNREADABLE if value is None else _VALUE
+        self.place.readings[leaf.measures] = CheckpointReading(kind, self.now, value, abnormal)
+        if self.place.visit.leaf is not leaf:
+            self.place.reading_changed(self.now)
 
     def tell(self, object_id: str, value: float, abnormal: bool, at: float) -> None:
         """A value was read at a checkpoint at the time `at` (s)."""
-        reading = CheckpointReading(ReadingKind.VALUE, at, value, abnormal)
-        self.place.read(object_id, reading, self.now)
+        self.place.read(object_id, CheckpointReading(_VALUE, at, value, abnormal), self.now)
 
     def fail(self, leaf: LeafNode, reason: str, unreadable: bool = False) -> None:
         """The action of the task that the mission stands at has failed."""
@@ -291,9 +285,9 @@ class MissionCourse:
         detail: str = "",
     ) -> None:
         place = self.place
-        source = place.leaf
+        source = place.visit.leaf
         way, repeated = place.take(ways, self.now)
-        target = place.leaf
+        target = place.visit.leaf
         self.trace.append(
             RawEntry(
                 self.now,
@@ -304,9 +298,10 @@ class MissionCourse:
                 timed_out,
                 None if repeated is None else repeated.name,
                 failure,
-                by_hand=by_hand is not None,
-                skipped=by_hand is not None and by_hand.skipped,
-                detail=detail,
+                None,
+                by_hand is not None,
+                by_hand is not None and by_hand.skipped,
+                detail,
             )
         )
 

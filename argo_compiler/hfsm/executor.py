@@ -4,7 +4,6 @@ import math
 from collections.abc import Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass
-from numbers import Real
 
 from argo_compiler.hfsm.conditions import CheckpointReading, Measured
 from argo_compiler.hfsm.control import Control
@@ -164,7 +163,8 @@ class Executor:
         except IndexError:
             raise ValueError(_BUSY) from None
         try:
-            self._require_order(now)
+            if not self._control.course.now <= now <= MAX_TIME_S:
+                self._require_order(now)
             self._require_sense(event)
             return self._handle(event, now)
         finally:
@@ -386,10 +386,11 @@ class Executor:
     def _end_action(self, event: ActionEnded) -> None:
         control, leaf = self._control, self._running_leaf
         course = control.course
-        _, _, visit, attempt = self._wanted()
-        wanted = visit == self._running_visit and attempt == self._running_attempt
-        # A failure may be the work of the cancellation, so then it counts as a stop.
-        failed = isinstance(event, ActionFailed) and wanted and not self._cancelling
+        failed = isinstance(event, ActionFailed) and not self._cancelling
+        if failed:
+            # A failure may be the work of the cancellation, so then it counts as a stop.
+            _, _, visit, attempt = self._wanted()
+            failed = visit == self._running_visit and attempt == self._running_attempt
         self._running = None
         self._cancelling = False
         if leaf is None:
@@ -423,7 +424,11 @@ class Executor:
             raise ValueError(f"{event!r} is no event: give an instance of one")
         if isinstance(event, _ENDS):
             self._require_end(event)
-        elif isinstance(event, Occurred):
+        elif kind is not Tick:
+            self._require_report(event)
+
+    def _require_report(self, event: Event) -> None:
+        if isinstance(event, Occurred):
             if not isinstance(event.event, EventKind):
                 raise ValueError(f"{event.event!r} is no kind of event: give an EventKind")
         elif isinstance(event, ReadingGiven):
@@ -463,7 +468,10 @@ def _ended_visit(kept: tuple[str, str | None, bool]) -> EndedVisit:
 
 
 def _finite(value: object) -> bool:
-    return isinstance(value, Real) and math.isfinite(value)
+    try:
+        return math.isfinite(value)  # type: ignore[arg-type]
+    except TypeError:
+        return False
 
 
 def _seconds(now: float) -> float:

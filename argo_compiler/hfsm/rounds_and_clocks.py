@@ -129,6 +129,10 @@ class Configuration:
             self.readings.pop(object_id, None)
         else:
             self.readings[object_id] = reading
+        self.reading_changed(now)
+
+    def reading_changed(self, now: float) -> None:
+        """A WAIT that the mission stands at looks at it."""
         if self.visit.leaf is not None and self.visit.leaf.wait is not None:
             self.look(now)
 

@@ -181,7 +181,9 @@ class MissionCourse:
         if leaf.measures is None:
             return
         kind = ReadingKind.UNREADABLE if value is None else _VALUE
-        self.place.readings[leaf.measures] = CheckpointReading(kind, self.now, value, abnormal)
+        self.place.readings[leaf.measures] = CheckpointReading(
+            kind, self.now, value, abnormal and value is not None
+        )
         if self.place.visit.leaf is not leaf:
             self.place.reading_changed(self.now)
 

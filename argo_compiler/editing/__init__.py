@@ -25,6 +25,7 @@ __all__ = [
     "apply",
     "change_group",
     "change_reaction",
+    "change_task",
     "dissolve_group",
     "move_task",
     "read_edit",
@@ -50,7 +51,13 @@ if TYPE_CHECKING:
     from argo_compiler.editing.reactions import add_reaction, change_reaction, remove_reaction
     from argo_compiler.editing.refusals import EditConflict, EditError, EditInvalid, EditNotFound
     from argo_compiler.editing.removal import remove_task
-    from argo_compiler.editing.tasks import add_task, move_task, rename_task, replace_task
+    from argo_compiler.editing.tasks import (
+        add_task,
+        change_task,
+        move_task,
+        rename_task,
+        replace_task,
+    )
     from argo_compiler.editing.transitions import (
         add_condition,
         add_transition,
@@ -72,7 +79,7 @@ else:
             "reactions": ["add_reaction", "change_reaction", "remove_reaction"],
             "refusals": ["EditConflict", "EditError", "EditInvalid", "EditNotFound"],
             "removal": ["remove_task"],
-            "tasks": ["add_task", "move_task", "rename_task", "replace_task"],
+            "tasks": ["add_task", "change_task", "move_task", "rename_task", "replace_task"],
             "transitions": [
                 "add_condition",
                 "add_transition",

@@ -24,7 +24,13 @@ from argo_compiler.editing.header import set_header, wrong_values
 from argo_compiler.editing.reactions import add_reaction, change_reaction, remove_reaction
 from argo_compiler.editing.refusals import EditInvalid, invalid
 from argo_compiler.editing.removal import remove_task
-from argo_compiler.editing.tasks import add_task, move_task, rename_task, replace_task
+from argo_compiler.editing.tasks import (
+    add_task,
+    change_task,
+    move_task,
+    rename_task,
+    replace_task,
+)
 from argo_compiler.editing.transitions import (
     add_condition,
     add_transition,
@@ -38,13 +44,17 @@ from argo_compiler.il import (
     Condition,
     EventKind,
     Group,
+    JointState,
     Mission,
     Mode,
+    OnFailure,
     Order,
     Reaction,
     Stop,
     Task,
+    TimeWindow,
     Transition,
+    WaitRule,
 )
 from argo_compiler.model import Model, Pose
 
@@ -99,6 +109,26 @@ class ReplaceTask(EditCommand):
     task: Task
 
 
+class ChangeTask(EditCommand):
+    """See `change_task`. What is not given stays."""
+
+    kind: Literal["change_task"] = "change_task"
+    name: str
+    object_id: str | None = None
+    pose: Pose | None = None
+    wait: WaitRule | None = None
+    velocity: float | None = None
+    joint_states: JointState | None = None
+    retries: int = 0
+    on_failure: OnFailure = OnFailure.CONTINUE
+    failure_target: str | None = None
+    time_limit: float | None = None
+    reading_limit: float | None = None
+    optional: bool = False
+    priority: int = 1
+    window: TimeWindow | None = None
+
+
 class MoveTask(EditCommand):
     """See `move_task`."""
 
@@ -151,6 +181,8 @@ class ChangeGroup(EditCommand):
     max_repeat_duration: float = 0.0
     count_interruptions: bool = False
     stop: Stop = Stop.HARD
+    every: float = 0.0
+    until: tuple[Condition, ...] = ()
 
 
 class SetTransitions(EditCommand):
@@ -259,6 +291,7 @@ Edit = Annotated[
     AddTask
     | RemoveTask
     | ReplaceTask
+    | ChangeTask
     | MoveTask
     | RenameTask
     | WrapTasks
@@ -286,6 +319,7 @@ FUNCTIONS: dict[str, Callable[..., Edited]] = {
         add_task,
         remove_task,
         replace_task,
+        change_task,
         move_task,
         rename_task,
         wrap_tasks,

@@ -7,20 +7,25 @@ from argo_compiler.checks import check
 from argo_compiler.diagnostics import Diagnostic, Severity
 from argo_compiler.diagnostics.subject import subject_of
 from argo_compiler.editing.refusals import EditConflict, EditInvalid
-from argo_compiler.editing.ways import beginning, default_target
+from argo_compiler.editing.ways import beginning, branches, default_target
 from argo_compiler.il import Action, Group, Mission, Task, Transition
 from argo_compiler.model import Model
 
 _SENSELESS = frozenset(
     [
+        "il.branch-without-target",
+        "il.condition-bound",
         "il.group-duration",
         "il.group-name",
         "il.joint-states",
         "il.measure-without-object",
         "il.reserved-name",
         "il.safe-area-without-pose",
+        "il.stale-without-age",
         "il.until-itself",
+        "il.wait-rule",
         "il.waypoint-without-pose",
+        "il.window-order",
         "il.within-bounds",
     ]
 )
@@ -116,6 +121,7 @@ def _of_tasks(
             continue
         if old.transitions is not task.transitions:
             yield from _of_ways(at, old, task, first)
+        yield from _of_branches(at, old, task)
         if old.group != task.group:
             place = f"in group '{task.group}'" if task.group else "outside of all groups"
             message = f"task '{task.name}' is shown {place} now"
@@ -156,6 +162,20 @@ def _of_ways(at: str, old: Task, new: Task, first: str | None) -> Iterator[Conse
             message = f"{_which(new, way)} leads to '{now.target}' now, not to '{way.target}'"
             yield _consequence(f"{at}.transitions[{k}].target", message, way.target, now.target)
         k, now = next(kept, (0, None))
+
+
+def _of_branches(at: str, old: Task, new: Task) -> Iterator[Consequence]:
+    if (old.failure_target, old.window) == (new.failure_target, new.window):
+        return
+    former, now = branches(old), branches(new)
+    for field, words in _BRANCHES.items():
+        was, is_now = former.get(field), now.get(field)
+        if was != is_now:
+            message = f"when task '{new.name}' has {words}, '{is_now}' follows now, not '{was}'"
+            yield _consequence(f"{at}.{field}", message, was, is_now)
+
+
+_BRANCHES = {"failure_target": "failed", "window.missed_target": "missed its window"}
 
 
 def _which(task: Task, way: Transition) -> str:

@@ -5,7 +5,7 @@ from dataclasses import dataclass
 from argo_compiler.diagnostics.subject import subject_of
 from argo_compiler.editing.linked import Linked, LinkedList
 from argo_compiler.editing.refusals import EditConflict, conflict, unknown
-from argo_compiler.editing.ways import default_target, defaults, with_default
+from argo_compiler.editing.ways import default_target, defaults, retargeted, with_default
 from argo_compiler.il import Action, Group, Mission, Task
 from argo_compiler.il.grouping import GroupNesting, GroupRange, group_ranges, parent_name
 
@@ -196,7 +196,7 @@ class MissionDraft:
         tasks: list[Task] = []
         following: str | None = None
         for entry in reversed(entries):
-            task = self._retargeted(entry.task) if self.renamed else entry.task
+            task = retargeted(entry.task, self.renamed) if self.renamed else entry.task
             if entry.goes_on and not _goes_on(task, following):
                 task = with_default(task, following)
             if task.action is not Action.START:
@@ -214,15 +214,6 @@ class MissionDraft:
 
     def _name_now(self, name: str) -> str:
         return self.renamed.get(name, name)
-
-    def _retargeted(self, task: Task) -> Task:
-        if all(way.target not in self.renamed for way in task.transitions):
-            return task
-        ways = (
-            way.model_copy(update={"target": self._name_now(way.target)})
-            for way in task.transitions
-        )
-        return task.model_copy(update={"transitions": tuple(ways)})
 
     def _frozen(self, g: DraftGroup) -> Group:
         start = self._name_now(g.group.start) if g.first is None else g.first.task.name

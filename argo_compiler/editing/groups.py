@@ -22,7 +22,7 @@ from argo_compiler.editing.refusals import (
     require_name,
 )
 from argo_compiler.editing.ways import default_target
-from argo_compiler.il import Action, Group, Mission, Stop
+from argo_compiler.il import Action, Condition, Group, Mission, Stop
 from argo_compiler.il.grouping import parent_name
 
 
@@ -35,6 +35,8 @@ class GroupFields(TypedDict, total=False):
     max_repeat_duration: float
     count_interruptions: bool
     stop: Stop
+    every: float
+    until: tuple[Condition, ...]
 
 
 def wrap_tasks(mission: Mission, group: Group) -> Edited:

@@ -9,8 +9,14 @@ from argo_compiler.diagnostics.subject import subject_of
 from argo_compiler.editing.consequences import Consequence, Edited, edited
 from argo_compiler.editing.draft import DraftGroup, DraftTask, MissionDraft
 from argo_compiler.editing.refusals import EditConflict, conflict
-from argo_compiler.editing.ways import beginning, default_target, defaults
-from argo_compiler.il import Action, Mission, Transition
+from argo_compiler.editing.ways import (
+    beginning,
+    branches,
+    default_target,
+    defaults,
+    retargeted,
+)
+from argo_compiler.il import Action, Mission, Task, Transition
 
 _NAMES = 3
 """names that a message lists"""
@@ -19,7 +25,7 @@ _NAMES = 3
 def remove_task(mission: Mission, name: str) -> Edited:
     """The mission without a task: what led to it leads to its successor.
 
-    The successor is where its unconditional transition led; its other transitions go with it. The
+    The successor is where its unconditional transition led; its other ways go with it. The
     groups that it began or ended begin or end with its neighbour; a group of this task alone goes.
 
     Raises:
@@ -84,9 +90,7 @@ class _Removal:
         self.position = draft.positions()
         self.successor = self._successor()
         self.leading = [
-            other
-            for other in draft.tasks
-            if other is not entry and any(w.target == self.name for w in other.task.transitions)
+            other for other in draft.tasks if other is not entry and self._leads_here(other.task)
         ]
 
     def lead_on(self) -> str | None:
@@ -96,10 +100,31 @@ class _Removal:
         self._require_same_groups()
         for other in self.leading:
             ways = self._ways(other)
+            self._require_branches(other.task)
             if self.name in defaults(other.task):
                 other.goes_on = other.goes_on and self.entry.goes_on
-            other.task = other.task.model_copy(update={"transitions": ways})
+            task = other.task.model_copy(update={"transitions": ways})
+            if self.successor is not None:
+                task = retargeted(task, {self.name: self.successor})
+            other.task = task
         return self.successor
+
+    def _leads_here(self, task: Task) -> bool:
+        return any(way.target == self.name for way in task.transitions) or self._branches_here(task)
+
+    def _branches_here(self, task: Task) -> bool:
+        return self.name in branches(task).values()
+
+    def _require_branches(self, task: Task) -> None:
+        """That what follows a failure of a task does not become the end of the mission."""
+        if self.successor is None and self._branches_here(task):
+            raise self._conflict(
+                "edit.ends-by-condition",
+                f"when task '{task.name}' has failed or missed its window, '{self.name}' follows, "
+                "after which the mission ends, and no branch can end a mission",
+                f"lead it to another task before '{self.name}' is removed",
+                task.name,
+            )
 
     def _successor(self) -> str | None:
         target = default_target(self.entry.task)
@@ -151,6 +176,7 @@ class _Removal:
             for o, way in ways
             if way.target == self.name and (o is not before or way.conditions)
         }
+        wrong |= {o.task.name: None for o in self.leading if self._branches_here(o.task)}
         if default_target(before.task) != self.name:
             wrong[before.task.name] = None
         if default_target(self.entry.task) == self.name:
@@ -203,7 +229,7 @@ class _Removal:
 
     def _jumps(self, other: DraftTask, g: DraftGroup) -> bool:
         """Whether a transition to the task can be taken without ending a round of the group."""
-        return any(
+        return self._branches_here(other.task) or any(
             way.target == self.name and (way.conditions or g.last is not other)
             for way in other.task.transitions
         )

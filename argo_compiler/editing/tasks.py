@@ -1,10 +1,43 @@
-"""Edits of a mission's tasks: added, replaced, moved, renamed. `removal` takes them out."""
+"""Edits of a mission's tasks: added, changed, replaced, moved, renamed. `removal` takes them
+out."""
+
+from typing import TypedDict, Unpack
+
+from pydantic import ValidationError
 
 from argo_compiler.diagnostics.subject import subject_of
 from argo_compiler.editing.consequences import Edited, edited
 from argo_compiler.editing.draft import DraftTask, MissionDraft
-from argo_compiler.editing.refusals import invalid, name_taken, require_kind, require_name, unknown
-from argo_compiler.il import Action, Mission, Task
+from argo_compiler.editing.header import require_fields, wrong_values
+from argo_compiler.editing.refusals import (
+    EditInvalid,
+    invalid,
+    name_taken,
+    require_kind,
+    require_name,
+    unknown,
+)
+from argo_compiler.editing.ways import branches
+from argo_compiler.il import Action, JointState, Mission, OnFailure, Task, TimeWindow, WaitRule
+from argo_compiler.model import Pose
+
+
+class TaskFields(TypedDict, total=False):
+    """What may be changed of a task; see `Task`."""
+
+    object_id: str | None
+    pose: Pose | None
+    wait: WaitRule | None
+    velocity: float | None
+    joint_states: JointState | None
+    retries: int
+    on_failure: OnFailure
+    failure_target: str | None
+    time_limit: float | None
+    reading_limit: float | None
+    optional: bool
+    priority: int
+    window: TimeWindow | None
 
 
 def add_task(
@@ -54,9 +87,9 @@ def replace_task(mission: Mission, name: str, task: Task) -> Edited:
         if draft.has_task(task.name):
             raise name_taken("task", task.name, subject_of("tasks", task.name))
         draft.rename(entry, task.name)
+    _require_targets(draft, task)
     if task.transitions:
         entry.goes_on = False
-        _require_targets(draft, task)
     else:
         task = task.model_copy(update={"transitions": entry.task.transitions})
     if not task.group:
@@ -66,6 +99,26 @@ def replace_task(mission: Mission, name: str, task: Task) -> Edited:
     entry.task = task
     asked = frozenset([subject_of("tasks", task.name)])
     return edited(mission, draft.mission(), asked=asked, tasks=draft.renamed)
+
+
+def change_task(mission: Mission, name: str, **fields: Unpack[TaskFields]) -> Edited:
+    """The mission with other values of a task's fields that are given.
+
+    Raises:
+        EditNotFound: there is no such task, or none that is to follow when it has failed.
+        EditInvalid: a value that the field can't have, or a field that can't be changed like this.
+        EditConflict: the mission does not have what is needed, as a dock to return to.
+    """
+    draft = MissionDraft(mission)
+    entry = draft.find(name)
+    require_fields(fields, TaskFields.__annotations__, "a task")
+    try:
+        values = Task.model_validate({"name": name, "action": entry.task.action, **fields})
+    except ValidationError as error:
+        raise EditInvalid(wrong_values(error)) from None
+    entry.task = entry.task.model_copy(update={field: getattr(values, field) for field in fields})
+    _require_targets(draft, values)
+    return edited(mission, draft.mission(), asked=frozenset([subject_of("tasks", name)]))
 
 
 def move_task(
@@ -129,6 +182,6 @@ def _place(
 
 
 def _require_targets(draft: MissionDraft, task: Task) -> None:
-    for way in task.transitions:
-        if way.target != task.name and not draft.has_task(way.target):
-            raise unknown("task", way.target, [entry.task.name for entry in draft.tasks])
+    for target in (*(way.target for way in task.transitions), *branches(task).values()):
+        if target != task.name and not draft.has_task(target):
+            raise unknown("task", target, [entry.task.name for entry in draft.tasks])

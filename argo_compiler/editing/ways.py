@@ -1,4 +1,6 @@
-"""Where tasks lead: their unconditional transitions, and where a mission begins."""
+"""Where tasks lead: their transitions, what follows a failure, and where a mission begins."""
+
+from collections.abc import Mapping
 
 from argo_compiler.il import Action, Mission, Task, Transition
 
@@ -30,6 +32,33 @@ def with_default(task: Task, target: str | None) -> Task:
     if target is not None and not found:
         ways.append(Transition(target=target))
     return task.model_copy(update={"transitions": tuple(ways)})
+
+
+def branches(task: Task) -> dict[str, str]:
+    """Where the task leads when it has failed or has missed its window, by the field that says
+    so."""
+    found = {}
+    if task.failure_target is not None:
+        found["failure_target"] = task.failure_target
+    if task.window is not None and task.window.missed_target is not None:
+        found["window.missed_target"] = task.window.missed_target
+    return found
+
+
+def retargeted(task: Task, called: Mapping[str, str]) -> Task:
+    """The task with other targets of all its ways; `called` has the new ones by the former."""
+    update: dict[str, object] = {}
+    if any(way.target in called for way in task.transitions):
+        update["transitions"] = tuple(
+            way.model_copy(update={"target": called.get(way.target, way.target)})
+            for way in task.transitions
+        )
+    if (failed := called.get(task.failure_target or "")) is not None:
+        update["failure_target"] = failed
+    window = task.window
+    if window and (missed := called.get(window.missed_target or "")) is not None:
+        update["window"] = window.model_copy(update={"missed_target": missed})
+    return task.model_copy(update=update) if update else task
 
 
 def beginning(mission: Mission) -> str | None:

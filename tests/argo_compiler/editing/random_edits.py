@@ -17,7 +17,9 @@ from argo_compiler.il import (
     Response,
     Stop,
     Task,
+    TimeWindow,
     Transition,
+    WaitRule,
 )
 from argo_compiler.model import Pose
 
@@ -38,7 +40,9 @@ def any_task(mission: Mission, rng: random.Random) -> str:
 def new_task(mission: Mission, rng: random.Random) -> Task:
     number = str(rng.randint(1, 20))
     name = f"N{rng.randint(0, 99)}" if rng.random() < 0.9 else any_task(mission, rng)
-    action = rng.choice([Action.MEASURE] * 5 + [Action.WAYPOINT] * 4 + [Action.START])
+    action = rng.choice(
+        [Action.MEASURE] * 5 + [Action.WAYPOINT] * 4 + [Action.WAIT] * 3 + [Action.START]
+    )
     return Task(
         name=name,
         action=action,
@@ -46,8 +50,52 @@ def new_task(mission: Mission, rng: random.Random) -> Task:
         pose=HERE if action is Action.WAYPOINT else None,
         group=rng.choice(["", "", "", "shown"]),
         on_failure=rng.choice([*OnFailure, OnFailure.CONTINUE, OnFailure.CONTINUE]),
+        failure_target=rng.choice([None, any_task(mission, rng)]),
+        wait=wait(rng) if action is Action.WAIT else None,
+        window=rng.choice([None, None, window(mission, rng)]),
         transitions=ways(mission, rng) if rng.random() < 0.2 else (),
     )
+
+
+def wait(rng: random.Random) -> WaitRule:
+    return rng.choice(
+        [
+            WaitRule(duration=rng.choice([0, 0, 5])),
+            WaitRule(event=EventKind.ALL_CLEAR, limit=rng.choice([None, 10])),
+            WaitRule(conditions=(condition(rng),), limit=10),
+            WaitRule(),
+        ]
+    )
+
+
+def window(mission: Mission, rng: random.Random) -> TimeWindow:
+    return TimeWindow(
+        earliest=rng.choice([0, 10]),
+        latest=rng.choice([None, 10, 20]),
+        hard=rng.random() < 0.7,
+        missed_target=rng.choice([None, any_task(mission, rng)]),
+    )
+
+
+def changed_task(mission: Mission, rng: random.Random) -> dict[str, object]:
+    values = {
+        "object_id": rng.choice([None, "1"]),
+        "pose": rng.choice([None, HERE]),
+        "wait": wait(rng),
+        "velocity": rng.choice([None, 0.3, 0.0]),
+        "retries": rng.randint(-1, 2),
+        "on_failure": rng.choice(list(OnFailure)),
+        "failure_target": rng.choice([None, any_task(mission, rng)]),
+        "time_limit": rng.choice([None, 30.0]),
+        "reading_limit": rng.choice([None, 5.0]),
+        "optional": rng.random() < 0.5,
+        "priority": rng.randint(0, 3),
+        "window": rng.choice([None, window(mission, rng)]),
+    }
+    names = {*rng.sample(sorted(values), rng.randint(1, 2))}
+    if values["on_failure"] is OnFailure.BRANCH and "on_failure" in names:
+        names.add("failure_target")
+    return {name: values[name] for name in sorted(names)}
 
 
 def condition(rng: random.Random) -> Condition:
@@ -104,6 +152,8 @@ def changed_group(mission: Mission, rng: random.Random) -> dict[str, object]:
         "max_repeat_duration": rng.choice([0, 60.0, 1e-9]),
         "count_interruptions": rng.random() < 0.5,
         "stop": rng.choice(list(Stop)),
+        "every": rng.choice([0, 30.0, -1.0]),
+        "until": rng.choice([(), (condition(rng),)]),
     }
     return {name: values[name] for name in rng.sample(sorted(values), rng.randint(1, 2))}
 
@@ -111,7 +161,15 @@ def changed_group(mission: Mission, rng: random.Random) -> dict[str, object]:
 def reaction(rng: random.Random) -> Reaction:
     event, response = rng.choice(list(EventKind)), rng.choice(list(Response))
     pose = HERE if response is Response.SAFE_AREA and rng.random() < 0.9 else None
-    return Reaction(event=event, response=response, pose=pose)
+    returns = response is Response.RETURN and rng.random() < 0.3
+    return Reaction(
+        event=event,
+        response=response,
+        pose=HERE if returns else pose,
+        area=2 if returns else None,
+        hold_limit=rng.choice([None, 60.0]),
+        priority=rng.choice([None, 3]),
+    )
 
 
 def any_event(mission: Mission, rng: random.Random) -> EventKind:
@@ -138,6 +196,7 @@ _KINDS = {
     "add_task": lambda m, r: commands.AddTask(task=new_task(m, r), **place(m, r)),
     "remove_task": lambda m, r: commands.RemoveTask(name=any_task(m, r)),
     "replace_task": lambda m, r: commands.ReplaceTask(name=any_task(m, r), task=new_task(m, r)),
+    "change_task": lambda m, r: commands.ChangeTask(name=any_task(m, r), **changed_task(m, r)),
     "move_task": lambda m, r: commands.MoveTask(name=any_task(m, r), **place(m, r)),
     "rename_task": lambda m, r: commands.RenameTask(
         name=any_task(m, r), new_name=r.choice([f"R{r.randint(0, 99)}", any_task(m, r), ""])

@@ -27,9 +27,24 @@ def _tasks(mission):
             sum(not w.conditions for w in t.transitions) > 1
         )
         yield from ["no dock"] * (t.on_failure is OnFailure.RETURN and mission.dock is None)
+        branches = t.on_failure is OnFailure.BRANCH
+        yield from ["fails to nowhere"] * (branches and t.failure_target is None)
+        yield from ["waits for nothing"] * (t.action is Action.WAIT and not _waits(t.wait))
+        window = t.window
+        late = window is not None and window.latest is not None
+        yield from ["no time in its window"] * (late and window.latest <= window.earliest)
+        for target in (t.failure_target, window.missed_target if window else None):
+            yield from ["to nowhere"] * (target is not None and target not in names)
+            yield from ["to START"] * (target in starts)
         for way in t.transitions:
             yield from ["to nowhere"] * (way.target not in names)
             yield from ["to START"] * (way.target in starts)
+
+
+def _waits(wait):
+    if wait is None:
+        return False
+    return (wait.duration is None) == (wait.event is not None or bool(wait.conditions))
 
 
 def _groups(mission):
@@ -66,4 +81,4 @@ def _reactions(mission):
     yield from ["two reactions"] * (len(events) - len(set(events)))
     for r in mission.reactions:
         yield from ["no safe area"] * (r.response is Response.SAFE_AREA and r.pose is None)
-        yield from ["no dock"] * (r.response is Response.RETURN and mission.dock is None)
+        yield from ["no dock"] * (r.response is Response.RETURN and mission.dock is r.pose is None)

@@ -8,7 +8,21 @@ from argo_compiler import editing
 from argo_compiler.diagnostics.codes import CODES
 from argo_compiler.editing import EditConflict, EditInvalid, EditNotFound, commands
 from argo_compiler.editing.commands import FUNCTIONS, apply, read_edit
-from argo_compiler.il import Action, Condition, Group, Mission, Reaction, Task, Transition
+from argo_compiler.il import (
+    Action,
+    Condition,
+    ConditionType,
+    EventKind,
+    Group,
+    Mission,
+    OnFailure,
+    Reaction,
+    Response,
+    Task,
+    TimeWindow,
+    Transition,
+    WaitRule,
+)
 from argo_compiler.model import Pose
 
 HIGH = Condition(type="MEASURED_VALUE_GREATER", object_id="1", param1=5)
@@ -346,3 +360,120 @@ def test_without_a_task_that_led_to_itself_a_run_goes_on_and_that_is_told():
     assert edited.consequences[-1].message == (
         "a run that came to 'B' stayed there, as it led to itself; it goes on with 'C' now"
     )
+
+
+# ---- what version 3 has
+
+
+def failing(name, target):
+    return Task(
+        name=name,
+        action=Action.WAYPOINT,
+        pose=DOCK,
+        on_failure=OnFailure.BRANCH,
+        failure_target=target,
+        window=TimeWindow(latest=60, missed_target=target),
+        transitions=(Transition(target="b"),) if name == "a" else (),
+    )
+
+
+def chain():
+    """a, b, c; a goes on with b when it has failed, or missed its window."""
+    last = Task(name="c", action=Action.WAYPOINT, pose=DOCK)
+    middle = last.model_copy(update={"name": "b", "transitions": (Transition(target="c"),)})
+    return Mission(tasks=(failing("a", "b"), middle, last))
+
+
+@pytest.mark.rule("T8", "W5")
+def test_what_follows_a_failure_is_called_by_its_new_name():
+    made = editing.rename_task(chain(), "b", "new").mission.task("a")
+    assert (made.failure_target, made.window.missed_target) == ("new", "new")
+
+
+@pytest.mark.rule("T8", "W5")
+def test_what_follows_a_failure_leads_on_from_a_task_that_is_removed():
+    result = editing.remove_task(chain(), "b")
+    made = result.mission.task("a")
+    assert (made.failure_target, made.window.missed_target) == ("c", "c")
+    assert [c.subject for c in result.consequences] == [
+        "tasks['a'].transitions[0].target",
+        "tasks['a'].failure_target",
+        "tasks['a'].window.missed_target",
+    ]
+    with pytest.raises(EditConflict, match="no branch can end a mission"):
+        editing.remove_task(result.mission, "c")
+
+
+@pytest.mark.rule("G14")
+def test_a_failure_cannot_end_a_round_in_place_of_its_last_task():
+    around = editing.wrap_tasks(chain(), group("G", "a", "b")).mission
+    with pytest.raises(EditConflict, match="ends the rounds of group 'G'"):
+        editing.remove_task(around, "b")
+
+
+def test_fields_of_a_task_are_set_and_cleared():
+    fields = {
+        "velocity": 0.3,
+        "time_limit": 60.0,
+        "optional": True,
+        "priority": 3,
+        "retries": 2,
+        "on_failure": OnFailure.BRANCH,
+        "failure_target": "c",
+        "window": TimeWindow(earliest=10, latest=70, missed_target="c"),
+    }
+    made = editing.change_task(chain(), "b", **fields)
+    assert made.consequences == ()
+    assert made.mission.task("b") == chain().task("b").model_copy(update=fields)
+    cleared = editing.change_task(
+        made.mission,
+        "b",
+        velocity=None,
+        time_limit=None,
+        optional=False,
+        priority=1,
+        retries=0,
+        on_failure=OnFailure.CONTINUE,
+        failure_target=None,
+        window=None,
+    )
+    assert cleared.mission == chain()
+
+
+@pytest.mark.parametrize(
+    ("fields", "error", "message"),
+    [
+        ({"failure_target": "nobody"}, EditNotFound, "'nobody'"),
+        ({"window": TimeWindow(latest=5, missed_target="x")}, EditNotFound, "'x'"),
+        ({"velocity": 0.0}, EditInvalid, "velocity"),
+        ({"on_failure": OnFailure.BRANCH}, EditInvalid, "does not say where"),
+        ({"window": TimeWindow(earliest=9, latest=5)}, EditInvalid, "no time"),
+        ({"on_failure": OnFailure.RETURN}, EditConflict, "dock"),
+        ({"group": "z"}, EditInvalid, "`group` is no field"),
+    ],
+)
+def test_fields_that_a_task_cannot_have_are_refused(fields, error, message):
+    with pytest.raises(error, match=message):
+        editing.change_task(chain(), "b", **fields)
+
+
+def test_a_place_is_added_at_the_end_of_a_round_and_rounds_are_planned():
+    around = editing.wrap_tasks(chain(), group("G", "a", "b")).mission
+    place = Task(name="end of 'G'", action=Action.WAIT, wait=WaitRule(duration=0))
+    made = editing.add_task(around, place, after="b", into="G").mission
+    assert made.groups[0].end == "end of 'G'"
+    held = Condition(type=ConditionType.UNREADABLE, object_id="1")
+    planned = editing.change_group(made, "G", every=60.0, until=(held,)).mission.groups[0]
+    assert (planned.every, planned.until) == (60.0, (held,))
+    with pytest.raises(EditInvalid, match="does not say how long"):
+        editing.add_task(around, place.model_copy(update={"wait": None}))
+
+
+def test_a_reaction_gets_a_dock_of_its_own_and_a_limit():
+    held = Reaction(event=EventKind.LOW_BATTERY, response=Response.PAUSE)
+    mission = editing.add_reaction(chain(), held).mission
+    away = held.model_copy(
+        update={"response": Response.RETURN, "pose": DOCK, "area": 2, "hold_limit": 60.0}
+    )
+    made = editing.change_reaction(mission, EventKind.LOW_BATTERY, away).mission
+    assert made.reactions == (away,)

@@ -119,7 +119,7 @@ def differences(before, after, edit):
         was = old.get(t.name)
         if was is None or (t.name in asked and kind != "add_task"):
             continue
-        if (was.transitions, was.group) != (t.transitions, t.group):
+        if (was.transitions, was.group, leads(was)) != (t.transitions, t.group, leads(t)):
             yield subject_of("tasks", t.name)
     if kind != "set_header" and before.current != after.current:
         yield "current"
@@ -140,6 +140,11 @@ def differences(before, after, edit):
             yield subject_of("groups", g.name)
         elif (new.name, new.start, new.end) != (g.name, g.start, g.end):
             yield subject_of("groups", new.name)
+
+
+def leads(task):
+    """What follows when the task has failed, or missed its window."""
+    return task.failure_target, task.window and task.window.missed_target
 
 
 def test_every_kind_of_edit_is_made_and_refused():

@@ -180,6 +180,10 @@ class Editor:
         # A script names the groups in a group anew from their own names, not from their paths.
         if any("/" in g.name or {g.start, g.end} <= inside for g in self.mission.groups):
             return None
+        # There `otherwise` leaves the round at once, and here what is unconditional ends it.
+        end = self.mission.task(names[last])
+        if end.name in self.said and any(w.conditions for w in end.transitions):
+            return None
         wrapped = wrap_tasks(self.mission, group).mission
         return f'"{name}": repeat steps "{names[first]}" to "{names[last]}" twice', wrapped
 

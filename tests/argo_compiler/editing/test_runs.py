@@ -1,5 +1,5 @@
-"""What an edit leaves as it was, shown by carrying missions out: each task reads what its name and
-the number of its visits say, so that two missions can be compared step by step."""
+"""What an edit leaves as it was, shown by carrying missions out: each task reads or fails as its
+name and the number of its visits say, so that two missions can be compared step by step."""
 
 import random
 import zlib
@@ -19,8 +19,17 @@ from argo_compiler.editing import (
     rename_task,
     wrap_tasks,
 )
-from argo_compiler.hfsm import ActionSucceeded, Executor, lower
-from argo_compiler.il import Action, Condition, Group, Mission, Task, Transition
+from argo_compiler.hfsm import ActionFailed, ActionSucceeded, Executor, lower
+from argo_compiler.il import (
+    Action,
+    Condition,
+    Group,
+    Mission,
+    OnFailure,
+    Task,
+    Transition,
+    WaitRule,
+)
 from argo_compiler.model import Pose
 from tests.conftest import examples
 
@@ -39,7 +48,10 @@ def run(mission, called=None, steps=STEPS):
         visits[name] += 1
         read = zlib.crc32(f"{(called or {}).get(name, name)} {visits[name]}".encode()) % 7
         value = float(read) if task.action is Action.MEASURE else None
-        executor.handle(ActionSucceeded(name, value), 0.0)
+        if task.on_failure is OnFailure.BRANCH and read < 3:
+            executor.handle(ActionFailed(name, "stuck"), 0.0)
+        else:
+            executor.handle(ActionSucceeded(name, value), 0.0)
     return order, executor.finished
 
 
@@ -54,7 +66,8 @@ def condition(rng):
 def random_mission(rng, plain=False):
     """A mission whose runs depend on values alone; a `plain` one is a chain with rounds."""
     while True:
-        names = [f"{rng.choice('MW')}{i}" for i in range(rng.randint(2, 7))]
+        kinds = "MW" if plain else "MMWWP"
+        names = [f"{rng.choice(kinds)}{i}" for i in range(rng.randint(2, 7))]
         tasks = tuple(random_task(names, i, rng, plain) for i in range(len(names)))
         if not plain and rng.random() < 0.5:
             ways = (Transition(target=rng.choice(names)),) if rng.random() < 0.7 else ()
@@ -74,12 +87,16 @@ def random_task(names, i, rng, plain):
     onward = names if not plain and rng.random() < 0.2 else names[i + 1 : i + 2]
     if onward and (plain or rng.random() < 0.95):
         ways.insert(rng.randint(0, len(ways)), Transition(target=rng.choice(onward)))
-    measures = names[i].startswith("M")
+    action = {"M": Action.MEASURE, "W": Action.WAYPOINT, "P": Action.WAIT}[names[i][0]]
+    branches = not plain and action is not Action.WAIT and rng.random() < 0.2
     return Task(
         name=names[i],
-        action=Action.MEASURE if measures else Action.WAYPOINT,
-        object_id=rng.choice("123") if measures else None,
-        pose=None if measures else Pose(x=0, y=0, z=0),
+        action=action,
+        object_id=rng.choice("123") if action is Action.MEASURE else None,
+        pose=Pose(x=0, y=0, z=0) if action is Action.WAYPOINT else None,
+        wait=WaitRule(duration=0) if action is Action.WAIT else None,
+        on_failure=OnFailure.BRANCH if branches else OnFailure.CONTINUE,
+        failure_target=rng.choice(names) if branches else None,
         transitions=tuple(ways),
     )
 
@@ -106,7 +123,8 @@ def silent(mission, name):
     """Whether nothing depends on what the task reads, and it leads to one place."""
     task = mission.task(name)
     compared = {c.object_id for t in mission.tasks for w in t.transitions for c in w.conditions}
-    return task.object_id not in compared and all(not w.conditions for w in task.transitions)
+    one = all(not w.conditions for w in task.transitions) and task.failure_target is None
+    return one and task.object_id not in compared
 
 
 def tried(edit):
@@ -147,7 +165,7 @@ def test_a_task_that_is_removed_is_missing_and_nothing_else_is():
         "edit.ends-round",
         "edit.leaves-group",
         "edit.starts-round",
-        *({"il.endless-group"} & set(refused)),
+        *({"il.endless-group", "il.instant-loop"} & set(refused)),
     }
     assert refused["no"] > 0.7 * refused.total()
 

@@ -6,27 +6,32 @@ actions, one at a time. The expressions are plain enough to be Python as well. `
 the events that come in and the data that a driver looks at.
 """
 
-from argo_compiler.export.scxml_control import (
-    ABORTED,
-    FAILED,
-    RETURNED,
-    ControlRegion,
-    outcome_states,
-)
+from collections.abc import Sequence
+
+from argo_compiler.export.scxml_control import ControlRegion, code, due_round, outcome_states
 from argo_compiler.export.scxml_data import (
     ARGO,
+    DUES,
     ActionIds,
     assign,
+    cancel_due,
     data_model,
+    send_due,
     send_time_out,
     task_attributes,
 )
-from argo_compiler.export.xml import XmlWriter, number
-from argo_compiler.hfsm import Composite, Hfsm, Leaf, StateTransition, TransitionKind
-from argo_compiler.hfsm.model import DONE, RETURN
+from argo_compiler.export.xml import Attributes, XmlWriter, number
+from argo_compiler.hfsm import Composite, Hfsm, Leaf, Outcome, StateTransition, TransitionKind
+from argo_compiler.hfsm.model import DONE, RETURN, RepeatRule
 from argo_compiler.il import Action, Condition, ConditionType, Mission, Task
 
 NAMESPACE = "http://www.w3.org/2005/07/scxml"
+
+_NEVER = "1000000000000000"
+"""s; the clock of a group whose round has not begun is not looked at"""
+
+_NONE, _VALUE, _UNREADABLE, _FAILED = range(4)
+"""What `known` says of a checkpoint's reading."""
 
 
 def to_scxml(mission: Mission, hfsm: Hfsm, timers: bool = False) -> str:
@@ -80,7 +85,7 @@ class _Document:
         xml.open("state", {"id": "plan", "initial": "start", "argo:name": self.hfsm.mission.name})
         where = {} if self.start is None else task_attributes(self.start)
         with xml.element("state", {"id": "start", **where}):
-            self._transition({"target": self._target(self.hfsm.mission.initial)})
+            xml.add("transition", {"target": self._target(self.hfsm.mission.initial)})
         # None closes a group.
         pending: list[str | None] = [None, *reversed(self.hfsm.mission.children)]
         while pending:
@@ -88,8 +93,7 @@ class _Document:
             if id is None:
                 xml.close()
             elif id == DONE:
-                with xml.element("state", {"id": "ended"}), xml.element("onentry"):
-                    assign(xml, "done", "1")
+                self._ended()
             elif leaf := self.leaves.get(id):
                 self._leaf(leaf)
             else:
@@ -97,11 +101,21 @@ class _Document:
                 self._open_group(group)
                 pending += [None, *reversed(group.children)]
 
+    def _ended(self) -> None:
+        xml = self.xml
+        with xml.element("state", {"id": "ended"}), xml.element("onentry"):
+            self._assign([("visit", "0"), *((f"due_{due}", "0") for due in _OWN_DUES)])
+            with xml.element("if", {"cond": "ends == 0 && failures == 0"}):
+                assign(xml, "ends", str(code(Outcome.COMPLETED)))
+            with xml.element("if", {"cond": "ends == 0"}):
+                assign(xml, "ends", str(code(Outcome.COMPLETED_WITH_FAILURES)))
+
+    # Groups
+
     def _open_group(self, group: Composite) -> None:
         xml, n = self.xml, self.ids.groups[group.id]
-        repeat = group.repeat
-        assert repeat is not None
-        clock = "now" if repeat.count_interruptions else "clock"
+        repeat = _repeat(group)
+        clock = _clock(repeat)
         xml.open(
             "state",
             {
@@ -113,43 +127,89 @@ class _Document:
         )
         with xml.element("onentry"):
             assign(xml, f"round_{n}", "1")
+            self._begin_clock(group)
             if repeat.duration:
-                assign(xml, f"until_{n}", f"{clock} + {number(repeat.duration)}")
+                # Inside a round that is not due yet; its beginning sets the clock.
+                with xml.element("if", {"cond": "awaits != 0"}):
+                    assign(xml, f"until_{n}", _NEVER)
             if self.timers and group.timeout:
-                with xml.element("if", {"cond": "mode == 0"}):
+                with xml.element("if", {"cond": "mode == 0 && awaits == 0"}):
                     send_time_out(xml, n, repeat.count_interruptions)
         if group.timeout:
             with xml.element("transition", {"event": f"timeout.g{n}"}):
-                assign(xml, "now", "_event.data.time")
-                assign(xml, "visit", "0")
-                assign(xml, "completed", str(n))
+                self._assign([("now", "_event.data.time"), ("clock", "now - lost")])
+                self._assign([("visit", "0"), ("completed", str(n))])
+        if repeat.every:
+            event = {"event": "timeout.round", "cond": f"mode == 0 && awaits == {n}"}
+            with xml.element("transition", event):
+                self._assign([("now", "_event.data.time"), ("clock", "now - lost")])
+                self._begin_round(group)
         for transition in group.transitions:
             self._group_transition(group, transition)
         if self.timers and group.timeout:
             with xml.element("onexit"):
                 xml.add("cancel", {"sendid": f"timer_{n}"})
 
+    def _begin_clock(self, group: Composite) -> None:
+        n, repeat = self.ids.groups[group.id], _repeat(group)
+        if repeat.duration:
+            assign(self.xml, f"until_{n}", f"{_clock(repeat)} + {number(repeat.duration)}")
+        if repeat.every:
+            assign(self.xml, f"entered_{n}", _clock(repeat))
+
+    def _begin_round(self, group: Composite) -> None:
+        """The round that was waited for begins, with all that counts from there."""
+        leaf = self.leaves[group.initial]
+        self._assign([("awaits", "0"), ("due_round", "0"), ("look", "1")])
+        for inner in self._groups_between(leaf, group):
+            self._begin_clock(inner)
+            if self.timers and inner.timeout:
+                n = self.ids.groups[inner.id]
+                send_time_out(self.xml, n, _repeat(inner).count_interruptions)
+        self._begin_wait(leaf)
+        if self.timers:
+            cancel_due(self.xml, "round")
+            for due in self.ids.dues:
+                if due in ("wait", "limit"):
+                    send_due(self.xml, due)
+
+    def _groups_between(self, leaf: Leaf, group: Composite) -> list[Composite]:
+        """The groups around a leaf, up to one that is not among them."""
+        found = []
+        id = leaf.parent
+        while id != group.id:
+            found.append(self.composites[id])
+            id = found[-1].parent or group.id
+        return found
+
     def _group_transition(self, group: Composite, transition: StateTransition) -> None:
-        n = self.ids.groups[group.id]
-        repeat = group.repeat
-        assert repeat is not None
-        cond = f"completed == {n}"
-        if transition.kind is TransitionKind.REPEAT:
-            clock = "now" if repeat.count_interruptions else "clock"
-            if repeat.count:
-                cond += f" && round_{n} < {repeat.count}"
-            if repeat.duration:
-                cond += f" && {clock} < until_{n}"
-            attributes = {
-                "cond": cond,
-                "target": self._target(transition.target),
-                "type": "internal",
-            }
-            with self.xml.element("transition", attributes):
-                assign(self.xml, "completed", "0")
-                assign(self.xml, f"round_{n}", f"round_{n} + 1")
-        else:
-            self._onward(transition, cond)
+        n, repeat = self.ids.groups[group.id], _repeat(group)
+        ended = f"completed == {n}"
+        if transition.kind is not TransitionKind.REPEAT:
+            self._onward(transition, ended)
+            return
+        if repeat.until:
+            onward = next(t for t in group.transitions if t.kind is not TransitionKind.REPEAT)
+            self._onward(onward, " && ".join([ended, *map(self._holds, repeat.until)]))
+        cond = ended
+        clock = _clock(repeat)
+        if repeat.count:
+            cond += f" && round_{n} < {repeat.count}"
+        if repeat.duration:
+            cond += f" && {clock} < until_{n}"
+            if repeat.every:
+                cond += f" && round_{n} * {number(repeat.every)} < {number(repeat.duration)}"
+        target = self._target(transition.target)
+        attributes = {"cond": cond, "target": target, "type": "internal"}
+        with self.xml.element("transition", attributes):
+            self._assign([("completed", "0"), ("awaits", "0"), ("due_round", "0")])
+            assign(self.xml, f"round_{n}", f"round_{n} + 1")
+            if repeat.every:
+                due = f"entered_{n} + (round_{n} - 1) * {number(repeat.every)}"
+                with self.xml.element("if", {"cond": f"{due} > {clock}"}):
+                    self._assign([("awaits", str(n)), ("due_round", due_round(n, repeat))])
+
+    # Tasks
 
     def _leaf(self, leaf: Leaf) -> None:
         """A task: `..._act` while its action is wanted, then `..._end` to decide how to go on.
@@ -158,52 +218,173 @@ class _Document:
         transition for the next one to see it.
         """
         xml, id = self.xml, self._state(leaf.id)
-        with xml.element("state", {"id": id, "initial": f"{id}_act", **task_attributes(leaf.task)}):
+        task = leaf.task
+        with xml.element("state", {"id": id, "initial": f"{id}_act", **task_attributes(task)}):
             with xml.element("onentry"):
-                assign(xml, "fails", "0")
-                assign(xml, "count", "count + 1")
-                assign(xml, "visit", "count")
-                assign(xml, "visits", "visits + 1")
-                assign(xml, "place", f"'{id}'")
-                assign(xml, "object", str(self.ids.object_of(leaf.task)))
+                self._enter(leaf, id)
             with xml.element("state", {"id": f"{id}_act"}):
-                self._act(leaf, f"{id}_end")
+                if task.wait is not None:
+                    self._wait(leaf, f"{id}_end")
+                else:
+                    self._act(leaf, f"{id}_end")
+                self._miss(leaf)
             with xml.element("state", {"id": f"{id}_end"}):
                 for transition in leaf.transitions:
-                    self._onward(
-                        transition,
-                        " && ".join(
-                            ["completed == 0", *(self._holds(c) for c in transition.conditions)]
-                        ),
-                    )
+                    held = (self._holds(c) for c in transition.conditions)
+                    self._onward(transition, " && ".join(["completed == 0", *held]))
+            if self.timers:
+                with xml.element("onexit"):
+                    for due in self.ids.dues:
+                        cancel_due(xml, due)
+
+    def _enter(self, leaf: Leaf, id: str) -> None:
+        xml, task = self.xml, leaf.task
+        window = task.window
+        waits = task.wait is not None
+        latest = window.latest if window is not None and window.hard else None
+        self._assign(
+            [
+                ("fails", "0"),
+                ("count", "count + 1"),
+                ("visit", "0" if waits else "count"),
+                ("first", "count"),
+                ("place", f"'{id}'"),
+                ("object", str(self.ids.object_of(task))),
+                ("limit", number(0 if waits else task.time_limit or 0)),
+                ("earliest", number(0 if window is None else window.earliest)),
+                ("occurred", "0"),
+                ("look", "1"),
+                ("due_action", "0"),
+                ("due_window", number(latest or 0)),
+            ]
+        )
+        self._begin_wait(leaf)
+        if waits:
+            # It begins with its round.
+            with xml.element("if", {"cond": "awaits != 0"}):
+                self._assign([("due_wait", "0"), ("due_limit", "0")])
+        if self.timers:
+            with xml.element("if", {"cond": "mode == 0"}):
+                for due in self.ids.dues:
+                    send_due(xml, due)
+
+    def _begin_wait(self, leaf: Leaf) -> None:
+        """The times of a WAIT count from now."""
+        xml, wait = self.xml, leaf.task.wait
+        if wait is None:
+            self._assign([("due_wait", "0"), ("due_limit", "0")])
+            return
+        limit = "0" if wait.limit is None else f"now + {number(wait.limit)}"
+        over = "now" if wait.duration is None else f"now + {number(wait.duration)}"
+        self._assign([("due_limit", limit), ("due_wait", over)])
+        with xml.element("if", {"cond": "due_wait < earliest"}):
+            assign(xml, "due_wait", "earliest")
+        if wait.duration is None:
+            # Nothing but the window is a matter of time.
+            with xml.element("if", {"cond": "due_wait <= now"}):
+                assign(xml, "due_wait", "0")
+
+    def _wait(self, leaf: Leaf, end: str) -> None:
+        xml, wait = self.xml, leaf.task.wait
+        assert wait is not None
+        going = "mode == 0 && awaits == 0 && completed == 0"
+        if wait.duration is not None:
+            xml.add("transition", {"cond": f"{going} && now >= due_wait", "target": end})
+        if wait.event is not None:
+            event = {"event": f"event.{wait.event}", "cond": "awaits == 0"}
+            with xml.element("transition", event):
+                assign(xml, "occurred", "1")
+            cond = f"{going} && occurred == 1 && now >= earliest"
+            xml.add("transition", {"cond": cond, "target": end})
+        if wait.conditions:
+            cond = f"{going} && look == 1 && now >= earliest"
+            held = " && ".join([cond, *map(self._holds, wait.conditions)])
+            xml.add("transition", {"cond": held, "target": end})
+            with xml.element("transition", {"cond": cond}):
+                assign(xml, "look", "0")
+        with xml.element("transition", {"event": "timeout.wait", "cond": going}):
+            self._assign([("now", "_event.data.time"), ("clock", "now - lost")])
+            if wait.duration is None:
+                assign(xml, "due_wait", "0")
+        if wait.limit is not None:
+            self._fail("timeout.limit", going, leaf, leaf.failure)
 
     def _act(self, leaf: Leaf, end: str) -> None:
         xml = self.xml
-        served = "running == visit"
         # The failure of an action that is being cancelled may be the work of the cancellation.
-        failed = f"{served} && In('busy')"
+        failed = "running == visit && In('busy')"
+        limited = "mode == 0 && running == visit && In('busy')"
         if leaf.task.retries:
-            again = f"{failed} && fails < {leaf.task.retries}"
-            with xml.element("transition", {"event": "action.failed", "cond": again}):
+            again = f"fails < {leaf.task.retries}"
+            event: Attributes = {"event": "action.failed", "cond": f"{failed} && {again}"}
+            with xml.element("transition", event):
                 assign(xml, "fails", "fails + 1")
-        outcome, target = None, end
+            if leaf.task.time_limit is not None:
+                event = {"event": "timeout.action", "cond": f"{limited} && {again}"}
+                with xml.element("transition", event):
+                    self._assign([("now", "_event.data.time"), ("clock", "now - lost")])
+                    self._assign([("fails", "fails + 1"), ("count", "count + 1")])
+                    self._assign([("visit", "count"), ("due_action", "0")])
+        if leaf.task.time_limit is not None:
+            self._fail("timeout.action", limited, leaf, leaf.failure)
+        served = "running >= first && running_place == place"
         if leaf.id == RETURN:
-            outcome, target = FAILED, "ended"
-        elif leaf.failure:
-            outcome = ABORTED if leaf.failure.target == DONE else None
-            target = self._target(leaf.failure.target)
-        self._leave("action.failed", failed, target, outcome)
-        if leaf.id == RETURN:
-            self._leave("action.succeeded", served, "ended", RETURNED)
+            self._leave("action.failed", failed, "ended", Outcome.FAILED)
+            self._leave("action.succeeded", served, "ended", Outcome.RETURNED)
         else:
+            self._fail("action.failed", failed, leaf, leaf.failure)
             self._leave("action.succeeded", served, end, None)
 
-    def _leave(self, event: str, cond: str, target: str, outcome: int | None) -> None:
+    def _miss(self, leaf: Leaf) -> None:
+        window = leaf.task.window
+        if window is None or not window.hard or window.latest is None:
+            return
+        way = leaf.missed or leaf.failure
+        self._fail("timeout.window", "mode == 0", leaf, way)
+
+    def _fail(self, event: str, cond: str, leaf: Leaf, way: StateTransition | None) -> None:
+        """The task has failed for good, and goes on by `way` or as after any other end."""
+        xml, task = self.xml, leaf.task
+        target = f"{self._state(leaf.id)}_end" if way is None else self._target(way.target)
+        with xml.element("transition", {"event": event, "cond": cond, "target": target}):
+            self._assign([("now", "_event.data.time"), ("clock", "now - lost")])
+            if event == "timeout.window":
+                self._begin_awaited(leaf)
+            if k := self.ids.object_of(task):
+                self._assign(
+                    [
+                        (f"known_{k}", str(_FAILED)),
+                        (f"time_{k}", "now"),
+                        (f"abnormal_{k}", "0"),
+                        ("look", "1"),
+                    ]
+                )
+                if event == "action.failed":
+                    with xml.element("if", {"cond": "_event.data.unreadable == 1"}):
+                        assign(xml, f"known_{k}", str(_UNREADABLE))
+            if not task.optional:
+                assign(xml, "failures", "failures + 1")
+            if way is not None and way.target == DONE:
+                assign(xml, "ends", str(code(Outcome.ABORTED)))
+            assign(xml, "visit", "0")
+
+    def _begin_awaited(self, leaf: Leaf) -> None:
+        """A task is left whose round had not begun: it begins with that."""
+        id: str | None = leaf.parent
+        while id is not None:
+            group = self.composites[id]
+            if group.repeat is not None and group.repeat.every and group.initial == leaf.id:
+                cond = f"awaits == {self.ids.groups[group.id]}"
+                with self.xml.element("if", {"cond": cond}):
+                    self._begin_round(group)
+            id = group.parent
+
+    def _leave(self, event: str, cond: str, target: str, outcome: Outcome | None) -> None:
         attributes = {"event": event, "cond": cond, "target": target}
         with self.xml.element("transition", attributes):
             assign(self.xml, "visit", "0")
             if outcome is not None:
-                assign(self.xml, "outcome", str(outcome))
+                assign(self.xml, "ends", str(code(outcome)))
 
     def _onward(self, transition: StateTransition, cond: str) -> None:
         if transition.completes is not None:
@@ -214,54 +395,96 @@ class _Document:
         with self.xml.element(
             "transition", {"cond": cond, "target": self._target(transition.target)}
         ):
-            assign(self.xml, "completed", "0")
-
-    def _transition(self, attributes: dict[str, str | int | float | None]) -> None:
-        self.xml.add("transition", attributes)
+            self._assign([("completed", "0"), ("awaits", "0"), ("due_round", "0")])
 
     def _holds(self, condition: Condition) -> str:
         k = self.ids.objects[condition.object_id]
         less = "<=" if condition.inclusive else "<"
         low = number(condition.param1 or 0.0)
         value = f"value_{k}"
-        tests = [f"known_{k} == 1"]
+        age = f"now - time_{k}"
+        known = f"known_{k} == {_VALUE}"
+        young = []
         if condition.max_age is not None:
-            tests.append(f"now - time_{k} <= {number(condition.max_age)}")
+            young = [f"{age} <= {number(condition.max_age)}"]
         match condition.type:
             case ConditionType.LESS:
-                tests.append(f"{value} {less} {low}")
+                tests = [known, *young, f"{value} {less} {low}"]
             case ConditionType.GREATER:
-                tests.append(f"{low} {less} {value}")
+                tests = [known, *young, f"{low} {less} {value}"]
             case ConditionType.WITHIN:
                 upper = number(condition.param2 or 0.0)
-                tests += [f"{low} {less} {value}", f"{value} {less} {upper}"]
+                tests = [known, *young, f"{low} {less} {value}", f"{value} {less} {upper}"]
+            case ConditionType.UNREADABLE:
+                tests = [f"known_{k} == {_UNREADABLE}"]
+            case ConditionType.FAILED:
+                tests = [f"known_{k} >= {_UNREADABLE}"]
+            case ConditionType.STALE:
+                tests = [known, f"{age} > {number(condition.max_age or 0.0)}"]
+            case ConditionType.ABNORMAL:
+                tests = [known, f"abnormal_{k} == 1", *young]
         return " && ".join(tests)
+
+    # Actions
 
     def _actuator(self) -> None:
         xml = self.xml
         with xml.element("state", {"id": "actuator", "initial": "free"}):
+            for k in sorted(self.ids.objects.values()):
+                with xml.element("transition", {"event": f"reading.{k}"}):
+                    self._read(k)
             with xml.element("state", {"id": "free"}):
-                for mode, visit, place in ((0, "visit", "place"), (1, "drive", "drive_place")):
-                    cond = f"mode == {mode} && {visit} > 0"
-                    with xml.element("transition", {"cond": cond, "target": "busy"}):
-                        assign(xml, "running", visit)
-                        assign(xml, "running_place", place)
-                        assign(xml, "running_object", "object" if mode == 0 else "0")
-                        assign(xml, "starts", "starts + 1")
+                going = "mode == 0 && visit > 0 && awaits == 0"
+                with xml.element("transition", {"cond": going, "target": "busy"}):
+                    self._begin_action("visit", "place", "object")
+                    with xml.element("if", {"cond": "limit > 0 && earliest <= now"}):
+                        assign(xml, "due_action", "now + limit")
+                    with xml.element("if", {"cond": "limit > 0 && earliest > now"}):
+                        assign(xml, "due_action", "earliest + limit")
+                    if self.timers and "action" in self.ids.dues:
+                        send_due(xml, "action")
+                with xml.element("transition", {"cond": "mode == 1", "target": "busy"}):
+                    self._begin_action("drive", "drive_place", "0")
             for id in ("busy", "stopping"):
                 with xml.element("state", {"id": id}):
                     if id == "busy":
                         xml.add("transition", {"cond": _NOT_WANTED, "target": "stopping"})
                     for k in sorted(self.ids.objects.values()):
-                        cond = f"running_object == {k} && _event.data.value != null"
+                        cond = f"running_object == {k}"
                         attributes = {"event": "action.succeeded", "cond": cond, "target": "free"}
                         with xml.element("transition", attributes):
-                            assign(xml, f"known_{k}", "1")
-                            assign(xml, f"value_{k}", "_event.data.value")
-                            assign(xml, f"time_{k}", "_event.data.time")
-                            assign(xml, "running", "0")
+                            self._read(k)
+                            self._end_action()
                     with xml.element("transition", {"event": "action", "target": "free"}):
-                        assign(xml, "running", "0")
+                        self._end_action()
+
+    def _begin_action(self, number: str, place: str, measured: str) -> None:
+        self._assign(
+            [
+                ("running", number),
+                ("running_place", place),
+                ("running_object", measured),
+                ("starts", "starts + 1"),
+            ]
+        )
+
+    def _end_action(self) -> None:
+        self._assign([("running", "0"), ("due_action", "0")])
+        if self.timers and "action" in self.ids.dues:
+            cancel_due(self.xml, "action")
+
+    def _read(self, k: int) -> None:
+        """A checkpoint's reading, from the data of the event."""
+        self._assign([(f"known_{k}", str(_UNREADABLE)), (f"time_{k}", "_event.data.time")])
+        self._assign([(f"abnormal_{k}", "0"), ("look", "1")])
+        with self.xml.element("if", {"cond": "_event.data.value != null"}):
+            self._assign([(f"known_{k}", str(_VALUE)), (f"value_{k}", "_event.data.value")])
+            with self.xml.element("if", {"cond": "_event.data.abnormal == 1"}):
+                assign(self.xml, f"abnormal_{k}", "1")
+
+    def _assign(self, assignments: Sequence[tuple[str, str]]) -> None:
+        for location, expr in assignments:
+            assign(self.xml, location, expr)
 
     def _state(self, id: str) -> str:
         if id in self.leaves:
@@ -274,3 +497,16 @@ class _Document:
 
 
 _NOT_WANTED = "(mode != 0 || running != visit) && (mode != 1 || running != drive)"
+
+_OWN_DUES = tuple(due for due in DUES if due != "hold")
+"""Those of a visit."""
+
+
+def _repeat(group: Composite) -> RepeatRule:
+    assert group.repeat is not None
+    return group.repeat
+
+
+def _clock(repeat: RepeatRule) -> str:
+    """The clock that a group goes by."""
+    return "now" if repeat.count_interruptions else "clock"

@@ -1,166 +1,173 @@
 """The exported state chart in an engine of its own, beside the executor."""
 
-import re
 import xml.etree.ElementTree as ET
 
+import pytest
 from hypothesis import assume, given, settings
-from hypothesis import strategies as st
-from statemachine.io import load
 
 from argo_compiler.checks import check
 from argo_compiler.diagnostics import Severity
 from argo_compiler.export.scxml import to_scxml
-from argo_compiler.hfsm import lower
-from argo_compiler.il import Group, Mission, Stop, Task, Transition
+from argo_compiler.export.scxml_data import DUES
+from argo_compiler.hfsm import (
+    ActionFailed,
+    ActionStopped,
+    ActionSucceeded,
+    Cancel,
+    Occurred,
+    Outcome,
+    Pause,
+    Resume,
+    Tick,
+    lower,
+)
+from argo_compiler.il import (
+    EventKind,
+    Group,
+    Mission,
+    OnFailure,
+    Reaction,
+    Stop,
+    Task,
+    TimeWindow,
+    Transition,
+    WaitRule,
+)
 from argo_compiler.model import Pose
-from tests.argo_compiler.export import missions as m
-from tests.argo_compiler.export.executing import Executing
+from tests.argo_compiler.export.charts import ARGO, NS, Chart
+from tests.argo_compiler.export.executing import Both, play
+from tests.argo_compiler.hfsm.random_missions import busy_cases, cases
 from tests.conftest import examples
-
-NS = {"s": "http://www.w3.org/2005/07/scxml"}
-TASK, GROUP = re.compile(r"t\d+"), re.compile(r"g\d+")
-ARGO = "{urn:argo:mission}"
+from tests.mission_parts import HERE
 
 
-class Chart:
-    """The document in python-statemachine. What it is doing is read from its own data."""
-
-    def __init__(self, text):
-        # Each class that python-statemachine loads can be started once only.
-        self.load = lambda: load(text, format="scxml")()
-        root = ET.fromstring(text)
-        self.states = {e.get("id"): e for e in root.iter() if e.get("id")}
-        self.max_duration = root.get(f"{ARGO}max_duration")
-        self.names = {i: e.get(f"{ARGO}name") for i, e in self.states.items()}
-        self.objects = {
-            e.get("id").removeprefix("known_"): e.get(f"{ARGO}object_id")
-            for e in root.iter(f"{{{NS['s']}}}data")
-            if e.get(f"{ARGO}object_id") is not None
-        }
-        self.timed = [
-            i
-            for i, e in self.states.items()
-            if e.find(f"s:transition[@event='timeout.{i}']", NS) is not None
-        ]
-
-    def start(self):
-        self.chart = self.load()
-        self.data = self.chart.model
-        self.time_up = None if self.max_duration is None else float(self.max_duration)
-        self.handle("tick", 0, None)
-
-    def handle(self, event, now, value):
-        while (due := self.due()) is not None and due[0] < now:
-            self.send(due[1], due[0])
-        starts = self.data.starts
-        self.send(event, now, value)
-        while (due := self.due()) is not None and due[0] <= now:
-            self.send(due[1], due[0])
-        # What was begun and cancelled within this moment has never been seen.
-        if not self.finished and self.stopping and self.data.starts > starts:
-            self.send("action.stopped", now)
-
-    def send(self, event, now, value=None):
-        if event == "event.time_up":
-            self.time_up = None
-        if not self.finished:
-            self.chart.send(event, time=now, **({} if value is None else {"value": value}))
-            assert "error" not in str(self.active)
-
-    @property
-    def active(self):
-        return [s.id for s in self.chart.configuration]
-
-    def due(self):
-        """The next time-out and when it is due; the outermost one of those that are due first."""
-        if self.data.mode == 3 or self.finished:
-            return None
-        active = set(self.active)
-        due = []
-        for order, group in enumerate(self.timed):
-            if group in active:
-                until = getattr(self.data, f"until_{group[1:]}")
-                counts = self.states[group].get(f"{ARGO}clock") == "now"
-                # Nothing is left while the mission is interrupted.
-                at = until if counts else until + self.data.lost
-                if self.data.mode == 0:
-                    due.append((max(at, self.data.now), order, f"timeout.{group}"))
-        if self.time_up is not None:
-            due.append((self.time_up, -1, "event.time_up"))
-        return (min(due)[0], min(due)[2]) if due else None
-
-    @property
-    def deadline(self):
-        due = self.due()
-        return None if due is None else due[0]
-
-    @property
-    def finished(self):
-        return self.chart.is_terminated
-
-    @property
-    def running(self):
-        data = self.data
-        return (data.starts, self.names[data.running_place]) if data.running else None
-
-    @property
-    def stopping(self):
-        return "stopping" in self.active
-
-    def seen(self):
-        """The task, the action, whether it is stopping, rounds, values, and how it has ended."""
-        active = self.active
-        values = {
-            object_id: (getattr(self.data, f"value_{k}"), getattr(self.data, f"time_{k}"))
-            for k, object_id in self.objects.items()
-            if getattr(self.data, f"known_{k}")
-        }
-        if self.finished:
-            return None, None, False, {}, values, active[0]
-        ended = self.data.mode == 3
-        tasks = [self.names[i] for i in active if TASK.fullmatch(i)]
-        rounds = {
-            self.names[i]: getattr(self.data, f"round_{i[1:]}")
-            for i in active
-            if GROUP.fullmatch(i)
-        }
-        return (
-            tasks[0] if tasks and not ended else None,
-            self.running and self.running[1],
-            self.stopping,
-            {} if ended else rounds,
-            values,
-            None,
-        )
-
-
-@settings(max_examples=examples(30), deadline=None)
-@given(m.missions(), m.outcome_lists)
-def test_chart_does_what_the_executor_does(mission, outcomes):
-    agrees(mission, outcomes)
+def valid(mission):
+    return not any(found.severity is Severity.ERROR for found in check(mission))
 
 
 @settings(max_examples=examples(50), deadline=None)
-@given(
-    m.missions(),
-    m.outcome_lists,
-    m.cleanup_lists,
-    m.intervention_lists,
-    m.reactions(),
-    st.sampled_from([None, None, 5, 10]),
-)
-def test_chart_is_interrupted_as_the_executor_is(
-    mission, outcomes, cleanups, interventions, reactions, limit
-):
-    update = {"reactions": reactions, "max_duration": limit}
-    agrees(mission.model_copy(update=update), outcomes, cleanups, interventions)
+@given(cases())
+def test_chart_does_what_the_executor_does(case):
+    assume(valid(case.mission))
+    play(case.mission, case.doings, case.script)
 
 
-def agrees(mission, outcomes, *rest):
-    assume(not any(f.severity is Severity.ERROR for f in check(mission)))
-    hfsm = lower(mission)
-    expected = m.Drive(Executing(hfsm), outcomes, *rest, steps=25).run()
-    assert m.Drive(Chart(to_scxml(mission, hfsm)), outcomes, *rest, steps=25).run() == expected
+@settings(max_examples=examples(30), deadline=None)
+@given(busy_cases())
+def test_chart_is_interrupted_as_the_executor_is(case):
+    assume(valid(case.mission))
+    play(case.mission, case.doings, case.script)
+
+
+def a(name, **fields):
+    return Task(name=name, action="MEASURE", object_id=name, **fields)
+
+
+def reaction(event, response, **fields):
+    return Reaction(event=event, response=response, **fields)
+
+
+def occurs(event):
+    return Occurred(EventKind(event))
+
+
+def test_cancelled_on_the_way_to_the_dock():
+    """The drive to the dock ends well after a person has ended the mission."""
+    both = Both(Mission(tasks=(a("A", on_failure=OnFailure.RETURN),), dock=HERE))
+    both.at(1, ActionFailed("A", "stuck"))
+    both.at(2, Cancel())
+    both.at(3, ActionSucceeded("return to dock"))
+    assert both.executor.outcome is Outcome.CANCELLED
+
+
+def test_event_that_is_awaited_and_has_a_reaction_of_higher_rank_waits_while_paused():
+    back = reaction("low_battery", "return", until="all_clear", priority=1)
+    hold = reaction("all_clear", "pause", priority=2)
+    both = Both(Mission(tasks=(a("A"),), dock=HERE, reactions=(back, hold)))
+    both.at(1, occurs("low_battery"))
+    both.at(2, Pause())
+    both.at(3, ActionStopped("A"))
+    both.at(4, occurs("all_clear"))
+    assert [one.event for one in both.executor.progress().waiting] == [EventKind.ALL_CLEAR]
+    both.at(5, Resume())
+    assert both.executor.reaction is EventKind.ALL_CLEAR
+    assert "react_all_clear_hold" in both.chart.active
+
+
+@pytest.mark.parametrize("priority", [None, 0, 100])
+def test_emergency_stop_aborts_on_the_way_to_the_dock(priority):
+    back = reaction("low_battery", "return", until="battery_charged", priority=99)
+    stop = reaction("emergency_stop", "abort", priority=priority)
+    both = Both(Mission(tasks=(a("A"),), dock=HERE, reactions=(back, stop)))
+    both.at(1, occurs("low_battery"))
+    both.at(2, ActionStopped("A"))
+    both.at(3, occurs("emergency_stop"))
+    assert (both.executor.outcome, both.chart.stopping) == (Outcome.ABORTED, True)
+    both.at(4, ActionStopped("react to low_battery"))
+    assert both.chart.finished
+
+
+def test_recharging_and_going_on():
+    fields = {"until": "battery_charged", "afterwards": "resume", "priority": 1}
+    back = reaction("low_battery", "return", **fields)
+    both = Both(Mission(tasks=(a("A"),), dock=HERE, reactions=(back,)))
+    both.at(1, occurs("low_battery"))
+    both.at(2, ActionStopped("A"))
+    both.at(3, ActionSucceeded("react to low_battery"))
+    both.at(4, occurs("low_battery"))
+    both.at(5, occurs("battery_charged"))
+    assert both.chart.running == "A"
+
+
+def test_limits_windows_waits_and_planned_rounds_come_as_time_outs():
+    tasks = (
+        a("A", time_limit=4, retries=1, window=TimeWindow(earliest=2)),
+        Task(name="T", action="WAIT", wait=WaitRule(event="all_clear", limit=5)),
+        a("B", window=TimeWindow(latest=40, missed_target="C")),
+        a("C"),
+    )
+    tasks = [
+        task.model_copy(update={"transitions": tuple(Transition(target=t) for t in then)})
+        for task, then in zip(tasks, ("T", "B", "C", ""), strict=True)
+    ]
+    group = Group(name="G", start="A", end="T", max_repeat_count=2, every=30)
+    both = Both(Mission(tasks=tuple(tasks), groups=(group,)))
+    seen = []
+    for now in (6, 7, 11, 16, 30, 31, 40, 41):
+        stops = ActionStopped(both.executor.running.name) if both.stopping else Tick()
+        both.at(now, ActionSucceeded("A", 1.0) if now == 31 else stops)
+        seen.append((now, both.executor.active, both.chart.running, both.stopping))
+    assert seen == [
+        (6, "A", "A", True),
+        (7, "A", "A", False),
+        (11, "T", "A", True),
+        (16, "A", None, False),
+        (30, "A", "A", False),
+        (31, "T", None, False),
+        (40, "C", "C", False),
+        (41, "C", "C", False),
+    ]
+
+
+def test_hold_has_a_limit_and_supervision_begins_a_mission():
+    hold = reaction("gas_leak", "pause", until="all_clear", hold_limit=5, on_limit="end")
+    mission = Mission(tasks=(a("A"),), mode="supervisory", reactions=(hold,))
+    both = Both(mission)
+    assert both.chart.running is None
+    both.at(1, Resume())
+    both.at(2, occurs("gas_leak"))
+    both.at(3, ActionStopped("A"))
+    both.at(4, Pause())
+    both.at(9, Tick())
+    assert both.executor.outcome is None
+    both.at(10, Resume())
+    assert both.executor.outcome is Outcome.ABORTED
+
+
+def test_failures_are_told_in_the_outcome():
+    both = Both(Mission(tasks=(a("A"),)))
+    both.at(1, ActionFailed("A", "dark", unreadable=True))
+    assert both.executor.outcome is Outcome.COMPLETED_WITH_FAILURES
 
 
 def test_names_are_labels():
@@ -171,7 +178,9 @@ def test_names_are_labels():
     chart = Chart(to_scxml(mission, lower(mission)))
     assert chart.names["t1"] == name.replace("\x00", "\\x00")
     assert chart.names["g1"] == "]]>"
-    m.Drive(chart, [(1, 2, False)]).run()
+    chart.start()
+    for now in (1, 2):
+        chart.handle("action.succeeded", now, value=3)
     assert chart.finished
 
 
@@ -206,6 +215,19 @@ def test_timers_of_the_engine():
         element = root.find(f".//s:state[@id='{state}']", NS)
         assert element.find("s:onentry//s:send", NS).get("id") == "timer_1"
         assert element.find("s:onexit/s:cancel", NS).get("sendid") == "timer_1"
+
+
+def test_timers_of_tasks_are_those_that_the_mission_has():
+    tasks = (
+        a("A", time_limit=4, window=TimeWindow(latest=9)),
+        Task(name="T", action="WAIT", wait=WaitRule(event="all_clear", limit=5)),
+    )
+    group = Group(name="G", start="A", end="T", max_repeat_count=2, every=30)
+    hold = reaction("gas_leak", "pause", hold_limit=5)
+    mission = Mission(tasks=tasks, groups=(group,), reactions=(hold,))
+    root = ET.fromstring(to_scxml(mission, lower(mission), timers=True))
+    sent = {e.get("event") for e in root.iterfind(".//s:send", NS)}
+    assert sent == {f"timeout.{due}" for due in DUES}
 
 
 def test_deep_nesting_is_written_flat_and_in_linear_size():

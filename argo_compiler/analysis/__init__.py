@@ -12,19 +12,27 @@ from argo_compiler.analysis.facts import (
     Verdict,
 )
 from argo_compiler.analysis.travel import Leg, NoWay, Standing, Travel
+from argo_compiler.analysis.verification import unproved
+from argo_compiler.analysis.witness import Invariant, KeptReading, ReadingScale, Trap, Witnesses
 
 __all__ = [
     "Analysis",
     "Bound",
     "Bounds",
     "GroupFacts",
+    "Invariant",
+    "KeptReading",
     "Leg",
     "NoWay",
+    "ReadingScale",
     "Standing",
     "Stretch",
     "TaskFacts",
     "TransitionFacts",
+    "Trap",
     "Travel",
     "Verdict",
+    "Witnesses",
     "analyse",
+    "unproved",
 ]

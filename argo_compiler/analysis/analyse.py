@@ -1,5 +1,7 @@
 """The analysis of a mission over all paths that it may take."""
 
+from collections.abc import Sequence
+
 from argo_compiler.analysis.endings import endings
 from argo_compiler.analysis.facts import (
     Analysis,
@@ -9,16 +11,33 @@ from argo_compiler.analysis.facts import (
     Verdict,
 )
 from argo_compiler.analysis.flow import Flow
+from argo_compiler.analysis.kept import kept_loops
 from argo_compiler.analysis.limits import limits, stale
 from argo_compiler.analysis.reach import unreachable_tasks
 from argo_compiler.analysis.study import Study
 from argo_compiler.analysis.transitions import transitions
 from argo_compiler.analysis.travel import Travel
 from argo_compiler.analysis.values import find_paths, make_fields
+from argo_compiler.analysis.verification import unproved
+from argo_compiler.analysis.witnessing import make_witnesses
 from argo_compiler.analysis.worst import worst_duration
 from argo_compiler.catalog import Catalog
 from argo_compiler.hfsm.lowering import lower
 from argo_compiler.il import Mission
+
+_BY_WITNESS = frozenset(
+    f"analysis.{code}"
+    for code in (
+        "endless-loop",
+        "kept-loop",
+        "never-measured",
+        "no-end",
+        "transition-always",
+        "transition-never",
+        "unreachable-task",
+    )
+)
+"""the diagnostics that say what never or always happens"""
 
 
 def analyse(
@@ -47,7 +66,8 @@ def analyse(
     if len(fields.shift) < len(fields.scales):
         names = ", ".join(sorted(fields.scales.keys() - fields.shift.keys())[:10])
         unjudged.append(f"the values of some checkpoints along the paths ({names})")
-    found = [*unreachable_tasks(study), *transitions(study), *endings(study)]
+    kept = tuple(kept_loops(study))
+    found = [*unreachable_tasks(study), *transitions(study), *endings(study, kept)]
     worst = None if study.extent is None else worst_duration(study)
     if study.extent is None:
         unjudged.append("loops and durations")
@@ -59,7 +79,7 @@ def analyse(
         else:
             found += old
     extent = study.extent
-    return Analysis(
+    analysis = Analysis(
         diagnostics=tuple(found),
         tasks=tuple(_task_facts(study, i) for i in range(len(flow.leaves)) if study.is_own(i)),
         groups=tuple(_group_facts(study, g) for g in range(len(flow.groups))),
@@ -68,6 +88,37 @@ def analyse(
         energy=None if extent is None else extent.energy,
         duration_with_failures=worst,
         unjudged=tuple(unjudged),
+        witnesses=make_witnesses(study, kept),
+    )
+    wrong = unproved(mission, catalog, analysis)
+    return without_verdicts(analysis, wrong) if wrong else analysis
+
+
+def without_verdicts(analysis: Analysis, wrong: Sequence[str]) -> Analysis:
+    """The same without what rests on witnesses, some of which do not hold."""
+    tasks = tuple(
+        TaskFacts(
+            task=facts.task,
+            verdict=Verdict.POSSIBLE,
+            transitions=tuple(
+                one.model_copy(update={"verdict": Verdict.POSSIBLE}) for one in facts.transitions
+            ),
+        )
+        for facts in analysis.tasks
+    )
+    groups = tuple(
+        GroupFacts(group=facts.group, repeats=Verdict.POSSIBLE, ends=Verdict.POSSIBLE)
+        for facts in analysis.groups
+    )
+    return analysis.model_copy(
+        update={
+            "diagnostics": tuple(d for d in analysis.diagnostics if d.code not in _BY_WITNESS),
+            "tasks": tasks,
+            "groups": groups,
+            "ends": Verdict.POSSIBLE,
+            "unjudged": (*analysis.unjudged, *wrong),
+            "witnesses": None,
+        }
     )
 
 

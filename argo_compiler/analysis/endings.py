@@ -1,8 +1,9 @@
 """Diagnostics about how a mission ends: whether it can, what goes on without limit, and where."""
 
 import math
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 
+from argo_compiler.analysis.kept import KeptLoop
 from argo_compiler.analysis.study import Study, listed
 from argo_compiler.diagnostics import Diagnostic, Severity
 from argo_compiler.il import Action
@@ -16,12 +17,13 @@ _WAY_OUT = (
 )
 
 
-def endings(study: Study) -> Iterator[Diagnostic]:
-    """Whether the mission comes to its end, and where."""
+def endings(study: Study, kept: Iterable[KeptLoop] = ()) -> Iterator[Diagnostic]:
+    """Whether the mission comes to its end, and where; `kept` are the loops that readings keep."""
     if not study.mission.tasks:
         return
     traps = study.traps
     yield from _endless(study, traps)
+    yield from _kept(study, kept)
     yield from _unbounded(study, {leaf for trap in traps for leaf in trap})
     yield from _elsewhere(study)
 
@@ -37,8 +39,8 @@ def _endless(study: Study, traps: tuple[tuple[int, ...], ...]) -> Iterator[Diagn
         yield study.diagnostic(
             "endless-loop",
             severity,
-            f"{_tasks(study, trap)} {'follows itself' if len(trap) == 1 else 'follow each other'} "
-            f"for ever: {but} or a person ends that (path: {path})",
+            f"{_tasks(study, trap)} {_follow(trap)} for ever: {but} or a person ends that "
+            f"(path: {path})",
             _WAY_OUT,
             trap[0],
         )
@@ -57,6 +59,32 @@ def _endless(study: Study, traps: tuple[tuple[int, ...], ...]) -> Iterator[Diagn
             "let a task on each path have no unconditional transition, or leave the loop",
             subject="tasks",
         )
+
+
+def _kept(study: Study, loops: Iterable[KeptLoop]) -> Iterator[Diagnostic]:
+    but = "nothing but a reaction" if study.ended_by_reaction else "nothing but a failure"
+    for loop in loops:
+        leaves = tuple(sorted(filter(study.flow.is_leaf, loop.nodes)))
+        name = study.object_name(loop.object_id)
+        values = loop.readings & (loop.scale.missing - 1)
+        shown = [
+            *([f"shows {loop.scale.words(values)}"] if values else []),
+            *(["has no value"] if loop.readings & loop.scale.without_value else []),
+        ]
+        yield study.diagnostic(
+            "kept-loop",
+            Severity.WARNING,
+            f"{_tasks(study, leaves)} {_follow(leaves)} for ever if {name} "
+            f"{' or '.join(shown)} when '{study.name(loop.leaf)}' is come to: "
+            f"nothing in the loop measures it, so {but}, a person or a value that is told ends "
+            "that",
+            f"measure {name} in the loop, or make it a group with a limit",
+            loop.leaf,
+        )
+
+
+def _follow(leaves: tuple[int, ...]) -> str:
+    return "follows itself" if len(leaves) == 1 else "follow each other"
 
 
 def _tasks(study: Study, leaves: tuple[int, ...]) -> str:

@@ -2,6 +2,7 @@
 
 from enum import StrEnum
 
+from argo_compiler.analysis.witness import Witnesses
 from argo_compiler.diagnostics import Diagnostic
 from argo_compiler.model import Model
 
@@ -96,6 +97,8 @@ class Analysis(Model):
     of None: there is no bound. None: it was not looked at"""
     unjudged: tuple[str, ...] = ()
     """what was left out because the mission is too large or too deeply nested, in words"""
+    witnesses: Witnesses | None = None
+    """what shows that the verdicts are right"""
 
     @property
     def reachable(self) -> frozenset[str]:

@@ -43,18 +43,22 @@ class Study:
         return tuple(tuple(dict.fromkeys(self._after(n))) for n in range(self.flow.size))
 
     @cached_property
-    def traps(self) -> tuple[tuple[int, ...], ...]:
-        """The leaves of each loop that may be entered and that nothing but a failure leaves."""
-        flow = self.flow
-        ends = leading_to(self.successors, [flow.done])
+    def trap_nodes(self) -> tuple[tuple[int, ...], ...]:
+        """The nodes of each loop that may be entered and that nothing but a failure leaves."""
+        ends = leading_to(self.successors, [self.flow.done])
         traps = []
         for part in components(self.successors):
             if ends[part[0]] or not self.nominal.reached(part[0]):
                 continue
             inside = set(part)
             if all(other in inside for node in part for other in self.successors[node]):
-                traps.append(tuple(sorted(node for node in part if flow.is_leaf(node))))
+                traps.append(tuple(sorted(part)))
         return tuple(sorted(traps))
+
+    @cached_property
+    def traps(self) -> tuple[tuple[int, ...], ...]:
+        """The leaves of each of them."""
+        return tuple(tuple(filter(self.flow.is_leaf, nodes)) for nodes in self.trap_nodes)
 
     @cached_property
     def legs(self) -> Legs:
@@ -74,6 +78,14 @@ class Study:
 
     def name(self, leaf: int) -> str:
         return self.flow.leaves[leaf].name
+
+    def object_name(self, object_id: str) -> str:
+        """A checkpoint for people."""
+        if self.catalog is not None and object_id.isdecimal():
+            info = self.catalog.checkpoint(int(object_id))
+            if info is not None:
+                return f"checkpoint {object_id} ({info.name})"
+        return f"checkpoint '{object_id}'"
 
     def task(self, leaf: int) -> Task:
         return self.flow.leaves[leaf].leaf.task

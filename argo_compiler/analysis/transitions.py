@@ -60,7 +60,7 @@ def _why_not(study: Study, condition: Condition, taken: int, before: int) -> str
     satisfying = scale.satisfying(condition)
     if there & satisfying:
         return None
-    name = _object_name(study, condition.object_id)
+    name = study.object_name(condition.object_id)
     if condition.type.compares and not scale.possible & satisfying:
         return f"{name} shows {scale.words(scale.possible)}, so {words(condition)} never holds"
     _, at_first = _there(study, condition, before)
@@ -84,14 +84,6 @@ def _there(study: Study, condition: Condition, state: int) -> tuple[Scale, int]:
     return fields.scales[condition.object_id], fields.get(state, condition.object_id)
 
 
-def _object_name(study: Study, object_id: str) -> str:
-    if study.catalog is not None and object_id.isdecimal():
-        info = study.catalog.checkpoint(int(object_id))
-        if info is not None:
-            return f"checkpoint {object_id} ({info.name})"
-    return f"checkpoint '{object_id}'"
-
-
 def _first_state(study: Study, leaf: int) -> int | None:
     """The values when the first transition of a leaf is looked at."""
     looks: tuple[GuardStatus, ...] = study.all.looks[leaf]
@@ -113,7 +105,7 @@ def _never(study: Study, leaf: int, k: int, index: int) -> Diagnostic:
     start = f"the transition from task '{task.name}' to '{target}' is never taken: "
     for condition in task.transitions[index].conditions:
         if _unmeasured(study, leaf, condition.object_id):
-            name = _object_name(study, condition.object_id)
+            name = study.object_name(condition.object_id)
             return study.diagnostic(
                 "never-measured",
                 Severity.WARNING,
@@ -187,7 +179,7 @@ class _Unmeasured:
         if not there & fields.scales[object_id].missing:
             return None
         task = study.task(leaf)
-        name = _object_name(study, object_id)
+        name = study.object_name(object_id)
         path = self._path(leaf, object_id)
         return study.diagnostic(
             "maybe-unmeasured",

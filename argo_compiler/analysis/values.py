@@ -50,6 +50,8 @@ class Paths:
     then, if it may be, the tail"""
     failures: bool = False
     """whether any action may fail"""
+    late: tuple[int, ...] = ()
+    """at each node: what may still come there, from an action that is being cancelled"""
 
     def reached(self, node: int) -> bool:
         return self.states[node] is not None
@@ -116,7 +118,7 @@ def make_fields(flow: Flow, catalog: Catalog | None, bits: int = TRACKED_BITS) -
 
 def find_paths(flow: Flow, fields: Fields, failures: bool) -> Paths:
     """The fixed point. With `failures` any action may fail and any measurement lack its value."""
-    return _Search(flow, fields, failures).run()
+    return PathSearch(flow, fields, failures).run()
 
 
 def told_by_others(flow: Flow) -> frozenset[str]:
@@ -129,8 +131,8 @@ def told_by_others(flow: Flow) -> frozenset[str]:
     )
 
 
-class _Search:
-    """The fixed point in the making."""
+class PathSearch:
+    """The ways on from each node, and the fixed point in the making."""
 
     def __init__(self, flow: Flow, fields: Fields, failures: bool) -> None:
         self.flow = flow
@@ -149,24 +151,27 @@ class _Search:
         self.queued = [False] * flow.size
         self.satisfying: dict[tuple[object, ...], int] = {}
         self.told = sum_bits(self._values(o) for o in told_by_others(flow))
-        self.late = _late_values(flow, self._values)
+        self.late = _late_readings(flow, self._late_readings)
 
     def run(self) -> Paths:
         self._reach(self.flow.initial, self.fields.unmeasured | self.told)
         while self.waiting:
             node = heapq.heappop(self.waiting)[1]
             self.queued[node] = False
-            for target, state in self._ways(node):
-                self._reach(target, state)
+            state = self.states[node]
+            assert state is not None
+            for target, after in self.ways(node, state):
+                self._reach(target, after)
         looks = tuple(
-            tuple(look for look, _, _ in self._look(i, self._after(i)))
-            if self.states[i] is not None
-            else ()
-            for i in range(len(self.flow.leaves))
+            ()
+            if state is None
+            else tuple(look for look, _, _ in self._look(i, self._after(i, state)))
+            for i, state in enumerate(self.states[: len(self.flow.leaves)])
         )
-        return Paths(self.fields, tuple(self.states), looks, self.failures)
+        return Paths(self.fields, tuple(self.states), looks, self.failures, tuple(self.late))
 
     def _reach(self, node: int, state: int) -> None:
+        state |= self.late[node]
         known = self.states[node]
         joined = state if known is None else known | state
         if joined == known:
@@ -188,14 +193,12 @@ class _Search:
                 joined = self.fields.set(joined, o, scale.possible | scale.without_value)
         return joined
 
-    def _ways(self, node: int) -> Iterator[tuple[int, int]]:
-        """Where to go on from a node, and with which values."""
-        state = self.states[node]
-        assert state is not None
+    def ways(self, node: int, state: int) -> Iterator[tuple[int, int]]:
+        """Where to go on from a node with some readings, and with which ones then."""
         flow = self.flow
         if flow.is_leaf(node):
             leaf = flow.leaves[node]
-            for look, target, taken in self._look(node, self._after(node)):
+            for look, target, taken in self._look(node, self._after(node, state)):
                 if look.possible:
                     yield target, taken
             if leaf.failure is not None and (self.failures or self._fails_by_itself(leaf)):
@@ -242,6 +245,14 @@ class _Search:
         shift = self.fields.shift.get(object_id)
         return 0 if shift is None else self.fields.scales[object_id].possible << shift
 
+    def _late_readings(self, object_id: str) -> int:
+        """What may come of a measurement that is cancelled: a success with a value or without."""
+        shift = self.fields.shift.get(object_id)
+        if shift is None or not self.failures:
+            return self._values(object_id)
+        scale = self.fields.scales[object_id]
+        return (scale.possible | scale.unreadable) << shift
+
     def _measured(self, leaf: LeafFlow, state: int) -> int:
         """After a measurement that succeeded."""
         object_id = leaf.measures
@@ -259,10 +270,8 @@ class _Search:
         none = scale.without_value if self.failures else scale.failed
         return self.fields.set(state, object_id, none) | self.told
 
-    def _after(self, node: int) -> int:
+    def _after(self, node: int, state: int) -> int:
         """The values when a leaf has ended."""
-        state = self.states[node]
-        assert state is not None
         leaf = self.flow.leaves[node]
         measured = self._measured(leaf, state)
         if self.failures or self._may_go_on_unmeasured(leaf):
@@ -338,14 +347,14 @@ def objects_of(conditions: Iterable[Condition]) -> frozenset[str]:
     return frozenset(c.object_id for c in conditions)
 
 
-def _late_values(flow: Flow, values: Callable[[str], int]) -> list[int]:
-    """For each node, the values that may come while the machine stands there, from an action that
+def _late_readings(flow: Flow, readings: Callable[[str], int]) -> list[int]:
+    """For each node, the readings that may come while the machine stands there, from an action that
     is being cancelled."""
     late = [0] * flow.size
     pending = [
         i
         for i, leaf in enumerate(flow.leaves)
-        if leaf.measures is not None and values(leaf.measures)
+        if leaf.measures is not None and readings(leaf.measures)
     ]
     ways = [_ways_while_cancelling(flow, node) for node in range(flow.size)] if pending else []
     while pending:
@@ -353,7 +362,7 @@ def _late_values(flow: Flow, values: Callable[[str], int]) -> list[int]:
         passed = late[node]
         if flow.is_leaf(node):
             measured = flow.leaves[node].measures
-            passed |= values(measured) if measured is not None else 0
+            passed |= readings(measured) if measured is not None else 0
         for target in ways[node]:
             if passed | late[target] != late[target]:
                 late[target] |= passed

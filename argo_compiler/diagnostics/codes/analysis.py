@@ -28,6 +28,10 @@ ANALYSIS = {
         "Tasks follow each other for ever once they are reached.",
         "Give a transition that leaves them, or make them a group with a limit.",
     ),
+    "analysis.kept-loop": warning(
+        "Tasks follow each other for ever with some reading, as none of them measures it again.",
+        "Measure the checkpoint in the loop, or make it a group with a limit.",
+    ),
     "analysis.maybe-too-long": warning(
         "Some path takes longer than the mission's maximum duration.",
         "Limit what is repeated, or say by a reaction to `time_up` what happens then.",

@@ -32,9 +32,7 @@ _RESPONSES = {
     Response.RETURN: "return to the docking station",
     Response.ABORT: "abort the mission",
 }
-_SAID = frozenset(
-    ["event", "response", "pose", "area", "until", "afterwards", "priority", "source"]
-)
+SAID = frozenset(["event", "response", "pose", "area", "until", "afterwards", "priority", "source"])
 """the fields of a reaction that a script can say"""
 
 
@@ -125,7 +123,7 @@ def default_dock(mission: Mission, catalog: Catalog) -> Pose | None:
 
 
 def _reaction(reaction: Reaction, places: Places) -> str:
-    require_sayable(reaction, _SAID)
+    require_sayable(reaction, SAID)
     pose = reaction.pose
     clauses = [f"On {_event(reaction.event)}:"]
     if reaction.response is not Response.SAFE_AREA:

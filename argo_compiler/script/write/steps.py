@@ -26,7 +26,7 @@ from argo_compiler.script.write.text import (
     times,
 )
 
-_SAID = frozenset(
+SAID = frozenset(
     [
         "name",
         "start",
@@ -262,7 +262,7 @@ class _Writer:
         return lines
 
     def _repeat(self, index: int, group: Group) -> str:
-        require_sayable(group, _SAID)
+        require_sayable(group, SAID)
         points = [self.steps.get(name, name) for name in dict.fromkeys((group.start, group.end))]
         base = f"Repeat {' to '.join(map(str, points))}".replace("/", "-")
         name = self._group_name(index, base)

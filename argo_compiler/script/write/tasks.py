@@ -26,7 +26,7 @@ _ON_FAILURE = {
     OnFailure.RETURN: "if it fails return to the docking station",
     OnFailure.ABORT: "if it fails abort the mission",
 }
-_SAID = frozenset(
+SAID = frozenset(
     [
         "name",
         "action",
@@ -93,7 +93,7 @@ class TaskContext:
 
 def clauses(task: Task, around: TaskContext) -> Iterator[str]:
     """All that the task has besides its name and its command."""
-    require_sayable(task, _SAID if task.action is Action.WAIT else _SAID - {"wait"})
+    require_sayable(task, SAID if task.action is Action.WAIT else SAID - {"wait"})
     if task.action in (Action.MEASURE, Action.WAIT) and task.pose is not None:
         yield f"standing at {point(task.pose)}"
     if task.action is not Action.MEASURE and task.object_id is not None:

@@ -18,7 +18,20 @@ import yaml
 
 from argo_compiler.files.mission_file import write_mission
 from argo_compiler.hfsm import Occurred, Pause, Resume
-from argo_compiler.il import Afterwards, EventKind, Group, Reaction, Response
+from argo_compiler.hfsm.events import ReadingGiven
+from argo_compiler.il import (
+    Action,
+    Afterwards,
+    Condition,
+    ConditionType,
+    EventKind,
+    Group,
+    Reaction,
+    Response,
+    Task,
+    TimeWindow,
+    WaitRule,
+)
 from argo_compiler.model import Pose
 from argo_env.run.journal import open_journal
 from argo_env.run.record import RunRecord
@@ -28,16 +41,35 @@ from tests.yard import SITE, measure, mission, opened, simulated, waypoint, yard
 
 ROOT = Path(__file__).parents[2]
 KILLS = int(os.environ.get("ARGO_KILLS", "8"))
-LONGEST = 1.5  # s that a process lives; a whole run takes about as long
+LONGEST = 4.0  # s that a process lives; a whole run takes about as long
 
 PLAN = mission(
+    Task(name="Rest", action=Action.WAIT, wait=WaitRule(duration=6.0)),
     measure(1),
     waypoint("A", 2.05, 2.05),
     measure(2),
-    waypoint("B", 4.05, 2.05),
-    measure(3),
-    waypoint("C", 3.05, 2.05),
-    groups=(Group(name="Round", start="A", end="C", max_repeat_count=2),),
+    Task(name="Join", action=Action.WAIT, wait=WaitRule(duration=0.0)),
+    measure(3, window=TimeWindow(earliest=260.0)),
+    waypoint("C", 3.05, 2.05, window=TimeWindow(latest=270.0, missed_target="Told"), optional=True),
+    Task(
+        name="Told",
+        action=Action.WAIT,
+        wait=WaitRule(
+            conditions=(Condition(type=ConditionType.GREATER, object_id="2", param1=8.0),),
+            limit=300.0,
+        ),
+    ),
+    measure(1).model_copy(update={"name": "MEASURE 1 again"}),
+    groups=(
+        Group(
+            name="Round",
+            start="A",
+            end="Join",
+            max_repeat_count=4,
+            every=100.0,
+            until=(Condition(type=ConditionType.GREATER, object_id="3", param1=8.0),),
+        ),
+    ),
     reactions=(
         Reaction(
             event=EventKind.GAS_LEAK,
@@ -53,10 +85,13 @@ EVENTS = (
     (35.0, Occurred(EventKind.ALL_CLEAR)),
     (50.0, Pause()),
     (55.0, Resume()),
+    (145.0, ReadingGiven("3", 9.0)),
+    (400.0, ReadingGiven("2", 9.0)),
 )
 OPTIONS = (
     "--event", "22=gas_leak", "--event", "35=all_clear", "--event", "50=pause",
-    "--event", "55=resume", "--value", "2=7.25",
+    "--event", "55=resume", "--event", "145=reading:3=9",
+    "--event", "400=reading:2=9", "--value", "2=6.25",
 )  # fmt: skip
 
 ANNOUNCED = re.compile(r"^(\S+) s: (.+): gauge \d \(#(\d)\) shows (\S+) bar$", re.MULTILINE)
@@ -97,11 +132,17 @@ def require_complete(record: RunRecord, reference: RunRecord, told) -> None:
     assert done == [t.task for t in reference.tasks if t.outcome == "done"]
     assert record.result.outcome is reference.result.outcome
     assert record.result.success
+    assert [w.task for w in record.waits] == [w.task for w in reference.waits]
+    assert [w.kept for w in record.windows] == [w.kept for w in reference.windows]
+    assert [(r.group, r.number) for r in record.rounds] == [
+        (r.group, r.number) for r in reference.rounds
+    ]
+    assert record.given_values == reference.given_values
     assert list(record.path) == sorted(record.path, key=lambda sample: sample.t)
 
 
 def settings(seed: int) -> dict[str, Any]:
-    return {"seed": seed, "events": logged(*EVENTS), "values": {2: 7.25}}
+    return {"seed": seed, "events": logged(*EVENTS), "values": {2: 6.25}}
 
 
 @pytest.mark.long

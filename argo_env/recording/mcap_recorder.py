@@ -141,6 +141,8 @@ class McapRecorder(Observer):
             self._writer.put_json("/findings", anomaly, now)
         if found:
             self._writer.put("/findings/markers", scene.finding_scene(self._found, now), now)
+        for told in entry.given_values(self._rig.navigator.site):
+            self._log(told.in_words, Log.INFO, "told", now)
         for mishap in entry.mishaps:
             self._log(f"{mishap.trouble}: {mishap.detail}", Log.WARNING, "drive", now)
         for contact in entry.contacts:

@@ -318,6 +318,11 @@ class GivenValue(Model):
     normal: bool
     """whether it lies in the nominal range"""
 
+    @property
+    def in_words(self) -> str:
+        odd = "" if self.normal else ", which is abnormal"
+        return f"told that {self.name} (#{self.checkpoint}) shows {self.value:.4g} {self.unit}{odd}"
+
 
 class TraceStep(Model):
     """One step of the state machine."""

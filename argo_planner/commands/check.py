@@ -58,4 +58,4 @@ def _diagnostics(
         upload = read_upload(source)
     except ArgoError as error:
         return diagnostics_of(error)
-    return check_source(upload, opened.catalog, start_area, end_area, opened.travel)
+    return check_source(upload, opened.catalog, start_area, end_area, opened.travel, opened)

@@ -17,7 +17,7 @@ from argo_env.run.journal import open_journal
 from argo_env.run.session import resume
 from argo_env.run.spec import logged
 from argo_planner.terminal.conclusion import Conclusion
-from argo_planner.terminal.events import KINDS, parse_events
+from argo_planner.terminal.events import KINDS, READING_FORM, parse_events
 from argo_planner.terminal.files import check_outputs
 from argo_planner.terminal.kept import JOURNAL, Kept, is_reported, require_no_unfinished
 from argo_planner.terminal.options import Force
@@ -42,7 +42,7 @@ def resume_run(
         typer.Option(
             "--event",
             metavar="TIME=KIND",
-            help=f"what occurs at a time (s), at once if that is over; {KINDS}",
+            help=f"what occurs at a time (s), at once if that is over; {KINDS}, or {READING_FORM}",
         ),
     ] = None,
     recording: Annotated[

@@ -21,7 +21,7 @@ from argo_env.run.session import simulate
 from argo_env.run.spec import RunSpec, logged
 from argo_planner.terminal.completion import among
 from argo_planner.terminal.conclusion import Conclusion
-from argo_planner.terminal.events import KINDS, parse_events, parse_values
+from argo_planner.terminal.events import KINDS, READING_FORM, parse_events, parse_values
 from argo_planner.terminal.files import check_outputs, read_upload
 from argo_planner.terminal.importing import import_shown
 from argo_planner.terminal.kept import JOURNAL, Kept, require_no_unfinished
@@ -110,7 +110,7 @@ def run(
         typer.Option(
             "--event",
             metavar="TIME=KIND",
-            help=f"what occurs at a time (s), such as 60=gas_leak; {KINDS}",
+            help=f"what occurs at a time (s), such as 60=gas_leak; {KINDS}, or {READING_FORM}",
         ),
     ] = None,
     faults: Annotated[

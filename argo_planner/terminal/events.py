@@ -6,8 +6,10 @@ from argo_compiler.errors import ArgoError, Conflict, Invalid
 from argo_compiler.hfsm import Event
 from argo_planner.use_cases.running import EVENTS, READING, event_named
 
-KINDS = f"{', '.join(EVENTS)}, {READING}:ID=VALUE"
-"""what may stand for KIND in `--event TIME=KIND`"""
+KINDS = ", ".join(EVENTS)
+"""what may stand for KIND in `--event TIME=KIND`, beside `READING_FORM`"""
+READING_FORM = f"{READING}:ID=VALUE"
+"""for a value that somebody tells"""
 
 
 def parse_events(options: list[str]) -> list[tuple[float, Event]]:

@@ -42,6 +42,8 @@ class RunDisplay(Observer, Closing):
     def on_change(self, entry: Entry, machine: Machine) -> None:  # noqa: ARG002
         """Shows what was told and sensed."""
         told = entry.told(self._site) if self._site else ()
+        for value in entry.given_values(self._site) if self._site else ():
+            self._say(f"{value.t!r} s: {value.in_words}")
         for news in (*told, *entry.news):
             self.announce(news)
 
@@ -58,6 +60,9 @@ class RunDisplay(Observer, Closing):
             text = f"{news.t!r} s: {': '.join(said)}"
             if place := news.whereabouts:
                 text += f", {place}"
+        self._say(text)
+
+    def _say(self, text: str) -> None:
         if not is_quiet():
             self._progress.console.print(escape(text), soft_wrap=True, highlight=False)
 

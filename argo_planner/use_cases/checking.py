@@ -19,6 +19,8 @@ from argo_compiler.diagnostics import (
 from argo_compiler.errors import ArgoError
 from argo_compiler.files.reading import FileError
 from argo_compiler.stages import stage
+from argo_env.planning.opening import OpenedSite
+from argo_env.planning.poses_to_read_from import unseen_from_poses
 from argo_planner.use_cases.importing import SourceKind, Upload, kind_of, load, refuse_areas
 
 
@@ -36,10 +38,12 @@ def check_source(
     start_area: int | None = None,
     end_area: int | None = None,
     travel: Travel | None = None,
+    site: OpenedSite | None = None,
 ) -> tuple[Diagnostic, ...]:
     """The diagnostics of every stage that the mission gets through, by place.
 
-    Without `travel`, nothing is said about times. Raises Invalid where areas are chosen for what
+    Without `travel`, nothing is said about times, and without a `site` nothing about what is seen
+    from where. Raises Invalid where areas are chosen for what
     has them already.
     """
     if kind_of(upload) is not SourceKind.SCRIPT:
@@ -52,6 +56,8 @@ def check_source(
     if not has_errors(found):
         with stage("analysing the mission's paths"):
             found += analyse(loaded.mission, catalog, travel).diagnostics
+        if site is not None:
+            found += tuple(unseen_from_poses(loaded.mission, site))
     return by_place((*loaded.diagnostics, *loaded.placed(found)))
 
 

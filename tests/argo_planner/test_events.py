@@ -3,7 +3,8 @@
 import pytest
 
 from argo_compiler.errors import ArgoError
-from argo_compiler.hfsm import Cancel, Occurred, Pause, Resume
+from argo_compiler.hfsm import Cancel, GiveBack, Occurred, Pause, Resume, TakeOver
+from argo_compiler.hfsm.events import ReadingGiven
 from argo_compiler.il import EventKind
 from argo_planner.terminal.events import KINDS, parse_events
 
@@ -45,3 +46,17 @@ def test_what_is_refused(option, says):
 def test_the_help_names_what_may_be_said():
     for kind in KINDS.split(", "):
         parse_events([f"0={kind}"])
+
+
+def test_persons_and_values_that_are_told():
+    assert parse_events(["5=take_over", "9=give_back", "7 = reading:8=4.2"]) == [
+        (5.0, TakeOver()),
+        (7.0, ReadingGiven("8", 4.2)),
+        (9.0, GiveBack()),
+    ]
+
+
+@pytest.mark.parametrize("said", ["reading", "reading:8", "reading:=4", "reading:8=much"])
+def test_a_reading_says_of_what_and_which(said):
+    with pytest.raises(ArgoError, match="reading:ID=VALUE"):
+        parse_events([f"5={said}"])

@@ -1,0 +1,54 @@
+"""Whether a mission's checkpoints can be read from the poses that it gives for that."""
+
+from collections.abc import Iterator
+from typing import TYPE_CHECKING
+
+from argo_compiler.diagnostics import Diagnostic, Severity
+from argo_compiler.diagnostics.subject import subject_of
+from argo_compiler.errors import Unreachable
+from argo_compiler.il import Action, Mission, Task
+from argo_compiler.model import Pose
+
+if TYPE_CHECKING:
+    from argo_env.navigation import Navigator
+    from argo_env.planning.opening import OpenedSite
+
+
+def unseen_from_poses(mission: Mission, site: "OpenedSite") -> Iterator[Diagnostic]:
+    """A warning for each MEASURE whose pose does not see the checkpoint, with all where the plan
+    has it. Of poses that can't be reached the analysis tells."""
+    known = {str(checkpoint.id) for checkpoint in site.site.checkpoints}
+    for task in mission.tasks:
+        if task.action is not Action.MEASURE or task.pose is None or task.object_id not in known:
+            continue
+        why = _why_unseen(task, task.pose, site.navigator)
+        if why is not None:
+            yield Diagnostic(
+                code="site.not-seen-from-pose",
+                severity=Severity.WARNING,
+                message=f"task '{task.name}' measures from a pose that does not see its "
+                f"checkpoint: {why}",
+                hint="give another pose, or none: then the robot chooses one",
+                subject=subject_of("tasks", task.name, ".pose"),
+                span=task.source,
+            )
+
+
+def _why_unseen(task: Task, pose: Pose, navigator: "Navigator") -> str | None:
+    # A mission without such poses is checked without these.
+    from argo_env.robot.pose import BodyPose
+    from argo_env.sensing.ideal import IdealSensor
+    from argo_env.sensing.sensor import MeasurementError
+    from argo_env.world.paper_world import PaperWorld
+
+    checkpoint = navigator.site.measured_by(task.object_id)
+    world = PaperWorld(navigator.site, navigator.robot)
+    sensor = IdealSensor(world, navigator.robot, {checkpoint.id: checkpoint.nominal.low})
+    try:
+        place = navigator.snap(pose)
+        sensor.measure(checkpoint.id, BodyPose(place.x, place.y, place.z, place.yaw))
+    except MeasurementError as error:
+        return str(error)
+    except Unreachable:
+        return None
+    return None

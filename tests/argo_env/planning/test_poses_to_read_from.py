@@ -1,0 +1,40 @@
+"""Poses that a mission measures from: which of them see their checkpoints."""
+
+import math
+
+import pytest
+
+from argo_compiler.model import Pose
+from argo_env.planning.poses_to_read_from import unseen_from_poses
+from tests.yard import measure, mission, opened, yard
+
+
+@pytest.fixture(scope="module")
+def site():
+    return opened(yard())
+
+
+def found(site, **pose):
+    plan = mission(measure(1, pose=Pose(z=0.02, **pose)))
+    return list(unseen_from_poses(plan, site))
+
+
+@pytest.mark.rule("T10")
+def test_a_pose_that_sees_the_checkpoint(site):
+    assert found(site, x=2.55, y=2.55, yaw=math.radians(90)) == []
+
+
+def test_one_that_does_not(site):
+    (finding,) = found(site, x=5.55, y=1.55)
+    assert finding.code == "site.not-seen-from-pose"
+    assert finding.severity == "warning"
+    assert "gauge 1 is" in finding.message
+    assert finding.subject == "tasks['MEASURE 1'].pose"
+
+
+def test_one_where_the_robot_can_not_stand_is_not_its_matter(site):
+    assert found(site, x=50.0, y=1.55) == []
+
+
+def test_without_poses_nothing_is_looked_at(site):
+    assert list(unseen_from_poses(mission(measure(1), measure(2)), site)) == []

@@ -292,8 +292,8 @@ class _Behavior:
         self._add(
             "round",
             f"CountState(depth={self.depths[composite.id]}, count={repeat.count}, "
-            f"duration={repeat.duration!r}, until={until!a}, start={self.numbers[composite.initial]}, "
-            f"onward={self._target(onward, 'end')!r})",
+            f"duration={repeat.duration!r}, until={until!a}, "
+            f"start={self.numbers[composite.initial]}, onward={self._target(onward, 'end')!r})",
             {"again": "route", "over": "left"},
         )
 

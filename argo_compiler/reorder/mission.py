@@ -8,19 +8,22 @@ from numpy.typing import NDArray
 
 from argo_compiler.analysis.quantities import time_words
 from argo_compiler.errors import Invalid, NotFound
-from argo_compiler.il import Mission, Order
+from argo_compiler.il import Action, Mission, Order
+from argo_compiler.reorder.asked import with_requirements
 from argo_compiler.reorder.branches import Branches
 from argo_compiler.reorder.precedences import (
     asked_for,
     must_be_last,
     precedences,
     round_notes,
-    speed_notes,
 )
 from argo_compiler.reorder.requirements import Requirements
 from argo_compiler.reorder.travel_matrix import TravelMatrix, require_matrix_of
 from argo_compiler.reorder.units import TaskUnit, Unit, find_spine
-from argo_compiler.reorder.visits import Visits, said
+from argo_compiler.reorder.visits import Visits
+from argo_compiler.reorder.waits import standing_still
+from argo_compiler.reorder.windows import Windows, require_reckonable
+from argo_compiler.route.evaluation import evaluate
 from argo_compiler.route.problem import NEVER, EnergyBudget, Round, RouteProblem, Tour, Visit
 
 _NOTHING = Requirements()
@@ -32,6 +35,7 @@ class MissionRoute:
     """A mission, and the problem of its order. The visits of the problem are those of `visits`."""
 
     mission: Mission
+    """with what was asked for of its tasks"""
     visits: Visits
     problem: RouteProblem
     written: Tour
@@ -42,6 +46,8 @@ class MissionRoute:
     """s, the shorter of the mission's maximum duration and the budget"""
     unsaid: tuple[str, ...] = ()
     """in words, what was asked for that no mission can say"""
+    work: tuple[int, ...] = ()
+    """units that each task takes itself"""
 
 
 def route_problem(
@@ -56,15 +62,22 @@ def route_problem(
         ArgoError: its order can't be changed, or a requirement names something that it does not
             have.
     """
-    spine = find_spine(mission)
     require_matrix_of(ways, mission)
-    visits = Visits(spine)
+    visits = Visits(find_spine(mission))
+    asked = with_requirements(mission, visits, requirements)
+    if asked != mission:
+        mission, visits = asked, Visits(find_spine(asked))
+    spine = visits.spine
+    require_reckonable(visits)
+    ways = standing_still(spine, ways)
     times, energies, along = _costs(visits, ways, _likely(visits, requirements))
     services = [_work(stop, ways) + more for stop, more in zip(visits.stops, along, strict=True)]
     battery = _battery(visits, ways, times, energies)
     limit = _limit(mission, requirements)
-    words = {} if limit is None else {"max_duration": limit[1]}
-    reasons = [*spine.reasons, *speed_notes(visits), *round_notes(visits)]
+    windows = Windows(visits, ways)
+    latest = min((one for one in (limit, windows.of_the_end()) if one), default=None)
+    words = {} if latest is None else {"max_duration": latest[1]}
+    reasons = [*spine.reasons, *round_notes(visits)]
     if battery is None:  # and no use for chargers
         places = len(visits.stops) + 1
         times = times[:places, :places]
@@ -72,11 +85,11 @@ def route_problem(
         words["battery"] = f"battery of {ways.battery:g} Wh"
         reasons.append(f"the battery gives {ways.battery:g} Wh, which may not be enough")
     problem = RouteProblem(
-        visits=tuple(_visits(visits, services, ways, requirements)),
+        visits=tuple(_visits(visits, services, windows, requirements)),
         travel=_travel(visits, times, services, ways),
         precedences=precedences(visits, mission.order is Order.PRECISE, requirements),
         rounds=tuple(_rounds(visits, ways)),
-        max_duration=None if limit is None else ways.down(limit[0]),
+        max_duration=None if latest is None else ways.down(latest[0]),
         battery=battery,
         chargers=() if battery is None else ways.chargers,
         unit=ways.unit,
@@ -89,17 +102,25 @@ def route_problem(
         Tour(tuple(range(len(visits.stops)))),
         tuple(reasons),
         None if limit is None else limit[0],
-        tuple(_unsaid(visits, requirements)),
+        tuple(dict.fromkeys(one.words for one in asked_for(visits, requirements))),
+        tuple(map(int, ways.work)),
     )
 
 
-def _unsaid(visits: Visits, requirements: Requirements) -> Iterator[str]:
-    yield from dict.fromkeys(one.words for one in asked_for(visits, requirements))
-    for window in requirements.windows:
-        words = said(window.what)
-        if window.earliest:
-            words += f" from {time_words(window.earliest)} on"
-        yield words if window.latest is None else f"{words} by {time_words(window.latest)}"
+def late_visits(planned: MissionRoute, route: Tour) -> Iterator[str]:
+    """In words, which visits of a route end after the `latest` of a soft window."""
+    visits = planned.visits
+    for k, begun in zip(route.order, evaluate(planned.problem, route).arrivals, strict=True):
+        entry = visits.stops[k].entry
+        window = visits.task(entry).window
+        if window is None or window.hard or window.latest is None:
+            continue
+        done = (begun + planned.work[entry]) * planned.problem.unit
+        if done > window.latest + _ROUNDING:
+            yield (
+                f"{visits.names[k]} is done at {time_words(done)}, after its soft time window: "
+                f"{time_words(window.latest)}"
+            )
 
 
 def _limit(mission: Mission, requirements: Requirements) -> tuple[float, str] | None:
@@ -146,6 +167,10 @@ def _costs(
     tasks, end = len(ways.tasks), visits.spine.end
     nowhere = np.zeros((len(ways.time), 1))  # to end where the robot is, and with nothing to do
     time, energy = np.hstack([ways.time, nowhere]), np.hstack([ways.energy, nowhere])
+    for k, leaf in enumerate(visits.spine.flow.leaves[:tasks]):
+        limit = leaf.leaf.task.time_limit
+        if limit is not None and leaf.leaf.task.action is not Action.WAIT:
+            time[time[:, k] > ways.down(limit), k] = np.inf  # it would fail
     branches = Branches(visits.spine, time, energy, ways.unit, likely)
     times = [branches.time(stop) for stop in visits.stops] + list(time[tasks:])
     energies = [branches.energy(stop) for stop in visits.stops] + list(energy[tasks:])
@@ -181,31 +206,23 @@ def _work(stop: TaskUnit, ways: TravelMatrix) -> int:
 
 
 def _visits(
-    visits: Visits, services: list[int], ways: TravelMatrix, requirements: Requirements
+    visits: Visits, services: list[int], windows: Windows, requirements: Requirements
 ) -> Iterator[Visit]:
     everything = range(len(visits.stops))
-    prizes = {} if requirements.budget is None else dict.fromkeys(everything, 1)
-    for one in requirements.optional:
-        found = visits.whole(visits.find(one.what))
-        prizes.update(dict.fromkeys(found, 0))
-        prizes[found[0]] = one.priority
-    mandatory = {k for what in requirements.mandatory for k in visits.whole(visits.find(what))}
+    optional = {k for k in everything if all(map(visits.optional, visits.whole([k])))}
+    if requirements.budget is not None:
+        asked = {k for what in requirements.mandatory for k in visits.whole(visits.find(what))}
+        optional = set(everything) - asked
     last = must_be_last(visits)
     if last is not None:
-        mandatory |= set(visits.whole([last]))
-    windows: dict[int, tuple[int, int | None]] = {}
-    for window in requirements.windows:
-        for k in visits.find(window.what):
-            latest = None if window.latest is None else ways.down(window.latest)
-            windows[k] = ways.up(window.earliest), latest
+        optional -= set(visits.whole([last]))
     for k in everything:
-        earliest, latest = windows.get(k, (0, None))
-        optional = k in prizes and k not in mandatory
+        earliest, latest = windows.of_visit(k)
         yield Visit(
             visits.names[k],
             service=services[k],
-            mandatory=not optional,
-            prize=prizes.get(k, 0) if optional else 0,
+            mandatory=k not in optional,
+            prize=visits.task(visits.stops[k].entry).priority if k in optional else 0,
             earliest=earliest,
             latest=latest,
         )

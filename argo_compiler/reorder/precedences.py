@@ -4,9 +4,9 @@ from collections.abc import Iterator
 from itertools import combinations, product
 
 from argo_compiler.errors import Invalid
-from argo_compiler.il import Mission
+from argo_compiler.il import Action, Mission
 from argo_compiler.reorder.requirements import Requirements
-from argo_compiler.reorder.units import TaskUnit, Unit, find_spine, leaves_of
+from argo_compiler.reorder.units import TaskUnit, Unit, find_spine
 from argo_compiler.reorder.visits import Visits, said
 from argo_compiler.route.problem import Precedence
 
@@ -32,6 +32,7 @@ def precedences(
     # Also in a precise order: what a decision needs must not be left out.
     found += _deciding(visits)
     if not kept:
+        found += _first_of_all(visits)
         found += _measured_again(visits)
         found += _early_ends(visits)
         found += _last_ones(visits)
@@ -81,6 +82,14 @@ def asked_for(visits: Visits, requirements: Requirements) -> Iterator[Precedence
             yield from (Precedence(pair, words) for pair in product(one, other))
 
 
+def _first_of_all(visits: Visits) -> Iterator[Precedence]:
+    """A WAIT that begins the mission is done where the robot stands then."""
+    first = visits.task(visits.stops[0].entry) if visits.stops else None
+    if first is not None and first.action is Action.WAIT:
+        words = f"'{first.name}' is done before the robot sets off"
+        yield from (Precedence((0, k), words) for k in range(1, len(visits.stops)))
+
+
 def _measured_again(visits: Visits) -> Iterator[Precedence]:
     objects = dict.fromkeys(leaf.measures for leaf in visits.spine.flow.leaves if leaf.measures)
     for object_id in objects:
@@ -97,10 +106,7 @@ def _deciding(visits: Visits) -> Iterator[Precedence]:
     for number, stop in enumerate(visits.stops):
         own = flow.leaves[stop.entry].measures
         asked = dict.fromkeys(
-            condition.object_id
-            for leaf in stop.leaves
-            for conditions, _ in flow.leaves[leaf].conditional
-            for condition in conditions
+            condition.object_id for leaf in stop.leaves for condition in visits.spine.asked[leaf]
         )
         for object_id in asked:
             if object_id == own:
@@ -151,18 +157,11 @@ def _branches(unit: Unit) -> bool:
     return isinstance(unit, TaskUnit) and unit.final is None
 
 
-def speed_notes(visits: Visits) -> Iterator[str]:
-    """What is said of speeds, which belong to the way to whatever task comes next."""
-    moving = [leaf for unit in visits.spine.units for leaf in leaves_of(unit)]
-    for leaf in moving:
-        velocity = visits.task(leaf).velocity
-        if velocity is not None:
-            yield f"{velocity:g} m/s is the speed from '{visits.task(leaf).name}' on, to any task"
-
-
 def round_notes(visits: Visits) -> Iterator[str]:
-    """What is said of rounds that are left in the middle."""
+    """What is said of rounds that are left in the middle, or may end earlier."""
     for circuit, _ in visits.circuits:
         group = visits.spine.flow.groups[circuit.group]
         if group.hard:
             yield f"'{group.name}' is left where its time is up: reckoned from its farthest task"
+        if group.until:
+            yield f"'{group.name}' is reckoned with as many rounds as it may have"

@@ -1,4 +1,4 @@
-"""What is asked of an order beyond what a mission can say."""
+"""What is asked of an order beside what its mission says."""
 
 import re
 from typing import Annotated
@@ -60,20 +60,21 @@ class Priority(Model):
 
     what: What
     priority: int = Field(default=1, ge=1, le=1_000_000)
-    """what it is worth: as much as possible is won in sum. A group's counts once"""
+    """what it is worth, of a group each of its tasks: as much as possible is won in sum"""
 
 
 class RequiredWindow(Model):
-    """When something has to begin, counted from the mission's start."""
+    """When something is to be done, as a hard window of its task: counted from the mission's start,
+    begun at the place not before `earliest`, and ended by `latest`."""
 
     what: What
     earliest: Seconds = 0.0
-    latest: Seconds | None = None
+    latest: Annotated[Seconds, Field(gt=0.0)] | None = None
 
     @model_validator(mode="after")
     def _ordered(self) -> "RequiredWindow":
-        if self.latest is not None and self.latest < self.earliest:
-            raise ValueError(f"latest {self.latest:g} s is before earliest {self.earliest:g} s")
+        if self.latest is not None and self.latest <= self.earliest:
+            raise ValueError(f"latest {self.latest:g} s is not after earliest {self.earliest:g} s")
         return self
 
 
@@ -90,14 +91,17 @@ class Requirements(Model):
 
     budget: Seconds | None = Field(default=None, gt=0.0)
     """s in which the mission has to be over. With it, all that is not `mandatory` may be left out,
-    with priority 1 where `optional` does not say another"""
+    with the priorities of the tasks"""
     keep_order: bool = False
     """whether nothing changes places, even if the mission allows any order"""
     mandatory: tuple[What, ...] = ()
+    """not left out, whatever the mission says"""
     optional: tuple[Priority, ...] = ()
+    """may be left out, whatever the mission says"""
     before: tuple[Sequence, ...] = ()
     """sequences in which each comes before all that follow, whichever of them are left out"""
     windows: tuple[RequiredWindow, ...] = ()
+    """in the place of those that the mission's tasks have"""
     likelihoods: tuple[Likelihood, ...] = ()
     """where all conditional ways of a task have one, its ways are reckoned on average, not in the
     worst case"""

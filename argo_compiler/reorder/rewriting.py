@@ -19,7 +19,7 @@ def apply_route(planned: MissionRoute, route: Tour) -> Mission:
     everything else are kept.
 
     Raises ArgoError if the route breaks a rule other than a limit of time, or a mission can't say
-    it: it has no task that waits, and none that charges.
+    it: it has no task that charges. Where the route waits for a window, the task's own does.
     """
     _require_possible(planned, route)
     return _Rewriting(planned, route).mission()
@@ -39,14 +39,7 @@ def _require_possible(planned: MissionRoute, route: Tour) -> None:
         )
     if not route.order and planned.visits.spine.end is None:
         raise Invalid("this order leaves out every task: allow more time")
-    worth = evaluate(problem, route)
-    if worth.waiting:
-        minutes, seconds = divmod(round(worth.waiting * problem.unit), 60)
-        raise Invalid(
-            f"this order waits {minutes:02d}:{seconds:02d} for time windows, and no task of "
-            "a mission does that: widen them, or start the mission later"
-        )
-    for violation in worth.violations:
+    for violation in evaluate(problem, route).violations:
         if not violation.startswith("it takes "):
             raise Invalid(f"no mission can be written in this order: {violation}")
 
@@ -152,20 +145,42 @@ class _Rewriting:
                     assert not transition.conditions
             if following is not None and self._ends_here(leaf, task):
                 ways.append(Transition(target=following))
-            self.tasks.append(task.model_copy(update={"transitions": tuple(ways)}))
+            led = self._leading_in_trouble(leaf, task, inside, following)
+            self.tasks.append(task.model_copy(update={"transitions": tuple(ways), **led}))
+
+    def _leading_in_trouble(
+        self, leaf: int, task: Task, inside: set[str], following: str | None
+    ) -> dict[str, object]:
+        """Where a failure and a missed window lead, as far as that is not the same as before."""
+
+        def led(target: str | None) -> str | None:
+            if target is None or target in inside or target in self._early(leaf, True):
+                return target
+            return following
+
+        changed: dict[str, object] = {}
+        if led(task.failure_target) != task.failure_target:
+            changed["failure_target"] = led(task.failure_target)
+        if task.window is not None and led(task.window.missed_target) != task.window.missed_target:
+            target = led(task.window.missed_target)
+            changed["window"] = task.window.model_copy(update={"missed_target": target})
+        return changed
 
     def _stays_put(self, leaf: int, transition: Transition, inside: set[str]) -> bool:
         """Whether a transition stays within its unit, or ends the mission early."""
-        flow, spine = self.spine.flow, self.spine
         if transition.target in inside:
             return bool(transition.conditions) or not self._completes_level(leaf)
-        # The way to the docking station is an early end by a condition only.
-        early = {
+        return transition.target in self._early(leaf, bool(transition.conditions))
+
+    def _early(self, leaf: int, conditional: bool) -> set[str]:
+        """The tasks with which the mission ends early from a leaf: the way to the docking station
+        does by a condition only."""
+        spine = self.spine
+        return {
             spine.name(node)
             for from_, node in spine.gates
-            if from_ == leaf and flow.is_leaf(node) and (transition.conditions or node != spine.end)
+            if from_ == leaf and spine.flow.is_leaf(node) and (conditional or node != spine.end)
         }
-        return transition.target in early
 
     def _completes_level(self, leaf: int) -> bool:
         """Whether the unconditional way from a leaf is that after the last round around its unit,

@@ -1,13 +1,13 @@
 """The ways between the tasks and groups of a mission, and of one round of a group."""
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, field
 
 from argo_compiler.analysis.flow import NOWHERE, Flow
 from argo_compiler.analysis.graph import leading_to, reached_from
 from argo_compiler.errors import Invalid, Remedy
 from argo_compiler.hfsm.lowering import lower
-from argo_compiler.il import Action, Mission
+from argo_compiler.il import Action, Condition, Mission
 
 
 @dataclass(frozen=True)
@@ -57,6 +57,7 @@ class TaskGraph:
         names = {task.name for task in mission.tasks}
         # `lower` may add the return to the dock, to which only failures lead.
         self.own = [i for i, leaf in enumerate(flow.leaves) if leaf.name in names]
+        self._own = frozenset(self.own)
         self.end = self._find_end(mission)
         """the leaf that the mission always ends with: the way into the docking station"""
         self.apart: set[int] = set()
@@ -70,9 +71,30 @@ class TaskGraph:
             leaf = self.flow.leaves[i]
             task = leaf.leaf.task
             docks = task.action is Action.WAYPOINT and task.pose == mission.dock
-            if docks and leaf.parent == NOWHERE and not leaf.conditional:
+            branches = leaf.conditional or self.troubled(i)
+            if docks and leaf.parent == NOWHERE and not branches:
                 return i if leaf.tail == self.flow.done else None
         return None
+
+    def troubled(self, leaf: int) -> tuple[int, ...]:
+        """The leaves that follow where a task fails for good or misses its window, as it says."""
+        found = self.flow.leaves[leaf]
+        return tuple(k for k in (found.failure, found.missed) if k is not None and k in self._own)
+
+    def stands(self, leaf: int) -> bool:
+        """Whether the robot stands there where the task before has left it."""
+        return self.flow.leaves[leaf].leaf.task.action is Action.WAIT
+
+    def asked(self, leaf: int) -> Iterator[Condition]:
+        """What is looked at when a task ends: to go on, to wait on, and to begin another round."""
+        flow = self.flow
+        for conditions, _ in flow.leaves[leaf].conditional:
+            yield from conditions
+        if wait := flow.leaves[leaf].leaf.task.wait:
+            yield from wait.conditions
+        for group in flow.groups:
+            if group.last == leaf:
+                yield from group.until
 
     def require_reachable(self) -> None:
         """Raises ArgoError if a task can't be reached, or the end of the mission."""
@@ -80,6 +102,7 @@ class TaskGraph:
         following: list[list[int]] = [[] for _ in range(flow.size)]
         for i, leaf in enumerate(flow.leaves):
             following[i] = [target for _, target in leaf.conditional] + [leaf.tail]
+            following[i] += self.troubled(i) if i in self._own else ()
             if leaf.parent >= 0:
                 following[i].append(flow.time_up(leaf.parent))
         for g, group in enumerate(flow.groups):
@@ -145,6 +168,8 @@ class TaskGraph:
         number = level.child_of[leaf]
         for _, target in flow.leaves[leaf].conditional:
             self._add_edge(level, group, number, leaf, target, False, None)
+        for target in self.troubled(leaf):
+            self._add_edge(level, group, number, leaf, target, False, None)
         tail = flow.leaves[leaf].tail
         ended = flow.group_of_round_end(tail)
         if ended is None or ended == group:
@@ -175,7 +200,7 @@ class TaskGraph:
             else:
                 self.gates.add((leaf, target))
         elif target == flow.done:
-            branches = bool(flow.leaves[leaf].conditional)
+            branches = bool(flow.leaves[leaf].conditional or self.troubled(leaf))
             if group == NOWHERE and self.end is None:
                 level.edges.append(Edge(number, level.sink, leaf, None, tail, branches))
             else:
@@ -214,8 +239,7 @@ class TaskGraph:
         if level.child_of[self.flow.initial] in out:
             level.broken = "it does not always come to its docking station"
         for leaf in self.apart:
-            for conditions, _ in self.flow.leaves[leaf].conditional:
-                if any(condition.max_age is not None for condition in conditions):
-                    name = self.flow.leaves[leaf].name
-                    level.broken = f"'{name}', with which it may end early, asks how old a value is"
+            if any(condition.max_age is not None for condition in self.asked(leaf)):
+                name = self.flow.leaves[leaf].name
+                level.broken = f"'{name}', with which it may end early, asks how old a value is"
         level.edges = [e for e in level.edges if e.source not in out and e.target not in out]

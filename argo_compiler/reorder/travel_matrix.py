@@ -17,7 +17,9 @@ class TravelMatrix:
 
     A row is where the robot stands: after task i, row n where the mission starts, and from n + 1 at
     the chargers. A column is where it goes, the action there included: to task j, and from n to the
-    chargers. The speed on a way is that of the task that it leads on from.
+    chargers. The speed on a way is that of the task that it leads to.
+
+    What is said of a WAIT counts for nothing: it takes its time where the robot stands.
     """
 
     tasks: tuple[str, ...]

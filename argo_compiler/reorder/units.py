@@ -4,13 +4,13 @@ A mission, and each round of a group, is a chain of units. Between two units lie
 done only in some cases belongs to the unit before it, and stays as it is written.
 """
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 
 from argo_compiler.analysis.flow import NOWHERE, Flow
 from argo_compiler.analysis.graph import components, is_loop, reached_from
 from argo_compiler.errors import Invalid
-from argo_compiler.il import Mission
+from argo_compiler.il import Condition, Mission
 from argo_compiler.reorder.task_graph import Level, TaskGraph
 
 
@@ -53,6 +53,8 @@ class Spine:
     """leaves after which the mission may end early, and the nodes that they lead to then"""
     reasons: tuple[str, ...]
     """why something stays as it is written"""
+    asked: Mapping[int, tuple[Condition, ...]]
+    """by leaf, what is looked at when it ends"""
 
     def name(self, leaf: int) -> str:
         return self.flow.leaves[leaf].name
@@ -108,6 +110,7 @@ class _Finder:
             frozenset(passages.apart),
             frozenset(passages.gates),
             tuple(dict.fromkeys(self.reasons)),
+            {leaf: tuple(passages.asked(leaf)) for leaf in passages.own},
         )
 
     def _units(self, group: int, level: Level, entry: int) -> tuple[Unit, ...]:
@@ -157,11 +160,14 @@ class _Finder:
         }
 
     def _joined(self, level: Level, group: int, chains: list[list[int]]) -> list[list[int]]:
-        """The chains, those made one that can't be apart: what is entered at several tasks, and a
-        condition that asks how old a value is with what measures it."""
+        """The chains, those made one that can't be apart: what is entered at several tasks, a WAIT
+        with what leads there, as it is done where that ends, and a condition that asks how old a
+        value is with what measures it."""
         joined: list[list[int]] = []
         for chain in chains:
-            if joined and len(self._entries(level, chain)) != 1:
+            entries = self._entries(level, chain)
+            stands = any(self.passages.stands(leaf) for leaf in entries)
+            if joined and (len(entries) != 1 or stands):
                 joined[-1] += chain
             else:
                 joined.append(chain)
@@ -176,21 +182,20 @@ class _Finder:
             if child not in number:
                 continue
             here = number[child]
-            for conditions, _ in self.flow.leaves[leaf].conditional:
-                for condition in conditions:
-                    if condition.max_age is None:
+            for condition in self.passages.asked(leaf):
+                if condition.max_age is None:
+                    continue
+                if condition.object_id == self.flow.leaves[leaf].measures:
+                    continue
+                for there in measured.get(condition.object_id, ()):
+                    if there == here or (group == NOWHERE and there > here):
                         continue
-                    if condition.object_id == self.flow.leaves[leaf].measures:
-                        continue
-                    for there in measured.get(condition.object_id, ()):
-                        if there == here or (group == NOWHERE and there > here):
-                            continue
-                        low, high = min(here, there), max(here, there)
-                        until[low] = max(until[low], high)
-                        self.reasons.append(
-                            f"'{self.flow.leaves[leaf].name}' asks how old the value of checkpoint "
-                            f"{condition.object_id} is: kept as written from its measurement on"
-                        )
+                    low, high = min(here, there), max(here, there)
+                    until[low] = max(until[low], high)
+                    self.reasons.append(
+                        f"'{self.flow.leaves[leaf].name}' asks how old the value of checkpoint "
+                        f"{condition.object_id} is: kept as written from its measurement on"
+                    )
         result: list[list[int]] = []
         reach = -1
         for k, chain in enumerate(joined):
@@ -214,7 +219,7 @@ class _Finder:
         inside = set(chain)
         exits = [e for e in level.edges if e.source in inside and e.target not in inside]
         final = exits[0].leaf if len(exits) == 1 and exits[0].tail else None
-        if final is not None and flow.leaves[final].conditional:
+        if final is not None and (flow.leaves[final].conditional or self.passages.troubled(final)):
             final = None
         ends = [level.child_of[entry]]
         if final is not None and level.child_of[final] not in ends:
@@ -229,12 +234,16 @@ class _Finder:
     def _circuit(self, group: int, around: Level, child: int, entry: int) -> Circuit | str:
         """The group as a circuit, or why it is none."""
         flow = self.flow.groups[group]
-        if not flow.may_end:
+        if not flow.limited:
             return "only a condition or the time of a group around it ends it"
+        if self.passages.stands(flow.start):
+            return f"it begins with '{self.flow.leaves[flow.start].name}', which is done anywhere"
         if entry != flow.start:
             return f"it is entered at '{self.flow.leaves[entry].name}', not at its start"
         if any(edge.source == edge.target == child for edge in around.edges):
             return "it is entered again by its own end"
+        if any(condition.max_age is not None for condition in flow.until):
+            return "its `until` asks how old a value is"
         leaving = [
             edge.leaf
             for edge in around.edges

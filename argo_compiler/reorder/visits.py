@@ -51,6 +51,13 @@ class Visits:
         """Of the visits, in the mission's words."""
         return tuple(self.name(stop.entry) for stop in self.stops)
 
+    def optional(self, visit: int) -> bool:
+        """Whether all that is done with a visit may be left out."""
+        tasks = [self.task(leaf) for leaf in self.stops[visit].leaves]
+        return all(task.optional or task.action is Action.WAIT for task in tasks) and any(
+            task.optional for task in tasks
+        )
+
     def name(self, leaf: int) -> str:
         """`checkpoint 8`, with the task's name where another one measures it too; else the name of
         the task."""

@@ -10,6 +10,7 @@ from rich.table import Table
 
 from argo_compiler.analysis.quantities import time_words
 from argo_compiler.il import Mission, Order
+from argo_compiler.reorder.mission import late_visits
 from argo_compiler.route.evaluation import evaluate
 from argo_compiler.route.robust_spread import TravelSpread
 from argo_compiler.route.tour_pauses import TourPause, pauses
@@ -110,7 +111,10 @@ def _lines(found: Suggested) -> Iterator[str]:
         yield f"{done} of {of} tasks within the {limit}; left out: {names}"
     yield _proof(found)
     for pause in chain.from_iterable(pauses(problem, found.route).values()):
-        yield f"Pause: {_pause(found, pause)}; no mission says that, so -o can't write it"
+        unsaid = "" if pause.charger is None else "; no mission says that, so -o can't write it"
+        yield f"Pause: {_pause(found, pause)}{unsaid}"
+    for words in late_visits(planned, found.route):
+        yield f"Note: {words}"
     if planned.mission.order is Order.PRECISE:
         yield "The mission asks for a precise order: nothing may change places."
     for name, late in _unreached(found):

@@ -143,6 +143,7 @@ def _known(progress: SearchProgress, unit: float) -> str:
 def require_limit(mission: Mission, requirements: Requirements) -> None:
     """Raises Invalid if nothing limits the mission's time."""
     limits = [mission.max_duration, requirements.budget, *(w.latest for w in requirements.windows)]
+    limits += [t.window.latest for t in mission.tasks if t.window and t.window.hard]
     if all(limit is None for limit in limits):
         raise Invalid(
             "nothing limits this mission's time, so every order is completed in time: give it a "

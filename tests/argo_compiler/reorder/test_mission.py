@@ -2,19 +2,22 @@
 
 from collections import Counter
 from dataclasses import replace
+from itertools import permutations
 
 import numpy as np
+import pytest
 from hypothesis import assume, event, given, settings
 from hypothesis import strategies as st
 
 from argo_compiler.checks import check
 from argo_compiler.diagnostics import has_errors
 from argo_compiler.errors import ArgoError
-from argo_compiler.il import Mission, Order
+from argo_compiler.hfsm import Outcome
+from argo_compiler.il import Action, Mission, Order
 from argo_compiler.reorder.mission import route_problem
 from argo_compiler.reorder.requirements import Requirements
 from argo_compiler.reorder.rewriting import apply_route
-from argo_compiler.route import evaluate
+from argo_compiler.route import evaluate, suggest_route
 from argo_compiler.route.problem import Tour
 from tests.argo_compiler.reorder.written import (
     OBJECTS,
@@ -22,6 +25,9 @@ from tests.argo_compiler.reorder.written import (
     missions,
     random_ways,
     shuffled,
+    with_branches,
+    with_waits,
+    with_windows,
 )
 from tests.conftest import examples
 from tests.mission_parts import groups_over, starts, task_names, tasks_named
@@ -48,7 +54,7 @@ def wild_missions(draw):
     return mission
 
 
-def require_the_same_done(mission, values, seed):
+def require_the_same_done(mission, values, seed, fails=frozenset()):
     """In another order that the problem allows, the same tasks are carried out as often."""
     rng = np.random.default_rng(seed)
     ways = random_ways(mission, rng)
@@ -58,7 +64,7 @@ def require_the_same_done(mission, values, seed):
     changed = apply_route(planned, route)
     assert len(check(changed)) <= len(check(mission))
     assert {t.name for t in changed.tasks} == {t.name for t in mission.tasks}
-    before, after = carry_out(mission, ways, values), carry_out(changed, ways, values)
+    before, after = (carry_out(m, ways, values, fails=fails) for m in (mission, changed))
     assume(before.finished)
     assert after.finished
     assert Counter(after.tasks) == Counter(before.tasks)
@@ -68,6 +74,18 @@ def require_the_same_done(mission, values, seed):
 @settings(max_examples=examples(60), deadline=None)
 def test_another_order_does_the_same_tasks(mission, values, seed):
     require_the_same_done(mission, values, seed)
+
+
+@given(missions().flatmap(with_waits).flatmap(with_branches), SHOWN, SEEDS, st.data())
+@settings(max_examples=examples(60), deadline=None)
+def test_another_order_does_the_same_tasks_where_some_fail(mission, values, seed, data):
+    assume(not has_errors(check(mission)))
+    names = [t.name for t in mission.tasks if t.action in (Action.MEASURE, Action.WAYPOINT)]
+    fails = data.draw(st.sets(st.sampled_from(names)))
+    try:
+        require_the_same_done(mission, values, seed, fails)
+    except ArgoError as error:
+        event(str(error)[:20])
 
 
 @given(wild_missions(), SHOWN, SEEDS)
@@ -100,6 +118,42 @@ def test_a_mission_takes_as_long_as_its_route(mission, seed):
     visits = planned.visits
     names = [visits.spine.name(visits.stops[k].entry) for k in route.order]
     assert [name for name in dict.fromkeys(done.tasks) if name != "DOCK"] == names
+
+
+@given(missions(kinds=STRAIGHT, most=6).flatmap(with_waits).flatmap(with_windows), SEEDS)
+@settings(max_examples=examples(80), deadline=None)
+@pytest.mark.rule("W4", "W5")
+def test_waits_and_windows_are_kept_as_promised(mission, seed):
+    rng = np.random.default_rng(seed)
+    ways = random_ways(mission, rng)
+    planned = route_problem(mission, ways)
+    assume(evaluate(planned.problem, planned.written).feasible)
+    route = shuffled(planned, rng)
+    event("moved" if route != planned.written else "as written")
+    event("waits" if evaluate(planned.problem, route).waiting else "waits for nothing")
+    done = carry_out(apply_route(planned, route), ways, {o: [0] for o in OBJECTS})
+    assert done.outcome is Outcome.COMPLETED
+    assert done.time == evaluate(planned.problem, route).duration
+
+
+@given(missions(kinds=("task",), most=5).flatmap(with_windows), SEEDS)
+@settings(max_examples=examples(40), deadline=None)
+def test_the_best_of_all_orders_is_the_suggested_one(mission, seed):
+    ways = random_ways(mission, np.random.default_rng(seed))
+    planned = route_problem(mission, ways)
+    runs = []
+    for order in permutations(range(len(planned.visits.stops))):
+        route = Tour(order)
+        if evaluate(planned.problem, route).feasible:
+            done = carry_out(apply_route(planned, route), ways, {o: [0] for o in OBJECTS})
+            assert done.outcome is Outcome.COMPLETED
+            runs.append(done.time)
+    found = suggest_route(planned.problem, 5.0)
+    event("there is an order" if runs else "there is none")
+    assert (found.route is None) == (not runs)
+    if runs:
+        best = carry_out(apply_route(planned, found.route), ways, {o: [0] for o in OBJECTS})
+        assert best.time == min(runs)
 
 
 @given(missions(calm=True), SHOWN, SEEDS)

@@ -12,15 +12,19 @@ from argo_compiler.il import (
     Action,
     Condition,
     ConditionType,
+    EventKind,
     Group,
     Mission,
+    OnFailure,
     Order,
     Stop,
     Task,
+    TimeWindow,
     Transition,
+    WaitRule,
 )
 from argo_compiler.model import Pose
-from argo_compiler.reorder.mission import route_problem
+from argo_compiler.reorder.mission import late_visits, route_problem
 from argo_compiler.reorder.requirements import Requirements, parse_seconds
 from argo_compiler.reorder.rewriting import apply_route
 from argo_compiler.reorder.travel_matrix import TravelMatrix
@@ -221,7 +225,7 @@ def test_a_budget_makes_all_optional_that_is_not_mandatory():
     mission = row(measure(1), measure(2), measure(3), measure(4), groups=(group,), max_duration=90)
     found = planned(mission, budget=60.0, mandatory=[3], optional=[{"what": "G", "priority": 5}])
     assert [(v.mandatory, v.prize) for v in found.problem.visits] == [
-        (False, 5), (False, 0), (True, 0), (False, 1),
+        (False, 5), (False, 5), (True, 0), (False, 1),
     ]  # fmt: skip
     assert found.problem.max_duration == 60
     assert found.problem.words == {"max_duration": "budget 1 min"}
@@ -230,11 +234,137 @@ def test_a_budget_makes_all_optional_that_is_not_mandatory():
     assert alone.problem.words == {"max_duration": "maximum duration 1 min 30 s"}
 
 
-def test_a_mission_can_not_wait():
-    found = planned(row(measure(1), measure(2)), windows=[{"what": 2, "earliest": "1 min"}])
-    assert (found.problem.visits[1].earliest, found.problem.visits[1].latest) == (60, None)
-    with pytest.raises(ArgoError, match="waits 00:42 for time windows"):
-        apply_route(found, found.written)
+@pytest.mark.rule("W4", "T11")
+def test_what_is_asked_for_of_tasks_is_written_into_the_mission():
+    own = TimeWindow(latest=50, missed_target="DOCK")
+    mission = row(measure(1), measure(2, window=own, optional=True, priority=4), measure(3))
+    found = planned(
+        mission,
+        windows=[{"what": 2, "earliest": "1 min", "latest": "2 min"}, {"what": 3, "earliest": 5}],
+        mandatory=[2],
+        optional=[{"what": 1, "priority": 3}],
+    )
+    # A measurement takes 2 itself: it is begun so much before it has to have ended.
+    assert [(v.earliest, v.latest) for v in found.problem.visits] == [
+        (0, None),
+        (60, 118),
+        (5, None),
+    ]
+    assert [(v.mandatory, v.prize) for v in found.problem.visits] == [
+        (False, 3),
+        (True, 0),
+        (True, 0),
+    ]
+    one, two, three, _ = apply_route(found, found.written).tasks
+    assert (one.optional, one.priority, one.window) == (True, 3, None)
+    assert two.window == TimeWindow(earliest=60, latest=120, missed_target="DOCK")
+    assert (two.optional, two.priority) == (False, 4)
+    assert three.window == TimeWindow(earliest=5)
+    assert found.unsaid == ()
+
+
+def test_a_mission_says_what_is_optional_and_when():
+    soft = TimeWindow(latest=30, hard=False)
+    mission = row(
+        measure(1, optional=True, priority=7),
+        measure(2, window=TimeWindow(earliest=20, latest=40)),
+        measure(3, window=soft),
+    )
+    found = planned(mission)
+    assert [(v.mandatory, v.prize) for v in found.problem.visits] == [
+        (False, 7),
+        (True, 0),
+        (True, 0),
+    ]
+    assert [(v.earliest, v.latest) for v in found.problem.visits] == [
+        (0, None),
+        (20, 38),
+        (0, None),
+    ]
+    assert list(late_visits(found, found.written)) == [
+        "checkpoint 3 is done at 32 s, after its soft time window: 30 s"
+    ]
+
+
+def test_a_group_is_optional_if_all_of_it_is():
+    group = Group(name="G", start="M1", end="M2", max_repeat_count=2)
+    for second, mandatory in ((True, [False, False, True]), (False, [True, True, True])):
+        mission = row(
+            measure(1, optional=True), measure(2, optional=second), measure(3), groups=(group,)
+        )
+        assert [v.mandatory for v in planned(mission).problem.visits] == mandatory
+
+
+def wait(name, *ways, **rule):
+    return Task(name=name, action=Action.WAIT, wait=WaitRule(**rule), transitions=ways)
+
+
+def test_a_wait_stays_with_the_task_before_it():
+    found = planned(row(measure(1), wait("W", duration=7), measure(2)))
+    name = found.visits.spine.name
+    leaves = [[name(leaf) for leaf in stop.leaves] for stop in found.visits.stops]
+    assert leaves == [["M1", "W"], ["M2"]]
+    moved = Tour((1, 0))
+    assert evaluate(found.problem, moved).duration == 10 + 10 + 7 + 10
+    assert [t.name for t in apply_route(found, moved).tasks] == ["M2", "M1", "W", "DOCK"]
+
+
+def test_a_wait_before_all_else_stays_there():
+    found = planned(row(wait("W", duration=7), measure(1), measure(2)))
+    assert set(kept(found)) == {"'W' is done before the robot sets off"}
+    assert evaluate(found.problem, Tour((0, 2, 1))).duration == 7 + 10 + 10 + 10
+
+
+def test_a_failure_branch_is_a_way():
+    ahead = measure(1, on_failure=OnFailure.BRANCH, failure_target="M3")
+    found = planned(row(ahead, measure(2), measure(3), measure(4)))
+    names = [[found.visits.spine.name(leaf) for leaf in s.leaves] for s in found.visits.stops]
+    assert names == [["M1", "M2"], ["M3"], ["M4"]]
+    tasks = {t.name: t for t in apply_route(found, Tour((0, 2, 1))).tasks}
+    assert tasks["M1"].failure_target == "M4"
+
+
+def test_a_missed_window_is_a_way():
+    late = measure(1, window=TimeWindow(latest=60, missed_target="M3"))
+    found = planned(row(late, measure(2), measure(3), measure(4)))
+    tasks = {t.name: t for t in apply_route(found, Tour((0, 2, 1))).tasks}
+    assert tasks["M1"].window == TimeWindow(latest=60, missed_target="M4")
+
+
+def test_a_time_limit_rules_out_ways_that_take_longer():
+    time = np.full((4, 3), 10.0)
+    time[3, 0] = 30.0  # from the start to M1
+    found = planned(row(measure(1, time_limit=20), measure(2)), time)
+    assert not evaluate(found.problem, found.written).feasible
+    assert evaluate(found.problem, Tour((1, 0))).feasible
+
+
+@pytest.mark.parametrize(
+    ("tasks", "groups", "said"),
+    [
+        ((measure(1), wait("W", event=EventKind.ALL_CLEAR, limit=None)), (), "how long 'W' waits"),
+        (
+            (measure(1),),
+            (Group(name="G", start="M1", end="M1", max_repeat_count=2, every=60),),
+            "'G' begins its rounds at set times",
+        ),
+        (
+            (measure(1, window=TimeWindow(latest=60)), measure(2)),
+            (Group(name="G", start="M1", end="M2", max_repeat_count=2),),
+            "'M1' can't be kept by an order: it lies in a group",
+        ),
+    ],
+)
+def test_what_can_not_be_reckoned_is_refused(tasks, groups, said):
+    with pytest.raises(ArgoError, match=said):
+        planned(row(*tasks, groups=groups))
+
+
+def test_what_ends_a_round_early_is_measured_before_or_after_as_it_was():
+    group = Group(name="G", start="M2", end="M3", max_repeat_count=3, until=above(1, "").conditions)
+    found = planned(row(measure(1), measure(2), measure(3), measure(4), groups=(group,)))
+    assert "checkpoint 1 is measured before checkpoint 3 decides on it" in kept(found)
+    assert "'G' is reckoned with as many rounds as it may have" in found.reasons
 
 
 def test_a_mission_can_not_charge():
@@ -262,9 +392,11 @@ def test_a_mission_that_does_not_dock_ends_with_one_task():
     assert found.problem.travel[1, 2] == 0
 
 
-def test_a_speed_belongs_to_the_way_to_whatever_comes_next():
+@pytest.mark.rule("T6")
+def test_a_task_is_come_to_at_its_own_speed_in_any_order():
     found = planned(row(measure(1, velocity=0.2), measure(2)))
-    assert found.reasons == ("0.2 m/s is the speed from 'M1' on, to any task",)
+    speeds = {t.name: t.velocity for t in apply_route(found, Tour((1, 0))).tasks}
+    assert speeds == {"M2": None, "M1": 0.2, "DOCK": None}
 
 
 def test_what_no_way_leads_to_has_no_place():

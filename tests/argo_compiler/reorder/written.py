@@ -6,17 +6,28 @@ from dataclasses import dataclass
 import numpy as np
 from hypothesis import strategies as st
 
-from argo_compiler.hfsm import ActionStopped, ActionSucceeded, Executor, StartAction, Tick, lower
+from argo_compiler.hfsm import (
+    ActionFailed,
+    ActionStopped,
+    ActionSucceeded,
+    CancelAction,
+    Executor,
+    Tick,
+    lower,
+)
 from argo_compiler.il import (
     Action,
     Condition,
     ConditionType,
     Group,
     Mission,
+    OnFailure,
     Order,
     Stop,
     Task,
+    TimeWindow,
     Transition,
+    WaitRule,
 )
 from argo_compiler.model import Pose
 from argo_compiler.reorder.travel_matrix import TravelMatrix
@@ -184,6 +195,59 @@ def random_ways(mission, rng, most=20):
     return TravelMatrix(names, time, time / 10.0, work, unit=1.0)
 
 
+@st.composite
+def with_waits(draw, mission):
+    """The mission with WAITs after some of its tasks."""
+    tasks, groups = [], list(mission.groups)
+    for task in mission.tasks:
+        if task.action is Action.START or task.name == "DOCK" or draw(st.booleans()):
+            tasks.append(task)
+            continue
+        name = f"P{len(tasks)}"
+        onward = tuple(way for way in task.transitions if not way.conditions)
+        others = tuple(way for way in task.transitions if way.conditions)
+        tasks.append(task.model_copy(update={"transitions": (*others, Transition(target=name))}))
+        wait = WaitRule(duration=draw(st.sampled_from([0, 0, 3, 11])))
+        tasks.append(Task(name=name, action=Action.WAIT, wait=wait, transitions=onward))
+        groups = [g.model_copy(update={"end": name}) if g.end == task.name else g for g in groups]
+    return mission.model_copy(update={"tasks": tuple(tasks), "groups": tuple(groups)})
+
+
+@st.composite
+def with_branches(draw, mission):
+    """The mission with failures that lead to later tasks."""
+    names = [task.name for task in mission.tasks if task.action is not Action.START]
+    tasks = []
+    for task in mission.tasks:
+        ahead = names[names.index(task.name) + 1 :] if task.name in names else []
+        if ahead and task.action is not Action.WAIT and draw(st.booleans()):
+            target = draw(st.sampled_from(ahead))
+            policy = {"on_failure": OnFailure.BRANCH, "failure_target": target}
+            task = task.model_copy(update=policy)
+        tasks.append(task)
+    return mission.model_copy(update={"tasks": tuple(tasks)})
+
+
+@st.composite
+def with_windows(draw, mission):
+    """The mission with hard windows of tasks outside of groups, wide enough for some orders."""
+    inside, around = set(), None
+    ends = {g.start: g.end for g in mission.groups if "/" not in g.name}
+    tasks = []
+    for task in mission.tasks:
+        around = around or ends.get(task.name)
+        inside |= {task.name} if around else set()
+        around = None if around == task.name else around
+        plain = task.action in (Action.MEASURE, Action.WAYPOINT) and task.name != "DOCK"
+        if plain and task.name not in inside and draw(st.booleans()):
+            earliest = draw(st.sampled_from([0, 0, 20, 70]))
+            latest = draw(st.sampled_from([None, earliest + 25, earliest + 90]))
+            window = TimeWindow(earliest=earliest, latest=latest)
+            task = task.model_copy(update={"window": window})
+        tasks.append(task)
+    return mission.model_copy(update={"tasks": tuple(tasks)})
+
+
 @dataclass
 class Done:
     """What a run did."""
@@ -191,36 +255,50 @@ class Done:
     tasks: list
     time: float
     finished: bool
+    outcome: object = None
 
 
-def carry_out(mission, ways, values, steps=400):
-    """Runs a mission with a robot that takes the ways' times. `values`: for each checkpoint what
-    its measurements show, one after the other and then again from the first."""
+def carry_out(mission, ways, values, steps=400, fails=frozenset()):
+    """Runs a mission with a robot that takes the ways' times, and waits at the place as it is told.
+
+    `values`: for each checkpoint what its measurements show, one after the other and then again
+    from the first. `fails`: names of tasks whose actions fail.
+    """
     executor = Executor(lower(mission))
     number = {name: k for k, name in enumerate(ways.tasks)}
     place, now, done = len(ways.tasks), 0.0, []
     measured = Counter()
     commands = executor.start(now)
-    while commands and len(done) < steps:
-        (command,) = commands
-        assert isinstance(command, StartAction)
-        task = command.task
-        ends = now + ways.time[place, number[task.name]] * ways.unit
-        due = executor.next_deadline
-        if due is not None and due < ends:
-            now = due
-            executor.handle(Tick(), now)
-            commands = executor.handle(ActionStopped(task.name), now)
-            continue
-        now, place = ends, number[task.name]
-        done.append(task.name)
-        value = None
-        if task.action is Action.MEASURE:
-            shown = values[task.object_id]
-            value = float(shown[measured[task.object_id] % len(shown)])
-            measured[task.object_id] += 1
-        commands = executor.handle(ActionSucceeded(task.name, value), now)
-    return Done(done, now, executor.finished)
+    running, ends = None, None
+    while not executor.finished and len(done) < steps:
+        for command in commands:
+            if isinstance(command, CancelAction):
+                running = None
+                commands = executor.handle(ActionStopped(command.task), now)
+                break
+            running, to = command.task, number[command.task.name]
+            work = ways.work[to]
+            there = now + (ways.time[place, to] - work) * ways.unit
+            ends = max(there, command.not_before or 0.0) + work * ways.unit
+        else:
+            due = executor.next_deadline
+            if running is None or (due is not None and due < ends):
+                assert due is not None
+                now, commands = due, executor.handle(Tick(), due)
+                continue
+            task, now, running = running, ends, None
+            place = number[task.name]
+            done.append(task.name)
+            if task.name in fails:
+                commands = executor.handle(ActionFailed(task.name, "failed"), now)
+                continue
+            value = None
+            if task.action is Action.MEASURE:
+                shown = values[task.object_id]
+                value = float(shown[measured[task.object_id] % len(shown)])
+                measured[task.object_id] += 1
+            commands = executor.handle(ActionSucceeded(task.name, value), now)
+    return Done(done, now, executor.finished, executor.outcome)
 
 
 def shuffled(planned, rng, swaps=30):

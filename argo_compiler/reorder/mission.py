@@ -77,6 +77,9 @@ def route_problem(
     windows = Windows(visits, ways)
     latest = min((one for one in (limit, windows.of_the_end()) if one), default=None)
     words = {} if latest is None else {"max_duration": latest[1]}
+    for k in range(len(visits.stops)):
+        if said := windows.words(k):
+            words[f"window {k}"] = said
     reasons = [*spine.reasons, *round_notes(visits)]
     if battery is None:  # and no use for chargers
         places = len(visits.stops) + 1

@@ -1,5 +1,6 @@
 """Time windows of tasks, as the route problem has them."""
 
+from argo_compiler.analysis.limits import time_words
 from argo_compiler.errors import Invalid
 from argo_compiler.il import Action, TimeWindow
 from argo_compiler.reorder.travel_matrix import TravelMatrix
@@ -57,6 +58,14 @@ class Windows:
         if window.hard and window.latest is not None:
             latest = max(-1, self._ways.down(window.latest) - int(self._ways.work[entry]))
         return self._ways.up(window.earliest), latest
+
+    def words(self, visit: int) -> str | None:
+        """What the mission says of it, if it has to have ended by a time."""
+        window = _binding(self._visits.task(self._visits.stops[visit].entry).window)
+        if window is None or not window.hard or window.latest is None:
+            return None
+        begin = f"begun from {time_words(window.earliest)} on and " if window.earliest else ""
+        return f"{self._visits.names[visit]} {begin}done by {time_words(window.latest)}"
 
     def of_the_end(self) -> tuple[float, str] | None:
         """By when the task that ends the mission has to have ended (s), and how that is said."""

@@ -55,6 +55,7 @@ def requirements(problem: RouteProblem) -> list[Requirement]:
                     _clock(time * problem.unit) for time in (visit.earliest, visit.latest)
                 )
                 words = f"{visit.name} between {begin} and {end}"
+            words = problem.words.get(f"window {number}", words)
             found.append(Requirement(words, "window", number))
     if problem.max_duration is not None:
         words = f"within {_clock(problem.max_duration * problem.unit)}"

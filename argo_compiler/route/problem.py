@@ -132,7 +132,8 @@ class RouteProblem:
     unit: float = 1.0
     """s"""
     words: Mapping[str, str] = field(default_factory=dict)
-    """how the mission says `max_duration` and `battery`, for messages"""
+    """how the mission says `max_duration`, `battery` and the windows of visits (`window 0`), for
+    messages"""
 
     def __post_init__(self) -> None:
         """Raises ArgoError if the parts don't fit together."""

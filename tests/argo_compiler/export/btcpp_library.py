@@ -17,7 +17,15 @@ from hypothesis import strategies as st
 from argo_compiler.checks import check
 from argo_compiler.diagnostics import Severity
 from argo_compiler.export.btcpp import to_btcpp
-from argo_compiler.il import Condition, ConditionType, Mission, Task, Transition
+from argo_compiler.il import (
+    Condition,
+    ConditionType,
+    Mission,
+    Task,
+    TimeWindow,
+    Transition,
+    WaitRule,
+)
 from tests.argo_compiler.export import missions as m
 from tests.argo_compiler.export.carried import OUTCOMES, carried_missions, executed
 from tests.argo_compiler.export.test_btcpp import STEPS, codes, sound, task
@@ -44,6 +52,23 @@ def test_the_library_itself_does_the_same(tmp_path_factory, mission, outcomes):
     assert log == expected[0]
     if len(log) < STEPS:
         assert OUTCOMES[int(float(last)) - 1] == expected[1]
+
+
+def test_the_library_waits_and_limits(tmp_path):
+    wait = Task(name="W", action="WAIT", wait=WaitRule(duration=0.02))
+    late = task("A", "W", time_limit=60.0, retries=1, velocity=0.25)
+    early = task("C", window=TimeWindow(earliest=7.0), optional=True)
+    ways = (Transition(target="C"),)
+    mission = Mission(tasks=(late, wait.model_copy(update={"transitions": ways}), early))
+    (tmp_path / "tree.xml").write_text(to_btcpp(mission), encoding="utf-8")
+    done = subprocess.run(
+        [RUNNER, str(tmp_path / "tree.xml"), "9"],
+        input="1 0 0 0 1\n2 0 0 0 0\n1 0 0 0 1\n",
+        capture_output=True,
+        text=True,
+        check=True,
+    )
+    assert done.stdout.splitlines() == ["0 A", "1 A", "3 C", "1"]
 
 
 @settings(max_examples=examples(40), deadline=None)

@@ -12,6 +12,7 @@ from argo_compiler.export.scxml_control import ControlRegion, code, due_round, o
 from argo_compiler.export.scxml_data import (
     ARGO,
     DUES,
+    NEVER,
     ActionIds,
     assign,
     cancel_due,
@@ -26,9 +27,6 @@ from argo_compiler.hfsm.model import DONE, RETURN, RepeatRule
 from argo_compiler.il import Action, Condition, ConditionType, Mission, Task
 
 NAMESPACE = "http://www.w3.org/2005/07/scxml"
-
-_NEVER = "1000000000000000"
-"""s; the clock of a group whose round has not begun is not looked at"""
 
 _NONE, _VALUE, _UNREADABLE, _FAILED = range(4)
 """What `known` says of a checkpoint's reading."""
@@ -131,7 +129,7 @@ class _Document:
             if repeat.duration:
                 # Inside a round that is not due yet; its beginning sets the clock.
                 with xml.element("if", {"cond": "awaits != 0"}):
-                    assign(xml, f"until_{n}", _NEVER)
+                    assign(xml, f"until_{n}", NEVER)
             if self.timers and group.timeout:
                 with xml.element("if", {"cond": "mode == 0 && awaits == 0"}):
                     send_time_out(xml, n, repeat.count_interruptions)

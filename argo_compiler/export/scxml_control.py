@@ -11,6 +11,7 @@ from collections.abc import Iterator, Sequence
 from contextlib import AbstractContextManager
 
 from argo_compiler.export.scxml_data import (
+    NEVER,
     ActionIds,
     assign,
     cancel_due,
@@ -143,7 +144,7 @@ class ControlRegion:
                     with self.xml.element("if", {"cond": f"awaits == {n}"}):
                         self._assign([("due_round", due_round(n, repeat))])
                 for n, counted in self.timed.items():
-                    with self.xml.element("if", {"cond": f"In('g{n}')"}):
+                    with self.xml.element("if", {"cond": f"In('g{n}') && until_{n} < {NEVER}"}):
                         send_time_out(self.xml, n, counted)
                 if self.timers:
                     for due in self.dues:

@@ -13,6 +13,9 @@ ARGO = "urn:argo:mission"
 DUES = ("wait", "window", "action", "limit", "hold", "round")
 """What may be due beside groups and the mission: `timeout.wait` at `due_wait`, and so on."""
 
+NEVER = "1000000000000000"
+"""s; when the time of a group is up that lies in a round which has not begun"""
+
 _COUNTERS = (
     "now",  # s since the mission's start, of the last event
     "clock",  # the same without interruptions

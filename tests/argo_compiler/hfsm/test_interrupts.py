@@ -9,10 +9,25 @@ from itertools import product
 
 import pytest
 
-from argo_compiler.hfsm import Outcome
+from argo_compiler.errors import ArgoError
+from argo_compiler.hfsm import (
+    ActionStopped,
+    ActionSucceeded,
+    Cause,
+    Executor,
+    GiveBack,
+    Occurred,
+    Outcome,
+    Pause,
+    Progress,
+    Resume,
+    Tick,
+    lower,
+)
 from argo_compiler.hfsm.interrupts import ACTIVE, ROWS, TABLE, TRANSIENT, Given, Stage, Trigger
+from argo_compiler.hfsm.progress import Waiting
 from argo_compiler.hfsm.standing import InterruptState, advance
-from argo_compiler.il import Afterwards, EventKind, Reaction, Response
+from argo_compiler.il import Afterwards, EventKind, Mission, Reaction, Response, Task
 from argo_compiler.model import Pose
 from tests.argo_compiler.hfsm.interrupt_rules import Alarmed, Rules
 
@@ -216,3 +231,103 @@ def test_rows_ask_only_for_what_is_there():
         asked = {*row.when, *row.unless}
         assert row.trigger is Trigger.EVENT or not asked & GIVEN_OF_EVENTS
         assert not asked & of_active or set(row.stages) <= set(ACTIVE)
+
+
+class TestExecutor:
+    """What the table says of limits and supervision, as a driver sees it."""
+
+    def run(self, mission):
+        executor = Executor(lower(mission))
+        self.at = lambda now, *events: [executor.handle(event, now) for event in events]
+        executor.start(0)
+        return executor
+
+    def holding(self, **fields):
+        hold = Reaction(event=EVENTS[0], until=CLEAR, hold_limit=10, **fields)
+        executor = self.run(Mission(tasks=(TASK,), dock=HERE, reactions=(hold,)))
+        self.at(1, Occurred(EVENTS[0]), ActionStopped("A"))
+        return executor
+
+    @pytest.mark.rule("R3")
+    def test_hold_ends_when_its_limit_is_over(self):
+        executor = self.holding(response="pause", on_limit="resume")
+        assert executor.next_deadline == 11
+        self.at(12, Tick())
+        assert (executor.holding, executor.running) == (False, TASK)
+        ends = [entry.time for entry in executor.trace if entry.cause is Cause.LIMIT]
+        assert ends == [11]
+
+    @pytest.mark.rule("R3")
+    def test_person_is_waited_for_when_the_limit_is_over(self):
+        executor = self.holding(response="pause", on_limit="wait")
+        self.at(11, Tick())
+        assert (executor.paused, executor.reaction) == (True, None)
+        self.at(20, Resume())
+        assert executor.running == TASK
+
+    @pytest.mark.rule("R3")
+    @pytest.mark.parametrize(
+        ("response", "outcome"),
+        [("pause", "aborted"), ("return", "returned"), ("safe_area", "sheltered")],
+    )
+    def test_mission_ends_when_the_limit_is_over(self, response, outcome):
+        pose = HERE if response == "safe_area" else None
+        fields = {"afterwards": "resume", "on_limit": "end", "pose": pose}
+        executor = self.holding(response=response, **fields)
+        if response != "pause":
+            self.at(3, ActionSucceeded(executor.running.name))
+        self.at(executor.next_deadline, Tick())
+        assert executor.outcome == outcome
+        assert executor.trace[-1].time == (11 if response == "pause" else 13)
+
+    @pytest.mark.rule("R3", "I1")
+    def test_limit_counts_pauses_and_takes_effect_after_them(self):
+        executor = self.holding(response="pause", on_limit="end")
+        self.at(5, Pause())
+        assert executor.next_deadline is None
+        self.at(30, Tick())
+        assert executor.outcome is None
+        self.at(31, Resume())
+        assert (executor.outcome, executor.trace[-1].time) == (Outcome.ABORTED, 31)
+
+    @pytest.mark.rule("R3", "R7")
+    def test_hold_that_begins_anew_has_the_whole_limit(self):
+        low = Reaction(event=EVENTS[0], response="pause", hold_limit=10, priority=1)
+        high = Reaction(event=EVENTS[1], response="pause", until=CLEAR, priority=2)
+        executor = self.run(Mission(tasks=(TASK,), reactions=(low, high)))
+        self.at(1, Occurred(EVENTS[0]), ActionStopped("A"))
+        self.at(8, Occurred(EVENTS[1]))
+        self.at(9, Occurred(CLEAR))
+        assert (executor.reaction, executor.next_deadline) == (EVENTS[0], 19)
+
+    @pytest.mark.rule("M9")
+    @pytest.mark.parametrize("begins", [Resume(), GiveBack()])
+    def test_supervised_mission_begins_when_a_person_lets_it(self, begins):
+        executor = self.run(Mission(tasks=(TASK,), mode="supervisory"))
+        assert (executor.paused, executor.running) == (True, None)
+        self.at(5, begins)
+        assert executor.running == TASK
+
+    @pytest.mark.rule("R7")
+    def test_emergency_stop_ranks_above_priorities_and_abort_above_it(self):
+        fields = {"response": "return", "until": CLEAR}
+        reactions = (
+            Reaction(event=EVENTS[0], priority=999, **fields),
+            Reaction(event=EVENTS[2], priority=0, **fields),
+            Reaction(event=EVENTS[1], response="abort", priority=0),
+        )
+        executor = self.run(Mission(tasks=(TASK,), dock=HERE, reactions=reactions))
+        self.at(1, Occurred(EVENTS[0]), Occurred(EVENTS[2]))
+        assert executor.reaction is EVENTS[2]
+        self.at(2, Occurred(EVENTS[1]))
+        assert executor.outcome is Outcome.ABORTED
+
+    def test_progress_has_no_reaction_that_aborts(self):
+        stop = Reaction(event=EVENTS[0], response="abort")
+        machine = lower(Mission(tasks=(TASK,), reactions=(stop,)))
+        waits = Progress(active="A", waiting=(Waiting(event=EVENTS[0]),))
+        with pytest.raises(ArgoError, match="a reaction to gas_leak"):
+            Executor.restore(machine, waits, 0)
+
+
+TASK = Task(name="A", action="MEASURE", object_id="1")

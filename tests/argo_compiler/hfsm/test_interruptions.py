@@ -3,22 +3,15 @@
 import pytest
 
 from argo_compiler.hfsm import (
-    ActionFailed,
-    ActionStopped,
-    ActionSucceeded,
     Cancel,
-    CancelAction,
     Cause,
-    Executor,
     Occurred,
     Outcome,
     Pause,
     Resume,
     Tick,
-    lower,
 )
 from argo_compiler.il import (
-    Action,
     Afterwards,
     EventKind,
     Group,
@@ -26,20 +19,14 @@ from argo_compiler.il import (
     OnFailure,
     Reaction,
     Response,
-    Task,
-    Transition,
 )
 from argo_compiler.model import Pose
+from tests.argo_compiler.hfsm.play import Play, badly, stopped, task, well
 
 DOCK = Pose(x=1, y=0, z=0)
 SHELTER = Pose(x=2, y=0, z=0)
 LEAK, BATTERY = Occurred(EventKind.GAS_LEAK), Occurred(EventKind.LOW_BATTERY)
 CLEAR, ALARM = Occurred(EventKind.ALL_CLEAR), Occurred(EventKind.PLATFORM_ALARM)
-
-
-def task(name, *targets, **fields):
-    ways = tuple(Transition(target=target) for target in targets)
-    return Task(name=name, action=Action.MEASURE, object_id=name, transitions=ways, **fields)
 
 
 def plan(*tasks, **fields):
@@ -49,37 +36,6 @@ def plan(*tasks, **fields):
 def reaction(event, response, **fields):
     pose = SHELTER if response is Response.SAFE_AREA else None
     return Reaction(event=event.event, response=response, pose=pose, **fields)
-
-
-class Play:
-    """A machine, and what it asks for in short: `+A` is a start, `-A` a cancellation."""
-
-    def __init__(self, mission, now=0):
-        self.executor = Executor(lower(mission))
-        self.asked = self.short(self.executor.start(now))
-
-    def short(self, commands):
-        return [
-            f"-{c.task}" if isinstance(c, CancelAction) else f"+{c.task.name}" for c in commands
-        ]
-
-    def at(self, now, event):
-        return self.short(self.executor.handle(event, now))
-
-    def __getattr__(self, name):
-        return getattr(self.executor, name)
-
-
-def stopped(name):
-    return ActionStopped(name)
-
-
-def well(name, value=None):
-    return ActionSucceeded(name, value)
-
-
-def badly(name):
-    return ActionFailed(name, "stuck")
 
 
 class TestFailures:

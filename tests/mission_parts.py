@@ -66,10 +66,10 @@ def wait_rules(draw, events=(EventKind.ALL_CLEAR,)):
     until = draw(st.sampled_from(["time", "event", "conditions", "either"]))
     if until == "time":
         return WaitRule(duration=draw(st.sampled_from([0, 0, 1, 2, 3, 5])))
-    held = st.lists(conditions_of_readings(), min_size=1, max_size=2).map(tuple)
+    held = conditions_of_readings()
     return WaitRule(
         event=None if until == "conditions" else draw(st.sampled_from(events)),
-        conditions=() if until == "event" else draw(held),
+        conditions=() if until == "event" else (draw(held), *draw(st.lists(held, max_size=1))),
         limit=draw(st.sampled_from([None, 1, 4, 8, 12])),
     )
 
@@ -87,12 +87,12 @@ def windows(draw, names, late=12):
 
 
 @st.composite
-def transitions(draw, names, index, held=conditions):
+def transitions(draw, names, index, held=conditions, most=3):
     """Ways from the task of that index to any other, each with conditions that `held` draws, and
     mostly one without to the task that follows."""
     ways = [
         Transition(target=draw(st.sampled_from(names)), conditions=tuple(both))
-        for both in draw(st.lists(st.lists(held(), min_size=1, max_size=2), max_size=3))
+        for both in draw(st.lists(st.lists(held(), min_size=1, max_size=2), max_size=most))
     ]
     onward = draw(st.sampled_from(["next", "next", "next", "any", "end"]))
     if onward != "end":

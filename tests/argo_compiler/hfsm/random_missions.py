@@ -18,6 +18,7 @@ from argo_compiler.hfsm.events import ReadingGiven
 from argo_compiler.il import (
     Action,
     Afterwards,
+    ConditionType,
     EventKind,
     Group,
     Mission,
@@ -86,7 +87,8 @@ def task_names(draw, least=1, most=9):
 def tasks_of_all_kinds(draw, name, names, index, timed=True):
     """Actions with limits and windows, and waits; not `timed`: nothing but what the clocks of
     groups say hangs on when it is done."""
-    ways = transitions(names, index, partial(conditions_of_readings, ages=timed))
+    most = 1 if name.startswith("T") else 3  # or most would go round in circles that take no time
+    ways = transitions(names, index, partial(conditions_of_readings, ages=timed), most)
     if name.startswith("T"):
         policy = draw(st.sampled_from(OnFailure)) if timed else OnFailure.CONTINUE
         rule = draw(wait_rules(EVENTS)) if timed else WaitRule(duration=0)
@@ -170,6 +172,17 @@ def expected(mission):
     return [event for event in events if event not in (None, EventKind.TIME_UP)]
 
 
+def reading_for(condition):
+    """A reading that satisfies the condition if it compares, and is abnormal."""
+    values = {
+        ConditionType.LESS: lambda c: c.param1 - 1,
+        ConditionType.GREATER: lambda c: c.param1 + 1,
+        ConditionType.WITHIN: lambda c: (c.param1 + c.param2) / 2,
+    }
+    value = values.get(condition.type, lambda _: 0)(condition)
+    return ReadingGiven(condition.object_id, value, abnormal=True)
+
+
 @st.composite
 def scripts(draw, mission, most=8):
     """What happens besides the ends of actions: how many seconds after the happening before, and
@@ -179,7 +192,10 @@ def scripts(draw, mission, most=8):
     given = st.builds(
         ReadingGiven, st.sampled_from(OBJECTS), st.integers(0, 6), abnormal=st.booleans()
     )
-    alone = st.one_of(occurs, occurs, given).map(lambda one: (one,))
+    awaited = [reading_for(c) for task in mission.tasks if task.wait for c in task.wait.conditions]
+    if awaited:
+        given = st.one_of(given, *[st.sampled_from(awaited)] * 3)
+    alone = st.one_of(occurs, given).map(lambda one: (one,))
     happenings = st.one_of(
         alone,
         alone,

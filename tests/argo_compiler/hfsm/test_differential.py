@@ -37,6 +37,7 @@ STEPS = 60
 MOVES = {
     Cause.START, Cause.CONDITION, Cause.REPEAT, Cause.DEFAULT, Cause.TIMEOUT, Cause.MISSED,
 }  # fmt: skip
+FAILURES = {Cause.FAILURE, Cause.MISSED}
 
 
 class Hears(StrEnum):
@@ -154,7 +155,7 @@ def steps(executor):
     return [
         (e.time, e.target)
         for e in executor.trace
-        if e.cause in MOVES or (e.cause is Cause.FAILURE and e.target is not None)
+        if e.cause in MOVES or (e.cause in FAILURES and e.target is not None)
     ]
 
 
@@ -217,9 +218,9 @@ def where_reference(reference):
 class Pair:
     """A machine and the reference, which are to do the same at all times."""
 
-    def __init__(self, mission):
-        self.executor = Executor(machine(mission))
-        self.reference = Reference(mission)
+    def __init__(self, executor, reference):
+        self.executor = executor
+        self.reference = reference
 
     @property
     def next_deadline(self):
@@ -254,7 +255,7 @@ def test_interruptions_are_what_the_rules_say(case):
 
 
 def compare(case, hears):
-    pair = Pair(case.mission)
+    pair = Pair(Executor(machine(case.mission)), Reference(case.mission))
     World(pair, case, hears).run()
     assert steps(pair.executor) == pair.reference.steps
     assert reports(pair.executor) == pair.reference.events

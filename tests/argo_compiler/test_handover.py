@@ -124,9 +124,14 @@ def stand(progress):
         "active": progress.active,
         "attempt": progress.attempt,
         "groups": progress.groups,
-        "readings": {r.object_id: (r.kind, r.value, r.age) for r in progress.readings},
+        "readings": {r.object_id: (r.kind, r.value) for r in progress.readings},
         "outcome": progress.outcome,
     }
+
+
+def order(*executors):
+    """The visits that have ended, one after the other, and whether they failed."""
+    return [(e.task, e.failure is not None) for executor in executors for e in executor.ended]
 
 
 @pytest.mark.rule("H2", "H3", "H4", "H5")
@@ -161,6 +166,7 @@ def test_before_by_hand_and_after_are_the_whole_mission(mission, outcomes, at, d
         # What was done by hand may have carried it further.
         once.run(whole, whole_time(whole), visits_of(after))
     assert stand(after) == stand(whole.progress())
+    assert order(first, second) == order(whole)
     assert sum(t.by_hand for t in after.tallies) == len(by_hand) - len(after.by_hand)
 
 
@@ -188,6 +194,7 @@ def test_giving_back_is_a_progress_handed_over_and_gone_on_from(mission, outcome
     expected = restored.handle(Resume(), now + away)
     assert live.handle(GiveBack(by_hand), now + away) == expected
     assert stand(live.progress()) == stand(restored.progress())
+    assert live.progress().readings == restored.progress().readings
     assert live.progress().by_hand == restored.progress().by_hand
     assert live.progress().elapsed == pytest.approx(restored.progress().elapsed)
     assert live.next_deadline == restored.next_deadline

@@ -174,12 +174,12 @@ class Reference:
         return self.visit
 
     def command(self):
-        """I3, I4: what to do now, if anything."""
+        """I3, I4: what to do now; of a start, in how many seconds it may begin at the place (W4)."""
         if self.run is not None:
             if self.run.cancelled or not self.run.dropped:
                 return []
             self.run.cancelled = True
-            return [(CancelAction, self.run.task, self.run.id, None)]
+            return [(CancelAction, self.run.task, self.run.id)]
         wanted = self.wanted()
         if wanted is None:
             return []
@@ -188,8 +188,8 @@ class Reference:
             self.run = Run(self.runs, f"react to {self.active.reaction.event}", wanted, True)
         else:
             self.run = Run(self.runs, self.current, wanted, False)
-        away = self.earliest() - self.elapsed if not self.run.drives else 0
-        return [(StartAction, self.run.task, self.run.id, self.now + away if away > 0 else None)]
+        waits = 0 if self.run.drives else max(self.earliest() - self.elapsed, 0)
+        return [(StartAction, self.run.task, self.run.id, waits)]
 
     # Time
 

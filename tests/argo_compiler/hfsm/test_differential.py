@@ -34,9 +34,7 @@ from tests.argo_compiler.hfsm.reference import Reference
 from tests.conftest import examples
 
 STEPS = 60
-MOVES = {
-    Cause.START, Cause.CONDITION, Cause.REPEAT, Cause.DEFAULT, Cause.TIMEOUT, Cause.MISSED,
-}  # fmt: skip
+MOVES = {Cause.START, Cause.CONDITION, Cause.REPEAT, Cause.DEFAULT, Cause.TIMEOUT}
 FAILURES = {Cause.FAILURE, Cause.MISSED}
 
 
@@ -130,10 +128,8 @@ class World:
 def read(command, now):
     """A command in the reference's words."""
     if isinstance(command, CancelAction):
-        return CancelAction, command.task, command.id, None
-    begins = command.not_before
-    begins = None if begins is None or begins <= now else begins
-    return StartAction, command.task.name, command.id, begins
+        return CancelAction, command.task, command.id
+    return StartAction, command.task.name, command.id, max((command.not_before or now) - now, 0)
 
 
 def result(command, doing):

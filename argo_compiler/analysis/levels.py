@@ -378,10 +378,10 @@ def _most(
     for hop in graph.firsts:
         reach(hop, 0.0, None)
     for node in order:
-        if distance[node] == -math.inf:
-            continue
         if looping[node]:
             distance[node] = math.inf
+        elif distance[node] == -math.inf:
+            continue
         for hop in graph.hops[node]:
             reach(hop, distance[node], node)
     graph.most[measure], graph.most_before[measure] = distance, before

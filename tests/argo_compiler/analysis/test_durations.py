@@ -2,9 +2,29 @@
 
 import pytest
 
-from argo_compiler.analysis import analyse
-from argo_compiler.il import Group, Stop
-from tests.argo_compiler.analysis.building import CATALOG, Steady, mission, task, way
+from argo_compiler.analysis import Leg, analyse
+from argo_compiler.il import (
+    Action,
+    Afterwards,
+    EventKind,
+    Group,
+    Mode,
+    OnFailure,
+    Reaction,
+    Response,
+    Stop,
+    TimeWindow,
+    WaitRule,
+)
+from tests.argo_compiler.analysis.building import (
+    CATALOG,
+    DOCK,
+    Steady,
+    compare,
+    mission,
+    task,
+    way,
+)
 
 
 def bounds(*tasks, **more):
@@ -122,3 +142,130 @@ def test_the_path_says_how():
     ]
     assert found.energy is not None
     assert found.energy.most.value == 7
+
+
+def wait(name, *ways, **rule):
+    """A WAIT; fields of the task are given as `more`."""
+    more = rule.pop("more", {})
+    return task(name, *ways, **more).model_copy(
+        update={"action": Action.WAIT, "pose": None, "wait": WaitRule(**rule)}
+    )
+
+
+def test_a_wait_lasts_its_time_or_up_to_its_limit():
+    assert bounds("A", wait("W", "B", duration=5), "B") == (25, 25)
+    event = EventKind.ALL_CLEAR
+    assert bounds("A", wait("W", "B", event=event, limit=7), "B") == (20, 27)
+    assert bounds("A", wait("W", "B", event=event), "B") == (20, None)
+
+
+def test_a_wait_that_fails_may_lead_elsewhere():
+    branch = {"on_failure": OnFailure.BRANCH, "failure_target": "C"}
+    gives_up = wait("W", "End", event=EventKind.ALL_CLEAR, limit=7, more=branch)
+    assert bounds("A", gives_up, task("C", "End"), "End") == (20, 37)
+
+
+def test_where_ways_join_the_robot_is_where_it_came_from():
+    """A WAIT of no time leaves the robot at its place: the way on is that from there."""
+    join = wait("J", "Bm1", duration=0)
+    # Both measure the same checkpoint, the second time without a way.
+    assert bounds(task("Am1", "J"), join, task("Bm1")) == (14, 14)
+
+
+def test_rounds_with_a_plan_do_not_drift():
+    # A round takes 20 s; the last one begins at 2 x 60 s, or when the one before has ended.
+    three = {"max_repeat_count": 3}
+    assert bounds("A", "B", "C", groups=[group("G", "A", "B", every=60, **three)]) == (150, 150)
+    assert bounds("A", "B", "C", groups=[group("G", "A", "B", every=15, **three)]) == (70, 70)
+
+
+def test_no_round_begins_that_is_due_too_late():
+    limited = group("G", "A", "B", every=60, max_repeat_duration=120, **SOFT)
+    # Round 2 is due after 60 s and takes 20; round 3 would be due when the time is up.
+    assert bounds("A", "B", "C", groups=[limited]) == (90, 90)
+
+
+def test_rounds_until_something_holds():
+    found = bounds(
+        "Am1",
+        "B",
+        "C",
+        groups=[group("G", "Am1", "B", max_repeat_count=3, until=(compare("1 < 5"),))],
+    )
+    assert found == (22 + 10, 3 * 22 + 10)
+    endless = group("G", "Am1", "B", until=(compare("1 < 5"),))
+    assert bounds("Am1", "B", "C", groups=[endless]) == (32, None)
+
+
+def test_a_window_is_waited_for():
+    assert bounds("A", task("B", "C", window=TimeWindow(earliest=50)), "C") == (60, 60)
+    assert bounds("A", task("B", "C", window=TimeWindow(earliest=15)), "C") == (30, 30)
+
+
+def test_a_hard_window_ends_a_task():
+    missed = task("B", "C", window=TimeWindow(latest=15, missed_target="D"))
+    # Cut on the way: from there to B and on to D takes 20 s at most, after cleaning up.
+    assert bounds("A", missed, task("C"), "D") == (15, 15 + 1 + 20)
+
+
+def test_a_time_out_need_not_come_after_a_whole_round():
+    """T1 may be repeated until the time is up, so that no round is ever completed."""
+
+    class Costly(Steady):
+        def leg(self, origin, task, velocity):  # noqa: ARG002
+            return Leg(2.0, 10.0 if task.name == "T2" else 0.1, task.name)
+
+    plan = mission(
+        task("T0m1", way("T2", "1 > 3"), "T1"),
+        task("T1", "T1"),
+        task("T2"),
+        groups=[group("G", "T0m1", "T2", max_repeat_duration=8, max_repeat_count=3, **HARD)],
+    )
+    travel = Costly()
+    travel.battery = 5.0
+    found = analyse(plan, CATALOG, travel)
+    assert found.energy.least.value <= 0.4
+    assert "analysis.battery-exceeded" not in {d.code for d in found.diagnostics}
+
+
+@pytest.mark.rule("T6")
+def test_the_speed_of_a_way_is_that_of_its_target():
+    fast = task("B", "C", velocity=2.0)
+    assert bounds("A", fast, "C") == (10 + 5 + 10,) * 2
+
+
+def worst(*tasks, **more):
+    found = analyse(mission(*tasks, **more), CATALOG, Steady()).duration_with_failures
+    assert found is not None
+    return found.value
+
+
+HOME = Reaction(event=EventKind.TIME_UP, response=Response.RETURN)
+
+
+def test_failures_take_no_longer_than_all_attempts():
+    # One action of 10 s, and a clean-up; with a retry twice that.
+    assert worst("A") == 11
+    assert worst(task("A", retries=1)) == 22
+    assert worst(task("A", "A")) is None
+
+
+def test_when_the_time_is_up_the_way_home_is_the_rest():
+    loop = task("Am1", way("Am1", "1 < 5"))
+    # 100 s, cleaning up, the rest of the way to A with its 2 s, and the way from there.
+    assert worst(loop, max_duration=100, dock=DOCK, reactions=(HOME,)) == 100 + 1 + 12 + 10
+    assert worst(loop, max_duration=100, dock=DOCK) is None
+    again = HOME.model_copy(update={"afterwards": Afterwards.RESUME})
+    assert worst(loop, max_duration=100, dock=DOCK, reactions=(again,)) is None
+
+
+def test_a_reaction_of_higher_rank_may_keep_the_robot_from_going_home():
+    loop = task("Am1", way("Am1", "1 < 5"))
+    alarm = Reaction(event=EventKind.GAS_LEAK, response=Response.PAUSE, until=EventKind.ALL_CLEAR)
+    assert worst(loop, max_duration=100, dock=DOCK, reactions=(HOME, alarm)) is None
+    lower = alarm.model_copy(update={"priority": 1})
+    assert worst(loop, max_duration=100, dock=DOCK, reactions=(HOME, lower)) == 123
+    held = lower.model_copy(update={"hold_limit": 5.0})  # then it waits for a person
+    assert worst(loop, max_duration=100, dock=DOCK, reactions=(HOME, held)) is None
+    supervised = {"mode": Mode.SUPERVISORY, "max_duration": 100, "dock": DOCK}
+    assert worst(loop, reactions=(HOME,), **supervised) is None

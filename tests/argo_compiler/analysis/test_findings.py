@@ -4,7 +4,17 @@ import pytest
 
 from argo_compiler.analysis import analyse
 from argo_compiler.diagnostics import CODES, Severity
-from argo_compiler.il import Action, EventKind, Group, Reaction, Response, Stop, Task
+from argo_compiler.il import (
+    Action,
+    EventKind,
+    Group,
+    Reaction,
+    Response,
+    Stop,
+    Task,
+    TimeWindow,
+    WaitRule,
+)
 from argo_compiler.model import Pose
 from tests.argo_compiler.analysis.building import CATALOG, DOCK, Steady, mission, task, way
 
@@ -128,3 +138,79 @@ def test_a_mission_of_a_start_alone():
     assert found.diagnostics == ()
     assert found.duration is not None
     assert found.duration.most.value == 0
+
+
+HOME = Reaction(event=EventKind.TIME_UP, response=Response.RETURN)
+
+
+def test_a_plan_that_its_maximum_duration_cuts_short():
+    patrol = Group(name="G", start="B", end="C", max_repeat_duration=600, stop=Stop.HARD)
+    plan = {"groups": (patrol,), "max_duration": 120, "dock": DOCK}
+    found = findings(mission("A", "B", "C", "D", reactions=(HOME,), **plan), Steady())
+    assert set(found) == {"cut-short"}
+    # 2 min, cleaning up, the rest of a way and the way home.
+    assert "ends it then, after 2 min 21 s at most" in found["cut-short"].message
+    assert "'D' will not be done by then" in found["cut-short"].message
+    assert "'B' and 'C' may not be done, or not in all rounds" in found["cut-short"].message
+    # Nothing ends it without the reaction.
+    assert set(findings(mission("A", "B", "C", "D", **plan), Steady())) == {"too-long"}
+    enough = mission("A", "B", max_duration=20, dock=DOCK, reactions=(HOME,))
+    assert findings(enough, Steady()) == {}
+
+
+@pytest.mark.parametrize(
+    ("latest", "hard", "expected"),
+    [
+        (19, True, "window-missed"),
+        (19, False, "window-late"),
+        (21, True, None),
+        (20, False, None),
+    ],
+)
+def test_windows_that_every_path_misses(latest, hard, expected):
+    late = task("B", "C", window=TimeWindow(latest=latest, hard=hard))
+    found = findings(mission("A", late, "C"), Steady())
+    assert set(found) == ({expected} if expected else set())
+    if expected:
+        assert "no path is in time for task 'B'" in found[expected].message
+
+
+def test_a_window_that_some_path_misses():
+    late = task("C", "D", window=TimeWindow(latest=25))
+    found = findings(mission(task("Am1", way("C", "1 < 5"), "B"), "B", late, "D"), Steady())
+    assert set(found) == {"window-maybe-missed"}
+    rounds = Group(name="G", start="A", end="B", max_repeat_count=2)
+    soft = task("B", "C", window=TimeWindow(latest=25, hard=False))
+    found = findings(mission("A", soft, "C", groups=(rounds,)), Steady())
+    assert set(found) == {"window-maybe-missed"}
+
+
+def test_a_time_limit_that_is_too_short_promises_nothing():
+    made = mission("A", task("B", "C", time_limit=9), "C", max_duration=25)
+    found = analyse(made, CATALOG, Steady())
+    assert {d.code for d in found.diagnostics} == {"analysis.time-limit"}
+    assert found.duration is None
+
+
+def test_the_way_back_with_a_reserve():
+    travel = Steady()
+    travel.battery = 5.0
+    # Each way takes 1 Wh, the way back too, and 1 Wh is to be left.
+    made = mission("A", "B", "C", "D", dock=DOCK)
+    found = findings(made, travel)
+    assert set(found) == {"no-way-back"}
+    assert found["no-way-back"].subject == "tasks['D']"
+    assert "with a reserve of 20%" in found["no-way-back"].message
+    assert findings(mission("A", "B", "C", dock=DOCK), travel) == {}
+
+
+def test_a_robot_that_may_charge_meanwhile_may_go_farther():
+    travel = Steady()
+    travel.battery = 1.5
+    home = Task(
+        name="W",
+        action=Action.WAIT,
+        wait=WaitRule(duration=3600),
+        transitions=task("x", "B").transitions,
+    )
+    assert set(findings(mission(task("A", "W"), home, "B"), travel)) == {"battery-maybe-exceeded"}

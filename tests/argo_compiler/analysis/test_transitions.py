@@ -3,8 +3,18 @@
 import pytest
 
 from argo_compiler.analysis import Verdict, analyse
-from argo_compiler.il import Group, OnFailure
+from argo_compiler.il import (
+    Action,
+    Condition,
+    ConditionType,
+    Group,
+    OnFailure,
+    TimeWindow,
+    Transition,
+    WaitRule,
+)
 from tests.argo_compiler.analysis.building import CATALOG, mission, task, way
+from tests.argo_compiler.analysis.worlds import checkpoint
 
 NEVER, AFTER, POSSIBLE, ALWAYS = (
     Verdict.NEVER,
@@ -194,3 +204,87 @@ def test_rounds_of_a_group(group, repeats, ends):
     facts = found.groups[0]
     assert (facts.repeats, facts.ends) == (repeats, ends)
     assert verdicts(found, "C") == [NEVER if ends is NEVER else POSSIBLE]
+
+
+def reading(kind, target, object_id="1", **more):
+    return Transition(
+        target=target, conditions=(Condition(type=kind, object_id=object_id, **more),)
+    )
+
+
+@pytest.mark.parametrize("kind", [ConditionType.FAILED, ConditionType.UNREADABLE])
+@pytest.mark.rule("C3", "C7")
+def test_a_reading_fails_only_after_a_failure(kind):
+    analysis = analyse(mission(task("Am1", reading(kind, "B"), "C"), "B", "C"), CATALOG)
+    assert verdicts(analysis, "Am1") == [AFTER, POSSIBLE]
+    unmeasured = analyse(mission("X", task("A", reading(kind, "B"), "C"), "B", "C"), CATALOG)
+    assert verdicts(unmeasured, "A") == [NEVER, ALWAYS]
+
+
+@pytest.mark.rule("C4")
+def test_a_failed_measurement_leaves_nothing_of_the_value_before():
+    high = task("Am1", way("Bm1", "1 > 5"), "End")
+    again = task("Bm1", reading(ConditionType.FAILED, "Known"), "End")
+    known = task("Known", way("Never", "1 > 5"), "End")
+    analysis = analyse(mission(high, again, known, "Never", "End"), CATALOG)
+    assert verdicts(analysis, "Known") == [NEVER, AFTER]
+
+
+@pytest.mark.rule("W5", "C3")
+def test_a_missed_window_leaves_a_failed_reading():
+    late = task("Am1", reading(ConditionType.FAILED, "B"), "C", window=TimeWindow(latest=5))
+    assert verdicts(analyse(mission(late, "B", "C"), CATALOG), "Am1") == [POSSIBLE, POSSIBLE]
+
+
+@pytest.mark.rule("C7")
+def test_what_is_abnormal_lies_outside_the_nominal_range():
+    narrow = CATALOG.model_copy(update={"checkpoints": (checkpoint(1, 0, 10, 2, 8),)})
+    odd = reading(ConditionType.ABNORMAL, "Odd")
+    plan = mission(task("Am1", odd, "End"), task("Odd", way("X", "2 <= 1 <= 8")), "X", "End")
+    analysis = analyse(plan, narrow)
+    assert verdicts(analysis, "Am1") == [POSSIBLE, POSSIBLE]
+    assert verdicts(analysis, "Odd") == [NEVER]
+    # Here all that it can show is normal.
+    assert verdicts(analyse(plan, CATALOG), "Am1") == [NEVER, ALWAYS]
+
+
+@pytest.mark.rule("C7")
+def test_a_value_that_was_just_read_is_not_stale():
+    stale = reading(ConditionType.STALE, "B", max_age=5)
+    analysis = analyse(mission(task("Am1", stale, "C"), "B", "C"), CATALOG)
+    assert verdicts(analysis, "Am1")[0] is not POSSIBLE
+    later = analyse(mission("Am1", task("A", stale, "C"), "B", "C"), CATALOG)
+    assert verdicts(later, "A") == [POSSIBLE, POSSIBLE]
+
+
+@pytest.mark.rule("W2", "C8")
+def test_a_value_that_is_waited_for_may_come_at_any_time():
+    rule = WaitRule(conditions=way("x", "2 > 5").conditions)
+    stand = task("W", "B").model_copy(update={"action": Action.WAIT, "pose": None, "wait": rule})
+    plan = mission(task("Am1", way("B", "2 < 3"), "W"), stand, task("B", way("C", "2 < 3")), "C")
+    analysis = analyse(plan, CATALOG)
+    assert verdicts(analysis, "Am1") == [POSSIBLE, POSSIBLE]
+    assert verdicts(analysis, "B") == [POSSIBLE]
+
+
+@pytest.mark.rule("I3")
+def test_a_value_may_come_late_while_a_wait_is_already_over():
+    """The action that is cancelled may still succeed after the WAIT has looked at the value."""
+    join = task("J", way("Low", "1 < 3"), "High").model_copy(
+        update={"action": Action.WAIT, "pose": None, "wait": WaitRule(duration=0)}
+    )
+    late = task("Bm1", "End", window=TimeWindow(latest=5, missed_target="J"))
+    plan = mission("Am1", late, join, task("Low", way("High", "1 > 6")), "High", "End")
+    assert verdicts(analyse(plan, CATALOG), "Low") == [POSSIBLE]
+
+
+@pytest.mark.rule("G8")
+def test_after_rounds_until_a_value_the_value_is_known():
+    rounds = Group(name="G", start="Am1", end="B", until=way("x", "1 > 5").conditions)
+    leave = task("B", "C")
+    plan = mission("Am1", leave, task("C", way("D", "1 < 5")), "D", groups=(rounds,))
+    assert verdicts(analyse(plan, CATALOG), "C") == [NEVER]
+    counted = rounds.model_copy(update={"max_repeat_count": 3})
+    assert verdicts(analyse(plan.model_copy(update={"groups": (counted,)}), CATALOG), "C") == [
+        POSSIBLE
+    ]

@@ -98,7 +98,11 @@ class Control:
                 self.occur(EventKind.TIME_UP, "")
             elif self.hold_due <= course.now:
                 self._advance(Trigger.LIMIT)
-            elif not going or not course.step():
+            elif (
+                not going
+                or not (place.due <= course.now or place.own_due <= course.now or course.by_hand)
+                or not course.step()
+            ):
                 break
         if course.outcome is not None and self.standing.outcome is None:
             self._advance(Trigger.ENDED)

@@ -176,12 +176,10 @@ class MissionCourse:
             what.model_copy(update={"age": max(0.0, self.now - at)}) for _, what, at in left
         )
 
-    def measure(self, leaf: LeafNode, value: float | None, abnormal: bool) -> None:
-        """The action of a task has ended well, with what it read."""
-        if leaf.measures is None:
-            return
+    def measure(self, object_id: str, leaf: LeafNode, value: float | None, abnormal: bool) -> None:
+        """The action of a task has ended well, with what it read at the checkpoint."""
         kind = ReadingKind.UNREADABLE if value is None else _VALUE
-        self.place.readings[leaf.measures] = CheckpointReading(
+        self.place.readings[object_id] = CheckpointReading(
             kind, self.now, value, abnormal and value is not None
         )
         if self.place.visit.leaf is not leaf:

@@ -163,23 +163,35 @@ class Executor:
         except IndexError:
             raise ValueError(_BUSY) from None
         try:
-            if not self._control.course.now <= now <= MAX_TIME_S:
+            control = self._control
+            course = control.course
+            if not course.now <= now <= MAX_TIME_S:
                 self._require_order(now)
             self._require_sense(event)
-            return self._handle(event, now)
+            place = course.place
+            if (
+                now > place.due
+                or now > place.own_due
+                or now > course.time_up_at
+                or now > control.hold_due
+            ):
+                # The next float below `now` stands for all times before it.
+                control.let_pass(math.nextafter(now, -math.inf))
+            course.now = now
+            if isinstance(event, _ENDS):
+                self._end_action(event)
+            elif not isinstance(event, Tick):
+                self._hear(event, now)
+            control.settle()
+            return self._command()
         finally:
             self._turn.append(turn)
 
-    def _handle(self, event: Event, now: float) -> tuple[Command, ...]:
+    def _hear(self, event: Event, now: float) -> None:
+        """Takes note of what is neither the end of an action nor the passing of time."""
         control = self._control
-        course = control.course
-        if now > control.due:
-            # The next float below `now` stands for all times before it.
-            control.let_pass(math.nextafter(now, -math.inf))
-        course.now = now
-        if isinstance(event, _ENDS):
-            self._end_action(event)
-        elif isinstance(event, ReadingGiven):
+        if isinstance(event, ReadingGiven):
+            course = control.course
             course.tell(event.object_id, event.value, event.abnormal, now)
             course.note(Cause.READING, detail=f"#{event.object_id} = {event.value:g}")
         elif control.outcome is None:
@@ -196,8 +208,6 @@ class Executor:
                     control.give_back(by_hand)
                 case Cancel():
                     control.cancel()
-        control.settle()
-        return self._command()
 
     def progress(self) -> Progress:
         """How far the mission has come at the time of the last call; see `restore`.
@@ -356,16 +366,18 @@ class Executor:
         """The leaf, the task, the visit and the attempt of the action that is to run; no task, and
         visit 0: none."""
         control = self._control
-        if control.course.outcome is not None or control.paused:
+        course, standing = control.course, control.standing
+        if course.outcome is not None or standing.paused:
             return _NOTHING
-        active, place = control.active, control.course.place
-        if active is None:
+        if standing.active is None:
+            place = course.place
             visit = place.visit
             leaf = visit.leaf
             if leaf is None or leaf.wait is not None or place.round_of is not None:
                 return _NOTHING
             return leaf, leaf.task, visit.number, visit.attempt
-        if control.driving:
+        active = control.active
+        if control.driving and active is not None:
             return None, active.task, control.drive_visit, 0
         return _NOTHING
 
@@ -401,9 +413,11 @@ class Executor:
             elif isinstance(event, ActionFailed) and failed:
                 control.fail_drive(event.reason)
             return
-        course.unlimit_action()
+        if leaf.time_limit is not None:
+            course.unlimit_action()
         if isinstance(event, ActionSucceeded):
-            course.measure(leaf, event.value, event.abnormal)
+            if leaf.measures is not None:
+                course.measure(leaf.measures, leaf, event.value, event.abnormal)
             if self._running_visit == course.place.visit.number:
                 course.leave(leaf)
             else:
@@ -449,12 +463,14 @@ class Executor:
             raise ValueError(f"{event} is about a task that does not run; '{running.name}' does")
         if event.id is not None and event.id != self._last_id:
             raise ValueError(f"{event} is about another action: number {self._last_id} runs")
-        if isinstance(event, ActionSucceeded) and event.value is not None:
+        if isinstance(event, ActionSucceeded):
+            if event.value is None:
+                return
             if self._running_leaf is None or self._running_leaf.measures is None:
                 raise ValueError(f"{event} has a value, but the task measures nothing")
             if not _finite(event.value):
                 raise ValueError(f"{event} has no usable value: report that the action failed")
-        if isinstance(event, ActionStopped) and not self._cancelling:
+        elif isinstance(event, ActionStopped) and not self._cancelling:
             raise ValueError(f"{event} comes for an action that was not cancelled")
 
 

@@ -2,7 +2,7 @@
 
 import pytest
 
-from argo_compiler.handover import hand_over
+from argo_compiler.handover import hand_over, match
 from argo_compiler.hfsm import (
     ActionFailed,
     ActionSucceeded,
@@ -14,6 +14,7 @@ from argo_compiler.hfsm import (
     Occurred,
     Outcome,
     Pause,
+    Progress,
     ReadingGiven,
     ReadingKind,
     Resume,
@@ -601,3 +602,38 @@ class TestHistory:
         executor.start(0)
         (cancel,) = executor.handle(Tick(), 5)
         assert cancel == CancelAction("A", "not done within 5 s", 1)
+
+
+class TestRemaining:
+    def names(self, mission, active="A"):
+        return [leaf.task.name for leaf in lower(mission, Progress(active=active)).leaves]
+
+    @pytest.mark.rule("H5")
+    def test_failure_branches_and_missed_windows_can_be_reached(self):
+        window = TimeWindow(latest=20, missed_target="C")
+        fields = {"on_failure": OnFailure.BRANCH, "failure_target": "B", "window": window}
+        tasks = (task("A", **fields), task("B"), task("C"), task("D"))
+        assert self.names(plan(*tasks)) == ["A", "B", "C"]
+        soft = window.model_copy(update={"hard": False, "missed_target": None})
+        first = tasks[0].model_copy(update={"window": soft})
+        assert self.names(plan(first, *tasks[1:])) == ["A", "B"]
+
+    @pytest.mark.rule("H5", "W3")
+    @pytest.mark.parametrize(("limit", "expected"), [(None, "A C"), (5, "A B C")])
+    def test_wait_without_a_limit_can_not_fail(self, limit, expected):
+        waiting = wait(
+            "A", "C", event=EventKind.ALL_CLEAR, limit=limit, on_failure=OnFailure.BRANCH
+        ).model_copy(update={"failure_target": "B"})
+        assert self.names(plan(waiting, task("B"), task("C"))) == expected.split()
+
+    @pytest.mark.rule("H6", "G13")
+    @pytest.mark.parametrize(("every", "kept"), [(10, "G"), (0, None)])
+    def test_round_that_is_not_planned_any_more_is_not_awaited(self, every, kept):
+        group = Group(name="G", start="A", end="A", max_repeat_count=3, every=10)
+        play = Play(plan(task("A"), groups=(group,)))
+        play.at(3, well("A"))
+        edited = plan(task("A"), groups=(group.model_copy(update={"every": every}),))
+        matched, findings = match(play.progress(), edited)
+        assert (matched.round_of, findings) == (kept, ())
+        later = Executor.restore(lower(edited), matched, 3)
+        assert len(later.start(3)) == (kept is None)

@@ -138,10 +138,7 @@ class _Document:
                 self._assign([("now", "_event.data.time"), ("clock", "now - lost")])
                 self._assign([("visit", "0"), ("completed", str(n))])
         if repeat.every:
-            event = {"event": "timeout.round", "cond": f"mode == 0 && awaits == {n}"}
-            with xml.element("transition", event):
-                self._assign([("now", "_event.data.time"), ("clock", "now - lost")])
-                self._begin_round(group)
+            self._begin_round(group)
         for transition in group.transitions:
             self._group_transition(group, transition)
         if self.timers and group.timeout:
@@ -156,29 +153,26 @@ class _Document:
             assign(self.xml, f"entered_{n}", _clock(repeat))
 
     def _begin_round(self, group: Composite) -> None:
-        """The round that was waited for begins, with all that counts from there."""
-        leaf = self.leaves[group.initial]
-        self._assign([("awaits", "0"), ("due_round", "0"), ("look", "1")])
-        for inner in self._groups_between(leaf, group):
-            self._begin_clock(inner)
-            if self.timers and inner.timeout:
-                n = self.ids.groups[inner.id]
-                send_time_out(self.xml, n, _repeat(inner).count_interruptions)
-        self._begin_wait(leaf)
-        if self.timers:
-            cancel_due(self.xml, "round")
-            for due in self.ids.dues:
-                if due in ("wait", "limit"):
-                    send_due(self.xml, due)
+        """The round that was waited for begins: all inside is entered anew, with its clocks.
 
-    def _groups_between(self, leaf: Leaf, group: Composite) -> list[Composite]:
-        """The groups around a leaf, up to one that is not among them."""
-        found = []
-        id = leaf.parent
-        while id != group.id:
-            found.append(self.composites[id])
-            id = found[-1].parent or group.id
-        return found
+        The window of its first task may be over before that.
+        """
+        n, leaf = self.ids.groups[group.id], self.leaves[group.initial]
+        events = ["timeout.round"]
+        if _latest(leaf.task) is not None:
+            events.append("timeout.window")
+        for event in events:
+            attributes = {
+                "event": event,
+                "cond": f"mode == 0 && awaits == {n}",
+                "target": self._state(leaf.id),
+                "type": "internal",
+            }
+            with self.xml.element("transition", attributes):
+                self._assign([("now", "_event.data.time"), ("clock", "now - lost")])
+                self._assign([("awaits", "0"), ("due_round", "0")])
+                if event == "timeout.window":
+                    assign(self.xml, "missed", "1")
 
     def _group_transition(self, group: Composite, transition: StateTransition) -> None:
         n, repeat = self.ids.groups[group.id], _repeat(group)
@@ -221,11 +215,11 @@ class _Document:
             with xml.element("onentry"):
                 self._enter(leaf, id)
             with xml.element("state", {"id": f"{id}_act"}):
+                self._miss(leaf)
                 if task.wait is not None:
                     self._wait(leaf, f"{id}_end")
                 else:
                     self._act(leaf, f"{id}_end")
-                self._miss(leaf)
             with xml.element("state", {"id": f"{id}_end"}):
                 for transition in leaf.transitions:
                     held = (self._holds(c) for c in transition.conditions)
@@ -239,7 +233,6 @@ class _Document:
         xml, task = self.xml, leaf.task
         window = task.window
         waits = task.wait is not None
-        latest = window.latest if window is not None and window.hard else None
         self._assign(
             [
                 ("fails", "0"),
@@ -253,7 +246,7 @@ class _Document:
                 ("occurred", "0"),
                 ("look", "1"),
                 ("due_action", "0"),
-                ("due_window", number(latest or 0)),
+                ("due_window", number(_latest(task) or 0)),
             ]
         )
         self._begin_wait(leaf)
@@ -334,20 +327,23 @@ class _Document:
             self._leave("action.succeeded", served, end, None)
 
     def _miss(self, leaf: Leaf) -> None:
-        window = leaf.task.window
-        if window is None or not window.hard or window.latest is None:
+        if _latest(leaf.task) is None:
             return
         way = leaf.missed or leaf.failure
-        self._fail("timeout.window", "mode == 0", leaf, way)
+        group = self.composites[leaf.parent]
+        if group.repeat is not None and group.initial == leaf.id:
+            self._fail(None, "missed == 1", leaf, way)
+        self._fail("timeout.window", "mode == 0 && awaits == 0", leaf, way)
 
-    def _fail(self, event: str, cond: str, leaf: Leaf, way: StateTransition | None) -> None:
+    def _fail(self, event: str | None, cond: str, leaf: Leaf, way: StateTransition | None) -> None:
         """The task has failed for good, and goes on by `way` or as after any other end."""
         xml, task = self.xml, leaf.task
         target = f"{self._state(leaf.id)}_end" if way is None else self._target(way.target)
         with xml.element("transition", {"event": event, "cond": cond, "target": target}):
-            self._assign([("now", "_event.data.time"), ("clock", "now - lost")])
-            if event == "timeout.window":
-                self._begin_awaited(leaf)
+            if event is None:
+                assign(xml, "missed", "0")
+            else:
+                self._assign([("now", "_event.data.time"), ("clock", "now - lost")])
             if k := self.ids.object_of(task):
                 self._assign(
                     [
@@ -365,17 +361,6 @@ class _Document:
             if way is not None and way.target == DONE:
                 assign(xml, "ends", str(code(Outcome.ABORTED)))
             assign(xml, "visit", "0")
-
-    def _begin_awaited(self, leaf: Leaf) -> None:
-        """A task is left whose round had not begun: it begins with that."""
-        id: str | None = leaf.parent
-        while id is not None:
-            group = self.composites[id]
-            if group.repeat is not None and group.repeat.every and group.initial == leaf.id:
-                cond = f"awaits == {self.ids.groups[group.id]}"
-                with self.xml.element("if", {"cond": cond}):
-                    self._begin_round(group)
-            id = group.parent
 
     def _leave(self, event: str, cond: str, target: str, outcome: Outcome | None) -> None:
         attributes = {"event": event, "cond": cond, "target": target}
@@ -432,7 +417,7 @@ class _Document:
                 with xml.element("transition", {"event": f"reading.{k}"}):
                     self._read(k)
             with xml.element("state", {"id": "free"}):
-                going = "mode == 0 && visit > 0 && awaits == 0"
+                going = "mode == 0 && visit > 0 && awaits == 0 && missed == 0"
                 with xml.element("transition", {"cond": going, "target": "busy"}):
                     self._begin_action("visit", "place", "object")
                     with xml.element("if", {"cond": "limit > 0 && earliest <= now"}):
@@ -503,6 +488,12 @@ _OWN_DUES = tuple(due for due in DUES if due != "hold")
 def _repeat(group: Composite) -> RepeatRule:
     assert group.repeat is not None
     return group.repeat
+
+
+def _latest(task: Task) -> float | None:
+    """When the task's hard window is over (s since the mission's start), if it has one."""
+    window = task.window
+    return window.latest if window is not None and window.hard else None
 
 
 def _clock(repeat: RepeatRule) -> str:

@@ -149,6 +149,28 @@ def test_limits_windows_waits_and_planned_rounds_come_as_time_outs():
     ]
 
 
+@pytest.mark.parametrize("target", ["C", None])
+def test_window_that_is_over_before_its_round_begins(target):
+    window = TimeWindow(latest=20, missed_target=target)
+    groups = (
+        Group(name="G", start="A", end="B", max_repeat_count=2, every=30),
+        Group(name="G/H", start="A", end="A", max_repeat_count=2, every=4, max_repeat_duration=9),
+    )
+    tasks = (
+        a("A", window=window, transitions=(Transition(target="B"),)),
+        a("B", transitions=(Transition(target="C"),)),
+        a("C"),
+    )
+    both = Both(Mission(tasks=tasks, groups=groups))
+    both.at(1, ActionSucceeded("A", 1.0))
+    both.at(4, Tick())
+    both.at(5, ActionSucceeded("A", 2.0))
+    both.at(6, ActionSucceeded("B", 3.0))
+    assert (both.executor.active, both.chart.deadline) == ("A", 20)
+    both.at(20, Tick())
+    assert both.executor.active == (target or "B")
+
+
 def test_hold_has_a_limit_and_supervision_begins_a_mission():
     hold = reaction("gas_leak", "pause", until="all_clear", hold_limit=5, on_limit="end")
     mission = Mission(tasks=(a("A"),), mode="supervisory", reactions=(hold,))

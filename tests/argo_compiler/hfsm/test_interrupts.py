@@ -67,6 +67,8 @@ def sets(size, untils, priorities, **kinds):
     events = EVENTS[:size]
     for fields in product(*(variants(event, untils, **kinds) for event in events)):
         for given in product(priorities, repeat=size):
+            if min(given) != priorities[0]:
+                continue  # the same order as a set with lower ones
             yield tuple(
                 Reaction(**one, priority=priority)
                 for one, priority in zip(fields, given, strict=True)
@@ -206,7 +208,7 @@ def test_one_reaction_alone_and_two_that_interrupt_each_other():
 @pytest.mark.rule("R7", "R9", "R10")
 def test_all_pairs_and_three_reactions():
     _, pairs = explore_all(sets(2, (None, CLEAR, EVENTS[1]), (1, 2), responses=PAIRED))
-    three = sets(3, (None, CLEAR, EVENTS[0]), (1, 2), responses=PAIRED[1:], **PLAIN)
+    three = sets(3, (CLEAR, EVENTS[0]), (1, 2), responses=PAIRED[1:], **PLAIN)
     _, threes = explore_all(three)
     print("sets, states, steps:", pairs, threes)
 

@@ -22,6 +22,7 @@ from argo_compiler.analysis.verification import unproved
 from argo_compiler.analysis.witnessing import make_witnesses
 from argo_compiler.analysis.worst import worst_duration
 from argo_compiler.catalog import Catalog
+from argo_compiler.garbage_collector import collector_held
 from argo_compiler.hfsm.lowering import lower
 from argo_compiler.il import Mission
 
@@ -52,6 +53,11 @@ def analyse(
         DiagnosticError: `check` finds errors in the mission.
         ArgoError: the robot can't stand where the mission starts.
     """
+    with collector_held():
+        return _analysis(mission, catalog, travel)
+
+
+def _analysis(mission: Mission, catalog: Catalog | None, travel: Travel | None) -> Analysis:
     flow = Flow.of(lower(mission), mission)
     fields = make_fields(flow, catalog)
     study = Study(

@@ -8,7 +8,7 @@ from argo_compiler.analysis.study import Study
 from argo_compiler.analysis.values import PathSearch, objects_of, told_by_others
 from argo_compiler.analysis.witness import KeptReading, Trap
 
-_WORK = 100_000  # steps that are looked at
+_WORK = 50_000  # steps that are looked at
 
 
 @dataclass(frozen=True)
@@ -78,6 +78,15 @@ class _Search:
         self.work = _WORK
         self.told = told_by_others(study.flow)
         self.search = PathSearch(study.flow, study.nominal.fields, failures=False)
+        self.lookers: dict[str, set[int]] = {}
+        """for each checkpoint, the nodes at which a condition looks at it"""
+        for i, leaf in enumerate(study.flow.leaves):
+            for conditions, _ in leaf.conditional:
+                for condition in conditions:
+                    self.lookers.setdefault(condition.object_id, set()).add(i)
+        for g, group in enumerate(study.flow.groups):
+            for condition in group.until:
+                self.lookers.setdefault(condition.object_id, set()).add(study.flow.round_end(g))
 
     def places(self) -> Iterator[tuple[int, str]]:
         """Where a checkpoint is looked at that was not just measured."""
@@ -107,6 +116,7 @@ class _Search:
         study, search = self.study, self.search
         flow, nominal = study.flow, study.nominal
         fields = nominal.fields
+        lookers = self.lookers[object_id]
         seen = {leaf}
         pending = [leaf]
         while pending:
@@ -117,9 +127,13 @@ class _Search:
                 return None
             if flow.is_leaf(node) and flow.leaves[node].measures == object_id:
                 return None
-            if fields.get(nominal.late[node], object_id):
+            if nominal.late[node] and fields.get(nominal.late[node], object_id):
                 return None
-            for target, _ in search.ways(node, fields.set(state, object_id, reading)):
+            targets = study.successors[node]
+            if node in lookers:
+                kept = fields.set(state, object_id, reading)
+                targets = tuple(target for target, _ in search.ways(node, kept))
+            for target in targets:
                 if target not in seen:
                     seen.add(target)
                     pending.append(target)

@@ -153,6 +153,14 @@ class PathSearch:
         self.told = sum_bits(self._values(o) for o in told_by_others(flow))
         self.late = _late_readings(flow, self._late_readings)
 
+        self.plain = [*map(self._only_way, flow.leaves), *([None] * (flow.size - len(flow.leaves)))]
+        """for each node, the one that always follows, if it is so simple"""
+
+    def _only_way(self, leaf: LeafFlow) -> int | None:
+        timed = leaf.parent >= 0 and self.flow.timed[leaf.parent]
+        simple = not leaf.conditional and leaf.wait is None and leaf.deadline is None and not timed
+        return leaf.tail if simple and not (self.failures and leaf.failure is not None) else None
+
     def run(self) -> Paths:
         self._reach(self.flow.initial, self.fields.unmeasured | self.told)
         while self.waiting:
@@ -160,11 +168,17 @@ class PathSearch:
             self.queued[node] = False
             state = self.states[node]
             assert state is not None
+            following = self.plain[node]
+            if following is not None:
+                self._reach(following, self._after(node, state) | self.told)
+                continue
             for target, after in self.ways(node, state):
                 self._reach(target, after)
         looks = tuple(
             ()
             if state is None
+            else (GuardStatus(True, True, self._after(i, state) | self.told),)
+            if self.plain[i] is not None
             else tuple(look for look, _, _ in self._look(i, self._after(i, state)))
             for i, state in enumerate(self.states[: len(self.flow.leaves)])
         )
@@ -356,14 +370,13 @@ def _late_readings(flow: Flow, readings: Callable[[str], int]) -> list[int]:
         for i, leaf in enumerate(flow.leaves)
         if leaf.measures is not None and readings(leaf.measures)
     ]
-    ways = [_ways_while_cancelling(flow, node) for node in range(flow.size)] if pending else []
     while pending:
         node = pending.pop()
         passed = late[node]
         if flow.is_leaf(node):
             measured = flow.leaves[node].measures
             passed |= readings(measured) if measured is not None else 0
-        for target in ways[node]:
+        for target in _ways_while_cancelling(flow, node):
             if passed | late[target] != late[target]:
                 late[target] |= passed
                 pending.append(target)

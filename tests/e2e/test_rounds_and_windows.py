@@ -24,6 +24,11 @@ def done(request, argo, tmp_path_factory):
     return result, RunRecord.model_validate_json(text), folder
 
 
+def test_check_finds_no_error_in_it(argo) -> None:
+    result = argo("check", MISSION)
+    assert result.returncode == 0, result.stdout
+
+
 def test_it_is_completed_with_failures(done) -> None:
     result, record, _ = done
     assert result.returncode == 1, result.stderr
@@ -31,7 +36,7 @@ def test_it_is_completed_with_failures(done) -> None:
     assert record.result.docked
     assert record.contacts == ()
     line = result.stdout.replace("\n", " ")
-    assert "Completed with failures: missed the time window: Valve R25. 3 findings" in line
+    assert "Completed with failures: missed the time window: Valve R25. 5 findings" in line
 
 
 def test_it_waits(done) -> None:
@@ -60,7 +65,9 @@ def test_a_missed_window_has_its_branch(done) -> None:
     assert names[names.index("Valve R25") + 1] == "Lookout"
     kept = {one.task: one for one in record.windows}
     assert kept["Valve R25"].kept is WindowKept.MISSED
-    assert kept["Valve R25"].ended == pytest.approx(150.0)
+    assert kept["Valve R25"].ended == pytest.approx(240.0)
+    run = next(run for run in record.tasks if run.task == "Valve R25")
+    assert (run.outcome, run.reason) == ("cancelled", "its time window is over")
     assert kept["Level"].kept is WindowKept.KEPT
     level = next(run for run in record.tasks if run.task == "Level")
     assert level.early[1] == 330.0
@@ -82,7 +89,7 @@ def test_the_report_shows_each(done) -> None:
     page = (folder / "report.html").read_text(encoding="utf-8")
     for words in (
         "Waits, rounds and time windows", 'id="waits"', 'id="windows"', 'id="rounds"',
-        "Settle: waits for 15 s", "hard time window, 00:00 to 02:30", "round 2 of Patrol is due",
+        "Settle: waits for 15 s", "hard time window, 00:00 to 04:00", "round 2 of Patrol is due",
         "Level: at its place, too early until 05:30", "a round every 75 s, 2 rounds at most",
         "until #1 &lt; 5", "time window missed", "Completed with failures",
     ):  # fmt: skip

@@ -17,6 +17,9 @@ from argo_compiler.nearest_name import nearest_name
 MIN_HARD_DURATION_S = 1e-3
 """A group that a time-out enters again has to last: each visit is a step of the machine."""
 
+MIN_PERIOD_S = 1.0
+"""Rounds that are late are made up for at once, so not too many may come to be late in a pause."""
+
 _MOST_HINTS = 20
 """missing names for which a similar one is looked up"""
 
@@ -130,6 +133,16 @@ def _check_ends(mission: Mission, subjects: Subjects) -> Iterator[Diagnostic]:
                 "before any action could be carried out",
                 f"allow it at least {MIN_HARD_DURATION_S:g} s, or 0 for no limit",
                 field=".max_repeat_duration",
+            )
+        if 0 < group.every < MIN_PERIOD_S:
+            yield _error(
+                subjects.group(i),
+                group,
+                "il.group-period",
+                f"the rounds of group '{group.name}' are to begin every {group.every:g} s, before "
+                "any of them could be over",
+                f"allow at least {MIN_PERIOD_S:g} s, or 0 for rounds without a pause",
+                field=".every",
             )
 
 

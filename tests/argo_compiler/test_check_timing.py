@@ -177,6 +177,11 @@ def test_a_group_that_ends_by_a_condition_is_not_endless():
     assert codes(chain(group("G", "A", "C", 2, until=odd))) == ["il.never-measured"]
 
 
+def test_rounds_follow_each_other_a_second_apart_at_least():
+    assert codes(chain(group("G", "A", "C", 3, every=0.5))) == ["il.group-period"]
+    assert codes(chain(group("G", "A", "C", 3, every=1))) == []
+
+
 @pytest.mark.parametrize("field", ["every", "until"])
 def test_what_one_round_does_not_need_is_named(field):
     value = {"every": 9.0, "until": (Condition(type="READING_FAILED", object_id="1"),)}[field]

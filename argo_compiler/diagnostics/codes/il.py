@@ -61,6 +61,10 @@ IL = {
         "A group is to lie in one that does not exist.",
         "Add the group around it, or take the `/` out of its name.",
     ),
+    "il.group-period": error(
+        "The rounds of a group are to follow each other faster than any could be over.",
+        "Give `every` a second at least, or 0 for rounds without a pause.",
+    ),
     "il.group-same-range": error(
         "Two groups have the same tasks, and neither name says which one lies inside.",
         "Name the inner one `Outer/Inner`.",

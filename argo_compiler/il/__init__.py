@@ -2,6 +2,8 @@
 
 from argo_compiler.il.mission import (
     DEFAULT_PRIORITIES,
+    MAX_COUNT,
+    MAX_RETRIES,
     MAX_TIME_S,
     Action,
     Afterwards,
@@ -25,6 +27,8 @@ from argo_compiler.il.mission import (
 
 __all__ = [
     "DEFAULT_PRIORITIES",
+    "MAX_COUNT",
+    "MAX_RETRIES",
     "MAX_TIME_S",
     "Action",
     "Afterwards",

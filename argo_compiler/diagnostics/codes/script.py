@@ -57,6 +57,10 @@ SCRIPT = {
         "A condition is asked for that missions do not have.",
         "Compare one checkpoint: less than, greater than, or between two values.",
     ),
+    "script.deep-rounds": error(
+        "Too many repetitions lie in one another.",
+        "Repeat the steps more often in one of them.",
+    ),
     "script.duration": error(
         "A duration is zero, or its units are mixed up.",
         "Write hours before minutes before seconds, each once: `1 h 30 min`.",

@@ -34,6 +34,10 @@ def assemble(
     return _Assembly(plan, diagnostics, steps or {}).result()
 
 
+_DEEPEST = 500
+"""repetitions in one another; the name of each has those of all around it"""
+
+
 class _Assembly:
     """A plan on its way to tasks and groups."""
 
@@ -179,6 +183,13 @@ class _Assembly:
                 inside = parent is not None and not r.base.startswith(f"{parent.name}/")
                 r.name = f"{parent.name}/{r.base}" if parent is not None and inside else r.base
                 around.append(r)
+                if len(around) > _DEEPEST:
+                    message = f"more than {_DEEPEST} repetitions lie in one another"
+                    hint = "repeat the steps more often in one of them"
+                    self.diagnostics.error("deep-rounds", message, r.round.span, hint)
+                    for other in ranges:
+                        other.name = other.name or other.base
+                    return shown
             if around:
                 shown[i] = around[-1].name
         return shown

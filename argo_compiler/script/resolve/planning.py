@@ -519,12 +519,13 @@ class Planner:
             return round_.last
         found: Item | None = None
         if round_.steps is None:
-            items = [item for item in self.plan if item.action is not Action.START]
-            while items and items[-1].docks:
-                items.pop()
-            if items:
-                round_.first, found = items[0], items[-1]
-                round_.last = found
+            first, found = self.plan.first, self.plan.last
+            while found is not None and (found.docks or found.action is Action.START):
+                found = found.before
+            while first is not None and first.action is Action.START:
+                first = first.after
+            if found is not None:
+                round_.first, round_.last = first, found
         else:
             point = round_.steps.first if round_.steps.last is None else round_.steps.last
             items = [named] if (named := self.named.get(str(point))) else []

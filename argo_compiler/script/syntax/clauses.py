@@ -6,7 +6,7 @@ from math import radians
 from typing import Any, ClassVar, NamedTuple
 
 from argo_compiler.diagnostics import Span
-from argo_compiler.il import ConditionType, EventKind, Mode, Order
+from argo_compiler.il import MAX_COUNT, MAX_RETRIES, ConditionType, EventKind, Mode, Order
 from argo_compiler.script.syntax.building import Builder, Figure, Numbered, Phrase, Quoted, Time
 from argo_compiler.script.syntax.commands import Joints, Normality, Side
 from argo_compiler.script.syntax.nodes import (
@@ -503,15 +503,19 @@ class LineBuilder(Builder):
         return Clause("age", seconds, phrase.start, phrase.end)
 
     def retry(self, phrase: Phrase) -> Clause:
-        tries = self._whole(phrase)
+        tries = self._whole(phrase, MAX_RETRIES)
         return Clause("retry", 1 if tries is None else tries, phrase.start, phrase.end)
 
-    def _whole(self, phrase: Phrase) -> int | None:
+    def _whole(self, phrase: Phrase, most: int = MAX_COUNT) -> int | None:
         for child in phrase.children:
             if isinstance(child, int | float) and not isinstance(child, bool):
                 if child != int(child):
                     message = f"`{phrase.content}` is not a whole number"
                     self.diagnostics.error("number", message, phrase.span, "write a whole number")
+                elif abs(child) > most:
+                    message = f"`{phrase.content}`: this is too large a number"
+                    hint = f"numbers go up to {most} here"
+                    self.diagnostics.error("number", message, phrase.span, hint)
                 return int(child)
         return None
 
@@ -575,8 +579,8 @@ class LineBuilder(Builder):
     def rounds(self, phrase: Phrase) -> Clause:
         count = phrase.first(Count)
         if count is None:
-            rounds = self._whole(phrase) or 0
-            count = Count(rounds, more=phrase.first(Flag) is not None)
+            more = phrase.first(Flag) is not None
+            count = Count(self._whole(phrase, MAX_COUNT - more) or 0, more)
         if count.rounds == 0:
             hint = "write how often, say, `three times`"
             self.diagnostics.error("rounds", "a patrol of no rounds", phrase.span, hint)

@@ -174,7 +174,7 @@ class Reference:
         return self.visit
 
     def command(self):
-        """I3, I4: what to do now; of a start, in how many seconds it may begin at the place (W4)."""
+        """I3, I4: what to do now; of a start, in how many seconds it may begin there (W4)."""
         if self.run is not None:
             if self.run.cancelled or not self.run.dropped:
                 return []

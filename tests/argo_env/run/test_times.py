@@ -19,9 +19,21 @@ from argo_compiler.il import (
 )
 from argo_env.report.waiting import waits
 from argo_env.run.headline import Tone
+from argo_env.run.journal import open_journal
 from argo_env.run.record import RunRecord, WindowKept
+from argo_env.run.session import resume
 from argo_env.run.spec import logged
-from tests.yard import Entries, fast_rig, measure, mission, run_with, waypoint, yard
+from tests.yard import (
+    Entries,
+    fast_rig,
+    measure,
+    mission,
+    opened,
+    run_with,
+    simulated,
+    waypoint,
+    yard,
+)
 
 
 @pytest.fixture(scope="module")
@@ -286,3 +298,36 @@ def test_what_a_person_read_is_abnormal_outside_the_nominal_range(navigator):
     events = logged((1.0, TakeOver()), (5.0, done))
     record = run_with(plan, fast_rig(navigator), observers=[entries], events=events)
     assert [t.task for t in record.tasks if t.outcome == "done"] == ["B"]
+
+
+@pytest.mark.rule("H2")
+@pytest.mark.parametrize("until", [3.0, 30.0, 60.0, 95.0, 110.0, 135.0, 150.0])
+def test_a_run_goes_on_in_a_wait_before_a_round_and_in_a_window(navigator, tmp_path, until):
+    """At these times it rests, drives, waits for a round, for a window, and for a value."""
+    group = Group(name="Watch", start="A", end="B", max_repeat_count=2, every=70.0)
+    told = wait("TOLD", conditions=(above(3, 4.0),), limit=100.0)
+    plan = mission(
+        wait("REST", duration=5.0), HERE, THERE,
+        measure(1, window=TimeWindow(earliest=120.0)),
+        told, waypoint("C", 3.05, 2.05, window=TimeWindow(latest=121.0), optional=True),
+        groups=(group,),
+    )  # fmt: skip
+    path = tmp_path / "run.journal"
+    events = logged((140.0, ReadingGiven("3", 9.0)))
+    whole = simulated(plan, navigator, drive="route", events=events, journal=path)
+    lines = path.read_bytes().splitlines(keepends=True)
+    with open_journal(path) as journal:
+        kept = sum(entry.t <= until for entry in journal.entries)
+    path.write_bytes(b"".join(lines[: 1 + kept]))
+    with open_journal(path) as journal:
+        record = resume(journal, opened(navigator))
+    assert record.resumed or until > whole.result.duration
+    assert record.result.verdict == whole.result.verdict
+    assert [(w.task, w.end, w.why) for w in record.waits] == [
+        (w.task, w.end, w.why) for w in whole.waits
+    ]
+    assert [(r.number, r.due, r.began) for r in record.rounds] == [
+        (r.number, r.due, r.began) for r in whole.rounds
+    ]
+    assert [(w.task, w.kept) for w in record.windows] == [(w.task, w.kept) for w in whole.windows]
+    assert record.given_values == whole.given_values

@@ -15,7 +15,7 @@ from argo_compiler.reorder.precedences import (
     asked_for,
     must_be_last,
     precedences,
-    round_notes,
+    reckoning_notes,
 )
 from argo_compiler.reorder.requirements import Requirements
 from argo_compiler.reorder.travel_matrix import TravelMatrix, require_matrix_of
@@ -80,7 +80,7 @@ def route_problem(
     for k in range(len(visits.stops)):
         if said := windows.words(k):
             words[f"window {k}"] = said
-    reasons = [*spine.reasons, *round_notes(visits)]
+    reasons = [*spine.reasons, *reckoning_notes(visits)]
     if battery is None:  # and no use for chargers
         places = len(visits.stops) + 1
         times = times[:places, :places]

@@ -157,8 +157,12 @@ def _branches(unit: Unit) -> bool:
     return isinstance(unit, TaskUnit) and unit.final is None
 
 
-def round_notes(visits: Visits) -> Iterator[str]:
-    """What is said of rounds that are left in the middle, or may end earlier."""
+def reckoning_notes(visits: Visits) -> Iterator[str]:
+    """What is said of rounds that are left in the middle or may end earlier, and of WAITs that may."""
+    for leaf in visits.of_leaf:
+        wait = visits.task(leaf).wait
+        if wait is not None and wait.duration is None:
+            yield f"'{visits.task(leaf).name}' is reckoned with all of its limit"
     for circuit, _ in visits.circuits:
         group = visits.spine.flow.groups[circuit.group]
         if group.hard:

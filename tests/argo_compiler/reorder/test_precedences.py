@@ -309,6 +309,12 @@ def test_a_wait_stays_with_the_task_before_it():
     assert [t.name for t in apply_route(found, moved).tasks] == ["M2", "M1", "W", "DOCK"]
 
 
+def test_a_wait_for_an_event_is_reckoned_with_its_limit():
+    found = planned(row(measure(1), wait("W", event=EventKind.ALL_CLEAR, limit=30), measure(2)))
+    assert found.reasons == ("'W' is reckoned with all of its limit",)
+    assert evaluate(found.problem, found.written).duration == 10 + 30 + 10 + 10
+
+
 def test_a_wait_before_all_else_stays_there():
     found = planned(row(wait("W", duration=7), measure(1), measure(2)))
     assert set(kept(found)) == {"'W' is done before the robot sets off"}

@@ -158,7 +158,7 @@ def _branches(unit: Unit) -> bool:
 
 
 def reckoning_notes(visits: Visits) -> Iterator[str]:
-    """What is said of rounds that are left in the middle or may end earlier, and of WAITs that may."""
+    """What is said of rounds and WAITs that may end earlier, and of rounds left in the middle."""
     for leaf in visits.of_leaf:
         wait = visits.task(leaf).wait
         if wait is not None and wait.duration is None:

@@ -269,9 +269,10 @@ class _Combination:
         if all_rounds < self.limit:
             return
         completed = 0.0
-        if self.first_end is not None and first <= self.limit:
+        # What begins when the time is up has not ended, even if it takes no time.
+        if self.first_end is not None and first < self.limit:
             completed = 1.0
-            if self.period is not None and self.count > 1 and first < self.limit:
+            if self.period is not None and self.count > 1:
                 # The round that reaches the limit is not among those completed for sure.
                 completed = max(1.0, _rounds_up(self.limit - first, longest, -1))
             completed = min(completed, self.count)

@@ -269,3 +269,15 @@ def test_a_reaction_of_higher_rank_may_keep_the_robot_from_going_home():
     assert worst(loop, max_duration=100, dock=DOCK, reactions=(HOME, held)) is None
     supervised = {"mode": Mode.SUPERVISORY, "max_duration": 100, "dock": DOCK}
     assert worst(loop, reactions=(HOME,), **supervised) is None
+
+
+def test_an_action_that_begins_when_the_time_is_up_has_not_ended():
+    """B takes no time, but needs energy: the stop comes before its end."""
+
+    class Quick(Steady):
+        def leg(self, origin, task, velocity):  # noqa: ARG002
+            return Leg(0.0 if task.name == "B" else 10.0, 1.0, task.name)
+
+    rounds = group("G", "A", "B", max_repeat_duration=10, **HARD)
+    found = analyse(mission("A", "B", groups=[rounds]), CATALOG, Quick())
+    assert found.energy.least.value <= 1

@@ -206,7 +206,7 @@ def random_protocol(rng):
 
 
 def branch(rng, n, extra):
-    kind = rng.choice(["check", "check", "check", "go", "on", HOME])
+    kind = rng.choice(["check", "check", "go", "go", "on", HOME])
     if kind == "check" and (number := next(extra, None)) is not None:
         return "check", number
     if kind == "go":
@@ -354,3 +354,49 @@ def test_a_priority_of_a_script_does_not_hold_an_emergency_stop_back(
     executor.handle(Occurred(EventKind.EMERGENCY_STOP), 3.0)
     executor.handle(ActionStopped("react to low_battery"), 4.0)
     assert executor.outcome is Outcome.ABORTED
+
+
+@pytest.mark.rule("G6", "G14")
+@pytest.mark.parametrize(
+    ("lines", "ends", "ways"),
+    [
+        (
+            "1. Check #1; if it is above 5, go to step 1; otherwise go to step 3.\n"
+            "2. Repeat step 1 twice.\n3. Check #3",
+            "end of 'Repeat 1'",
+            {"MEASURE 1": ["MEASURE 1", "MEASURE 3"], "end of 'Repeat 1'": ["MEASURE 3"]},
+        ),
+        (
+            "1. Check #1; if it is above 5, go on; then go to step 4.\n"
+            "2. Repeat step 1 twice.\n3. Check #3.\n4. Check #4",
+            "end of 'Repeat 1'",
+            {"MEASURE 1": ["end of 'Repeat 1'"] * 2, "end of 'Repeat 1'": ["MEASURE 4"]},
+        ),
+        (
+            "1. Check #1; then go to step 4.\n2. Repeat step 1 twice; if #1 is above 5, check #2.\n"
+            "3. Check #3.\n4. Check #4",
+            "MEASURE 1",
+            {
+                "MEASURE 1": ["after 'Repeat 1'"],
+                "after 'Repeat 1'": ["MEASURE 2", "MEASURE 4"],
+                "MEASURE 2": ["MEASURE 3"],
+            },
+        ),
+        (
+            '1. "a": check #1; if it is above 5, check #2.\n2. Repeat step "a" twice.\n3. Check #3',
+            "end of 'Repeat a'",
+            {
+                "a": ["MEASURE 2", "end of 'Repeat a'"],
+                "MEASURE 2": ["end of 'Repeat a'"],
+                "end of 'Repeat a'": ["MEASURE 3"],
+            },
+        ),
+    ],
+)
+def test_where_a_round_ends_and_what_comes_then(
+    lines: str, ends: str, ways: dict[str, list[str]], catalog: Catalog
+) -> None:
+    mission = read(lines, catalog)
+    assert mission.groups[0].end == ends
+    found = {t.name: [way.target for way in t.transitions] for t in mission.tasks}
+    assert {name: found[name] for name in ways} == ways

@@ -155,6 +155,27 @@ def test_hostile_files(name: str, tmp_path: Path) -> None:
     assert answer(path).split()[0] in ("mission", "refused")
 
 
+HUGE = "1" + "0" * 400
+
+
+@pytest.mark.parametrize(
+    ("field", "said"),
+    [
+        (f'"groups": [{{"name": "g", "start": "A", "end": "A", "max_repeat_count": {HUGE}}}]', ""),
+        ('"groups": [{"name": "g", "start": "A", "end": "A", "max_repeat_duration": 1e300}]', ""),
+        ('"max_duration": 1e13', "max_duration: input should be less than or equal to"),
+        (f'"start_area": {HUGE}', "start_area: input should be less than or equal to"),
+    ],
+)
+def test_numbers_beyond_reason_are_refused(tmp_path: Path, field: str, said: str) -> None:
+    path = tmp_path / "mission.json"
+    task = '{"name": "A", "action": "WAYPOINT", "pose": {"x": 0, "y": 0, "z": 0}}'
+    path.write_text(f'{{"version": 3, "tasks": [{task}], {field}}}', encoding="utf-8")
+    given = answer(path)
+    assert given.startswith("refused")
+    assert said in given
+
+
 def test_json_nested_beyond_reason(tmp_path: Path) -> None:
     path = tmp_path / "mission.json"
     path.write_text("[" * 1_000_000, encoding="utf-8")

@@ -51,7 +51,9 @@ class Surface:
         """The cells, ascending, of the square about (x, y) that reaches `distance` (m) far."""
         i0, i1 = (math.floor((x + d - self.grid.x0) / CELL) for d in (-distance, distance))
         j0, j1 = (math.floor((y + d - self.grid.y0) / CELL) for d in (-distance, distance))
-        rows = np.arange(max(i0, 0), min(i1, self.grid.nx - 1) + 1) * self.grid.ny
+        # Poses may lie anywhere, also further than arrays are long.
+        low, high = (min(max(i, 0), self.grid.nx) for i in (i0, i1 + 1))
+        rows = np.arange(low, high) * self.grid.ny
         first = np.searchsorted(self._columns, rows + min(max(j0, 0), self.grid.ny))
         last = np.searchsorted(self._columns, rows + min(max(j1 + 1, 0), self.grid.ny))
         return np.concatenate([np.arange(a, b) for a, b in zip(first, last, strict=True)] or [rows])

@@ -23,6 +23,9 @@ from argo_env.planning.opening import OpenedSite
 from argo_env.planning.poses_to_read_from import unseen_from_poses
 from argo_planner.use_cases.importing import SourceKind, Upload, kind_of, load, refuse_areas
 
+MOST_PLACES = 1_000
+"""as far as ways to different places are planned for a check: each takes some milliseconds"""
+
 
 class Format(StrEnum):
     """How diagnostics are written."""
@@ -54,11 +57,27 @@ def check_source(
         return diagnostics_of(error)
     found = check(loaded.mission, catalog)
     if not has_errors(found):
+        places = len({task.pose for task in loaded.mission.tasks if task.pose is not None})
+        if travel is not None and places > MOST_PLACES:
+            travel = None
+            found += (_too_many_places(places),)
         with stage("analysing the mission's paths"):
             found += analyse(loaded.mission, catalog, travel).diagnostics
         if site is not None:
             found += tuple(unseen_from_poses(loaded.mission, site))
     return by_place((*loaded.diagnostics, *loaded.placed(found)))
+
+
+def _too_many_places(places: int) -> Diagnostic:
+    return Diagnostic(
+        code="analysis.too-many-places",
+        severity=Severity.WARNING,
+        message=f"the mission goes to {places} different places: nothing is said about its times, "
+        f"its energy and whether the robot gets there, as that is looked at for up to "
+        f"{MOST_PLACES} places",
+        hint="divide it into several missions",
+        subject="tasks",
+    )
 
 
 def diagnostics_of(error: ArgoError) -> tuple[Diagnostic, ...]:

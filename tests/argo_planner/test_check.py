@@ -143,3 +143,20 @@ def test_a_file_that_is_not_there_is_named_once(argo, tmp_path: Path):
         f"{path}: error: can't be read: it does not exist (no such file) [script.unreadable]"
         in result.output
     )
+
+
+def test_a_mission_to_very_many_places_is_checked_without_its_times(catalog, tmp_path: Path):
+    ways = [[{"target": f"T{k + 1}"}] if k < 1000 else [] for k in range(1001)]
+    tasks = [
+        {"name": f"T{k}", "action": "WAYPOINT", "pose": {"x": k, "y": 0, "z": 0}, "transitions": w}
+        for k, w in enumerate(ways)
+    ]
+    path = tmp_path / "mission.json"
+    path.write_text(json.dumps({"version": 3, "tasks": tasks}), encoding="utf-8")
+
+    class NotAsked:
+        """Travel that must not be asked for anything."""
+
+    findings = check_source(read_upload(path), catalog, travel=NotAsked())
+    (finding,) = [f for f in findings if f.code == "analysis.too-many-places"]
+    assert "1001 different places: nothing is said about its times" in finding.message

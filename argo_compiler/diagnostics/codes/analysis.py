@@ -60,6 +60,10 @@ ANALYSIS = {
         "Even the shortest path takes longer than the mission's maximum duration.",
         "Leave out tasks, shorten groups, or allow more time.",
     ),
+    "analysis.too-many-places": warning(
+        "The mission goes to so many different places that times and energy are not looked at.",
+        "Divide it into several missions.",
+    ),
     "analysis.transition-always": warning(
         "A condition holds for every value that can be measured, so what comes after it is "
         "never looked at.",

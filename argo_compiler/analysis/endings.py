@@ -6,7 +6,7 @@ from collections.abc import Iterable, Iterator
 from argo_compiler.analysis.kept import KeptLoop
 from argo_compiler.analysis.study import Study, listed
 from argo_compiler.diagnostics import Diagnostic, Severity
-from argo_compiler.il import Action
+from argo_compiler.il import Action, Task
 from argo_compiler.model import Pose
 
 DOCKED_DISTANCE_M = 0.1
@@ -134,9 +134,14 @@ def _elsewhere(study: Study) -> Iterator[Diagnostic]:
     flow = study.flow
     last_elsewhere: dict[int, str] = {}
     for leaf in range(len(flow.leaves)):
-        if not study.nominal.reached(leaf) or _stands_at(study, leaf, dock):
+        if not study.nominal.reached(leaf):
             continue
-        if any(_ends(study, target) for target in study.nominal.targets(flow, leaf)):
+        if any(_ends(study, target) for target in study.nominal.after_missing(flow, leaf)):
+            where = f"wherever the robot is when the window of task '{study.name(leaf)}' is over"
+            last_elsewhere[leaf] = where
+        elif not _stands_at(study, leaf, dock) and any(
+            _ends(study, target) for target in study.nominal.targets(flow, leaf)
+        ):
             last_elsewhere[leaf] = f"after task '{study.name(leaf)}'"
     for number, group in enumerate(flow.groups):
         if (
@@ -171,7 +176,26 @@ def _ends(study: Study, node: int) -> bool:
 
 
 def _stands_at(study: Study, leaf: int, dock: Pose) -> bool:
-    task = study.task(leaf)
+    """Whether the robot is at the dock after a task; after a WAIT it is where it was before."""
+    seen = {leaf}
+    pending = [leaf]
+    while pending:
+        node = pending.pop()
+        if study.flow.is_leaf(node) and study.flow.leaves[node].wait is None:
+            missed = node != leaf and study.flow.leaves[node].deadline is not None
+            if missed or not _leads_to(study.task(node), dock):
+                return False
+            continue
+        before = study.predecessors[node]
+        cut = not study.flow.is_leaf(node) and study.flow.group_of_round_end(node) is None
+        if cut or node == study.flow.initial or not before:
+            return False
+        pending += [other for other in before if other not in seen]
+        seen.update(before)
+    return True
+
+
+def _leads_to(task: Task, dock: Pose) -> bool:
     if task.action is not Action.WAYPOINT or task.pose is None:
         return False
     away = math.dist((task.pose.x, task.pose.y, task.pose.z), (dock.x, dock.y, dock.z))

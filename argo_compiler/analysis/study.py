@@ -56,6 +56,15 @@ class Study:
         return tuple(sorted(traps))
 
     @cached_property
+    def predecessors(self) -> tuple[tuple[int, ...], ...]:
+        """What may come before each node, if nothing fails."""
+        before: list[list[int]] = [[] for _ in range(self.flow.size)]
+        for node, following in enumerate(self.successors):
+            for other in following:
+                before[other].append(node)
+        return tuple(map(tuple, before))
+
+    @cached_property
     def traps(self) -> tuple[tuple[int, ...], ...]:
         """The leaves of each of them."""
         return tuple(tuple(filter(self.flow.is_leaf, nodes)) for nodes in self.trap_nodes)

@@ -80,6 +80,19 @@ def test_where_the_mission_ends():
     assert "the time of group 'G' is up" in found["end-elsewhere"].message
 
 
+def test_after_a_wait_the_robot_is_where_it_was():
+    home = Task(
+        name="Home", action=Action.WAYPOINT, pose=DOCK, transitions=task("x", "J").transitions
+    )
+    join = Task(name="J", action=Action.WAIT, wait=WaitRule(duration=0))
+    assert findings(mission(task("A", "Home"), home, join, end_area=1)) == {}
+    away = mission(task("Am1", way("J", "1 < 5"), "Home"), home, join, end_area=1)
+    assert "after task 'J'" in findings(away)["end-elsewhere"].message
+    late = home.model_copy(update={"window": TimeWindow(latest=5)})
+    found = findings(mission(task("A", "Home"), late, join, end_area=1))
+    assert "after task 'J'" in found["end-elsewhere"].message
+
+
 @pytest.mark.parametrize(
     ("limit", "expected"),
     [(32, None), (31, "maybe-too-long"), (22, "maybe-too-long"), (21, "too-long")],

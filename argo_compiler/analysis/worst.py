@@ -1,8 +1,9 @@
 """What a mission takes at most, whatever fails and whatever occurs: reactions included.
 
 It is assumed that nobody interrupts the mission or takes the robot over, that an action which fails
-has failed by the time at which it would have been done, and that the robot is then between two
-places of the plan of which one follows the other.
+has failed by the time at which it would have been done, and that after actions which failed or were
+cancelled, be it several in a row, the robot is between two places of the plan of which one follows
+the other.
 """
 
 import math
@@ -31,6 +32,8 @@ def worst_duration(study: Study) -> Bound | None:
         within = longest(study.flow, study.all, legs)
     except BoundsTooLargeError:
         return None
+    if study.extent is not None and study.extent.duration is not None:
+        within = max(within, study.extent.duration.most.value or 0.0)
     reactions = _Reactions(study, legs)
     return Bound(value=_finite(min(within + reactions.after_any(), reactions.after_time_up())))
 

@@ -112,7 +112,7 @@ def require_within(analysis, done):
 def require_within_worst(analysis, done):
     """Whatever failed and occurred."""
     worst = analysis.duration_with_failures
-    if worst is not None and worst.value is not None:
+    if worst is not None and worst.value is not None and not done.astray:
         event(f"worst, finished {done.finished}")
         assert done.now <= worst.value + SOON, (done.now, worst)
 

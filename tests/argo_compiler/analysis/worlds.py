@@ -214,6 +214,8 @@ class Run:
     finished: bool = False
     nominal: bool = True
     """whether no action failed, be it by its time limit"""
+    astray: bool = False
+    """whether actions that were cancelled in a row left the robot between any places"""
     in_time: bool = True
     """whether no reaction began"""
 
@@ -357,9 +359,12 @@ class _World:
 
     def _on_the_way(self, way):
         before = self.place
-        if self.mode == "failing" and isinstance(before, _Near):
-            # What is left after several failures is assumed, see `docs/analysis.md`.
-            before = _At(before.arrival)
+        if isinstance(before, _Near):
+            if self.mode == "failing":
+                # What is left after several failures is assumed, see `docs/analysis.md`.
+                before = _At(before.arrival)
+            else:
+                self.done.astray = True
         return _Near(before, way.task, way.arrival)
 
     def _end(self):

@@ -142,14 +142,14 @@ class MissionCourse:
     def _own_time(self, leaf: LeafNode) -> bool:
         """What the visit's own times bring about now, other than the end of a WAIT."""
         place, visit = self.place, self.place.visit
-        if visit.missed_at(place.began) <= self.now:
-            self._fail_for_good(leaf, _OVER, leaf.missed or leaf.failure)
-        elif visit.action_due <= self.now:
-            self.fail(leaf, f"not done within {leaf.time_limit:g} s")
-        elif place.round_of is not None:
+        if place.round_of is not None:
             frame = place.round_of
             place.begin_round(self.now)
             self.note(Cause.ROUND, detail=f"{frame.round} of '{frame.group.name}'")
+        elif visit.missed_at(place.began) <= self.now:
+            self._fail_for_good(leaf, _OVER, leaf.missed or leaf.failure)
+        elif visit.action_due <= self.now:
+            self.fail(leaf, f"not done within {leaf.time_limit:g} s")
         elif visit.limit_at <= self.now:
             assert leaf.wait is not None
             self._fail_for_good(leaf, f"waited {leaf.wait.limit:g} s in vain", leaf.failure)

@@ -425,7 +425,7 @@ class Reference:
     def window_over(self):
         """W5, W6."""
         latest = self.hard_latest()
-        if latest is None or self.elapsed < latest:
+        if latest is None or self.elapsed < latest or self.round_of is not None:
             return False
         self.failed_for_good(missed=self.tasks[self.current].window.missed_target)
         return True

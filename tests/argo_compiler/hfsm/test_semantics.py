@@ -3,7 +3,7 @@
 import pytest
 
 from argo_compiler.diagnostics import DiagnosticError
-from argo_compiler.hfsm import Cause, Executor, ReadingKind, lower
+from argo_compiler.hfsm import ActionSucceeded, Cause, Executor, ReadingKind, Tick, lower
 from argo_compiler.il import (
     Action,
     Condition,
@@ -12,6 +12,7 @@ from argo_compiler.il import (
     Mission,
     Stop,
     Task,
+    TimeWindow,
     Transition,
 )
 
@@ -313,3 +314,19 @@ class TestDurations:
         mission = build("A B", self.group(Stop.HARD, 1.5), ways={"B": ["A"]})
         executor = drive(mission, steps=6)
         assert path(executor) == "A@0 B@1 A@1.5 B@2.5 A@3 B@4"
+
+
+@pytest.mark.rule("G13", "W5", "W7")
+def test_window_that_is_over_is_missed_when_the_round_is_due(build):
+    """Or rounds without a limit would follow each other in no time."""
+    mission = build("A", Group(name="G", start="A", end="A", every=10, until=(greater("A", 9),)))
+    window = TimeWindow(latest=5)
+    task = mission.tasks[0].model_copy(update={"window": window})
+    executor = Executor(lower(mission.model_copy(update={"tasks": (task,)})))
+    executor.start(0)
+    executor.handle(ActionSucceeded("A", 0), 3)
+    assert executor.handle(Tick(), 7) == ()
+    assert executor.active == "A"
+    assert not executor.progress().failed
+    assert executor.handle(Tick(), 10) == ()
+    assert (executor.progress().failed, executor.rounds["G"]) == (True, 3)

@@ -174,9 +174,7 @@ class Configuration:
         if leaf is None or self.interrupted_at is not None:
             return
         if self.round_of is not None:
-            self.own_due = (
-                self.round_at
-            )  # no window is missed before it
+            self.own_due = self.round_at  # no window is missed before it
         elif leaf.timed or visit.action_due < math.inf:
             self.own_due = visit.due(self.began)
 

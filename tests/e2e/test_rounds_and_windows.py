@@ -17,7 +17,7 @@ MISSION = SCENARIOS / "missions" / "rounds_and_windows.json"
 def done(request, argo, tmp_path_factory):
     folder = tmp_path_factory.mktemp(request.param)
     result = argo(
-        "run", MISSION, "--faults", SCENARIOS / "faults" / "falling_pressure.yaml",
+        "run", MISSION, "--faults", SCENARIOS / "missions" / "falling_pressure.yaml",
         "--drive", request.param, "--report", folder,
     )  # fmt: skip
     text = (folder / "report.json").read_text(encoding="utf-8")

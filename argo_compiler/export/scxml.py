@@ -153,26 +153,16 @@ class _Document:
             assign(self.xml, f"entered_{n}", _clock(repeat))
 
     def _begin_round(self, group: Composite) -> None:
-        """The round that was waited for begins: all inside is entered anew, with its clocks.
-
-        The window of its first task may be over before that.
-        """
-        n, leaf = self.ids.groups[group.id], self.leaves[group.initial]
-        events = ["timeout.round"]
-        if _latest(leaf.task) is not None:
-            events.append("timeout.window")
-        for event in events:
-            attributes = {
-                "event": event,
-                "cond": f"mode == 0 && awaits == {n}",
-                "target": self._state(leaf.id),
-                "type": "internal",
-            }
-            with self.xml.element("transition", attributes):
-                self._assign([("now", "_event.data.time"), ("clock", "now - lost")])
-                self._assign([("awaits", "0"), ("due_round", "0")])
-                if event == "timeout.window":
-                    assign(self.xml, "missed", "1")
+        """The round that was waited for begins: all inside is entered anew, with its clocks."""
+        attributes = {
+            "event": "timeout.round",
+            "cond": f"mode == 0 && awaits == {self.ids.groups[group.id]}",
+            "target": self._state(group.initial),
+            "type": "internal",
+        }
+        with self.xml.element("transition", attributes):
+            self._assign([("now", "_event.data.time"), ("clock", "now - lost")])
+            self._assign([("awaits", "0"), ("due_round", "0")])
 
     def _group_transition(self, group: Composite, transition: StateTransition) -> None:
         n, repeat = self.ids.groups[group.id], _repeat(group)
@@ -250,10 +240,13 @@ class _Document:
             ]
         )
         self._begin_wait(leaf)
-        if waits:
-            # It begins with its round.
+        # What the task's own time brings about begins with its round.
+        own = ["due_wait", "due_limit"] if waits else []
+        if _latest(task) is not None:
+            own.append("due_window")
+        if own:
             with xml.element("if", {"cond": "awaits != 0"}):
-                self._assign([("due_wait", "0"), ("due_limit", "0")])
+                self._assign([(due, "0") for due in own])
         if self.timers:
             with xml.element("if", {"cond": "mode == 0"}):
                 for due in self.ids.dues:
@@ -330,20 +323,14 @@ class _Document:
         if _latest(leaf.task) is None:
             return
         way = leaf.missed or leaf.failure
-        group = self.composites[leaf.parent]
-        if group.repeat is not None and group.initial == leaf.id:
-            self._fail(None, "missed == 1", leaf, way)
         self._fail("timeout.window", "mode == 0 && awaits == 0", leaf, way)
 
-    def _fail(self, event: str | None, cond: str, leaf: Leaf, way: StateTransition | None) -> None:
+    def _fail(self, event: str, cond: str, leaf: Leaf, way: StateTransition | None) -> None:
         """The task has failed for good, and goes on by `way` or as after any other end."""
         xml, task = self.xml, leaf.task
         target = f"{self._state(leaf.id)}_end" if way is None else self._target(way.target)
         with xml.element("transition", {"event": event, "cond": cond, "target": target}):
-            if event is None:
-                assign(xml, "missed", "0")
-            else:
-                self._assign([("now", "_event.data.time"), ("clock", "now - lost")])
+            self._assign([("now", "_event.data.time"), ("clock", "now - lost")])
             if k := self.ids.object_of(task):
                 self._assign(
                     [
@@ -417,7 +404,7 @@ class _Document:
                 with xml.element("transition", {"event": f"reading.{k}"}):
                     self._read(k)
             with xml.element("state", {"id": "free"}):
-                going = "mode == 0 && visit > 0 && awaits == 0 && missed == 0"
+                going = "mode == 0 && visit > 0 && awaits == 0"
                 with xml.element("transition", {"cond": going, "target": "busy"}):
                     self._begin_action("visit", "place", "object")
                     with xml.element("if", {"cond": "limit > 0 && earliest <= now"}):

@@ -32,7 +32,6 @@ _COUNTERS = (
     "fails",  # failures of this visit's action
     "completed",  # the group whose round has ended and that has not decided yet, or 0
     "awaits",  # the group whose next round is not due yet, or 0
-    "missed",  # 1 when the window of a task is over whose round had not begun
     "occurred",  # 1 when the event that this visit waits for has occurred
     "look",  # 1 when the conditions that this visit waits for have to be looked at
     "object",  # the object that the mission's task measures, or 0

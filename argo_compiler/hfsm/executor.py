@@ -95,7 +95,7 @@ class Executor:
         self._running_leaf: LeafNode | None = None
         """None: the drive of a reaction"""
         self._running_visit = 0
-        self._running_attempt = 0
+        self._running_attempt = _FIRST
         self._last_id = 0
         """of the last command that started an action"""
         self._cancelling = False
@@ -362,9 +362,9 @@ class Executor:
             self._control.course.limit_action(leaf.time_limit, not_before)
         return (StartAction(task, self._last_id, not_before),)
 
-    def _wanted(self) -> tuple[LeafNode | None, Task | None, int, int]:
-        """The leaf, the task, the visit and the attempt of the action that is to run; no task, and
-        visit 0: none."""
+    def _wanted(self) -> "_Wanted":
+        """The leaf, the task and the visit of the action that is to run, and by what it is begun
+        anew: failures in this visit, and interruptions so far. No task, and visit 0: none."""
         control = self._control
         course, standing = control.course, control.standing
         if course.outcome is not None or standing.paused:
@@ -375,10 +375,10 @@ class Executor:
             leaf = visit.leaf
             if leaf is None or leaf.wait is not None or place.round_of is not None:
                 return _NOTHING
-            return leaf, leaf.task, visit.number, visit.attempt
+            return leaf, leaf.task, visit.number, (visit.attempt, place.interruptions)
         active = control.active
         if control.driving and active is not None:
-            return None, active.task, control.drive_visit, 0
+            return None, active.task, control.drive_visit, _FIRST
         return _NOTHING
 
     def _reason(self) -> str:
@@ -476,7 +476,9 @@ class Executor:
 
 _BUSY = "another call of the executor is under way: one thread at a time, and none from inside"
 _NOT_STARTED = "the executor has not been started: call start first"
-_NOTHING = (None, None, 0, 0)
+_FIRST = (0, 0)
+_NOTHING = (None, None, 0, _FIRST)
+_Wanted = tuple[LeafNode | None, Task | None, int, tuple[int, int]]
 
 
 def _ended_visit(kept: tuple[str, str | None, bool]) -> EndedVisit:

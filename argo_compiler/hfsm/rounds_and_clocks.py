@@ -31,6 +31,7 @@ class Configuration:
         "due",
         "frames",
         "interrupted_at",
+        "interruptions",
         "own_due",
         "readings",
         "round_of",
@@ -59,6 +60,9 @@ class Configuration:
         """s of interruptions that are over"""
         self.interrupted_at: float | None = None
         """since when the mission has been interrupted (s)"""
+        self.interruptions = 0
+        """how many there have been: an action that was started before one is started anew, even if
+        the driver hears of it when it is over"""
         self.due = math.inf
         """when the time of a group with a hard stop is up next (s); never while interrupted"""
         self.timed_out: GroupNode | None = None
@@ -107,6 +111,7 @@ class Configuration:
     def interrupt(self, now: float) -> None:
         if self.interrupted_at is None:
             self.interrupted_at = now
+            self.interruptions += 1
             self.due = self.own_due = self.visit.action_due = math.inf
 
     def go_on(self, now: float) -> None:

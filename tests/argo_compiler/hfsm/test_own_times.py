@@ -5,6 +5,7 @@ import pytest
 from argo_compiler.handover import hand_over, match
 from argo_compiler.hfsm import (
     ActionFailed,
+    ActionStopped,
     ActionSucceeded,
     ByHand,
     CancelAction,
@@ -25,6 +26,7 @@ from argo_compiler.hfsm import (
 )
 from argo_compiler.il import (
     Action,
+    Afterwards,
     Condition,
     ConditionType,
     EventKind,
@@ -430,6 +432,23 @@ class TestOrder:
         )
         play.at(10, Tick())
         assert (play.reaction, play.active) == (EventKind.TIME_UP, "A")
+
+    @pytest.mark.rule("I5", "R5")
+    def test_action_is_begun_anew_after_an_interruption_that_is_heard_of_when_it_is_over(self):
+        hold = Reaction(
+            event=EventKind.TIME_UP,
+            response=Response.PAUSE,
+            hold_limit=2,
+            on_limit=Afterwards.RESUME,
+        )
+        plan_ = plan(task("A", time_limit=30), max_duration=5, reactions=(hold,))
+        executor = Executor(lower(plan_))
+        executor.start(0)
+        (cancel,) = executor.handle(Tick(), 20)
+        assert isinstance(cancel, CancelAction)
+        (start,) = executor.handle(ActionStopped("A"), 21)
+        assert isinstance(start, StartAction)
+        assert executor.next_deadline == 51
 
 
 class TestSupervision:

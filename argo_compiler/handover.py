@@ -15,9 +15,14 @@ AnyModel = TypeVar("AnyModel", bound=Model)
 
 def hand_over(progress: Progress, by_hand: Sequence[ByHand], away: float = 0.0) -> Progress:
     """The progress, `away` seconds later, with what a person did or skipped meanwhile, in the order
-    in which they did it. Their ages count from now on, when the robot is given back."""
+    in which they did it.
+
+    Then the robot is given back, and what was done ages from there on: what is restored from this
+    later is told of the time since then only.
+    """
     aged = later(progress, away)
-    return aged.model_copy(update={"by_hand": (*aged.by_hand, *by_hand)})
+    given = (one.model_copy(update={"age": one.age or 0.0}) for one in by_hand)
+    return aged.model_copy(update={"by_hand": (*aged.by_hand, *given)})
 
 
 def later(progress: Progress, away: float) -> Progress:

@@ -79,7 +79,7 @@ def nested(depth: int) -> dict[str, object]:
         {"name": name, "start": "T0", "end": f"T{depth - i}", "max_repeat_count": 2}
         for i, name in enumerate(names)
     ]
-    return {"version": 2, "tasks": tasks, "groups": groups}
+    return {"version": 3, "tasks": tasks, "groups": groups}
 
 
 SCRIPTS = {
@@ -98,11 +98,11 @@ SCRIPTS = {
 FILES = {
     "groups a thousand deep": nested(1000),
     "a name of a megabyte": {
-        "version": 2,
+        "version": 3,
         "tasks": [{"name": "A" * 1_000_000, "action": "MEASURE", "object_id": "1"}],
     },
     "a hundred thousand tasks": {
-        "version": 2,
+        "version": 3,
         "tasks": [
             {
                 "name": str(i),
@@ -114,7 +114,7 @@ FILES = {
         ],
     },
     "ten thousand transitions from one task": {
-        "version": 2,
+        "version": 3,
         "tasks": [
             {
                 "name": "A",

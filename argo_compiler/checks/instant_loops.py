@@ -10,7 +10,7 @@ from argo_compiler.il.grouping import GroupRange, group_ranges
 from argo_compiler.il.subjects import Subjects
 
 MIN_WAIT_S = 1e-3
-"""A shorter WAIT takes no time."""
+"""A shorter WAIT, or limit of one, takes no time."""
 
 MOST_ROUNDS = 1000
 """that may follow each other in one moment, those of nested groups multiplied"""
@@ -20,7 +20,11 @@ _SHOWN = 8  # tasks of a circle that a message names
 
 def check_instant_loops(mission: Mission) -> Iterator[Diagnostic]:
     """A circle of tasks each of which may be over as soon as it is come to."""
-    instant = {task.name for task in mission.tasks if _ends_at_once(task) or _may_be_missed(task)}
+    instant = {
+        task.name
+        for task in mission.tasks
+        if any(is_instant(task) for is_instant in (_ends_at_once, _fails_at_once, _may_be_missed))
+    }
     if not instant:
         return
     graph = {task.name: set(_onward(task)) & instant for task in mission.tasks
@@ -53,6 +57,11 @@ def _ends_at_once(task: Task) -> bool:
     return bool(rule.conditions) if rule.duration is None else rule.duration < MIN_WAIT_S
 
 
+def _fails_at_once(task: Task) -> bool:
+    limit = task.wait.limit if task.wait is not None else None
+    return task.action is Action.WAIT and limit is not None and limit < MIN_WAIT_S
+
+
 def _may_be_missed(task: Task) -> bool:
     return task.window is not None and task.window.hard and task.window.latest is not None
 
@@ -60,13 +69,16 @@ def _may_be_missed(task: Task) -> bool:
 def _onward(task: Task) -> Iterator[str]:
     """The tasks that may follow one that took no time."""
     goes_on = _ends_at_once(task)
+    fails = _fails_at_once(task)
     if _may_be_missed(task) and task.window is not None:
         if task.window.missed_target is not None:
             yield task.window.missed_target
-        elif task.on_failure is OnFailure.BRANCH and task.failure_target is not None:
-            yield task.failure_target
-        elif task.on_failure is OnFailure.CONTINUE:
-            goes_on = True
+        else:
+            fails = True
+    if fails and task.on_failure is OnFailure.BRANCH and task.failure_target is not None:
+        yield task.failure_target
+    elif fails and task.on_failure is OnFailure.CONTINUE:
+        goes_on = True
     if goes_on:
         yield from (transition.target for transition in task.transitions)
 

@@ -4,11 +4,27 @@ from collections.abc import Iterator
 from typing import Any
 
 from argo_compiler.diagnostics import Diagnostic, Severity
+from argo_compiler.files.json_places import JsonPath
 from argo_compiler.il import Action, EventKind, Mission, Mode, OnFailure, Response, Task
 from argo_compiler.il.velocities import of_ways_there
 
 VERSION = 3
 """of the mission format that is written"""
+
+_NEW = {
+    "tasks": (
+        "wait",
+        "failure_target",
+        "time_limit",
+        "reading_limit",
+        "optional",
+        "priority",
+        "window",
+    ),
+    "groups": ("every", "until"),
+    "reactions": ("hold_limit", "on_limit", "area"),
+}
+"""Fields that came with version 3, by list."""
 
 _SHOWN = 6  # names of tasks that a message spells out
 
@@ -16,13 +32,29 @@ _SHOWN = 6  # names of tasks that a message spells out
 def migrate(data: dict[str, Any]) -> tuple[dict[str, Any], int]:
     """The mission's data as ones of the present version, and which version they are of.
 
-    All fields of older versions are fields of the present one; `updated` makes them mean what they
-    meant. Data of unknown versions stay as they are.
+    All fields of older versions are fields of the present one; `fields_of_later` names those that
+    they had not, and `updated` makes them mean what they meant. Data of unknown versions stay as
+    they are.
     """
     version = data.get("version", VERSION)
     if isinstance(version, bool) or version not in range(1, VERSION):
         return data, VERSION
     return {**data, "version": VERSION}, int(version)
+
+
+def fields_of_later(mission: Mission, version: int) -> Iterator[tuple[JsonPath, str]]:
+    """What a mission that was read from data of an older version has and that version had not: the
+    path of each field, and its name."""
+    if version >= VERSION:
+        return
+    for name, new in _NEW.items():
+        for i, part in enumerate(getattr(mission, name)):
+            for field in new:
+                if getattr(part, field) != type(part).model_fields[field].default:
+                    yield (name, i, field), field
+    for i, task in enumerate(mission.tasks):
+        if task.action is Action.WAIT:
+            yield ("tasks", i, "action"), "WAIT"
 
 
 def updated(mission: Mission, version: int) -> tuple[Mission, tuple[Diagnostic, ...]]:
@@ -110,7 +142,8 @@ def _velocities(differ: tuple[str, ...]) -> Diagnostic:
     return _changed(
         f"{_listed(differ)} was driven to at different velocities, by where the robot came from; "
         "it is the slowest of them now",
-        "a velocity belongs to the way to a task, wherever the robot comes from: set `velocity`",
+        "a velocity belongs to the way to a task now, wherever the robot comes from: save the "
+        f"mission as version {VERSION}, and set `velocity` there",
         "tasks",
     )
 

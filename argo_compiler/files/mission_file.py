@@ -14,12 +14,13 @@ from argo_compiler.diagnostics import (
     by_place,
 )
 from argo_compiler.files.json_places import (
+    JsonPath,
     JsonText,
     find_duplicates,
     find_places,
     format_path,
 )
-from argo_compiler.files.migration import VERSION, migrate, updated
+from argo_compiler.files.migration import VERSION, fields_of_later, migrate, updated
 from argo_compiler.files.mission_data import (
     MAX_FAULTS,
     UnplacedDiagnostic,
@@ -107,6 +108,8 @@ def decode_mission(content: bytes, source_name: str) -> MissionFile:
     result = to_mission(present)
     if isinstance(result, list) or faults:
         _refuse(source_name, text, faults + (result if isinstance(result, list) else []))
+    if later := [_later(written_as, *field) for field in fields_of_later(result, written_as)]:
+        _refuse(source_name, text, later[:MAX_FAULTS])
     mission, changes = updated(result, written_as)
     return MissionFile(mission, text, changes)
 
@@ -217,6 +220,15 @@ def _unsupported(version: object) -> UnplacedDiagnostic:
         f"has version {shown if len(shown) < 40 else '...'} of the mission format",
         f"this Argo reads versions up to {VERSION}: use a newer Argo or save the mission again",
         ("version",),
+    )
+
+
+def _later(version: int, path: JsonPath, name: str) -> UnplacedDiagnostic:
+    return unplaced(
+        "file.wrong-field",
+        f"{format_path(path)}: version {version} of the mission format has no {name}",
+        f'write "version": {VERSION}, in which velocities are those of the way to each task',
+        path,
     )
 
 

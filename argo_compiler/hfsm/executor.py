@@ -108,8 +108,8 @@ class Executor:
         """An executor that goes on from `progress` at time `now`; call `start` next.
 
         `away` is the time (s) since the progress was taken. It counts for the mission's duration,
-        for waits and holds and for groups that count interruptions, and makes readings older, also
-        what was done by hand and has an age. What has none was done now.
+        for waits and holds and for groups that count interruptions, and makes readings older, and
+        what was handed over before (`hand_over`, which is told of the time before that itself).
 
         Raises:
             ArgoError: the progress is not one of this machine.

@@ -115,6 +115,8 @@ ZERO = WaitRule(duration=0)
         ((wait("A", "A", rule=ZERO),), (), True),
         ((wait("A", "B", rule=ZERO), wait("B", "A", rule=ZERO)), (), True),
         ((wait("A", "B", rule=ZERO), wait("B", "A")), (), False),
+        ((wait("A", "A", rule=WaitRule(event="all_clear", limit=1e-9)),), (), True),
+        ((wait("A", "A", rule=WaitRule(event="all_clear", limit=1)),), (), False),
         ((wait("A", "B", rule=ZERO), measure("B", "A")), (), False),
         ((wait("A", "B", rule=ZERO), measure("B", "A", window=LATE)), (), True),
         (

@@ -189,7 +189,7 @@ def test_giving_back_is_a_progress_handed_over_and_gone_on_from(mission, outcome
     before = live.progress()
     by_hand = tuple(done_by_hand(data, site, once.log))
     away = sum(done.duration for done in by_hand) + more
-    restored = Executor.restore(lower(mission), hand_over(before, by_hand), now + away, away)
+    restored = Executor.restore(lower(mission), hand_over(before, by_hand, away), now + away)
     restored.start(now + away)
     expected = restored.handle(Resume(), now + away)
     assert live.handle(GiveBack(by_hand), now + away) == expected
@@ -239,7 +239,7 @@ class TestByHand:
             active="B", groups=(GroupProgress(group="G", round=1, elapsed=10),), elapsed=20
         )
         done = [ByHand(task="B", value=4, duration=5), ByHand(task="D", skipped=True)]
-        executor = Executor.restore(lower(mission), hand_over(progress, done), 100, away=30)
+        executor = Executor.restore(lower(mission), hand_over(progress, done, away=30), 100)
         (command,) = executor.start(100)
         assert command.task.name == "C"
         assert executor.next_deadline == 145
@@ -260,6 +260,16 @@ class TestByHand:
         (command,) = executor.start(0)
         assert command.task.name == "D"
         assert [e.task for e in executor.ended] == ["A"]
+
+    @pytest.mark.rule("H2", "H3")
+    @pytest.mark.parametrize(("age", "old"), [(None, 500), (5, 505)])
+    def test_what_was_read_ages_from_when_the_robot_was_given_back(self, age, old):
+        progress = Progress(active="A", paused=True)
+        kept = hand_over(progress, [ByHand(task="A", value=1, age=age)], away=10)
+        executor = Executor.restore(lower(line()), kept, 1000, away=500)
+        executor.start(1000)
+        executor.handle(Resume(), 1000)
+        assert executor.values["A"].time == 1000 - old
 
     def test_waits_while_the_mission_is_paused(self):
         progress = hand_over(Progress(active="A", paused=True), [ByHand(task="A")])
@@ -284,8 +294,8 @@ class TestByHand:
         live.handle(ActionStopped("B"), 10)
         first, later = durations
         done = (ByHand(task="B", value=2, duration=first), ByHand(task="D", duration=later))
-        progress = hand_over(live.progress(), done)
-        restored = Executor.restore(lower(line(group)), progress, 50, away=40)
+        progress = hand_over(live.progress(), done, away=40)
+        restored = Executor.restore(lower(line(group)), progress, 50)
         restored.start(50)
         assert live.handle(GiveBack(done), 50) == restored.handle(Resume(), 50)
         for at in (50, 60):

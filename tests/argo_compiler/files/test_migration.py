@@ -6,6 +6,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
+from argo_compiler.diagnostics import DiagnosticError
 from argo_compiler.files.mission_file import decode_mission
 from argo_compiler.il import Action, Group, Mission, Stop, Task, Transition
 from argo_compiler.il.velocities import BEGINNING, of_ways_on, of_ways_there, ways
@@ -112,6 +113,31 @@ def test_what_does_not_mean_the_same_is_said(data, said):
     assert not decode_mission(
         json.dumps({**file.mission.model_dump(mode="json")}).encode(), "new.json"
     ).changes
+
+
+@pytest.mark.rule("M6")
+@pytest.mark.parametrize(
+    ("data", "field"),
+    [
+        ({"tasks": [task("A", window={"latest": 9})]}, "tasks[0].window"),
+        ({"tasks": [task("A"), task("W", action="WAIT")]}, "tasks[1].action"),
+        (
+            {
+                "tasks": [task("A")],
+                "groups": [{"name": "G", "start": "A", "end": "A", "every": 9}],
+            },
+            "groups[0].every",
+        ),
+    ],
+)
+def test_a_file_has_the_fields_of_its_version_only(data, field):
+    with pytest.raises(DiagnosticError) as caught:
+        read(**data)
+    (fault,) = caught.value.diagnostics
+    assert (fault.code, fault.subject) == ("file.wrong-field", field)
+    assert fault.span is not None
+    assert "version" in fault.hint
+    read(3, **data)
 
 
 def test_priorities_and_unused_poses_stay_what_they_were():

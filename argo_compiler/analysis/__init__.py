@@ -1,6 +1,7 @@
 """The analysis of a mission over all its paths: what can't happen, and what it takes."""
 
 from argo_compiler.analysis.analyse import analyse
+from argo_compiler.analysis.bound_verification import unproved_bounds
 from argo_compiler.analysis.facts import (
     Analysis,
     Bound,
@@ -13,7 +14,15 @@ from argo_compiler.analysis.facts import (
 )
 from argo_compiler.analysis.travel import Leg, NoWay, Standing, Travel
 from argo_compiler.analysis.verification import unproved
-from argo_compiler.analysis.witness import Invariant, KeptReading, ReadingScale, Trap, Witnesses
+from argo_compiler.analysis.witness import (
+    Invariant,
+    KeptReading,
+    LeastSpent,
+    LeastWitness,
+    ReadingScale,
+    Trap,
+    Witnesses,
+)
 
 __all__ = [
     "Analysis",
@@ -22,6 +31,8 @@ __all__ = [
     "GroupFacts",
     "Invariant",
     "KeptReading",
+    "LeastSpent",
+    "LeastWitness",
     "Leg",
     "NoWay",
     "ReadingScale",
@@ -35,4 +46,5 @@ __all__ = [
     "Witnesses",
     "analyse",
     "unproved",
+    "unproved_bounds",
 ]

@@ -1,7 +1,10 @@
 """The analysis of a mission over all paths that it may take."""
 
 from collections.abc import Sequence
+from dataclasses import replace
 
+from argo_compiler.analysis.bound_verification import AT_LEAST, least_steps, unshown
+from argo_compiler.analysis.bound_witnessing import make_least_witness
 from argo_compiler.analysis.endings import endings
 from argo_compiler.analysis.facts import (
     Analysis,
@@ -22,6 +25,7 @@ from argo_compiler.analysis.verification import unproved
 from argo_compiler.analysis.witnessing import make_witnesses
 from argo_compiler.analysis.worst import worst_duration
 from argo_compiler.catalog import Catalog
+from argo_compiler.diagnostics import Diagnostic
 from argo_compiler.garbage_collector import collector_held
 from argo_compiler.hfsm.lowering import lower
 from argo_compiler.il import Mission
@@ -39,6 +43,14 @@ _BY_WITNESS = frozenset(
     )
 )
 """the diagnostics that say what never or always happens"""
+
+_WITHDRAWN = {
+    "analysis.too-long": "whether the mission takes too long on all paths",
+    "analysis.battery-exceeded": "whether the battery never suffices",
+    "analysis.window-late": "whether some windows are always over",
+    "analysis.window-missed": "whether some windows are always over",
+}
+"""what is not judged where what is said to be taken at least is not shown"""
 
 
 def analyse(
@@ -97,7 +109,38 @@ def _analysis(mission: Mission, catalog: Catalog | None, travel: Travel | None) 
         witnesses=make_witnesses(study, kept),
     )
     wrong = unproved(mission, catalog, analysis)
-    return without_verdicts(analysis, wrong) if wrong else analysis
+    if wrong:
+        analysis = without_verdicts(analysis, wrong)
+    return analysis if travel is None else _with_bounds_shown(mission, catalog, travel, analysis)
+
+
+def _with_bounds_shown(
+    mission: Mission, catalog: Catalog | None, travel: Travel, analysis: Analysis
+) -> Analysis:
+    """The same with a witness of what is said to be taken at least, and without what it does not
+    show."""
+    if not any(d.code in AT_LEAST for d in analysis.diagnostics):
+        return analysis
+    witnesses, steps = analysis.witnesses, None
+    if witnesses is not None:
+        steps = least_steps(mission, catalog, travel, witnesses.nominal)
+        least = None if steps is None else make_least_witness(steps)
+        witnesses = replace(witnesses, least=least)
+        analysis = analysis.model_copy(update={"witnesses": witnesses})
+    return without_bounds(analysis, unshown(steps, analysis))
+
+
+def without_bounds(analysis: Analysis, wrong: Sequence[Diagnostic]) -> Analysis:
+    """The same without some of what is said to be taken at least."""
+    if not wrong:
+        return analysis
+    subjects = ", ".join(dict.fromkeys(_WITHDRAWN[d.code] for d in wrong))
+    return analysis.model_copy(
+        update={
+            "diagnostics": tuple(d for d in analysis.diagnostics if d not in wrong),
+            "unjudged": (*analysis.unjudged, subjects),
+        }
+    )
 
 
 def without_verdicts(analysis: Analysis, wrong: Sequence[str]) -> Analysis:

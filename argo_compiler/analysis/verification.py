@@ -54,7 +54,7 @@ class Verifier:
 
     def __init__(self, mission: Mission, catalog: Catalog | None) -> None:
         self._mission = mission
-        self._layout = _Layout(mission)
+        self._layout = GroupLayout(mission)
         checkpoints = () if catalog is None else catalog.checkpoints
         self._ranges = {
             str(c.id): (c.range.low, c.range.high, c.nominal.low, c.nominal.high)
@@ -290,7 +290,7 @@ class _Walk:
     def __init__(
         self,
         mission: Mission,
-        layout: "_Layout",
+        layout: "GroupLayout",
         states: _States,
         failures: bool,
         proved: Proved,
@@ -531,7 +531,7 @@ class _Walk:
             yield from self._unconditional(self.layout.last[number], state, late)
 
 
-class _Layout:
+class GroupLayout:
     """Which tasks lie in which groups (G1), by position."""
 
     def __init__(self, mission: Mission) -> None:

@@ -69,6 +69,40 @@ class Trap:
 
 
 @dataclass(frozen=True, slots=True)
+class LeastSpent:
+    """What has been spent at least since the mission's start, in s or Wh, place by place.
+
+    In the round n of each group around a place it is (n - 1) times that group's period more. None:
+    the place is not come to.
+    """
+
+    tasks: tuple[float | None, ...]
+    """of each task, in the mission's order: when it has ended"""
+    missed: tuple[float | None, ...]
+    """likewise, when its hard window is over"""
+    rounds: tuple[float | None, ...]
+    """of each group, in the mission's order: when a round of it has ended"""
+    left: tuple[float | None, ...]
+    """likewise, when it has had its last round, or its time is up"""
+    entered: tuple[float | None, ...]
+    """likewise, when it is entered"""
+    periods: tuple[float, ...]
+    """likewise, from one round to the next"""
+    end: float | None
+    """when the mission has ended"""
+
+
+@dataclass(frozen=True, slots=True)
+class LeastWitness:
+    """What shows that a mission takes at least so much."""
+
+    time: LeastSpent
+    """s"""
+    energy: LeastSpent
+    """Wh"""
+
+
+@dataclass(frozen=True, slots=True)
 class Witnesses:
     """All that an analysis can show for its claims."""
 
@@ -77,3 +111,5 @@ class Witnesses:
     all: Invariant
     """whatever fails"""
     traps: tuple[Trap, ...] = ()
+    least: LeastWitness | None = None
+    """of what is taken at least, where something is said of that"""

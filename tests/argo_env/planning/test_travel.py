@@ -2,7 +2,7 @@
 
 import pytest
 
-from argo_compiler.analysis import Leg, NoWay, analyse
+from argo_compiler.analysis import Leg, NoWay, analyse, unproved_bounds
 from argo_compiler.il import Action, Mission, Task, Transition
 from argo_compiler.model import Pose
 from argo_env.planning.travel import SiteTravel
@@ -54,6 +54,19 @@ def test_protocol_2_lies_between_the_bounds(shipped, catalog, travel, protocol_r
     assert simulated <= found.duration.most.value + STEP
     # A hard stop leaves open where the robot is, and nothing else.
     assert found.duration.most.value - found.duration.least.value < 0.15 * simulated
+
+
+@pytest.mark.parametrize(
+    ("sheet", "areas"),
+    [("mission_1.txt", {"start_area": 1, "end_area": 2}), ("protocol_2.txt", {})],
+)
+def test_what_the_sheets_take_at_least_is_shown(shipped, catalog, travel, sheet, areas):
+    mission = shipped(sheet, **areas).mission
+    hurried = mission.model_copy(update={"max_duration": 60.0, "reactions": ()})
+    found = analyse(hurried, catalog, travel)
+    assert "analysis.too-long" in {d.code for d in found.diagnostics}
+    assert unproved_bounds(hurried, catalog, travel, found) == ()
+    assert found.witnesses.least.time.end == pytest.approx(found.duration.least.value)
 
 
 def test_velocities_count_for_the_way_to_the_task(navigator, catalog, travel):

@@ -1,0 +1,104 @@
+"""Finds what a mission takes at least, place by place, as a witness."""
+
+import heapq
+import math
+
+from argo_compiler.analysis.bound_verification import (
+    BEGIN,
+    END,
+    LeastSteps,
+    Place,
+    Spent,
+)
+from argo_compiler.analysis.witness import LeastSpent, LeastWitness
+
+_WORK = 100  # steps that are looked at, for each task and group
+_GIVEN_UP = 1e-9  # of a round, so that rounds do not cost less than nothing by rounding
+
+
+def make_least_witness(steps: LeastSteps) -> LeastWitness | None:
+    """The shortest ways to all places; None if they are not found soon."""
+    search = _Search(steps)
+    for planned in (True, False):
+        time = search.shortest(of_time=True, planned=planned)
+        if time is None:
+            continue
+        search.late = steps.late_tasks(time[0])
+        energy = search.shortest(of_time=False, planned=False)
+        if energy is not None:
+            return LeastWitness(_witness(steps, *time), _witness(steps, *energy))
+    return None
+
+
+_Found = tuple[dict[Place, float], tuple[float, ...]]
+
+
+class _Search:
+    """Shortest ways over the steps of a mission."""
+
+    def __init__(self, steps: LeastSteps) -> None:
+        self.steps = steps
+        self.late: frozenset[int] = frozenset()
+        """tasks that never end"""
+        self._work = 0
+
+    def shortest(self, *, of_time: bool, planned: bool) -> _Found | None:
+        """What is spent at each place, with the periods. `planned`: rounds that are begun by a plan
+        take as long as that at least."""
+        groups = self.steps.mission.groups
+        self._work = _WORK * (100 + len(self.steps.mission.tasks) + len(groups))
+        periods = [0.0] * len(groups)
+        for g in sorted(range(len(groups)), key=lambda g: -groups[g].name.count("/")):
+            way = self._ways(("round", g), tuple(periods), of_time, g)
+            if way is None:
+                return None
+            _, again = way
+            every = groups[g].every if of_time and planned else 0.0
+            period = 0.0 if math.isinf(again) else max(again, every)
+            periods[g] = period if period == every else period * (1 - _GIVEN_UP)
+        found = self._ways(BEGIN, tuple(periods), of_time)
+        return None if found is None else (found[0], tuple(periods))
+
+    def _ways(
+        self, first: Place, periods: tuple[float, ...], of_time: bool, group: int | None = None
+    ) -> tuple[dict[Place, float], float] | None:
+        """From a place on, within a group: what is spent where, and by when it comes back."""
+        steps = self.steps
+        spent: dict[Place, float] = {first: 0.0}
+        again = math.inf
+        # Dijkstra's algorithm, but a further round may take less than its period.
+        pending = [(0.0, first)]
+        while pending:
+            here, place = heapq.heappop(pending)
+            if here > spent[place] or (place[1] in self.late and place[0] == "task"):
+                continue
+            if of_time and place[0] == "task" and steps.late(place, spent):
+                continue
+            for other, least in steps.steps(place, spent, periods, of_time=of_time):
+                around = steps.around(other)
+                self._work -= 1 + len(around)
+                if self._work < 0:
+                    return None
+                if other == first:
+                    again = min(again, least)
+                elif (group is None or group in around) and least < spent.get(other, math.inf):
+                    spent[other] = least
+                    heapq.heappush(pending, (least, other))
+                    ended = "round", other[1]
+                    if other[0] == "entered" and ended in spent:
+                        # The end of a group's time hangs on when it was entered.
+                        heapq.heappush(pending, (spent[ended], ended))
+        return spent, again
+
+
+def _witness(steps: LeastSteps, spent: Spent, periods: tuple[float, ...]) -> LeastSpent:
+    tasks, groups = range(len(steps.mission.tasks)), range(len(steps.mission.groups))
+    return LeastSpent(
+        tasks=tuple(spent.get(("task", i)) for i in tasks),
+        missed=tuple(spent.get(("missed", i)) for i in tasks),
+        rounds=tuple(spent.get(("round", g)) for g in groups),
+        left=tuple(spent.get(("left", g)) for g in groups),
+        entered=tuple(spent.get(("entered", g)) for g in groups),
+        periods=periods,
+        end=spent.get(END),
+    )

@@ -30,6 +30,7 @@ AGE_WORK = 3_000_000
 """steps that ages of values may take to look at"""
 RESERVE_SHARE = 0.2
 """of the battery that is to be left at the dock: the charge that the robot calls low"""
+_DRIVES = (Response.RETURN, Response.SAFE_AREA)
 _SHOWN = 8  # stretches of a path that a message spells out
 
 
@@ -68,14 +69,15 @@ def _blocked_retreats(study: Study, travel: Travel) -> Iterator[Diagnostic]:
     """Where reactions and failures send the robot."""
     mission = study.mission
     retreats: list[tuple[Pose, str, str]] = []
-    back = any(r.response is Response.RETURN for r in mission.reactions) or any(
+    back = any(r.response is Response.RETURN and r.pose is None for r in mission.reactions) or any(
         t.on_failure is OnFailure.RETURN for t in mission.tasks
     )
     if back and mission.dock is not None:
         retreats.append((mission.dock, "dock", "return to the dock"))
     for reaction in mission.reactions:
-        if reaction.response is Response.SAFE_AREA and reaction.pose is not None:
-            place = f"go to the safe area of the reaction to {reaction.event}"
+        if reaction.response in _DRIVES and reaction.pose is not None:
+            where = "dock" if reaction.response is Response.RETURN else "safe area"
+            place = f"go to the {where} of the reaction to {reaction.event}"
             retreats.append(
                 (reaction.pose, subject_of("reactions", reaction.event, ".pose"), place)
             )

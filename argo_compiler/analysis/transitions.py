@@ -32,7 +32,7 @@ def transitions(study: Study) -> Iterator[Diagnostic]:
                 continue
             if _always(study, leaf, k):
                 yield _always_taken(study, leaf, k, index)
-            for o in sorted(objects_of(conditions) - told):
+            for o in sorted((objects_of(conditions) & measured) - told):
                 diagnostic = paths.diagnostic(leaf, k, index, o)
                 if diagnostic is not None:
                     told.add(o)

@@ -122,13 +122,22 @@ def find_paths(flow: Flow, fields: Fields, failures: bool) -> Paths:
 
 
 def told_by_others(flow: Flow) -> frozenset[str]:
-    """The objects whose values a WAIT waits for: nothing that the robot does brings them."""
-    return frozenset(
+    """The objects that conditions look at and a WAIT waits for, or no task measures."""
+    compared = {
+        condition.object_id
+        for conditions in (
+            *(conditions for leaf in flow.leaves for conditions, _ in leaf.conditional),
+            *(group.until for group in flow.groups),
+        )
+        for condition in conditions
+    }
+    waited = {
         condition.object_id
         for leaf in flow.leaves
         if leaf.wait is not None
         for condition in leaf.wait.conditions
-    )
+    }
+    return frozenset(waited | compared - {leaf.measures for leaf in flow.leaves})
 
 
 class PathSearch:

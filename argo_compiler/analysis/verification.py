@@ -304,12 +304,16 @@ class _Walk:
         self.proved = proved
         self._satisfying: dict[int, int] = {}
         self._told = 0
-        for task in mission.tasks:
-            for condition in () if task.wait is None else task.wait.conditions:
-                scale = states.scales.get(condition.object_id)
-                if scale is not None:
-                    # What a mission waits for may be told at any time (C8).
-                    self._told |= scale.values << scale.shift
+        waited = {
+            condition.object_id
+            for task in mission.tasks
+            for condition in (() if task.wait is None else task.wait.conditions)
+        }
+        measured = {task.object_id for task in mission.tasks if task.action is Action.MEASURE}
+        for object_id, scale in states.scales.items():
+            # What a mission waits for or never measures may be told at any time (C8).
+            if object_id in waited or object_id not in measured:
+                self._told |= scale.values << scale.shift
 
     def first(self) -> Step:
         """M1: where the mission begins. Nothing has been measured."""

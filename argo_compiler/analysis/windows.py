@@ -47,6 +47,8 @@ def time_limits(study: Study) -> Iterator[Diagnostic]:
     for leaf, taken in sorted(study.legs.too_slow.items()):
         limit = study.task(leaf).time_limit
         assert limit is not None
+        if study.task(leaf).retries:
+            continue  # each attempt goes on from where the last one stopped
         yield study.diagnostic(
             "time-limit",
             Severity.WARNING,

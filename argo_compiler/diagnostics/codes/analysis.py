@@ -53,7 +53,7 @@ ANALYSIS = {
         "Leave out tasks or rounds, charge in between, or react to `low_battery`.",
     ),
     "analysis.time-limit": warning(
-        "A task takes longer than its time limit, as planned.",
+        "A task without retries takes longer than its time limit, as planned.",
         "Give it more time.",
     ),
     "analysis.too-long": error(

@@ -136,6 +136,11 @@ def test_places_that_cannot_be_reached():
     back = Reaction(event=EventKind.LOW_BATTERY, response=Response.RETURN)
     found = findings(mission("A", dock=FAR, reactions=(back,)), Steady())
     assert found["unreachable-place"].subject == "dock"
+    other = Reaction(event=EventKind.LOW_BATTERY, response=Response.RETURN, pose=FAR)
+    found = findings(mission("A", dock=DOCK, reactions=(other,)), Steady())
+    assert found["unreachable-place"].subject == "reactions['low_battery'].pose"
+    near = other.model_copy(update={"pose": DOCK})
+    assert findings(mission("A", dock=FAR, reactions=(near,)), Steady()) == {}
 
 
 def test_groups_nested_a_thousand_deep():
@@ -202,6 +207,15 @@ def test_a_time_limit_that_is_too_short_promises_nothing():
     made = mission("A", task("B", "C", time_limit=9), "C", max_duration=25)
     found = analyse(made, CATALOG, Steady())
     assert {d.code for d in found.diagnostics} == {"analysis.time-limit"}
+    assert found.duration is None
+
+
+@pytest.mark.rule("T7")
+def test_with_retries_a_time_limit_that_is_too_short_for_one_attempt_says_nothing():
+    """Each attempt goes on from where the last one stopped, so several may do."""
+    made = mission("A", task("B", "C", time_limit=9, retries=1), "C", max_duration=25)
+    found = analyse(made, CATALOG, Steady())
+    assert found.diagnostics == ()
     assert found.duration is None
 
 

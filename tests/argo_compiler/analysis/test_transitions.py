@@ -53,8 +53,8 @@ def verdicts(analysis, name):
         ([["1 < 5"], ["1 < 8"], ["5 <= 1 <= 7"]], [POSSIBLE, POSSIBLE, NEVER, POSSIBLE]),
         ([["1 < 3", "1 > 5"]], [NEVER, ALWAYS]),
         ([["1 < 6", "1 > 5"]], [POSSIBLE, POSSIBLE]),
-        ([["2 < 6"]], [NEVER, ALWAYS]),
-        ([["1 < 6", "2 < 6"]], [NEVER, ALWAYS]),
+        ([["2 < 6"]], [POSSIBLE, POSSIBLE]),
+        ([["1 < 6", "2 < 6"]], [POSSIBLE, POSSIBLE]),
     ],
 )
 def test_transitions_of_the_task_that_measures(tests, expected):
@@ -137,12 +137,13 @@ def test_why_a_task_is_unreachable():
             task("Y", "End"),
             task("Behind", "End"),
             task("Alone", "End"),
-            "End",
+            task("End", "Lastm2"),
+            "Lastm2",
         ),
         CATALOG,
     )
     lost = {d.subject: d for d in found.diagnostics if d.code == "analysis.unreachable-task"}
-    assert found.reachable == {"Am1", "End"}
+    assert found.reachable == {"Am1", "End", "Lastm2"}
     assert sorted(lost) == [f"tasks['{name}']" for name in ("Alone", "Behind", "X", "Y")]
     assert "checkpoint 1 (valve R1) shows 0 to 10" in lost["tasks['X']"].message
     assert "no path measures it before" in lost["tasks['Y']"].message
@@ -265,6 +266,18 @@ def test_a_value_that_is_waited_for_may_come_at_any_time():
     analysis = analyse(plan, CATALOG)
     assert verdicts(analysis, "Am1") == [POSSIBLE, POSSIBLE]
     assert verdicts(analysis, "B") == [POSSIBLE]
+
+
+@pytest.mark.rule("C8")
+def test_a_value_that_no_task_measures_may_be_told_at_any_time():
+    plan = mission("A", task("B", way("C", "2 > 5"), way("C", "2 > 12"), "End"), "C", "End")
+    analysis = analyse(plan, CATALOG)
+    assert verdicts(analysis, "B") == [POSSIBLE, NEVER, POSSIBLE]
+    assert "C" in analysis.reachable
+    assert analysis.diagnostics == ()
+    rounds = Group(name="G", start="A", end="B", until=way("x", "2 > 5").conditions)
+    group = analyse(mission("A", "B", "C", groups=(rounds,)), CATALOG).groups[0]
+    assert (group.repeats, group.ends) == (POSSIBLE, POSSIBLE)
 
 
 @pytest.mark.rule("I3")

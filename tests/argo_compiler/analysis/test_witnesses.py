@@ -260,6 +260,18 @@ def test_what_is_claimed_with_a_catalogue_is_not_proved_without_it():
     assert unproved(PLAN, None, analyse(PLAN, CATALOG)) == ("what can't happen",)
 
 
+@pytest.mark.rule("C8")
+def test_a_claim_that_a_value_told_by_others_disproves_is_not_proved():
+    plan = mission("A", task("B", way("D", "1 > 5"), "C"), task("C"), task("D"))
+    analysis = analyse(plan, CATALOG)
+    assert unproved(plan, CATALOG, analysis) == ()
+    for witness in (analysis.witnesses.nominal, analysis.witnesses.all):
+        (scale,) = witness.scales
+        unmeasured = 1 << (2 * len(scale.bounds) + 1 + scale.shift)
+        tasks = tuple(None if t is None else unmeasured for t in witness.tasks)
+        assert Verifier(plan, CATALOG).invariant(replace(witness, tasks=tasks)) is None
+
+
 def kept(plan):
     return [d for d in analyse(plan, CATALOG).diagnostics if d.code == "analysis.kept-loop"]
 

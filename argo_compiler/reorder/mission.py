@@ -8,15 +8,11 @@ from numpy.typing import NDArray
 
 from argo_compiler.analysis.quantities import time_words
 from argo_compiler.errors import Invalid, NotFound
-from argo_compiler.il import Action, Mission, Order
+from argo_compiler.il import Mission, Order
 from argo_compiler.reorder.asked import with_requirements
 from argo_compiler.reorder.branches import Branches
-from argo_compiler.reorder.precedences import (
-    asked_for,
-    must_be_last,
-    precedences,
-    reckoning_notes,
-)
+from argo_compiler.reorder.precedences import asked_for, must_be_last, precedences
+from argo_compiler.reorder.reckoning import assumptions, reckoning_notes
 from argo_compiler.reorder.requirements import Requirements
 from argo_compiler.reorder.travel_matrix import TravelMatrix, require_matrix_of
 from argo_compiler.reorder.units import TaskUnit, Unit, find_spine
@@ -48,6 +44,14 @@ class MissionRoute:
     """in words, what was asked for that no mission can say"""
     work: tuple[int, ...] = ()
     """units that each task takes itself"""
+    assumed: tuple[str, ...] = ()
+    """in words, what a run may do otherwise and so be over earlier: no order is ruled out for
+    sure"""
+
+    @property
+    def if_assumed(self) -> str:
+        """` if …`, to be said with what is ruled out; empty if that is sure."""
+        return f" if {', and '.join(self.assumed)}" if self.assumed else ""
 
 
 def route_problem(
@@ -80,7 +84,7 @@ def route_problem(
     for k in range(len(visits.stops)):
         if said := windows.words(k):
             words[f"window {k}"] = said
-    reasons = [*spine.reasons, *reckoning_notes(visits)]
+    reasons = [*spine.reasons, *reckoning_notes(visits, ways)]
     if battery is None:  # and no use for chargers
         places = len(visits.stops) + 1
         times = times[:places, :places]
@@ -107,6 +111,7 @@ def route_problem(
         None if limit is None else limit[0],
         tuple(dict.fromkeys(one.words for one in asked_for(visits, requirements))),
         tuple(map(int, ways.work)),
+        tuple(assumptions(visits, ways)),
     )
 
 
@@ -170,10 +175,6 @@ def _costs(
     tasks, end = len(ways.tasks), visits.spine.end
     nowhere = np.zeros((len(ways.time), 1))  # to end where the robot is, and with nothing to do
     time, energy = np.hstack([ways.time, nowhere]), np.hstack([ways.energy, nowhere])
-    for k, leaf in enumerate(visits.spine.flow.leaves[:tasks]):
-        limit = leaf.leaf.task.time_limit
-        if limit is not None and leaf.leaf.task.action is not Action.WAIT:
-            time[time[:, k] > ways.down(limit), k] = np.inf  # it would fail
     branches = Branches(visits.spine, time, energy, ways.unit, likely)
     times = [branches.time(stop) for stop in visits.stops] + list(time[tasks:])
     energies = [branches.energy(stop) for stop in visits.stops] + list(energy[tasks:])

@@ -155,17 +155,3 @@ def _before_last(visits: Visits, units: tuple[Unit, ...], what: str) -> Iterator
 
 def _branches(unit: Unit) -> bool:
     return isinstance(unit, TaskUnit) and unit.final is None
-
-
-def reckoning_notes(visits: Visits) -> Iterator[str]:
-    """What is said of rounds and WAITs that may end earlier, and of rounds left in the middle."""
-    for leaf in visits.of_leaf:
-        wait = visits.task(leaf).wait
-        if wait is not None and wait.duration is None:
-            yield f"'{visits.task(leaf).name}' is reckoned with all of its limit"
-    for circuit, _ in visits.circuits:
-        group = visits.spine.flow.groups[circuit.group]
-        if group.hard:
-            yield f"'{group.name}' is left where its time is up: reckoned from its farthest task"
-        if group.until:
-            yield f"'{group.name}' is reckoned with as many rounds as it may have"

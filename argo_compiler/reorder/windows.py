@@ -13,8 +13,8 @@ def require_reckonable(visits: Visits) -> None:
     for group in flow.groups:
         if group.every:
             raise Invalid(
-                f"group '{group.name}' begins its rounds at set times: how long it takes can't be "
-                "reckoned, so there is no best order of this mission"
+                f"group '{group.name}' begins its rounds at set times: Argo can't reckon orders of "
+                "missions with planned rounds yet"
             )
     for leaf in visits.spine.asked:
         task = flow.leaves[leaf].leaf.task

@@ -55,7 +55,7 @@ def _claimed(found: Suggested, claim: Claim) -> str:
         case Claim.BEST:
             return "no order is better"
         case Claim.NONE:
-            return "no order meets all that is asked for"
+            return f"no order meets all that is asked for{found.planned.if_assumed}"
         case Claim.SUBSET:
             return "without any one of these there is an order"
 

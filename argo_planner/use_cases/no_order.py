@@ -20,22 +20,25 @@ def require_order(found: Suggested, source_name: str) -> None:
 def why_none(found: Suggested) -> Conflict | None:
     """Why there is no order, or none with anything in it; None: there is one."""
     if found.suggestion.route is None:
-        return _why_no_route(found)
-    if not found.suggestion.order and found.planned.problem.size:
-        return _why_empty(found)
-    return None
+        why = _why_no_route(found)
+    elif not found.suggestion.order and found.planned.problem.size:
+        why = _why_empty(found)
+    else:
+        return None
+    notes = (f"\nNote: {reason}" for reason in found.planned.reasons)
+    return Conflict("".join([str(why), *notes]), remedies=why.remedies)
 
 
 def _why_no_route(found: Suggested) -> Conflict:
     suggestion, problem = found.suggestion, found.planned.problem
     remedies: tuple[Remedy, ...] = ()
+    assumed = found.planned.if_assumed
     if len(suggestion.infeasible_subset) == 1:
-        text = f"this can't be met: {suggestion.infeasible_subset[0]}"
+        text = f"this can't be met{assumed}: {suggestion.infeasible_subset[0]}"
     elif suggestion.infeasible_subset:
         lines = [f"  - {words}" for words in suggestion.infeasible_subset]
-        text = "\n".join(
-            ["no order meets all of this, though it would without any one of it:", *lines]
-        )
+        head = f"no order meets all of this{assumed}, though it would without any one of it:"
+        text = "\n".join([head, *lines])
     elif not suggestion.proven:
         text = "no order was found in time; allow more"
         remedies += (Remedy.SEARCH_LONGER,)
@@ -43,8 +46,9 @@ def _why_no_route(found: Suggested) -> Conflict:
         text = f"no way leads to {cut_off}, or none on from there: look at the site's map there"
     else:
         text = (
-            "no order meets all that is asked for, and what of it clashes was not found: look at "
-            "the time limits first, then at what has to come before what, and leave some of it out"
+            f"no order meets all that is asked for{assumed}, and what of it clashes was not found: "
+            "look at the time limits first, then at what has to come before what, and leave some "
+            "of it out"
         )
     limit, written = problem.max_duration, found.written.duration
     if limit is not None and written > limit and not problem.selective:
@@ -72,6 +76,7 @@ def _why_empty(found: Suggested) -> Conflict:
     """All may be left out, and is."""
     problem = found.planned.problem
     limit = problem.words.get("max_duration", "what is asked for")
+    assumed = found.planned.if_assumed
     group = {visit: one for one in problem.rounds for visit in one.members}
     alone = [
         Tour(group[visit].members if visit in group else (visit,)) for visit in range(problem.size)
@@ -80,12 +85,12 @@ def _why_empty(found: Suggested) -> Conflict:
     worth = [(evaluate(free, route), route.order[0]) for route in alone]
     takes = [(one.duration, visit) for one, visit in worth if one.feasible]
     if not takes:
-        return Conflict(f"nothing fits within the {limit}")
+        return Conflict(f"nothing fits within the {limit}{assumed}")
     least, visit = min(takes)
     which = group[visit].name if visit in group else problem.visits[visit].name
     nearest = f"the nearest, {which}, takes {clock(found.seconds(least))}"
     if problem.max_duration is not None and least > problem.max_duration:
-        return Conflict(f"nothing fits within the {limit}: {nearest}; allow more")
+        return Conflict(f"nothing fits within the {limit}{assumed}: {nearest}; allow more")
     return Conflict(
         f"nothing was found that is sure to fit within the {limit}, though {nearest}: allow more, "
         "or more time to search",

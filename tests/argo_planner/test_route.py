@@ -9,7 +9,7 @@ from typer.testing import CliRunner
 
 from argo_compiler.files.mission_file import read_mission, write_mission
 from argo_compiler.hfsm import Hfsm
-from argo_compiler.il import Group, Order, TimeWindow
+from argo_compiler.il import Action, EventKind, Group, Order, Task, TimeWindow, WaitRule
 from argo_compiler.model import Pose
 from argo_compiler.route import RouteSuggestion, Tour, evaluate
 from argo_env.planning.opening import OpenedSite
@@ -198,6 +198,30 @@ def test_one_requirement_that_can_not_be_met_is_named_alone(argo, source, tmp_pa
     result = argo("route", source, "--requirements", wanted)
     assert result.exit_code == 2
     assert "this can't be met: checkpoint 1 done by 1 s" in result.text
+
+
+def test_a_refusal_says_that_waits_are_reckoned_with_their_limits(argo, tmp_path):
+    rule = WaitRule(event=EventKind.ALL_CLEAR, limit=90)
+    waiting = mission(
+        Task(name="W", action=Action.WAIT, wait=rule),
+        measure(1, window=TimeWindow(latest=80)),
+        waypoint("DOCK", 1.05, 1.05), dock=DOCK, version=3,
+    )  # fmt: skip
+    write_mission(waiting, tmp_path / "waiting.json")
+    result = argo("route", tmp_path / "waiting.json", "--verify")
+    assert result.exit_code == 2
+    assert "no order meets all of this if each WAIT takes its whole limit, though" in result.text
+    assert "Note: 'W' is reckoned with all of its limit" in result.text
+    verified = "Verified: no order meets all that is asked for if each WAIT takes its whole limit ("
+    assert verified in result.text
+
+
+def test_a_limit_of_a_task_refuses_no_order(argo, tmp_path):
+    limited = mission(measure(1, time_limit=1, retries=1), waypoint("DOCK", 1.05, 1.05), dock=DOCK)
+    write_mission(limited, tmp_path / "limited.json")
+    result = argo("route", tmp_path / "limited.json", "--verify")
+    assert result.exit_code == 0, result.text
+    assert "Note: 'MEASURE 1' may take longer than its time limit, 1 s" in result.text
 
 
 @pytest.mark.parametrize("extra", [[], ["--robust", "--time-limit", "1"]])

@@ -3,6 +3,7 @@
 from collections.abc import Iterator
 from dataclasses import dataclass
 
+from argo_env.formatting import clock
 from argo_env.run.record import Interruption, RunRecord
 
 MOMENT = 0.5
@@ -17,8 +18,8 @@ class Wait:
     """it waited for, and why"""
     start: float
     end: float
-    over: bool
-    """whether it ended before the run did"""
+    outcome: str
+    """how it ended, in words"""
 
 
 def waits(record: RunRecord) -> tuple[Wait, ...]:
@@ -32,15 +33,16 @@ def _planned(record: RunRecord) -> Iterator[Wait]:
     """What the mission itself waits for."""
     end = record.result.duration
     for wait in record.waits:
-        yield Wait(f"{wait.what} ({wait.task})", wait.start, wait.end, wait.ended)
+        outcome = f"failed: {wait.failure}" if wait.failure else _ended(wait.ended)
+        yield Wait(f"{wait.what} ({wait.task})", wait.start, wait.end, outcome)
     for run in record.tasks:
         if run.early is not None:
             what = f"the time window ({run.task})"
-            yield Wait(what, *run.early, run.early[1] < end)
+            yield Wait(what, *run.early, _ended(run.early[1] < end))
     for each in record.rounds:
         until = min(filter(None, (each.began, each.ended, end)))
         if each.due is not None and each.due > each.since and until - each.since >= MOMENT:
-            yield Wait(f"the next round ({each.group})", each.since, until, until < end)
+            yield Wait(f"the next round ({each.group})", each.since, until, _ended(until < end))
 
 
 def _interrupted(record: RunRecord) -> list[Wait]:
@@ -58,9 +60,16 @@ def _interrupted(record: RunRecord) -> list[Wait]:
             if each.event is None and before and before.event and before.end == each.start:
                 cause = before.cause  # which has ended in this pause
             what = f"{awaited.replace('_', ' ') if awaited else 'a person'} ({cause})"
-            found.append(Wait(what, since, each.end, each.end < record.result.duration))
+            outcome = _ended(each.end < record.result.duration)
+            if each.limit_over:
+                outcome = f"the limit of the hold was over at {clock(each.end)}"
+            found.append(Wait(what, since, each.end, outcome))
         before = each
     return found
+
+
+def _ended(over: bool) -> str:
+    return "over" if over else "still waiting at the end"
 
 
 def _last(record: RunRecord) -> Interruption | None:

@@ -13,7 +13,7 @@ SETTLING = 120.0  # s that a robot which stands still waits for what faults may 
 def exhausted(now: float, supply: PowerSupply) -> str | None:
     """Why nothing can go on at time `now` (s), whatever is told; None: it can."""
     if now >= TIME_LIMIT:
-        return f"it was stopped after {now:.0f} s"
+        return f"it was stopped after {now:.0f} s, Argo's limit for a run"
     if supply.empty:
         return f"the battery was empty after {now:.0f} s"
     return None

@@ -231,6 +231,8 @@ class Interruption(Model):
     """s"""
     event: EventKind | None = None
     """the event of the reaction; None: paused until a person goes on"""
+    limit_over: bool = False
+    """whether the limit of its hold ended it"""
 
     @property
     def cause(self) -> str:

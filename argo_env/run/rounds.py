@@ -43,15 +43,18 @@ class RoundWatch:
             return
         progress = machine.progress()
         inside = {} if progress.outcome else {g.group: g for g in progress.groups}
+        first = next(e for e in new if e.cause in BEGINNINGS or e.cause is Cause.ROUND)
+        # The round that was waited for may have ended in the moment in which it began.
+        due = first.time if first.cause is Cause.ROUND else None
         for name in [name for name in self._groups if name not in inside]:
-            self._end(self._groups.pop(name).at, now if moved is None else moved)
+            self._end(self._groups.pop(name).at, now if moved is None else moved, due)
         for name, group in inside.items():
             seen, waits = self._groups.get(name), progress.round_of == name
             if moved is not None and (
                 seen is None or group.round != seen.round or group.elapsed < seen.elapsed
             ):
                 if seen is not None:
-                    self._end(seen.at, moved)
+                    self._end(seen.at, moved, due)
                 self._rounds.append(_entered(group, self._rules[name], moved, now, waits))
                 at = len(self._rounds) - 1
             elif seen is None:
@@ -66,7 +69,9 @@ class RoundWatch:
         """All of them, in the order in which they could begin."""
         return tuple(self._rounds)
 
-    def _end(self, at: int, now: float) -> None:
+    def _end(self, at: int, now: float, begun: float | None) -> None:
+        if begun is not None and self._rounds[at].began is None:
+            self._update(at, due=begun, began=begun)
         self._update(at, ended=now)
 
     def _update(self, at: int, **times: float) -> None:

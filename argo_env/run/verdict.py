@@ -88,7 +88,12 @@ def judge(
     if limit is not None and now > limit:
         missing.append(f"it took {now:.0f} s of at most {limit:.0f} s")
     if docked is False and last.ended:
-        missing.append(f"the robot is not docked in starting area {area}")
+        other = next((a for a, dock in docks.items() if at_dock(last.body_pose, dock)), None)
+        missing.append(
+            f"the robot is not docked in starting area {area}"
+            if other is None
+            else f"the robot is docked in starting area {other}, not in {area}"
+        )
     success = not missing
     skipped = _by_hand(trace, skipped=True)
     if skipped and not success:

@@ -9,7 +9,7 @@ from rich.table import Table
 from argo_env.formatting import clock, where
 from argo_env.report.waiting import waits
 from argo_env.run.headline import Tone, in_words
-from argo_env.run.record import RunRecord
+from argo_env.run.record import RunRecord, WindowKept
 
 _WIDE = 100
 """characters of a terminal that has room for what not everyone needs"""
@@ -93,16 +93,20 @@ def _tasks(record: RunRecord, measuring: bool) -> Table:
 
 def _task_rows(record: RunRecord) -> Iterator[tuple[float, tuple[str, ...]]]:
     """The rows with the times (s) of the first begins."""
-    for name in dict.fromkeys(t.task for t in record.tasks):
+    missed = _missed(record)
+    for name in dict.fromkeys([*(t.task for t in record.tasks), *(name for name, _ in missed)]):
         runs = [t for t in record.tasks if t.task == name]
+        begins = [t.start for t in runs] + [at for task, at in missed if task == name]
         outcomes = dict.fromkeys(t.outcome for t in runs)
+        if len(begins) > len(runs):
+            outcomes["missed"] = None
         reasons = dict.fromkeys(t.reason for t in runs if t.reason)
         yield (
-            runs[0].start,
+            min(begins),
             (
                 escape(name),
-                str(len(runs)),
-                clock(runs[0].start),
+                str(len(begins)),
+                clock(min(begins)),
                 clock(sum(t.end - t.start for t in runs)),
                 clock(measured) if (measured := sum(t.measured_for for t in runs)) else "",
                 f"{sum(t.distance for t in runs):.1f} m",
@@ -110,6 +114,17 @@ def _task_rows(record: RunRecord) -> Iterator[tuple[float, tuple[str, ...]]]:
                 escape(", ".join(outcomes) + (f" ({'; '.join(reasons)})" if reasons else "")),
             ),
         )
+
+
+def _missed(record: RunRecord) -> list[tuple[str, float]]:
+    """The visits in which no action ran, as the time window was over, and when (s) they began."""
+    waited = {wait.task for wait in record.waits}
+    return [
+        (one.task, one.visited)
+        for one in record.windows
+        if one.kept is WindowKept.MISSED and one.visited is not None and one.task not in waited
+        if not any(t.task == one.task and one.visited <= t.start for t in record.tasks)
+    ]
 
 
 def _wait_rows(record: RunRecord) -> Iterator[tuple[float, tuple[str, ...]]]:
@@ -127,6 +142,6 @@ def _wait_rows(record: RunRecord) -> Iterator[tuple[float, tuple[str, ...]]]:
                 "",
                 "",
                 "",
-                "over" if same[-1].over else "still waiting at the end",
+                escape("; ".join(dict.fromkeys(wait.outcome for wait in same))),
             ),
         )

@@ -19,6 +19,8 @@ from argo_env.run.record import (
     Result,
     RunRecord,
     TaskRun,
+    WindowKept,
+    WindowRun,
 )
 from argo_planner.terminal.record_tables import show_record
 
@@ -190,6 +192,26 @@ def test_what_it_still_waits_for_in_the_end_is_said(record: RunRecord) -> None:
     assert waits(drove, *alarm) == [
         "waits for a person (reaction to platform alarm) | 1 | 11:40 | 00:00"
         " | still waiting at the end"
+    ]
+
+
+def test_visits_in_which_nothing_ran_as_the_window_was_over_are_counted(record: RunRecord) -> None:
+    windows = tuple(
+        WindowRun(
+            task=task, earliest=0.0, latest=90.0, hard=True, visited=visited, ended=ended, kept=kept
+        )
+        for task, visited, ended, kept in (
+            ("[bold]M[/]", 0.0, 30.0, WindowKept.KEPT),
+            ("[bold]M[/]", 120.0, 120.0, WindowKept.MISSED),
+            ("N", 130.0, 130.0, WindowKept.MISSED),
+        )
+    )
+    text = shown(record.model_copy(update={"windows": windows}))
+    table = text.split("Tasks")[1].splitlines()
+    rows = [[c.strip() for c in row.split("│")[1:-1]] for row in table if row.startswith("│")]
+    assert [(row[0], row[1], row[2], row[-1]) for row in rows] == [
+        ("[bold]M[/]", "3", "00:00", "done, failed, missed (hidden behind x)"),
+        ("N", "1", "02:10", "missed"),
     ]
 
 

@@ -12,7 +12,9 @@ from hypothesis import strategies as st
 from argo_compiler.hfsm import Cancel, Occurred, Outcome, Pause, Resume
 from argo_compiler.il import Afterwards, EventKind, Group, OnFailure, Reaction, Response
 from argo_compiler.model import Pose
+from argo_env.formatting import clock
 from argo_env.report import write_report
+from argo_env.report.waiting import waits
 from argo_env.run.headline import Tone
 from argo_env.run.record import RunRecord
 from argo_env.run.spec import logged
@@ -178,6 +180,21 @@ class TestReactions:
         page = write_report(record, navigator.site, tmp_path).read_text(encoding="utf-8")
         assert says in page
         assert "reaction: hot spot" in page
+
+    @pytest.mark.parametrize("then", [Afterwards.END, Afterwards.WAIT, Afterwards.RESUME])
+    def test_a_hold_that_its_limit_ended_is_told_so(self, navigator, then):
+        hold = react(
+            EventKind.GAS_LEAK, Response.PAUSE, until=EventKind.ALL_CLEAR,
+            afterwards=Afterwards.RESUME, hold_limit=20.0, on_limit=then,
+        )  # fmt: skip
+        plan = mission(measure(1), reactions=(hold,))
+        record = run(navigator, plan, (4.0, Occurred(EventKind.GAS_LEAK)))
+        end = record.interruptions[0].end
+        assert record.interruptions[0].limit_over
+        assert waits(record)[0].outcome == f"the limit of the hold was over at {clock(end)}"
+        cleared = (10.0, Occurred(EventKind.ALL_CLEAR))
+        record = run(navigator, plan, (4.0, Occurred(EventKind.GAS_LEAK)), cleared)
+        assert [w.outcome for w in waits(record)] == ["over"]
 
     def test_report_interrupts_nothing(self, navigator):
         plan = mission(measure(1), reactions=(react(EventKind.HOT_SPOT, Response.REPORT),))

@@ -273,6 +273,14 @@ def test_not_docked_is_no_success(navigator):
     assert "not docked in starting area 1" in record.result.verdict
 
 
+def test_the_dock_of_another_area_is_named(navigator):
+    other = navigator.site.docks[2]
+    there = Task(name="A", action=Action.WAYPOINT, pose=other)
+    record = simulated(mission(start(), there, end_area=1), navigator)
+    assert record.result.docked is False
+    assert record.result.verdict == "the robot is docked in starting area 2, not in 1"
+
+
 def test_endless_round_is_stopped(navigator, monkeypatch):
     monkeypatch.setattr(argo_env.run.ending, "TIME_LIMIT", 30.0)
     there, back = waypoint("A", 9.05, -2.05), waypoint("B", 8.05, -2.05)
@@ -280,7 +288,7 @@ def test_endless_round_is_stopped(navigator, monkeypatch):
     record = simulated(mission(start(), there, back, groups=(group,)), navigator)
     assert record.result.duration == pytest.approx(30.0)
     assert not record.result.success
-    assert "stopped after 30 s" in record.result.verdict
+    assert "stopped after 30 s, Argo's limit for a run" in record.result.verdict
     assert record.tasks[-1].outcome == "cancelled"
     assert record.tasks[-1].reason == "the run was stopped"
 

@@ -105,6 +105,7 @@ class TestWaits:
         assert waited.failure == waited.why
         assert record.result.outcome is Outcome.COMPLETED_WITH_FAILURES
         assert record.result.verdict == "failed: REST"
+        assert [w.outcome for w in waits(record)] == ["failed: waited 20 s in vain"]
 
     @pytest.mark.rule("C8")
     def test_until_somebody_tells_a_value(self, navigator):
@@ -142,6 +143,14 @@ class TestRounds:
         assert [r.due for r in record.rounds][2:] == pytest.approx([140.0, 180.0], abs=0.11)
         assert all(r.began >= r.due - 1e-6 for r in record.rounds)
 
+    def test_rounds_that_miss_a_window_at_once_have_begun_all_the_same(self, navigator):
+        first = waypoint("A", 2.05, 2.05, window=TimeWindow(latest=50.0, missed_target="B"))
+        group = self.group(every=60.0, max_repeat_count=3)
+        record = run(navigator, mission(first, wait("B", duration=0.0), groups=(group,)))
+        assert [r.began for r in record.rounds] == [0.0, 60.0, 120.0]
+        assert [r.due for r in record.rounds] == [0.0, 60.0, 120.0]
+        assert [w.kept for w in record.windows] == [WindowKept.KEPT] + [WindowKept.MISSED] * 2
+
     @pytest.mark.rule("G8")
     def test_until_a_value(self, navigator):
         first = measure(1)
@@ -158,7 +167,7 @@ class TestRounds:
             plan, fast_rig(navigator), interrupted=iter([False] * 500 + [True]).__next__
         )
         assert [(r.number, r.began) for r in record.rounds] == [(1, 0.0), (2, None)]
-        assert waits(record)[-1].over is False
+        assert waits(record)[-1].outcome == "still waiting at the end"
 
 
 class TestWindows:

@@ -13,11 +13,12 @@ class Verdict(StrEnum):
     NEVER = "never"
     """on no path, whatever is measured and whatever fails"""
     AFTER_FAILURE = "after failure"
-    """only after an action has failed, or a measurement gave no value"""
+    """only after an action has failed, a measurement gave no value, or a person did or skipped a
+    task"""
     POSSIBLE = "possible"
     """nothing excludes it"""
     ALWAYS = "always"
-    """whenever it is looked at, unless a measurement fails"""
+    """whenever it is looked at, unless a measurement fails or a person does or skips a task"""
 
 
 class TransitionFacts(Model):

@@ -318,9 +318,12 @@ class Legs:
         for (_, target), cost in self._steps.items():
             fastest[target] = min(fastest.get(target, math.inf), cost.time.least)
         for target, taken in fastest.items():
-            limit = self.flow.leaves[target].leaf.task.time_limit
-            if limit is not None and taken > limit:
-                self.too_slow[target] = taken
+            leaf = self.flow.leaves[target]
+            limit = leaf.leaf.task.time_limit
+            # The time before `earliest` does not count, so the robot may have arrived by then.
+            counted = self.work(target).time.least if leaf.earliest else taken
+            if limit is not None and counted > limit:
+                self.too_slow[target] = counted
 
     def _try_again(self, clean_up: float) -> None:
         """The steps with all attempts, each as long as the first one at most."""

@@ -159,7 +159,7 @@ def _cut_short(
 
 def _too_far(study: Study, energy: Bounds, battery: float) -> Iterator[Diagnostic]:
     least, most = energy.least.value, energy.most.value
-    if least is not None and least > battery and not _may_charge(study):
+    if least is not None and least > battery and not _may_do_with_less(study):
         yield study.diagnostic(
             "battery-exceeded",
             Severity.ERROR,
@@ -181,10 +181,19 @@ def _too_far(study: Study, energy: Bounds, battery: float) -> Iterator[Diagnosti
         )
 
 
-def _may_charge(study: Study) -> bool:
-    """Whether the robot may stand at a dock for a while, which charges it."""
+def _may_do_with_less(study: Study) -> bool:
+    """Whether the robot may stand at a dock for a while, which charges it, or the mission may end
+    before its plan does, as its time is up."""
     waits = any(leaf.wait is not None or leaf.earliest for leaf in study.flow.leaves)
-    return waits or any(group.every for group in study.flow.groups)
+    return (
+        waits
+        or any(group.every for group in study.flow.groups)
+        or any(
+            (r.response is Response.RETURN and r.afterwards is not Afterwards.END)
+            or (r.event is EventKind.TIME_UP and study.mission.max_duration and ends_mission(r))
+            for r in study.mission.reactions
+        )
+    )
 
 
 def _no_way_back(study: Study, energy: Bounds, travel: Travel) -> Iterator[Diagnostic]:
@@ -218,15 +227,16 @@ def _no_way_back(study: Study, energy: Bounds, travel: Travel) -> Iterator[Diagn
 
 
 def ends_mission(reaction: Reaction) -> bool:
-    """Whether a reaction ends the mission, unless it holds for ever."""
+    """Whether a reaction ends the mission for sure, unless it holds for ever."""
+    limited = reaction.hold_limit is not None
     match reaction.response:
         case Response.ABORT:
             return True
         case Response.RETURN | Response.SAFE_AREA:
-            return reaction.afterwards is Afterwards.END
+            pauses = limited and reaction.until and reaction.on_limit is Afterwards.WAIT
+            return reaction.afterwards is Afterwards.END and not pauses
         case Response.PAUSE:
-            limited = reaction.hold_limit is not None and reaction.until is None
-            return limited and reaction.on_limit is Afterwards.END
+            return limited and not reaction.until and reaction.on_limit is Afterwards.END
     return False
 
 

@@ -116,6 +116,7 @@ class Study:
                 r.response in (Response.RETURN, Response.SAFE_AREA)
                 and r.afterwards is Afterwards.END
             )
+            or (r.hold_limit is not None and r.on_limit is Afterwards.END)
             for r in self.mission.reactions
         )
 

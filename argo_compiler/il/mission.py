@@ -253,7 +253,7 @@ class Task(Model):
     wait: WaitRule | None = None
     """WAIT: how long"""
     velocity: float | None = Field(default=None, gt=0)
-    """m/s on the way to this task, wherever the robot comes from; None: its planning speed"""
+    """m/s on the way to this task, wherever it comes from; None: the robot's planning speed"""
     joint_states: JointState | None = None
     retries: int = Field(default=0, ge=0, le=MAX_RETRIES)
     """how often a failed action is tried again before it counts as failed"""

@@ -219,6 +219,15 @@ def test_with_retries_a_time_limit_that_is_too_short_for_one_attempt_says_nothin
     assert found.duration is None
 
 
+@pytest.mark.rule("T9")
+def test_the_time_before_a_window_opens_does_not_count_for_the_limit():
+    late = TimeWindow(earliest=100)
+    limited = task("B", "C", time_limit=9, window=late)
+    assert analyse(mission("A", limited, "C"), CATALOG, Steady()).diagnostics == ()
+    limited = task("B", "C", time_limit=9)
+    assert "time-limit" in findings(mission("A", limited, "C"), Steady())
+
+
 def test_the_way_back_with_a_reserve():
     travel = Steady()
     travel.battery = 5.0

@@ -223,6 +223,8 @@ def _parse(path: Path, content: bytes) -> tuple[Header, list[Entry], int]:
     # Behind the last line end there is nothing, or the beginning of a line.
     whole = lines[:-1]
     first = _payload(whole[0]) if whole else None
+    if whole and whole[0].endswith(b"\r") and _payload(whole[0][:-1]) is not None:
+        _refuse(path, "has line ends of another system (CR LF): bring it over as it was written")
     if first is None or first.get("format") != _MARK:
         _refuse(path, "is no journal, or its first line is damaged: nothing can go on from it")
     if first.get("version") != VERSION:
@@ -237,8 +239,12 @@ def _parse(path: Path, content: bytes) -> tuple[Header, list[Entry], int]:
     for number, line in enumerate(whole[1:], start=1):
         data = _payload(line)
         if data is None or data.pop("n", None) != number:
-            if any(_payload(later) is not None for later in whole[number + 1 :]):
-                _refuse(path, f"is damaged in line {number + 1}: take it from a copy")
+            if number + 1 < len(whole) or lines[-1]:
+                _refuse(
+                    path,
+                    f"is damaged from line {number + 1} on, where more follows than a line that a "
+                    "run could not end: take it from a copy",
+                )
             break
         entries.append(_model(Entry, data, path, number))
         size += len(line) + 1

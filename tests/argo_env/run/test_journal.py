@@ -507,12 +507,28 @@ class TestRefusals:
         bad = bytes([lines[20][40] ^ 1])
         lines[20] = lines[20][:40] + bad + lines[20][41:]
         path.write_bytes(b"".join(lines))
-        with pytest.raises(ArgoError, match="damaged in line 21"):
+        with pytest.raises(ArgoError, match="damaged from line 21 on"):
             open_journal(path)
         assert path.read_bytes() == b"".join(lines)
         path.write_bytes(b"".join(lines[:20] + lines[21:]))
-        with pytest.raises(ArgoError, match="damaged in line 21"):
+        with pytest.raises(ArgoError, match="damaged from line 21 on"):
             open_journal(path)
+
+    @pytest.mark.parametrize("more", [b"0 {}\n" * 2, b"0 {}\n" * 40, b"0 {}\n0"])
+    def test_more_damage_at_the_end_than_a_kill_leaves(self, whole, tmp_path, more):
+        path = tmp_path / "run.journal"
+        path.write_bytes(whole.content + more)
+        with pytest.raises(ArgoError, match="damaged from line"):
+            open_journal(path)
+        assert path.read_bytes() == whole.content + more
+
+    def test_line_ends_of_another_system(self, whole, tmp_path):
+        path = tmp_path / "run.journal"
+        content = whole.content.replace(b"\n", b"\r\n")
+        path.write_bytes(content)
+        with pytest.raises(ArgoError, match="CR LF"):
+            open_journal(path)
+        assert path.read_bytes() == content
 
     def test_a_changed_site(self, navigator, tmp_path):
         path = tmp_path / "run.journal"

@@ -114,13 +114,18 @@ def repeat_rules(record: RunRecord) -> list[str]:
 
 
 def _values(record: RunRecord, until: Sequence[Condition], at: float) -> str:
-    """The last value before the time `at` (s) of each checkpoint that the conditions look at."""
+    """The last reading before the time `at` (s) of each checkpoint that the conditions look at: a
+    measurement that failed takes the place of the value before it (rule C3)."""
     said = []
     for id in dict.fromkeys(condition.object_id for condition in until):
         told: list[Reading | GivenValue] = [*record.readings, *record.given_values]
         before = [one for one in told if str(one.checkpoint) == id and one.t <= at]
         last = max(before, key=lambda one: one.t, default=None)
         text = "no value" if last is None else f"{last.value:.4g} {last.unit} at {clock(last.t)}"
+        failed = [t.end for t in record.tasks if t.object_id == id and t.outcome == "failed"]
+        since = max((end for end in failed if end <= at), default=-math.inf)
+        if since > (-math.inf if last is None else last.t):
+            text = f"failed at {clock(since)}"
         said.append(f"#{id}: {text}")
     return ", ".join(said)
 

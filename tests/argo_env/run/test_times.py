@@ -17,6 +17,7 @@ from argo_compiler.il import (
     Transition,
     WaitRule,
 )
+from argo_env.report.rounds import with_readings
 from argo_env.report.waiting import waits
 from argo_env.run.headline import Tone
 from argo_env.run.journal import open_journal
@@ -160,6 +161,17 @@ class TestRounds:
         record = run(navigator, mission(first, THERE, groups=(group,)), values={1: 3.0})
         assert [(r.number, r.due, r.began) for r in record.rounds] == [(1, None, 0.0)]
         assert record.result.success
+
+    @pytest.mark.rule("C3")
+    def test_a_measurement_that_failed_is_what_the_round_ended_with(self, navigator):
+        first = measure(1).model_copy(update={"reading_limit": 0.01})
+        group = Group(
+            name="Watch", start="MEASURE 1", end="B", until=(above(1, 2.0),), max_repeat_count=1
+        )
+        plan = mission(first, THERE, groups=(group,))
+        record = run(navigator, plan, (0.5, ReadingGiven("1", 3.0)), values={1: 3.0})
+        ((_, said),) = with_readings(record)
+        assert said.startswith("#1: failed at ")
 
     def test_a_run_that_ends_before_a_round_is_due(self, navigator):
         plan = mission(HERE, THERE, groups=(self.group(every=600.0, max_repeat_count=2),))

@@ -15,6 +15,7 @@ import os, random, signal, sys, threading
 from ortools.sat.python import cp_model
 from argo_compiler.route.cp_solver import new_solver, run_solver
 
+signal.signal(signal.SIGINT, signal.default_int_handler)  # else ignored in the background
 model, draw = cp_model.CpModel(), random.Random(1)
 picked = [model.new_bool_var("") for _ in range(300)]
 for _ in range(80):

@@ -187,7 +187,7 @@ WRONG = {
     "resume out": "out: is a folder; name the journal in it: out/run.journal",
     "resume out/report.json": "out/report.json: is no journal",
     "resume head.journal --report new": "head.journal: is no journal, or its first line is damaged",
-    "resume damaged.journal": "damaged.journal: is damaged in line",
+    "resume damaged.journal": "damaged.journal: is damaged from line 6 on",
     "resume run.journal --report out": "out/report.json: is there already",
     "resume run.journal --event 500=gas_leak": "the run has ended",
     "replay run.journal": "run.journal: is no .mcap file",

@@ -1,0 +1,90 @@
+"""The parser of sentences: words in, a tree of rules out."""
+
+from dataclasses import dataclass, field
+from functools import cache
+from importlib.resources import files
+
+from lark import Lark, Token, Tree
+from lark.exceptions import UnexpectedToken
+
+from argo_compiler.script.syntax.words.word import Word
+
+Branch = tuple[str, tuple["Branch | int", ...], int, int]
+"""a rule, its parts, and which words it covers, from the first to behind the last; a part is a
+branch or the place of a word in the sentence"""
+
+
+class StumbleError(Exception):
+    """The parser can't go on from word `at`; it would with one of the terminals `accepted`."""
+
+    def __init__(self, at: int, accepted: frozenset[str]) -> None:
+        super().__init__(at)
+        self.at = at
+        self.accepted = accepted
+
+
+@dataclass
+class Grammar:
+    """A parser, and the trees of the sentences it has met, by the types of their words."""
+
+    parser: Lark
+    _known: dict[tuple[str, ...], Branch | StumbleError] = field(default_factory=dict)
+
+    _MOST = 4096
+
+    def tree(self, words: tuple[str, ...]) -> Branch:
+        """The tree of a sentence whose words have these types; raises StumbleError."""
+        found = self._known.get(words)
+        if found is None:
+            if len(self._known) >= self._MOST:
+                self._known.clear()
+            try:
+                found = self._parse(words)
+            except StumbleError as stumble:
+                found = stumble
+            self._known[words] = found
+        if isinstance(found, StumbleError):
+            raise StumbleError(found.at, found.accepted)
+        return found
+
+    def _parse(self, words: tuple[str, ...]) -> Branch:
+        parser = self.parser.parse_interactive("")
+        at = 0
+        try:
+            for at, type_ in enumerate(words):
+                parser.feed_token(Token(type_, "", start_pos=at, end_pos=at + 1))
+            at = len(words)
+            tree = parser.feed_token(Token("$END", "", start_pos=at, end_pos=at))
+        except UnexpectedToken as error:
+            raise StumbleError(at, frozenset(error.accepts or error.expected)) from None
+        return _branch(tree)
+
+
+def _branch(tree: Tree[Token]) -> Branch:
+    parts = tuple(_branch(c) if isinstance(c, Tree) else c.start_pos or 0 for c in tree.children)
+    meta = tree.meta
+    first, behind = (0, 0) if meta.empty else (meta.start_pos, meta.end_pos)
+    return str(tree.data), parts, first, behind
+
+
+@cache
+def sentence_grammar() -> Grammar:
+    """The grammar in `sentence.lark` beside this module."""
+    text = files(__package__).joinpath("sentence.lark").read_text(encoding="utf-8")
+    return Grammar(
+        Lark(
+            text + f"\n%declare {' '.join(terminals(text))}",
+            parser="lalr",
+            lexer="basic",
+            start="sentence",
+            propagate_positions=True,
+            maybe_placeholders=False,
+        )
+    )
+
+
+def terminals(text: str) -> list[str]:
+    """The names in capitals of a grammar's text."""
+    import re
+
+    return sorted(set(re.findall(r"\b[A-Z][A-Z_]+\b|\b[XYZ]\b", re.sub(r"//.*", "", text))))

@@ -1,0 +1,1 @@
+"""What a script says, as a tree: nouns, places, conditions, manners, orders, sentences."""

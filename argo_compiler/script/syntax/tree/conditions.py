@@ -1,0 +1,102 @@
+"""Conditions: what is asked of values, states and events, joined by and, or and not."""
+
+from dataclasses import dataclass
+from enum import StrEnum
+
+from argo_compiler.il import EventKind
+from argo_compiler.script.syntax.tree.node import Node
+from argo_compiler.script.syntax.tree.nouns import Nouns
+
+
+class Relation(StrEnum):
+    """How a value compares with a bound."""
+
+    GREATER = "greater"
+    LESS = "less"
+    AT_LEAST = "at least"
+    AT_MOST = "at most"
+
+
+class State(StrEnum):
+    """What a reading may be."""
+
+    NORMAL = "normal"
+    ABNORMAL = "abnormal"
+    UNREADABLE = "unreadable"
+    FAILED = "failed"
+    STALE = "stale"
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Amount(Node):
+    """A value with the unit that is said with it, if one is."""
+
+    value: float
+    unit: str = ""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Compared(Node):
+    """`above 5 bar`."""
+
+    relation: Relation
+    bound: Amount
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Between(Node):
+    """`between 2 and 3`, the bounds excluded; `from 2 to 3`, included."""
+
+    low: Amount
+    high: Amount
+    inclusive: bool
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class InState(Node):
+    """`abnormal`, `unreadable`."""
+
+    state: State
+
+
+Predicate = Compared | Between | InState
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Test(Node):
+    """What is asked of the checkpoints; of several joined by `or`, one has to be so."""
+
+    subject: Nouns | None
+    """None: what was measured last"""
+    predicate: Predicate
+    negated: bool = False
+    max_age: float | None = None
+    """s"""
+    id: str = ""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Occurs(Node):
+    """`a gas leak or a hot spot is detected`: any of the events."""
+
+    events: tuple[EventKind, ...]
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Battery(Node):
+    """`the battery drops below 30 %`."""
+
+    relation: Relation
+    level: Amount
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Joined(Node):
+    """Alternatives, of each of which all must hold: `and` binds more tightly than `or`."""
+
+    alternatives: tuple[tuple["Test | Occurs | Battery", ...], ...]
+    negated: bool = False
+    """`unless`"""
+
+
+Condition = Joined

@@ -1,0 +1,59 @@
+"""How, when and how often something is done."""
+
+from dataclasses import dataclass
+
+from argo_compiler.script.syntax.tree.conditions import Condition
+from argo_compiler.script.syntax.tree.places import Coordinates
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Joints:
+    """Positions of named joints."""
+
+    names: tuple[str, ...]
+    positions: tuple[float, ...]
+
+
+@dataclass(slots=True, kw_only=True)
+class Manner:
+    """What is said of an order besides what it does. None: nothing is."""
+
+    speed: float | None = None
+    """m/s on the way to each task"""
+    leaving: float | None = None
+    """m/s on the way to the task after"""
+    retries: int | None = None
+    delay: float | None = None
+    """s to wait before it"""
+    time_limit: float | None = None
+    """s"""
+    reading_limit: float | None = None
+    """s"""
+    optional: bool = False
+    priority: int | None = None
+    earliest: float | None = None
+    """s after the mission's start"""
+    latest: float | None = None
+    """s after the mission's start"""
+    soft_window: bool = False
+    times: int | None = None
+    """rounds in all"""
+    more: bool = False
+    """`again`: the rounds are further ones"""
+    at_most: int | None = None
+    """rounds, with `until`"""
+    every: float | None = None
+    """s from the beginning of a round to that of the next"""
+    duration: float | None = None
+    """s"""
+    until: Condition | None = None
+    finishing: bool | None = None
+    """whether the round is completed when the time is up"""
+    count_interruptions: bool = False
+    endless: bool = False
+    condition: Condition | None = None
+    """`check #8 if it is above 5`"""
+    joints: Joints | None = None
+    shown_in: str | None = None
+    object_id: str | None = None
+    pose: Coordinates | None = None

@@ -1,0 +1,83 @@
+"""Noun phrases: which checkpoints are meant. Nothing is looked up yet."""
+
+from dataclasses import dataclass
+from enum import StrEnum
+
+from argo_compiler.catalog import CheckpointKind
+from argo_compiler.script.syntax.tree.node import Node
+from argo_compiler.script.syntax.tree.places import FloorName
+
+
+class Kind(StrEnum):
+    """What a noun says that it is of; `gauge` may be a pressure or a level gauge."""
+
+    CHECKPOINT = "checkpoint"
+    GAUGE = "gauge"
+    PRESSURE_GAUGE = CheckpointKind.PRESSURE_GAUGE
+    LIQUID_LEVEL_GAUGE = CheckpointKind.LIQUID_LEVEL_GAUGE
+    VALVE = CheckpointKind.VALVE
+
+
+class Quantity(StrEnum):
+    """What a script asks to be read."""
+
+    VALUE = "value"
+    POSITION = "position"
+    LEVEL = "level"
+    PRESSURE = "pressure"
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Named(Node):
+    """`valve R25`, `#8`, `pressure gauges 5 to 7`: by a number or an identifier."""
+
+    label: int | str
+    kind: Kind | None = None
+    """None: as the one before it in the list, if it says one"""
+    plural: bool = False
+    """whether the kind is said of several"""
+    hash: bool = False
+    """`#8`, `no. 8`: a checkpoint's number, whatever kind it is"""
+    last: int | str | None = None
+    """of a range"""
+    quantity: Quantity | None = None
+    also: "Named | None" = None
+    """the same by its other name: `pressure gauge 5 (checkpoint #8)`"""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class AllOf(Node):
+    """`all valves on the second floor except R12`."""
+
+    kind: Kind
+    floors: tuple[FloorName, ...] = ()
+    """none: the whole site"""
+    but: tuple[Named, ...] = ()
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class TheOne(Node):
+    """`the valve on the third floor`: the only one of its kind there, or what was measured last."""
+
+    kind: Kind
+    floors: tuple[FloorName, ...] = ()
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Pronoun(Node):
+    """What was measured last: `it`, `the value`; or all that was: `both`, `them`."""
+
+    every: bool = False
+    quantity: Quantity | None = None
+
+
+Noun = Named | AllOf | TheOne | Pronoun
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Nouns(Node):
+    """A list of them."""
+
+    nouns: tuple[Noun, ...]
+    either: bool = False
+    """joined by `or`"""

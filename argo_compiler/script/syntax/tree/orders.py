@@ -1,0 +1,167 @@
+"""Orders: what the robot is to do, and changes of the plan."""
+
+from dataclasses import dataclass
+from enum import StrEnum
+
+from argo_compiler.il import EventKind
+from argo_compiler.script.syntax.tree.conditions import Condition
+from argo_compiler.script.syntax.tree.manner import Manner
+from argo_compiler.script.syntax.tree.node import Node
+from argo_compiler.script.syntax.tree.nouns import Nouns
+from argo_compiler.script.syntax.tree.places import DockLocation, FloorName, Location, Steps
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Order(Node):
+    """Something to do."""
+
+    name: str | None = None
+    """of the task or the round, if the script gives one"""
+    manner: Manner | None = None
+    joint: str = ""
+    """what stood before it: `, and`"""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Measure(Order):
+    """`Check the checkpoint #14`."""
+
+    what: Nouns
+    bare: bool = False
+    """only named, as in a list"""
+    keep: bool = False
+    """`keep reading`"""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Go(Order):
+    """`Go to the front of the site`."""
+
+    where: Location | FloorName
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Home(Order):
+    """`Return to the docking station`, `go home`."""
+
+    dock: DockLocation
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Start(Order):
+    """`Set a starting point in front of the site`; with `here` it stays where the line stands."""
+
+    where: Location | None
+    here: bool = False
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Patrol(Order):
+    """`Patrol the first floor in circles for 10 minutes`."""
+
+    places: tuple[FloorName | Location, ...]
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Wait(Order):
+    """`Wait 90 s`, `wait until #1 is below 3`, `wait for the all-clear`."""
+
+    event: EventKind | None = None
+    person: bool = False
+    """for the operator"""
+
+
+class Word(StrEnum):
+    """Orders of one word."""
+
+    PAUSE = "pause"
+    END = "end the mission"
+    ABORT = "abort the mission"
+    GO_ON = "go on"
+    RECHARGE = "recharge"
+    REPORT = "report it"
+    DONE = "done"
+    MEET = "go on here"
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Plain(Order):
+    """An order that needs nothing else."""
+
+    word: Word
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Retry(Order):
+    """`retry twice`."""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Jump(Order):
+    """`go to step 5`."""
+
+    step: Steps
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Repeat(Order):
+    """`Repeat steps 2 to 4 three times`."""
+
+    steps: Steps | None
+    """None: all"""
+
+
+class Side(StrEnum):
+    """Where something is put."""
+
+    BEFORE = "before"
+    AFTER = "after"
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Add(Order):
+    """`Add checkpoint #2 after checkpoint #14`."""
+
+    what: Nouns
+    side: Side
+    anchor: Nouns | Steps
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Delete(Order):
+    """`Delete the measuring of checkpoint #2`."""
+
+    what: Nouns | Steps
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Move(Order):
+    """`Move checkpoint #4 before checkpoint #1`."""
+
+    what: Nouns | Steps
+    side: Side
+    anchor: Nouns | Steps
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Replace(Order):
+    """`Replace checkpoint #1 by checkpoint #2`."""
+
+    what: Nouns | Steps
+    by: Nouns
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Case(Node):
+    """`If ..., A and B`; without a condition: `otherwise A and B`."""
+
+    condition: Condition | None
+    orders: tuple[Order, ...]
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Sentence(Node):
+    """Orders, then cases in the order in which they are said."""
+
+    orders: tuple[Order, ...] = ()
+    cases: tuple[Case, ...] = ()

@@ -1,0 +1,181 @@
+"""The words of English. `check(s)` is two words, bars separate phrases."""
+
+from argo_compiler.catalog import CheckpointKind
+from argo_compiler.il import EventKind, Mode
+from argo_compiler.script.syntax.words.lexicon import Phrases
+
+NOTHING: Phrases = {
+    ("FILLER", None): (
+        "the|a|an|please|kindly|just|then|there|straight|directly|at once|immediately|right away|"
+        "now|as well|too|also|could you please|could you|can you please|would you please|"
+        "i would like you to|we need you to|have|let|make sure to|should|must|will|shall|has to|"
+        "is to|needs to|robot|it should|it has to|it must|it will|it shall|it is to|let it|have it|"
+        "after that|afterwards|finally|first of all|at the end|in the end|next|subsequently|"
+        "of them|of these|of those|after this|from there|so"
+    ),
+    ("IDLE", None): "today|tonight|tomorrow|this morning|this evening|carefully",
+}
+
+VERBS: Phrases = {
+    ("MEASURE", None): (
+        "check(s)|measure(s)|read(s)|inspect(s)|control(s)|verif(y)|verifies|examine(s)|look(s) at|"
+        "have a look at|take a look at|take a reading of|record(s)|monitor(s)"
+    ),
+    ("KEEP_MEASURING", None): "keep(s) reading|keep(s) checking|keep(s) measuring",
+    ("BE_MEASURED", None): (
+        "has to be read|has to be checked|has to be measured|must be read|must be checked|"
+        "must be measured|should be read|should be checked|should be measured|is read|is checked|"
+        "is measured|are read|are checked|have to be read|have to be checked|is to be read|"
+        "is to be checked"
+    ),
+    ("GO", None): (
+        "go(es) (back) to|go(es) (back) into|drive(s) (back) to|drive(s) (back) into|"
+        "return(s) to|move(s) to|head(s) (back) to|come(s) back to|get(s) back to|travel(s) to|"
+        "proceed(s) to|back to|go(es)|drive(s)|it goes to"
+    ),
+    ("HOME", None): (
+        "go(es) home|drive(s) home|come(s) home|return(s) home|return(s)|go(es) back|drive(s) back|"
+        "come(s) back|it goes home|return(s) to base|home"
+    ),
+    ("START", None): (
+        "set a starting point|set the starting point|set a start point|set the start point|"
+        "start(s)|begin(s)|start(s) from|begin(s) from|leave(s)|leaves from|leave from|"
+        "is waiting|is standing|stands|starts out"
+    ),
+    ("PATROL", None): "patrol(s)",
+    ("WAIT", None): "wait(s)|stay(s)",
+    ("PAUSE", None): "pause(s)|stop(s)|halt(s)|stand(s) still|hold(s)|stop(s) the round",
+    ("END", None): (
+        "end the mission|finish the mission|stop the mission|terminate the mission|end|"
+        "that is the end of the mission|this is the end of the mission"
+    ),
+    ("ABORT", None): "abort|abort the mission|mission is aborted|cancel the mission",
+    ("GO_ON", None): (
+        "go(es) on|continue(s)|carry on|go(es) ahead|resume(s)|continue the mission|"
+        "resume the mission|go on with the mission|proceed"
+    ),
+    ("RECHARGE", None): "recharge(s)|charge(s)|recharge the battery|charge the battery",
+    ("REPORT", None): "report it|report this|report|report that",
+    ("REPEAT", None): "repeat|run|perform|execute",
+    ("DO_FOLLOWING", None): "do the following|do this",
+    ("ADD", None): "add|insert",
+    ("DELETE", None): "delete|remove",
+    ("REPLACE", None): "replace|exchange",
+    ("MOVE", None): "move",
+    ("JUMP", None): "skip to|jump to|continue with|go on with|proceed with|carry on with",
+    ("RETRY", None): "retry|try again|try it again|retry it",
+    ("DONE", None): "done|that is all",
+}
+
+NOUNS: Phrases = {
+    ("KIND", None): "checkpoint(s)|check point(s)",
+    ("KIND", CheckpointKind.VALVE): "valve(s)",
+    ("KIND", CheckpointKind.PRESSURE_GAUGE): "pressure gauge(s)|manometer(s)",
+    ("KIND", CheckpointKind.LIQUID_LEVEL_GAUGE): "liquid level gauge(s)|level gauge(s)",
+    ("KIND", "gauge"): "gauge(s)",
+    ("HASH", None): "#|no .|nr .|number|no|nr",
+    ("STEP", None): "step(s)|task(s)",
+    ("FLOOR", None): "floor(s)|deck(s)|storey(s)",
+    ("FLOOR_NAME", "bottom"): "ground floor|lowest floor|bottom floor",
+    ("FLOOR_NAME", "top"): "top floor|highest floor|uppermost floor",
+    ("AREA", None): "starting area|start area|area",
+    ("DOCK", None): "dock(s)|docking station|docking bay|its dock|charging station",
+    ("ALL", None): "all|every|each|all of",
+    ("EXCEPT", None): "except|except for|but not|apart from|but don't check|but do not check",
+    ("IT", None): "it|that one",
+    ("THEM", None): "them|both|both of them",
+    ("THIS", None): "this|that",
+    ("OF", "value"): "value of|value on|reading of|reading on|value at",
+    ("OF", "position"): "position of|position on",
+    ("OF", "level"): "level of|level on",
+    ("OF", "pressure"): "pressure of|pressure on",
+    ("VALUE", "value"): "value|its value|reading",
+    ("VALUE", "pressure"): "pressure|its pressure",
+    ("VALUE", "level"): "level|its level",
+    ("VALUE", "position"): "position|its position",
+    **{
+        ("ORDINAL", n): f"{word}|{n}{suffix}"
+        for n, (word, suffix) in enumerate(
+            zip(
+                "first second third fourth fifth sixth seventh eighth ninth tenth".split(),
+                "st nd rd th th th th th th th".split(),
+                strict=True,
+            ),
+            start=1,
+        )
+    },
+}
+
+CONDITIONS: Phrases = {
+    ("IF", None): "if|when|whenever|in case|as soon as",
+    ("UNLESS", None): "unless",
+    ("ELSE", None): "otherwise|else|if not",
+    ("UNTIL", None): "until|till",
+    ("IS", None): "is|are|was|were|shows|show|lies|gets|becomes|drops|rises|falls",
+    ("NOT", None): "not|isn't|does not|do not|don't|is not|are not|was not|never",
+    ("GREATER", None): "greater than|more than|higher than|larger than|above|over|exceeds|>",
+    ("LESS", None): "less than|lower than|smaller than|below|under|<",
+    ("AT_LEAST", None): "at least|>=|no less than|not less than|greater than or equal to",
+    ("AT_MOST", None): "at most|<=|no more than|not more than|less than or equal to|up to",
+    ("BETWEEN", None): "between",
+    ("FROM", None): "from",
+    ("STATE", "normal"): "normal|in its normal range|within its normal range|in its normal position",
+    ("STATE", "abnormal"): (
+        "abnormal|outside its normal range|out of its normal range|not in its normal position|"
+        "not normal|not in its normal range"
+    ),
+    ("STATE", "unreadable"): "unreadable|can't be read|cannot be read|could not be read",
+    ("FAILS", None): "fails|still fails|does not work|does not succeed",
+    ("OCCURS", None): (
+        "is detected|is found|is heard|is seen|occurs|happens|sounds|appears|is pressed"
+    ),
+    ("BATTERY", None): "battery|battery level|charge of the battery|battery charge",
+    ("EVENT", EventKind.GAS_LEAK): "gas leak(s)|gas leakage",
+    ("EVENT", EventKind.HOT_SPOT): "hot spot(s)|hotspot(s)",
+    ("EVENT", EventKind.ABNORMAL_SOUND): "abnormal (pump) sound|abnormal (pump) noise",
+    ("EVENT", EventKind.PLATFORM_ALARM): "(general) platform alarm|gpa|evacuation alarm ( gpa )",
+    ("EVENT", EventKind.LOW_BATTERY): "low battery|battery is low",
+    ("EVENT", EventKind.CONNECTION_LOST): "connection loss|connection is lost|loss of connection",
+    ("EVENT", EventKind.EMERGENCY_STOP): "emergency stop",
+    ("EVENT", EventKind.DYSFUNCTION): "dysfunction|malfunction",
+    ("EVENT", EventKind.ABNORMAL_READING): "abnormal reading|abnormal value",
+    ("EVENT", EventKind.TIME_UP): "time is up|time is over",
+    ("EVENT", EventKind.ALL_CLEAR): "all-clear|all clear|all clear is given|danger is over",
+    ("EVENT", EventKind.BATTERY_CHARGED): "battery is charged|battery is full",
+    ("EVENT", EventKind.CONNECTION_RESTORED): "it is restored|connection is restored",
+}
+
+MANNERS: Phrases = {
+    ("TO", None): "to|into",
+    ("IN", None): "in|inside",
+    ("AT", None): "at|at the",
+    ("ON", None): "on|onto",
+    ("FOR", None): "for",
+    ("TIMES", 1): "once",
+    ("TIMES", 2): "twice",
+    ("MORE", 1): "again|once more|one more time|a second time",
+    ("TIME_WORD", None): "time(s)|round(s)",
+    ("WITHIN", None): "within|within the first|in at most",
+    ("BY", None): "by|with",
+    ("BEFORE", None): "before",
+    ("AFTER", None): "after",
+    ("LATEST", None): "not later than|no later than|at the latest",
+    ("SINCE_START", None): "after the start|after mission start|after the mission's start",
+    ("IF_TIME", None): "if there is time|time permitting|if time allows|if time permits",
+    ("PRIORITY", None): "with priority|priority",
+    ("ANY_ORDER", None): "in any order",
+    ("THIS_ORDER", None): "in this order|in this precise order|in the given order",
+    ("TOTAL", None): "in total|in all|altogether",
+    ("MODE", Mode.AUTONOMOUS): "autonomous(ly)",
+    ("MODE", Mode.SUPERVISORY): "supervisory",
+    ("UPTO", None): "through",
+    ("UNIT_S", 3600.0): "h|hour(s)|hrs|hr",
+    ("UNIT_S", 60.0): "min|mins|minute(s)|'",
+    ("UNIT_S", 1.0): "s|sec|secs|seconds",
+    ("HALF", None): "half a|half an",
+}
+
+JOINTS: Phrases = {
+    ("JOINT", "and"): "and",
+    ("JOINT", "or"): "or",
+}

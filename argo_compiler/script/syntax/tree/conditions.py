@@ -73,13 +73,15 @@ class Test(Node):
     max_age: float | None = None
     """s"""
     id: str = ""
+    second_bound: float | None = None
+    """an upper bound that the comparison does not need, kept for the plan's sake"""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Occurs(Node):
-    """`a gas leak or a hot spot is detected`: any of the events."""
+    """`a gas leak is detected`. None: which of two kinds of obstacle is open."""
 
-    events: tuple[EventKind, ...]
+    event: EventKind | None
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -90,13 +92,13 @@ class Battery(Node):
     level: Amount
 
 
+Asked = Test | Occurs | Battery
+
+
 @dataclass(frozen=True, slots=True, kw_only=True)
-class Joined(Node):
+class Condition(Node):
     """Alternatives, of each of which all must hold: `and` binds more tightly than `or`."""
 
-    alternatives: tuple[tuple["Test | Occurs | Battery", ...], ...]
+    alternatives: tuple[tuple[Asked, ...], ...]
     negated: bool = False
     """`unless`"""
-
-
-Condition = Joined

@@ -47,12 +47,12 @@ class Named(Node):
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class AllOf(Node):
-    """`all valves on the second floor except R12`."""
+    """`all valves on the second floor`."""
 
     kind: Kind
     floors: tuple[FloorName, ...] = ()
     """none: the whole site"""
-    but: tuple[Named, ...] = ()
+    quantity: Quantity | None = None
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -61,6 +61,7 @@ class TheOne(Node):
 
     kind: Kind
     floors: tuple[FloorName, ...] = ()
+    quantity: Quantity | None = None
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -79,5 +80,7 @@ class Nouns(Node):
     """A list of them."""
 
     nouns: tuple[Noun, ...]
+    but: tuple[Noun, ...] = ()
+    """what is left out of them"""
     either: bool = False
     """joined by `or`"""

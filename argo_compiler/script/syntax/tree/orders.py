@@ -1,7 +1,8 @@
 """Orders: what the robot is to do, and changes of the plan."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from enum import StrEnum
+from typing import Self
 
 from argo_compiler.il import EventKind
 from argo_compiler.script.syntax.tree.conditions import Condition
@@ -20,6 +21,10 @@ class Order(Node):
     manner: Manner | None = None
     joint: str = ""
     """what stood before it: `, and`"""
+
+    def joined(self, joint: str) -> Self:
+        """The order with what stood before it."""
+        return replace(self, joint=joint)
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -89,6 +94,16 @@ class Plain(Order):
     """An order that needs nothing else."""
 
     word: Word
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Amend(Order):
+    """Manner by itself: of what stands before it, or behind it after a colon."""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Follow(Order):
+    """`Do the following twice:`, of the steps within this one."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

@@ -1,8 +1,9 @@
 """The words of English. `check(s)` is two words, bars separate phrases."""
 
-from argo_compiler.catalog import CheckpointKind
 from argo_compiler.il import EventKind, Mode
+from argo_compiler.script.syntax.tree.nouns import Kind
 from argo_compiler.script.syntax.words.lexicon import Phrases
+from argo_compiler.script.syntax.words.numbers import Figure
 
 NOTHING: Phrases = {
     ("FILLER", None): (
@@ -68,19 +69,25 @@ VERBS: Phrases = {
 }
 
 NOUNS: Phrases = {
-    ("KIND", None): "checkpoint(s)|check point(s)",
-    ("KIND", CheckpointKind.VALVE): "valve(s)",
-    ("KIND", CheckpointKind.PRESSURE_GAUGE): "pressure gauge(s)|manometer(s)",
-    ("KIND", CheckpointKind.LIQUID_LEVEL_GAUGE): "liquid level gauge(s)|level gauge(s)",
-    ("KIND", "gauge"): "gauge(s)",
+    ("KIND", (Kind.CHECKPOINT, False)): "checkpoint|check point",
+    ("KIND", (Kind.CHECKPOINT, True)): "checkpoints|check points",
+    ("KIND", (Kind.VALVE, False)): "valve",
+    ("KIND", (Kind.VALVE, True)): "valves",
+    ("KIND", (Kind.PRESSURE_GAUGE, False)): "pressure gauge|manometer",
+    ("KIND", (Kind.PRESSURE_GAUGE, True)): "pressure gauges|manometers",
+    ("KIND", (Kind.LIQUID_LEVEL_GAUGE, False)): "liquid level gauge|level gauge",
+    ("KIND", (Kind.LIQUID_LEVEL_GAUGE, True)): "liquid level gauges|level gauges",
+    ("KIND", (Kind.GAUGE, False)): "gauge",
+    ("KIND", (Kind.GAUGE, True)): "gauges",
     ("HASH", None): "#|no .|nr .|number|no|nr",
     ("STEP", None): "step(s)|task(s)",
-    ("FLOOR", None): "floor(s)|deck(s)|storey(s)",
+    ("FLOOR", False): "floor|deck|storey",
+    ("FLOOR", True): "floors|decks|storeys",
     ("FLOOR_NAME", "bottom"): "ground floor|lowest floor|bottom floor",
     ("FLOOR_NAME", "top"): "top floor|highest floor|uppermost floor",
     ("AREA", None): "starting area|start area|area",
     ("DOCK", None): "dock(s)|docking station|docking bay|its dock|charging station",
-    ("ALL", None): "all|every|each|all of",
+    ("ALL", None): "all|each|all of",
     ("EXCEPT", None): "except|except for|but not|apart from|but don't check|but do not check",
     ("IT", None): "it|that one",
     ("THEM", None): "them|both|both of them",
@@ -119,7 +126,10 @@ CONDITIONS: Phrases = {
     ("AT_MOST", None): "at most|<=|no more than|not more than|less than or equal to|up to",
     ("BETWEEN", None): "between",
     ("FROM", None): "from",
-    ("STATE", "normal"): "normal|in its normal range|within its normal range|in its normal position",
+    (
+        "STATE",
+        "normal",
+    ): "normal|in its normal range|within its normal range|in its normal position",
     ("STATE", "abnormal"): (
         "abnormal|outside its normal range|out of its normal range|not in its normal position|"
         "not normal|not in its normal range"
@@ -151,11 +161,14 @@ MANNERS: Phrases = {
     ("AT", None): "at|at the",
     ("ON", None): "on|onto",
     ("FOR", None): "for",
-    ("TIMES", 1): "once",
-    ("TIMES", 2): "twice",
-    ("MORE", 1): "again|once more|one more time|a second time",
+    ("EVERY", None): "every",
+    ("TIMES", Figure(1.0)): "once",
+    ("TIMES", Figure(2.0)): "twice",
+    ("MORE", Figure(1.0)): "again|once more|one more time|a second time",
     ("TIME_WORD", None): "time(s)|round(s)",
     ("WITHIN", None): "within|within the first|in at most",
+    ("MEASURING", None): "measuring of|measurement of",
+    ("EVERYTHING", None): "everything|all steps",
     ("BY", None): "by|with",
     ("BEFORE", None): "before",
     ("AFTER", None): "after",
@@ -172,10 +185,35 @@ MANNERS: Phrases = {
     ("UNIT_S", 3600.0): "h|hour(s)|hrs|hr",
     ("UNIT_S", 60.0): "min|mins|minute(s)|'",
     ("UNIT_S", 1.0): "s|sec|secs|seconds",
-    ("HALF", None): "half a|half an",
+}
+
+_UNITS = "one two three four five six seven eight nine".split()
+_TEENS = "ten eleven twelve thirteen fourteen fifteen sixteen seventeen eighteen nineteen".split()
+_TENS = "twenty thirty forty fifty sixty seventy eighty ninety".split()
+
+FIGURES: Phrases = {
+    **{("NUMBER_WORD", n): word for n, word in enumerate(_UNITS + _TEENS, start=1)},
+    **{("NUMBER_WORD", 10 * n): word for n, word in enumerate(_TENS, start=2)},
+    **{
+        ("NUMBER_WORD", 10 * n + k): f"{ten}-{unit}|{ten} {unit}"
+        for n, ten in enumerate(_TENS, start=2)
+        for k, unit in enumerate(_UNITS, start=1)
+    },
+    ("NUMBER_WORD", 100): "hundred|hundred and",
+    ("NUMBER_WORD", 1000): "thousand|thousand and",
+    ("UNIT", "bar"): "bar(s)",
+    ("UNIT", "mbar"): "mbar|millibar",
+    ("UNIT", "psi"): "psi",
+    ("UNIT", "kPa"): "kpa",
+    ("UNIT", "MPa"): "mpa",
+    ("UNIT", "%"): "%|percent|per cent",
+    ("UNIT", "deg"): "°|deg|degree(s)",
+    ("HALF", None): "half",
 }
 
 JOINTS: Phrases = {
     ("JOINT", "and"): "and",
     ("JOINT", "or"): "or",
 }
+
+PARTS = (NOTHING, VERBS, NOUNS, CONDITIONS, MANNERS, FIGURES, JOINTS)

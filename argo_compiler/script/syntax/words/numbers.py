@@ -43,3 +43,27 @@ def read_figure(text: str) -> Figure:
     last = max(text.rfind("."), text.rfind(","))
     digits = re.sub(r"[.,']", "", text[:last])
     return Figure(float(f"{digits}.{text[last + 1 :]}"), listed=listed)
+
+
+def compose(values: list[int | None]) -> tuple[int, int]:
+    """The number that the first of the values stand for, and how many of them it takes.
+
+    `[2, 1000, 300]` are two, thousand and three hundred. A value that is no number ends it.
+    """
+    total = part = n = 0
+    last = 1000
+    for value in values:
+        if value is None:
+            break
+        if value == 1000 and 0 < part:
+            total, part, last = total + part * 1000, 0, 1000
+        elif value == 100 and 0 < part < 100:
+            part, last = part * 100, 100
+        elif value < last:
+            # After twenty comes at most nine, after a hundred at most ninety-nine.
+            part += value
+            last = 10 if value >= 20 and value % 10 == 0 else 1
+        else:
+            break
+        n += 1
+    return total + part, n

@@ -1,0 +1,120 @@
+"""Makes conditions."""
+
+from dataclasses import replace
+
+from argo_compiler.script.syntax.building.figures import Signed, seconds
+from argo_compiler.script.syntax.building.part import Make, Part
+from argo_compiler.script.syntax.tree.conditions import (
+    Amount,
+    Asked,
+    Battery,
+    Between,
+    Compared,
+    Condition,
+    InState,
+    Occurs,
+    Predicate,
+    Relation,
+    State,
+    Test,
+)
+from argo_compiler.script.syntax.tree.nouns import Nouns
+from argo_compiler.script.syntax.words.word import Word
+
+_RELATIONS = {
+    "GREATER": Relation.GREATER,
+    "LESS": Relation.LESS,
+    "AT_LEAST": Relation.AT_LEAST,
+    "AT_MOST": Relation.AT_MOST,
+}
+
+
+def _compared(part: Part) -> Compared:
+    word = part.children[0]
+    return Compared(span=part.span, relation=_RELATIONS[word.type], bound=part.the(Amount))
+
+
+def _between(part: Part) -> Between:
+    low, high = part.every(Amount)
+    if not low.unit:
+        low = replace(low, unit=high.unit)
+    return Between(span=part.span, low=low, high=high, inclusive=part.has("FROM"))
+
+
+def _predicate(part: Part) -> tuple[Predicate, bool]:
+    negated = part.has("NOT")
+    state = part.word("STATE")
+    if state is not None or part.has("FAILS"):
+        found: Predicate = InState(
+            span=part.span, state=State(state.value) if state else State.FAILED
+        )
+    else:
+        found = next(c for c in part.children if isinstance(c, Compared | Between))
+    return found, negated
+
+
+def _age(part: Part) -> float:
+    word = part.word("DURATION")
+    assert word is not None
+    return seconds(part, word)
+
+
+def _detail(part: Part) -> dict[str, object]:
+    name = part.word("STRING")
+    bound = part.first(Signed)
+    return {"id": name.value if name else "", "second": bound.value if bound else None}
+
+
+def _test(part: Part) -> Test:
+    predicate, negated = next(c for c in part.children if isinstance(c, tuple))
+    detail = part.first(dict) or {"id": "", "second": None}
+    return Test(
+        span=part.span,
+        subject=part.first(Nouns),
+        predicate=predicate,
+        negated=negated,
+        max_age=part.first(float),
+        id=str(detail["id"]),
+        second_bound=detail["second"],
+    )
+
+
+def _occurs(part: Part) -> Occurs:
+    word = part.word("EVENT")
+    assert word is not None
+    return Occurs(span=part.span, event=word.value)
+
+
+def _battery(part: Part) -> Battery:
+    compared = part.the(Compared)
+    return Battery(span=part.span, relation=compared.relation, level=compared.bound)
+
+
+def _condition(part: Part) -> Condition:
+    """The alternatives; a test without a subject has that of the test before it."""
+    alternatives: list[list[Asked]] = [[]]
+    subject: Nouns | None = None
+    for child in part.children:
+        if isinstance(child, Word):
+            if child.type.startswith("OR_"):
+                alternatives.append([])
+            continue
+        if isinstance(child, Test):
+            if child.subject is None and subject is not None:
+                child = replace(child, subject=subject)
+            subject = child.subject
+        alternatives[-1].append(child)
+    return Condition(span=part.span, alternatives=tuple(tuple(a) for a in alternatives))
+
+
+RULES: dict[str, Make] = {
+    "compared": _compared,
+    "between": _between,
+    "predicate": _predicate,
+    "age": _age,
+    "detail": _detail,
+    "test": _test,
+    "occurs": _occurs,
+    "battery": _battery,
+    "condition": _condition,
+}

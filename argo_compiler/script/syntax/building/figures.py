@@ -1,0 +1,96 @@
+"""Numbers, amounts and lengths of time: what can be read in two ways is asked about."""
+
+from dataclasses import dataclass
+
+from argo_compiler.il import MAX_TIME_S
+from argo_compiler.script.syntax.building.part import Make, Part
+from argo_compiler.script.syntax.tree.conditions import Amount
+from argo_compiler.script.syntax.words.lengths import Length
+from argo_compiler.script.syntax.words.numbers import Figure
+from argo_compiler.script.syntax.words.word import Word
+
+_LARGEST = 1_000_000_000
+
+
+@dataclass(frozen=True, slots=True)
+class Signed:
+    """A number in coordinates and the like, where the point is the decimal sign."""
+
+    value: float
+    listed: tuple[int, ...] = ()
+
+
+def whole(part: Part, figure: Figure, most: int = _LARGEST) -> int:
+    """The whole number that a figure is; anything else is an error, and 0."""
+    value = figure.whole
+    if value is None:
+        _complain_of_whole(part, figure)
+        return 0
+    if value > most:
+        part.error("number", f"{value} is too large a number", f"numbers go up to {most} here")
+        return 0
+    return value
+
+
+def _complain_of_whole(part: Part, figure: Figure) -> None:
+    if figure.other is not None:
+        message = f"this number can be read as {figure.value:g} or as {figure.other:g}"
+        part.error("ambiguous-number", message, f"write `{figure.other:g}` for the second")
+    else:
+        part.error("number", f"{figure.value:g} is not a whole number", "write a whole number")
+
+
+def decimal(part: Part, figure: Figure) -> float:
+    """The number that a figure is; one that can be read in two ways is an error."""
+    if figure.other is not None:
+        message = f"this number can be read as {figure.value:g} or as {figure.other:g}"
+        hint = f"write `{figure.value:g}0` for the first, `{figure.other:g}` for the second"
+        part.error("ambiguous-number", message, hint)
+    elif figure.value >= 1e308:
+        part.error("number", f"{part.said} is too large a number", "write a smaller one")
+    return figure.value
+
+
+def seconds(part: Part, word: Word) -> float:
+    """The seconds of a length of time that is more than none."""
+    length: Length = word.value
+    if length.other is not None:
+        message = f"`{length.said}` can be read as {length.first} or as {length.second}"
+        part.error("ambiguous-duration", message, f"write `{length.first}` or `{length.second}`")
+    elif length.seconds <= 0:
+        part.error("duration", "a duration of zero", "write, say, `10 minutes`")
+    elif length.seconds > MAX_TIME_S:
+        message = f"a duration of {length.seconds:g} s is too long"
+        part.error("duration", message, f"at most {MAX_TIME_S:g} s are counted")
+        return MAX_TIME_S
+    return max(length.seconds, 1e-9)
+
+
+def speed(part: Part, word: Word) -> float:
+    """m/s"""
+    figure, unit = word.value
+    value = decimal(part, figure)
+    if value <= 0:
+        part.error("speed", "a speed of zero", "write, say, `at 0.3 m/s`")
+        return 1.0
+    return value / 3.6 if unit.startswith("k") else value
+
+
+def _signed(part: Part) -> Signed:
+    word = part.word("NUMBER")
+    assert word is not None
+    sign = -1 if part.has("MINUS") else 1
+    return Signed(sign * word.value.value, word.value.listed)
+
+
+def _amount(part: Part) -> Amount:
+    sign = -1 if part.has("MINUS") else 1
+    if word := part.word("QUANTITY"):
+        figure, unit = word.value
+        return Amount(span=part.span, value=sign * decimal(part, figure), unit=unit)
+    word = part.word("NUMBER")
+    assert word is not None
+    return Amount(span=part.span, value=sign * decimal(part, word.value))
+
+
+RULES: dict[str, Make] = {"signed": _signed, "amount": _amount}

@@ -1,0 +1,139 @@
+"""Makes what is said of how, when and how often something is done."""
+
+from collections.abc import Iterable
+from dataclasses import fields, replace
+from typing import Any
+
+from argo_compiler.il import EventKind
+from argo_compiler.script.syntax.building.figures import Signed, seconds, speed, whole
+from argo_compiler.script.syntax.building.part import Make, Part
+from argo_compiler.script.syntax.tree.conditions import Condition, Occurs
+from argo_compiler.script.syntax.tree.manner import Joints, Manner
+from argo_compiler.script.syntax.tree.places import Coordinates
+from argo_compiler.script.syntax.words.word import Word
+
+_MOST_RETRIES = 1_000_000
+
+
+def _seconds(part: Part) -> float:
+    word = part.word("DURATION")
+    assert word is not None
+    return seconds(part, word)
+
+
+def _times(part: Part) -> Manner:
+    word = part.word("TIMES")
+    assert word is not None
+    return Manner(times=whole(part, word.value))
+
+
+def _more(part: Part) -> Manner:
+    return Manner(times=whole(part, part.children[0].value), more=True)
+
+
+def _for(part: Part) -> Manner:
+    if event := part.word("EVENT"):
+        return Manner(until=_until_event(part, event.value))
+    return Manner(duration=_seconds(part))
+
+
+def _until_event(part: Part, event: EventKind) -> Condition:
+    return Condition(span=part.span, alternatives=((Occurs(span=part.span, event=event),),))
+
+
+def _between_times(part: Part) -> Manner:
+    first, last = (word for word in part.every(Word) if word.type in ("NUMBER", "DURATION"))
+    latest = seconds(part, last)
+    earliest = (
+        seconds(part, first)
+        if first.type == "DURATION"
+        else whole(part, first.value) * last.value.unit
+    )
+    return Manner(earliest=earliest, latest=latest)
+
+
+def _at_most(part: Part) -> Manner:
+    if word := part.word("TIMES"):
+        return Manner(at_most=whole(part, word.value))
+    return Manner(time_limit=_seconds(part))
+
+
+def _priority(part: Part) -> Manner:
+    word = part.word("NUMBER")
+    assert word is not None
+    sign = -1 if part.has("MINUS") else 1
+    return Manner(priority=sign * whole(part, word.value))
+
+
+def _flag(part: Part) -> Manner:
+    match part.children[0].type:
+        case "FINISHING":
+            return Manner(finishing=True)
+        case "STOPPING":
+            return Manner(finishing=False)
+        case "ENDLESS":
+            return Manner(endless=True)
+        case "INCLUDED":
+            return Manner(count_interruptions=True)
+        case _:
+            return Manner()
+
+
+def _speed(part: Part) -> Manner:
+    word = part.word("SPEED")
+    assert word is not None
+    value = speed(part, word)
+    return Manner(leaving=value) if part.has("LEAVING") else Manner(speed=value)
+
+
+def _string(part: Part) -> str:
+    word = part.word("STRING")
+    assert word is not None
+    return str(word.value)
+
+
+def _joints(part: Part) -> Manner:
+    names = tuple(str(word.value) for word in part.every(Word) if word.type == "STRING")
+    positions = tuple(signed.value for signed in part.every(Signed))
+    return Manner(joints=Joints(names=names, positions=positions))
+
+
+def combined(part: Part, manners: Iterable[Manner]) -> Manner | None:
+    """All of them in one; what is said twice is an error."""
+    values: dict[str, Any] = {}
+    for manner in manners:
+        for field in fields(manner):
+            value = getattr(manner, field.name)
+            if value is None or value is False:
+                continue
+            if field.name in values and field.name != "finishing":
+                what = field.name.replace("_", " ")
+                part.error("repeated-limit", f"the {what} is said twice", "leave one of them out")
+            values[field.name] = value
+    return Manner(**values) if values else None
+
+
+RULES: dict[str, Make] = {
+    "speed": _speed,
+    "leaving": _speed,
+    "times": _times,
+    "more": _more,
+    "every": lambda part: Manner(every=_seconds(part)),
+    "for_": _for,
+    "until": lambda part: Manner(until=part.the(Condition)),
+    "within": lambda part: Manner(latest=_seconds(part)),
+    "between_times": _between_times,
+    "latest": lambda part: Manner(latest=_seconds(part)),
+    "earliest": lambda part: Manner(earliest=_seconds(part)),
+    "delay": lambda part: Manner(delay=_seconds(part)),
+    "at_most": _at_most,
+    "if_time": lambda part: Manner(optional=True),
+    "priority": _priority,
+    "only_if": lambda part: Manner(condition=part.the(Condition)),
+    "unless": lambda part: Manner(condition=replace(part.the(Condition), negated=True)),
+    "flag": _flag,
+    "standing": lambda part: Manner(pose=part.the(Coordinates)),
+    "shown": lambda part: Manner(shown_in=_string(part)),
+    "about": lambda part: Manner(object_id=_string(part)),
+    "joints": _joints,
+}

@@ -1,0 +1,118 @@
+"""Makes noun phrases."""
+
+from dataclasses import replace
+
+from argo_compiler.script.syntax.building.figures import whole
+from argo_compiler.script.syntax.building.part import Make, Part
+from argo_compiler.script.syntax.tree.nouns import (
+    AllOf,
+    Kind,
+    Named,
+    Noun,
+    Nouns,
+    Pronoun,
+    Quantity,
+    TheOne,
+)
+from argo_compiler.script.syntax.tree.places import FloorName
+from argo_compiler.script.syntax.words.numbers import Figure
+from argo_compiler.script.syntax.words.word import Word
+
+Label = tuple[int | str, tuple[int, ...]]
+"""a number or an identifier, and the numbers that it may be a list of"""
+
+
+def _label(part: Part) -> Label:
+    (word,) = part.children
+    if word.type != "NUMBER":
+        return word.value, ()
+    figure: Figure = word.value
+    if figure.listed:
+        return figure.listed[0], figure.listed
+    return whole(part, figure), ()
+
+
+def _upto(part: Part) -> Label:
+    label: Label = next(c for c in part.children if isinstance(c, tuple))
+    return label
+
+
+def _kind(word: Word | None) -> tuple[Kind | None, bool]:
+    if word is None:
+        return None, False
+    kind, plural = word.value
+    return kind, plural
+
+
+def _quantity(word: Word | None) -> Quantity | None:
+    return None if word is None else Quantity(word.value)
+
+
+def _named(part: Part) -> list[Noun]:
+    """The checkpoint; several where a number is a list without blanks: `1,4`."""
+    kind, plural = _kind(part.word("KIND"))
+    (label, listed), *upto = part.every(tuple)
+    return [
+        Named(
+            span=part.span,
+            label=one,
+            kind=kind,
+            plural=plural,
+            hash=part.has("HASH"),
+            last=upto[0][0] if upto else None,
+        )
+        for one in listed or (label,)
+    ]
+
+
+def _of(part: Part) -> list[Noun]:
+    word, nouns = part.children
+    quantity = Quantity(word.value)
+    nouns = nouns if isinstance(nouns, list) else [nouns]
+    return [replace(noun, quantity=quantity) for noun in nouns]
+
+
+def _aka(part: Part) -> list[Noun]:
+    (first, *_), (second, *_) = part.every(list)
+    return [replace(first, also=second, span=part.span)]
+
+
+def _all(part: Part) -> AllOf:
+    kind, _ = _kind(part.word("KIND"))
+    return AllOf(span=part.span, kind=kind or Kind.CHECKPOINT, floors=part.every(FloorName))
+
+
+def _the_one(part: Part) -> TheOne:
+    kind, _ = _kind(part.word("KIND"))
+    return TheOne(span=part.span, kind=kind or Kind.CHECKPOINT, floors=part.every(FloorName))
+
+
+def _pronoun(part: Part) -> Pronoun:
+    value = part.word("VALUE")
+    return Pronoun(span=part.span, every=part.has("THEM"), quantity=_quantity(value))
+
+
+def _nouns(part: Part) -> Nouns:
+    nouns: list[Noun] = []
+    but: list[Noun] = []
+    either = excluded = False
+    for child in part.children:
+        if isinstance(child, Word):
+            excluded = excluded or child.type == "EXCEPT"
+            either = either or child.type.startswith("OR_")
+        else:
+            (but if excluded else nouns).extend(child if isinstance(child, list) else [child])
+    return Nouns(span=part.span, nouns=tuple(nouns), but=tuple(but), either=either)
+
+
+RULES: dict[str, Make] = {
+    "label": _label,
+    "upto": _upto,
+    "named": _named,
+    "of": _of,
+    "aka": _aka,
+    "all": _all,
+    "the_one": _the_one,
+    "pronoun": _pronoun,
+    "nouns": _nouns,
+}

@@ -1,0 +1,171 @@
+"""Makes orders."""
+
+from dataclasses import replace
+
+from argo_compiler.script.syntax.building.manners import combined
+from argo_compiler.script.syntax.building.part import Make, Part
+from argo_compiler.script.syntax.tree import orders
+from argo_compiler.script.syntax.tree.manner import Manner
+from argo_compiler.script.syntax.tree.nouns import Nouns
+from argo_compiler.script.syntax.tree.orders import Order, Side
+from argo_compiler.script.syntax.tree.places import (
+    AreaLocation,
+    Coordinates,
+    DockLocation,
+    FloorName,
+    Location,
+    PlaceLocation,
+    Steps,
+)
+from argo_compiler.script.syntax.words.word import Word
+
+_WORDS = {
+    "PAUSE": orders.Word.PAUSE,
+    "END": orders.Word.END,
+    "ABORT": orders.Word.ABORT,
+    "GO_ON": orders.Word.GO_ON,
+    "RECHARGE": orders.Word.RECHARGE,
+    "REPORT": orders.Word.REPORT,
+    "DONE": orders.Word.DONE,
+    "MEET": orders.Word.MEET,
+}
+
+
+def _manner(part: Part) -> Manner | None:
+    return combined(part, part.every(Manner))
+
+
+def _order(part: Part) -> Order:
+    found = part.the(Order)
+    name = part.word("STRING")
+    if name is None:
+        return found
+    if not name.value:
+        hint = "write a name between the quotation marks, or leave them out"
+        part.error("empty-name", "this name is empty", hint)
+    return replace(found, name=name.value)
+
+
+def _measure(part: Part) -> Order:
+    return orders.Measure(
+        span=part.span,
+        manner=_manner(part),
+        what=part.the(Nouns),
+        bare=not part.has("MEASURE", "KEEP_MEASURING"),
+        keep=part.has("KEEP_MEASURING"),
+    )
+
+
+def _go(part: Part) -> Order:
+    return _towards(part, _where(part))
+
+
+def _where(part: Part) -> Location | FloorName:
+    for child in part.children:
+        if isinstance(child, tuple):
+            (floor, *others) = child
+            if others:
+                message = "the robot can go to one floor at a time"
+                part.error("several-floors", message, "write an order for each of them")
+            return floor
+        if not isinstance(child, Word | Manner):
+            return child
+    raise AssertionError("the grammar lets the place be left out")
+
+
+def _towards(part: Part, where: Location | FloorName) -> Order:
+    if isinstance(where, DockLocation):
+        return orders.Home(span=part.span, manner=_manner(part), dock=where)
+    return orders.Go(span=part.span, manner=_manner(part), where=where)
+
+
+def _home(part: Part) -> Order:
+    """`Go home`, `return to the docking station`, `dock in starting area 1`."""
+    where = part.first(DockLocation | AreaLocation | PlaceLocation | Coordinates)
+    if where is None:
+        where = DockLocation(span=part.span)
+    elif isinstance(where, AreaLocation):
+        where = DockLocation(span=part.span, area=where)
+    return _towards(part, where)
+
+
+def _start(part: Part) -> Order:
+    where = _where(part)
+    if isinstance(where, FloorName):
+        hint = "name a starting area or a place: `start in starting area 1`"
+        part.error("start", "a mission starts at a place", hint)
+        return orders.Start(span=part.span, where=None)
+    return orders.Start(span=part.span, where=where)
+
+
+def _start_here(part: Part) -> Order:
+    return orders.Start(span=part.span, where=part.first(Coordinates), here=True)
+
+
+def _patrol(part: Part) -> Order:
+    places = next(c for c in part.children if isinstance(c, list))
+    return orders.Patrol(span=part.span, manner=_manner(part), places=tuple(places))
+
+
+def _word(part: Part) -> Order:
+    return orders.Plain(span=part.span, word=_WORDS[part.children[0].type])
+
+
+def _repeat(part: Part) -> Order:
+    return orders.Repeat(span=part.span, manner=_manner(part), steps=part.first(Steps))
+
+
+def _things(part: Part) -> list[Nouns | Steps]:
+    return [c for c in part.children if isinstance(c, Nouns | Steps)]
+
+
+def _side(part: Part) -> Side:
+    return Side.BEFORE if part.has("BEFORE") else Side.AFTER
+
+
+def _add(part: Part) -> Order:
+    what, anchor = _things(part)
+    assert isinstance(what, Nouns)
+    return orders.Add(
+        span=part.span, manner=_manner(part), what=what, side=part.the(Side), anchor=anchor
+    )
+
+
+def _delete(part: Part) -> Order:
+    return orders.Delete(span=part.span, what=_things(part)[0])
+
+
+def _move(part: Part) -> Order:
+    what, anchor = _things(part)
+    return orders.Move(span=part.span, what=what, side=part.the(Side), anchor=anchor)
+
+
+def _replace(part: Part) -> Order:
+    what, by = _things(part)
+    assert isinstance(by, Nouns)
+    return orders.Replace(span=part.span, what=what, by=by)
+
+
+RULES: dict[str, Make] = {
+    "order": _order,
+    "measure": _measure,
+    "keep": _measure,
+    "bare": _measure,
+    "go": _go,
+    "jump": lambda part: orders.Jump(span=part.span, step=part.the(Steps)),
+    "home": _home,
+    "start": _start,
+    "start_here": _start_here,
+    "patrol": _patrol,
+    "wait": lambda part: orders.Wait(span=part.span, manner=_manner(part)),
+    "word": _word,
+    "retry": lambda part: orders.Retry(span=part.span, manner=_manner(part)),
+    "repeat": _repeat,
+    "follow": lambda part: orders.Follow(span=part.span, manner=_manner(part)),
+    "amend": lambda part: orders.Amend(span=part.span, manner=_manner(part)),
+    "add": _add,
+    "delete": _delete,
+    "move": _move,
+    "replace": _replace,
+    "side": _side,
+}

@@ -1,0 +1,61 @@
+"""A rule's part of a sentence while its node is made."""
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from typing import Any, TypeVar
+
+from argo_compiler.diagnostics import Span
+from argo_compiler.script.syntax.source import Diagnostics, ScriptText
+from argo_compiler.script.syntax.words.word import Word
+
+T = TypeVar("T")
+
+
+@dataclass(frozen=True, slots=True)
+class Part:
+    """What the parts of a rule were made to, and where the rule's words stand."""
+
+    children: tuple[Any, ...]
+    """nodes, and the words that the grammar has by themselves"""
+    text: ScriptText
+    start: int
+    end: int
+    """indices in the text, of the first character and behind the last"""
+    diagnostics: Diagnostics
+
+    @property
+    def span(self) -> Span:
+        return self.text.span(self.start, self.end)
+
+    @property
+    def said(self) -> str:
+        return self.text.content[self.start : self.end]
+
+    def word(self, *types: str) -> Word | None:
+        """The first word of one of the types."""
+        for child in self.children:
+            if type(child) is Word and child.type in types:
+                return child
+        return None
+
+    def has(self, *types: str) -> bool:
+        return self.word(*types) is not None
+
+    def every(self, type_: type[T]) -> tuple[T, ...]:
+        return tuple(child for child in self.children if isinstance(child, type_))
+
+    def first(self, type_: type[T]) -> T | None:
+        return next((child for child in self.children if isinstance(child, type_)), None)
+
+    def the(self, type_: type[T]) -> T:
+        """The one child of the type, which the grammar asks for."""
+        found = self.first(type_)
+        assert found is not None, f"the grammar lets {type_.__name__} be left out"
+        return found
+
+    def error(self, code: str, message: str, hint: str) -> None:
+        self.diagnostics.error(code, message, self.span, hint)
+
+
+Make = Callable[[Part], Any]
+"""makes the node of a rule"""

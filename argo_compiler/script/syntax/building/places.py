@@ -1,0 +1,130 @@
+"""Makes places, floors and steps."""
+
+from math import radians
+
+from argo_compiler.script.syntax.building.figures import Signed, whole
+from argo_compiler.script.syntax.building.part import Make, Part
+from argo_compiler.script.syntax.tree.places import (
+    AreaLocation,
+    Coordinates,
+    DockLocation,
+    FloorName,
+    Location,
+    NamedFloor,
+    PlaceLocation,
+    Steps,
+)
+from argo_compiler.script.syntax.words.word import Word
+
+
+def _area(part: Part) -> AreaLocation:
+    word = part.word("NUMBER")
+    assert word is not None
+    return AreaLocation(span=part.span, area=whole(part, word.value))
+
+
+def _dock(part: Part) -> DockLocation:
+    return DockLocation(span=part.span, area=part.first(AreaLocation))
+
+
+def _place(part: Part) -> PlaceLocation:
+    word = part.word("PLACE", "STRING")
+    name = str(word.value) if word else " ".join(part.said.split())
+    return PlaceLocation(span=part.span, name=name)
+
+
+def _floors(part: Part) -> tuple[FloorName, ...]:
+    found: list[FloorName] = []
+    for word in part.every(Word):
+        number: int | NamedFloor | None = None
+        if word.type == "NUMBER":
+            number = whole(part, word.value)
+        elif word.type == "ORDINAL":
+            number = word.value
+        elif word.type == "FLOOR_NAME":
+            number = NamedFloor(word.value)
+        if number is not None:
+            found.append(FloorName(span=part.text.span(word.start, word.end), number=number))
+    if len(found) > 1 and not part.has("ORDINAL") and not _plural(part):
+        said = " and ".join(str(floor.number) for floor in found)
+        message = f"can't tell whether `{said}` are both floors"
+        hint = f"write `floors {said}`, or name what else is meant: `checkpoint 4`"
+        part.error("ambiguous-floor", message, hint)
+    return tuple(found)
+
+
+def _plural(part: Part) -> bool:
+    word = part.word("FLOOR")
+    return word is not None and bool(word.value)
+
+
+def _on_floors(part: Part) -> tuple[FloorName, ...]:
+    floors: tuple[FloorName, ...] = next(c for c in part.children if isinstance(c, tuple))
+    return floors
+
+
+def _coordinates(part: Part) -> Coordinates:
+    values = [s.value for s in part.every(Signed)]
+    (only, *more) = part.every(Signed)
+    if only.listed and not more:
+        values = [float(n) for n in only.listed]
+    if len(values) not in (2, 3):
+        part.error("coordinates", "coordinates are two or three numbers", "write `(12.5, 3, 2.5)`")
+        values = [0.0, 0.0]
+    x, y, *z = values
+    poses = part.every(dict)
+    height = next((p["z"] for p in poses if "z" in p), z[0] if z else None)
+    yaw = next((p["yaw"] for p in poses if "yaw" in p), 0.0)
+    floors = next((c for c in part.children if isinstance(c, tuple)), ())
+    return Coordinates(
+        span=part.span, x=x, y=y, z=height, yaw=yaw, floor=floors[0] if floors else None
+    )
+
+
+def _height(part: Part) -> dict[str, float]:
+    return {"z": part.the(Signed).value}
+
+
+def _heading(part: Part) -> dict[str, float]:
+    if word := part.word("QUANTITY"):
+        return {"yaw": radians(word.value[0].value)}
+    value = part.the(Signed).value
+    return {"yaw": value if part.has("RAD") else radians(value)}
+
+
+def _location(part: Part) -> Location | tuple[FloorName, ...]:
+    found: Location | tuple[FloorName, ...] = part.children[-1]
+    return found
+
+
+def _steps(part: Part) -> Steps:
+    points: list[int | str] = []
+    for word in part.every(Word):
+        if word.type == "NUMBER":
+            points.append(whole(part, word.value))
+        elif word.type == "STRING":
+            points.append(word.value)
+    return Steps(span=part.span, points=tuple(points), through=part.has("TO", "UPTO", "DASH"))
+
+
+def _places(part: Part) -> list[Location | FloorName]:
+    found: list[Location | FloorName] = []
+    for child in part.children:
+        if not isinstance(child, Word):
+            found += child if isinstance(child, tuple) else [child]
+    return found
+
+
+RULES: dict[str, Make] = {
+    "area": _area,
+    "dock": _dock,
+    "place": _place,
+    "floors": _floors,
+    "on_floors": _on_floors,
+    "coordinates": _coordinates,
+    "height": _height,
+    "heading": _heading,
+    "location": _location,
+    "steps": _steps,
+    "places": _places,
+}

@@ -1,0 +1,99 @@
+"""Makes sentences, and runs through a sentence's tree to make all of its parts."""
+
+from typing import Any
+
+from argo_compiler.script.syntax.building import (
+    conditions,
+    figures,
+    manners,
+    nouns,
+    orders,
+    places,
+)
+from argo_compiler.script.syntax.building.part import Make, Part
+from argo_compiler.script.syntax.grammar import Branch
+from argo_compiler.script.syntax.source import Diagnostics, ScriptText
+from argo_compiler.script.syntax.tree import facts
+from argo_compiler.script.syntax.tree.conditions import Condition
+from argo_compiler.script.syntax.tree.nouns import Nouns
+from argo_compiler.script.syntax.tree.orders import Case, Order, Sentence, Side
+from argo_compiler.script.syntax.tree.places import Steps
+from argo_compiler.script.syntax.words.word import Word
+
+
+def _case(part: Part) -> Case:
+    return Case(span=part.span, condition=part.first(Condition), orders=_joined(part))
+
+
+def _sentence(part: Part) -> Sentence | facts.Fact:
+    fact = part.first(facts.Fact)
+    if fact is not None:
+        return fact
+    return Sentence(span=part.span, orders=_joined(part), cases=part.every(Case))
+
+
+def _joined(part: Part) -> tuple[Order, ...]:
+    """The orders with what stood between them."""
+    found: list[Order] = []
+    joint = ""
+    for child in part.children:
+        if isinstance(child, Order):
+            found.append(child.joined(joint) if joint else child)
+        joint = str(child.value) if isinstance(child, Word) and child.type == "NEXT" else ""
+    return tuple(found)
+
+
+def _max_duration(part: Part) -> facts.Fact:
+    word = part.word("DURATION")
+    assert word is not None
+    return facts.MaxDuration(span=part.span, seconds=figures.seconds(part, word))
+
+
+def _back_within(part: Part) -> facts.Fact:
+    word = part.word("DURATION")
+    assert word is not None
+    where = next(c for c in part.children if not isinstance(c, Word))
+    return facts.BackWithin(span=part.span, where=where, seconds=figures.seconds(part, word))
+
+
+def _precedence(part: Part) -> facts.Fact:
+    first, second = part.every(Nouns)
+    if part.the(Side) is Side.AFTER:
+        first, second = second, first
+    return facts.Precedence(span=part.span, first=first, second=second)
+
+
+def _rounds_driven(part: Part) -> facts.Fact:
+    word = part.word("TIMES")
+    assert word is not None
+    count = figures.whole(part, word.value)
+    return facts.RoundsDriven(span=part.span, steps=part.the(Steps), count=count)
+
+
+_RULES: dict[str, Make] = {
+    **figures.RULES,
+    **nouns.RULES,
+    **places.RULES,
+    **conditions.RULES,
+    **manners.RULES,
+    **orders.RULES,
+    "case": _case,
+    "otherwise": _case,
+    "sentence": _sentence,
+    "max_duration": _max_duration,
+    "back_within": _back_within,
+    "precedence": _precedence,
+    "rounds_driven": _rounds_driven,
+}
+
+
+def build(branch: Branch, words: list[Word], text: ScriptText, diagnostics: Diagnostics) -> Any:
+    """The node of a branch of a sentence's tree."""
+    rule, parts, first, behind = branch
+    children = tuple(
+        words[part] if isinstance(part, int) else build(part, words, text, diagnostics)
+        for part in parts
+    )
+    start = words[first].start if first < len(words) else len(text.content)
+    end = words[behind - 1].end if behind > first else start
+    return _RULES[rule](Part(children, text, start, end, diagnostics))

@@ -1,0 +1,55 @@
+"""Joints: what a comma, `and` or `or` joins, told by the word behind it.
+
+The parser looks one word ahead. Whether `, and` goes on with a list of checkpoints, with a condition
+or with another order is known there only because the joint's type says so.
+"""
+
+from argo_compiler.script.syntax.words.word import Word
+
+_VERBS = [
+    *("MEASURE", "KEEP_MEASURING", "GO", "HOME", "START", "START_HERE", "PATROL", "WAIT", "PAUSE"),
+    *("END", "ABORT", "GO_ON", "RECHARGE", "REPORT", "REPEAT", "DO_FOLLOWING", "ADD", "DELETE"),
+    *("REPLACE", "MOVE", "JUMP", "RETRY", "DOCK", "DONE", "MEET"),
+]
+_NOUNS = ["KIND", "HASH", "IDENT", "STRING", "ALL", "IT", "THEM", "THIS", "OF", "VALUE"]
+_TESTS = ["IS", "GREATER", "LESS", "AT_LEAST", "AT_MOST", "BETWEEN", "STATE", "NOT", "FAILS"]
+_PLACES = ["FLOOR", "FLOOR_NAME", "ORDINAL", "AREA", "PLACE"]
+_JOINED = {
+    **dict.fromkeys(_VERBS, "DO"),
+    **dict.fromkeys(_NOUNS, "NOUN"),
+    **dict.fromkeys(_TESTS, "TEST"),
+    **dict.fromkeys(_PLACES, "PLACE"),
+    **dict.fromkeys(["EVENT", "BATTERY"], "EVENT"),
+    **dict.fromkeys(["QUANTITY", "DURATION", "MINUS"], "AMOUNT"),
+    "NUMBER": "NUMBER",
+}
+
+
+def joined(words: list[Word]) -> list[Word]:
+    """The words with typed joints; joints that join nothing of these are kept in `before`."""
+    found: list[Word] = []
+    joints: list[Word] = []
+    for word in words:
+        if word.type == "JOINT":
+            joints.append(word)
+            continue
+        if joints:
+            said = " ".join(joint.value for joint in joints)
+            kind = _type(said, word)
+            if kind is not None:
+                found.append(Word(kind, said, joints[0].start, joints[-1].end))
+            word = Word(word.type, word.value, word.start, word.end, said)
+            joints = []
+        found.append(word)
+    return found
+
+
+def _type(said: str, word: Word) -> str | None:
+    what = _JOINED.get(word.type)
+    if what is None:
+        return None
+    if what == "DO":
+        return "OR_DO" if "or" in said else "NEXT"
+    if ":" in said:
+        return "COLON"
+    return f"{'OR' if 'or' in said else 'AND'}_{what}"

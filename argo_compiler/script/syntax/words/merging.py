@@ -1,0 +1,115 @@
+"""Puts words together that are one: numbers in words, and numbers with what they count.
+
+`twenty five` is a number, `10 minutes` a length of time, `0.3 m/s` a speed, `4.5 bar` a quantity,
+`three times` says how often.
+"""
+
+from dataclasses import replace
+
+from argo_compiler.script.syntax.words.lengths import Length
+from argo_compiler.script.syntax.words.numbers import Figure, compose
+from argo_compiler.script.syntax.words.word import Word
+
+_RELATIONS = frozenset(["GREATER", "LESS", "AT_LEAST", "AT_MOST", "BETWEEN"])
+
+
+def merged(words: list[Word]) -> list[Word]:
+    """The words, those that belong together in one; words of two senses told apart."""
+    if any(word.type == "NUMBER_WORD" for word in words):
+        words = _numbers(words)
+    found: list[Word] = []
+    i = 0
+    while i < len(words):
+        word = words[i]
+        after = words[i + 1] if i + 1 < len(words) else None
+        pair = _counted(word, after) if after is not None else None
+        if pair is not None:
+            word = pair
+            i += 1
+        elif word.type == "UNIT_S" and word.value > 1:
+            word = Word("DURATION", Length(word.value, word.value), word.start, word.end)
+        i += 1
+        _add(word, after, found)
+    return found
+
+
+def _numbers(words: list[Word]) -> list[Word]:
+    found: list[Word] = []
+    i = 0
+    while i < len(words):
+        value, n = compose(
+            [w.value if w.type == "NUMBER_WORD" else None for w in words[i : i + 12]]
+        )
+        if n:
+            found.append(Word("NUMBER", Figure(float(value)), words[i].start, words[i + n - 1].end))
+            i += n
+        else:
+            found.append(words[i])
+            i += 1
+    return found
+
+
+def _counted(word: Word, after: Word) -> Word | None:
+    """A number and what it counts, as one word."""
+    if word.type == "HALF" and after.type == "UNIT_S":
+        return Word("DURATION", Length(after.value / 2, after.value), word.start, after.end)
+    if word.type != "NUMBER":
+        return None
+    figure: Figure = word.value
+    match after.type:
+        case "UNIT_S":
+            return Word("DURATION", _length(figure, after.value), word.start, after.end)
+        case "TIME_WORD":
+            return Word("TIMES", figure, word.start, after.end)
+        case "RATE":
+            return Word("SPEED", (figure, after.value), word.start, after.end)
+        case "UNIT":
+            return Word("QUANTITY", (figure, after.value), word.start, after.end)
+        case _:
+            return None
+
+
+def _length(figure: Figure, unit: float) -> Length:
+    if figure.other is None:
+        return Length(figure.value * unit, unit)
+    return Length(
+        figure.value * unit,
+        unit,
+        other=figure.other * unit,
+        said=f"{figure.other:g}",
+        first=f"{figure.value:g} of them",
+        second=f"{figure.other:g} of them",
+    )
+
+
+def _add(word: Word, after: Word | None, found: list[Word]) -> None:
+    """Adds a word, by what stands beside it."""
+    last = found[-1] if found else None
+    before = found[-2] if last is not None and last.type == "JOINT" and len(found) > 1 else last
+    if word.type == "DURATION" and before is not None and before.type == "DURATION":
+        sum_ = _sum(before, word)
+        if sum_ is not None:
+            del found[found.index(before) :]
+            found.append(sum_)
+            return
+    if word.type == "HALF" and before is not None and before.type == "DURATION":
+        longer = before.value.seconds + before.value.unit / 2
+        del found[found.index(before) :]
+        word = Word("DURATION", Length(longer), before.start, word.end)
+    elif word.type == "SPEED" and last is not None and last.type == "AT":
+        found.pop()
+    elif word.type == "MEASURE" and after is not None and after.type in _RELATIONS:
+        word = replace(word, type="IS", value=None)
+    elif word.type == "IF" and last is not None and last.type != "JOINT":
+        word = replace(word, type="IF_ONLY")
+    elif word.type in ("ON", "IN") and after is not None and after.type == "EVENT":
+        word = replace(word, type="IF")
+    found.append(word)
+
+
+def _sum(first: Word, second: Word) -> Word | None:
+    """Hours, then minutes, then seconds; None if the units are not in this order."""
+    a, b = first.value, second.value
+    if a.unit <= b.unit or a.other is not None or b.other is not None:
+        return None
+    return Word("DURATION", Length(a.seconds + b.seconds, b.unit), first.start, second.end)

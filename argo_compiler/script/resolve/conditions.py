@@ -1,78 +1,172 @@
-"""From the comparisons of a script to the conditions of the intermediate language."""
+"""From the conditions of a script to those of the intermediate language."""
 
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from itertools import product
 
 from argo_compiler.catalog import CheckpointInfo
 from argo_compiler.il import Condition, ConditionType
-from argo_compiler.script.syntax.commands import Comparison, Normality
+from argo_compiler.script.resolve import units
+from argo_compiler.script.resolve.nouns import NounResolver
+from argo_compiler.script.resolve.program import Alternatives
 from argo_compiler.script.syntax.source import Diagnostics
+from argo_compiler.script.syntax.tree import conditions as said
+from argo_compiler.script.syntax.tree.conditions import (
+    Amount,
+    Between,
+    Compared,
+    InState,
+    Relation,
+    State,
+    Test,
+)
 
-_UNITS = {"degree": "deg", "degrees": "deg", "°": "deg", "percent": "%", "bars": "bar"}
-
-Find = Callable[[Comparison], CheckpointInfo | None]
-"""the checkpoint that a comparison means; None if there is none, with an error"""
-
-
-def resolve_alternatives(
-    alternatives: Sequence[Sequence[Comparison]], find: Find, diagnostics: Diagnostics
-) -> tuple[tuple[Condition, ...], ...]:
-    """The conditions of each alternative; what is not normal becomes two of them."""
-    found: list[tuple[Condition, ...]] = []
-    for tests in alternatives:
-        each = [_conditions(test, find, diagnostics) for test in tests]
-        if sum(len(conditions) > 1 for conditions in each) > 4:
-            message = "more than four `abnormal` joined by `and`"
-            hint = "name the values, or divide the condition"
-            diagnostics.error("condition", message, tests[0].span, hint)
-            continue
-        found += product(*each)
-    return tuple(found)
+_MOST = 64
+"""alternatives of one condition"""
+_OPPOSITE = {
+    Relation.GREATER: Relation.AT_MOST,
+    Relation.LESS: Relation.AT_LEAST,
+    Relation.AT_LEAST: Relation.LESS,
+    Relation.AT_MOST: Relation.GREATER,
+}
+_STATES = {
+    State.ABNORMAL: ConditionType.ABNORMAL,
+    State.UNREADABLE: ConditionType.UNREADABLE,
+    State.FAILED: ConditionType.FAILED,
+    State.STALE: ConditionType.STALE,
+}
 
 
-def _conditions(test: Comparison, find: Find, diagnostics: Diagnostics) -> tuple[Condition, ...]:
-    """The conditions of which one must hold."""
-    checkpoint = find(test)
-    if checkpoint is None:
-        return ()
-    for unit in test.units:
-        if _plain(unit) != _plain(checkpoint.unit):
-            message = f"{checkpoint.name} (#{checkpoint.id}) is measured in {checkpoint.unit}"
-            hint = f"write the value in {checkpoint.unit}, not in {unit}"
-            diagnostics.error("unit", message, test.span, hint)
-    nominal = checkpoint.nominal
-    bounds: list[tuple[ConditionType, float, float | None, bool]]
-    if test.test is Normality.NORMAL:
-        bounds = [(ConditionType.WITHIN, nominal.low, nominal.high, True)]
-    elif test.test is Normality.ABNORMAL:
-        bounds = [
-            (ConditionType.LESS, nominal.low, None, False),
-            (ConditionType.GREATER, nominal.high, None, False),
+class ConditionResolver:
+    """Looks up what conditions ask for."""
+
+    def __init__(self, nouns: NounResolver, diagnostics: Diagnostics) -> None:
+        self.nouns = nouns
+        self.diagnostics = diagnostics
+
+    def alternatives(self, condition: said.Condition) -> Alternatives | None:
+        """The conditions of each alternative; None if it is not clear what they are."""
+        found: list[tuple[Condition, ...]] = []
+        for tests in condition.alternatives:
+            each: list[list[tuple[Condition, ...]]] = []
+            for test in tests:
+                if not isinstance(test, Test):
+                    message = "values and events can't be asked for in one condition"
+                    hint = "write a sentence for each"
+                    self.diagnostics.error("condition", message, test.span, hint)
+                    return None
+                ways = self._test(test)
+                if ways is None:
+                    return None
+                each.append(ways)
+            combined = [sum(parts, ()) for parts in product(*each)]
+            found += combined
+            if len(found) > _MOST:
+                message = f"this condition has more than {_MOST} alternatives"
+                hint = "divide it into several sentences"
+                self.diagnostics.error("condition", message, condition.span, hint)
+                return None
+        return tuple(found)
+
+    def _test(self, test: Test) -> list[tuple[Condition, ...]] | None:
+        """Alternatives for one test; of several checkpoints all, or one with `or`."""
+        checkpoints = self._subjects(test)
+        if checkpoints is None:
+            return None
+        each = [self._of(test, checkpoint) for checkpoint in checkpoints]
+        ways = [way for way in each if way is not None]
+        if len(ways) < len(each):
+            return None
+        if test.subject is not None and test.subject.either:
+            return [one for way in ways for one in way]
+        return [sum(parts, ()) for parts in product(*ways)]
+
+    def _subjects(self, test: Test) -> Sequence[CheckpointInfo] | None:
+        if test.subject is not None:
+            return self.nouns.each(test.subject)
+        return self.nouns.last(test.span)
+
+    def _of(self, test: Test, checkpoint: CheckpointInfo) -> list[tuple[Condition, ...]] | None:
+        """Alternatives for one checkpoint."""
+        predicate = test.predicate
+        if isinstance(predicate, InState):
+            bounds = self._state(predicate, test.negated, checkpoint)
+        elif isinstance(predicate, Between):
+            bounds = self._between(predicate, test, checkpoint)
+        else:
+            bounds = self._compared(predicate, test, checkpoint)
+        if bounds is None:
+            return None
+        return [
+            (
+                Condition(
+                    type=kind,
+                    id=test.id,
+                    object_id=str(checkpoint.id),
+                    param1=low,
+                    param2=test.second_bound if high is None else high,
+                    inclusive=inclusive,
+                    max_age=test.max_age,
+                ),
+            )
+            for kind, low, high, inclusive in bounds
         ]
-    else:
-        bounds = [(ConditionType(test.test), test.param1, test.param2, test.inclusive)]
-        high = test.param2
-        empty = high is not None and (
-            test.param1 > high or (test.param1 == high and not test.inclusive)
-        )
-        if test.test is ConditionType.WITHIN and empty:
+
+    def _state(
+        self, predicate: InState, negated: bool, checkpoint: CheckpointInfo
+    ) -> "list[_Bound] | None":
+        state = predicate.state
+        if negated and state in (State.NORMAL, State.ABNORMAL):
+            state = State.ABNORMAL if state is State.NORMAL else State.NORMAL
+        elif negated:
+            message = f"`not {state}` can't be asked for"
+            hint = "turn it round: `if ..., go on; otherwise ...`"
+            self.diagnostics.error("condition", message, predicate.span, hint)
+            return None
+        if state is State.NORMAL:
+            nominal = checkpoint.nominal
+            return [(ConditionType.WITHIN, nominal.low, nominal.high, True)]
+        return [(_STATES[state], None, None, False)]
+
+    def _compared(
+        self, predicate: Compared, test: Test, checkpoint: CheckpointInfo
+    ) -> "list[_Bound] | None":
+        bound = self._bound(predicate.bound, checkpoint)
+        if bound is None:
+            return None
+        relation = _OPPOSITE[predicate.relation] if test.negated else predicate.relation
+        greater = relation in (Relation.GREATER, Relation.AT_LEAST)
+        inclusive = relation in (Relation.AT_LEAST, Relation.AT_MOST)
+        kind = ConditionType.GREATER if greater else ConditionType.LESS
+        return [(kind, bound, None, inclusive)]
+
+    def _between(
+        self, predicate: Between, test: Test, checkpoint: CheckpointInfo
+    ) -> "list[_Bound] | None":
+        low, high = (self._bound(b, checkpoint) for b in (predicate.low, predicate.high))
+        if low is None or high is None:
+            return None
+        if low > high or (low == high and not predicate.inclusive):
             message = "no value lies between these"
-            hint = "write the lower one first"
-            diagnostics.error("condition", message, test.span, hint)
-    return tuple(
-        Condition(
-            type=kind,
-            id=test.id,
-            object_id=str(checkpoint.id),
-            param1=param1,
-            param2=param2,
-            inclusive=inclusive,
-            max_age=test.max_age,
-        )
-        for kind, param1, param2, inclusive in bounds
-    )
+            self.diagnostics.error("condition", message, test.span, "write the lower one first")
+            return None
+        if test.negated:
+            inclusive = not predicate.inclusive
+            return [
+                (ConditionType.LESS, low, None, inclusive),
+                (ConditionType.GREATER, high, None, inclusive),
+            ]
+        return [(ConditionType.WITHIN, low, high, predicate.inclusive)]
+
+    def _bound(self, amount: Amount, checkpoint: CheckpointInfo) -> float | None:
+        """The amount in the checkpoint's unit."""
+        if not amount.unit:
+            return amount.value
+        value = units.converted(amount.value, amount.unit, checkpoint.unit)
+        if value is None:
+            message = f"{checkpoint.name} (#{checkpoint.id}) is measured in {checkpoint.unit}"
+            hint = f"write the value in {checkpoint.unit}, not in {amount.unit}"
+            self.diagnostics.error("unit", message, amount.span, hint)
+        return value
 
 
-def _plain(unit: str) -> str:
-    unit = unit.lower()
-    return _UNITS.get(unit, unit)
+_Bound = tuple[ConditionType, float | None, float | None, bool]

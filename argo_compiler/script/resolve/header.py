@@ -6,7 +6,7 @@ from argo_compiler.diagnostics import Span
 from argo_compiler.script.syntax.nodes import AreaField, AreaHeader, Protocol
 from argo_compiler.script.syntax.source import Diagnostics
 from argo_compiler.script.syntax.spelling import alternatives
-from argo_compiler.script.syntax.terms import Coordinates
+from argo_compiler.script.syntax.tree.places import Coordinates
 
 
 @dataclass(frozen=True)

@@ -7,7 +7,7 @@ from argo_compiler.model import Pose
 from argo_compiler.script.resolve.lookup import Lookup
 from argo_compiler.script.syntax.source import Diagnostics
 from argo_compiler.script.syntax.spelling import alternatives
-from argo_compiler.script.syntax.terms import (
+from argo_compiler.script.syntax.tree.places import (
     AreaLocation,
     Coordinates,
     DockLocation,
@@ -37,7 +37,7 @@ class Locator:
             case PlaceLocation():
                 return self.lookup.place(location), None
             case AreaLocation():
-                area = self.lookup.area(location.area.value, location.span)
+                area = self.lookup.area(location.area, location.span)
             case DockLocation():
                 area = self._docking_area(location, which)
         return (area.dock, area) if area else (None, None)
@@ -64,7 +64,7 @@ class Locator:
 
     def _docking_area(self, dock: DockLocation, which: Literal["start", "end"]) -> Area | None:
         option = self.start_area if which == "start" else self.end_area
-        named = dock.area.value if dock.area else option
+        named = dock.area.area if dock.area else option
         flag = f"--{which}-area"
         if named is None:
             known = alternatives(f"{flag} {area.number}" for area in self.lookup.catalog.areas)

@@ -1,6 +1,7 @@
 """Finds what a script names in the site's catalogue."""
 
 from collections import defaultdict
+from collections.abc import Collection
 
 from rapidfuzz.distance import OSA
 
@@ -9,20 +10,15 @@ from argo_compiler.diagnostics import Span
 from argo_compiler.model import Pose
 from argo_compiler.script.syntax.source import Diagnostics
 from argo_compiler.script.syntax.spelling import alternatives, nearest
-from argo_compiler.script.syntax.terms import (
-    FloorName,
-    Name,
-    NamedFloor,
-    PlaceLocation,
-    Quantity,
-    Reference,
-)
+from argo_compiler.script.syntax.tree.nouns import Kind, Quantity
+from argo_compiler.script.syntax.tree.places import FloorName, NamedFloor, PlaceLocation
 
 _QUANTITIES = {
-    CheckpointKind.PRESSURE_GAUGE: Quantity.VALUE,
-    CheckpointKind.VALVE: Quantity.POSITION,
-    CheckpointKind.LIQUID_LEVEL_GAUGE: Quantity.LEVEL,
+    CheckpointKind.PRESSURE_GAUGE: (Quantity.PRESSURE,),
+    CheckpointKind.VALVE: (Quantity.POSITION,),
+    CheckpointKind.LIQUID_LEVEL_GAUGE: (Quantity.LEVEL,),
 }
+_GAUGES = (CheckpointKind.PRESSURE_GAUGE, CheckpointKind.LIQUID_LEVEL_GAUGE)
 _UNSAID_IN_PLACES = frozenset(["the", "a", "an", "in", "at", "to"])
 _SAME_PLACE = 0.85
 """share of letters that must agree for a misspelt place"""
@@ -34,66 +30,64 @@ class Lookup:
     def __init__(self, catalog: Catalog, diagnostics: Diagnostics) -> None:
         self.catalog = catalog
         self.diagnostics = diagnostics
-        self._by_number = {c.id: c for c in catalog.checkpoints}
-        self._by_name: dict[str, list[CheckpointInfo]] = defaultdict(list)
+        self.by_number = {c.id: c for c in catalog.checkpoints}
+        self._by_identifier: dict[str, list[CheckpointInfo]] = defaultdict(list)
         for checkpoint in catalog.checkpoints:
-            self._by_name[checkpoint.name.lower()].append(checkpoint)
+            name = checkpoint.name.lower()
+            self._by_identifier[name.removeprefix(checkpoint.kind).strip()].append(checkpoint)
         self._unsaid = _UNSAID_IN_PLACES | set(catalog.site.lower().split())
 
-    def checkpoint(self, reference: Reference) -> CheckpointInfo | None:
-        """The checkpoint; number and name must agree where both are given."""
-        found = None
-        if reference.number is not None:
-            found = self._numbered(reference.number, reference.span)
-            if found and reference.name and not self._agrees(found, reference.name):
-                return None
-        elif reference.name:
-            found = self._named(reference.name)
-        if found and reference.quantity not in (None, _QUANTITIES[found.kind]):
-            usual = _QUANTITIES[found.kind]
-            message = f"a {found.kind} has no {reference.quantity}; its {usual} will be read"
-            self.diagnostics.warning("quantity", message, reference.span, f"write `the {usual}`")
-        return found
+    def check_quantity(
+        self, checkpoint: CheckpointInfo, quantity: Quantity | None, span: Span
+    ) -> None:
+        """Warns where a script asks for something that the checkpoint does not show."""
+        usual = _QUANTITIES[checkpoint.kind]
+        if quantity not in (None, Quantity.VALUE, *usual):
+            message = f"a {checkpoint.kind} has no {quantity}; its {usual[0]} will be read"
+            hint = f"write `the {usual[0]}`"
+            self.diagnostics.warning("quantity", message, span, hint)
 
-    def _numbered(self, number: int, span: Span) -> CheckpointInfo | None:
-        found = self._by_number.get(number)
+    def of_kind(self, kind: Kind, floors: Collection[int]) -> list[CheckpointInfo]:
+        """All checkpoints of a kind, on these floors or, without any, on all."""
+        return [
+            c
+            for c in self.catalog.checkpoints
+            if agrees(c, kind) and (not floors or c.floor in floors)
+        ]
+
+    def called(self, identifier: str, kind: Kind | None) -> list[CheckpointInfo]:
+        """All checkpoints with this identifier, of the kind if one is said."""
+        found = self._by_identifier.get(identifier.lower(), [])
+        return [c for c in found if kind is None or agrees(c, kind)]
+
+    def identified(self, identifier: str, kind: Kind | None, span: Span) -> CheckpointInfo | None:
+        """The checkpoint of a kind with this identifier."""
+        found = self.called(identifier, kind)
+        if len(found) == 1:
+            return found[0]
+        name = f"{kind or 'checkpoint'} {identifier.upper() if not identifier.isdecimal() else identifier}"
+        if found:
+            readings = alternatives(f"{c.name} (#{c.id})" for c in found)
+            message = f"`{name}` can be read as {readings}"
+            hint = "name the checkpoint by its number, or by its whole name"
+            self.diagnostics.error("ambiguous-checkpoint", message, span, hint)
+            return None
+        close = nearest(name, (c.name for c in self.catalog.checkpoints))
+        message = f"there is no {name} on {self.catalog.site}"
+        hint = f"the nearest names are {alternatives(close, 'and')}"
+        self.diagnostics.error("unknown-checkpoint", message, span, hint if close else None)
+        return None
+
+    def numbered(self, number: int, span: Span) -> CheckpointInfo | None:
+        found = self.by_number.get(number)
         if found is None:
-            close = sorted(self._by_number, key=lambda known: (abs(known - number), known))[:3]
+            close = sorted(self.by_number, key=lambda known: (abs(known - number), known))[:3]
             hint = (
                 f"the nearest numbers are {alternatives((f'#{n}' for n in sorted(close)), 'and')}"
             )
             message = f"there is no checkpoint #{number} on {self.catalog.site}"
             self.diagnostics.error("unknown-checkpoint", message, span, hint if close else None)
         return found
-
-    def _named(self, name: Name) -> CheckpointInfo | None:
-        found = self._by_name.get(name.text.lower(), [])
-        if len(found) == 1:
-            return found[0]
-        if found:
-            numbers = alternatives((f"#{c.id}" for c in found), "and")
-            message = f"checkpoints {numbers} are all called {name.text}"
-            hint = "name the checkpoint by its number"
-            self.diagnostics.error("ambiguous-checkpoint", message, name.span, hint)
-            return None
-        close = nearest(name.text, (c.name for c in self.catalog.checkpoints))
-        message = f"there is no {name.text} on {self.catalog.site}"
-        hint = f"the nearest names are {alternatives(close, 'and')}"
-        self.diagnostics.error("unknown-checkpoint", message, name.span, hint if close else None)
-        return None
-
-    def _agrees(self, found: CheckpointInfo, name: Name) -> bool:
-        if found.name.lower() == name.text.lower():
-            return True
-        others = self._by_name.get(name.text.lower(), [])
-        if others:
-            its = f"{name.text} is checkpoint {alternatives(f'#{c.id}' for c in others)}"
-        else:
-            its = f"there is no {name.text} on {self.catalog.site}"
-        message = f"checkpoint #{found.id} is {found.name}, and {its}"
-        hint = "correct the number or the name"
-        self.diagnostics.error("checkpoint-mismatch", message, name.span, hint)
-        return False
 
     def area(self, number: int, span: Span | None) -> Area | None:
         found = self.catalog.area(number)
@@ -139,6 +133,13 @@ class Lookup:
 
     def _place_key(self, name: str) -> str:
         return " ".join(word for word in name.lower().split() if word not in self._unsaid)
+
+
+def agrees(checkpoint: CheckpointInfo, kind: Kind) -> bool:
+    """Whether a checkpoint is of a kind."""
+    if kind is Kind.GAUGE:
+        return checkpoint.kind in _GAUGES
+    return kind is Kind.CHECKPOINT or checkpoint.kind == kind
 
 
 def _same_place(said: str, known: str) -> bool:

@@ -1,0 +1,194 @@
+"""What is done if something is so: after a value, after a failure, after an event."""
+
+from typing import TYPE_CHECKING
+
+from argo_compiler.il import OnFailure
+from argo_compiler.script.resolve.context import Context
+from argo_compiler.script.resolve.program import (
+    Ahead,
+    Alternatives,
+    Block,
+    Choice,
+    Do,
+    Leave,
+    Target,
+    Way,
+)
+from argo_compiler.script.syntax.tree import orders
+from argo_compiler.script.syntax.tree.conditions import Condition, InState, State, Test
+from argo_compiler.script.syntax.tree.nouns import Pronoun
+from argo_compiler.script.syntax.tree.orders import Case, Order, Word
+
+if TYPE_CHECKING:  # a case's orders are planned as any others are
+    from argo_compiler.script.resolve.planning import Planner
+
+_POLICIES = {
+    Word.ABORT: OnFailure.ABORT,
+    Word.END: OnFailure.ABORT,
+    Word.GO_ON: OnFailure.CONTINUE,
+}
+
+
+class Cases:
+    """Plans cases behind what they are looked at after."""
+
+    def __init__(self, context: Context, planner: "Planner") -> None:
+        self.context = context
+        self.diagnostics = context.diagnostics
+        self.planner = planner
+
+    def add(self, case: Case, block: Block) -> None:
+        """Plans one case."""
+        condition = case.condition
+        if condition is None:
+            self._otherwise(case, block)
+        elif not any(isinstance(t, Test) for tests in condition.alternatives for t in tests):
+            self.context.reactions.add(case)
+        elif not case.orders:
+            message = "this does not say what to do"
+            hint = "add, say, `go to step 5` or `return to the docking station`"
+            self.diagnostics.error("unfinished", message, case.span, hint)
+        elif _is_failure(condition):
+            self._failure(case, block)
+        else:
+            self._values(case, condition, block)
+
+    # ---- values
+
+    def _values(self, case: Case, condition: Condition, block: Block) -> None:
+        alternatives = self.context.conditions.alternatives(condition)
+        if alternatives is None:
+            return
+        do = block.last
+        target = self._target(case)
+        simple = target is not None and target is not Ahead.END and not condition.negated
+        if simple and isinstance(do, Do) and do.failure is None and do.missed is None:
+            assert target is not None
+            way = Way(alternatives, target, case.span)
+            do.ways.append(way)
+            self.context.choice = way
+            return
+        choice = Choice(alternatives, case.span, negated=condition.negated)
+        self.context.put([choice], block, block.last)
+        self.context.step.append(choice)
+        self._branch(case, choice.then)
+        self.context.choice = choice
+
+    def _branch(self, case: Case, branch: Block) -> None:
+        """Plans what is done in one case only; after the way home the mission is over."""
+        context = self.context
+        memory = context.memory.last
+        docked, context.docked = context.docked, None
+        recent, step = context.recent, context.step
+        orders_ = list(case.orders)
+        ending: Leave | None = None
+        if orders_ and isinstance(orders_[-1], orders.Plain) and orders_[-1].word in _POLICIES:
+            last = orders_.pop()
+            assert isinstance(last, orders.Plain)
+            ahead = Ahead.GO_ON if last.word is Word.GO_ON else Ahead.END
+            ending = Leave(ahead, last.span)
+        home = orders_[-1] if orders_ and isinstance(orders_[-1], orders.Home) else None
+        if home is not None and (ending is None or ending.target is Ahead.END):
+            orders_.pop()
+            way = self.planner.home_ahead(home)
+            ending = None if way is None else Leave(way, home.span)
+        self.planner.orders(orders_, branch)
+        if ending is not None and ending.target is not Ahead.GO_ON:
+            context.put([ending], branch, branch.last)
+        context.memory.last = memory
+        context.docked, context.recent, context.step = docked, recent, step
+
+    def _otherwise(self, case: Case, block: Block) -> None:
+        before = self.context.choice
+        if isinstance(before, Choice) and before.listed and before.block is not None:
+            if before.otherwise.first is not None:
+                message = "there are two `otherwise` for one condition"
+                self.diagnostics.error("second-route", message, case.span, "leave one out")
+                return
+            self._branch(case, before.otherwise)
+            return
+        do = block.last
+        target = self._target(case)
+        if isinstance(before, Way) and isinstance(do, Do):
+            if target is not None:
+                do.ways.append(Way((), target, case.span))
+                return
+            choice = Choice(self._taken(do, before), case.span)
+            self._to_choice(do, before, choice, block)
+            self._branch(case, choice.otherwise)
+            self.context.choice = choice
+            return
+        message = "`Otherwise` of what? No condition stands before it"
+        hint = "write it behind the condition whose other case it is"
+        self.diagnostics.error("otherwise", message, case.span, hint)
+
+    def _taken(self, do: Do, way: Way) -> Alternatives:
+        do.ways.remove(way)
+        return way.alternatives
+
+    def _to_choice(self, do: Do, way: Way, choice: Choice, block: Block) -> None:
+        """Puts a choice where a way was: its other case has orders of its own."""
+        self.context.put([choice], block, do)
+        self.context.step.append(choice)
+        self.context.put([Leave(way.target, way.span)], choice.then, None)
+
+    def _target(self, case: Case) -> Target | None:
+        """Where a case leads whose only order is to go elsewhere."""
+        if len(case.orders) != 1:
+            return None
+        (order,) = case.orders
+        if order.manner is not None:
+            return None
+        match order:
+            case orders.Jump():
+                return order.step
+            case orders.Home():
+                return self.planner.home_ahead(order)
+            case orders.Plain(word=Word.GO_ON):
+                return Ahead.GO_ON
+            case orders.Plain(word=Word.END) | orders.Plain(word=Word.ABORT):
+                return Ahead.END
+        return None
+
+    # ---- failures
+
+    def _failure(self, case: Case, block: Block) -> None:
+        """What is done if the last task fails."""
+        recent = self.context.recent
+        if not recent:
+            message = "there is no task before this that could fail"
+            hint = "write it behind the task that it is said of"
+            self.diagnostics.error("no-task", message, case.span, hint)
+            return
+        rest: list[Order] = []
+        for order in case.orders:
+            if isinstance(order, orders.Retry):
+                self.planner.manners.amend(order)
+            else:
+                rest.append(order)
+        if not rest:
+            return
+        if len(rest) == 1 and rest[0].manner is None:
+            match rest[0]:
+                case orders.Plain(word=word) if word in _POLICIES:
+                    self.planner.manners.on_failure(_POLICIES[word])
+                    return
+                case orders.Home(dock=dock) if dock.area is None:
+                    self.planner.manners.on_failure(OnFailure.RETURN)
+                    return
+        if len(recent) > 1:
+            message = "several tasks are meant here, and each would need orders of its own"
+            hint = "write one sentence for each of them"
+            self.diagnostics.error("failure", message, case.span, hint)
+            return
+        do = recent[-1]
+        do.failure = Block(do)
+        self._branch(Case(span=case.span, condition=None, orders=tuple(rest)), do.failure)
+
+
+def _is_failure(condition: Condition) -> bool:
+    """Whether it asks only whether the last task has failed."""
+    match condition.alternatives:
+        case ((Test(predicate=InState(state=State.FAILED), subject=subject),),):
+            return subject is None or all(isinstance(n, Pronoun) for n in subject.nouns)
+    return False

@@ -1,0 +1,152 @@
+"""What all parts of the planning share: the program, and what the script has said so far."""
+
+from collections.abc import Iterable
+from dataclasses import dataclass, field
+
+from argo_compiler.catalog import CheckpointInfo
+from argo_compiler.diagnostics import Span
+from argo_compiler.il import Action
+from argo_compiler.script.resolve.conditions import ConditionResolver
+from argo_compiler.script.resolve.locating import Locator
+from argo_compiler.script.resolve.lookup import Lookup
+from argo_compiler.script.resolve.nouns import Memory, NounResolver
+from argo_compiler.script.resolve.program import Block, Choice, Do, HomeAhead, Node, Way
+from argo_compiler.script.resolve.reacting import Reactions
+from argo_compiler.script.syntax.source import Diagnostics
+from argo_compiler.script.syntax.tree.places import Steps
+
+
+@dataclass
+class Context:
+    """The program while it is made. Mutable: each order changes it."""
+
+    lookup: Lookup
+    diagnostics: Diagnostics
+    locator: Locator
+    memory: Memory
+    nouns: NounResolver
+    conditions: ConditionResolver
+    reactions: Reactions
+    program: Block = field(default_factory=Block)
+    steps: dict[int, list[Node] | None] = field(default_factory=dict)
+    """the nodes that each step planned; None for a number that more than one step has"""
+    step: list[Node] = field(default_factory=list)
+    """those of the step that is being planned"""
+    recent: list[Do] = field(default_factory=list)
+    """the tasks of the last order"""
+    choice: Choice | Way | None = None
+    """the condition that `otherwise` belongs to"""
+    measured: dict[str, dict[int, Do]] = field(default_factory=dict)
+    """the measurements in the program, by checkpoint"""
+    named: dict[str, Do] = field(default_factory=dict)
+    docked: Do | None = None
+    """the drive into the docking station after which nothing more can come"""
+    home_ways: list[HomeAhead] = field(default_factory=list)
+    rounds: int = 0
+    """how many rounds have been asked for"""
+
+    @classmethod
+    def of(cls, lookup: Lookup, diagnostics: Diagnostics, locator: Locator) -> "Context":
+        """An empty program."""
+        memory = Memory()
+        nouns = NounResolver(lookup, diagnostics, memory)
+        conditions = ConditionResolver(nouns, diagnostics)
+        reactions = Reactions(locator, diagnostics)
+        return cls(lookup, diagnostics, locator, memory, nouns, conditions, reactions)
+
+    def begin_step(self, number: int | None) -> None:
+        """What is planned from now on belongs to this step."""
+        self.step = []
+        if number is not None:
+            self.steps[number] = None if number in self.steps else self.step
+
+    def put(self, nodes: Iterable[Node], block: Block, anchor: Node | None) -> None:
+        """Puts nodes into a block, behind the anchor; None: before all."""
+        for node in nodes:
+            block.insert_after(anchor, node)
+            anchor = node
+            if isinstance(node, Do):
+                self.note(node)
+
+    def note(self, do: Do) -> None:
+        """Takes note of a task that is in the program now."""
+        if do.action is Action.MEASURE and do.object_id is not None:
+            self.measured.setdefault(do.object_id, {})[id(do)] = do
+        if do.name is not None:
+            self.named[do.name] = do
+
+    def forget(self, do: Do) -> None:
+        """Takes note of a task that is no longer in the program."""
+        if do.object_id is not None:
+            self.measured.get(do.object_id, {}).pop(id(do), None)
+
+    def remember(self, checkpoints: Iterable[CheckpointInfo]) -> None:
+        """What pronouns mean from now on."""
+        self.memory.measured(tuple(checkpoints))
+
+    def new_round(self) -> int:
+        """The place of a new round among those that the script asks for."""
+        self.rounds += 1
+        return self.rounds
+
+    def fail(self) -> None:
+        """Something that was ordered is not in the program: what misses it has no error."""
+        self.memory.known = False
+
+    @property
+    def whole(self) -> bool:
+        """Whether all that was asked for so far is planned: what is not found is not there."""
+        return self.memory.known
+
+    def nodes_of(self, steps: Steps, quiet: bool = False) -> list[Node] | None:
+        """What steps or named tasks stand for; None if there is nothing, with an error."""
+        points = list(steps.points)
+        first, last = points[0], points[-1]
+        if steps.through and isinstance(first, int) and isinstance(last, int):
+            if first > last and not quiet:
+                message = "the first of these steps comes after the last one"
+                hint = "write the earlier one first"
+                self.diagnostics.error("step-range", message, steps.span, hint)
+                return None
+            points = list(range(first, min(last, first + len(self.steps) + 1) + 1))
+        found: list[Node] = []
+        for point in points:
+            nodes = self._of_point(point, steps.span)
+            if nodes is None:
+                return None
+            found += nodes
+        return found
+
+    def _of_point(self, point: int | str, span: Span) -> list[Node] | None:
+        if isinstance(point, str):
+            do = self.named.get(point)
+            if do is not None and do.listed:
+                return [do]
+            message = f"there is no task `{point}`"
+            self.diagnostics.error("unknown-step", message, span, "name a task or a step")
+            return None
+        if point not in self.steps:
+            known = sorted(self.steps, key=lambda n: (abs(n - point), n))[:3]
+            near = ", ".join(str(number) for number in sorted(known))
+            hint = f"the nearest steps are {near}" if known else None
+            self.diagnostics.error("unknown-step", f"there is no step {point}", span, hint)
+            return None
+        nodes = self.steps[point]
+        if nodes is None:
+            message = f"more than one step has the number {point}"
+            hint = "number the steps anew, or name the task"
+            self.diagnostics.error("ambiguous-step", message, span, hint)
+            return None
+        return [node for node in nodes if node.listed]
+
+
+def topmost(nodes: Iterable[Node], block: Block) -> list[Node]:
+    """The nodes of `block` that hold these, each once, in the block's order of first mention."""
+    found: dict[int, Node] = {}
+    for node in nodes:
+        at: Node | None = node
+        while at is not None and at.block is not block:
+            at = at.block.owner if at.block is not None else None
+        if at is not None:
+            found.setdefault(id(at), at)
+    return list(found.values())

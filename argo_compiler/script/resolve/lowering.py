@@ -1,0 +1,254 @@
+"""From a program to tasks, transitions and groups.
+
+Each node has a point at which it is come to. A task's ways lead to points; which task a point is, is
+known when all nodes have been gone through. Where ways meet and no task stands, a place of no
+duration is put: before a condition that more than one way comes to, and at the end of a round.
+"""
+
+from collections.abc import Callable
+from dataclasses import dataclass, field
+
+from argo_compiler.il import Action, Condition, WaitRule
+from argo_compiler.script.resolve.program import (
+    Ahead,
+    Block,
+    Choice,
+    Do,
+    HomeAhead,
+    Leave,
+    Node,
+    Round,
+    Target,
+    inner_blocks,
+)
+from argo_compiler.script.syntax.tree.places import Steps
+
+MEETING = WaitRule(duration=0)
+
+
+@dataclass(eq=False, slots=True)
+class Point:
+    """Where a way leads to; neither set: the mission ends."""
+
+    item: "Item | None" = None
+    same: "Point | None" = None
+    """it is this one"""
+
+    def reached(self) -> "Item | None":
+        """The task that is come to here."""
+        point = self
+        while point.same is not None:
+            point = point.same
+        return point.item
+
+
+@dataclass(eq=False, slots=True)
+class Item:
+    """A task with its ways on."""
+
+    do: Do
+    ways: list[tuple[tuple[Condition, ...], Point]] = field(default_factory=list)
+    """in order; one without conditions is taken if no other is"""
+    next: Point | None = None
+    """where it leads if no way is taken"""
+    failure: Point | None = None
+    missed: Point | None = None
+
+
+@dataclass(frozen=True, slots=True)
+class Range:
+    """A round, and the places of its first and last task."""
+
+    round: Round
+    first: int
+    last: int
+
+
+@dataclass(frozen=True, slots=True)
+class Lowered:
+    """The tasks in order with their ways, and the rounds over them, the outer ones first."""
+
+    items: list[Item]
+    ranges: list[Range]
+
+
+Find = Callable[[Steps], Node | None]
+"""the first node of a step; None if there is none, with an error"""
+
+
+def lower_program(block: Block, find: Find, home: Callable[[HomeAhead], Do | None]) -> Lowered:
+    """The tasks of a program. `home` is the drive with which the mission ends where a way home
+    leads to it; it is put at the end unless it stands there."""
+    return _Lowering(find, home).lower(block)
+
+
+class _Lowering:
+    def __init__(self, find: Find, home: Callable[[HomeAhead], Do | None]) -> None:
+        self.find = find
+        self.home = home
+        self.items: list[Item] = []
+        self.ranges: list[Range] = []
+        self.points: dict[int, Point] = {}
+        self.homes: dict[int, Point] = {}
+        self.apart: list[Do] = []
+        self.jumped: set[int] = set()
+        """the nodes that a way from elsewhere leads to, by identity"""
+
+    def lower(self, block: Block) -> Lowered:
+        self._note_jumps(block)
+        self._block(block, Point(), Point())
+        for do in self.apart:
+            item = Item(do)
+            self._place(item, self.homes[id(do)])
+        return Lowered(self.items, self.ranges)
+
+    # ---- where ways lead
+
+    def _note_jumps(self, block: Block) -> None:
+        stack = [block]
+        while stack:
+            for node in stack.pop():
+                stack.extend(inner_blocks(node))
+                targets = [node.target] if isinstance(node, Leave) else []
+                if isinstance(node, Do):
+                    targets += [way.target for way in node.ways]
+                for target in targets:
+                    found = self.find(target) if isinstance(target, Steps) else None
+                    if found is not None:
+                        self.jumped.add(id(found))
+
+    def _point(self, node: Node) -> Point:
+        return self.points.setdefault(id(node), Point())
+
+    def _target(self, target: Target, following: Point) -> Point:
+        if target is Ahead.GO_ON:
+            return following
+        if target is Ahead.END:
+            return Point()
+        if isinstance(target, HomeAhead):
+            do = self.home(target)
+            if do is None:
+                return Point()
+            if do.block is not None:
+                return self._point(do)
+            if id(do) not in self.homes:
+                self.homes[id(do)] = Point()
+                self.apart.append(do)
+            return self.homes[id(do)]
+        node = self.find(target)
+        return Point() if node is None else self._point(node)
+
+    # ---- blocks
+
+    def _block(self, block: Block, entry: Point, following: Point) -> None:
+        """Lays a block out: `entry` is where it is come to, `following` where it leads."""
+        before: Item | None = None
+        point = entry
+        for node in block:
+            own = self.points.setdefault(id(node), point)
+            if own is not point:
+                point.same = own
+            behind = self.points.setdefault(id(node.after), Point()) if node.after else following
+            before = self._node(node, own, behind, before)
+            point = behind
+        if block.first is None:
+            entry.same = following
+
+    def _node(self, node: Node, entry: Point, behind: Point, before: Item | None) -> Item | None:
+        """Lays a node out; the task whose ways a condition behind it may be added to."""
+        match node:
+            case Do():
+                return self._do(node, entry, behind)
+            case Choice():
+                return self._choice(node, entry, behind, before)
+            case Round():
+                self._round(node, entry, behind)
+            case Leave():
+                entry.same = self._target(node.target, behind)
+        return None
+
+    def _place(self, item: Item, entry: Point) -> None:
+        entry.item = item
+        self.items.append(item)
+
+    def _do(self, do: Do, entry: Point, behind: Point) -> Item | None:
+        item = Item(do, next=behind)
+        self._place(item, entry)
+        for way in do.ways:
+            target = self._target(way.target, behind)
+            for conditions in way.alternatives or ((),):
+                item.ways.append((conditions, target))
+        if do.failure is not None:
+            item.failure = Point()
+            self._block(do.failure, item.failure, behind)
+        if do.missed is not None:
+            item.missed = Point()
+            self._block(do.missed, item.missed, behind)
+        return item if do.failure is None and do.missed is None else None
+
+    def _choice(
+        self, choice: Choice, entry: Point, behind: Point, before: Item | None
+    ) -> Item | None:
+        """Decides at the task before it, or at a place of its own if others come here as well."""
+        shared = before is not None and before.next is entry and id(choice) not in self.jumped
+        if shared:
+            item = before
+            assert item is not None
+        else:
+            item = Item(_meeting(choice))
+            self._place(item, entry)
+        then, otherwise = Point(), Point()
+        taken, left = (otherwise, then) if choice.negated else (then, otherwise)
+        item.ways += [(conditions, taken) for conditions in choice.alternatives]
+        item.next = left
+        self._branch(choice.then, then, behind)
+        self._branch(choice.otherwise, otherwise, behind)
+        # A condition behind this one is looked at here as well if the task leads on to it alone.
+        alone = choice.otherwise.first is None and not choice.negated and _leaves(choice.then)
+        if alone and behind.item is None:
+            item.next = behind
+            return item
+        return None
+
+    def _branch(self, block: Block, entry: Point, behind: Point) -> None:
+        only = block.first
+        if isinstance(only, Leave) and only.target is Ahead.END:
+            # A way with a condition leads to a task: this one does nothing, and nothing follows.
+            self._place(Item(Do("END", Action.WAIT, only.span, wait=MEETING)), entry)
+        else:
+            self._block(block, entry, behind)
+
+    # ---- rounds
+
+    def _round(self, round_: Round, entry: Point, behind: Point) -> None:
+        first = len(self.items)
+        end = Point()
+        index = len(self.ranges)
+        closes = _closes(round_.body)
+        self._block(round_.body, entry, behind if closes else end)
+        if not closes or len(self.items) == first:
+            self._place(Item(_end(round_), next=behind), end)
+        self.ranges.insert(index, Range(round_, first, len(self.items) - 1))
+
+
+def _leaves(block: Block) -> bool:
+    return isinstance(block.first, Leave) and block.first.target is not Ahead.GO_ON
+
+
+def _closes(body: Block) -> bool:
+    """Whether all ways through a block come to its last task."""
+    last = body.last
+    if isinstance(last, Do):
+        open_ = any(not way.alternatives or way.target is Ahead.GO_ON for way in last.ways)
+        return last.failure is None and last.missed is None and not open_
+    return isinstance(last, Round)
+
+
+def _meeting(choice: Choice) -> Do:
+    before = choice.before
+    base = f"after '{before.title}'" if isinstance(before, Round) else "MEET"
+    return Do(base, Action.WAIT, choice.span, wait=MEETING)
+
+
+def _end(round_: Round) -> Do:
+    return Do(f"end of '{round_.title}'", Action.WAIT, round_.span, wait=MEETING)

@@ -1,0 +1,223 @@
+"""Which checkpoints a noun phrase means; what can be read in two ways is asked about."""
+
+from argo_compiler.catalog import CheckpointInfo
+from argo_compiler.diagnostics import Span
+from argo_compiler.script.resolve.lookup import Lookup, agrees
+from argo_compiler.script.syntax.source import Diagnostics
+from argo_compiler.script.syntax.spelling import alternatives
+from argo_compiler.script.syntax.tree.nouns import (
+    AllOf,
+    Kind,
+    Named,
+    Noun,
+    Nouns,
+    Pronoun,
+    TheOne,
+)
+
+Found = list[CheckpointInfo] | None
+"""None: it is not clear which, and an error says so"""
+
+
+class Memory:
+    """What pronouns may mean: what was measured by the last order that measured."""
+
+    def __init__(self) -> None:
+        self.last: tuple[CheckpointInfo, ...] = ()
+        self.known = True
+        """whether all that was ordered so far is understood"""
+
+    def measured(self, checkpoints: tuple[CheckpointInfo, ...]) -> None:
+        if checkpoints:
+            self.last = checkpoints
+
+
+class NounResolver:
+    """Looks noun phrases up."""
+
+    def __init__(self, lookup: Lookup, diagnostics: Diagnostics, memory: Memory) -> None:
+        self.lookup = lookup
+        self.diagnostics = diagnostics
+        self.memory = memory
+
+    def all(self, nouns: Nouns) -> Found:
+        """The checkpoints of a list, in its order, each as often as it is named."""
+        if nouns.either and len(nouns.nouns) > 1:
+            said = self._said(nouns.span)
+            message = f"`{said}` leaves open which of them, or whether both"
+            hint = "write `and` for all of them, or name the one that is meant"
+            self.diagnostics.error("ambiguous-or", message, nouns.span, hint)
+            return None
+        return self.each(nouns)
+
+    def each(self, nouns: Nouns) -> Found:
+        """As `all`, for lists joined by `or` as well."""
+        found: list[CheckpointInfo] = []
+        clear = True
+        kind: Kind | None = None
+        plural = False
+        for noun in nouns.nouns:
+            if isinstance(noun, Named) and noun.kind is not None:
+                kind, plural = noun.kind, noun.plural
+            one = self._noun(noun, kind, plural)
+            clear = clear and one is not None
+            found += one or []
+        if nouns.but:
+            out = self.each(Nouns(span=nouns.span, nouns=nouns.but))
+            return self._without(found, out, nouns) if clear and out is not None else None
+        return found if clear else None
+
+    def one(self, nouns: Nouns) -> CheckpointInfo | None:
+        """The only checkpoint of a phrase."""
+        found = self.each(nouns)
+        if found is None:
+            return None
+        if len(found) == 1:
+            return found[0]
+        message = "this has to be one checkpoint"
+        self.diagnostics.error("one-checkpoint", message, nouns.span, "name one of them")
+        return None
+
+    def last(self, span: Span) -> Found:
+        """What was measured last, where a condition names nothing."""
+        return self._pronoun(Pronoun(span=span))
+
+    def _without(
+        self, found: list[CheckpointInfo], out: list[CheckpointInfo], nouns: Nouns
+    ) -> list[CheckpointInfo]:
+        for noun, checkpoint in zip(nouns.but, out, strict=False):
+            if checkpoint not in found:
+                message = f"{checkpoint.name} (#{checkpoint.id}) is none of these anyway"
+                hint = "is another one meant?"
+                self.diagnostics.warning("needless-exception", message, noun.span, hint)
+        return [checkpoint for checkpoint in found if checkpoint not in out]
+
+    def _noun(self, noun: Noun, kind: Kind | None, plural: bool) -> Found:
+        match noun:
+            case Named():
+                return self._named(noun, kind, plural)
+            case AllOf():
+                return self._of_kind(noun)
+            case TheOne():
+                return self._the_one(noun)
+            case Pronoun():
+                return self._pronoun(noun)
+
+    # ---- by a label
+
+    def _named(self, noun: Named, kind: Kind | None, plural: bool) -> Found:
+        if noun.last is not None:
+            return self._range(noun, kind)
+        found = self._labelled(noun, noun.label, kind, plural)
+        if found is not None and noun.also is not None:
+            other = self._labelled(noun.also, noun.also.label, noun.also.kind, False)
+            if other is None:
+                return None
+            if other is not found:
+                message = (
+                    f"checkpoint #{found.id} is {found.name}, and {other.name} is "
+                    f"checkpoint #{other.id}"
+                )
+                hint = "correct the number or the name"
+                self.diagnostics.error("checkpoint-mismatch", message, noun.also.span, hint)
+                return None
+        if found is not None:
+            self.lookup.check_quantity(found, noun.quantity, noun.span)
+            if noun.also is not None:
+                self.lookup.check_quantity(found, noun.also.quantity, noun.also.span)
+        return None if found is None else [found]
+
+    def _range(self, noun: Named, kind: Kind | None) -> Found:
+        first, last = noun.label, noun.last
+        if not isinstance(first, int) or not isinstance(last, int):
+            message = "a range goes from a number to a number"
+            self.diagnostics.error("range", message, noun.span, "name each of them")
+            return None
+        if first > last:
+            message = "this range of checkpoints is empty"
+            hint = "write the lower number first"
+            self.diagnostics.error("empty-range", message, noun.span, hint)
+            return None
+        found: list[CheckpointInfo] = []
+        for number in range(first, last + 1):
+            one = self._labelled(noun, number, kind, True)
+            if one is None:
+                return None
+            found.append(one)
+        return found
+
+    def _labelled(
+        self, noun: Named, label: int | str, kind: Kind | None, plural: bool
+    ) -> CheckpointInfo | None:
+        if noun.hash or kind in (None, Kind.CHECKPOINT):
+            if isinstance(label, int):
+                return self.lookup.numbered(label, noun.span)
+            return self.lookup.identified(label, None, noun.span)
+        if noun.kind is None and not plural and isinstance(label, int):
+            return self._inherited(noun, label, kind)
+        return self.lookup.identified(str(label), kind, noun.span)
+
+    def _inherited(self, noun: Named, label: int, kind: Kind | None) -> CheckpointInfo | None:
+        """`valve R25 and 5`: a number behind one of a kind may be a name or a number."""
+        named = self.lookup.called(str(label), kind)
+        numbered = self.lookup.by_number.get(label)
+        readings = [f"{c.name} (#{c.id})" for c in named]
+        if numbered is not None and numbered not in named:
+            readings.append(f"checkpoint #{label} ({numbered.name})")
+        message = f"`{label}` can be read as {alternatives(readings)}"
+        if not readings:
+            return self.lookup.numbered(label, noun.span)
+        hint = f"write `checkpoint {label}` or `{kind} {label}`"
+        self.diagnostics.error("ambiguous-checkpoint", message, noun.span, hint)
+        return None
+
+    # ---- by kind, floor and what came before
+
+    def _of_kind(self, noun: AllOf) -> Found:
+        floors = [floor.number for f in noun.floors if (floor := self.lookup.floor(f)) is not None]
+        if len(floors) < len(noun.floors):
+            return None
+        found = self.lookup.of_kind(noun.kind, floors)
+        if not found:
+            where = f" on floor {alternatives(map(str, floors))}" if floors else ""
+            message = f"there is no {noun.kind}{where} on {self.lookup.catalog.site}"
+            self.diagnostics.error("unknown-checkpoint", message, noun.span, "name another floor")
+            return None
+        return found
+
+    def _the_one(self, noun: TheOne) -> Found:
+        last = [c for c in self.memory.last if agrees(c, noun.kind)]
+        if not noun.floors and len(last) == 1:
+            return last
+        if not noun.floors and not last:
+            self._nothing_before(noun.span)
+            return None
+        found = self._of_kind(AllOf(span=noun.span, kind=noun.kind, floors=noun.floors))
+        if found is None or len(found) == 1:
+            return found
+        names = alternatives(f"{c.name} (#{c.id})" for c in (last or found)[:6])
+        message = f"`{self._said(noun.span)}` can be {names}"
+        self.diagnostics.error("ambiguous-checkpoint", message, noun.span, "name the one")
+        return None
+
+    def _pronoun(self, noun: Pronoun) -> Found:
+        last = self.memory.last
+        if not last:
+            self._nothing_before(noun.span)
+            return None
+        if len(last) == 1 or noun.every:
+            return list(last)
+        names = alternatives(f"{c.name} (#{c.id})" for c in last[:6])
+        message = f"`{self._said(noun.span)}` can be {names}"
+        self.diagnostics.error("ambiguous-pronoun", message, noun.span, "name the one")
+        return None
+
+    def _nothing_before(self, span: Span) -> None:
+        if self.memory.known:
+            message = "nothing has been measured before this, so it does not say which checkpoint"
+            hint = "name it: `checkpoint #1`"
+            self.diagnostics.error("which-checkpoint", message, span, hint)
+
+    def _said(self, span: Span) -> str:
+        line = self.diagnostics.source.lines[span.line - 1]
+        return line[span.column - 1 : span.column - 1 + span.length]

@@ -1,0 +1,180 @@
+"""The plan while a script's orders are carried out: what is to be done, in blocks.
+
+A program is mutable: orders add to it, change it and wrap parts of it into rounds. At the end
+`lowering` makes the tasks, transitions and groups of a mission from it.
+"""
+
+from collections.abc import Iterator
+from dataclasses import dataclass, field
+from enum import StrEnum
+
+from argo_compiler.diagnostics import Span
+from argo_compiler.editing.linked import Linked, LinkedList
+from argo_compiler.il import Action, Condition, JointState, OnFailure, TimeWindow, WaitRule
+from argo_compiler.model import Pose
+from argo_compiler.script.syntax.tree.places import Steps
+
+Alternatives = tuple[tuple[Condition, ...], ...]
+"""conditions, of one of whose tuples all must hold; none at all: in any case"""
+
+
+class Ahead(StrEnum):
+    """Where a way may lead besides a step."""
+
+    GO_ON = "go on"
+    END = "end"
+
+
+@dataclass(frozen=True, slots=True)
+class HomeAhead:
+    """The drive into the docking station with which the mission ends."""
+
+    dock: Pose | None
+    """None: the mission's"""
+    span: Span
+
+
+Target = Ahead | HomeAhead | Steps
+
+
+@dataclass(frozen=True, slots=True)
+class Way:
+    """A way on from a task that leads to another one; without conditions, if no other is taken."""
+
+    alternatives: Alternatives
+    target: Target
+    span: Span
+
+
+@dataclass(eq=False, slots=True)
+class Node(Linked):
+    """A part of a block."""
+
+    block: "Block | None" = field(default=None, init=False, repr=False)
+
+
+class Block(LinkedList[Node]):
+    """Nodes that are carried out one after the other."""
+
+    def __init__(self, owner: Node | None = None) -> None:
+        super().__init__()
+        self.owner = owner
+        """the node that this is a part of"""
+
+    def insert_after(self, anchor: Node | None, item: Node) -> None:
+        super().insert_after(anchor, item)
+        item.block = self
+
+
+@dataclass(eq=False, slots=True)
+class Do(Node):
+    """One task to be."""
+
+    base: str
+    """what the task is called where it is the only one of its kind"""
+    action: Action
+    source: Span | None = None
+    pose: Pose | None = None
+    object_id: str | None = None
+    name: str | None = None
+    """set if the script names the task itself"""
+    docks: bool = False
+    wait: WaitRule | None = None
+    velocity: float | None = None
+    """m/s on the way to it"""
+    leaving: float | None = None
+    """m/s on all ways that lead on from it"""
+    retries: int = 0
+    on_failure: OnFailure = OnFailure.CONTINUE
+    failure: Block | None = None
+    """what is done if it fails, with BRANCH"""
+    missed: Block | None = None
+    """what is done if its window is missed"""
+    joints: JointState | None = None
+    shown_in: str | None = None
+    time_limit: float | None = None
+    reading_limit: float | None = None
+    optional: bool = False
+    priority: int = 1
+    window: TimeWindow | None = None
+    ways: list[Way] = field(default_factory=list)
+
+
+@dataclass(eq=False, slots=True)
+class Choice(Node):
+    """What is done if a condition holds, and what if it does not."""
+
+    alternatives: Alternatives
+    span: Span
+    negated: bool = False
+    then: Block = field(init=False)
+    otherwise: Block = field(init=False)
+
+    def __post_init__(self) -> None:
+        self.then, self.otherwise = Block(self), Block(self)
+
+
+@dataclass(frozen=True, slots=True)
+class Limits:
+    """What ends a round's repetitions, and when each begins."""
+
+    count: int = 0
+    duration: float = 0.0
+    """s"""
+    every: float = 0.0
+    """s"""
+    until: tuple[Condition, ...] = ()
+    soft: bool = False
+    count_interruptions: bool = False
+
+
+@dataclass(eq=False, slots=True)
+class Round(Node):
+    """A block that is repeated."""
+
+    base: str
+    limits: Limits
+    span: Span
+    order: int
+    """which one it is of those that the script asks for"""
+    name: str | None = None
+    body: Block = field(init=False)
+
+    def __post_init__(self) -> None:
+        self.body = Block(self)
+
+    @property
+    def title(self) -> str:
+        return self.name or self.base
+
+
+@dataclass(eq=False, slots=True)
+class Leave(Node):
+    """A way that leads elsewhere than to what follows."""
+
+    target: Target
+    span: Span
+
+
+def all_nodes(block: Block) -> Iterator[Node]:
+    """All nodes of a block and of those in it, in the order of the tasks that they become."""
+    stack: list[Iterator[Node]] = [iter(block)]
+    while stack:
+        node = next(stack[-1], None)
+        if node is None:
+            stack.pop()
+            continue
+        yield node
+        stack.extend(iter(inner) for inner in reversed(inner_blocks(node)))
+
+
+def inner_blocks(node: Node) -> tuple[Block, ...]:
+    """The blocks of a node, in order."""
+    match node:
+        case Choice():
+            return node.then, node.otherwise
+        case Round():
+            return (node.body,)
+        case Do():
+            return tuple(b for b in (node.failure, node.missed) if b is not None)
+    return ()

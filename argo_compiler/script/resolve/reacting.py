@@ -1,0 +1,202 @@
+"""From `if a gas leak is detected, ...` to a reaction of the mission."""
+
+from dataclasses import dataclass, replace
+
+from argo_compiler.diagnostics import Span
+from argo_compiler.il import Afterwards, EventKind, Reaction, Response
+from argo_compiler.model import Pose
+from argo_compiler.script.resolve.locating import Locator
+from argo_compiler.script.syntax.source import Diagnostics
+from argo_compiler.script.syntax.tree.conditions import Battery, Condition, Occurs
+from argo_compiler.script.syntax.tree.orders import (
+    Amend,
+    Case,
+    Go,
+    Home,
+    Order,
+    Plain,
+    Wait,
+    Word,
+)
+from argo_compiler.script.syntax.tree.places import DockLocation, FloorName
+
+
+@dataclass(frozen=True, slots=True)
+class _Reacting:
+    """What a reaction does, as far as the orders have been gone through."""
+
+    response: Response | None = None
+    reported: bool = False
+    pose: Pose | None = None
+    area: int | None = None
+    until: EventKind | None = None
+    afterwards: Afterwards = Afterwards.END
+    hold_limit: float | None = None
+    priority: int | None = None
+
+    @property
+    def drives(self) -> bool:
+        return self.response in (Response.RETURN, Response.SAFE_AREA)
+
+
+class Reactions:
+    """The reactions that a script asks for, at most one for each event."""
+
+    def __init__(self, locator: Locator, diagnostics: Diagnostics) -> None:
+        self.locator = locator
+        self.diagnostics = diagnostics
+        self.found: list[Reaction] = []
+        self.lines: dict[EventKind, Span] = {}
+
+    def add(self, case: Case) -> None:
+        """Adds the reaction that a case with events as its condition asks for."""
+        assert case.condition is not None
+        events = self._events(case.condition)
+        doing = _Reacting()
+        for order in case.orders:
+            step = self._order(order, doing)
+            if step is None:
+                return
+            doing = step
+        response = doing.response
+        if response is None and doing.until is not None:
+            response = Response.PAUSE
+        elif response is None and doing.reported:
+            response = Response.REPORT
+        if response is None or events is None:
+            self._unfinished(case) if events is not None else None
+            return
+        for event, span in events:
+            self._react(event, span, response, doing, case.span)
+
+    def _react(
+        self, event: EventKind, span: Span, response: Response, doing: _Reacting, whole: Span
+    ) -> None:
+        before = self.lines.get(event)
+        if before is not None:
+            message = f"line {before.line} already says what to do in this event"
+            hint = "leave one of the two out"
+            self.diagnostics.error("second-reaction", message, whole, hint)
+            return
+        self.lines[event] = span
+        self.found.append(
+            Reaction(
+                event=event,
+                response=response,
+                pose=doing.pose,
+                area=doing.area,
+                until=doing.until,
+                afterwards=doing.afterwards,
+                hold_limit=doing.hold_limit,
+                priority=doing.priority,
+                source=whole,
+            )
+        )
+
+    def _events(self, condition: Condition) -> list[tuple[EventKind, Span]] | None:
+        found: list[tuple[EventKind, Span]] = []
+        for tests in condition.alternatives:
+            if len(tests) > 1:
+                message = "a reaction follows one event, not several at the same time"
+                hint = "join them by `or`"
+                self.diagnostics.error("reaction", message, condition.span, hint)
+                return None
+            (test,) = tests
+            if isinstance(test, Battery):
+                found.append((EventKind.LOW_BATTERY, test.span))
+            elif not isinstance(test, Occurs):
+                message = "values and events can't be asked for in one condition"
+                hint = "write a sentence for each"
+                self.diagnostics.error("reaction", message, test.span, hint)
+                return None
+            elif test.event is None:
+                message = "an obstacle may be positive or negative: in the way, or a part missing"
+                hint = "write `a positive obstacle` or `a negative obstacle`"
+                self.diagnostics.error("ambiguous-event", message, test.span, hint)
+                return None
+            else:
+                found.append((test.event, test.span))
+        return found
+
+    def _order(self, order: Order, doing: _Reacting) -> _Reacting | None:
+        """What the reaction does with one order more; None if it can't."""
+        if order.manner is not None:
+            if order.manner.priority is not None:
+                doing = replace(doing, priority=order.manner.priority)
+            if order.manner.until is not None:
+                doing = replace(doing, until=self._awaited(order))
+        match order:
+            case Amend():
+                return doing
+            case Plain(word=Word.REPORT):
+                return replace(doing, reported=True)
+            case Plain(word=Word.PAUSE):
+                return replace(doing, response=doing.response or Response.PAUSE)
+            case Plain(word=Word.RECHARGE):
+                response = doing.response or Response.PAUSE
+                return replace(doing, until=EventKind.BATTERY_CHARGED, response=response)
+            case Plain(word=Word.GO_ON):
+                return replace(doing, afterwards=Afterwards.RESUME)
+            case Plain(word=Word.ABORT) | Plain(word=Word.END) if not doing.drives:
+                return self._responds(doing, Response.ABORT, order)
+            case Plain(word=Word.END):
+                return replace(doing, afterwards=Afterwards.END)
+            case Wait():
+                return self._waits(order, doing)
+            case Home():
+                return self._home(order, order.dock, doing)
+            case Go():
+                return self._goes(order, doing)
+        message = "a reaction can't do this"
+        hint = "it can report, pause, return, drive to a place, recharge, wait, resume or abort"
+        self.diagnostics.error("reaction", message, order.span, hint)
+        return None
+
+    def _responds(self, doing: _Reacting, response: Response, order: Order) -> _Reacting | None:
+        if doing.response in (None, Response.PAUSE, response):
+            return replace(doing, response=response)
+        message = "two things to do at once in this event"
+        self.diagnostics.error("reaction", message, order.span, "leave one of them out")
+        return None
+
+    def _waits(self, order: Wait, doing: _Reacting) -> _Reacting:
+        if doing.until is not None or (order.manner and order.manner.until):
+            return replace(doing, response=doing.response or Response.PAUSE)
+        if doing.drives:
+            return replace(doing, afterwards=Afterwards.WAIT)
+        return replace(doing, response=doing.response or Response.PAUSE)
+
+    def _home(self, order: Order, dock: DockLocation, doing: _Reacting) -> _Reacting | None:
+        pose, number = None, None
+        if dock.area is not None:
+            area = self.locator.lookup.area(dock.area.area, dock.span)
+            if area is None:
+                return None
+            pose, number = area.dock, area.number
+        found = self._responds(doing, Response.RETURN, order)
+        return None if found is None else replace(found, pose=pose, area=number)
+
+    def _goes(self, order: Go, doing: _Reacting) -> _Reacting | None:
+        if isinstance(order.where, FloorName):
+            message = "a reaction drives to a place, not to a floor"
+            self.diagnostics.error("reaction", message, order.span, "name a place of the site")
+            return None
+        pose, _ = self.locator.locate(order.where, "end")
+        found = self._responds(doing, Response.SAFE_AREA, order)
+        return None if found is None or pose is None else replace(found, pose=pose)
+
+    def _awaited(self, order: Order) -> EventKind | None:
+        assert order.manner is not None
+        assert order.manner.until is not None
+        match order.manner.until.alternatives:
+            case ((Occurs(event=event),),):
+                return event
+        message = "a reaction waits for one event"
+        hint = "write, say, `until the all clear`"
+        self.diagnostics.error("reaction", message, order.manner.until.span, hint)
+        return None
+
+    def _unfinished(self, case: Case) -> None:
+        message = "this does not say what to do"
+        hint = "add, say, `report it` or `pause`"
+        self.diagnostics.error("unfinished", message, case.span, hint)

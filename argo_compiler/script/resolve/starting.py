@@ -1,0 +1,184 @@
+"""Where a mission starts and ends."""
+
+import math
+
+from argo_compiler.catalog import Area
+from argo_compiler.diagnostics import Span
+from argo_compiler.errors import Remedy
+from argo_compiler.model import Pose
+from argo_compiler.script.resolve import making
+from argo_compiler.script.resolve.context import Context
+from argo_compiler.script.resolve.header import HeaderValues
+from argo_compiler.script.resolve.program import Do, HomeAhead
+from argo_compiler.script.syntax.spelling import alternatives
+from argo_compiler.script.syntax.tree import orders
+from argo_compiler.script.syntax.tree.places import DockLocation
+
+
+class Starting:
+    """The start, the end and the dock of a mission, as far as they are known."""
+
+    def __init__(self, context: Context, header: HeaderValues) -> None:
+        self.context = context
+        self.diagnostics = context.diagnostics
+        self.lookup = context.lookup
+        self.header = header
+        self.start: Do | None = None
+        self.start_at: Span | None = None
+        self.start_area: int | None = None
+        self.end_area: int | None = None
+        self.dock: Pose | None = None
+        self.assumed: Area | None = None
+        self.homes: dict[tuple[float, float], Do] = {}
+        """drives into docks to which only ways with a condition lead"""
+
+    # ---- the start
+
+    def set(self, order: orders.Start) -> list[Do]:
+        """The start that a script sets."""
+        if self.start_at is not None:
+            message = f"the starting point is already set in line {self.start_at.line}"
+            hint = "leave one of the two out"
+            self.diagnostics.error("second-start", message, order.span, hint)
+            return []
+        self.start_at = order.span
+        pose, area = None, None
+        if order.where is not None:
+            pose, area = self.context.locator.locate(order.where, "start")
+            if pose is None:
+                return []
+        wanted = self.header.start
+        other = area is None or area.number != wanted.area
+        if wanted.area is not None and not wanted.as_planned and other:
+            self._conflict(order.span)
+            return []
+        self.start_area = area.number if area else None
+        self.start = making.start(pose, order.span)
+        return [self.start]
+
+    def _conflict(self, span: Span) -> None:
+        wanted = self.header.start
+        message = f"the starting area {wanted.area} contradicts the script's starting point"
+        hint = "choose none, or take the starting point out of the script"
+        remedies: tuple[Remedy, ...] = (Remedy.CHOOSE_START,)
+        if wanted.span is not None:
+            remedies = ()
+            message = f"line {wanted.span.line} says that it starts in area {wanted.area}"
+            hint = "leave one of the two out, or add `as planned` to the header line"
+        self.diagnostics.error("area-conflict", message, span, hint, remedies)
+
+    def begin(self) -> None:
+        """Where the mission starts if only the header says it; known before the orders are."""
+        wanted = self.header.start
+        if wanted.area is not None and not wanted.as_planned:
+            self.start_area = wanted.area
+
+    def _start_unsaid(self) -> None:
+        wanted = self.header.start
+        if wanted.area is not None and not wanted.as_planned:
+            area = self.lookup.area(wanted.area, wanted.span)
+            if area:
+                self.start_area = area.number
+                self.start = making.start(area.dock, wanted.span)
+        elif self.context.whole and not wanted.said:
+            known = alternatives(str(a.number) for a in self.lookup.catalog.areas)
+            hint = f"write `Start in starting area 1`, or choose area {known}"
+            message = "the script sets no starting point"
+            self.diagnostics.error("no-start", message, None, hint, (Remedy.CHOOSE_START,))
+
+    # ---- the end
+
+    def docking_area(self, dock: DockLocation) -> Area | None:
+        """The area into whose dock the mission drives at its end: the one that is named, else that
+        of the header's end, else that of the start, else the nearest to it, with a warning."""
+        option = self.header.end.area
+        if dock.area is not None:
+            named = dock.area.area
+            if option is not None and option != named:
+                message = f"the mission is to end in starting area {option}, not {named}"
+                hint = "leave --end-area (or `End area:`) out, or take the area out of this line"
+                self.diagnostics.error("area-conflict", message, dock.span, hint)
+                return None
+            area = self.lookup.area(named, dock.span)
+        else:
+            number = option if option is not None else self.start_area
+            area = self.lookup.area(number, dock.span) if number is not None else None
+            if area is None and number is None:
+                area = self._nearest(dock.span)
+        if area is not None:
+            self.end_area = area.number
+        return area
+
+    def _nearest(self, span: Span) -> Area | None:
+        """The dock nearest to the start, which is assumed."""
+        areas = self.lookup.catalog.areas
+        if not areas:
+            message = "there is no docking station on this site"
+            self.diagnostics.error("area-choice", message, span, "name a place to go to")
+            return None
+        at = self.start.pose if self.start is not None else None
+        area = min(areas, key=lambda a: 0.0 if at is None else _distance(at, a.dock))
+        if self.assumed is None:
+            self.assumed = area
+            where = "nearest to where it starts" if at is not None else "first of the site"
+            message = (
+                f"this does not say which docking station; that of starting area {area.number} is "
+                f"taken, the {where}"
+            )
+            hint = f"write `the docking station in starting area {area.number}`"
+            self.diagnostics.warning("dock-assumed", message, span, hint)
+        return area
+
+    def finish(self) -> None:
+        """Adds the start and the way into the dock, and finds where home is."""
+        context = self.context
+        if context.program.first is None and context.whole:
+            hint = "give it steps such as `Check the checkpoint #14`"
+            message = "the script has nothing to do"
+            self.diagnostics.error("nothing-to-do", message, None, hint)
+            return
+        if self.start_at is None:
+            self._start_unsaid()
+        if self.start is not None and not self.start.listed:
+            context.put([self.start], context.program, None)
+        if self.header.start.as_planned:
+            self.start_area = self.header.start.area
+        end = self.header.end
+        if end.as_planned:
+            self.end_area = end.area
+        elif end.area is not None and (context.docked is None or not context.docked.listed):
+            area = self.lookup.area(end.area, end.span)
+            if area:
+                self.end_area = area.number
+                docked = making.dock(area.dock, end.span)
+                context.put([docked], context.program, context.program.last)
+                context.docked = docked
+        self._find_dock()
+
+    def _find_dock(self) -> None:
+        if self.header.dock_said:
+            point = self.header.dock
+            self.dock = self.context.locator.point(point) if point else None
+            return
+        for number in (self.end_area, self.start_area):
+            area = self.lookup.catalog.area(number) if number is not None else None
+            if area is not None:
+                self.dock = area.dock
+                return
+
+    def home(self, ahead: HomeAhead) -> Do | None:
+        """The drive with which the mission ends where a way leads home."""
+        pose = ahead.dock or self.dock
+        if pose is None:
+            area = self._nearest(ahead.span)
+            if area is None:
+                return None
+            pose = self.dock = area.dock
+        last = self.context.program.last
+        if isinstance(last, Do) and last.docks and not last.ways and last.pose == pose:
+            return last
+        return self.homes.setdefault((pose.x, pose.y), making.dock(pose, ahead.span))
+
+
+def _distance(a: Pose, b: Pose) -> float:
+    return math.dist((a.x, a.y, a.z), (b.x, b.y, b.z))

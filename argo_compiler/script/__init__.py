@@ -1,1 +1,7 @@
 """The script front end: text as people write it becomes a mission."""
+
+from argo_compiler.script.resolve.importing import Resolved, import_script, resolve
+from argo_compiler.script.syntax.parsing import parse
+from argo_compiler.script.syntax.reading import decode_script, read_script
+
+__all__ = ["Resolved", "decode_script", "import_script", "parse", "read_script", "resolve"]

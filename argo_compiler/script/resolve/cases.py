@@ -92,7 +92,7 @@ class Cases:
             orders_.pop()
             way = self.planner.home_ahead(home)
             ending = None if way is None else Leave(way, home.span)
-        self.planner.orders(orders_, branch)
+        self.planner.carry_out(orders_, branch)
         if ending is not None and ending.target is not Ahead.GO_ON:
             context.put([ending], branch, branch.last)
         context.memory.last = memory

@@ -3,7 +3,7 @@
 from dataclasses import dataclass
 
 from argo_compiler.diagnostics import Span
-from argo_compiler.script.syntax.nodes import AreaField, AreaHeader, Protocol
+from argo_compiler.script.syntax.tree.script import AreaChosen, Areas, Header
 from argo_compiler.script.syntax.source import Diagnostics
 from argo_compiler.script.syntax.spelling import alternatives
 from argo_compiler.script.syntax.tree.places import Coordinates
@@ -32,24 +32,23 @@ class HeaderValues:
 
 
 def header_values(
-    protocol: Protocol, diagnostics: Diagnostics, start_area: int | None, end_area: int | None
+    header: Header, diagnostics: Diagnostics, start_area: int | None, end_area: int | None
 ) -> HeaderValues:
-    """The header's choices; the options must be among what it offers."""
-    dock = protocol.dock
+    """The choices; the options must be among what it offers."""
     return HeaderValues(
         start=_choice(
-            "start", protocol.start_area, protocol.initial_position, start_area, diagnostics
+            "start", header.start_area, header.initial_position, start_area, diagnostics
         ),
-        end=_choice("end", protocol.end_area, protocol.end_of_mission, end_area, diagnostics),
-        dock_said=dock is not None,
-        dock=dock.dock if dock else None,
+        end=_choice("end", header.end_area, header.end_of_mission, end_area, diagnostics),
+        dock_said=header.dock_said,
+        dock=header.dock,
     )
 
 
 def _choice(
     which: str,
-    header: AreaHeader | None,
-    cell: AreaField | None,
+    header: AreaChosen | None,
+    cell: Areas | None,
     option: int | None,
     diagnostics: Diagnostics,
 ) -> AreaChoice:
@@ -60,11 +59,11 @@ def _choice(
             hint = f"leave {flag} out, or take this line out of the script"
             diagnostics.error("area-conflict", message, header.span, hint)
         return AreaChoice(header.area, header.span, header.as_planned, said=True)
-    offered = sorted({area.value for area in cell.areas}) if cell else []
+    offered = sorted(set(cell.areas)) if cell else []
     if not offered:
         return AreaChoice(option, said=option is not None)
     assert cell is not None
-    span = cell.areas[0].span
+    span = cell.span
     choices = alternatives(f"{flag} {number}" for number in offered)
     if option is not None and option not in offered:
         message = f"{flag} {option} is not what the script offers"

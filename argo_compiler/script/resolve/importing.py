@@ -1,19 +1,24 @@
 """Syntax tree to mission, and the whole way from text to mission in one call."""
 
-from collections.abc import Sequence
-
 from argo_compiler.catalog import Catalog
 from argo_compiler.diagnostics import Diagnostic, DiagnosticError
 from argo_compiler.garbage_collector import collector_held
-from argo_compiler.il import Mission
+from argo_compiler.il import Mission, Mode, Order
 from argo_compiler.model import Model
+from argo_compiler.script.resolve.assembly import assemble
+from argo_compiler.script.resolve.context import Context
+from argo_compiler.script.resolve.header import header_values
+from argo_compiler.script.resolve.locating import Locator
 from argo_compiler.script.resolve.lookup import Lookup
-from argo_compiler.script.resolve.protocol import protocol_mission
-from argo_compiler.script.resolve.sheet import sheet_mission
-from argo_compiler.script.syntax.nodes import ProtocolStep, Script, Sheet, SheetStep
+from argo_compiler.script.resolve.lowering import lower_program
+from argo_compiler.script.resolve.planning import Planner
+from argo_compiler.script.resolve.program import Node
+from argo_compiler.script.resolve.starting import Starting
+from argo_compiler.script.resolve.stepping import Stepping
 from argo_compiler.script.syntax.parsing import parse
 from argo_compiler.script.syntax.source import Diagnostics, Source
-from argo_compiler.script.syntax.vocabulary import catalog_words
+from argo_compiler.script.syntax.tree.places import Steps
+from argo_compiler.script.syntax.tree.script import Script
 
 
 class Resolved(Model):
@@ -27,22 +32,10 @@ class Resolved(Model):
 def resolve(
     script: Script, catalog: Catalog, start_area: int | None = None, end_area: int | None = None
 ) -> Resolved:
-    """The mission that the script asks for on the catalogue's site.
-
-    `start_area` and `end_area` are what the preparation chose where the script leaves it open.
-    Raises DiagnosticError with all errors and warnings, those of parsing among them, sorted by
-    place.
-    """
-    diagnostics = Diagnostics(
-        Source(script.source_text, script.source_name), list(script.diagnostics)
-    )
-    if not diagnostics.errors:
-        _check_numbering(script.steps, diagnostics)
-    lookup = Lookup(catalog, diagnostics)
-    if isinstance(script, Sheet):
-        mission = sheet_mission(script, lookup, diagnostics, start_area, end_area)
-    else:
-        mission = protocol_mission(script, lookup, diagnostics, start_area, end_area)
+    """The mission that the script asks for on the catalogue's site."""
+    source = Source(script.source_text, script.source_name)
+    diagnostics = Diagnostics(source, list(script.diagnostics))
+    mission = _mission(script, Lookup(catalog, diagnostics), diagnostics, start_area, end_area)
     if mission is None:
         raise DiagnosticError(script.source_name, diagnostics.by_place())
     return Resolved(mission=mission, diagnostics=diagnostics.by_place())
@@ -58,18 +51,59 @@ def import_script(
     end_area: int | None = None,
 ) -> Resolved:
     """The mission of the script `text`; see `parse` and `resolve`, whose errors it raises."""
-    script = parse(text, catalog_words(catalog), source_name)
-    return resolve(script, catalog, start_area, end_area)
+    places = [place.name for place in catalog.places]
+    return resolve(parse(text, places, source_name), catalog, start_area, end_area)
 
 
-def _check_numbering(steps: Sequence[SheetStep | ProtocolStep], diagnostics: Diagnostics) -> None:
-    """Warns where the steps' numbers are not one after the other: a line may have been lost."""
-    expected = 1
-    for step in steps:
-        if step.number is None:
-            continue
-        if step.number != expected:
-            message = f"step {step.number} stands where step {expected} would be"
-            hint = "is a line missing, or in the wrong place?"
-            diagnostics.warning("step-number", message, step.span, hint)
-        expected = step.number + 1
+def _mission(
+    script: Script,
+    lookup: Lookup,
+    diagnostics: Diagnostics,
+    start_area: int | None,
+    end_area: int | None,
+) -> Mission | None:
+    header = header_values(script.header, diagnostics, start_area, end_area)
+    locator = Locator(lookup, diagnostics, header.start.area, header.end.area)
+    context = Context.of(lookup, diagnostics, locator)
+    if diagnostics.errors:
+        context.fail()
+    starting = Starting(context, header)
+    starting.begin()
+    planner = Planner(context, starting)
+    stepping = Stepping(context, planner, script.header)
+    stepping.all(script.steps)
+    starting.finish()
+    planner.repeating.finish()
+    if diagnostics.errors:
+        return None
+
+    def find(steps: Steps) -> Node | None:
+        nodes = context.nodes_of(steps)
+        if nodes is not None and not nodes:
+            message = f"step {steps.points[0]} leaves nothing to do at which the mission could go on"
+            hint = "name a step that measures or drives"
+            diagnostics.error("empty-step", message, steps.span, hint)
+        return nodes[0] if nodes else None
+
+    tasks, groups, names = assemble(lower_program(context.program, find, starting.home), diagnostics)
+    if diagnostics.errors:
+        return None
+    said = script.header
+    text = said.designation or said.title
+    return Mission(
+        designation=text.text if text else "",
+        site=lookup.catalog.site,
+        mode=said.mode or Mode.AUTONOMOUS,
+        max_duration=said.max_duration[0] if said.max_duration else None,
+        start_area=starting.start_area,
+        end_area=starting.end_area,
+        dock=starting.dock,
+        order=said.order or Order.PRECISE,
+        anomaly_specification=said.anomaly_specification.text if said.anomaly_specification else "",
+        real_time_reporting=said.real_time_reporting.text if said.real_time_reporting else "",
+        after_mission_report=said.after_mission_report.text if said.after_mission_report else "",
+        tasks=tasks,
+        groups=groups,
+        reactions=tuple(context.reactions.found),
+        left_out=said.left_out,
+    )

@@ -32,11 +32,11 @@ class Planner:
 
     def sentence(self, sentence: Sentence, block: Block) -> None:
         """Carries a sentence out."""
-        self.orders(sentence.orders, block)
+        self.carry_out(sentence.orders, block)
         for case in sentence.cases:
             self.cases.add(case, block)
 
-    def orders(self, orders_: Sequence[Order], block: Block) -> None:
+    def carry_out(self, orders_: Sequence[Order], block: Block) -> None:
         """Carries orders out, one after the other, at the end of a block."""
         prefix: Order | None = None
         for i, order in enumerate(orders_):

@@ -40,7 +40,7 @@ def _upto(part: Part) -> Label:
 def _kind(word: Word | None) -> tuple[Kind | None, bool]:
     if word is None:
         return None, False
-    kind, plural = word.value
+    kind, plural = word.value[:2]
     return kind, plural
 
 

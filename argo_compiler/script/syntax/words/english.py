@@ -1,4 +1,4 @@
-"""The words of English. `check(s)` is two words, bars separate phrases."""
+"""The words of English. `check{s}` is two words, bars separate phrases."""
 
 from argo_compiler.il import EventKind, Mode
 from argo_compiler.script.syntax.tree.nouns import Kind
@@ -19,10 +19,10 @@ NOTHING: Phrases = {
 
 VERBS: Phrases = {
     ("MEASURE", None): (
-        "check(s)|measure(s)|read(s)|inspect(s)|control(s)|verif(y)|verifies|examine(s)|look(s) at|"
-        "have a look at|take a look at|take a reading of|record(s)|monitor(s)"
+        "check{s}|measure{s}|read{s}|inspect{s}|control{s}|verif{y}|verifies|examine{s}|look{s} at|"
+        "have a look at|take a look at|take a reading of|record{s}|monitor{s}"
     ),
-    ("KEEP_MEASURING", None): "keep(s) reading|keep(s) checking|keep(s) measuring",
+    ("KEEP_MEASURING", None): "keep{s} reading|keep{s} checking|keep{s} measuring",
     ("BE_MEASURED", None): (
         "has to be read|has to be checked|has to be measured|must be read|must be checked|"
         "must be measured|should be read|should be checked|should be measured|is read|is checked|"
@@ -30,32 +30,32 @@ VERBS: Phrases = {
         "is to be checked"
     ),
     ("GO", None): (
-        "go(es) (back) to|go(es) (back) into|drive(s) (back) to|drive(s) (back) into|"
-        "return(s) to|move(s) to|head(s) (back) to|come(s) back to|get(s) back to|travel(s) to|"
-        "proceed(s) to|back to|go(es)|drive(s)|it goes to"
+        "go{es} {back} to|go{es} {back} into|drive{s} {back} to|drive{s} {back} into|"
+        "return{s} to|move{s} to|head{s} {back} to|come{s} back to|get{s} back to|travel{s} to|"
+        "proceed{s} to|back to|go{es}|drive{s}|it goes to"
     ),
     ("HOME", None): (
-        "go(es) home|drive(s) home|come(s) home|return(s) home|return(s)|go(es) back|drive(s) back|"
-        "come(s) back|it goes home|return(s) to base|home"
+        "go{es} home|drive{s} home|come{s} home|return{s} home|return{s}|go{es} back|drive{s} back|"
+        "come{s} back|it goes home|return{s} to base|home"
     ),
     ("START", None): (
         "set a starting point|set the starting point|set a start point|set the start point|"
-        "start(s)|begin(s)|start(s) from|begin(s) from|leave(s)|leaves from|leave from|"
+        "start{s}|begin{s}|start{s} from|begin{s} from|leave{s}|leaves from|leave from|"
         "is waiting|is standing|stands|starts out"
     ),
-    ("PATROL", None): "patrol(s)",
-    ("WAIT", None): "wait(s)|stay(s)",
-    ("PAUSE", None): "pause(s)|stop(s)|halt(s)|stand(s) still|hold(s)|stop(s) the round",
+    ("PATROL", None): "patrol{s}",
+    ("WAIT", None): "wait{s}|stay{s}",
+    ("PAUSE", None): "pause{s}|stop{s}|halt{s}|stand{s} still|hold{s}|stop{s} the round",
     ("END", None): (
         "end the mission|finish the mission|stop the mission|terminate the mission|end|"
         "that is the end of the mission|this is the end of the mission"
     ),
     ("ABORT", None): "abort|abort the mission|mission is aborted|cancel the mission",
     ("GO_ON", None): (
-        "go(es) on|continue(s)|carry on|go(es) ahead|resume(s)|continue the mission|"
+        "go{es} on|continue{s}|carry on|go{es} ahead|resume{s}|continue the mission|"
         "resume the mission|go on with the mission|proceed"
     ),
-    ("RECHARGE", None): "recharge(s)|charge(s)|recharge the battery|charge the battery",
+    ("RECHARGE", None): "recharge{s}|charge{s}|recharge the battery|charge the battery",
     ("REPORT", None): "report it|report this|report|report that",
     ("REPEAT", None): "repeat|run|perform|execute",
     ("DO_FOLLOWING", None): "do the following|do this",
@@ -66,6 +66,14 @@ VERBS: Phrases = {
     ("JUMP", None): "skip to|jump to|continue with|go on with|proceed with|carry on with",
     ("RETRY", None): "retry|try again|try it again|retry it",
     ("DONE", None): "done|that is all",
+    ("MEET", None): "go on here",
+    ("START_HERE", None): "start here",
+    ("MAX_DURATION", None): (
+        "mission may take|mission takes|maximum duration of the mission is|maximum duration is|"
+        "please note that the maximum duration of the mission is"
+    ),
+    ("BACK_IN", None): "it has to be back in|robot has to be back in|it must be back in",
+    ("ROUND_DRIVEN", None): "are a round that is driven|are driven|are repeated|are a round driven",
 }
 
 NOUNS: Phrases = {
@@ -80,13 +88,13 @@ NOUNS: Phrases = {
     ("KIND", (Kind.GAUGE, False)): "gauge",
     ("KIND", (Kind.GAUGE, True)): "gauges",
     ("HASH", None): "#|no .|nr .|number|no|nr",
-    ("STEP", None): "step(s)|task(s)",
+    ("STEP", None): "step{s}|task{s}",
     ("FLOOR", False): "floor|deck|storey",
     ("FLOOR", True): "floors|decks|storeys",
     ("FLOOR_NAME", "bottom"): "ground floor|lowest floor|bottom floor",
     ("FLOOR_NAME", "top"): "top floor|highest floor|uppermost floor",
     ("AREA", None): "starting area|start area|area",
-    ("DOCK", None): "dock(s)|docking station|docking bay|its dock|charging station",
+    ("DOCK", None): "dock{s}|docking station|docking bay|its dock|charging station",
     ("ALL", None): "all|each|all of",
     ("EXCEPT", None): "except|except for|but not|apart from|but don't check|but do not check",
     ("IT", None): "it|that one",
@@ -114,7 +122,7 @@ NOUNS: Phrases = {
 }
 
 CONDITIONS: Phrases = {
-    ("IF", None): "if|when|whenever|in case|as soon as",
+    ("IF", None): "if|when|whenever|in case {of}|in the event of|as soon as",
     ("UNLESS", None): "unless",
     ("ELSE", None): "otherwise|else|if not",
     ("UNTIL", None): "until|till",
@@ -140,10 +148,10 @@ CONDITIONS: Phrases = {
         "is detected|is found|is heard|is seen|occurs|happens|sounds|appears|is pressed"
     ),
     ("BATTERY", None): "battery|battery level|charge of the battery|battery charge",
-    ("EVENT", EventKind.GAS_LEAK): "gas leak(s)|gas leakage",
-    ("EVENT", EventKind.HOT_SPOT): "hot spot(s)|hotspot(s)",
-    ("EVENT", EventKind.ABNORMAL_SOUND): "abnormal (pump) sound|abnormal (pump) noise",
-    ("EVENT", EventKind.PLATFORM_ALARM): "(general) platform alarm|gpa|evacuation alarm ( gpa )",
+    ("EVENT", EventKind.GAS_LEAK): "gas leak{s}|gas leakage",
+    ("EVENT", EventKind.HOT_SPOT): "hot spot{s}|hotspot{s}",
+    ("EVENT", EventKind.ABNORMAL_SOUND): "abnormal {pump} sound|abnormal {pump} noise",
+    ("EVENT", EventKind.PLATFORM_ALARM): "{general} platform alarm|gpa|evacuation alarm ( gpa )",
     ("EVENT", EventKind.LOW_BATTERY): "low battery|battery is low",
     ("EVENT", EventKind.CONNECTION_LOST): "connection loss|connection is lost|loss of connection",
     ("EVENT", EventKind.EMERGENCY_STOP): "emergency stop",
@@ -165,7 +173,7 @@ MANNERS: Phrases = {
     ("TIMES", Figure(1.0)): "once",
     ("TIMES", Figure(2.0)): "twice",
     ("MORE", Figure(1.0)): "again|once more|one more time|a second time",
-    ("TIME_WORD", None): "time(s)|round(s)",
+    ("TIME_WORD", None): "time{s}|round{s}",
     ("WITHIN", None): "within|within the first|in at most",
     ("MEASURING", None): "measuring of|measurement of",
     ("EVERYTHING", None): "everything|all steps",
@@ -179,11 +187,32 @@ MANNERS: Phrases = {
     ("ANY_ORDER", None): "in any order",
     ("THIS_ORDER", None): "in this order|in this precise order|in the given order",
     ("TOTAL", None): "in total|in all|altogether",
-    ("MODE", Mode.AUTONOMOUS): "autonomous(ly)",
+    ("MODE", Mode.AUTONOMOUS): "autonomous{ly}",
     ("MODE", Mode.SUPERVISORY): "supervisory",
     ("UPTO", None): "through",
-    ("UNIT_S", 3600.0): "h|hour(s)|hrs|hr",
-    ("UNIT_S", 60.0): "min|mins|minute(s)|'",
+    ("FINISHING", None): "finishing the round|finishing its round|completing the round",
+    ("STOPPING", None): "stopping at once|stopping immediately",
+    ("ENDLESS", None): "endlessly|forever|without end",
+    ("INCLUDED", None): "interruptions included",
+    ("EXCLUDED", None): "interruptions excluded",
+    ("IN_CIRCLES", None): "in circles|in rounds|in a circle",
+    ("STANDING", None): "standing at",
+    ("SHOWN_IN", None): "shown in",
+    ("ABOUT", None): "about object",
+    ("JOINTS", None): "with joints|with joint",
+    ("LEAVING", None): "leaving at",
+    ("AGE", None): "measured within the last|measured in the last|not older than|within the last",
+    ("LPAR_CALLED", None): "( called",
+    ("LPAR_BOUND", None): "( with second bound",
+    ("SECOND_BOUND", None): "with second bound",
+    ("X", None): "x",
+    ("Y", None): "y",
+    ("Z", None): "z",
+    ("HEADING", None): "heading",
+    ("RAD", None): "rad|radians",
+    ("EARLIEST", None): "not before|no earlier than|not earlier than",
+    ("UNIT_S", 3600.0): "h|hour{s}|hrs|hr",
+    ("UNIT_S", 60.0): "min|mins|minute{s}|'",
     ("UNIT_S", 1.0): "s|sec|secs|seconds",
 }
 
@@ -201,13 +230,13 @@ FIGURES: Phrases = {
     },
     ("NUMBER_WORD", 100): "hundred|hundred and",
     ("NUMBER_WORD", 1000): "thousand|thousand and",
-    ("UNIT", "bar"): "bar(s)",
+    ("UNIT", "bar"): "bar{s}",
     ("UNIT", "mbar"): "mbar|millibar",
     ("UNIT", "psi"): "psi",
     ("UNIT", "kPa"): "kpa",
     ("UNIT", "MPa"): "mpa",
     ("UNIT", "%"): "%|percent|per cent",
-    ("UNIT", "deg"): "°|deg|degree(s)",
+    ("UNIT", "deg"): "°|deg|degree{s}",
     ("HALF", None): "half",
 }
 

@@ -47,7 +47,10 @@ def _looked_up(text: str, lexicon: Lexicon) -> list[Word]:
             continue
         if entry[0] not in _UNSAID:
             start, end = pieces[i].start(), pieces[i + n - 1].end()
-            found.append(Word(entry[0], entry[1], start, end))
+            value = entry[1]
+            if entry[0] == "KIND":
+                value = (*value, i > 0 and pieces[i - 1].group() == "the")
+            found.append(Word(entry[0], value, start, end))
         i += n
     return found
 

@@ -7,7 +7,7 @@ from typing import Any
 Entry = tuple[str, Any]
 """a terminal and its value"""
 Phrases = Mapping[Entry, str]
-"""by entry, its phrases, separated by bars; `check(s)` is `check` and `checks`"""
+"""by entry, its phrases, separated by bars; `check{s}` is `check` and `checks`"""
 
 
 @dataclass(slots=True)
@@ -45,14 +45,14 @@ class Lexicon:
 
 
 def expand(text: str) -> list[str]:
-    """The phrases that `text` lists: `check(s)` is two, `a|b` are two."""
+    """The phrases that `text` lists: `check{s}` is two, `a|b` are two."""
     found: list[str] = []
     for phrase in text.split("|"):
         forms = [""]
         rest = phrase.strip()
         while rest:
-            head, opening, rest = rest.partition("(")
-            inner, _, rest = rest.partition(")") if opening else ("", "", "")
+            head, opening, rest = rest.partition("{")
+            inner, _, rest = rest.partition("}") if opening else ("", "", "")
             forms = [f + head for f in forms]
             if opening:
                 forms += [f + inner for f in forms]

@@ -1,0 +1,80 @@
+"""A script as a whole."""
+
+from dataclasses import dataclass, field
+
+from argo_compiler.diagnostics import Diagnostic
+from argo_compiler.il import Mode, Order
+from argo_compiler.script.syntax.tree.facts import Fact
+from argo_compiler.script.syntax.tree.node import Node
+from argo_compiler.script.syntax.tree.orders import Sentence
+from argo_compiler.script.syntax.tree.places import Coordinates, Steps
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Text(Node):
+    """A field that is kept as text."""
+
+    text: str
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Areas(Node):
+    """A field that names starting areas: more than one leaves the choice to the preparation."""
+
+    text: str
+    areas: tuple[int, ...]
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class AreaChosen(Node):
+    """`Start area: 1`, perhaps `none`, perhaps `as planned`: then the steps stay as they are."""
+
+    area: int | None
+    as_planned: bool
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Step(Node):
+    """A numbered line, a bullet or a paragraph, with those that lie within it."""
+
+    number: int | None
+    """as printed"""
+    sentences: tuple[Sentence | Fact, ...]
+    steps: "tuple[Step, ...]" = ()
+
+
+@dataclass(kw_only=True)
+class Header:
+    """What is said of the mission as a whole. None: nothing is."""
+
+    title: Text | None = None
+    designation: Text | None = None
+    site: Text | None = None
+    mode: Mode | None = None
+    max_duration: tuple[float, Node] | None = None
+    """s; the node tells where it is said"""
+    order: Order | None = None
+    anomaly_specification: Text | None = None
+    real_time_reporting: Text | None = None
+    after_mission_report: Text | None = None
+    initial_position: Areas | None = None
+    end_of_mission: Areas | None = None
+    start_area: AreaChosen | None = None
+    end_area: AreaChosen | None = None
+    dock_said: bool = False
+    dock: Coordinates | None = None
+    current: Steps | None = None
+    left_out: tuple[str, ...] = ()
+
+
+@dataclass(frozen=True, kw_only=True)
+class Script:
+    """What a script says."""
+
+    source_name: str
+    source_text: str
+    header: Header = field(default_factory=Header)
+    steps: tuple[Step, ...] = ()
+    remarks: tuple[Text, ...] = ()
+    """what asks for nothing"""
+    diagnostics: tuple[Diagnostic, ...] = ()

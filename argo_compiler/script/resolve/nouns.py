@@ -24,12 +24,13 @@ class Memory:
 
     def __init__(self) -> None:
         self.last: tuple[CheckpointInfo, ...] = ()
+        self.before: tuple[CheckpointInfo, ...] = ()
         self.known = True
         """whether all that was ordered so far is understood"""
 
     def measured(self, checkpoints: tuple[CheckpointInfo, ...]) -> None:
         if checkpoints:
-            self.last = checkpoints
+            self.before, self.last = self.last, checkpoints
 
 
 class NounResolver:
@@ -205,6 +206,8 @@ class NounResolver:
         if not last:
             self._nothing_before(noun.span)
             return None
+        if noun.every and len(last) == len(self.memory.before) == 1:
+            return [*self.memory.before, *last]
         if len(last) == 1 or noun.every:
             return list(last)
         names = alternatives(f"{c.name} (#{c.id})" for c in last[:6])

@@ -7,6 +7,7 @@ from argo_compiler.script.resolve.planning import Planner
 from argo_compiler.script.resolve.program import Block
 from argo_compiler.script.syntax.tree import facts, orders
 from argo_compiler.script.syntax.tree.facts import Fact
+from argo_compiler.script.syntax.tree.manner import Manner
 from argo_compiler.script.syntax.tree.orders import Order, Sentence
 from argo_compiler.script.syntax.tree.places import DockLocation
 from argo_compiler.script.syntax.tree.script import Header, Step
@@ -22,10 +23,23 @@ class Stepping:
 
     def all(self, steps: Sequence[Step]) -> None:
         """Plans all steps of a script."""
+        self._check_numbers(steps)
         numbered = any(step.number is not None for step in steps)
         for i, step in enumerate(steps, start=1):
             self.context.begin_step(step.number if numbered else i)
             self._step(step, self.context.program)
+
+    def _check_numbers(self, steps: Sequence[Step]) -> None:
+        """Warns where the steps' numbers are not one after the other: a line may have been lost."""
+        expected = 1
+        for step in steps:
+            if step.number is None:
+                continue
+            if step.number != expected:
+                message = f"step {step.number} stands where step {expected} would be"
+                hint = "is a line missing, or in the wrong place?"
+                self.context.diagnostics.warning("step-number", message, step.span, hint)
+            expected = step.number + 1
 
     def _step(self, step: Step, block: Block) -> None:
         sentences = list(step.sentences)
@@ -66,7 +80,9 @@ class Stepping:
                     home = orders.Home(span=fact.span, dock=fact.where)
                     self.planner.order(home, self.context.program)
             case facts.RoundsDriven():
-                pass
+                manner = Manner(times=fact.count)
+                order = orders.Repeat(span=fact.span, steps=fact.steps, manner=manner)
+                self.planner.order(order, self.context.program)
             case _:
                 message = "this can't be planned yet"
                 self.context.diagnostics.error("fact", message, fact.span, "leave it out")

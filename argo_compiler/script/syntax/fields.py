@@ -5,7 +5,7 @@ from typing import TYPE_CHECKING, Any
 
 from argo_compiler.il import Mode, Order
 from argo_compiler.script.syntax.source import Diagnostics, ScriptText
-from argo_compiler.script.syntax.tree.script import AreaChosen, Areas, Header, Text
+from argo_compiler.script.syntax.tree.script import Areas, Header, Text
 from argo_compiler.script.syntax.words.lengths import Length
 from argo_compiler.script.syntax.words.lexer import words
 
@@ -23,9 +23,18 @@ _LABELS = {
     "after_mission_report": r"after[- ]mission report(?:ing)?",
     "initial_position": r"initial position|start(?:ing)?(?: (?:area|position))?",
     "end_of_mission": r"end of (?:the )?mission|end(?: area)?|finish",
-    "steps": r".*\bin this precise order|checkpoints(?: to (?:read|check|inspect))?",
+    "steps": r"[^:]*\bin this precise order|checkpoints(?: to (?:read|check|inspect))?",
 }
-_LABEL = {name: re.compile(rf"(?:{pattern})\s*:\s*", re.IGNORECASE) for name, pattern in _LABELS.items()}
+_LABEL = re.compile(
+    "|".join(rf"(?P<{name}>\b(?:{pattern}))\s*:" for name, pattern in _LABELS.items()),
+    re.IGNORECASE,
+)
+
+
+_STOP = re.compile(r"[.!](?=\s|$)")
+_PROSE = frozenset(
+    ["designation", "anomaly_specification", "real_time_reporting", "after_mission_report"]
+)
 
 
 class Fields:
@@ -36,29 +45,42 @@ class Fields:
         self.parser = parser
         self.header = Header()
 
-    def label(self, text: ScriptText) -> tuple[str, int] | None:
-        """The field that a line begins with, and where its value begins."""
-        for name, pattern in _LABEL.items():
-            if found := pattern.match(text.content):
-                return name, found.end()
-        return None
+    def is_field(self, text: ScriptText) -> bool:
+        """Whether a line begins with a field's label."""
+        return _LABEL.match(text.content) is not None
 
-    def read(self, text: ScriptText) -> bool:
-        """Reads a line if it is a field."""
-        found = self.label(text)
-        if found is None:
-            return False
-        name, at = found
-        value = text[at:].strip()
-        match name:
-            case "steps":
-                if "precise" in text.content.lower():
+    def read(self, text: ScriptText) -> ScriptText:
+        """Reads the fields that a line begins with, perhaps several: `Start: area 2, end: area 1.`
+        What is left is the rest of the line, which may have sentences."""
+        while (label := _LABEL.match(text.content)) is not None:
+            name = label.lastgroup
+            assert name is not None
+            value = text[label.end() :].strip()
+            end = self._end(name, value.content)
+            rest = value[end:].strip()
+            field = value[: len(value.content[:end].rstrip(" ,;."))]
+            if name == "steps" or not self._field(name, field):
+                if "precise" in label.group().lower():
                     self.header.order = Order.PRECISE
-                return not value.content
+                return value
+            text = rest[len(rest.content) - len(rest.content.lstrip(" ,;.")) :]
+        return text
+
+    def _end(self, name: str, content: str) -> int:
+        """Where the value of a field ends: at the next label or, unless it is prose, sentence."""
+        ends = [m.start() for m in _LABEL.finditer(content) if content[: m.start()].rstrip()[-1:] in ",;."]
+        if name not in _PROSE and (stop := _STOP.search(content)):
+            ends.append(stop.end())
+        return min((e for e in ends if e > 0), default=len(content))
+
+    def _field(self, name: str, value: ScriptText) -> bool:
+        match name:
             case "mode":
-                self.header.mode = Mode.SUPERVISORY if "superv" in value.content.lower() else Mode.AUTONOMOUS
+                supervised = "superv" in value.content.lower()
+                self.header.mode = Mode.SUPERVISORY if supervised else Mode.AUTONOMOUS
             case "order":
-                self.header.order = Order.ANY if "any" in value.content.lower() else Order.PRECISE
+                free = "any" in value.content.lower()
+                self.header.order = Order.ANY if free else Order.PRECISE
             case "max_duration":
                 self._duration(value)
             case "initial_position" | "end_of_mission":
@@ -83,7 +105,5 @@ class Fields:
         for word in listing:
             if word.type == "NUMBER":
                 found.append(int(word.value.value))
-        if len(found) == 1 and False:
-            setattr(self.header, name, AreaChosen(span=value.span(), area=found[0], as_planned=False))
         setattr(self.header, name, Areas(span=value.span(), text=value.content, areas=tuple(found)))
         return True

@@ -90,13 +90,18 @@ def _split(line: Line) -> Iterator[Line]:
     yield Line(line.text[start:].strip(), line.indent, line.mark, number)
 
 
-def items_of(lines: Sequence[Line], complete: Callable[[ScriptText], bool]) -> list[Item]:
+def items_of(
+    lines: Sequence[Line],
+    complete: Callable[[ScriptText], bool],
+    alone: Callable[[ScriptText], bool],
+) -> list[Item]:
     """The steps and paragraphs, those that lie within others inside of them. `complete` tells
-    whether a text makes sense by itself."""
+    whether a text makes sense by itself, `alone` whether a line never goes on with another one."""
     top: list[Item] = []
     around: list[Item] = []
     for line in lines:
-        if line.mark is Mark.NONE and around and not line.first and _goes_on(around[-1], line, complete):
+        follows = line.mark is Mark.NONE and around and not line.first and not alone(line.text)
+        if follows and not alone(around[-1].text) and _goes_on(around[-1], line, complete):
             around[-1].text = join([around[-1].text, line.text])
             continue
         item = Item(line.text, line)

@@ -6,15 +6,17 @@ from collections.abc import Collection
 from argo_compiler.garbage_collector import collector_held
 from argo_compiler.script.syntax.building.sentences import build
 from argo_compiler.script.syntax.fields import Fields
-from argo_compiler.script.syntax.grammar import StumbleError, sentence_grammar
+from argo_compiler.script.syntax.grammar import Branch, StumbleError, sentence_grammar
 from argo_compiler.script.syntax.healing import heal
-from argo_compiler.script.syntax.layout import Item, items_of, lines_of
+from argo_compiler.script.syntax.layout import Item, Mark, items_of, lines_of
+from argo_compiler.script.syntax.spelling import respell
 from argo_compiler.script.syntax.source import Diagnostics, ScriptText, Source
 from argo_compiler.script.syntax.tree.facts import Fact
 from argo_compiler.script.syntax.tree.orders import Sentence
 from argo_compiler.script.syntax.tree.script import Script, Step, Text
 from argo_compiler.script.syntax.words.language import Language
 from argo_compiler.script.syntax.words.lexer import words
+from argo_compiler.script.syntax.words.word import Word
 
 _SENTENCE_END = re.compile(r"(?:[.!?…]+|;(?=\s*(?:if|otherwise|else|when)\b))(?=\s|$)", re.IGNORECASE)
 _ABBREVIATION = re.compile(r"\b(?:no|nr|approx|ca|max|min|e\.g|i\.e|z\.b)\.$", re.IGNORECASE)
@@ -55,7 +57,7 @@ class _Parser:
         healed = heal(self.source, {*vocabulary, *self.language.words})
         self.diagnostics.entries.extend(healed.diagnostics)
         lines = list(lines_of(healed.lines))
-        items = items_of(lines, self.is_complete)
+        items = items_of(lines, self.is_complete, self.stands_alone)
         steps = [step for item in items if (step := self._step(item)) is not None]
         return Script(
             source_name=self.source.name,
@@ -66,31 +68,41 @@ class _Parser:
             diagnostics=self.diagnostics.by_place(),
         )
 
+    def stands_alone(self, text: ScriptText) -> bool:
+        """Whether a line never goes on with the one above it."""
+        content = text.content
+        return bool(
+            self.fields.is_field(text)
+            or _REMARK.match(content)
+            or _GREETING.match(content)
+            or _CLOSING.match(content)
+        )
+
     def is_complete(self, text: ScriptText) -> bool:
         """Whether a text makes sense by itself."""
-        if self.fields.label(text) is not None:
+        if self.fields.is_field(text) or _REMARK.match(text.content):
             return True
         return all(self._fits(sentence) for sentence in sentences(text))
 
     def _fits(self, text: ScriptText) -> bool:
         found = words(text.content, self.language.lexicon)
-        if any(word.type == "WORD" for word in found):
+        if not found or any(word.type == "WORD" for word in found):
             return False
         try:
-            self.grammar.tree(tuple(word.type for word in found))
+            tree = self.grammar.tree(tuple(word.type for word in found))
         except StumbleError:
             return False
         last = found[-1]
-        return not (last.type == "KIND" and not last.value[2])
+        return not (last.type == "KIND" and not last.value[2]) and not _is_amend(tree)
 
     def _step(self, item: Item) -> Step | None:
         inner = [step for i in item.items if (step := self._step(i)) is not None]
         if self._is_remark(item):
             self._remark(item.text)
             return None
-        if self.fields.read(item.text):
+        if self.fields.is_field(item.text):
             self.begun = True
-            return None
+            item.text = self.fields.read(item.text)
         said: list[Sentence | Fact] = []
         for text in sentences(item.text):
             node = self._sentence(text, item)
@@ -118,22 +130,79 @@ class _Parser:
         self.remarks.append(Text(span=text.span(), text=text.content))
 
     def _sentence(self, text: ScriptText, item: Item) -> Sentence | Fact | None:
-        found = words(text.content, self.language.lexicon)
-        try:
-            tree = self.grammar.tree(tuple(word.type for word in found))
-        except StumbleError as stumble:
-            if not self.begun and self.fields.header.title is None:
-                self.fields.header.title = Text(span=text.span(), text=text.content)
-                return None
-            at = found[stumble.at] if stumble.at < len(found) else None
-            span = text.span(at.start, at.end) if at else text.span(len(text.content))
-            what = f"can't understand `{text.content[at.start : at.end]}` here" if at else "more is expected"
-            self.diagnostics.error("not-understood", what, span, "write it in other words")
+        parsed = self._parsed(text)
+        if isinstance(parsed, StumbleError):
+            respelled = self._respelled(text)
+            if respelled is not None:
+                text = respelled
+                parsed = self._parsed(text)
+        if isinstance(parsed, StumbleError):
+            if self._is_heading(text, item):
+                self._remark(text)
+                if not self.begun and self.fields.header.title is None:
+                    self.fields.header.title = Text(span=text.span(), text=text.content)
+            else:
+                self._not_understood(text, parsed)
             return None
         self.begun = True
         errors = self.diagnostics.errors
+        tree, found = parsed
         node = build(tree, found, text, self.diagnostics)
         return node if self.diagnostics.errors == errors else None
+
+    def _parsed(self, text: ScriptText) -> tuple[Branch, list[Word]] | StumbleError:
+        found = words(text.content, self.language.lexicon)
+        try:
+            return self.grammar.tree(tuple(word.type for word in found)), found
+        except StumbleError as stumble:
+            return stumble
+
+    def _respelled(self, text: ScriptText) -> ScriptText | None:
+        """The text with misspelt words put right, if it makes sense then."""
+        found: list[tuple[int, int, str]] = []
+        for word in words(text.content, self.language.lexicon):
+            if word.type == "WORD":
+                meant = respell(str(word.value), self.language.words)
+                if meant is not None:
+                    found.append((word.start, word.end, meant))
+        fixed = text
+        for start, end, meant in reversed(found):
+            fixed = fixed.replace(start, end, meant)
+        if not found or isinstance(self._parsed(fixed), StumbleError):
+            return None
+        for start, end, meant in found:
+            message = f"read `{text.content[start:end]}` as `{meant}`"
+            self.diagnostics.warning("respelled", message, text.span(start, end))
+        return fixed
+
+    def _is_heading(self, text: ScriptText, item: Item) -> bool:
+        """Whether a text that makes no sense is a title: it asks for nothing, and ends no sentence."""
+        if not self.begun and self.fields.header.title is None and item.line.number is None:
+            return True
+        types = {word.type for word in words(text.content, self.language.lexicon)}
+        return item.line.mark is not Mark.NUMBER and types <= _HEADING
+
+    def _not_understood(self, text: ScriptText, stumble: StumbleError) -> None:
+        found = words(text.content, self.language.lexicon)
+        unknown = next((w for w in found if w.type == "WORD"), None)
+        at = unknown or (found[stumble.at] if stumble.at < len(found) else None)
+        if at is None:
+            message = "the sentence ends where more is expected"
+            span = text.span(len(text.content))
+        else:
+            message = f"can't understand `{text.content[at.start : at.end]}` here"
+            span = text.span(at.start, at.end)
+        self.diagnostics.error("not-understood", message, span, "write it in other words")
+
+
+_HEADING = frozenset(["WORD", "FLOOR", "NUMBER", "ORDINAL", "FLOOR_NAME", "STEP", "JOINT"])
+
+
+def _is_amend(tree: Branch) -> bool:
+    """Whether a sentence says nothing but a manner."""
+    _, parts, _, _ = tree
+    first = parts[0]
+    return not isinstance(first, int) and first[0] == "order" and first[1][0][0] == "amend"
 
 
 def sentences(text: ScriptText) -> list[ScriptText]:

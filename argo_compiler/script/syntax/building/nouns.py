@@ -77,14 +77,18 @@ def _aka(part: Part) -> list[Noun]:
     return [replace(first, also=second, span=part.span)]
 
 
+def _floors(part: Part) -> tuple[FloorName, ...]:
+    return tuple(floor for found in part.every(tuple) for floor in found)
+
+
 def _all(part: Part) -> AllOf:
     kind, _ = _kind(part.word("KIND"))
-    return AllOf(span=part.span, kind=kind or Kind.CHECKPOINT, floors=part.every(FloorName))
+    return AllOf(span=part.span, kind=kind or Kind.CHECKPOINT, floors=_floors(part))
 
 
 def _the_one(part: Part) -> TheOne:
     kind, _ = _kind(part.word("KIND"))
-    return TheOne(span=part.span, kind=kind or Kind.CHECKPOINT, floors=part.every(FloorName))
+    return TheOne(span=part.span, kind=kind or Kind.CHECKPOINT, floors=_floors(part))
 
 
 def _pronoun(part: Part) -> Pronoun:

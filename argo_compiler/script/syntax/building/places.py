@@ -59,8 +59,7 @@ def _plural(part: Part) -> bool:
 
 
 def _on_floors(part: Part) -> tuple[FloorName, ...]:
-    floors: tuple[FloorName, ...] = next(c for c in part.children if isinstance(c, tuple))
-    return floors
+    return tuple(floor for found in part.every(tuple) for floor in found)
 
 
 def _coordinates(part: Part) -> Coordinates:

@@ -1,5 +1,6 @@
 """Makes sentences, and runs through a sentence's tree to make all of its parts."""
 
+from dataclasses import replace
 from typing import Any
 
 from argo_compiler.script.syntax.building import (
@@ -15,8 +16,8 @@ from argo_compiler.script.syntax.grammar import Branch
 from argo_compiler.script.syntax.source import Diagnostics, ScriptText
 from argo_compiler.script.syntax.tree import facts
 from argo_compiler.script.syntax.tree.conditions import Condition
-from argo_compiler.script.syntax.tree.nouns import Nouns
-from argo_compiler.script.syntax.tree.orders import Case, Order, Sentence, Side
+from argo_compiler.script.syntax.tree.nouns import Named, Nouns
+from argo_compiler.script.syntax.tree.orders import Case, Measure, Order, Sentence, Side
 from argo_compiler.script.syntax.tree.places import Steps
 from argo_compiler.script.syntax.words.word import Word
 
@@ -33,14 +34,32 @@ def _sentence(part: Part) -> Sentence | facts.Fact:
 
 
 def _joined(part: Part) -> tuple[Order, ...]:
-    """The orders with what stood between them."""
+    """The orders with what stood between them. A checkpoint that is only named, and what is to be
+    read there, are one: `Checkpoint #8: read the value on pressure gauge 5`."""
     found: list[Order] = []
     joint = ""
     for child in part.children:
         if isinstance(child, Order):
-            found.append(child.joined(joint) if joint else child)
+            last = found[-1] if found else None
+            if isinstance(last, Measure) and isinstance(child, Measure) and _same(last, child, joint):
+                found[-1] = _both(last, child)
+            else:
+                found.append(child.joined(joint) if joint else child)
         joint = str(child.value) if isinstance(child, Word) and child.type == "NEXT" else ""
     return tuple(found)
+
+
+def _same(first: Measure, second: Measure, joint: str) -> bool:
+    one = len(first.what.nouns) == len(second.what.nouns) == 1
+    return one and not second.bare and (joint == ":" or (first.bare and joint == ","))
+
+
+def _both(first: Measure, second: Measure) -> Measure:
+    (noun,), (also,) = first.what.nouns, second.what.nouns
+    if not isinstance(noun, Named) or not isinstance(also, Named):
+        return first
+    nouns = replace(first.what, nouns=(replace(noun, also=also),))
+    return replace(first, what=nouns, manner=second.manner or first.manner)
 
 
 def _max_duration(part: Part) -> facts.Fact:

@@ -12,7 +12,7 @@ NOTHING: Phrases = {
         "i would like you to|we need you to|have|let|make sure to|should|must|will|shall|has to|"
         "is to|needs to|robot|it should|it has to|it must|it will|it shall|it is to|let it|have it|"
         "after that|afterwards|finally|first of all|at the end|in the end|next|subsequently|"
-        "of them|of these|of those|after this|from there|so"
+        "of them|of these|of those|after this|from there|so|when you are done|when done|when finished|general rule"
     ),
     ("IDLE", None): "today|tonight|tomorrow|this morning|this evening|carefully",
 }
@@ -35,7 +35,7 @@ VERBS: Phrases = {
         "proceed{s} to|back to|go{es}|drive{s}|it goes to"
     ),
     ("HOME", None): (
-        "go{es} home|drive{s} home|come{s} home|return{s} home|return{s}|go{es} back|drive{s} back|"
+        "go{es} {back} home|drive{s} {back} home|come{s} {back} home|return{s} home|return{s}|go{es} back|drive{s} back|"
         "come{s} back|it goes home|return{s} to base|home"
     ),
     ("START", None): (
@@ -156,7 +156,11 @@ CONDITIONS: Phrases = {
     ("EVENT", EventKind.CONNECTION_LOST): "connection loss|connection is lost|loss of connection",
     ("EVENT", EventKind.EMERGENCY_STOP): "emergency stop",
     ("EVENT", EventKind.DYSFUNCTION): "dysfunction|malfunction",
-    ("EVENT", EventKind.ABNORMAL_READING): "abnormal reading|abnormal value",
+    ("EVENT", EventKind.ABNORMAL_READING): (
+        "abnormal reading|abnormal value|a reading is outside its normal range|"
+        "any reading is outside its normal range|a value is outside its normal range|"
+        "any value is outside its normal range|a reading is abnormal|any reading is abnormal"
+    ),
     ("EVENT", EventKind.TIME_UP): "time is up|time is over",
     ("EVENT", EventKind.ALL_CLEAR): "all-clear|all clear|all clear is given|danger is over",
     ("EVENT", EventKind.BATTERY_CHARGED): "battery is charged|battery is full",

@@ -22,6 +22,7 @@ _JOINED = {
     **dict.fromkeys(["EVENT", "BATTERY"], "EVENT"),
     **dict.fromkeys(["QUANTITY", "DURATION", "MINUS"], "AMOUNT"),
     "NUMBER": "NUMBER",
+    **dict.fromkeys(["ON", "IN"], "ON"),
 }
 
 

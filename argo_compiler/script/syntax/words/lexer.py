@@ -24,8 +24,10 @@ _PIECE = re.compile(
 _QUOTED = re.compile(r"\"(?:[^\"\\]|\\.)*\"")
 _SIGNS = {"(": "LPAR", ")": "RPAR", "[": "LSQB", "]": "RSQB", "-": "DASH", "=": "EQUAL"}
 _JOINTS = {",": ",", ";": ";", ":": ":", "&": "and"}
-_PASSED_OVER = frozenset(["the", "a", "an"])
+_PASSED_OVER = frozenset(["the", "a", "an", "straight", "directly", "then", "please", "also"])
 """within a phrase"""
+_NAMES = {("AREA", "NUMBER"), ("KIND", "IDENT"), ("KIND", "NUMBER"), ("AREA",), ("PLACE",)}
+"""what is often put between quotation marks, and means the same without"""
 _UNSAID = frozenset(["FILLER", "IDLE"])
 
 
@@ -40,6 +42,12 @@ def _looked_up(text: str, lexicon: Lexicon) -> list[Word]:
     i = 0
     while i < len(pieces):
         entry, n = _longest(pieces, i, lexicon.root)
+        if entry is None and pieces[i].lastgroup == "STRING":
+            inner = _unwrapped(pieces[i], text, lexicon)
+            if inner and not (i + 1 < len(pieces) and pieces[i + 1].group() == ":"):
+                found += inner
+                i += 1
+                continue
         if entry is None:
             after = pieces[i + 1] if i + 1 < len(pieces) else None
             found.append(_plain(pieces[i], after, found[-1].type if found else "", text))
@@ -53,6 +61,16 @@ def _looked_up(text: str, lexicon: Lexicon) -> list[Word]:
             found.append(Word(entry[0], value, start, end))
         i += n
     return found
+
+
+def _unwrapped(piece: re.Match[str], text: str, lexicon: Lexicon) -> list[Word]:
+    """The words in quotation marks that name a thing as it is named without: `"starting area 1"`."""
+    start = piece.start() + 1
+    inner = _looked_up(text[start : piece.end() - 1], lexicon)
+    types = tuple(word.type for word in inner)
+    if types not in _NAMES:
+        return []
+    return [Word(w.type, w.value, w.start + start, w.end + start) for w in inner]
 
 
 def _longest(pieces: list[re.Match[str]], i: int, root: Node) -> tuple[Entry | None, int]:

@@ -10,6 +10,7 @@ from argo_compiler.script.syntax.words.lengths import Length
 from argo_compiler.script.syntax.words.numbers import Figure, compose
 from argo_compiler.script.syntax.words.word import Word
 
+_ORDERED = frozenset(["FLOOR", "ORDINAL", "JOINT"])
 _RELATIONS = frozenset(["GREATER", "LESS", "AT_LEAST", "AT_MOST", "BETWEEN"])
 
 
@@ -26,6 +27,9 @@ def merged(words: list[Word]) -> list[Word]:
         if pair is not None:
             word = pair
             i += 1
+        elif word.type == "ORDINAL" and (after is None or after.type not in _ORDERED):
+            i += 1
+            continue  # `checkpoint 13 first, then ...`
         elif word.type == "UNIT_S" and word.value > 1:
             word = Word("DURATION", Length(word.value, word.value), word.start, word.end)
         i += 1

@@ -59,6 +59,8 @@ class ConditionResolver:
                     return None
                 each.append(ways)
             combined = [sum(parts, ()) for parts in product(*each)]
+            if all(self._empty(conditions, tests) for conditions in combined):
+                return None
             found += combined
             if len(found) > _MOST:
                 message = f"this condition has more than {_MOST} alternatives"
@@ -67,11 +69,30 @@ class ConditionResolver:
                 return None
         return tuple(found)
 
+    def _empty(self, conditions: tuple[Condition, ...], tests: Sequence[Test]) -> bool:
+        """Whether no value satisfies all the bounds for one checkpoint: then an error says so."""
+        for condition in conditions:
+            others = [c for c in conditions if c.object_id == condition.object_id]
+            low = [c for c in others if c.type in (ConditionType.GREATER, ConditionType.WITHIN)]
+            high = [c for c in others if c.type is ConditionType.LESS]
+            for one, other in product(low, high):
+                a, b = one.param1, other.param1
+                both = one.inclusive and other.inclusive
+                if a is not None and b is not None and (a > b or (a == b and not both)):
+                    said = self.nouns.said(tests[0].span, tests[-1].span)
+                    message = f"no value is `{said}`"
+                    hint = "is `or` meant?"
+                    self.diagnostics.error("condition", message, tests[-1].span, hint)
+                    return True
+        return False
+
     def _test(self, test: Test) -> list[tuple[Condition, ...]] | None:
         """Alternatives for one test; of several checkpoints all, or one with `or`."""
         checkpoints = self._subjects(test)
         if checkpoints is None:
             return None
+        for checkpoint in checkpoints:
+            self._note_unmeasured(checkpoint, test)
         each = [self._of(test, checkpoint) for checkpoint in checkpoints]
         ways = [way for way in each if way is not None]
         if len(ways) < len(each):
@@ -79,6 +100,13 @@ class ConditionResolver:
         if test.subject is not None and test.subject.either:
             return [one for way in ways for one in way]
         return [sum(parts, ()) for parts in product(*ways)]
+
+    def _note_unmeasured(self, checkpoint: CheckpointInfo, test: Test) -> None:
+        if checkpoint.id in self.nouns.memory.measured_ids or not self.nouns.memory.known:
+            return
+        message = f"checkpoint {checkpoint.id} ({checkpoint.name}) is not measured before this"
+        hint = f"write `Check checkpoint {checkpoint.id}` before it"
+        self.diagnostics.warning("not-measured", message, test.span, hint)
 
     def _subjects(self, test: Test) -> Sequence[CheckpointInfo] | None:
         if test.subject is not None:

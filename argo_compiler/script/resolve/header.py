@@ -36,9 +36,7 @@ def header_values(
 ) -> HeaderValues:
     """The choices; the options must be among what it offers."""
     return HeaderValues(
-        start=_choice(
-            "start", header.start_area, header.initial_position, start_area, diagnostics
-        ),
+        start=_choice("start", header.start_area, header.initial_position, start_area, diagnostics),
         end=_choice("end", header.end_area, header.end_of_mission, end_area, diagnostics),
         dock_said=header.dock_said,
         dock=header.dock,

@@ -80,12 +80,16 @@ def _mission(
     def find(steps: Steps) -> Node | None:
         nodes = context.nodes_of(steps)
         if nodes is not None and not nodes:
-            message = f"step {steps.points[0]} leaves nothing to do at which the mission could go on"
+            message = (
+                f"step {steps.points[0]} leaves nothing to do at which the mission could go on"
+            )
             hint = "name a step that measures or drives"
             diagnostics.error("empty-step", message, steps.span, hint)
         return nodes[0] if nodes else None
 
-    tasks, groups, names = assemble(lower_program(context.program, find, starting.home), diagnostics)
+    tasks, groups, names = assemble(
+        lower_program(context.program, find, starting.home), diagnostics
+    )
     if diagnostics.errors:
         return None
     said = script.header

@@ -25,12 +25,14 @@ class Memory:
     def __init__(self) -> None:
         self.last: tuple[CheckpointInfo, ...] = ()
         self.before: tuple[CheckpointInfo, ...] = ()
+        self.measured_ids: set[int] = set()
         self.known = True
         """whether all that was ordered so far is understood"""
 
     def measured(self, checkpoints: tuple[CheckpointInfo, ...]) -> None:
         if checkpoints:
             self.before, self.last = self.last, checkpoints
+            self.measured_ids.update(c.id for c in checkpoints)
 
 
 class NounResolver:
@@ -44,7 +46,7 @@ class NounResolver:
     def all(self, nouns: Nouns) -> Found:
         """The checkpoints of a list, in its order, each as often as it is named."""
         if nouns.either and len(nouns.nouns) > 1:
-            said = self._said(nouns.span)
+            said = self.said(nouns.span)
             message = f"`{said}` leaves open which of them, or whether both"
             hint = "write `and` for all of them, or name the one that is meant"
             self.diagnostics.error("ambiguous-or", message, nouns.span, hint)
@@ -197,7 +199,7 @@ class NounResolver:
         if found is None or len(found) == 1:
             return found
         names = alternatives(f"{c.name} (#{c.id})" for c in (last or found)[:6])
-        message = f"`{self._said(noun.span)}` can be {names}"
+        message = f"`{self.said(noun.span)}` can be {names}"
         self.diagnostics.error("ambiguous-checkpoint", message, noun.span, "name the one")
         return None
 
@@ -211,7 +213,7 @@ class NounResolver:
         if len(last) == 1 or noun.every:
             return list(last)
         names = alternatives(f"{c.name} (#{c.id})" for c in last[:6])
-        message = f"`{self._said(noun.span)}` can be {names}"
+        message = f"`{self.said(noun.span)}` can be {names}"
         self.diagnostics.error("ambiguous-pronoun", message, noun.span, "name the one")
         return None
 
@@ -221,6 +223,8 @@ class NounResolver:
             hint = "name it: `checkpoint #1`"
             self.diagnostics.error("which-checkpoint", message, span, hint)
 
-    def _said(self, span: Span) -> str:
-        line = self.diagnostics.source.lines[span.line - 1]
-        return line[span.column - 1 : span.column - 1 + span.length]
+    def said(self, first: Span, last: Span | None = None) -> str:
+        """The words of the script from the beginning of one span to the end of the other."""
+        line = self.diagnostics.source.lines[first.line - 1]
+        end = last if last is not None and last.line == first.line else first
+        return line[first.column - 1 : end.column - 1 + end.length]

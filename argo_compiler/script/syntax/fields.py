@@ -68,7 +68,11 @@ class Fields:
 
     def _end(self, name: str, content: str) -> int:
         """Where the value of a field ends: at the next label or, unless it is prose, sentence."""
-        ends = [m.start() for m in _LABEL.finditer(content) if content[: m.start()].rstrip()[-1:] in ",;."]
+        ends = [
+            m.start()
+            for m in _LABEL.finditer(content)
+            if content[: m.start()].rstrip()[-1:] in ",;."
+        ]
         if name not in _PROSE and (stop := _STOP.search(content)):
             ends.append(stop.end())
         return min((e for e in ends if e > 0), default=len(content))
@@ -95,7 +99,9 @@ class Fields:
                 node = Text(span=value.span(), text=value.content)
                 self.header.max_duration = (word.value.seconds, node)
                 return
-        self.diagnostics.error("duration", f"`{value.content}` is no duration", value.span(), "write `20 min`")
+        self.diagnostics.error(
+            "duration", f"`{value.content}` is no duration", value.span(), "write `20 min`"
+        )
 
     def _areas(self, name: str, value: ScriptText) -> bool:
         found: list[int] = []

@@ -29,13 +29,13 @@ _PLAIN = {
     **dict.fromkeys("\u2018\u2019\u201b\u2032\u00b4`", "'"),
     **dict.fromkeys("\u201c\u201d\u201e\u201f\u2033\u00ab\u00bb", '"'),
     **dict.fromkeys("\u2010\u2011\u2012\u2013\u2212", "-"),
-    **dict.fromkeys("\u200b\u200c\u200d\u2060\u00ad\ufeff*", ""),
+    **dict.fromkeys("\u200b\u200c\u200d\u2060\u00ad\ufeff", ""),
+    "\u2026": ".",
     "\ufb01": "fi",
     "\ufb02": "fl",
 }
 _NOISE = re.compile(r"[^ -)+-_a-~]|^\s*[-#+]|\s$")
 """only where this is found there may be anything to heal; most lines need no closer look"""
-_LIST_MARK = re.compile(r"\s*(?:#+|[-+])\s+(?=[^\W\d]|\d+\s*[.)])")
 _TABS = re.compile(r"\t+")
 _WORD = re.compile(r"[\w'-]*")
 _MOST_CUTS = 8
@@ -101,16 +101,19 @@ def _plain(line: ScriptText) -> ScriptText:
     """The line in plain signs, without emphasis, list mark and trailing blanks."""
     content = line.content
     if not content.isascii() or "*" in content or "`" in content:
+        mark = len(content) - len(content.lstrip())
         signs = [
-            (sign, at) for c, at in zip(content, line.offsets, strict=True) for sign in _sign(c)
+            (sign, at)
+            for i, (c, at) in enumerate(zip(content, line.offsets, strict=True))
+            for sign in _sign(c, i == mark and content[i + 1 : i + 2] == " ")
         ]
         line = ScriptText("".join(s for s, _ in signs), [at for _, at in signs], line.source)
-    if mark := _LIST_MARK.match(line.content):
-        line = line[mark.end() :]
     return line[: len(line.content.rstrip())]
 
 
-def _sign(character: str) -> str:
+def _sign(character: str, is_mark: bool) -> str:
+    if character == "*":
+        return "-" if is_mark else ""
     if character in _PLAIN:
         return _PLAIN[character]
     return " " if character.isspace() and character != "\t" else character

@@ -114,9 +114,10 @@ def items_of(
 
 def _goes_on(item: Item, line: Line, complete: Callable[[ScriptText], bool]) -> bool:
     """Whether a line without a mark goes on with the text above it."""
-    if item.text.content.endswith((".", "!", "?", ";")) and line.indent <= item.line.indent:
-        return item.line.mark is Mark.NONE
-    return not complete(item.text) or not complete(line.text)
+    whole, rest = complete(item.text), complete(line.text)
+    if whole and rest:
+        return item.line.mark is Mark.NONE and item.text.content.endswith((".", "!", "?"))
+    return not rest or complete(join([item.text, line.text]))
 
 
 def _lies_in(line: Line, outer: Line) -> bool:

@@ -14,11 +14,14 @@ from argo_compiler.script.syntax.source import Diagnostics, ScriptText, Source
 from argo_compiler.script.syntax.tree.facts import Fact
 from argo_compiler.script.syntax.tree.orders import Sentence
 from argo_compiler.script.syntax.tree.script import Script, Step, Text
+from argo_compiler.script.syntax.words.joints import VERBS
 from argo_compiler.script.syntax.words.language import Language
 from argo_compiler.script.syntax.words.lexer import words
 from argo_compiler.script.syntax.words.word import Word
 
-_SENTENCE_END = re.compile(r"(?:[.!?…]+|;(?=\s*(?:if|otherwise|else|when)\b))(?=\s|$)", re.IGNORECASE)
+_SENTENCE_END = re.compile(
+    r"(?:[.!?…]+|;(?=\s*(?:if|otherwise|else|when)\b))(?=\s|$)", re.IGNORECASE
+)
 _ABBREVIATION = re.compile(r"\b(?:no|nr|approx|ca|max|min|e\.g|i\.e|z\.b)\.$", re.IGNORECASE)
 _GREETING = re.compile(
     r"(?:hello|hi|dear|hey|good (?:morning|afternoon|evening)|hallo|guten|liebe[rs]?)\b.{0,60},?$",
@@ -176,11 +179,12 @@ class _Parser:
         return fixed
 
     def _is_heading(self, text: ScriptText, item: Item) -> bool:
-        """Whether a text that makes no sense is a title: it asks for nothing, and ends no sentence."""
+        """Whether a text that makes no sense by itself is a title or a heading: it asks for
+        nothing, and stands before what does."""
+        types = [word.type for word in words(text.content, self.language.lexicon)]
         if not self.begun and self.fields.header.title is None and item.line.number is None:
-            return True
-        types = {word.type for word in words(text.content, self.language.lexicon)}
-        return item.line.mark is not Mark.NUMBER and types <= _HEADING
+            return not _ASKING & set(types) and not set(types[:1]) & set(VERBS)
+        return item.line.mark is not Mark.NUMBER and bool(types) and set(types) <= _HEADING
 
     def _not_understood(self, text: ScriptText, stumble: StumbleError) -> None:
         found = words(text.content, self.language.lexicon)
@@ -195,6 +199,8 @@ class _Parser:
         self.diagnostics.error("not-understood", message, span, "write it in other words")
 
 
+_ASKING = frozenset(["IF", "UNLESS", "ELSE", "EVENT", "NEXT", "NOT", "EXCEPT", "START", "HOME"])
+"""what no title has"""
 _HEADING = frozenset(["WORD", "FLOOR", "NUMBER", "ORDINAL", "FLOOR_NAME", "STEP", "JOINT"])
 
 

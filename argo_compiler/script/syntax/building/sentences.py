@@ -41,7 +41,11 @@ def _joined(part: Part) -> tuple[Order, ...]:
     for child in part.children:
         if isinstance(child, Order):
             last = found[-1] if found else None
-            if isinstance(last, Measure) and isinstance(child, Measure) and _same(last, child, joint):
+            if (
+                isinstance(last, Measure)
+                and isinstance(child, Measure)
+                and _same(last, child, joint)
+            ):
                 found[-1] = _both(last, child)
             else:
                 found.append(child.joined(joint) if joint else child)

@@ -12,7 +12,7 @@ NOTHING: Phrases = {
         "i would like you to|we need you to|have|let|make sure to|should|must|will|shall|has to|"
         "is to|needs to|robot|it should|it has to|it must|it will|it shall|it is to|let it|have it|"
         "after that|afterwards|finally|first of all|at the end|in the end|next|subsequently|"
-        "of them|of these|of those|after this|from there|so|when you are done|when done|when finished|general rule"
+        "of them|of these|of those|after this|from there|so|when you are done|when done|when finished|general rule|where the robot stands|where it stands|send the robot out"
     ),
     ("IDLE", None): "today|tonight|tomorrow|this morning|this evening|carefully",
 }
@@ -52,7 +52,7 @@ VERBS: Phrases = {
     ),
     ("ABORT", None): "abort|abort the mission|mission is aborted|cancel the mission",
     ("GO_ON", None): (
-        "go{es} on|continue{s}|carry on|go{es} ahead|resume{s}|continue the mission|"
+        "then go on|go{es} on|continue{s}|carry on|go{es} ahead|resume{s}|continue the mission|"
         "resume the mission|go on with the mission|proceed"
     ),
     ("RECHARGE", None): "recharge{s}|charge{s}|recharge the battery|charge the battery",
@@ -93,7 +93,7 @@ NOUNS: Phrases = {
     ("FLOOR", True): "floors|decks|storeys",
     ("FLOOR_NAME", "bottom"): "ground floor|lowest floor|bottom floor",
     ("FLOOR_NAME", "top"): "top floor|highest floor|uppermost floor",
-    ("AREA", None): "starting area|start area|area",
+    ("AREA", None): "starting area|area",
     ("DOCK", None): "dock{s}|docking station|docking bay|its dock|charging station",
     ("ALL", None): "all|each|all of",
     ("EXCEPT", None): "except|except for|but not|apart from|but don't check|but do not check",

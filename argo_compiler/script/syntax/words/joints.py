@@ -6,16 +6,16 @@ or with another order is known there only because the joint's type says so.
 
 from argo_compiler.script.syntax.words.word import Word
 
-_VERBS = [
+VERBS = (
     *("MEASURE", "KEEP_MEASURING", "GO", "HOME", "START", "START_HERE", "PATROL", "WAIT", "PAUSE"),
     *("END", "ABORT", "GO_ON", "RECHARGE", "REPORT", "REPEAT", "DO_FOLLOWING", "ADD", "DELETE"),
     *("REPLACE", "MOVE", "JUMP", "RETRY", "DOCK", "DONE", "MEET"),
-]
+)
 _NOUNS = ["KIND", "HASH", "IDENT", "STRING", "ALL", "IT", "THEM", "THIS", "OF", "VALUE"]
 _TESTS = ["IS", "GREATER", "LESS", "AT_LEAST", "AT_MOST", "BETWEEN", "STATE", "NOT", "FAILS"]
 _PLACES = ["FLOOR", "FLOOR_NAME", "ORDINAL", "AREA", "PLACE"]
 _JOINED = {
-    **dict.fromkeys(_VERBS, "DO"),
+    **dict.fromkeys(VERBS, "DO"),
     **dict.fromkeys(_NOUNS, "NOUN"),
     **dict.fromkeys(_TESTS, "TEST"),
     **dict.fromkeys(_PLACES, "PLACE"),

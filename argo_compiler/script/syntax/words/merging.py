@@ -10,7 +10,6 @@ from argo_compiler.script.syntax.words.lengths import Length
 from argo_compiler.script.syntax.words.numbers import Figure, compose
 from argo_compiler.script.syntax.words.word import Word
 
-_ORDERED = frozenset(["FLOOR", "ORDINAL", "JOINT"])
 _RELATIONS = frozenset(["GREATER", "LESS", "AT_LEAST", "AT_MOST", "BETWEEN"])
 
 
@@ -27,7 +26,7 @@ def merged(words: list[Word]) -> list[Word]:
         if pair is not None:
             word = pair
             i += 1
-        elif word.type == "ORDINAL" and (after is None or after.type not in _ORDERED):
+        elif word.type == "ORDINAL" and not _counts(words, i):
             i += 1
             continue  # `checkpoint 13 first, then ...`
         elif word.type == "UNIT_S" and word.value > 1:
@@ -35,6 +34,14 @@ def merged(words: list[Word]) -> list[Word]:
         i += 1
         _add(word, after, found)
     return found
+
+
+def _counts(words: list[Word], i: int) -> bool:
+    """Whether an ordinal tells a floor: `the second and third floor`, not `first, then ...`."""
+    for word in words[i + 1 :]:
+        if word.type not in ("JOINT", "ORDINAL"):
+            return word.type == "FLOOR"
+    return False
 
 
 def _numbers(words: list[Word]) -> list[Word]:
@@ -106,6 +113,9 @@ def _add(word: Word, after: Word | None, found: list[Word]) -> None:
         word = replace(word, type="IS", value=None)
     elif word.type == "IF" and last is not None and last.type != "JOINT":
         word = replace(word, type="IF_ONLY")
+    elif word.type == "AREA" and last is not None and last.type == "START" and len(found) > 1:
+        if found[-2].type in ("IN", "AT", "FROM", "TO", "ON"):
+            found.pop()  # `in start area 1`
     elif word.type in ("ON", "IN") and after is not None and after.type == "EVENT":
         word = replace(word, type="IF")
     found.append(word)

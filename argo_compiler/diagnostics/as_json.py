@@ -18,6 +18,7 @@ def to_json(diagnostics: Sequence[Diagnostic], source_name: str) -> str:
         "source": source_name,
         "errors": count(diagnostics, Severity.ERROR),
         "warnings": count(diagnostics, Severity.WARNING),
+        "notes": count(diagnostics, Severity.NOTE),
         "diagnostics": [_entry(diagnostic) for diagnostic in diagnostics],
     }
     return json.dumps(data, indent=2, ensure_ascii=False)

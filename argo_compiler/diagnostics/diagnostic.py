@@ -44,17 +44,20 @@ def has_errors(diagnostics: Iterable[Diagnostic]) -> bool:
 
 
 def by_place(diagnostics: Iterable[Diagnostic]) -> tuple[Diagnostic, ...]:
-    """All in the source's order, at one place errors before warnings, then by code. Those without a
-    place come last, in the order in which they are given."""
+    """All in the source's order, at one place errors before warnings and notes, then by code. Those
+    without a place come last, in the order in which they are given."""
     return tuple(sorted(diagnostics, key=_place))
 
 
-def _place(diagnostic: Diagnostic) -> tuple[bool, int, int, bool, str]:
+_RANKS = tuple(Severity)
+
+
+def _place(diagnostic: Diagnostic) -> tuple[bool, int, int, int, str]:
     span = diagnostic.span
     if span is None:
-        return (True, 0, 0, False, "")
-    warning = diagnostic.severity is Severity.WARNING
-    return (False, span.line, span.column, warning, diagnostic.code)
+        return (True, 0, 0, 0, "")
+    rank = _RANKS.index(diagnostic.severity)
+    return (False, span.line, span.column, rank, diagnostic.code)
 
 
 def with_excerpts(

@@ -12,13 +12,15 @@ _INDENT = "    "
 def to_text(diagnostics: Sequence[Diagnostic], source_name: str) -> str:
     """All diagnostics, the source line with a mark below each, and how many there are.
 
-    Beside errors a warning takes one line only: what stops the work should be seen first.
+    Beside errors a warning takes one line only: what stops the work should be seen first. A note
+    always does.
     """
     brief = has_errors(diagnostics)
     lines = []
     for diagnostic in diagnostics:
         lines.append(_headline(diagnostic, source_name))
-        if not (brief and diagnostic.severity is Severity.WARNING):
+        severity = diagnostic.severity
+        if severity is Severity.ERROR or (severity is Severity.WARNING and not brief):
             lines += _details(diagnostic)
     if len(diagnostics) > 1:
         lines.append(f"{_printable(source_name)}: {summary(diagnostics)}")

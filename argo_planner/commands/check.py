@@ -6,6 +6,7 @@ from typing import Annotated
 import typer
 
 from argo_compiler.diagnostics import Diagnostic, has_errors, summary
+from argo_compiler.diagnostics.codes.code import Severity
 from argo_compiler.errors import ArgoError
 from argo_env.planning.opening import open_site
 from argo_planner.terminal.files import STANDARD_OUTPUT, check_outputs, read_upload, write_text
@@ -46,7 +47,7 @@ def check_mission(
         print(written)
     if has_errors(diagnostics):
         raise typer.Exit(2)
-    if diagnostics and strict:
+    if strict and any(d.severity is not Severity.NOTE for d in diagnostics):
         raise typer.Exit(1)
 
 

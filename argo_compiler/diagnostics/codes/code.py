@@ -5,10 +5,12 @@ from enum import StrEnum
 
 
 class Severity(StrEnum):
-    """How bad it is: an error stops the compiler, a warning is shown and the work goes on."""
+    """How bad it is: an error stops the compiler, a warning is shown and the work goes on, and so
+    is a note, which says what has no effect and need not be looked after."""
 
     ERROR = "error"
     WARNING = "warning"
+    NOTE = "note"
 
 
 @dataclass(frozen=True, slots=True)
@@ -29,3 +31,8 @@ def error(meaning: str, remedy: str) -> Code:
 def warning(meaning: str, remedy: str) -> Code:
     """What a warning's code stands for."""
     return Code(Severity.WARNING, meaning, remedy)
+
+
+def note(meaning: str, remedy: str) -> Code:
+    """What a note's code stands for."""
+    return Code(Severity.NOTE, meaning, remedy)

@@ -1,6 +1,6 @@
 """The codes of diagnostics about mission scripts."""
 
-from argo_compiler.diagnostics.codes.code import error, warning
+from argo_compiler.diagnostics.codes.code import error, note, warning
 
 SCRIPT = {
     "script.after-docking": error(
@@ -107,6 +107,11 @@ SCRIPT = {
     "script.missing-field": warning(
         "The sheet lacks a field, and something was assumed for it.",
         "Add the field if it is meant otherwise.",
+    ),
+    "script.no-effect": note(
+        "Words such as a title, a greeting or a remark ask for nothing: the mission is the same "
+        "without them.",
+        "Nothing has to be done; if they are meant to ask for something, say it in other words.",
     ),
     "script.no-area": error(
         "The sheet names no starting area.",

@@ -138,6 +138,9 @@ class Diagnostics:
     def warning(self, code: str, message: str, span: Span | None, hint: str | None = None) -> None:
         self._add(Severity.WARNING, code, message, span, hint, ())
 
+    def note(self, code: str, message: str, span: Span | None) -> None:
+        self._add(Severity.NOTE, code, message, span, None, ())
+
     def _add(
         self,
         severity: Severity,

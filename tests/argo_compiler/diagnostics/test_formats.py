@@ -208,9 +208,9 @@ def test_a_fingerprint_outlives_lines_before_it():
 @given(FINDINGS)
 def test_json_holds_all_of_every_finding(findings):
     data = json.loads(to_json(findings, "plan.json"))
-    assert list(data) == ["version", "source", "errors", "warnings", "diagnostics"]
+    assert list(data) == ["version", "source", "errors", "warnings", "notes", "diagnostics"]
     assert (data["version"], data["source"]) == (1, "plan.json")
-    assert data["errors"] + data["warnings"] == len(findings)
+    assert data["errors"] + data["warnings"] + data["notes"] == len(findings)
     assert data["errors"] == sum(f.severity is Severity.ERROR for f in findings)
     fields = {"code", "severity", "message", "span", "excerpt", "hint", "subject"}
     assert all(set(entry) == fields for entry in data["diagnostics"])

@@ -15,9 +15,9 @@ from argo_compiler.script.resolve.program import (
     Way,
 )
 from argo_compiler.script.syntax.tree import orders
-from argo_compiler.script.syntax.tree.conditions import Condition, InState, State, Test
+from argo_compiler.script.syntax.tree.conditions import Condition, InState, State, Test, TooLate
 from argo_compiler.script.syntax.tree.nouns import Pronoun
-from argo_compiler.script.syntax.tree.orders import Case, Order, Word
+from argo_compiler.script.syntax.tree.orders import Case, Order, Rest, Word
 
 if TYPE_CHECKING:  # a case's orders are planned as any others are
     from argo_compiler.script.resolve.planning import Planner
@@ -42,6 +42,8 @@ class Cases:
         condition = case.condition
         if condition is None:
             self._otherwise(case, block)
+        elif any(isinstance(t, TooLate) for tests in condition.alternatives for t in tests):
+            self._too_late(case, condition)
         elif not any(isinstance(t, Test) for tests in condition.alternatives for t in tests):
             self.context.reactions.add(case)
         elif not case.orders:
@@ -99,6 +101,9 @@ class Cases:
         context.docked, context.recent, context.step = docked, recent, step
 
     def _otherwise(self, case: Case, block: Block) -> None:
+        if case.rest is not Rest.OTHERWISE:
+            self._rest(case, block)
+            return
         before = self.context.choice
         if isinstance(before, Choice) and before.listed and before.block is not None:
             if before.otherwise.first is not None:
@@ -120,6 +125,17 @@ class Cases:
             return
         message = "`Otherwise` of what? No condition stands before it"
         hint = "write it behind the condition whose other case it is"
+        self.diagnostics.error("otherwise", message, case.span, hint)
+
+    def _rest(self, case: Case, block: Block) -> None:
+        """The way that a task leads on if none of its conditions holds, wherever that is said."""
+        do, target = block.last, self._target(case)
+        if isinstance(do, Do) and target is not None:
+            last_round = case.rest is Rest.LAST_ROUND
+            do.ways.append(Way((), target, case.span, last_round))
+            return
+        message = f"`{case.rest}` is said of a task, and leads to another one"
+        hint = f"write it behind the task: `{case.rest}, go to step 5`"
         self.diagnostics.error("otherwise", message, case.span, hint)
 
     def _taken(self, do: Do, way: Way) -> Alternatives:
@@ -184,6 +200,22 @@ class Cases:
         do = recent[-1]
         do.failure = Block(do)
         self._branch(Case(span=case.span, condition=None, orders=tuple(rest)), do.failure)
+
+    # ---- windows that are missed
+
+    def _too_late(self, case: Case, condition: Condition) -> None:
+        """What is done if the window of the last task is missed."""
+        recent = self.context.recent
+        alone = len(condition.alternatives) == len(condition.alternatives[0]) == 1
+        if not alone or len(recent) != 1 or recent[0].window is None:
+            message = "this has to follow one task that is to be done by a certain time"
+            hint = "write `Check checkpoint #1 not later than 10 minutes after the start. If it is "
+            hint += "too late, go to step 5.`"
+            self.diagnostics.error("too-late", message, case.span, hint)
+            return
+        (do,) = recent
+        do.missed = Block(do)
+        self._branch(Case(span=case.span, condition=None, orders=case.orders), do.missed)
 
 
 def _is_failure(condition: Condition) -> bool:

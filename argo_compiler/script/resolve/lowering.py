@@ -145,6 +145,15 @@ class _Lowering:
         before: Item | None = None
         point = entry
         for node in block:
+            if isinstance(node, Do) and node.action is Action.START:
+                # The mission passes over it: what leads to it leads to what follows.
+                behind = (
+                    self.points.setdefault(id(node.after), Point()) if node.after else following
+                )
+                before = self._do(node, self._point(node), behind)
+                point.same = behind
+                point = behind
+                continue
             own = self.points.setdefault(id(node), point)
             if own is not point:
                 point.same = own
@@ -232,6 +241,7 @@ class _Lowering:
 
 
 def _leaves(block: Block) -> bool:
+    """Whether a way leads elsewhere from the beginning of a block."""
     return isinstance(block.first, Leave) and block.first.target is not Ahead.GO_ON
 
 
@@ -239,8 +249,13 @@ def _closes(body: Block) -> bool:
     """Whether all ways through a block come to its last task."""
     last = body.last
     if isinstance(last, Do):
-        open_ = any(not way.alternatives or way.target is Ahead.GO_ON for way in last.ways)
-        return last.failure is None and last.missed is None and not open_
+        open_ = any(
+            (not way.alternatives and not way.last_round)
+            or (way.alternatives and way.target is Ahead.GO_ON)
+            for way in last.ways
+        )
+        left = all(block is None or _leaves(block) for block in (last.failure, last.missed))
+        return left and not open_
     return isinstance(last, Round)
 
 

@@ -117,7 +117,7 @@ class Manners:
                 do.optional = True
             if manner.priority is not None:
                 do.priority = manner.priority
-            if manner.earliest is not None or manner.latest is not None:
+            if manner.earliest is not None or manner.latest is not None or manner.soft_window:
                 do.window = TimeWindow(
                     earliest=manner.earliest or 0.0,
                     latest=manner.latest,
@@ -125,7 +125,12 @@ class Manners:
                 )
             if manner.joints is not None:
                 joints = manner.joints
-                do.joints = JointState(names=joints.names, positions=joints.positions)
+                do.joints = JointState(
+                    names=joints.names,
+                    positions=joints.positions,
+                    velocities=joints.velocities,
+                    efforts=joints.efforts,
+                )
             if manner.shown_in is not None:
                 do.shown_in = manner.shown_in
             if pose is not None:

@@ -1,6 +1,7 @@
 """Carries out the orders of a script: each adds to the program, or changes it."""
 
 from collections.abc import Sequence
+from dataclasses import replace
 
 from argo_compiler.il import EventKind, WaitRule
 from argo_compiler.script.resolve import making
@@ -128,6 +129,11 @@ class Planner:
         match until.alternatives:
             case ((Occurs(event=EventKind() as event),),):
                 rule = WaitRule(event=event, limit=limit)
+            case ((Occurs(event=EventKind() as event),), others):
+                found = self.context.conditions.alternatives(replace(until, alternatives=(others,)))
+                if found is None:
+                    return []
+                rule = WaitRule(event=event, conditions=found[0], limit=limit)
             case _:
                 conditions = self.context.conditions.alternatives(until)
                 if conditions is None:
@@ -145,6 +151,7 @@ class Planner:
             return
         if isinstance(order, orders.Start) and not order.here:
             self.manners.name(order, tasks)
+            self.manners.furnish(order, tasks)
             return
         if not self._may_go_on(order, block):
             return
@@ -200,6 +207,11 @@ class Planner:
     # ---- orders of one word
 
     def _plain(self, order: orders.Plain, block: Block) -> None:
+        if order.manner is not None and order.word is not Word.MEET:
+            message = f"`{order.word}` has no such thing"
+            hint = "write it behind what is to be done so"
+            self.diagnostics.error("stray-clause", message, order.span, hint)
+            return
         match order.word:
             case Word.DONE:
                 self.done = True

@@ -44,6 +44,8 @@ class Way:
     alternatives: Alternatives
     target: Target
     span: Span
+    last_round: bool = False
+    """of a way without conditions: it is taken after the last round that ends with its task"""
 
 
 @dataclass(eq=False, slots=True)

@@ -208,7 +208,10 @@ def _is_amend(tree: Branch) -> bool:
     """Whether a sentence says nothing but a manner."""
     _, parts, _, _ = tree
     first = parts[0]
-    return not isinstance(first, int) and first[0] == "order" and first[1][0][0] == "amend"
+    if isinstance(first, int) or first[0] != "order":
+        return False
+    order = first[1][-1]
+    return not isinstance(order, int) and order[0] == "amend"
 
 
 def sentences(text: ScriptText) -> list[ScriptText]:

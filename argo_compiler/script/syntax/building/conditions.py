@@ -17,6 +17,7 @@ from argo_compiler.script.syntax.tree.conditions import (
     Relation,
     State,
     Test,
+    TooLate,
 )
 from argo_compiler.script.syntax.tree.nouns import Nouns
 from argo_compiler.script.syntax.words.word import Word
@@ -44,13 +45,18 @@ def _between(part: Part) -> Between:
 def _predicate(part: Part) -> tuple[Predicate, bool]:
     negated = part.has("NOT")
     state = part.word("STATE")
-    if state is not None or part.has("FAILS"):
-        found: Predicate = InState(
-            span=part.span, state=State(state.value) if state else State.FAILED
-        )
+    stale = part.first(InState)
+    if stale is not None:
+        found: Predicate = stale
+    elif state is not None or part.has("FAILS"):
+        found = InState(span=part.span, state=State(state.value) if state else State.FAILED)
     else:
         found = next(c for c in part.children if isinstance(c, Compared | Between))
     return found, negated
+
+
+def _stale(part: Part) -> InState:
+    return InState(span=part.span, state=State.STALE, age=_age(part))
 
 
 def _age(part: Part) -> float:
@@ -67,13 +73,14 @@ def _detail(part: Part) -> dict[str, object]:
 
 def _test(part: Part) -> Test:
     predicate, negated = next(c for c in part.children if isinstance(c, tuple))
+    age = part.first(float)
     detail = part.first(dict) or {"id": "", "second": None}
     return Test(
         span=part.span,
         subject=part.first(Nouns),
         predicate=predicate,
         negated=negated,
-        max_age=part.first(float),
+        max_age=predicate.age if isinstance(predicate, InState) and predicate.age else age,
         id=str(detail["id"]),
         second_bound=detail["second"],
     )
@@ -112,6 +119,8 @@ RULES: dict[str, Make] = {
     "between": _between,
     "predicate": _predicate,
     "age": _age,
+    "stale": _stale,
+    "too_late": lambda part: TooLate(span=part.span),
     "detail": _detail,
     "test": _test,
     "occurs": _occurs,

@@ -2,9 +2,10 @@
 
 from collections.abc import Iterable
 from dataclasses import fields, replace
+from itertools import pairwise
 from typing import Any
 
-from argo_compiler.il import EventKind
+from argo_compiler.il import Afterwards, EventKind
 from argo_compiler.script.syntax.building.figures import Signed, seconds, speed, whole
 from argo_compiler.script.syntax.building.part import Make, Part
 from argo_compiler.script.syntax.tree.conditions import Condition, Occurs
@@ -12,7 +13,8 @@ from argo_compiler.script.syntax.tree.manner import Joints, Manner
 from argo_compiler.script.syntax.tree.places import Coordinates
 from argo_compiler.script.syntax.words.word import Word
 
-_MOST_RETRIES = 1_000_000
+_OF_JOINTS = {"AT": "positions", "VELOCITIES": "velocities", "EFFORTS": "efforts"}
+_ON_LIMIT = {"GO_ON": Afterwards.RESUME, "END": Afterwards.END, "WAIT": Afterwards.WAIT}
 
 
 def _seconds(part: Part) -> float:
@@ -73,6 +75,10 @@ def _flag(part: Part) -> Manner:
             return Manner(finishing=False)
         case "ENDLESS":
             return Manner(endless=True)
+        case "PREFERABLY":
+            return Manner(soft_window=True)
+        case "ANY_TIME":
+            return Manner(earliest=0.0)
         case "INCLUDED":
             return Manner(count_interruptions=True)
         case _:
@@ -94,8 +100,19 @@ def _string(part: Part) -> str:
 
 def _joints(part: Part) -> Manner:
     names = tuple(str(word.value) for word in part.every(Word) if word.type == "STRING")
-    positions = tuple(signed.value for signed in part.every(Signed))
-    return Manner(joints=Joints(names=names, positions=positions))
+    given: dict[str, tuple[float, ...]] = {}
+    for word, values in pairwise(part.children):
+        if isinstance(word, Word) and isinstance(values, tuple):
+            given[_OF_JOINTS[word.type]] = values
+    return Manner(joints=Joints(names=names, **given))
+
+
+def _values(part: Part) -> tuple[float, ...]:
+    return tuple(signed.value for signed in part.every(Signed))
+
+
+def _on_limit(part: Part) -> Manner:
+    return Manner(on_limit=next(_ON_LIMIT[w.type] for w in part.children if w.type in _ON_LIMIT))
 
 
 def combined(part: Part, manners: Iterable[Manner]) -> Manner | None:
@@ -136,4 +153,7 @@ RULES: dict[str, Make] = {
     "shown": lambda part: Manner(shown_in=_string(part)),
     "about": lambda part: Manner(object_id=_string(part)),
     "joints": _joints,
+    "values": _values,
+    "reading": lambda part: Manner(reading_limit=_seconds(part)),
+    "on_limit": _on_limit,
 }

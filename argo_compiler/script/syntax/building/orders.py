@@ -95,11 +95,12 @@ def _start(part: Part) -> Order:
         hint = "name a starting area or a place: `start in starting area 1`"
         part.error("start", "a mission starts at a place", hint)
         return orders.Start(span=part.span, where=None)
-    return orders.Start(span=part.span, where=where)
+    return orders.Start(span=part.span, manner=_manner(part), where=where)
 
 
 def _start_here(part: Part) -> Order:
-    return orders.Start(span=part.span, where=part.first(Coordinates), here=True)
+    where = part.first(Coordinates)
+    return orders.Start(span=part.span, manner=_manner(part), where=where, here=True)
 
 
 def _patrol(part: Part) -> Order:
@@ -108,7 +109,8 @@ def _patrol(part: Part) -> Order:
 
 
 def _word(part: Part) -> Order:
-    return orders.Plain(span=part.span, word=_WORDS[part.children[0].type])
+    word = _WORDS[part.children[0].type]
+    return orders.Plain(span=part.span, manner=_manner(part), word=word)
 
 
 def _repeat(part: Part) -> Order:

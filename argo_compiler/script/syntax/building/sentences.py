@@ -17,13 +17,19 @@ from argo_compiler.script.syntax.source import Diagnostics, ScriptText
 from argo_compiler.script.syntax.tree import facts
 from argo_compiler.script.syntax.tree.conditions import Condition
 from argo_compiler.script.syntax.tree.nouns import Named, Nouns
-from argo_compiler.script.syntax.tree.orders import Case, Measure, Order, Sentence, Side
+from argo_compiler.script.syntax.tree.orders import Case, Measure, Order, Rest, Sentence, Side
 from argo_compiler.script.syntax.tree.places import Steps
 from argo_compiler.script.syntax.words.word import Word
 
 
 def _case(part: Part) -> Case:
-    return Case(span=part.span, condition=part.first(Condition), orders=_joined(part))
+    rest = Rest.OTHERWISE
+    if part.has("IN_ALL_OTHERS"):
+        rest = Rest.ALL_OTHERS
+    elif part.has("LAST_ROUND"):
+        rest = Rest.LAST_ROUND
+    orders_ = _joined(part)
+    return Case(span=part.span, condition=part.first(Condition), orders=orders_, rest=rest)
 
 
 def _sentence(part: Part) -> Sentence | facts.Fact:

@@ -54,9 +54,11 @@ class Between(Node):
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class InState(Node):
-    """`abnormal`, `unreadable`."""
+    """`abnormal`, `unreadable`, `older than 60 s`."""
 
     state: State
+    age: float | None = None
+    """s, of STALE"""
 
 
 Predicate = Compared | Between | InState
@@ -92,7 +94,12 @@ class Battery(Node):
     level: Amount
 
 
-Asked = Test | Occurs | Battery
+@dataclass(frozen=True, slots=True, kw_only=True)
+class TooLate(Node):
+    """`it is too late`: the window of the task before is over."""
+
+
+Asked = Test | Occurs | Battery | TooLate
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

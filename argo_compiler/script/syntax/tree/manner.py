@@ -2,16 +2,19 @@
 
 from dataclasses import dataclass
 
+from argo_compiler.il import Afterwards
 from argo_compiler.script.syntax.tree.conditions import Condition
 from argo_compiler.script.syntax.tree.places import Coordinates
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Joints:
-    """Positions of named joints."""
+    """Where named joints are to be, how fast, and with which effort."""
 
     names: tuple[str, ...]
-    positions: tuple[float, ...]
+    positions: tuple[float, ...] = ()
+    velocities: tuple[float, ...] = ()
+    efforts: tuple[float, ...] = ()
 
 
 @dataclass(slots=True, kw_only=True)
@@ -57,3 +60,5 @@ class Manner:
     shown_in: str | None = None
     object_id: str | None = None
     pose: Coordinates | None = None
+    on_limit: Afterwards | None = None
+    """of a reaction's hold"""

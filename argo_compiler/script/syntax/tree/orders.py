@@ -166,12 +166,24 @@ class Replace(Order):
     by: Nouns
 
 
+class Rest(StrEnum):
+    """When a case without a condition is meant."""
+
+    OTHERWISE = "otherwise"
+    """if the condition before it does not hold"""
+    ALL_OTHERS = "in all other cases"
+    """if no condition of its task holds, also none that follows"""
+    LAST_ROUND = "after the last round"
+    """likewise, where the round ends that is not repeated any more"""
+
+
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Case(Node):
     """`If ..., A and B`; without a condition: `otherwise A and B`."""
 
     condition: Condition | None
     orders: tuple[Order, ...]
+    rest: Rest = Rest.OTHERWISE
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

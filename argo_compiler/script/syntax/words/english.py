@@ -125,13 +125,20 @@ CONDITIONS: Phrases = {
     ("IF", None): "if|when|whenever|in case {of}|in the event of|as soon as",
     ("UNLESS", None): "unless",
     ("ELSE", None): "otherwise|else|if not",
+    ("IN_ALL_OTHERS", None): "in all other cases|in any other case",
+    ("LAST_ROUND", None): "after the last round",
+    ("TOO_LATE", None): "it is too late|too late|it is too late for that",
+    ("OLDER", None): "older than",
     ("UNTIL", None): "until|till",
     ("IS", None): "is|are|was|were|shows|show|lies|gets|becomes|drops|rises|falls",
     ("NOT", None): "not|isn't|does not|do not|don't|is not|are not|was not|never",
     ("GREATER", None): "greater than|more than|higher than|larger than|above|over|exceeds|>",
     ("LESS", None): "less than|lower than|smaller than|below|under|<",
     ("AT_LEAST", None): "at least|>=|no less than|not less than|greater than or equal to",
-    ("AT_MOST", None): "at most|<=|no more than|not more than|less than or equal to|up to",
+    (
+        "AT_MOST",
+        None,
+    ): "at most|<=|no more than|not more than|less than or equal to|up to|taking at most",
     ("BETWEEN", None): "between",
     ("FROM", None): "from",
     (
@@ -143,7 +150,7 @@ CONDITIONS: Phrases = {
         "not normal|not in its normal range"
     ),
     ("STATE", "unreadable"): "unreadable|can't be read|cannot be read|could not be read",
-    ("FAILS", None): "fails|still fails|does not work|does not succeed",
+    ("FAILS", None): "fails|has failed|failed|still fails|does not work|does not succeed",
     ("OCCURS", None): (
         "is detected|is found|is heard|is seen|occurs|happens|sounds|appears|is pressed"
     ),
@@ -204,6 +211,12 @@ MANNERS: Phrases = {
     ("SHOWN_IN", None): "shown in",
     ("ABOUT", None): "about object",
     ("JOINTS", None): "with joints|with joint",
+    ("VELOCITIES", None): "velocities",
+    ("EFFORTS", None): "efforts",
+    ("READING", None): "reading for at most|reading for up to",
+    ("OR_ELSE", None): "or else",
+    ("PREFERABLY", None): "preferably|if possible",
+    ("ANY_TIME", None): "at any time",
     ("LEAVING", None): "leaving at",
     ("AGE", None): "measured within the last|measured in the last|not older than|within the last",
     ("LPAR_CALLED", None): "( called",

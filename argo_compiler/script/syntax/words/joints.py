@@ -36,7 +36,8 @@ def joined(words: list[Word]) -> list[Word]:
             continue
         if joints:
             said = " ".join(joint.value for joint in joints)
-            kind = _type(said, word)
+            named = said == ":" and bool(found) and found[-1].type == "STRING"
+            kind = "COLON" if named else _type(said, word)
             if kind is not None:
                 found.append(Word(kind, said, joints[0].start, joints[-1].end))
             word = Word(word.type, word.value, word.start, word.end, said)

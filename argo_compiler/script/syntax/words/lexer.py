@@ -28,6 +28,8 @@ _PASSED_OVER = frozenset(["the", "a", "an", "straight", "directly", "then", "ple
 """within a phrase"""
 _NAMES = {("AREA", "NUMBER"), ("KIND", "IDENT"), ("KIND", "NUMBER"), ("AREA",), ("PLACE",)}
 """what is often put between quotation marks, and means the same without"""
+_NAMING = frozenset(["STEP", "SHOWN_IN", "ABOUT", "LPAR_CALLED", "LSQB"])
+_JOINING = frozenset(["JOINT", "TO", "DASH", "UPTO"])
 _UNSAID = frozenset(["FILLER", "IDLE"])
 
 
@@ -43,7 +45,7 @@ def _looked_up(text: str, lexicon: Lexicon) -> list[Word]:
     while i < len(pieces):
         entry, n = _longest(pieces, i, lexicon.root)
         if entry is None and pieces[i].lastgroup == "STRING":
-            inner = _unwrapped(pieces[i], text, lexicon)
+            inner = [] if _is_name(found) else _unwrapped(pieces[i], text, lexicon)
             if inner and not (i + 1 < len(pieces) and pieces[i + 1].group() == ":"):
                 found += inner
                 i += 1
@@ -61,6 +63,14 @@ def _looked_up(text: str, lexicon: Lexicon) -> list[Word]:
             found.append(Word(entry[0], value, start, end))
         i += n
     return found
+
+
+def _is_name(before: list[Word]) -> bool:
+    """Whether what stands in quotation marks behind these words is a name, whatever it says."""
+    if not before:
+        return False
+    listed = len(before) > 1 and before[-2].type == "STRING"
+    return before[-1].type in _NAMING or (listed and before[-1].type in _JOINING)
 
 
 def _unwrapped(piece: re.Match[str], text: str, lexicon: Lexicon) -> list[Word]:

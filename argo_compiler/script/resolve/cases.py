@@ -11,6 +11,7 @@ from argo_compiler.script.resolve.program import (
     Choice,
     Do,
     Leave,
+    Node,
     Target,
     Way,
 )
@@ -70,11 +71,15 @@ class Cases:
             do.ways.append(way)
             self.context.choice = way
             return
-        choice = Choice(alternatives, case.span, negated=condition.negated)
-        self.context.put([choice], block, block.last)
+        choice = Choice(alternatives, case.span, negated=condition.negated, bound=self._bound(do))
+        self.context.put([choice], block, do)
         self.context.step.append(choice)
         self._branch(case, choice.then)
         self.context.choice = choice
+
+    def _bound(self, node: Node | None) -> bool:
+        """Whether a node stands in the step that is being planned."""
+        return node is not None and node in self.context.step[-1:]
 
     def _branch(self, case: Case, branch: Block) -> None:
         """Plans what is done in one case only; after the way home the mission is over."""
@@ -82,6 +87,7 @@ class Cases:
         memory = context.memory.last
         docked, context.docked = context.docked, None
         recent, step = context.recent, context.step
+        context.step = []
         orders_ = list(case.orders)
         ending: Leave | None = None
         if orders_ and isinstance(orders_[-1], orders.Plain) and orders_[-1].word in _POLICIES:
@@ -144,6 +150,7 @@ class Cases:
 
     def _to_choice(self, do: Do, way: Way, choice: Choice, block: Block) -> None:
         """Puts a choice where a way was: its other case has orders of its own."""
+        choice.bound = self._bound(do)
         self.context.put([choice], block, do)
         self.context.step.append(choice)
         self.context.put([Leave(way.target, way.span)], choice.then, None)

@@ -1,6 +1,6 @@
 """What all parts of the planning share: the program, and what the script has said so far."""
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Iterator
 from dataclasses import dataclass, field
 
 from argo_compiler.catalog import CheckpointInfo
@@ -55,9 +55,9 @@ class Context:
         return cls(lookup, diagnostics, locator, memory, nouns, conditions, reactions)
 
     def begin_step(self, number: int | None) -> None:
-        """What is planned from now on belongs to this step."""
-        self.step = []
+        """What is planned from now on belongs to this step; without a number, to the one before."""
         if number is not None:
+            self.step = []
             self.steps[number] = None if number in self.steps else self.step
 
     def put(self, nodes: Iterable[Node], block: Block, anchor: Node | None) -> None:
@@ -121,7 +121,7 @@ class Context:
         if isinstance(point, str):
             do = self.named.get(point)
             if do is not None and do.listed:
-                return [do]
+                return [do, *_bound_to(do)]
             message = f"there is no task `{point}`"
             self.diagnostics.error("unknown-step", message, span, "name a task or a step")
             return None
@@ -138,6 +138,14 @@ class Context:
             self.diagnostics.error("ambiguous-step", message, span, hint)
             return None
         return [node for node in nodes if node.listed]
+
+
+def _bound_to(do: Do) -> Iterator[Node]:
+    """The conditions that are looked at after a task, in its own step."""
+    node = do.after
+    while isinstance(node, Choice) and node.bound:
+        yield node
+        node = node.after
 
 
 def topmost(nodes: Iterable[Node], block: Block) -> list[Node]:

@@ -3,19 +3,34 @@
 from collections.abc import Sequence
 from dataclasses import replace
 
+from argo_compiler.diagnostics import Span
 from argo_compiler.il import EventKind, WaitRule
 from argo_compiler.script.resolve import making
 from argo_compiler.script.resolve.cases import Cases
 from argo_compiler.script.resolve.context import Context
 from argo_compiler.script.resolve.edits import Edits
 from argo_compiler.script.resolve.manners import Manners
-from argo_compiler.script.resolve.program import Ahead, Block, Do, HomeAhead, Leave, Node
+from argo_compiler.script.resolve.program import (
+    Ahead,
+    Block,
+    Do,
+    HomeAhead,
+    Leave,
+    Node,
+    in_branch,
+    leads_away,
+)
 from argo_compiler.script.resolve.repeating import Repeating
 from argo_compiler.script.resolve.starting import Starting
 from argo_compiler.script.syntax.tree import orders
 from argo_compiler.script.syntax.tree.conditions import Occurs
 from argo_compiler.script.syntax.tree.orders import Order, Sentence, Word
 from argo_compiler.script.syntax.tree.places import DockLocation, FloorName, Location
+
+
+_WHOLE_PLAN = (
+    orders.Repeat | orders.Add | orders.Delete | orders.Move | orders.Replace | orders.Start
+)
 
 
 class Planner:
@@ -55,6 +70,11 @@ class Planner:
         if self.done:
             hint = "move `Done!` to the end"
             self.diagnostics.error("after-done", "this comes after `Done!`", order.span, hint)
+            return
+        if isinstance(order, _WHOLE_PLAN) and in_branch(block):
+            message = "this changes the plan, so it can't be done in one case only"
+            hint = "write it as a step of its own"
+            self.diagnostics.error("route", message, order.span, hint)
             return
         match order:
             case orders.Amend() | orders.Retry():
@@ -153,7 +173,7 @@ class Planner:
             self.manners.name(order, tasks)
             self.manners.furnish(order, tasks)
             return
-        if not self._may_go_on(order, block):
+        if not self._may_go_on(order, block) or not self._comes_here(order.span, block):
             return
         context = self.context
         self.manners.name(order, tasks)
@@ -227,7 +247,22 @@ class Planner:
                 self.diagnostics.error("stray-clause", message, order.span, hint)
 
     def _leave(self, leave: Leave, block: Block) -> None:
-        self.context.put([leave], block, block.last)
+        if self._comes_here(leave.span, block):
+            self.context.put([leave], block, block.last)
+            self.context.step.append(leave)
+            self.context.choice = None
+
+    def _comes_here(self, span: Span, block: Block) -> bool:
+        """Whether the mission comes to the end of a block, or a step begins there."""
+        last = block.last
+        step = self.context.step
+        begins = block is self.context.program and (not step or last not in step[-1:])
+        if begins or not leads_away(last):
+            return True
+        message = "the mission never comes here: what stands before this leads elsewhere"
+        hint = "write it before the words that lead elsewhere, or as a step of its own"
+        self.diagnostics.error("second-route", message, span, hint)
+        return False
 
     def home_ahead(self, order: orders.Home) -> HomeAhead | None:
         """The way home with which the mission ends where a condition leads to it."""

@@ -109,6 +109,8 @@ class Choice(Node):
     alternatives: Alternatives
     span: Span
     negated: bool = False
+    bound: bool = False
+    """whether it stands in the step of what it is looked at after"""
     then: Block = field(init=False)
     otherwise: Block = field(init=False)
 
@@ -180,3 +182,21 @@ def inner_blocks(node: Node) -> tuple[Block, ...]:
         case Do():
             return tuple(b for b in (node.failure, node.missed) if b is not None)
     return ()
+
+
+def in_branch(block: Block) -> bool:
+    """Whether a block is carried out in one case only."""
+    while block.owner is not None:
+        if not isinstance(block.owner, Round) or block.owner.block is None:
+            return not isinstance(block.owner, Round)
+        block = block.owner.block
+    return False
+
+
+def leads_away(node: Node | None) -> bool:
+    """Whether the mission never comes to what stands behind a node."""
+    if isinstance(node, Leave):
+        return node.target is not Ahead.GO_ON
+    if isinstance(node, Do):
+        return any(not w.alternatives and w.target is not Ahead.GO_ON for w in node.ways)
+    return False

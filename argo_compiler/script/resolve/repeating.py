@@ -1,13 +1,14 @@
 """Rounds: patrols, steps that are repeated, and what limits them."""
 
 from argo_compiler.diagnostics import Span
-from argo_compiler.il import Action, Condition
+from argo_compiler.il import Condition
 from argo_compiler.model import Pose
-from argo_compiler.script.resolve.context import Context, topmost
-from argo_compiler.script.resolve.program import Block, Do, Limits, Node, Round
+from argo_compiler.script.resolve.context import Context
+from argo_compiler.script.resolve.program import Block, Limits, Round
+from argo_compiler.script.resolve.wrapping import Repetition, Wrapping
 from argo_compiler.script.syntax.tree import orders
 from argo_compiler.script.syntax.tree.orders import Order
-from argo_compiler.script.syntax.tree.places import FloorName, PlaceLocation, Steps
+from argo_compiler.script.syntax.tree.places import FloorName, PlaceLocation
 
 _MOST = 1_000_000_000
 
@@ -18,8 +19,8 @@ class Repeating:
     def __init__(self, context: Context) -> None:
         self.context = context
         self.diagnostics = context.diagnostics
-        self.pending: list[tuple[orders.Repeat, Limits, int]] = []
-        """repetitions of steps that have not all been planned yet"""
+        self.pending: list[Repetition] = []
+        """repetitions, whose steps need not all have been planned yet"""
 
     # ---- patrols
 
@@ -72,7 +73,7 @@ class Repeating:
     # ---- steps
 
     def repeat(self, order: orders.Repeat, block: Block) -> None:
-        """Wraps steps into a round, now or when all of them are planned."""
+        """Notes that steps are repeated: a round is put here, which they come into later."""
         manner = order.manner
         said = manner is not None and any(
             getattr(manner, name) is not None for name in ("speed", "retries", "leaving", "pose")
@@ -82,102 +83,25 @@ class Repeating:
             hint = "write it behind the steps that it is said of"
             self.diagnostics.error("stray-clause", message, order.span, hint)
             return
-        limits = limits_of(self.context, order, more_is_added=True)
-        if limits is None:
+        base = "Repeat"
+        if order.steps is not None:
+            ends = dict.fromkeys((order.steps.points[0], order.steps.points[-1]))
+            base = f"Repeat {' to '.join(str(p) for p in ends)}".replace("/", "-")
+        round_ = self.round(order, base)
+        if round_ is None:
             return
-        self.pending.append((order, limits, self.context.new_round()))
+        context = self.context
+        self.pending.append(Repetition(order, round_, context.step, len(context.step)))
+        context.put([round_], block, block.last)
+        context.recent = []
+        context.choice = None
 
     def finish(self) -> None:
-        """Wraps what is to be repeated, in the order in which it was asked for."""
-        for order, limits, number in self.pending:
-            self._wrap(order, limits, number)
+        """Fills the rounds with what is to be repeated, in the order in which it was asked for."""
+        wrapping = Wrapping(self.context)
+        for repetition in self.pending:
+            wrapping.wrap(repetition)
         self.pending.clear()
-
-    def _wrap(self, order: orders.Repeat, limits: Limits, number: int) -> None:
-        block, nodes = self._range(order)
-        if not nodes:
-            return
-        steps = order.steps
-        base = "Repeat"
-        if steps is not None:
-            ends = dict.fromkeys((steps.points[0], steps.points[-1]))
-            base = f"Repeat {' to '.join(str(p) for p in ends)}".replace("/", "-")
-        round_ = Round(base, limits, order.span, number, name=order.name)
-        anchor = nodes[0].before
-        for node in nodes:
-            block.remove(node)
-        block.insert_after(anchor, round_)
-        for node in nodes:
-            round_.body.append(node)
-
-    def _range(self, order: orders.Repeat) -> tuple[Block, list[Node]]:
-        """The neighbouring nodes of one block that are to be repeated."""
-        program = self.context.program
-        if order.steps is None:
-            found = [n for n in program if not (isinstance(n, Do) and _stays(n))]
-            return program, found
-        nodes = self.context.nodes_of(order.steps)
-        if nodes is None:
-            return program, []
-        nodes = [n for n in nodes if not (isinstance(n, Do) and n.action is Action.START)]
-        if not nodes:
-            self._empty(order.steps)
-            return program, []
-        block = _common(nodes, program)
-        tops = topmost(nodes, block)
-        ends = {id(node) for node in tops}
-        first = tops[0]
-        while first.before is not None and id(first.before) in ends:
-            first = first.before
-        found = [first]
-        while len(found) < len(tops) and found[-1].after is not None:
-            found.append(found[-1].after)
-        if {id(node) for node in found} != ends:
-            return block, self._between(order, tops)
-        return block, found
-
-    def _between(self, order: orders.Repeat, tops: list[Node]) -> list[Node]:
-        """From the first to the last of nodes that are no neighbours, if a range was said."""
-        assert order.steps is not None
-        if not order.steps.through:
-            message = "these steps are not next to each other"
-            hint = "repeat steps that follow each other"
-            self.diagnostics.error("step-range", message, order.span, hint)
-            return []
-        found = [tops[0]]
-        while found[-1] is not tops[-1]:
-            following = found[-1].after
-            if following is None:
-                message = "the first of these steps comes after the last one"
-                hint = "write the earlier one first"
-                self.diagnostics.error("step-range", message, order.span, hint)
-                return []
-            found.append(following)
-        return found
-
-    def _empty(self, steps: Steps) -> None:
-        said = " to ".join(str(p) for p in steps.points)
-        message = f"step {said} leaves nothing to do that could be repeated"
-        hint = "name a step that measures or drives"
-        self.diagnostics.error("empty-step", message, steps.span, hint)
-
-
-def _stays(do: Do) -> bool:
-    return do.action is Action.START or do.docks
-
-
-def _common(nodes: list[Node], program: Block) -> Block:
-    """The innermost block that all nodes lie in."""
-    chains: list[list[Block]] = []
-    for node in (nodes[0], nodes[-1]):
-        chain: list[Block] = []
-        block = node.block
-        while block is not None:
-            chain.append(block)
-            block = block.owner.block if block.owner is not None else None
-        chains.append(chain)
-    inner = {id(block) for block in chains[1]}
-    return next((block for block in chains[0] if id(block) in inner), program)
 
 
 def limits_of(context: Context, order: Order, more_is_added: bool) -> Limits | None:

@@ -222,8 +222,10 @@ def sentences(text: ScriptText) -> list[ScriptText]:
     for end in _SENTENCE_END.finditer(text.content):
         if any(a < end.start() < b for a, b in quoted):
             continue
-        if _ABBREVIATION.search(text.content[: end.start() + 1]):
-            continue
+        goes_on = not text.content[end.end() :].lstrip()[:1].isupper()
+        if goes_on and end.end() < len(text.content):
+            if _ABBREVIATION.search(text.content[: end.start() + 1]):
+                continue
         found.append(text[start : end.start()].strip())
         start = end.end()
     found.append(text[start:].strip())

@@ -18,7 +18,7 @@ from argo_compiler.il import (
     Stop,
 )
 from argo_compiler.model import Pose
-from argo_compiler.script import catalog_words, import_script, parse
+from argo_compiler.script import import_script, parse
 
 PLAN = """\
 Mission Protocol #9
@@ -52,7 +52,7 @@ def codes(text: str, catalog: Catalog) -> list[str]:
     "line", [line for kind, block in EXAMPLES if kind == "protocol" for line in block.splitlines()]
 )
 def test_every_line_of_the_reference_is_understood(line: str, catalog: Catalog) -> None:
-    script = parse(f"Mission Protocol\n{line}", catalog_words(catalog))
+    script = parse(f"Mission Protocol\n{line}", [p.name for p in catalog.places])
     assert [d.code for d in script.diagnostics if not line.startswith("Mission Protocol")] == []
 
 

@@ -6,7 +6,7 @@ from argo_compiler.catalog import Catalog
 from argo_compiler.diagnostics import Diagnostic, DiagnosticError
 from argo_compiler.errors import Remedy
 from argo_compiler.il import Action
-from argo_compiler.script import Protocol, catalog_words, import_script, parse
+from argo_compiler.script import import_script, parse
 from argo_compiler.script.resolve.importing import Resolved
 
 START = "Mission Protocol #9\n1. Set a starting point in starting area 1\n"

@@ -23,13 +23,28 @@ from argo_compiler.script.syntax.words.word import Word
 
 
 def _case(part: Part) -> Case:
+    """`If ..., A and B`; what comes behind a semicolon may be meant for this case, or for any."""
+    orders = _joined(part)
     rest = Rest.OTHERWISE
     if part.has("IN_ALL_OTHERS"):
         rest = Rest.ALL_OTHERS
     elif part.has("LAST_ROUND"):
         rest = Rest.LAST_ROUND
-    orders_ = _joined(part)
-    return Case(span=part.span, condition=part.first(Condition), orders=orders_, rest=rest)
+    condition = part.first(Condition)
+    if condition is not None and part.the(Word).value == "unless":
+        condition = replace(condition, negated=True)
+    for order in orders[1:]:
+        if ";" in order.joint:
+            message = "this can be meant for this case only, or for any case"
+            hint = "write `, then ...` for the first, and a sentence of its own for the second"
+            part.diagnostics.error("ambiguous-case", message, order.span, hint)
+    return Case(
+        span=part.span,
+        condition=condition,
+        orders=orders,
+        rest=rest,
+        chained=part.has("ELSE"),
+    )
 
 
 def _sentence(part: Part) -> Sentence | facts.Fact:

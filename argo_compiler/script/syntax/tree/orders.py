@@ -184,6 +184,8 @@ class Case(Node):
     condition: Condition | None
     orders: tuple[Order, ...]
     rest: Rest = Rest.OTHERWISE
+    chained: bool = False
+    """`otherwise, if ...`; `otherwise` without a condition as well"""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

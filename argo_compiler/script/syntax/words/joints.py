@@ -30,20 +30,34 @@ def joined(words: list[Word]) -> list[Word]:
     """The words with typed joints; joints that join nothing of these are kept in `before`."""
     found: list[Word] = []
     joints: list[Word] = []
-    for word in words:
+    named = -1
+    for i, word in enumerate(words):
         if word.type == "JOINT":
             joints.append(word)
             continue
+        name = _is_name(words, i)
         if joints:
             said = " ".join(joint.value for joint in joints)
-            named = said == ":" and bool(found) and found[-1].type == "STRING"
-            kind = "COLON" if named else _type(said, word)
+            kind = _type(said, word)
+            if name:
+                kind = "NEXT"
+            elif named == len(found) - 1 >= 0:
+                kind = "COLON"
             if kind is not None:
                 found.append(Word(kind, said, joints[0].start, joints[-1].end))
             word = Word(word.type, word.value, word.start, word.end, said)
             joints = []
+        named = len(found) if name else named
         found.append(word)
     return found
+
+
+def _is_name(words: list[Word], i: int) -> bool:
+    """Whether a word is the name that stands before an order: `"gate": go to (1, 2, 0)`."""
+    if words[i].type != "STRING" or (i > 0 and words[i - 1].type != "JOINT"):
+        return False
+    after = words[i + 1] if i + 1 < len(words) else None
+    return after is not None and after.type == "JOINT" and after.value == ":"
 
 
 def _type(said: str, word: Word) -> str | None:

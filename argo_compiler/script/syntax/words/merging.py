@@ -113,6 +113,8 @@ def _add(word: Word, after: Word | None, found: list[Word]) -> None:
         word = replace(word, type="IS", value=None)
     elif word.type == "IF" and last is not None and last.type != "JOINT":
         word = replace(word, type="IF_ONLY")
+    elif word.type == "UNLESS" and (last is None or last.value in (";", ".")):
+        word = replace(word, type="IF", value="unless")
     elif word.type == "AREA" and last is not None and last.type == "START" and len(found) > 1:
         if found[-2].type in ("IN", "AT", "FROM", "TO", "ON"):
             found.pop()  # `in start area 1`

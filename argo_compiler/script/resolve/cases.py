@@ -60,9 +60,11 @@ class Cases:
 
     def _values(self, case: Case, condition: Condition, block: Block) -> None:
         alternatives = self.context.conditions.alternatives(condition)
+        do = block.last
+        if isinstance(do, Leave) and not self.planner.comes_here(case.span, block):
+            return
         if alternatives is None:
             return
-        do = block.last
         target = self._target(case)
         simple = target is not None and target is not Ahead.END and not condition.negated
         if simple and isinstance(do, Do) and do.failure is None and do.missed is None:

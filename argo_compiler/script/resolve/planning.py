@@ -173,7 +173,7 @@ class Planner:
             self.manners.name(order, tasks)
             self.manners.furnish(order, tasks)
             return
-        if not self._may_go_on(order, block) or not self._comes_here(order.span, block):
+        if not self._may_go_on(order, block) or not self.comes_here(order.span, block):
             return
         context = self.context
         self.manners.name(order, tasks)
@@ -247,12 +247,12 @@ class Planner:
                 self.diagnostics.error("stray-clause", message, order.span, hint)
 
     def _leave(self, leave: Leave, block: Block) -> None:
-        if self._comes_here(leave.span, block):
+        if self.comes_here(leave.span, block):
             self.context.put([leave], block, block.last)
             self.context.step.append(leave)
             self.context.choice = None
 
-    def _comes_here(self, span: Span, block: Block) -> bool:
+    def comes_here(self, span: Span, block: Block) -> bool:
         """Whether the mission comes to the end of a block, or a step begins there."""
         last = block.last
         step = self.context.step

@@ -198,5 +198,8 @@ def leads_away(node: Node | None) -> bool:
     if isinstance(node, Leave):
         return node.target is not Ahead.GO_ON
     if isinstance(node, Do):
-        return any(not w.alternatives and w.target is not Ahead.GO_ON for w in node.ways)
+        return any(
+            not w.alternatives and not w.last_round and w.target is not Ahead.GO_ON
+            for w in node.ways
+        )
     return False

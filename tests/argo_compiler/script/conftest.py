@@ -1,6 +1,7 @@
 """A made-up site with the checkpoints of the competition's kind, and where the scripts lie."""
 
 import os
+from collections.abc import Callable
 from pathlib import Path
 
 import pytest
@@ -15,6 +16,7 @@ from argo_compiler.catalog import (
     Place,
 )
 from argo_compiler.model import Pose
+from argo_compiler.script import import_script
 
 NAMES = {
     1: ["pressure gauge 1", "liquid level gauge 1", "pressure gauge 2", "valve R25"],
@@ -61,6 +63,26 @@ def make_catalog() -> Catalog:
 
 
 CATALOG = make_catalog()
+
+
+def _without_sources(value: object) -> object:
+    """All of a mission but where in the script it comes from."""
+    if isinstance(value, dict):
+        return {key: _without_sources(part) for key, part in value.items() if key != "source"}
+    if isinstance(value, list):
+        return [_without_sources(part) for part in value]
+    return value
+
+
+@pytest.fixture(scope="session")
+def meaning_of() -> Callable[[str], object]:
+    """What a script means: its mission, whatever its words and places."""
+
+    def mission_of(text: str) -> object:
+        mission = import_script(text, CATALOG).mission
+        return _without_sources(mission.model_dump(mode="json"))
+
+    return mission_of
 
 
 @pytest.fixture(scope="session")

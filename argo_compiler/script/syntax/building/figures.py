@@ -1,6 +1,7 @@
 """Numbers, amounts and lengths of time: what can be read in two ways is asked about."""
 
 from dataclasses import dataclass
+from math import isnan
 
 from argo_compiler.il import MAX_TIME_S
 from argo_compiler.script.syntax.building.part import Make, Part
@@ -36,16 +37,23 @@ def _complain_of_whole(part: Part, figure: Figure) -> None:
     if figure.other is not None:
         message = f"this number can be read as {figure.value:g} or as {figure.other:g}"
         part.error("ambiguous-number", message, f"write `{figure.other:g}` for the second")
+    elif isnan(figure.value):
+        part.error("number", "these are several numbers, not one", "write one number")
     else:
         part.error("number", f"{figure.value:g} is not a whole number", "write a whole number")
 
 
-def decimal(part: Part, figure: Figure) -> float:
+def decimal(part: Part, figure: Figure, unit: str = "") -> float:
     """The number that a figure is; one that can be read in two ways is an error."""
+    behind = f" {unit}" if unit else ""
     if figure.other is not None:
-        message = f"this number can be read as {figure.value:g} or as {figure.other:g}"
-        hint = f"write `{figure.value:g}0` for the first, `{figure.other:g}` for the second"
+        first, second = f"{figure.value:g}{behind}", f"{figure.other:g}{behind}"
+        message = f"`{part.said}` can be read as {first} or as {second}"
+        hint = f"write `{figure.value:g}0{behind}` for the first, `{second}` for the second"
         part.error("ambiguous-number", message, hint)
+    elif isnan(figure.value):
+        part.error("number", f"`{part.said}` is several numbers, not one", "write one number")
+        return 0.0
     elif figure.value >= 1e308:
         part.error("number", f"{part.said} is too large a number", "write a smaller one")
     return figure.value
@@ -54,8 +62,12 @@ def decimal(part: Part, figure: Figure) -> float:
 def seconds(part: Part, word: Word) -> float:
     """The seconds of a length of time that is more than none."""
     length: Length = word.value
+    if isnan(length.seconds):
+        part.error("number", f"`{part.said}` has several numbers, not one", "write one number")
+        return 1.0
     if length.other is not None:
-        message = f"`{length.said}` can be read as {length.first} or as {length.second}"
+        said = part.text.content[word.start : word.end]
+        message = f"`{said}` can be read as {length.first} or as {length.second}"
         part.error("ambiguous-duration", message, f"write `{length.first}` or `{length.second}`")
     elif length.seconds <= 0:
         part.error("duration", "a duration of zero", "write, say, `10 minutes`")
@@ -68,12 +80,21 @@ def seconds(part: Part, word: Word) -> float:
 
 def speed(part: Part, word: Word) -> float:
     """m/s"""
-    figure, unit = word.value
-    value = decimal(part, figure)
+    figure, factor = word.value
+    value = decimal(part, figure, "m/s" if factor == 1 else "")
     if value <= 0:
         part.error("speed", "a speed of zero", "write, say, `at 0.3 m/s`")
         return 1.0
-    return value / 3.6 if unit.startswith("k") else value
+    return float(f"{value * factor:.12g}")
+
+
+def single(part: Part) -> float:
+    """The one number that is asked for in coordinates and the like."""
+    value = part.the(Signed).value
+    if isnan(value):
+        part.error("number", f"`{part.said}` has several numbers, not one", "write one number")
+        return 0.0
+    return value
 
 
 def _signed(part: Part) -> Signed:
@@ -87,7 +108,7 @@ def _amount(part: Part) -> Amount:
     sign = -1 if part.has("MINUS") else 1
     if word := part.word("QUANTITY"):
         figure, unit = word.value
-        return Amount(span=part.span, value=sign * decimal(part, figure), unit=unit)
+        return Amount(span=part.span, value=sign * decimal(part, figure, unit), unit=unit)
     word = part.word("NUMBER")
     assert word is not None
     return Amount(span=part.span, value=sign * decimal(part, word.value))

@@ -1,8 +1,8 @@
 """Makes places, floors and steps."""
 
-from math import radians
+from math import isnan, radians
 
-from argo_compiler.script.syntax.building.figures import Signed, whole
+from argo_compiler.script.syntax.building.figures import Signed, single, whole
 from argo_compiler.script.syntax.building.part import Make, Part
 from argo_compiler.script.syntax.tree.places import (
     AreaLocation,
@@ -67,7 +67,7 @@ def _coordinates(part: Part) -> Coordinates:
     (only, *more) = part.every(Signed)
     if only.listed and not more:
         values = [float(n) for n in only.listed]
-    if len(values) not in (2, 3):
+    if len(values) not in (2, 3) or any(map(isnan, values)):
         part.error("coordinates", "coordinates are two or three numbers", "write `(12.5, 3, 2.5)`")
         values = [0.0, 0.0]
     x, y, *z = values
@@ -81,13 +81,13 @@ def _coordinates(part: Part) -> Coordinates:
 
 
 def _height(part: Part) -> dict[str, float]:
-    return {"z": part.the(Signed).value}
+    return {"z": single(part)}
 
 
 def _heading(part: Part) -> dict[str, float]:
     if word := part.word("QUANTITY"):
         return {"yaw": radians(word.value[0].value)}
-    value = part.the(Signed).value
+    value = single(part)
     return {"yaw": value if part.has("RAD") else radians(value)}
 
 

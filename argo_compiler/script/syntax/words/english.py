@@ -226,11 +226,18 @@ MANNERS: Phrases = {
     ("Y", None): "y",
     ("Z", None): "z",
     ("HEADING", None): "heading",
-    ("RAD", None): "rad|radians",
+    ("RAD", None): "rad",
     ("EARLIEST", None): "not before|no earlier than|not earlier than",
+    ("UNIT_S", 86400.0): "day{s}",
     ("UNIT_S", 3600.0): "h|hour{s}|hrs|hr",
+    ("UNIT_S", 2700.0): "three-quarter hour",
+    ("UNIT_S", 1800.0): "half-hour{s}",
+    ("UNIT_S", 900.0): "quarter of an hour|quarters of an hour|quarter-hour{s}|quarter hour{s}",
     ("UNIT_S", 60.0): "min|mins|minute{s}|'",
     ("UNIT_S", 1.0): "s|sec|secs|seconds",
+    ("RATE", 1.0): "m / s|metre{s} per second|meter{s} per second|metre{s} a second|meter{s} a second",
+    ("RATE", 0.01): "cm / s|centimetre{s} per second|centimeter{s} per second",
+    ("RATE", 1 / 3.6): "km / h|kmh|kph|kilometre{s} per hour|kilometer{s} per hour",
 }
 
 _UNITS = "one two three four five six seven eight nine".split()
@@ -239,6 +246,11 @@ _TENS = "twenty thirty forty fifty sixty seventy eighty ninety".split()
 
 FIGURES: Phrases = {
     **{("NUMBER_WORD", n): word for n, word in enumerate(_UNITS + _TEENS, start=1)},
+    ("NUMBER_WORD", 12): "twelve|dozen",
+    **{
+        ("NUMBER_WORD", n + 0.5): f"{word} and a half"
+        for n, word in enumerate(_UNITS + _TEENS, start=1)
+    },
     **{("NUMBER_WORD", 10 * n): word for n, word in enumerate(_TENS, start=2)},
     **{
         ("NUMBER_WORD", 10 * n + k): f"{ten}-{unit}|{ten} {unit}"
@@ -248,12 +260,23 @@ FIGURES: Phrases = {
     ("NUMBER_WORD", 100): "hundred|hundred and",
     ("NUMBER_WORD", 1000): "thousand|thousand and",
     ("UNIT", "bar"): "bar{s}",
-    ("UNIT", "mbar"): "mbar|millibar",
+    ("UNIT", "mbar"): "mbar|millibar{s}",
     ("UNIT", "psi"): "psi",
-    ("UNIT", "kPa"): "kpa",
-    ("UNIT", "MPa"): "mpa",
+    ("UNIT", "Pa"): "pa|pascal{s}",
+    ("UNIT", "hPa"): "hpa|hectopascal{s}",
+    ("UNIT", "kPa"): "kpa|kilopascal{s}",
+    ("UNIT", "MPa"): "mpa|megapascal{s}",
+    ("UNIT", "atm"): "atm|atmospheres",
     ("UNIT", "%"): "%|percent|per cent",
     ("UNIT", "deg"): "°|deg|degree{s}",
+    ("UNIT", "rad"): "radian{s}",
+    ("UNIT", "degC"): "° c|degree{s} celsius|deg c",
+    ("UNIT", "degF"): "° f|degree{s} fahrenheit|deg f",
+    ("UNIT", "mm"): "mm|millimetre{s}|millimeter{s}",
+    ("UNIT", "cm"): "cm|centimetre{s}|centimeter{s}",
+    ("UNIT", "m"): "m|metre{s}|meter{s}",
+    ("UNIT", "l"): "litre{s}|liter{s}",
+    ("UNIT", "kg"): "kg|kilogram{s}",
     ("HALF", None): "half",
 }
 

@@ -4,7 +4,7 @@ import json
 import re
 
 from argo_compiler.script.syntax.words.joints import joined
-from argo_compiler.script.syntax.words.lengths import read_clock
+from argo_compiler.script.syntax.words.lengths import read_clock, read_glued
 from argo_compiler.script.syntax.words.lexicon import Entry, Lexicon, Node
 from argo_compiler.script.syntax.words.merging import merged
 from argo_compiler.script.syntax.words.numbers import read_figure
@@ -14,8 +14,8 @@ _PIECE = re.compile(
     r"""(?P<STRING>"(?:[^"\\]|\\.)*"(?:\s*"(?:[^"\\]|\\.)*")*)
     |(?P<CLOCK>[0-9]{1,3}:[0-9]{2}(?::[0-9]{2})?(?![\d:]))
     |(?P<ORDINAL>[0-9]+(?:st|nd|rd|th)\b)
-    |(?P<NUMBER>[0-9]+(?:[.,'][0-9]+)*(?:e[+-]?[0-9]+\b)?)
-    |(?P<RATE>m\s*/\s*s\b|km\s*/\s*h\b|met(?:re|er)s?\s+per\s+second\b)
+    |(?P<GLUED>[0-9]+(?:h|std)[0-9]{1,2}(?:m|min)?(?:[0-9]{1,2}s)?\b|[0-9]+(?:m|min)[0-9]{1,2}s\b)
+    |(?P<NUMBER>[0-9]*[½¼¾]|[0-9]+(?:[.,'][0-9]+)*(?:e[+-]?[0-9]+\b)?)
     |(?P<IDENT>[^\W\d_]+-?[0-9]+\w*)
     |(?P<WORD>[^\W\d_](?:[\w'-]*\w)?)
     |(?P<SIGN><=|>=|\S)""",
@@ -74,7 +74,7 @@ def _is_name(before: list[Word]) -> bool:
 
 
 def _unwrapped(piece: re.Match[str], text: str, lexicon: Lexicon) -> list[Word]:
-    """The words in quotation marks that name a thing as it is named without: `"starting area 1"`."""
+    """The words in quotation marks that name a thing as it is named without: `"area 1"`."""
     start = piece.start() + 1
     inner = _looked_up(text[start : piece.end() - 1], lexicon)
     types = tuple(word.type for word in inner)
@@ -105,6 +105,7 @@ def _plain(piece: re.Match[str], after: re.Match[str] | None, last: str, text: s
     value: object = said
     if kind == "NUMBER":
         value = read_figure(said)
+        kind = kind if value is not None else "BAD_NUMBER"
     elif kind == "ORDINAL":
         value = int(said[:-2])
     elif kind == "STRING":
@@ -113,6 +114,9 @@ def _plain(piece: re.Match[str], after: re.Match[str] | None, last: str, text: s
     elif kind == "CLOCK":
         length = read_clock(said)
         kind, value = ("CLOCK", said) if length is None else ("DURATION", length)
+    elif kind == "GLUED":
+        length = read_glued(said)
+        kind, value = ("GLUED", said) if length is None else ("DURATION", length)
     elif kind == "SIGN":
         kind = "JOINT" if said in _JOINTS else _SIGNS.get(said, "SIGN")
         value = _JOINTS.get(said, said)

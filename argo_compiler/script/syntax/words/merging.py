@@ -6,7 +6,8 @@
 
 from dataclasses import replace
 
-from argo_compiler.script.syntax.words.lengths import Length
+from argo_compiler.script.syntax.words.joints import VERBS
+from argo_compiler.script.syntax.words.lengths import Length, told
 from argo_compiler.script.syntax.words.numbers import Figure, compose
 from argo_compiler.script.syntax.words.word import Word
 
@@ -26,7 +27,7 @@ def merged(words: list[Word]) -> list[Word]:
         if pair is not None:
             word = pair
             i += 1
-        elif word.type == "ORDINAL" and not _counts(words, i):
+        elif word.type == "ORDINAL" and _tells_order(words, i):
             i += 1
             continue  # `checkpoint 13 first, then ...`
         elif word.type == "UNIT_S" and word.value > 1:
@@ -36,12 +37,14 @@ def merged(words: list[Word]) -> list[Word]:
     return found
 
 
-def _counts(words: list[Word], i: int) -> bool:
-    """Whether an ordinal tells a floor: `the second and third floor`, not `first, then ...`."""
-    for word in words[i + 1 :]:
-        if word.type not in ("JOINT", "ORDINAL"):
-            return word.type == "FLOOR"
-    return False
+def _tells_order(words: list[Word], i: int) -> bool:
+    """Whether an ordinal says only what comes when, and not which floor or gauge is meant:
+    `first check ...`, `checkpoint 13 first, then ...`."""
+    if words[i].value == 1 and i + 1 < len(words) and words[i + 1].type in VERBS:
+        return True
+    after = next((w for w in words[i + 1 :] if w.type not in ("JOINT", "ORDINAL")), None)
+    listed = i + 1 < len(words) and words[i + 1].type in ("JOINT", "ORDINAL")
+    return after is None or (after.type != "FLOOR" and listed)
 
 
 def _numbers(words: list[Word]) -> list[Word]:
@@ -64,13 +67,16 @@ def _counted(word: Word, after: Word) -> Word | None:
     """A number and what it counts, as one word."""
     if word.type == "HALF" and after.type == "UNIT_S":
         return Word("DURATION", Length(after.value / 2, after.value), word.start, after.end)
+    if word.type == "DURATION" and after.type == "UNIT_S":
+        length = _of_clock(word.value, after.value)
+        return None if length is None else Word("DURATION", length, word.start, after.end)
     if word.type != "NUMBER":
         return None
     figure: Figure = word.value
     match after.type:
         case "UNIT_S":
             return Word("DURATION", _length(figure, after.value), word.start, after.end)
-        case "TIME_WORD":
+        case "TIME_WORD" | "X":
             return Word("TIMES", figure, word.start, after.end)
         case "RATE":
             return Word("SPEED", (figure, after.value), word.start, after.end)
@@ -87,10 +93,18 @@ def _length(figure: Figure, unit: float) -> Length:
         figure.value * unit,
         unit,
         other=figure.other * unit,
-        said=f"{figure.other:g}",
-        first=f"{figure.value:g} of them",
-        second=f"{figure.other:g} of them",
+        first=told(figure.value, unit),
+        second=told(figure.other, unit),
     )
+
+
+def _of_clock(length: Length, unit: float) -> Length | None:
+    """`1:30 h` is hours and minutes, `1:30 min` minutes and seconds."""
+    if length.unit != 1.0 or unit not in (60.0, 3600.0):
+        return None
+    if unit == 60.0:
+        return Length(length.seconds)
+    return Length(length.seconds * 60 if length.other is None else length.other)
 
 
 def _add(word: Word, after: Word | None, found: list[Word]) -> None:
@@ -103,11 +117,15 @@ def _add(word: Word, after: Word | None, found: list[Word]) -> None:
             del found[found.index(before) :]
             found.append(sum_)
             return
-    if word.type == "HALF" and before is not None and before.type == "DURATION":
+    if word.type == "NUMBER" and last is not None and _hours_and(last, word, after):
+        found.pop()
+        length = Length(last.value.seconds + word.value.value * 60, 60.0)
+        word = Word("DURATION", length, last.start, word.end)
+    elif word.type == "HALF" and before is not None and before.type == "DURATION":
         longer = before.value.seconds + before.value.unit / 2
         del found[found.index(before) :]
         word = Word("DURATION", Length(longer), before.start, word.end)
-    elif word.type == "SPEED" and last is not None and last.type == "AT":
+    elif word.type == "SPEED" and last is not None and last.type in ("AT", "BY"):
         found.pop()
     elif word.type == "MEASURE" and after is not None and after.type in _RELATIONS:
         word = replace(word, type="IS", value=None)
@@ -121,6 +139,15 @@ def _add(word: Word, after: Word | None, found: list[Word]) -> None:
     elif word.type in ("ON", "IN") and after is not None and after.type == "EVENT":
         word = replace(word, type="IF")
     found.append(word)
+
+
+def _hours_and(hours: Word, minutes: Word, after: Word | None) -> bool:
+    """`1 h 15`: the number behind the hours is the minutes, unless it begins something else."""
+    if hours.type != "DURATION" or hours.value.unit != 3600.0 or hours.value.other is not None:
+        return False
+    number = minutes.value.whole
+    ends = after is None or after.type in ("JOINT", "SIGN", "RPAR")
+    return number is not None and number < 60 and ends
 
 
 def _sum(first: Word, second: Word) -> Word | None:

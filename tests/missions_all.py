@@ -56,6 +56,8 @@ def _values(annotation: Any, limits: tuple[Any, ...]) -> st.SearchStrategy[Any]:
         return st.none()
     if origin is Literal:
         return st.sampled_from(parts)
+    if origin is tuple and parts[-1] is not ...:
+        return st.tuples(*(_values(part, ()) for part in parts))
     if origin is tuple:
         return st.lists(_values(parts[0], ()), max_size=2).map(tuple)
     if isinstance(annotation, type) and issubclass(annotation, Enum):
@@ -75,6 +77,8 @@ def _mended(limits: tuple[Any, ...]) -> Any:
         least, most = _least(limits), _most(limits)
         if least is not None and value < least:
             value = -value
+        if any(isinstance(limit, annotated_types.Lt) for limit in limits) and value >= most:
+            return most / 2
         return value if most is None or value <= most else most
 
     return mend
@@ -90,7 +94,12 @@ def _least(limits: tuple[Any, ...]) -> Any:
 
 
 def _most(limits: tuple[Any, ...]) -> Any:
-    return next((limit.le for limit in limits if isinstance(limit, annotated_types.Le)), None)
+    for limit in limits:
+        if isinstance(limit, annotated_types.Le):
+            return limit.le
+        if isinstance(limit, annotated_types.Lt):
+            return limit.lt
+    return None
 
 
 def _kept(value: Any, limits: tuple[Any, ...]) -> bool:

@@ -2,11 +2,11 @@
 
 from collections.abc import Iterator
 
-from argo_compiler.analysis.graph import first_ways, way_to
 from argo_compiler.analysis.regions import Scale
 from argo_compiler.analysis.study import Study
 from argo_compiler.analysis.values import GuardStatus, objects_of
 from argo_compiler.diagnostics import Diagnostic, Severity
+from argo_compiler.graphs import first_ways, way_to
 from argo_compiler.hfsm.conditions import words
 from argo_compiler.il import Action, Condition
 

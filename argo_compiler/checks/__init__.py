@@ -8,6 +8,7 @@ from argo_compiler.catalog import Catalog
 from argo_compiler.checks.groups import check_groups
 from argo_compiler.checks.header import check_header
 from argo_compiler.checks.instant_loops import check_instant_loops
+from argo_compiler.checks.precedence import check_precedence
 from argo_compiler.checks.reactions import check_reactions
 from argo_compiler.checks.tasks import TaskChecks
 from argo_compiler.diagnostics import Diagnostic, Severity
@@ -42,4 +43,5 @@ def check(mission: Mission, catalog: Catalog | None = None) -> tuple[Diagnostic,
         *check_groups(mission),
         *check_reactions(mission),
         *check_header(mission, catalog),
+        *check_precedence(mission),
     )

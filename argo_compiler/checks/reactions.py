@@ -33,6 +33,7 @@ def check_reactions(mission: Mission) -> Iterator[Diagnostic]:
         yield from _check_rank(at, reaction, ranked)
         if reaction.response is not Response.REPORT:
             ranked.setdefault(reaction.rank, reaction)
+        yield from _check_battery(at, reaction)
         yield from _check_unused(at, reaction)
         if reaction.response in _HOLDS and reaction.until is not None:
             yield from _check_until(at, reaction, first)
@@ -94,6 +95,19 @@ def _check_rank(
         Severity.WARNING,
         ".priority",
     )
+
+
+def _check_battery(at: str, reaction: Reaction) -> Iterator[Diagnostic]:
+    if reaction.battery_below is not None and reaction.event is not EventKind.LOW_BATTERY:
+        yield diagnostic_about(
+            at,
+            reaction,
+            "il.battery-level",
+            f"the reaction to {reaction.event} has `battery_below`, and the battery has nothing to "
+            "do with that event",
+            f"remove it, or let the reaction answer {EventKind.LOW_BATTERY}",
+            field=".battery_below",
+        )
 
 
 def _check_unused(at: str, reaction: Reaction) -> Iterator[Diagnostic]:

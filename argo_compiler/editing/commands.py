@@ -285,6 +285,7 @@ class SetHeader(EditCommand):
     after_mission_report: str = ""
     current: str | None = None
     left_out: tuple[str, ...] = ()
+    before: tuple[tuple[str, str], ...] = ()
 
 
 Edit = Annotated[

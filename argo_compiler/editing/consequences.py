@@ -13,6 +13,7 @@ from argo_compiler.model import Model
 
 _SENSELESS = frozenset(
     [
+        "il.battery-level",
         "il.branch-without-target",
         "il.condition-bound",
         "il.group-duration",
@@ -223,6 +224,12 @@ def _of_header(before: Mission, after: Mission, asked: frozenset[str]) -> Iterat
     if before.current != after.current and "current" not in asked:
         what = f"task '{after.current}' is" if after.current is not None else "no task is"
         yield _consequence("current", f"{what} the current one now", before.current, after.current)
+    if len(after.before) < len(before.before) and "before" not in asked:
+        gone = {task.name for task in before.tasks} - {task.name for task in after.tasks}
+        for first, second in before.before:
+            if not gone.isdisjoint((first, second)):
+                message = f"that '{first}' comes before '{second}' is not asked for any more"
+                yield _consequence("before", message, f"'{first}' before '{second}'", None)
 
 
 def _consequence(subject: str, message: str, before: str | None, after: str | None) -> Consequence:

@@ -208,9 +208,16 @@ class MissionDraft:
                 "tasks": tuple(tasks),
                 "groups": tuple(map(self._frozen, self.groups)),
                 "current": self._name_now(self.current) if self.current is not None else None,
+                "before": self._before({task.name for task in tasks}),
             }
         )
         return self._displayed(made, entries) if self.nested else made
+
+    def _before(self, names: set[str]) -> tuple[tuple[str, str], ...]:
+        """What has to come before what, without the tasks that were taken out."""
+        found = [(self._name_now(a), self._name_now(b)) for a, b in self.before.before]
+        gone = {task.name for task in self.before.tasks} - names - set(self.renamed)
+        return tuple(pair for pair in found if not gone.intersection(pair))
 
     def _name_now(self, name: str) -> str:
         return self.renamed.get(name, name)

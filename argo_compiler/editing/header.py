@@ -28,6 +28,7 @@ class HeaderFields(TypedDict, total=False):
     after_mission_report: str
     current: str | None
     left_out: tuple[str, ...]
+    before: tuple[tuple[str, str], ...]
 
 
 def set_header(mission: Mission, **fields: Unpack[HeaderFields]) -> Edited:

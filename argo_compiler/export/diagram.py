@@ -175,4 +175,7 @@ def reaction_words(reaction: Reaction) -> str:
         parts.append(f"after {reaction.hold_limit:g} s at most {_AFTERWARDS[reaction.on_limit]}")
     if reaction.priority is not None:
         parts.append(f"priority {reaction.priority}")
-    return f"{reaction.event.replace('_', ' ')}: {', '.join(parts)}"
+    event = reaction.event.replace("_", " ")
+    if reaction.battery_below is not None:
+        event += f" (below {100 * reaction.battery_below:g} %)"
+    return f"{event}: {', '.join(parts)}"

@@ -22,7 +22,7 @@ _NEW = {
         "window",
     ),
     "groups": ("every", "until"),
-    "reactions": ("hold_limit", "on_limit", "area"),
+    "reactions": ("hold_limit", "on_limit", "area", "battery_below"),
 }
 """Fields that came with version 3, by list."""
 
@@ -52,6 +52,8 @@ def fields_of_later(mission: Mission, version: int) -> Iterator[tuple[JsonPath, 
             for field in new:
                 if getattr(part, field) != type(part).model_fields[field].default:
                     yield (name, i, field), field
+    if mission.before:
+        yield ("before",), "before"
     for i, task in enumerate(mission.tasks):
         if task.action is Action.WAIT:
             yield ("tasks", i, "action"), "WAIT"

@@ -327,6 +327,9 @@ class Reaction(Model):
     the mission, END ends it"""
     priority: int | None = Field(default=None, ge=-MAX_COUNT, le=MAX_COUNT)
     """the greater one goes first; None: by how bad the event is, see `DEFAULT_PRIORITIES`"""
+    battery_below: float | None = Field(default=None, gt=0, lt=1)
+    """LOW_BATTERY: the share of the battery's charge, 0 to 1, below which the robot raises the
+    event in this mission; None: the robot's own level"""
     source: Span | None = None
 
     @property
@@ -371,6 +374,9 @@ class Mission(Model):
     left_out: tuple[str, ...] = ()
     """the names of tasks that were taken away when the order was chosen, as they did not fit into
     the time; for people, the machine does not use it"""
+    before: tuple[tuple[str, str], ...] = ()
+    """pairs of tasks by their names: a run that comes to both of them comes to the first one before
+    it comes to the second. An order that is chosen keeps to it; the machine does not use it"""
 
     def task(self, name: str) -> Task | None:
         return next((t for t in self.tasks if t.name == name), None)

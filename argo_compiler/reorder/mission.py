@@ -11,7 +11,7 @@ from argo_compiler.errors import Invalid, NotFound
 from argo_compiler.il import Mission, Order
 from argo_compiler.reorder.asked import with_requirements
 from argo_compiler.reorder.branches import Branches
-from argo_compiler.reorder.precedences import asked_for, must_be_last, precedences
+from argo_compiler.reorder.precedences import asked_names, must_be_last, precedences
 from argo_compiler.reorder.reckoning import assumptions, reckoning_notes
 from argo_compiler.reorder.requirements import Requirements
 from argo_compiler.reorder.travel_matrix import TravelMatrix, require_matrix_of
@@ -40,8 +40,8 @@ class MissionRoute:
     """what stays as it is written, and how it is reckoned"""
     limit: float | None = None
     """s, the shorter of the mission's maximum duration and the budget"""
-    unsaid: tuple[str, ...] = ()
-    """in words, what was asked for that no mission can say"""
+    before: tuple[tuple[str, str], ...] = ()
+    """pairs of tasks that were asked to come before each other, by their names"""
     work: tuple[int, ...] = ()
     """units that each task takes itself"""
     assumed: tuple[str, ...] = ()
@@ -109,7 +109,7 @@ def route_problem(
         Tour(tuple(range(len(visits.stops)))),
         tuple(reasons),
         None if limit is None else limit[0],
-        tuple(dict.fromkeys(one.words for one in asked_for(visits, requirements))),
+        asked_names(visits, requirements),
         tuple(map(int, ways.work)),
         tuple(assumptions(visits, ways)),
     )

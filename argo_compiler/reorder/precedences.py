@@ -1,7 +1,7 @@
 """What keeps its order in a mission, and why, in the mission's words."""
 
 from collections.abc import Iterator
-from itertools import combinations, product
+from itertools import combinations, pairwise, product
 
 from argo_compiler.errors import Invalid
 from argo_compiler.il import Action, Mission
@@ -29,6 +29,7 @@ def precedences(
         words = f"precise order {shown}" if precise else AS_WRITTEN
         found.append(Precedence(everything, words))
     found += asked_for(visits, requirements)
+    found += _planned(visits)
     # Also in a precise order: what a decision needs must not be left out.
     found += _deciding(visits)
     if not kept:
@@ -80,6 +81,27 @@ def asked_for(visits: Visits, requirements: Requirements) -> Iterator[Precedence
         for (i, one), (j, other) in combinations(enumerate(found), 2):
             words = f"{said(sequence[i])} before {said(sequence[j])}"
             yield from (Precedence(pair, words) for pair in product(one, other))
+
+
+def _planned(visits: Visits) -> Iterator[Precedence]:
+    """The orders that the mission itself asks for, of what is not always together or apart."""
+    leaves = {leaf.name: i for i, leaf in enumerate(visits.spine.flow.leaves)}
+    for pair in visits.spine.before:
+        one, other = (visits.of_leaf.get(leaves.get(name, -1)) for name in pair)
+        if one is not None and other is not None and one != other:
+            yield Precedence((one, other), f"{visits.names[one]} before {visits.names[other]}")
+
+
+def asked_names(visits: Visits, requirements: Requirements) -> tuple[tuple[str, str], ...]:
+    """The same as pairs of tasks, as a mission has them."""
+    names = [visits.spine.name(stop.entry) for stop in visits.stops]
+    return tuple(
+        dict.fromkeys(
+            (names[i], names[j])
+            for precedence in asked_for(visits, requirements)
+            for i, j in pairwise(precedence.sequence)
+        )
+    )
 
 
 def _first_of_all(visits: Visits) -> Iterator[Precedence]:

@@ -15,7 +15,8 @@ def apply_route(planned: MissionRoute, route: Tour) -> Mission:
 
     What the route leaves out is taken away, with what is done only after it, and named in
     `left_out`. Transitions, the groups' first and last tasks and START lead to what comes next now;
-    the limit that the order was chosen for is the maximum duration; names, conditions, sources and
+    the limit that the order was chosen for is the maximum duration, what was asked to come before
+    what is in `before`; names, conditions, sources and
     everything else are kept.
 
     Raises ArgoError if the route breaks a rule other than a limit of time, or a mission can't say
@@ -50,6 +51,7 @@ class _Rewriting:
     def __init__(self, planned: MissionRoute, route: Tour) -> None:
         self.mission_before = planned.mission
         self.limit = planned.limit
+        self.asked = planned.before
         self.visits = planned.visits
         self.spine = planned.visits.spine
         self.position = {visit: k for k, visit in enumerate(route.order)}
@@ -77,6 +79,7 @@ class _Rewriting:
                 "groups": tuple(self._group(g) for g in before.groups if self._stays(g, names)),
                 "current": before.current if before.current in names else None,
                 "max_duration": self.limit,
+                "before": tuple(dict.fromkeys((*before.before, *self.asked))),
                 "left_out": (
                     *before.left_out,
                     *(task.name for task in before.tasks if task.name not in names),

@@ -8,8 +8,8 @@ from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 
 from argo_compiler.analysis.flow import NOWHERE, Flow
-from argo_compiler.analysis.graph import components, is_loop, reached_from
 from argo_compiler.errors import Invalid
+from argo_compiler.graphs import components, is_loop, reached_from
 from argo_compiler.il import Condition, Mission
 from argo_compiler.reorder.task_graph import Level, TaskGraph
 
@@ -55,6 +55,8 @@ class Spine:
     """why something stays as it is written"""
     asked: Mapping[int, tuple[Condition, ...]]
     """by leaf, what is looked at when it ends"""
+    before: tuple[tuple[str, str], ...] = ()
+    """what the mission asks to come before what, by names"""
 
     def name(self, leaf: int) -> str:
         return self.flow.leaves[leaf].name
@@ -89,6 +91,7 @@ class _Finder:
     """Finds the units of one mission. Collects reasons."""
 
     def __init__(self, mission: Mission) -> None:
+        self.before = mission.before
         self.passages = TaskGraph(mission)
         self.flow = self.passages.flow
         self.reasons: list[str] = []
@@ -111,6 +114,7 @@ class _Finder:
             frozenset(passages.gates),
             tuple(dict.fromkeys(self.reasons)),
             {leaf: tuple(passages.asked(leaf)) for leaf in passages.own},
+            self.before,
         )
 
     def _units(self, group: int, level: Level, entry: int) -> tuple[Unit, ...]:

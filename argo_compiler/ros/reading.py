@@ -77,6 +77,7 @@ class _Reader:
             "reactions": tuple(
                 self._reaction(f"reactions[{i}]", r) for i, r in enumerate(m.reactions)
             ),
+            "before": tuple((p.first, p.second) for p in m.before),
             "designation": m.designation,
             "site": m.site,
             "mode": self._member("mode", self.numbers.mode, m.mode),
@@ -183,6 +184,7 @@ class _Reader:
             "hold_limit": m.hold_limit or None,
             "on_limit": self._member(f"{place}.on_limit", self.numbers.afterwards, m.on_limit),
             "priority": m.priority if m.has_priority else None,
+            "battery_below": m.battery_below or None,
             "source": _span(m),
         }
 

@@ -65,6 +65,14 @@ class _Writer:
             has_current=mission.current is not None,
             current=_text("current", mission.current or ""),
             reactions=[self._reaction(reaction) for reaction in mission.reactions],
+            before=[
+                self.types.new(
+                    "MissionPrecedence",
+                    first=_text("before", first),
+                    second=_text("before", second),
+                )
+                for first, second in mission.before
+            ],
             designation=_text("designation", mission.designation),
             site=_text("site", mission.site),
             mode=self.numbers.mode[mission.mode],
@@ -197,6 +205,7 @@ class _Writer:
             on_limit=self.numbers.afterwards[reaction.on_limit],
             has_priority=reaction.priority is not None,
             priority=_integer(f"{place}.priority", reaction.priority or 0, "int64"),
+            battery_below=reaction.battery_below or 0.0,
             **self._pose(reaction.pose),
             **_source(place, reaction.source),
         )

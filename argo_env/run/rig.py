@@ -81,7 +81,8 @@ def fit_out(spec: RunSpec, navigator: Navigator, gui: bool, stack: ExitStack) ->
     drive, network, battery = Powertrain(inner), RadioNetwork(site), Battery(robot)
     sensor = OnboardSensor(camera, site, generator(seed, "instrument"))
     targets = FaultTargets(world, truth, surroundings, drive, sensor, battery, network)
-    watches += onboard_watches(robot, battery, network, drive, sensor)
+    level = next((r.battery_below for r in spec.mission.reactions if r.battery_below), None)
+    watches += onboard_watches(robot, battery, network, drive, sensor, level)
     return Rig(world, navigator, drive, sensor, watches, battery, Schedule(faults, targets))
 
 

@@ -31,13 +31,16 @@ NOISY = 0.01  # standard deviation in the test pattern above which the camera is
 
 
 class BatteryWatch:
-    """Estimates the charge from voltage and current. Holds whether it has been low."""
+    """Estimates the charge from voltage and current. Holds whether it has been low: it is low again
+    only after it was charged."""
 
     name = "battery"
     period = 1.0
 
-    def __init__(self, battery: Battery) -> None:
+    def __init__(self, battery: Battery, low: float = LOW) -> None:
+        """`low`: the share of the charge below which it is."""
         self._battery = battery
+        self._level = low
         self._low = False
 
     def remember(self, told: Sequence[Told], now: float) -> None:  # noqa: ARG002
@@ -46,7 +49,7 @@ class BatteryWatch:
     def look(self, now: float, pose: BodyPose) -> tuple[Detection, ...]:  # noqa: ARG002
         voltage = self._battery.voltage
         charge = estimated_charge(voltage, self._battery.current)
-        if not self._low and charge < LOW:
+        if not self._low and charge < self._level:
             self._low = True
             return (Detection(EventKind.LOW_BATTERY, f"{voltage:.1f} V, {charge:.0%} charged"),)
         if self._low and charge >= FULL:
@@ -197,11 +200,13 @@ def onboard_watches(
     network: RadioNetwork,
     drive: Powertrain,
     sensor: OnboardSensor,
+    low_battery: float | None = None,
 ) -> tuple[Watch, ...]:
-    """All watches over the robot itself, for one run."""
+    """All watches over the robot itself, for one run. `low_battery`: the share of the charge below
+    which the battery is low; None: the robot's own level."""
     return (
         EmergencyStopWatch(drive),
-        BatteryWatch(battery),
+        BatteryWatch(battery, LOW if low_battery is None else low_battery),
         ConnectionWatch(network),
         DriveWatch(drive, robot),
         CameraWatch(sensor),

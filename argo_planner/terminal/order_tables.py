@@ -53,11 +53,6 @@ def written_lines(
         yield f"Its maximum duration is the budget now: {time_words(limit)}"
     if wrong := too_long(mission, site):
         yield f"Note: on its own ways {wrong}: choose the order for less time"
-    if unsaid := found.planned.unsaid:
-        yield (
-            f"Note: no mission can say this: {'; '.join(unsaid)}. The order keeps to it as "
-            "planned, but whoever changes it has to ask for it again"
-        )
 
 
 def _table(found: Suggested) -> Table:

@@ -1,6 +1,7 @@
 """Every finding of `check`, on a mission that is sound but for one thing."""
 
 import pytest
+from pydantic import ValidationError
 
 from argo_compiler.catalog import Area, Catalog, CheckpointInfo, CheckpointKind, Interval
 from argo_compiler.checks import check
@@ -250,6 +251,11 @@ class TestReactions:
             ),
             ("il.no-dock", "['low_battery'].response", [react(LOW, Response.RETURN)]),
             ("il.until-itself", "['gas_leak'].until", [react(GAS, Response.PAUSE, until=GAS)]),
+            (
+                "il.battery-level",
+                "['gas_leak'].battery_below",
+                [react(GAS, Response.PAUSE, battery_below=0.3)],
+            ),
         ],
     )
     def test_errors(self, code, field, reactions):
@@ -257,6 +263,14 @@ class TestReactions:
         assert (finding.code, finding.severity) == (code, Severity.ERROR)
         assert finding.subject == f"reactions{field}"
         assert finding.hint
+
+    @pytest.mark.rule("R11")
+    def test_a_level_of_the_battery_is_a_share_of_its_charge(self):
+        low = react(LOW, Response.PAUSE, battery_below=0.3)
+        assert check(Mission(tasks=CHAIN, reactions=[low])) == ()
+        for level in (0.0, 1.0, -0.1, 30.0):
+            with pytest.raises(ValidationError):
+                react(LOW, Response.PAUSE, battery_below=level)
 
     def test_a_pause_may_say_that_the_mission_goes_on(self):
         pause = react(GAS, Response.PAUSE, afterwards=Afterwards.RESUME)

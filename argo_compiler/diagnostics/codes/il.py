@@ -3,6 +3,13 @@
 from argo_compiler.diagnostics.codes.code import error, warning
 
 IL = {
+    "il.battery-level": error(
+        "A reaction has a level of the battery, and its event is not LOW_BATTERY.",
+        "Leave `battery_below` out, or let the reaction answer `low_battery`.",
+    ),
+    "il.before-itself": error(
+        "Tasks are to come before each other in a circle.", "Take one of the pairs out of `before`."
+    ),
     "il.branch-without-target": error(
         "A task is to go on elsewhere when it has failed, and does not say where.",
         "Give it a `failure_target`, or another `on_failure`.",
@@ -116,6 +123,11 @@ IL = {
         "The mission ends after a task if none of its conditions hold.",
         "Add an unconditional transition if it is to go on.",
     ),
+    "il.order-broken": warning(
+        "A task that is to come before another one can come after it. An error in a precise order "
+        "where it always does.",
+        "Move one of them, choose the order with `argo route`, or take the pair out of `before`.",
+    ),
     "il.other-site": error(
         "The mission was planned for another site, so its poses and checkpoints mean others here.",
         "Choose the mission's site.",
@@ -149,6 +161,10 @@ IL = {
     "il.unknown-area": error(
         "The mission begins or ends in a starting area that the site does not have.",
         "Use the number of one of the site's starting areas.",
+    ),
+    "il.unknown-before": error(
+        "A pair of `before` names a task that the mission does not have.",
+        "Name a task, or take the pair out.",
     ),
     "il.unknown-current": warning(
         "`current` names no task of the mission.",

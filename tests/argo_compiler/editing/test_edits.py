@@ -477,3 +477,21 @@ def test_a_reaction_gets_a_dock_of_its_own_and_a_limit():
     )
     made = editing.change_reaction(mission, EventKind.LOW_BATTERY, away).mission
     assert made.reactions == (away,)
+
+
+@pytest.mark.rule("M10")
+def test_what_comes_before_what_is_renamed_and_goes_with_its_tasks():
+    mission = Mission(
+        tasks=(task("A", "B"), task("B", "C"), task("C")),
+        before=(("A", "B"), ("B", "C"), ("A", "C")),
+    )
+    renamed = editing.rename_task(mission, "B", "X").mission
+    assert renamed.before == (("A", "X"), ("X", "C"), ("A", "C"))
+    removed = editing.remove_task(mission, "B")
+    assert removed.mission.before == (("A", "C"),)
+    gone = [c.before for c in removed.consequences if c.subject == "before"]
+    assert gone == ["'A' before 'B'", "'B' before 'C'"]
+    turned = Mission(tasks=(task("C", "B"), task("B", "A"), task("A")))
+    with pytest.raises(EditConflict):
+        editing.set_header(turned, before=(("A", "C"),))
+    assert editing.set_header(mission, before=()).mission.before == ()

@@ -37,6 +37,7 @@ JOINTS = JointState(names=("arm",), positions=(1.0,), velocities=(1.0,), efforts
 PAUSE = Reaction(
     event=EventKind.GAS_LEAK, response=Response.PAUSE, until=EventKind.ALL_CLEAR, hold_limit=60
 )
+LOW = Reaction(event=EventKind.LOW_BATTERY, response=Response.RETURN, battery_below=0.3)
 RETURN = Reaction(event=EventKind.GAS_LEAK, response=Response.RETURN)
 
 
@@ -177,6 +178,7 @@ CHANGES = {
     "Reaction.hold_limit": reacting(hold_limit=70.0),
     "Reaction.on_limit": reacting(on_limit=Afterwards.RESUME),
     "Reaction.priority": reacting(priority=7),
+    "Reaction.battery_below": reacting(LOW, battery_below=0.4),
     "Reaction.source": reacting(source=SPAN),
     "Mission.designation": whole(designation="named"),
     "Mission.site": whole(site="umad"),
@@ -197,6 +199,7 @@ CHANGES = {
     "Mission.reactions": whole(reactions=(PAUSE,)),
     "Mission.current": whole(current="A"),
     "Mission.left_out": whole(left_out=("Z",)),
+    "Mission.before": whole(before=(("A", "C"),)),
 }
 """A mission, and the same with another value in a field."""
 
@@ -210,7 +213,7 @@ CHANGES_NOTHING = {
     "Reaction.source",
     *(f"Mission.{name}" for name in ("site", "max_duration", "start_area", "end_area", "order")),
     *(f"Mission.{name}" for name in ("anomaly_specification", "real_time_reporting")),
-    *(f"Mission.{name}" for name in ("after_mission_report", "current", "left_out")),
+    *(f"Mission.{name}" for name in ("after_mission_report", "current", "left_out", "before")),
 }
 """What a machine does the same with and without: `docs/export.md` says so."""
 
@@ -274,7 +277,8 @@ def test_a_field_is_carried_or_refused_or_known_to_be_left_out(form):
 
 @pytest.mark.parametrize("form", ["btcpp", "flexbe"])
 def test_refusals_name_what_they_are_about(form):
-    names = ("'A'", "'B'", "'W'", "'G'", "'H'", "'gas_leak'", "'hot_spot'", "begins paused")
+    names = ("'A'", "'B'", "'W'", "'G'", "'H'", "'gas_leak'", "'hot_spot'", "'low_battery'")
+    names = (*names, "begins paused")
     for field, (_, after) in CHANGES.items():
         for code, message in written(form, after)[1]:
             assert code.startswith("export."), field

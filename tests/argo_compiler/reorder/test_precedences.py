@@ -260,7 +260,7 @@ def test_what_is_asked_for_of_tasks_is_written_into_the_mission():
     assert two.window == TimeWindow(earliest=60, latest=120, missed_target="DOCK")
     assert (two.optional, two.priority) == (False, 4)
     assert three.window == TimeWindow(earliest=5)
-    assert found.unsaid == ()
+    assert found.before == ()
 
 
 def test_a_mission_says_what_is_optional_and_when():
@@ -444,3 +444,18 @@ def test_durations_are_read(text, seconds):
 def test_what_is_no_duration_is_refused(text):
     with pytest.raises(ArgoError, match="20 min"):
         parse_seconds(text)
+
+
+@pytest.mark.rule("M10")
+def test_what_comes_before_what_is_kept_and_written():
+    mission = row(measure(1), measure(2), measure(3), before=(("M3", "M1"), ("M2", "DOCK")))
+    found = route_problem(mission, ways(mission))
+    assert [(p.sequence, p.words) for p in found.problem.precedences] == [
+        ((2, 0), "checkpoint 3 before checkpoint 1")
+    ]
+    asked = Requirements(before=((2, 3, 1),))
+    found = route_problem(mission, ways(mission), asked)
+    written = apply_route(found, Tour((1, 2, 0)))
+    assert written.before == (*mission.before, ("M2", "M3"))
+    with pytest.raises(ArgoError, match="checkpoint 3 before checkpoint 1"):
+        apply_route(route_problem(mission, ways(mission)), Tour((0, 1, 2)))

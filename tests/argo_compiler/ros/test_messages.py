@@ -38,15 +38,16 @@ VERSIONS = pytest.mark.parametrize("types", [ros1_types(), ros2_types()], ids=["
 MD5 = {
     "MissionCondition": "37bb38f28a9ee4916e2aa13f33536b1a",
     "MissionGroup": "fa096b920fc904334a3cb2c3e623c801",
-    "MissionReaction": "4c1d53fb9d6809f83c45fe2885455a18",
-    "MissionSpecification": "022e5b7c4086d54ad1940136ea930951",
+    "MissionPrecedence": "c0d0db6e21f3fc1eb068f9cc22ba8beb",
+    "MissionReaction": "1d48c369d94cc44ecfcee1207b2a655b",
+    "MissionSpecification": "bb95a2b8147b5ddef1aead69bccb6e92",
     "MissionTask": "ba474aa67ef363b700dc70312a631fdc",
     "MissionTransition": "b65ba9fbcf3464c147446c00ea22c9c8",
     "MissionWait": "512b5531cbafc73bf63f3925a8b25653",
     "MissionWindow": "f61671b5696223a94cb58f0e3cf0ab2f",
 }
 """As rosbags computes them from the same files."""
-TYPE_HASH = "RIHS01_dc1030b6ce594b1199014b6988cf3ed9b783ec19edad2a7f119df22ff022024e"
+TYPE_HASH = "RIHS01_93351fa09eb7333bfae6019df14af63b2af606db84ec9c584121c2b5024952a6"
 
 
 @VERSIONS

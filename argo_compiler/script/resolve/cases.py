@@ -131,6 +131,8 @@ class Cases:
             self._branch(case, choice.otherwise)
             self.context.choice = choice
             return
+        if not self.context.whole:
+            return  # the condition may be what was not understood
         message = "`Otherwise` of what? No condition stands before it"
         hint = "write it behind the condition whose other case it is"
         self.diagnostics.error("otherwise", message, case.span, hint)

@@ -52,7 +52,8 @@ def import_script(
 ) -> Resolved:
     """The mission of the script `text`; see `parse` and `resolve`, whose errors it raises."""
     places = [place.name for place in catalog.places]
-    return resolve(parse(text, places, source_name), catalog, start_area, end_area)
+    names = [checkpoint.name for checkpoint in catalog.checkpoints]
+    return resolve(parse(text, places, source_name, names), catalog, start_area, end_area)
 
 
 def _mission(

@@ -10,7 +10,7 @@ from argo_compiler.script.syntax.tree.facts import Fact
 from argo_compiler.script.syntax.tree.manner import Manner
 from argo_compiler.script.syntax.tree.orders import Order, Sentence
 from argo_compiler.script.syntax.tree.places import DockLocation
-from argo_compiler.script.syntax.tree.script import Header, Step
+from argo_compiler.script.syntax.tree.script import Header, Step, Unread
 
 
 class Stepping:
@@ -45,10 +45,15 @@ class Stepping:
         sentences = list(step.sentences)
         following = self._taken(sentences) if step.steps else None
         for sentence in sentences:
-            if isinstance(sentence, Fact):
+            errors = self.context.diagnostics.errors
+            if isinstance(sentence, Unread):
+                self.context.fail()
+            elif isinstance(sentence, Fact):
                 self._fact(sentence)
             else:
                 self.planner.sentence(sentence, block)
+            if self.context.diagnostics.errors > errors:
+                self.context.fail()
         inner = block
         if following is not None:
             round_ = self.planner.repeating.round(following, "Repeat")
@@ -60,7 +65,7 @@ class Stepping:
         for one in step.steps:
             self._step(one, inner)
 
-    def _taken(self, sentences: list[Sentence | Fact]) -> Order | None:
+    def _taken(self, sentences: list[Sentence | Fact | Unread]) -> Order | None:
         """`Do the following twice:`, taken out of the sentences over inner steps."""
         last = sentences[-1] if sentences else None
         if isinstance(last, Sentence) and last.orders and not last.cases:

@@ -1,68 +1,118 @@
-"""The fields of a header: `Maximum duration: 20'`, `Start: area 2`, and the cells of a sheet."""
+"""The fields of a header: `Maximum duration: 20'`, `Start: area 2`, and the cells of a sheet.
+
+A value is understood as a whole or refused: no word of it is passed over.
+"""
 
 import re
-from typing import TYPE_CHECKING, Any
+from dataclasses import dataclass, field
+from typing import Any
 
 from argo_compiler.il import Mode, Order
+from argo_compiler.script.syntax.area_cells import AreaCells
+from argo_compiler.script.syntax.asides import Asides
 from argo_compiler.script.syntax.source import Diagnostics, ScriptText
-from argo_compiler.script.syntax.tree.script import Areas, Header, Text
+from argo_compiler.script.syntax.spelling import alternatives, candidates, nearest
+from argo_compiler.script.syntax.tree import orders
+from argo_compiler.script.syntax.tree.orders import Sentence
+from argo_compiler.script.syntax.tree.places import Coordinates, Steps
+from argo_compiler.script.syntax.tree.script import AreaChosen, Header, Text
+from argo_compiler.script.syntax.understanding import Understanding
+from argo_compiler.script.syntax.words.joints import VERBS
 from argo_compiler.script.syntax.words.lengths import Length
-from argo_compiler.script.syntax.words.lexer import words
-
-if TYPE_CHECKING:
-    from argo_compiler.script.syntax.parsing import _Parser
-
-_LABELS = {
-    "designation": r"(?:mission's |mission )?designation",
-    "mode": r"(?:main )?mode",
-    "site": r"site",
-    "max_duration": r"max(?:imum)?(?: mission)?(?: total)?(?: mission)? (?:duration|time)",
-    "order": r"order",
-    "anomaly_specification": r"anomaly specification",
-    "real_time_reporting": r"real[- ]time reporting",
-    "after_mission_report": r"after[- ]mission report(?:ing)?",
-    "initial_position": r"initial position|start(?:ing)?(?: (?:area|position))?",
-    "end_of_mission": r"end of (?:the )?mission|end(?: area)?|finish",
-    "steps": r"[^:]*\bin this precise order|checkpoints(?: to (?:read|check|inspect))?",
-}
-_LABEL = re.compile(
-    "|".join(rf"(?P<{name}>\b(?:{pattern}))\s*:" for name, pattern in _LABELS.items()),
-    re.IGNORECASE,
-)
-
+from argo_compiler.script.syntax.words.lexer import unquoted
+from argo_compiler.script.syntax.words.prose import begins
+from argo_compiler.script.syntax.words.word import Word
 
 _STOP = re.compile(r"[.!](?=\s|$)")
+_ANY_LABEL = re.compile(r"[^\W\d_][\w'/-]*\.?(?:\s+[\w'/-]+){0,6}\s*:(?=\s|$)")
 _PROSE = frozenset(
-    ["designation", "anomaly_specification", "real_time_reporting", "after_mission_report"]
+    ["designation", "anomaly_specification", "real_time_reporting", "after_mission_report", "site"]
 )
+_WHOLE = re.compile(r"(?:(?:ANY_ORDER|THIS_ORDER|(?:AT_MOST|WITHIN) DURATION) )+")
+_INTRODUCTION = re.compile(r"(?:WORD )?(?:TO )?(?:MEASURE )?(?:ALL )?KIND (?:ANY|THIS)_ORDER ")
+_AREAS = frozenset(["initial_position", "end_of_mission"])
 
 
+@dataclass
 class Fields:
-    """Reads fields."""
+    """Reads fields. Mutable: the header grows field by field."""
 
-    def __init__(self, diagnostics: Diagnostics, parser: "_Parser") -> None:
-        self.diagnostics = diagnostics
-        self.parser = parser
-        self.header = Header()
+    understanding: Understanding
+    asides: Asides
+    diagnostics: Diagnostics
+    header: Header = field(default_factory=Header)
+    first: list[Sentence] = field(default_factory=list)
+    last: list[Sentence] = field(default_factory=list)
+    """what is to be done at the very end: `Finish: at the front of the site`"""
+    _said: dict[str, tuple[Any, ScriptText]] = field(default_factory=dict)
+    """what the fields say, and where"""
+
+    def __post_init__(self) -> None:
+        self.prose = self.understanding.language.prose
+        self.areas = AreaCells(self.understanding, self.asides, self.diagnostics)
+
+    # ---- labels
 
     def is_field(self, text: ScriptText) -> bool:
         """Whether a line begins with a field's label."""
-        return _LABEL.match(text.content) is not None
+        return self.prose.label.match(text.content) is not None
+
+    def is_cell(self, text: ScriptText) -> bool:
+        """Whether a line begins with the label of a field that may have several lines."""
+        label = self.prose.label.match(text.content)
+        return label is not None and label.lastgroup in _PROSE | _AREAS
+
+    def relabelled(self, text: ScriptText) -> ScriptText:
+        """The text with a misspelt label put right."""
+        label = _ANY_LABEL.match(text.content)
+        if label is None or ":" not in text.content or self.is_field(text):
+            return text
+        fixed, found = text, []
+        for word in reversed(list(re.finditer(r"[\w'-]+", label[0]))):
+            if word[0].lower() in self.prose.label_words:
+                continue
+            meant = candidates(word[0], self.prose.label_words)
+            if len(meant) != 1:
+                return text
+            fixed = fixed.replace(word.start(), word.end(), meant[0])
+            found.append((word[0], meant[0], text.span(word.start(), word.end())))
+        if not found or not self.is_field(fixed):
+            return text
+        for said, meant_word, span in found:
+            self.diagnostics.warning("respelled", f"read `{said}` as `{meant_word}`", span)
+        return fixed
+
+    def is_unknown(self, text: ScriptText) -> bool:
+        """Whether a line that makes no sense has a label that there is not; then it is said."""
+        label = _ANY_LABEL.match(text.content)
+        if label is None or not text.content[label.end() :].strip():
+            return False
+        said = text[: label.end() - 1].strip()
+        if {"IF", *VERBS} & {*self.understanding.types(said)}:
+            return False
+        close = nearest(said.content, self.prose.shown_labels, 1)
+        hint = f"the fields are {alternatives((f'`{k}:`' for k in self.prose.shown_labels), 'and')}"
+        hint = f"is `{close[0]}:` meant? {hint}" if close else hint
+        self.diagnostics.error(
+            "unknown-label", f"there is no field `{said.content}`", said.span(), hint
+        )
+        return True
+
+    # ---- values
 
     def read(self, text: ScriptText) -> ScriptText:
         """Reads the fields that a line begins with, perhaps several: `Start: area 2, end: area 1.`
         What is left is the rest of the line, which may have sentences."""
-        while (label := _LABEL.match(text.content)) is not None:
+        while (label := self.prose.label.match(text.content)) is not None:
             name = label.lastgroup
             assert name is not None
             value = text[label.end() :].strip()
+            if name == "steps":
+                return value
             end = self._end(name, value.content)
             rest = value[end:].strip()
-            field = value[: len(value.content[:end].rstrip(" ,;."))]
-            if name == "steps" or not self._field(name, field):
-                if "precise" in label.group().lower():
-                    self.header.order = Order.PRECISE
-                return value
+            said = value[: len(value.content[:end].rstrip(" ,;."))]
+            self._read(name, said, text[: label.end()])
             text = rest[len(rest.content) - len(rest.content.lstrip(" ,;.")) :]
         return text
 
@@ -70,46 +120,210 @@ class Fields:
         """Where the value of a field ends: at the next label or, unless it is prose, sentence."""
         ends = [
             m.start()
-            for m in _LABEL.finditer(content)
-            if content[: m.start()].rstrip()[-1:] in ",;."
+            for m in self.prose.label.finditer(content)
+            if content[: m.start()].rstrip()[-1:] in (",", ";", ".")
         ]
         if name not in _PROSE and (stop := _STOP.search(content)):
             ends.append(stop.end())
         return min((e for e in ends if e > 0), default=len(content))
 
-    def _field(self, name: str, value: ScriptText) -> bool:
+    def _read(self, name: str, value: ScriptText, label: ScriptText) -> None:
+        if not value.content:
+            if name in _PROSE:
+                return
+            message, hint = "this field says nothing", "write its value, or leave the line out"
+            self.diagnostics.error("field", message, label.span(), hint)
+            return
+        value = self.understanding.figures(value) if name not in _PROSE else value
         match name:
+            case "nothing":
+                self._nothing(value, label)
             case "mode":
-                supervised = "superv" in value.content.lower()
-                self.header.mode = Mode.SUPERVISORY if supervised else Mode.AUTONOMOUS
+                self._set(name, self._meaning(name, value, Mode), value)
             case "order":
-                free = "any" in value.content.lower()
-                self.header.order = Order.ANY if free else Order.PRECISE
+                self._set(name, self._meaning(name, value, Order), value)
             case "max_duration":
                 self._duration(value)
             case "initial_position" | "end_of_mission":
-                return self._areas(name, value)
+                self._place(name, value)
+            case "start_area" | "end_area":
+                chosen = self.areas.chosen(value)
+                self._set(name, chosen, value, chosen and (chosen.area, chosen.as_planned))
+            case "dock":
+                self._dock(value)
+            case "current":
+                self._current(value)
+            case "left_out":
+                self._left_out(value)
             case _:
-                setattr(self.header, name, Text(span=value.span(), text=value.content))
-        return True
+                text = self._text(value)
+                self._set(name, text, value, text and text.text)
+
+    def _set(self, name: str, meaning: Any, value: ScriptText, key: Any = None) -> None:
+        """Keeps a field, unless it stands elsewhere with another value; None: it has an error.
+        The key is what tells two values apart, where the meaning has its place in it."""
+        if meaning is not None and self._is_new(name, meaning if key is None else key, value):
+            setattr(self.header, name, meaning)
+
+    def _is_new(self, name: str, key: Any, value: ScriptText) -> bool:
+        known, before = self._said.setdefault(name, (key, value))
+        if known == key:
+            return before is value
+        line = before.span().line
+        message = f"line {line} says `{before.content}`, and this says `{value.content}`"
+        hint = "leave one of the two out"
+        self.diagnostics.error("repeated-field", message, value.span(), hint)
+        return False
+
+    def _text(self, value: ScriptText) -> Text | None:
+        said = " ".join(value.content.split())
+        quoted = re.fullmatch(r'"(?:[^"\\]|\\.)*"(?:\s*"(?:[^"\\]|\\.)*")*', value.content)
+        text = unquoted(value.content) if quoted else said
+        if text is None:
+            message = "this quoted text has an escape that does not exist"
+            hint = r"write a backslash as `\\` and a quotation mark as `\"`"
+            self.diagnostics.error("quoted-text", message, value.span(), hint)
+            return None
+        return Text(span=value.span(), text=text)
+
+    def _nothing(self, value: ScriptText, label: ScriptText) -> None:
+        types = {*self.understanding.types(value)}
+        if types & {"AREA", "KIND", "HASH", "DOCK", *VERBS}:
+            message = f"a field `{label.content.rstrip(' :')}` has no effect on a mission"
+            hint = "write what is to be done as a sentence, or take the line out"
+            self.diagnostics.error("unknown-label", message, label.span(), hint)
+            return
+        said = label.source.text[label.offsets[0] : value.offsets[-1] + 1]
+        self.diagnostics.note("no-effect", f"`{said}` has no effect", label.span())
+
+    def _meaning(self, name: str, value: ScriptText, kind: type) -> Any:
+        """What one of a few values means."""
+        found = self.prose.meanings.get((name, _plain(value)))
+        if found is None:
+            known = {m: said for (n, said), m in reversed(self.prose.meanings.items()) if n == name}
+            choices = alternatives(f"`{known[meaning]}`" for meaning in kind)
+            message = f"`{value.content}` is no {name}"
+            self.diagnostics.error("field", message, value.span(), f"write {choices}")
+        return found
+
+    def is_none(self, value: ScriptText) -> bool:
+        return ("none", _plain(value)) in self.prose.meanings
 
     def _duration(self, value: ScriptText) -> None:
-        for word in words(value.content, self.parser.language.lexicon):
-            if word.type == "DURATION" and isinstance(word.value, Length):
-                node = Text(span=value.span(), text=value.content)
-                self.header.max_duration = (word.value.seconds, node)
-                return
-        self.diagnostics.error(
-            "duration", f"`{value.content}` is no duration", value.span(), "write `20 min`"
-        )
+        found = self.understanding.words(value)
+        lengths = [w.value for w in found if w.type == "DURATION" and isinstance(w.value, Length)]
+        others = [w for w in found if w.type not in ("DURATION", "AT_MOST", "TOTAL")]
+        if self.is_none(value):
+            self._is_new("max_duration", "none", value)
+        elif len(lengths) != 1 or others or not lengths[0].seconds > 0:
+            at = value if not lengths or not others else _of(value, others[0])
+            message = f"`{value.content}` is no duration"
+            hint = "write, say, `20 min`, `1 h 30 min` or `none`"
+            self.diagnostics.error("duration", message, at.span(), hint)
+        elif lengths[0].other is not None:
+            (length,) = lengths
+            message = f"`{length.said}` can be {length.first} or {length.second}"
+            self.diagnostics.error(
+                "ambiguous-duration", message, value.span(), f"write `{length.first}`"
+            )
+        else:
+            node = Text(span=value.span(), text=value.content)
+            seconds = lengths[0].seconds
+            self._set("max_duration", (seconds, node), value, seconds)
 
-    def _areas(self, name: str, value: ScriptText) -> bool:
-        found: list[int] = []
-        listing: list[Any] = words(value.content, self.parser.language.lexicon)
-        if any(w.type == "PLACE" for w in listing):
+    def _place(self, name: str, value: ScriptText) -> None:
+        """`docked in starting area 1 or 2`, or any other place."""
+        if name == "end_of_mission" and self.is_none(value):
+            chosen = AreaChosen(span=value.span(), area=None, as_planned=False)
+            self._set("end_area", chosen, value, (None, False))
+            return
+        where = self.understanding.location(value) if not self.areas.names_areas(value) else None
+        if where is None or isinstance(where, tuple) or self.areas.names_dock(value):
+            areas = self.areas.read(value)
+            self._set(name, areas, value, areas and areas.areas)
+            return
+        if not self._is_new(name, _plain(value), value):
+            return
+        span = value.span()
+        if name == "initial_position":
+            order: orders.Order = orders.Start(span=span, where=where)
+            self.first.append(Sentence(span=span, orders=(order,), cases=()))
+        else:
+            order = orders.Go(span=span, where=where)
+            self.last.append(Sentence(span=span, orders=(order,), cases=()))
+
+    def _dock(self, value: ScriptText) -> None:
+        where = None if self.is_none(value) else self.understanding.location(value)
+        if where is not None and not isinstance(where, Coordinates):
+            message, hint = "this field has the coordinates of a dock", "write `(3, -2.5, 0)`"
+            self.diagnostics.error("field", message, value.span(), hint)
+        elif where is None and not self.is_none(value):
+            self._no_value(value, "write `(3, -2.5, 0) heading 90 degrees`, or `none`")
+        else:
+            self.header.dock_said, self.header.dock = True, where
+
+    def _current(self, value: ScriptText) -> None:
+        found = [w for w in self.understanding.words(value) if w.type != "STEP"]
+        point: int | str | None = None
+        if len(found) == 1 and found[0].type == "STRING":
+            point = found[0].value
+        elif len(found) == 1 and found[0].type == "NUMBER":
+            point = found[0].value.whole
+        if point is None:
+            self._no_value(value, 'write a step or a name: `3`, `"MEASURE 4"`')
+        else:
+            self._set("current", Steps(span=value.span(), points=(point,)), value, point)
+
+    def _left_out(self, value: ScriptText) -> None:
+        found = [w for w in self.understanding.words(value) if not w.type.startswith("AND_")]
+        names = tuple(str(w.value) for w in found if w.type == "STRING")
+        if len(names) != len([w for w in found if w.type != "JOINT"]) or not names:
+            self._no_value(value, 'write names in quotation marks: `"MEASURE 4", "MEASURE 8"`')
+        else:
+            self._set("left_out", names, value)
+
+    def _no_value(self, value: ScriptText, hint: str) -> None:
+        message = f"can't understand `{value.content}` here"
+        self.diagnostics.error("field", message, value.span(), hint)
+
+    # ---- said in sentences
+
+    def introduces(self, text: ScriptText) -> bool:
+        """Reads the sentence over the steps: `Control the checkpoints in this precise order:`."""
+        types = self.understanding.types(text)
+        if not _INTRODUCTION.fullmatch("".join(f"{type_} " for type_ in types)):
             return False
-        for word in listing:
-            if word.type == "NUMBER":
-                found.append(int(word.value.value))
-        setattr(self.header, name, Areas(span=value.span(), text=value.content, areas=tuple(found)))
+        order = Order.ANY if types[-1] == "ANY_ORDER" else Order.PRECISE
+        self._set("order", order, text)
         return True
+
+    def leaves_open(self, text: ScriptText) -> bool:
+        """Reads a sentence that leaves the docks to be chosen: `The docks are chosen on the day`."""
+        said = begins(self.prose.left_open).match(text.content)
+        if said is None or self.asides.asks(text[said.end() :].strip()):
+            return False
+        self.header.areas_open = Text(span=text.span(), text=text.content)
+        return True
+
+    def whole_mission(self, text: ScriptText) -> bool:
+        """Reads what is said of the mission as a whole by itself: `In any order, at most 40 min`.
+        False: that is not what it says."""
+        found = [w for w in self.understanding.words(text) if w.type != "NEXT"]
+        types = [w.type for w in found if not w.type.startswith(("AND_", "JOINT"))]
+        if _WHOLE.fullmatch("".join(f"{type_} " for type_ in types)) is None:
+            return False
+        for word in found:
+            if word.type in ("ANY_ORDER", "THIS_ORDER"):
+                order = Order.ANY if word.type == "ANY_ORDER" else Order.PRECISE
+                self._set("order", order, _of(text, word))
+            elif word.type == "DURATION":
+                self._duration(_of(text, word))
+        return True
+
+
+def _of(text: ScriptText, word: Word) -> ScriptText:
+    return text[word.start : word.end]
+
+
+def _plain(value: ScriptText) -> str:
+    return " ".join(value.content.lower().strip(" .!").split())

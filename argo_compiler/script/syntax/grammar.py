@@ -7,7 +7,6 @@ from importlib.resources import files
 from lark import Lark, Token, Tree
 from lark.exceptions import UnexpectedToken
 
-from argo_compiler.script.syntax.words.word import Word
 
 Branch = tuple[str, tuple["Branch | int", ...], int, int]
 """a rule, its parts, and which words it covers, from the first to behind the last; a part is a
@@ -32,23 +31,25 @@ class Grammar:
 
     _MOST = 4096
 
-    def tree(self, words: tuple[str, ...]) -> Branch:
-        """The tree of a sentence whose words have these types; raises StumbleError."""
-        found = self._known.get(words)
+    def tree(self, words: tuple[str, ...], start: str = "sentence") -> Branch:
+        """The tree of a sentence, or of what `start` names, whose words have these types; raises
+        StumbleError."""
+        key = words if start == "sentence" else (start, *words)
+        found = self._known.get(key)
         if found is None:
             if len(self._known) >= self._MOST:
                 self._known.clear()
             try:
-                found = self._parse(words)
+                found = self._parse(words, start)
             except StumbleError as stumble:
                 found = stumble
-            self._known[words] = found
+            self._known[key] = found
         if isinstance(found, StumbleError):
             raise StumbleError(found.at, found.accepted)
         return found
 
-    def _parse(self, words: tuple[str, ...]) -> Branch:
-        parser = self.parser.parse_interactive("")
+    def _parse(self, words: tuple[str, ...], start: str) -> Branch:
+        parser = self.parser.parse_interactive("", start)
         at = 0
         try:
             for at, type_ in enumerate(words):
@@ -76,7 +77,7 @@ def sentence_grammar() -> Grammar:
             text + f"\n%declare {' '.join(terminals(text))}",
             parser="lalr",
             lexer="basic",
-            start="sentence",
+            start=["sentence", "location"],
             propagate_positions=True,
             maybe_placeholders=False,
         )

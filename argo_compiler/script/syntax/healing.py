@@ -18,8 +18,9 @@ blanks are dropped.
 """
 
 import re
-from collections.abc import Collection, Iterator
+from collections.abc import Collection, Mapping
 from dataclasses import dataclass
+from types import MappingProxyType
 
 from argo_compiler.diagnostics import Diagnostic
 from argo_compiler.script.syntax.source import MAX_LINE, Diagnostics, ScriptText, Source
@@ -28,7 +29,7 @@ from argo_compiler.script.syntax.spelling import alternatives
 _PLAIN = {
     **dict.fromkeys("\u2018\u2019\u201b\u2032\u00b4`", "'"),
     **dict.fromkeys("\u201c\u201d\u201e\u201f\u2033\u00ab\u00bb", '"'),
-    **dict.fromkeys("\u2010\u2011\u2012\u2013\u2212", "-"),
+    **dict.fromkeys("\u2010\u2011\u2012\u2013\u2014\u2015\u2212", "-"),
     **dict.fromkeys("\u200b\u200c\u200d\u2060\u00ad\ufeff", ""),
     "\u2026": ".",
     "\ufb01": "fi",
@@ -36,6 +37,7 @@ _PLAIN = {
 }
 _NOISE = re.compile(r"[^ -)+-_a-~]|^\s*[-#+]|\s$")
 """only where this is found there may be anything to heal; most lines need no closer look"""
+_STEP = re.compile(r"\s*[0-9]+[.)]")
 _TABS = re.compile(r"\t+")
 _WORD = re.compile(r"[\w'-]*")
 _MOST_CUTS = 8
@@ -58,28 +60,25 @@ class Healed:
     def text(self) -> str:
         return "\n".join(line.content for line in self.lines)
 
-    def statements(self, diagnostics: Diagnostics) -> Iterator[ScriptText]:
-        """The lines to parse, until `diagnostics` has too many errors for more to be of use."""
-        for number, line in enumerate(self.lines, start=1):
-            if diagnostics.errors > MOST_ERRORS:
-                message = f"more than {MOST_ERRORS} errors; the rest is not read"
-                diagnostics.error("too-many-errors", message, line.span(0, 1))
-                return
-            if line.content.strip() and number not in self.unreadable:
-                yield line
 
-
-def heal(text: str | Source, vocabulary: Collection[str]) -> Healed:
+def heal(
+    text: str | Source,
+    vocabulary: Collection[str],
+    read: Mapping[int, ScriptText] = MappingProxyType({}),
+) -> Healed:
     """The script with its noise healed by `vocabulary`, words in lower case.
 
     Every healed word is a warning that shows both forms. Lines stay lines; the tabs before a text
-    in the second column become one.
+    in the second column become one. `read` has lines that need no healing, by their numbers.
     """
     source = Source(text) if isinstance(text, str) else text
     diagnostics = Diagnostics(source)
     lines = []
     unreadable = set()
     for number in range(1, len(source.lines) + 1):
+        if number in read:
+            lines.append(_plain(read[number]))
+            continue
         line = source.line_text(number)
         if not _NOISE.search(line.content) and len(line.content) <= MAX_LINE:
             lines.append(line)
@@ -91,9 +90,12 @@ def heal(text: str | Source, vocabulary: Collection[str]) -> Healed:
             unreadable.add(number)
             continue
         healed, clear = _join_cuts(_plain(line), vocabulary, diagnostics)
-        lines.append(healed)
         if not clear:
+            # The number stays, so that the steps are still one after the other.
+            mark = _STEP.match(healed.content)
+            healed = healed[: mark.end() if mark else 0]
             unreadable.add(number)
+        lines.append(healed)
     return Healed(tuple(lines), frozenset(unreadable), tuple(diagnostics.entries))
 
 

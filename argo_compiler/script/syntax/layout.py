@@ -6,11 +6,12 @@ a line that makes no sense by itself, or the next of which makes none, goes on.
 """
 
 import re
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Collection, Iterator, Sequence
 from dataclasses import dataclass, field
 from enum import StrEnum
 
 from argo_compiler.script.syntax.source import ScriptText, join
+from argo_compiler.script.syntax.understanding import quotes
 
 
 class Mark(StrEnum):
@@ -32,6 +33,8 @@ class Line:
     number: int | None = None
     first: bool = False
     """whether it is the first line of a paragraph"""
+    heading: bool = False
+    """whether it stands over others, if it says nothing by itself: marked so, or before a mark"""
 
 
 @dataclass(slots=True)
@@ -43,35 +46,58 @@ class Item:
     items: "list[Item]" = field(default_factory=list)
 
 
-_NUMBER = re.compile(r"(?:step\s+)?([0-9]{1,6})\s*(?:[.)](?![0-9])|:(?![0-9]))\s*", re.IGNORECASE)
+_NUMBER = re.compile(
+    r"\(?(?:step\s+)?([0-9]{1,6})\s*(?:[.)](?![0-9])|:(?![0-9])|\s-\s+(?=[^\W\d_]))\s*", re.IGNORECASE
+)
+_SUB_NUMBER = re.compile(r"[0-9]{1,4}\.[0-9]{1,4}[.)]?\s+(?=[A-Z])")
 _STEP = re.compile(r"step\s+([0-9]{1,6})\b[.:)]?\s*", re.IGNORECASE)
 _LETTER = re.compile(r"\(?([a-z]|[ivx]{1,4})[.)]\s+", re.IGNORECASE)
-_BULLET = re.compile(r"[-*+•–‣◦]\s+|#+\s+")
+_BULLET = re.compile(r"[-*+•–‣◦]\s+(?:\[[ xX]?\]\s+)?|#+\s+")
+_RULE = re.compile(r"([-=_~*])\1{2,}")
 _RUN_IN = re.compile(r"(?:^|[,;.!])\s+([0-9]{1,3})[.)]\s+(?=[^\W\d_])")
+
+
+_SENTENCE_END = re.compile(r"(?:[.!?…]+|;(?=\s*(?:if|otherwise|else|when)\b))(?=\s|$)", re.I)
+_ABBREVIATION = re.compile(r"\b(?:no|nr|approx|ca|max|min|e\.g|i\.e|z\.b)\.$", re.IGNORECASE)
+_LAST_HALF = re.compile(r"([^\W\d_]+)-$")
+_FIRST_HALF = re.compile(r"[^\W\d_]+")
 
 
 def lines_of(texts: Sequence[ScriptText]) -> Iterator[Line]:
     """The lines that say anything, with their marks."""
     first = True
+    above: Line | None = None
     for text in texts:
         stripped = text.strip()
-        if not stripped.content:
+        rule = stripped.content[:3] and _RULE.fullmatch(stripped.content)
+        if rule and above is not None:
+            above.heading = above.heading or (not first and above.mark is Mark.NONE)
+        if not stripped.content or rule:
             first = True
             continue
         indent = len(text.content) - len(text.content.lstrip())
         for line in _split(_marked(stripped, indent)):
             line.first = first
             first = False
-            yield line
+            if above is not None:
+                if line.mark is not Mark.NONE and above.mark is Mark.NONE:
+                    above.heading = True
+                yield above
+            above = line
+    if above is not None:
+        yield above
 
 
 def _marked(text: ScriptText, indent: int) -> Line:
     if bullet := _BULLET.match(text.content):
         inner = _marked(text[bullet.end() :].strip(), indent)
-        return Line(inner.text, indent, inner.mark if inner.number else Mark.BULLET, inner.number)
+        mark = inner.mark if inner.number else Mark.BULLET
+        return Line(
+            inner.text, indent, mark, inner.number, heading=text.content.startswith("#")
+        )
     if number := _NUMBER.match(text.content) or _STEP.match(text.content):
         return Line(text[number.end() :].strip(), indent, Mark.NUMBER, int(number[1]))
-    if letter := _LETTER.match(text.content):
+    if letter := _LETTER.match(text.content) or _SUB_NUMBER.match(text.content):
         return Line(text[letter.end() :].strip(), indent, Mark.LETTER)
     return Line(text, indent)
 
@@ -94,15 +120,17 @@ def items_of(
     lines: Sequence[Line],
     complete: Callable[[ScriptText], bool],
     alone: Callable[[ScriptText], bool],
+    words: Collection[str],
 ) -> list[Item]:
     """The steps and paragraphs, those that lie within others inside of them. `complete` tells
-    whether a text makes sense by itself, `alone` whether a line never goes on with another one."""
+    whether a text makes sense by itself, `alone` whether a line never goes on with another one, and
+    `words` whether a hyphen at the end of a line divides a word."""
     top: list[Item] = []
     around: list[Item] = []
     for line in lines:
         follows = line.mark is Mark.NONE and around and not line.first and not alone(line.text)
         if follows and not alone(around[-1].text) and _goes_on(around[-1], line, complete):
-            around[-1].text = join([around[-1].text, line.text])
+            around[-1].text = _joined(around[-1].text, line.text, words)
             continue
         item = Item(line.text, line)
         while around and not _lies_in(line, around[-1].line):
@@ -114,10 +142,25 @@ def items_of(
 
 def _goes_on(item: Item, line: Line, complete: Callable[[ScriptText], bool]) -> bool:
     """Whether a line without a mark goes on with the text above it."""
-    whole, rest = complete(item.text), complete(line.text)
+    last = sentences(item.text)[-1] if item.text.content else item.text
+    whole, rest = complete(last), complete(line.text)
+    ended = item.text.content.endswith((".", "!", "?"))
     if whole and rest:
-        return item.line.mark is Mark.NONE and item.text.content.endswith((".", "!", "?"))
-    return not rest or complete(join([item.text, line.text]))
+        return item.line.mark is Mark.NONE and ended
+    if line.heading and (ended or whole):
+        return False
+    return not rest or (not ended and complete(join([last, line.text])))
+
+
+def _joined(above: ScriptText, below: ScriptText, words: Collection[str]) -> ScriptText:
+    """Two lines in one; a word that a hyphen divides becomes whole."""
+    left, right = _LAST_HALF.search(above.content), _FIRST_HALF.match(below.content)
+    if left is None or right is None or (left[1] + right[0]).lower() not in words:
+        return join([above, below])
+    whole = above[: len(above.content) - 1]
+    return ScriptText(
+        whole.content + below.content, [*whole.offsets, *below.offsets], above.source
+    )
 
 
 def _lies_in(line: Line, outer: Line) -> bool:
@@ -129,3 +172,21 @@ def _lies_in(line: Line, outer: Line) -> bool:
     if outer.mark is Mark.NUMBER and line.mark is Mark.LETTER:
         return True
     return line.indent > outer.indent
+
+
+def sentences(text: ScriptText) -> list[ScriptText]:
+    """The sentences of a text, without their full stops."""
+    found: list[ScriptText] = []
+    start = 0
+    quoted = quotes(text.content)
+    for end in _SENTENCE_END.finditer(text.content):
+        if any(a < end.start() < b for a, b in quoted):
+            continue
+        goes_on = not text.content[end.end() :].lstrip()[:1].isupper()
+        if goes_on and end.end() < len(text.content):
+            if _ABBREVIATION.search(text.content[: end.start() + 1]):
+                continue
+        found.append(text[start : end.start()].strip())
+        start = end.end()
+    found.append(text[start:].strip())
+    return [sentence for sentence in found if sentence.content]

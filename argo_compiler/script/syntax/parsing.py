@@ -1,117 +1,166 @@
 """Script text to syntax tree."""
 
 import re
-from collections.abc import Collection
+from collections.abc import Collection, Iterator
+from dataclasses import dataclass, field
 
+from argo_compiler.diagnostics import DiagnosticError
 from argo_compiler.garbage_collector import collector_held
-from argo_compiler.script.syntax.building.sentences import build
+from argo_compiler.script.syntax.asides import Asides
+from argo_compiler.script.syntax.cells import Cells
 from argo_compiler.script.syntax.fields import Fields
-from argo_compiler.script.syntax.grammar import Branch, StumbleError, sentence_grammar
-from argo_compiler.script.syntax.healing import heal
-from argo_compiler.script.syntax.layout import Item, Mark, items_of, lines_of
-from argo_compiler.script.syntax.spelling import respell
+from argo_compiler.script.syntax.grammar import StumbleError
+from argo_compiler.script.syntax.healing import MOST_ERRORS, heal
+from argo_compiler.script.syntax.hints import not_understood
+from argo_compiler.script.syntax.layout import Item, Mark, items_of, lines_of, sentences
+from argo_compiler.script.syntax.rows import tables
 from argo_compiler.script.syntax.source import Diagnostics, ScriptText, Source
 from argo_compiler.script.syntax.tree.facts import Fact
 from argo_compiler.script.syntax.tree.orders import Sentence
-from argo_compiler.script.syntax.tree.script import Script, Step, Text
-from argo_compiler.script.syntax.words.joints import VERBS
+from argo_compiler.script.syntax.tree.script import Script, Step, Text, Unread
+from argo_compiler.script.syntax.understanding import Understanding
 from argo_compiler.script.syntax.words.language import Language
-from argo_compiler.script.syntax.words.lexer import words
-from argo_compiler.script.syntax.words.word import Word
 
-_SENTENCE_END = re.compile(
-    r"(?:[.!?…]+|;(?=\s*(?:if|otherwise|else|when)\b))(?=\s|$)", re.IGNORECASE
-)
-_ABBREVIATION = re.compile(r"\b(?:no|nr|approx|ca|max|min|e\.g|i\.e|z\.b)\.$", re.IGNORECASE)
-_GREETING = re.compile(
-    r"(?:hello|hi|dear|hey|good (?:morning|afternoon|evening)|hallo|guten|liebe[rs]?)\b.{0,60},?$",
-    re.IGNORECASE,
-)
-_CLOSING = re.compile(
-    r"(?:(?:best|kind|warm|many)\s+(?:regards|wishes|thanks)|regards|thanks|thank you|cheers|"
-    r"yours|sincerely|viele grüße|mit freundlichen grüßen|danke)\b.{0,30}$",
-    re.IGNORECASE,
-)
-_REMARK = re.compile(r"[_(]*(?:hints?|notes?|remarks?|please note|n\.?b\.?)\s*:", re.IGNORECASE)
+MAX_LINES = 120_000
+"""of a script; one with more is refused unread"""
+
+_EDITS = ("ADD", "DELETE", "REPLACE", "MOVE")
 
 
 @collector_held()
-def parse(text: str, vocabulary: Collection[str] = (), source_name: str = "script") -> Script:
-    """The syntax tree of the script, with all that was found on the way in its `diagnostics`."""
+def parse(
+    text: str,
+    places: Collection[str] = (),
+    source_name: str = "script",
+    names: Collection[str] = (),
+) -> Script:
+    """The syntax tree of the script, with all that was found on the way in its `diagnostics`.
+
+    `places` and `names` are those of the site's places and checkpoints. Raises DiagnosticError for
+    what is no script at all.
+    """
     source = Source(text, source_name)
-    return _Parser(source, Language.of(text, vocabulary)).script(vocabulary)
+    _require_size(source)
+    diagnostics = Diagnostics(source)
+    language = Language.of(text, places)
+    words = {word for name in (*names, *places) for word in name.lower().split()}
+    understanding = Understanding(language, words, diagnostics)
+    asides = Asides(understanding)
+    fields = Fields(understanding, asides, diagnostics)
+    return _Parser(understanding, asides, fields, diagnostics).script()
 
 
+def _require_size(source: Source) -> None:
+    diagnostics = Diagnostics(source)
+    if not source.text.strip("\ufeff \t\r\n"):
+        hint = "write, say, `Start in starting area 1` and `Check checkpoint #4`"
+        diagnostics.error("empty", "the script is empty", None, hint)
+    lines = max(source.text.count("\n"), source.text.count("\r")) + 1
+    if lines > MAX_LINES:
+        message = f"the script has {lines} lines; at most {MAX_LINES} are read"
+        diagnostics.error("too-long", message, None, "divide the mission")
+    if diagnostics.errors:
+        raise DiagnosticError(source.name, diagnostics.entries)
+
+
+@dataclass
 class _Parser:
-    """Reads one script."""
+    """Reads one script. Mutable: what a line is depends on those before it."""
 
-    def __init__(self, source: Source, language: Language) -> None:
-        self.source = source
-        self.language = language
-        self.grammar = sentence_grammar()
-        self.diagnostics = Diagnostics(source)
-        self.remarks: list[Text] = []
-        self.fields = Fields(self.diagnostics, self)
-        self.closed = False
-        self.begun = False
-        """whether anything but a title has been read"""
+    understanding: Understanding
+    asides: Asides
+    fields: Fields
+    diagnostics: Diagnostics
+    remarks: list[Text] = field(default_factory=list)
+    closed: bool = False
+    """whether a letter has come to its end"""
+    stopped: bool = False
+    """whether there are too many errors"""
+    begun: bool = False
+    """whether anything but a title has been read"""
 
-    def script(self, vocabulary: Collection[str]) -> Script:
-        healed = heal(self.source, {*vocabulary, *self.language.words})
-        self.diagnostics.entries.extend(healed.diagnostics)
-        lines = list(lines_of(healed.lines))
-        items = items_of(lines, self.is_complete, self.stands_alone)
-        steps = [step for item in items if (step := self._step(item)) is not None]
+    def script(self) -> Script:
+        source = self.diagnostics.source
+        language = self.understanding.language
+        rows = tables(source, self.understanding, self.diagnostics)
+        healed = heal(source, self._vocabulary(source.text), rows)
+        self.diagnostics.extend(healed.diagnostics)
+        texts = Cells(self.fields, self.understanding).joined(healed.lines)
+        items = items_of(
+            list(lines_of(texts)), self.is_complete, self.stands_alone, language.words
+        )
+        steps = list(self._steps(items))
+        first = [_step_of(sentence) for sentence in self.fields.first]
+        last = [_step_of(sentence) for sentence in self.fields.last]
         return Script(
-            source_name=self.source.name,
-            source_text=self.source.text,
+            source_name=source.name,
+            source_text=source.text,
             header=self.fields.header,
-            steps=tuple(steps),
+            steps=(*first, *steps, *last),
             remarks=tuple(self.remarks),
             diagnostics=self.diagnostics.by_place(),
         )
 
+    def _vocabulary(self, text: str) -> set[str]:
+        """The words by which cut ones are put together. Those that only edits have are none of
+        them, unless the script has them elsewhere: `a⇥d` is `and` rather than `add`."""
+        if "\t" not in text:
+            return set()
+        phrases = self.understanding.language.lexicon.phrases
+        edits = (said for kind in _EDITS for said in phrases.get((kind, None), ()))
+        unsaid = {word for said in edits for word in said.split()}
+        unsaid -= set(re.findall(r"[\w'-]+", text.lower()))
+        for alike in phrases.values():
+            # `check points` and `checkpoints` are one: no cut between them leaves a doubt.
+            parts = (said.split() for said in alike)
+            unsaid.update(p[1] for p in parts if len(p) == 2 and "".join(p) in alike)
+        known = self.understanding.known | self.understanding.language.prose.words
+        return self.understanding.names | (known - unsaid)
+
     def stands_alone(self, text: ScriptText) -> bool:
         """Whether a line never goes on with the one above it."""
         content = text.content
-        return bool(
-            self.fields.is_field(text)
-            or _REMARK.match(content)
-            or _GREETING.match(content)
-            or _CLOSING.match(content)
-        )
+        asides = self.asides
+        return self.fields.is_field(text) or asides.is_remark(content) or asides.opens(content)
 
     def is_complete(self, text: ScriptText) -> bool:
         """Whether a text makes sense by itself."""
-        if self.fields.is_field(text) or _REMARK.match(text.content):
+        if self.fields.is_field(text):
             return True
-        return all(self._fits(sentence) for sentence in sentences(text))
+        return all(self.understanding.fits(sentence) for sentence in sentences(text))
 
-    def _fits(self, text: ScriptText) -> bool:
-        found = words(text.content, self.language.lexicon)
-        if not found or any(word.type == "WORD" for word in found):
-            return False
-        try:
-            tree = self.grammar.tree(tuple(word.type for word in found))
-        except StumbleError:
-            return False
-        last = found[-1]
-        return not (last.type == "KIND" and not last.value[2]) and not _is_amend(tree)
+    # ---- lines
+
+    def _steps(self, items: list[Item]) -> Iterator[Step]:
+        for item in items:
+            if self.stopped:
+                return
+            if self.diagnostics.errors > MOST_ERRORS:
+                self.stopped = True
+                message = f"more than {MOST_ERRORS} errors; the rest is not read"
+                hint = "correct these first"
+                self.diagnostics.error("too-many-errors", message, item.text.span(0, 1), hint)
+                return
+            step = self._step(item)
+            if step is not None:
+                yield step
 
     def _step(self, item: Item) -> Step | None:
-        inner = [step for i in item.items if (step := self._step(i)) is not None]
-        if self._is_remark(item):
-            self._remark(item.text)
-            return None
-        if self.fields.is_field(item.text):
+        text = self._without_letter(item)
+        if self.asides.is_remark(text.content):
+            self.note(text, "a remark")
+            return self._of(item, [], list(self._steps(item.items)))
+        text = self.fields.relabelled(text)
+        if self.fields.is_field(text):
             self.begun = True
-            item.text = self.fields.read(item.text)
-        said: list[Sentence | Fact] = []
-        for text in sentences(item.text):
-            node = self._sentence(text, item)
-            if node is not None:
-                said.append(node)
-        if not said and not inner:
+            text = self.fields.read(text)
+        said = [s for one in sentences(text) if (s := self._sentence(one, item)) is not None]
+        return self._of(item, said, list(self._steps(item.items)))
+
+    def _of(
+        self, item: Item, said: list[Sentence | Fact | Unread], inner: list[Step]
+    ) -> Step | None:
+        if not said and not inner and item.line.number is None:
             return None
         return Step(
             span=item.text.span(),
@@ -120,113 +169,109 @@ class _Parser:
             steps=tuple(inner),
         )
 
-    def _is_remark(self, item: Item) -> bool:
-        content = item.text.content
-        if self.closed or _REMARK.match(content):
-            return True
-        if _CLOSING.match(content):
+    def _without_letter(self, item: Item) -> ScriptText:
+        """The text of an item without what makes a letter of it."""
+        text = item.text
+        if item.line.mark is not Mark.NONE:
+            return text
+        greeting = self.asides.greeting(text)
+        if greeting:
+            self.note(text[:greeting].strip(), "a greeting")
+            return text[greeting:].strip()
+        if self.asides.closing(text) or (self.closed and self.asides.is_signature(text)):
             self.closed = True
-            return True
-        return bool(_GREETING.match(content))
+            self.note(text, "the end of a letter")
+            return text[:0]
+        return text
 
-    def _remark(self, text: ScriptText) -> None:
+    def note(self, text: ScriptText, what: str) -> None:
+        """Says that a text has no effect."""
+        said = text.content if len(text.content) <= 60 else f"{text.content[:57]}..."
+        message = f"`{said}` is taken for {what} and has no effect"
+        self.diagnostics.note("no-effect", message, text.span())
         self.remarks.append(Text(span=text.span(), text=text.content))
 
-    def _sentence(self, text: ScriptText, item: Item) -> Sentence | Fact | None:
-        parsed = self._parsed(text)
-        if isinstance(parsed, StumbleError):
-            respelled = self._respelled(text)
+    # ---- sentences
+
+    def _sentence(self, text: ScriptText, item: Item) -> Sentence | Fact | Unread | None:
+        text = self.understanding.figures(text)
+        stands_over = item.line.heading or text.content.endswith(":")
+        if stands_over and self.fields.introduces(text):
+            return None
+        reading = self.understanding.read(text)
+        if not self.understanding.types(text):
+            self.note(text, "a remark")
+            return None
+        if isinstance(reading, StumbleError) or "WORD" in self.understanding.types(text):
+            respelled = self.understanding.respelled(text)
             if respelled is not None:
-                text = respelled
-                parsed = self._parsed(text)
-        if isinstance(parsed, StumbleError):
-            if self._is_heading(text, item):
-                self._remark(text)
-                if not self.begun and self.fields.header.title is None:
-                    self.fields.header.title = Text(span=text.span(), text=text.content)
-            else:
-                self._not_understood(text, parsed)
-            return None
+                text, reading = respelled, self.understanding.read(respelled)
+                if stands_over and self.fields.introduces(text):
+                    return None
+        if isinstance(reading, StumbleError):
+            cut = self.asides.without(text)
+            if cut is not None:
+                text, asides = cut
+                for aside in asides:
+                    self.note(aside, "a remark")
+                reading = self.understanding.read(text)
+        if isinstance(reading, StumbleError):
+            return self._not_understood(text, item, reading)
         self.begun = True
-        errors = self.diagnostics.errors
-        tree, found = parsed
-        node = build(tree, found, text, self.diagnostics)
-        return node if self.diagnostics.errors == errors else None
+        for idle in self.asides.idle(text):
+            self.diagnostics.note("no-effect", f"`{idle.content}` has no effect", idle.span())
+        node = self.understanding.node(text, reading)
+        return Unread(span=text.span()) if node is None else node
 
-    def _parsed(self, text: ScriptText) -> tuple[Branch, list[Word]] | StumbleError:
-        found = words(text.content, self.language.lexicon)
-        try:
-            return self.grammar.tree(tuple(word.type for word in found)), found
-        except StumbleError as stumble:
-            return stumble
-
-    def _respelled(self, text: ScriptText) -> ScriptText | None:
-        """The text with misspelt words put right, if it makes sense then."""
-        found: list[tuple[int, int, str]] = []
-        for word in words(text.content, self.language.lexicon):
-            if word.type == "WORD":
-                meant = respell(str(word.value), self.language.words)
-                if meant is not None:
-                    found.append((word.start, word.end, meant))
-        fixed = text
-        for start, end, meant in reversed(found):
-            fixed = fixed.replace(start, end, meant)
-        if not found or isinstance(self._parsed(fixed), StumbleError):
+    def _not_understood(
+        self, text: ScriptText, item: Item, stumble: StumbleError
+    ) -> Unread | None:
+        """What makes no sense: said of the mission as a whole, a title, small talk or an error."""
+        if self.fields.whole_mission(text) or self._title(text, item):
             return None
-        for start, end, meant in found:
-            message = f"read `{text.content[start:end]}` as `{meant}`"
-            self.diagnostics.warning("respelled", message, text.span(start, end))
-        return fixed
+        free = item.line.mark in (Mark.NONE, Mark.BULLET) and item.line.number is None
+        if free and self.fields.leaves_open(text):
+            return None
+        if free and self.asides.is_small_talk(text):
+            self.note(text, "a remark")
+            return None
+        if not self.fields.is_unknown(text):
+            not_understood(text, stumble, self.understanding, self.diagnostics)
+        self.begun = True
+        return Unread(span=text.span())
+
+    def _title(self, text: ScriptText, item: Item) -> bool:
+        """Takes a text for a title, if it may be one; what it says of the mission is read."""
+        line = item.line
+        header = self.fields.header
+        first = not self.begun and header.title is None and line.number is None
+        if not first and not self._is_heading(text, item):
+            return False
+        head = text
+        if first and not self.asides.is_title(text):
+            comma = text.content.find(",")
+            rest = text[comma + 1 :].strip()
+            head = text[:comma] if comma > 0 else text
+            if comma < 0 or not self.asides.is_title(head) or not self.fields.whole_mission(rest):
+                return False
+        elif not self.asides.is_title(text):
+            return False
+        if first:
+            header.title = Text(span=head.span(), text=head.content)
+            if not self.asides.is_explicit_title(head):
+                self.note(head, "the title")
+        else:
+            self.note(text, "a heading")
+        return True
 
     def _is_heading(self, text: ScriptText, item: Item) -> bool:
-        """Whether a text that makes no sense by itself is a title or a heading: it asks for
-        nothing, and stands before what does."""
-        types = [word.type for word in words(text.content, self.language.lexicon)]
-        if not self.begun and self.fields.header.title is None and item.line.number is None:
-            return not _ASKING & set(types) and not set(types[:1]) & set(VERBS)
-        return item.line.mark is not Mark.NUMBER and bool(types) and set(types) <= _HEADING
-
-    def _not_understood(self, text: ScriptText, stumble: StumbleError) -> None:
-        found = words(text.content, self.language.lexicon)
-        unknown = next((w for w in found if w.type == "WORD"), None)
-        at = unknown or (found[stumble.at] if stumble.at < len(found) else None)
-        if at is None:
-            message = "the sentence ends where more is expected"
-            span = text.span(len(text.content))
-        else:
-            message = f"can't understand `{text.content[at.start : at.end]}` here"
-            span = text.span(at.start, at.end)
-        self.diagnostics.error("not-understood", message, span, "write it in other words")
+        """Whether a line stands over others: marked as a heading, or with items of its own."""
+        line = item.line
+        whole = text.content == item.text.content.rstrip(".!")
+        return line.heading or (
+            whole and line.number is None and (bool(item.items) or text.content.endswith(":"))
+        )
 
 
-_ASKING = frozenset(["IF", "UNLESS", "ELSE", "EVENT", "NEXT", "NOT", "EXCEPT", "START", "HOME"])
-"""what no title has"""
-_HEADING = frozenset(["WORD", "FLOOR", "NUMBER", "ORDINAL", "FLOOR_NAME", "STEP", "JOINT"])
-
-
-def _is_amend(tree: Branch) -> bool:
-    """Whether a sentence says nothing but a manner."""
-    _, parts, _, _ = tree
-    first = parts[0]
-    if isinstance(first, int) or first[0] != "order":
-        return False
-    order = first[1][-1]
-    return not isinstance(order, int) and order[0] == "amend"
-
-
-def sentences(text: ScriptText) -> list[ScriptText]:
-    """The sentences of a text, without their full stops."""
-    found: list[ScriptText] = []
-    start = 0
-    quoted = [m.span() for m in re.finditer(r'"(?:[^"\\]|\\.)*"', text.content)]
-    for end in _SENTENCE_END.finditer(text.content):
-        if any(a < end.start() < b for a, b in quoted):
-            continue
-        goes_on = not text.content[end.end() :].lstrip()[:1].isupper()
-        if goes_on and end.end() < len(text.content):
-            if _ABBREVIATION.search(text.content[: end.start() + 1]):
-                continue
-        found.append(text[start : end.start()].strip())
-        start = end.end()
-    found.append(text[start:].strip())
-    return [sentence for sentence in found if sentence.content]
+def _step_of(sentence: Sentence) -> Step:
+    return Step(span=sentence.span, number=None, sentences=(sentence,))

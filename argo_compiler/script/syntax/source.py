@@ -2,7 +2,7 @@
 
 import re
 from bisect import bisect_right
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, field
 from functools import cached_property
 
@@ -166,6 +166,12 @@ class Diagnostics:
                 remedies=remedies,
             )
         )
+
+    def extend(self, diagnostics: Iterable[Diagnostic]) -> None:
+        """Adds what another stage has found."""
+        found = tuple(diagnostics)
+        self.entries += found
+        self.errors += sum(d.severity is Severity.ERROR for d in found)
 
     def by_place(self) -> tuple[Diagnostic, ...]:
         """All diagnostics in the source's order, those without a place last."""

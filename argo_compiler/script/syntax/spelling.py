@@ -1,10 +1,10 @@
-"""Which known word a misspelt one was meant to be."""
+"""Which known words a misspelt one may be meant to be."""
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable
 from functools import lru_cache
 
 from rapidfuzz import fuzz, process
-from rapidfuzz.distance import OSA, JaroWinkler
+from rapidfuzz.distance import OSA
 
 _ALIKE = 0.74
 """share of letters that must be in place: one error in four letters, two in eight"""
@@ -13,19 +13,16 @@ _LONGEST = 60
 """letters; no word of the language is anywhere near as long"""
 
 
-def respell(word: str, known: Iterable[str]) -> str | None:
-    """The one known word that `word` is a misspelling of; None if there is none, or more than one.
-
-    A singular and its plural are one. Short words and words with figures are never respelled: too
-    much of them would be a guess.
-    """
+def candidates(word: str, known: frozenset[str]) -> tuple[str, ...]:
+    """The known words that `word` is most likely a misspelling of, none of them for short words and
+    words with figures."""
     if not 4 <= len(word) <= _LONGEST or not word.replace("-", "").replace("'", "").isalpha():
-        return None
-    return _respell(word, known if isinstance(known, frozenset) else frozenset(known))
+        return ()
+    return _closest(word.lower(), known)
 
 
 @lru_cache(maxsize=4096)
-def _respell(word: str, known: frozenset[str]) -> str | None:
+def _closest(word: str, known: frozenset[str]) -> tuple[str, ...]:
     alike = process.extract(
         word,
         [other for other in known if len(other) >= 3],
@@ -34,10 +31,7 @@ def _respell(word: str, known: frozenset[str]) -> str | None:
         limit=None,
     )
     distances = {other: OSA.distance(word, other) for other, _, _ in alike}
-    closest = [w for w, distance in distances.items() if distance == min(distances.values())]
-    if len({w.removesuffix("s") for w in closest}) != 1:
-        return None
-    return max(closest, key=len)
+    return tuple(w for w, distance in distances.items() if distance == min(distances.values()))
 
 
 def nearest(text: str, known: Iterable[str], limit: int = 3) -> tuple[str, ...]:
@@ -46,12 +40,6 @@ def nearest(text: str, known: Iterable[str], limit: int = 3) -> tuple[str, ...]:
         text, list(known), scorer=fuzz.ratio, processor=str.lower, limit=limit, score_cutoff=60
     )
     return tuple(choice for choice, _, _ in found)
-
-
-def most_alike(text: str, forms: Sequence[str]) -> str:
-    """The one of the `forms` that `text` resembles most, its beginning above all."""
-    key = text.lstrip("0123456789.) ").lower()
-    return max(forms, key=lambda form: JaroWinkler.similarity(key, form.lower()))
 
 
 def alternatives(choices: Iterable[str], conjunction: str = "or") -> str:

@@ -34,12 +34,17 @@ class AreaChosen(Node):
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
+class Unread(Node):
+    """A sentence with an error: what it would ask for is not known."""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
 class Step(Node):
     """A numbered line, a bullet or a paragraph, with those that lie within it."""
 
     number: int | None
     """as printed"""
-    sentences: tuple[Sentence | Fact, ...]
+    sentences: tuple[Sentence | Fact | Unread, ...]
     steps: "tuple[Step, ...]" = ()
 
 
@@ -59,6 +64,8 @@ class Header:
     after_mission_report: Text | None = None
     initial_position: Areas | None = None
     end_of_mission: Areas | None = None
+    areas_open: Text | None = None
+    """where it says that the areas are chosen when the script is imported"""
     start_area: AreaChosen | None = None
     end_area: AreaChosen | None = None
     dock_said: bool = False

@@ -9,7 +9,7 @@ NOTHING: Phrases = {
     ("FILLER", None): (
         "the|a|an|please|kindly|just|then|there|straight|directly|at once|immediately|right away|"
         "now|as well|too|also|could you please|could you|can you please|would you please|"
-        "i would like you to|we need you to|have|let|make sure to|should|must|will|shall|has to|"
+        "i would like you to|we need you to|have|let|make sure to|should|must|will|shall|has to|have to|will have to|"
         "is to|needs to|robot|it should|it has to|it must|it will|it shall|it is to|let it|have it|"
         "after that|afterwards|finally|first of all|at the end|in the end|next|subsequently|"
         "of them|of these|of those|after this|from there|so|when you are done|when done|when finished|general rule|where the robot stands|where it stands|send the robot out"

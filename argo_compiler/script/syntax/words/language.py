@@ -5,7 +5,9 @@ from dataclasses import dataclass
 from functools import lru_cache
 
 from argo_compiler.script.syntax.words import english
+from argo_compiler.script.syntax.words.english_prose import PROSE
 from argo_compiler.script.syntax.words.lexicon import Lexicon
+from argo_compiler.script.syntax.words.prose import Prose
 
 
 @dataclass(frozen=True)
@@ -17,6 +19,11 @@ class Language:
     @property
     def words(self) -> set[str]:
         return self.lexicon.words
+
+    @property
+    def prose(self) -> Prose:
+        """What stands around its sentences."""
+        return PROSE
 
     @classmethod
     def of(cls, text: str, places: Iterable[str]) -> "Language":

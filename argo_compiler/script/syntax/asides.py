@@ -1,0 +1,179 @@
+"""What in a script asks for nothing: greetings, remarks, titles, reasons, words such as `tonight`.
+
+Whatever is taken for such is a note, so that nothing is left out without a word; and what may ask
+for something is never taken for such.
+"""
+
+import re
+from collections.abc import Iterator
+from functools import cache
+
+from argo_compiler.script.syntax.grammar import StumbleError
+from argo_compiler.script.syntax.source import ScriptText, join
+from argo_compiler.script.syntax.understanding import Understanding, quotes
+from argo_compiler.script.syntax.words.joints import VERBS
+from argo_compiler.script.syntax.words.prose import Prose, begins, either
+
+_ASKING = frozenset(
+    "IF IF_ONLY UNLESS ELSE NOT EXCEPT UNTIL EVERY DURATION SPEED QUANTITY TIMES AT_MOST AT_LEAST "
+    "WITHIN LATEST EARLIEST IF_TIME ANY_ORDER THIS_ORDER RETRY GREATER LESS BETWEEN CANNOT "
+    "MAX_DURATION BACK_IN BE_MEASURED FAILS OCCURS".split()
+)
+"""words of these types are in no title"""
+_NAMED = frozenset(["KIND", "HASH", "STEP", "AREA", "DOCK", "FLOOR"])
+_LABELS = frozenset(["NUMBER", "IDENT", "STRING", "HASH"])
+_LONGEST_TITLE = 14
+"""words"""
+_TOKEN = re.compile(r"[\w'-]+|[^\w\s]")
+_BRACKETS = re.compile(r"\s*\([^()]*\)")
+_DASH = re.compile(r"\s-{1,2}\s")
+_CUT = re.compile(r",\s*|\s+")
+
+
+class Asides:
+    """Finds what asks for nothing."""
+
+    def __init__(self, understanding: Understanding) -> None:
+        self.understanding = understanding
+        self.prose: Prose = understanding.language.prose
+        idle = understanding.language.lexicon.phrases.get(("IDLE", None), [])
+        said = either("|".join(idle)) if idle else "(?!)"
+        self._idle = re.compile(rf"(?<![\w-])(?:{said})(?![\w-])", re.IGNORECASE)
+
+    # ---- whole lines
+
+    def is_remark(self, content: str) -> bool:
+        """Whether a text is labelled as a remark: `Note: ...`, `(Hint: ...)`."""
+        return _labelled(self.prose.remark).match(content) is not None
+
+    def opens(self, content: str) -> bool:
+        """Whether a line begins as the first or last one of a letter does."""
+        return bool(
+            begins(self.prose.greeting).match(content) or begins(self.prose.closing).match(content)
+        )
+
+    def greeting(self, text: ScriptText) -> int:
+        """Where a greeting at the beginning of a text ends; 0 if there is none."""
+        found = begins(self.prose.greeting).match(text.content)
+        return 0 if found is None else self._line_of_letter(text, found.end())
+
+    def closing(self, text: ScriptText) -> bool:
+        """Whether a text closes a letter."""
+        found = begins(self.prose.closing).match(text.content)
+        whole = len(text.content.strip())
+        return found is not None and self._line_of_letter(text, found.end(), whole) == whole
+
+    def _line_of_letter(self, text: ScriptText, start: int, end: int | None = None) -> int:
+        if end is None:
+            comma = re.search(r"[,!:]|$", text.content[start:])
+            assert comma is not None
+            end = start + comma.end()
+        types = self.understanding.types(text[start:end])
+        short = len(text.content[start:end].split()) <= 6
+        return end if short and not _ASKING & {*types} and not {*types} & {*VERBS, "KIND"} else 0
+
+    def is_small_talk(self, text: ScriptText) -> bool:
+        """Whether a sentence is one of those that letters are made of, and no more."""
+        found = begins(self.prose.small_talk).match(text.content)
+        return found is not None and not self.asks(text[found.end() :].strip())
+
+    def is_signature(self, text: ScriptText) -> bool:
+        """Whether a line behind the end of a letter is a name, an address or the like."""
+        return not self.asks(text) and len(text.content.split()) <= 8
+
+    # ---- titles
+
+    def asks(self, text: ScriptText) -> bool:
+        """Whether a text that makes no sense may ask for something."""
+        found = self.understanding.words(text)
+        types = [word.type for word in found]
+        if _ASKING & {*types}:
+            return True
+        for i, type_ in enumerate(types):
+            after = types[i + 1] if i + 1 < len(types) else ""
+            said = text.content[found[i].end :].split()[:1]
+            if type_ in VERBS and (
+                (i == 0 and after and said != ["of"]) or after in _NAMED | _LABELS | {"ALL", "IT"}
+            ):
+                return True
+        if len(types) > 1 and types[0] == "WORD" and types[1] in _NAMED and len(types) > 2:
+            return types[2] in _LABELS
+        return self._has_object(text.content)
+
+    def _has_object(self, content: str) -> bool:
+        """Whether an article stands where that of a verb's object does: `send an SMS`."""
+        tokens = [token.lower() for token in _TOKEN.findall(content)]
+        article, before = _words(self.prose.determiner), _words(self.prose.preposition)
+        return any(
+            token in article and last[0].isalpha() and last not in before and last not in article
+            for last, token in zip(tokens, tokens[1:], strict=False)
+        )
+
+    def is_title(self, text: ScriptText) -> bool:
+        """Whether a line may be the title of a script, or the heading of a part of it."""
+        return len(text.content.split()) <= _LONGEST_TITLE and not self.asks(text)
+
+    def is_explicit_title(self, text: ScriptText) -> bool:
+        """Whether a title says itself that it is one: `Mission Protocol #2`."""
+        return begins(self.prose.explicit_title).match(text.content) is not None
+
+    # ---- parts of sentences
+
+    def without(self, text: ScriptText) -> tuple[ScriptText, list[ScriptText]] | None:
+        """The text without what asks for nothing, if it makes sense then, and what that is."""
+        for rest, aside in self._cut(text):
+            if not isinstance(self.understanding.read(rest), StumbleError):
+                return rest, aside
+        return None
+
+    def _cut(self, text: ScriptText) -> Iterator[tuple[ScriptText, list[ScriptText]]]:
+        content = text.content
+        outer, brackets = self._without_brackets(text)
+        if brackets:
+            yield outer, brackets
+        for dash in _DASH.finditer(content):
+            aside = text[dash.end() :].strip()
+            if not self.asks(aside):
+                yield text[: dash.start()].strip(), [aside]
+        reason = begins(self.prose.reason)
+        for cut in _CUT.finditer(content):
+            if not reason.match(content, cut.end()):
+                continue
+            comma = content.find(",", cut.end())
+            end = comma if comma > 0 else len(content)
+            for behind in (len(content), end):
+                aside = text[cut.end() : behind].strip()
+                if not self.asks(aside[len(aside.content.split()[0]) :]):
+                    yield join([text[: cut.start()], text[behind:]]), [aside]
+
+    def _without_brackets(self, text: ScriptText) -> tuple[ScriptText, list[ScriptText]]:
+        kept: list[ScriptText] = []
+        cut: list[ScriptText] = []
+        start = 0
+        for found in _BRACKETS.finditer(text.content):
+            inner = text[found.start() : found.end()].strip()
+            if self.asks(inner[1:-1]):
+                continue
+            kept.append(text[start : found.start()])
+            cut.append(inner)
+            start = found.end()
+        kept.append(text[start:])
+        return join([part for part in kept if part.content] or kept), cut
+
+    def idle(self, text: ScriptText) -> Iterator[ScriptText]:
+        """Words of a sentence that say nothing that a plan could hold: `tonight`."""
+        quoted: list[tuple[int, int]] | None = None
+        for found in self._idle.finditer(text.content):
+            quoted = quotes(text.content) if quoted is None else quoted
+            if not any(a < found.start() < b for a, b in quoted):
+                yield text[found.start() : found.end()]
+
+
+@cache
+def _labelled(labels: str) -> re.Pattern[str]:
+    return re.compile(rf"[_(*]*(?:{either(labels)})\s*:", re.IGNORECASE)
+
+
+@cache
+def _words(phrases: str) -> frozenset[str]:
+    return frozenset(phrases.split("|"))

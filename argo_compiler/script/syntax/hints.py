@@ -1,0 +1,65 @@
+"""What is said about a sentence that makes no sense: at which words, and what may stand there."""
+
+from argo_compiler.script.syntax.grammar import StumbleError
+from argo_compiler.script.syntax.source import Diagnostics, ScriptText
+from argo_compiler.script.syntax.spelling import alternatives, candidates
+from argo_compiler.script.syntax.understanding import Understanding
+from argo_compiler.script.syntax.words.joints import VERBS
+from argo_compiler.script.syntax.words.word import Word
+
+_MOST = 8
+
+
+def not_understood(
+    text: ScriptText, stumble: StumbleError, understanding: Understanding, diagnostics: Diagnostics
+) -> None:
+    """The error of a sentence that makes no sense, at the words that make none."""
+    found = understanding.words(text)
+    at = next((w for w in found if w.type in ("WORD", "CANNOT")), None)
+    if at is None and stumble.at < len(found):
+        at = found[stumble.at]
+    hint = _hint(text, at, found, stumble, understanding)
+    if at is None:
+        message = "the sentence ends where more is expected"
+        diagnostics.error("unfinished", message, text.span(len(text.content)), hint)
+        return
+    said = text.content[at.start : at.end]
+    message = f"can't understand `{said}` here"
+    if at.type == "CANNOT":
+        message = f"`{said}` is nothing that the robot can do"
+    diagnostics.error("not-understood", message, text.span(at.start, at.end), hint)
+
+
+def _hint(
+    text: ScriptText,
+    at: Word | None,
+    found: list[Word],
+    stumble: StumbleError,
+    understanding: Understanding,
+) -> str:
+    parts = []
+    if at is not None and at.type == "WORD":
+        meant = candidates(text.content[at.start : at.end], understanding.known)
+        if meant:
+            parts.append(f"is {alternatives(f'`{word}`' for word in sorted(meant)[:3])} meant?")
+    if at is None or (stumble.at < len(found) and found[stumble.at] is at):
+        follow = _may_follow(stumble, understanding)
+        if follow:
+            parts.append(f"here may stand {alternatives(follow)}")
+    samples = understanding.language.prose.samples
+    verb = next((w.type for w in found if w.type in samples), "MEASURE")
+    parts.append(f"say, `{samples[verb]}`")
+    return "; ".join(parts)
+
+
+def _may_follow(stumble: StumbleError, understanding: Understanding) -> list[str]:
+    """What the grammar accepts where it stumbled, in words of the language. Where a sentence begins
+    too much may stand to be told."""
+    if stumble.accepted.issuperset(VERBS[:4]):
+        return []
+    prose, lexicon = understanding.language.prose, understanding.language.lexicon
+    shown = {type_: said for type_, said in prose.kinds.items() if type_ in stumble.accepted}
+    for (type_, _), phrases in lexicon.phrases.items():
+        if type_ in stumble.accepted and type_ not in prose.untold:
+            shown.setdefault(type_, f"`{phrases[0]}`")
+    return list(dict.fromkeys(shown.values()))[:_MOST]

@@ -1,0 +1,186 @@
+"""Tables: a heading for each column, then a step in each row.
+
+Columns are cut by bars, by tabs, or by blanks under the headings. A row becomes the sentence that
+says the same: `3. checkpoint #2 (liquid level gauge 1) with priority 3`.
+"""
+
+import re
+from collections.abc import Iterator
+from dataclasses import dataclass
+
+from argo_compiler.script.syntax.source import Diagnostics, ScriptText, Source
+from argo_compiler.script.syntax.spelling import alternatives
+from argo_compiler.script.syntax.understanding import Understanding
+from argo_compiler.script.syntax.words.lexicon import expand
+
+_RULE = re.compile(r"[\s|:=+-]*-[\s|:=+-]*")
+_BLANKS = re.compile(r"\s{2,}")
+_FIRST_NUMBER = re.compile(r"[0-9]{1,6}")
+_MOST_COLUMNS = 12
+
+
+@dataclass(frozen=True)
+class _Heading:
+    """A column: what it holds, and where its heading begins."""
+
+    holds: str
+    start: int
+
+
+def tables(
+    source: Source, understanding: Understanding, diagnostics: Diagnostics
+) -> dict[int, ScriptText]:
+    """What the lines of tables become, by their numbers."""
+    found: dict[int, ScriptText] = {}
+    if "|" not in source.text and "\t" not in source.text and "  " not in source.text:
+        return found
+    rows = _Rows(understanding, diagnostics)
+    headings: list[_Heading] | None = None
+    cut = ""
+    for number, line in enumerate(source.lines, start=1):
+        at = _cut_of(line)
+        if headings is not None and (not line.strip() or (at != cut and at != "")):
+            headings = None
+        if headings is None:
+            if at:
+                text = source.line_text(number)
+                headings, cut = rows.headings(text, at), at
+                if headings is not None:
+                    found[number] = text[:0]
+        elif _RULE.fullmatch(line):
+            found[number] = source.line_text(number)[:0]
+        else:
+            found[number] = rows.sentence(source.line_text(number), headings, cut)
+    return found
+
+
+def _cut_of(line: str) -> str:
+    """What cuts the columns of a line: bars, tabs or blanks; nothing where there are none."""
+    if len(line) > 2000:
+        return ""
+    inner = line.strip()
+    if "|" in inner.strip("|") or (inner.startswith("|") and inner.endswith("|")):
+        return "|"
+    if "\t" in inner:
+        return "\t"
+    return "  " if "  " in inner else ""
+
+
+class _Rows:
+    """Makes sentences of rows."""
+
+    def __init__(self, understanding: Understanding, diagnostics: Diagnostics) -> None:
+        self.understanding = understanding
+        self.prose = understanding.language.prose
+        self.diagnostics = diagnostics
+
+    def headings(self, text: ScriptText, cut: str) -> list[_Heading] | None:
+        """The columns, if a line has the headings of a table."""
+        cells = list(_cells(text, cut))
+        known = [(self.prose.column(cell.content), at, cell) for at, cell in cells if cell.content]
+        if not known or len(known) > _MOST_COLUMNS:
+            return None
+        strange = [cell for holds, _, cell in known if holds is None]
+        if strange and (cut != "|" or len(strange) == len(known)):
+            return None
+        for cell in strange:
+            said = alternatives(f"`{expand(t)[0]}`" for t in self.prose.columns.values())
+            message = f"there is no column `{cell.content}`"
+            self.diagnostics.error("unknown-label", message, cell.span(), f"columns are {said}")
+        held = {holds for holds, _, _ in known}
+        if not held & {"checkpoint", "object", "action"}:
+            return None
+        by_start = {at: holds or "nothing" for holds, at, _ in known}
+        return [_Heading(by_start.get(at, "nothing"), at) for at, _ in cells]
+
+    def sentence(self, text: ScriptText, headings: list[_Heading], cut: str) -> ScriptText:
+        """The sentence of a row."""
+        cells: dict[str, ScriptText] = {}
+        for i, (at, cell) in enumerate(_cells(text, cut)):
+            under = [h for h in headings if h.start <= at + 1]
+            heading = headings[min(i, len(headings) - 1)] if cut != "  " else (under or headings)[-1]
+            if cell.content:
+                before = cells.get(heading.holds)
+                cells[heading.holds] = cell if before is None else _joined([before, " ", cell])
+        if "nothing" in cells:
+            aside = cells["nothing"]
+            message = f"`{aside.content}` is taken for a remark and has no effect"
+            self.diagnostics.note("no-effect", message, aside.span())
+        number = cells.get("number")
+        mark: list[str | ScriptText] = []
+        if number is not None and _FIRST_NUMBER.fullmatch(number.content.strip(" .)#")):
+            mark = [number.content.strip(" .)#"), ". "]
+        wholes = [_joined([*mark, *parts], text) for parts in self._readings(cells)]
+        fitting = (w for w in wholes if self.understanding.fits(w[len("".join(map(str, mark))) :]))
+        return next(fitting, wholes[0])
+
+    def _readings(self, cells: dict[str, ScriptText]) -> Iterator[list[str | ScriptText]]:
+        """The sentences that the cells may stand for, the most likely first."""
+        behind = list(self._behind(cells))
+        verb: list[str | ScriptText] = [cells["action"], " "] if "action" in cells else []
+        point, object_ = cells.get("checkpoint"), cells.get("object")
+        named: list[str | ScriptText] = []
+        if point is not None:
+            plain = point.content[:1] in "#0123456789"
+            named = [f"{self.prose.say['checkpoint']} ", point] if plain else [point]
+        if point is not None and object_ is not None:
+            yield [*verb, *named, " (", object_, ")", *behind]
+            yield [*verb, *named, ": ", object_, *behind]
+        elif object_ is not None:
+            yield [*verb, object_, *behind]
+        else:
+            yield [*verb, *named, *behind]
+
+    def _behind(self, cells: dict[str, ScriptText]) -> Iterator[str | ScriptText]:
+        """What a row says of its step: priority, whether it may be left out, speed."""
+        if (cell := cells.get("priority")) is not None:
+            rank = self.prose.rank(cell.content)
+            yield from (f" {self.prose.say['priority']} ", _as(rank, cell) if rank else cell)
+        if (cell := cells.get("optional")) is not None:
+            said = cell.content.lower()
+            if said in expand(self.prose.yes):
+                yield from (" ", _as(self.prose.say["optional"], cell))
+            elif said not in expand(self.prose.no):
+                yield from (" ", cell)
+        if (cell := cells.get("speed")) is not None:
+            yield from (f" {self.prose.say['speed']} ", cell)
+
+
+def _cells(text: ScriptText, cut: str) -> Iterator[tuple[int, ScriptText]]:
+    """The cells of a line, with the column at which each begins."""
+    content = text.content
+    start, end = 0, len(content)
+    if cut == "|":
+        start = content.find("|") + 1 if content.lstrip().startswith("|") else 0
+        end = content.rfind("|") if content.rstrip().endswith("|") else end
+    pattern = _BLANKS if cut == "  " else re.compile(re.escape(cut))
+    at = start
+    for found in [*pattern.finditer(content, start, end), None]:
+        stop = end if found is None else found.start()
+        cell = text[at:stop]
+        if cut != "  " or cell.content.strip():
+            yield at + len(cell.content) - len(cell.content.lstrip()), cell.strip()
+        at = stop if found is None else found.end()
+
+
+def _as(said: str, cell: ScriptText) -> ScriptText:
+    """Other words at the place of a cell."""
+    return cell.replace(0, len(cell.content), said)
+
+
+def _joined(parts: list[str | ScriptText], row: ScriptText | None = None) -> ScriptText:
+    """The parts in one text; words that are added stand where the next cell does."""
+    cells = [part for part in parts if isinstance(part, ScriptText)]
+    content: list[str] = []
+    offsets: list[int] = []
+    near = (row or cells[0]).strip().offsets[0]
+    for i, part in enumerate(parts):
+        if isinstance(part, ScriptText):
+            content.append(part.content)
+            offsets += part.offsets
+            continue
+        ahead = next((p for p in parts[i:] if isinstance(p, ScriptText)), None)
+        at = ahead.offsets[0] if ahead is not None else (offsets or [near])[-1]
+        content.append(part)
+        offsets += [at] * len(part)
+    return ScriptText("".join(content), offsets, (row or cells[0]).source)

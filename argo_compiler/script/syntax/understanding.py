@@ -1,0 +1,151 @@
+"""Makes sense of single sentences: words, tree, node; misspelt words are put right where exactly
+one reading makes sense."""
+
+import re
+from collections.abc import Collection
+from itertools import islice, product
+
+from argo_compiler.script.syntax.building.sentences import build
+from argo_compiler.script.syntax.grammar import Branch, StumbleError, sentence_grammar
+from argo_compiler.script.syntax.source import Diagnostics, ScriptText
+from argo_compiler.script.syntax.spelling import candidates
+from argo_compiler.script.syntax.tree.facts import Fact
+from argo_compiler.script.syntax.tree.orders import Sentence
+from argo_compiler.script.syntax.tree.places import FloorName, Location
+from argo_compiler.script.syntax.words.language import Language
+from argo_compiler.script.syntax.words.lexer import words
+from argo_compiler.script.syntax.words.word import Word
+
+Reading = tuple[Branch, list[Word]]
+_MOST_TRIED = 32
+"""ways to put the misspelt words of a sentence right"""
+_MIXED = re.compile(
+    r"(?<![\w.,'-])(?=[lIiOo|]*[0-9])(?=[0-9]*[lIiOo|])([0-9lIiOo|]+)(?![\w|]|-\w)"
+)
+_DIGITS = str.maketrans("lIi|Oo", "111100")
+_NAMED = re.compile(r"(?:valve|ventil|gauge|manometer)s?\s+$", re.IGNORECASE)
+"""behind these a letter may be one"""
+
+
+class Understanding:
+    """Reads sentences of one language."""
+
+    def __init__(
+        self, language: Language, names: Collection[str], diagnostics: Diagnostics
+    ) -> None:
+        self.language = language
+        self.known = frozenset(language.words)
+        self.names = names
+        """words of the site's names, in lower case"""
+        self.diagnostics = diagnostics
+        self.grammar = sentence_grammar()
+
+    def words(self, text: ScriptText) -> list[Word]:
+        return words(text.content, self.language.lexicon)
+
+    def types(self, text: ScriptText) -> tuple[str, ...]:
+        return tuple(word.type for word in self.words(text))
+
+    def read(self, text: ScriptText) -> Reading | StumbleError:
+        """The tree of a sentence, or where the grammar can't go on."""
+        found = self.words(text)
+        try:
+            return self.grammar.tree(tuple(word.type for word in found)), found
+        except StumbleError as stumble:
+            return stumble
+
+    def fits(self, text: ScriptText) -> bool:
+        """Whether a text makes sense by itself."""
+        found = self.words(text)
+        if not found:
+            return text.content != ""  # words that mean nothing
+        if any(word.type == "WORD" for word in found):
+            return False
+        try:
+            tree = self.grammar.tree(tuple(word.type for word in found))
+        except StumbleError:
+            return False
+        last = found[-1]
+        return not (last.type == "KIND" and not last.value[2]) and not _is_amend(tree)
+
+    def node(self, text: ScriptText, reading: Reading) -> Sentence | Fact | None:
+        """What a sentence says; None with an error."""
+        errors = self.diagnostics.errors
+        node: Sentence | Fact = build(*reading, text, self.diagnostics)
+        return node if self.diagnostics.errors == errors else None
+
+    def location(self, text: ScriptText) -> Location | tuple[FloorName, ...] | None:
+        """The place that a text names, if it names one and says nothing else."""
+        found = self.words(text)
+        try:
+            tree = self.grammar.tree(tuple(word.type for word in found), "location")
+        except StumbleError:
+            return None
+        where: Location | tuple[FloorName, ...] = build(tree, found, text, self.diagnostics)
+        return where
+
+    # ---- slips
+
+    def respelled(self, text: ScriptText) -> ScriptText | None:
+        """The text with misspelt words put right, if it makes sense then and in one way only."""
+        slips: list[tuple[Word, tuple[str, ...]]] = []
+        for word in self.words(text):
+            if word.type == "WORD":
+                meant = candidates(text.content[word.start : word.end], self.known)
+                if meant:
+                    slips.append((word, meant))
+        if not slips:
+            return None
+        found: dict[str, tuple[ScriptText, tuple[str, ...]]] = {}
+        for chosen in islice(product(*(meant for _, meant in slips)), _MOST_TRIED):
+            fixed = text
+            for (word, _), meant_word in zip(reversed(slips), reversed(chosen), strict=True):
+                fixed = fixed.replace(word.start, word.end, meant_word)
+            reading = self.read(fixed)
+            if not isinstance(reading, StumbleError):
+                said = " ".join(word.removesuffix("s") for word in chosen)
+                found.setdefault(said, (fixed, chosen))
+        if len(found) != 1:
+            return None
+        ((fixed, chosen),) = found.values()
+        for (word, _), meant_word in zip(slips, chosen, strict=True):
+            self._warn(text, word.start, word.end, meant_word)
+        return fixed
+
+    def figures(self, text: ScriptText) -> ScriptText:
+        """The text with letters among digits read as digits: `#l7`. Digits are never changed."""
+        if not _MIXED.search(text.content):
+            return text
+        quoted = quotes(text.content)
+        for found in reversed(list(_MIXED.finditer(text.content))):
+            start, end = found.span()
+            named = found[0].lower() in self.names or _NAMED.search(text.content[:start])
+            if named or any(a < start < b for a, b in quoted):
+                continue
+            meant = found[0].translate(_DIGITS)
+            self._warn(text, start, end, meant)
+            text = text.replace(start, end, meant)
+        return text
+
+    def _warn(self, text: ScriptText, start: int, end: int, meant: str) -> None:
+        said = text.content[start:end]
+        if said.lower() != meant:
+            message = f"read `{said}` as `{meant}`"
+            self.diagnostics.warning("respelled", message, text.span(start, end))
+
+
+def quotes(content: str) -> list[tuple[int, int]]:
+    """Where quoted texts begin and end."""
+    if '"' not in content:
+        return []
+    return [m.span() for m in re.finditer(r'"(?:[^"\\]|\\.)*"', content)]
+
+
+def _is_amend(tree: Branch) -> bool:
+    """Whether a sentence says nothing but a manner."""
+    _, parts, _, _ = tree
+    first = parts[0]
+    if isinstance(first, int) or first[0] != "order":
+        return False
+    order = first[1][-1]
+    return not isinstance(order, int) and order[0] == "amend"

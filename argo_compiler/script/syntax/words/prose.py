@@ -1,0 +1,106 @@
+"""What stands around the sentences of a script: labels of fields, greetings, remarks, columns."""
+
+import re
+from collections.abc import Mapping
+from dataclasses import dataclass
+from functools import cache, cached_property
+
+from argo_compiler.script.syntax.words.lexicon import Phrases, expand
+
+
+@dataclass(frozen=True)
+class Prose:
+    """The phrases of a language that no sentence has. Bars separate phrases, as in a lexicon."""
+
+    labels: Mapping[str, str]
+    """of the header's fields, by the field's name; the first is the one that is shown"""
+    values: Phrases
+    """by field and meaning, what may stand behind its label"""
+    around_areas: str
+    """words around a starting area that say no more than that it is one"""
+    columns: Mapping[str, str]
+    """the headings of a table's columns, by what they hold"""
+    ranks: Mapping[str, str]
+    """words for a priority, by the number that they stand for"""
+    yes: str
+    greeting: str
+    closing: str
+    remark: str
+    """labels of remarks"""
+    small_talk: str
+    """how sentences begin that ask for nothing"""
+    reason: str
+    """how clauses begin that ask for nothing"""
+    preposition: str
+    """words behind which a title may have an article"""
+    determiner: str
+    """words that begin the object of a verb"""
+    explicit_title: str
+    left_open: str
+    """how a sentence begins that leaves the starting areas to the preparation"""
+    sheet: str
+    """further words of sheets, by which cut ones are put together"""
+    no: str
+    say: Mapping[str, str]
+    """words that a table's columns stand for"""
+    samples: Mapping[str, str]
+    """a sentence for each verb"""
+    kinds: Mapping[str, str]
+    """what a terminal stands for that has no phrases"""
+    untold: frozenset[str]
+    """terminals that hints need not name"""
+
+    @cached_property
+    def label(self) -> re.Pattern[str]:
+        """A field's label with its colon; the group that matched is the field's name."""
+        names = (f"(?P<{name}>{either(text)})" for name, text in self.labels.items())
+        return re.compile(rf"(?<![\w-])(?:{'|'.join(names)})\s*:", re.IGNORECASE)
+
+    @cached_property
+    def label_words(self) -> frozenset[str]:
+        """All words of labels."""
+        said = (phrase for text in self.labels.values() for phrase in expand(text))
+        return frozenset(word for phrase in said for word in phrase.split())
+
+    @cached_property
+    def words(self) -> frozenset[str]:
+        """All words that stand around sentences."""
+        others = (self.around_areas, self.preposition, self.determiner, self.sheet)
+        said = (word for text in others for phrase in expand(text) for word in phrase.split())
+        return self.label_words.union(said)
+
+    @cached_property
+    def shown_labels(self) -> tuple[str, ...]:
+        """The labels as they are told to people, without those that have no effect."""
+        texts = (text for name, text in self.labels.items() if name != "nothing")
+        return tuple(expand(text)[0].capitalize() for text in texts)
+
+    @cached_property
+    def meanings(self) -> dict[tuple[str, str], object]:
+        """What a value in lower case means, by field and value."""
+        return {
+            (name, phrase): meaning
+            for (name, meaning), text in self.values.items()
+            for phrase in expand(text)
+        }
+
+    def column(self, heading: str) -> str | None:
+        """What a table's column with this heading holds."""
+        said = " ".join(heading.lower().strip(" .:*_").split())
+        return next((n for n, text in self.columns.items() if said in expand(text)), None)
+
+    def rank(self, said: str) -> str | None:
+        """The priority that a word such as `high` stands for."""
+        return next((n for n, text in self.ranks.items() if said.lower() in expand(text)), None)
+
+
+def either(text: str) -> str:
+    """A pattern of one of the phrases, the longest that fits."""
+    longest_first = sorted(set(expand(text)), key=len, reverse=True)
+    return "|".join(re.escape(phrase).replace(r"\ ", r"\s+") for phrase in longest_first)
+
+
+@cache
+def begins(phrases: str) -> re.Pattern[str]:
+    """What begins with one of the phrases."""
+    return re.compile(rf"(?:{either(phrases)})(?![\w-])", re.IGNORECASE)

@@ -47,7 +47,7 @@ class AreaCells:
                 areas.append(number)
         last = max((end for _, end in covered), default=0)
         tail = value.content.find(",", last)
-        if tail > 0 and not self._may_ask(value[tail + 1 :].strip()):
+        if tail > 0 and not self.may_ask(value[tail + 1 :].strip()):
             aside = value[tail + 1 :].strip()
             if aside.content:
                 message = f"`{aside.content}` has no effect"
@@ -59,13 +59,12 @@ class AreaCells:
             return None
         return Areas(span=value.span(), text=value.content, areas=tuple(areas))
 
-    def _may_ask(self, aside: ScriptText) -> bool:
+    def may_ask(self, aside: ScriptText) -> bool:
+        """Whether words behind an area may change what it means."""
         types = {*self.understanding.types(aside)}
         return bool(types & {"NOT", "IF", "IF_ONLY", "UNLESS", "EXCEPT", "AREA", "NUMBER", "ELSE"})
 
-    def _refuse_strays(
-        self, value: ScriptText, end: int, covered: list[tuple[int, int]]
-    ) -> None:
+    def _refuse_strays(self, value: ScriptText, end: int, covered: list[tuple[int, int]]) -> None:
         around = frozenset(self.prose.around_areas.split("|"))
         for token in _TOKEN.finditer(value.content, 0, end):
             said = token[0].lower()

@@ -7,6 +7,7 @@ for something is never taken for such.
 import re
 from collections.abc import Iterator
 from functools import cache
+from itertools import pairwise
 
 from argo_compiler.script.syntax.grammar import StumbleError
 from argo_compiler.script.syntax.source import ScriptText, join
@@ -15,9 +16,38 @@ from argo_compiler.script.syntax.words.joints import VERBS
 from argo_compiler.script.syntax.words.prose import Prose, begins, either
 
 _ASKING = frozenset(
-    "IF IF_ONLY UNLESS ELSE NOT EXCEPT UNTIL EVERY DURATION SPEED QUANTITY TIMES AT_MOST AT_LEAST "
-    "WITHIN LATEST EARLIEST IF_TIME ANY_ORDER THIS_ORDER RETRY GREATER LESS BETWEEN CANNOT "
-    "MAX_DURATION BACK_IN BE_MEASURED FAILS OCCURS".split()
+    [
+        "IF",
+        "IF_ONLY",
+        "UNLESS",
+        "ELSE",
+        "NOT",
+        "EXCEPT",
+        "UNTIL",
+        "EVERY",
+        "DURATION",
+        "SPEED",
+        "QUANTITY",
+        "TIMES",
+        "AT_MOST",
+        "AT_LEAST",
+        "WITHIN",
+        "LATEST",
+        "EARLIEST",
+        "IF_TIME",
+        "ANY_ORDER",
+        "THIS_ORDER",
+        "RETRY",
+        "GREATER",
+        "LESS",
+        "BETWEEN",
+        "CANNOT",
+        "MAX_DURATION",
+        "BACK_IN",
+        "BE_MEASURED",
+        "FAILS",
+        "OCCURS",
+    ]
 )
 """words of these types are in no title"""
 _NAMED = frozenset(["KIND", "HASH", "STEP", "AREA", "DOCK", "FLOOR"])
@@ -106,7 +136,7 @@ class Asides:
         article, before = _words(self.prose.determiner), _words(self.prose.preposition)
         return any(
             token in article and last[0].isalpha() and last not in before and last not in article
-            for last, token in zip(tokens, tokens[1:], strict=False)
+            for last, token in pairwise(tokens)
         )
 
     def is_title(self, text: ScriptText) -> bool:

@@ -1,9 +1,9 @@
 """The cells of a mission sheet: its labels stand beside the middle of their cells.
 
-The first lines of a cell may come before the label, and a label of two words may stand in two lines:
-`Anomaly` and below it `specification:`. A line without a label belongs to the label above it, unless
-it begins a sentence that goes on beside the label below: it opens with a capital, the lines down to
-the label do not end the sentence, and the text beside the label does not open one of its own.
+The first lines of a cell may come before the label, and a label of two words may stand in two
+lines: `Anomaly` and below it `specification:`. A line without a label belongs to the label above,
+unless it begins a sentence that goes on beside the label below: it opens with a capital, the lines
+down to the label do not end the sentence, and the text beside the label does not open one.
 """
 
 import re
@@ -72,7 +72,9 @@ class Cells:
         if parts is None:
             return None
         label, beside, rest = parts
-        lines[i] = join([label, beside] if self.label.match(rest.content) else [label, beside, rest])
+        lines[i] = join(
+            [label, beside] if self.label.match(rest.content) else [label, beside, rest]
+        )
         lines[i + 1] = rest if self.label.match(rest.content) else rest[:0]
         return lines[i]
 

@@ -10,6 +10,8 @@ from typing import Any
 from argo_compiler.il import Mode, Order
 from argo_compiler.script.syntax.area_cells import AreaCells
 from argo_compiler.script.syntax.asides import Asides
+from argo_compiler.script.syntax.building.figures import seconds
+from argo_compiler.script.syntax.building.part import Part
 from argo_compiler.script.syntax.source import Diagnostics, ScriptText
 from argo_compiler.script.syntax.spelling import alternatives, candidates, nearest
 from argo_compiler.script.syntax.tree import orders
@@ -18,7 +20,6 @@ from argo_compiler.script.syntax.tree.places import Coordinates, Steps
 from argo_compiler.script.syntax.tree.script import AreaChosen, Header, Text
 from argo_compiler.script.syntax.understanding import Understanding
 from argo_compiler.script.syntax.words.joints import VERBS
-from argo_compiler.script.syntax.words.lengths import Length
 from argo_compiler.script.syntax.words.lexer import unquoted
 from argo_compiler.script.syntax.words.prose import begins
 from argo_compiler.script.syntax.words.word import Word
@@ -196,7 +197,7 @@ class Fields:
         said = label.source.text[label.offsets[0] : value.offsets[-1] + 1]
         self.diagnostics.note("no-effect", f"`{said}` has no effect", label.span())
 
-    def _meaning(self, name: str, value: ScriptText, kind: type) -> Any:
+    def _meaning(self, name: str, value: ScriptText, kind: type[Mode] | type[Order]) -> Any:
         """What one of a few values means."""
         found = self.prose.meanings.get((name, _plain(value)))
         if found is None:
@@ -210,26 +211,25 @@ class Fields:
         return ("none", _plain(value)) in self.prose.meanings
 
     def _duration(self, value: ScriptText) -> None:
-        found = self.understanding.words(value)
-        lengths = [w.value for w in found if w.type == "DURATION" and isinstance(w.value, Length)]
-        others = [w for w in found if w.type not in ("DURATION", "AT_MOST", "TOTAL")]
         if self.is_none(value):
             self._is_new("max_duration", "none", value)
-        elif len(lengths) != 1 or others or not lengths[0].seconds > 0:
-            at = value if not lengths or not others else _of(value, others[0])
+            return
+        found = self.understanding.words(value)
+        lengths = [w for w in found if w.type == "DURATION"]
+        others = [w for w in found if w.type not in ("DURATION", "AT_MOST", "TOTAL")]
+        if len(lengths) != 1 or others:
+            at = _of(value, others[0]) if lengths and others else value
             message = f"`{value.content}` is no duration"
             hint = "write, say, `20 min`, `1 h 30 min` or `none`"
             self.diagnostics.error("duration", message, at.span(), hint)
-        elif lengths[0].other is not None:
-            (length,) = lengths
-            message = f"`{length.said}` can be {length.first} or {length.second}"
-            self.diagnostics.error(
-                "ambiguous-duration", message, value.span(), f"write `{length.first}`"
-            )
-        else:
+            return
+        (word,) = lengths
+        errors = self.diagnostics.errors
+        part = Part((word,), value, word.start, word.end, self.diagnostics)
+        length = seconds(part, word)
+        if self.diagnostics.errors == errors:
             node = Text(span=value.span(), text=value.content)
-            seconds = lengths[0].seconds
-            self._set("max_duration", (seconds, node), value, seconds)
+            self._set("max_duration", (length, node), value, length)
 
     def _place(self, name: str, value: ScriptText) -> None:
         """`docked in starting area 1 or 2`, or any other place."""
@@ -298,9 +298,9 @@ class Fields:
         return True
 
     def leaves_open(self, text: ScriptText) -> bool:
-        """Reads a sentence that leaves the docks to be chosen: `The docks are chosen on the day`."""
+        """Reads a sentence that leaves the docks open: `The docks are chosen on the day`."""
         said = begins(self.prose.left_open).match(text.content)
-        if said is None or self.asides.asks(text[said.end() :].strip()):
+        if said is None or self.areas.may_ask(text[said.end() :]):
             return False
         self.header.areas_open = Text(span=text.span(), text=text.content)
         return True

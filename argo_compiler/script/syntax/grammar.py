@@ -7,7 +7,6 @@ from importlib.resources import files
 from lark import Lark, Token, Tree
 from lark.exceptions import UnexpectedToken
 
-
 Branch = tuple[str, tuple["Branch | int", ...], int, int]
 """a rule, its parts, and which words it covers, from the first to behind the last; a part is a
 branch or the place of a word in the sentence"""

@@ -47,7 +47,8 @@ class Item:
 
 
 _NUMBER = re.compile(
-    r"\(?(?:step\s+)?([0-9]{1,6})\s*(?:[.)](?![0-9])|:(?![0-9])|\s-\s+(?=[^\W\d_]))\s*", re.IGNORECASE
+    r"\(?(?:step\s+)?([0-9]{1,6})\s*(?:[.)](?![0-9])|:(?![0-9])|\s-\s+(?=[^\W\d_]))\s*",
+    re.IGNORECASE,
 )
 _SUB_NUMBER = re.compile(r"[0-9]{1,4}\.[0-9]{1,4}[.)]?\s+(?=[A-Z])")
 _STEP = re.compile(r"step\s+([0-9]{1,6})\b[.:)]?\s*", re.IGNORECASE)
@@ -92,9 +93,7 @@ def _marked(text: ScriptText, indent: int) -> Line:
     if bullet := _BULLET.match(text.content):
         inner = _marked(text[bullet.end() :].strip(), indent)
         mark = inner.mark if inner.number else Mark.BULLET
-        return Line(
-            inner.text, indent, mark, inner.number, heading=text.content.startswith("#")
-        )
+        return Line(inner.text, indent, mark, inner.number, heading=text.content.startswith("#"))
     if number := _NUMBER.match(text.content) or _STEP.match(text.content):
         return Line(text[number.end() :].strip(), indent, Mark.NUMBER, int(number[1]))
     if letter := _LETTER.match(text.content) or _SUB_NUMBER.match(text.content):
@@ -158,9 +157,7 @@ def _joined(above: ScriptText, below: ScriptText, words: Collection[str]) -> Scr
     if left is None or right is None or (left[1] + right[0]).lower() not in words:
         return join([above, below])
     whole = above[: len(above.content) - 1]
-    return ScriptText(
-        whole.content + below.content, [*whole.offsets, *below.offsets], above.source
-    )
+    return ScriptText(whole.content + below.content, [*whole.offsets, *below.offsets], above.source)
 
 
 def _lies_in(line: Line, outer: Line) -> bool:
@@ -183,9 +180,9 @@ def sentences(text: ScriptText) -> list[ScriptText]:
         if any(a < end.start() < b for a, b in quoted):
             continue
         goes_on = not text.content[end.end() :].lstrip()[:1].isupper()
-        if goes_on and end.end() < len(text.content):
-            if _ABBREVIATION.search(text.content[: end.start() + 1]):
-                continue
+        more = goes_on and end.end() < len(text.content)
+        if more and _ABBREVIATION.search(text.content[: end.start() + 1]):
+            continue
         found.append(text[start : end.start()].strip())
         start = end.end()
     found.append(text[start:].strip())

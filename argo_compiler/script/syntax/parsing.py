@@ -43,7 +43,7 @@ def parse(
     _require_size(source)
     diagnostics = Diagnostics(source)
     language = Language.of(text, places)
-    words = {word for name in (*names, *places) for word in name.lower().split()}
+    words = frozenset(word for name in (*names, *places) for word in name.lower().split())
     understanding = Understanding(language, words, diagnostics)
     asides = Asides(understanding)
     fields = Fields(understanding, asides, diagnostics)
@@ -86,9 +86,7 @@ class _Parser:
         healed = heal(source, self._vocabulary(source.text), rows)
         self.diagnostics.extend(healed.diagnostics)
         texts = Cells(self.fields, self.understanding).joined(healed.lines)
-        items = items_of(
-            list(lines_of(texts)), self.is_complete, self.stands_alone, language.words
-        )
+        items = items_of(list(lines_of(texts)), self.is_complete, self.stands_alone, language.words)
         steps = list(self._steps(items))
         first = [_step_of(sentence) for sentence in self.fields.first]
         last = [_step_of(sentence) for sentence in self.fields.last]
@@ -101,11 +99,11 @@ class _Parser:
             diagnostics=self.diagnostics.by_place(),
         )
 
-    def _vocabulary(self, text: str) -> set[str]:
+    def _vocabulary(self, text: str) -> frozenset[str]:
         """The words by which cut ones are put together. Those that only edits have are none of
         them, unless the script has them elsewhere: `a⇥d` is `and` rather than `add`."""
         if "\t" not in text:
-            return set()
+            return frozenset()
         phrases = self.understanding.language.lexicon.phrases
         edits = (said for kind in _EDITS for said in phrases.get((kind, None), ()))
         unsaid = {word for said in edits for word in said.split()}
@@ -114,7 +112,7 @@ class _Parser:
             # `check points` and `checkpoints` are one: no cut between them leaves a doubt.
             parts = (said.split() for said in alike)
             unsaid.update(p[1] for p in parts if len(p) == 2 and "".join(p) in alike)
-        known = self.understanding.known | self.understanding.language.prose.words
+        known: frozenset[str] = self.understanding.known | self.understanding.language.prose.words
         return self.understanding.names | (known - unsaid)
 
     def stands_alone(self, text: ScriptText) -> bool:
@@ -223,9 +221,7 @@ class _Parser:
         node = self.understanding.node(text, reading)
         return Unread(span=text.span()) if node is None else node
 
-    def _not_understood(
-        self, text: ScriptText, item: Item, stumble: StumbleError
-    ) -> Unread | None:
+    def _not_understood(self, text: ScriptText, item: Item, stumble: StumbleError) -> Unread | None:
         """What makes no sense: said of the mission as a whole, a title, small talk or an error."""
         if self.fields.whole_mission(text) or self._title(text, item):
             return None

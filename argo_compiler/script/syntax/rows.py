@@ -98,7 +98,9 @@ class _Rows:
         cells: dict[str, ScriptText] = {}
         for i, (at, cell) in enumerate(_cells(text, cut)):
             under = [h for h in headings if h.start <= at + 1]
-            heading = headings[min(i, len(headings) - 1)] if cut != "  " else (under or headings)[-1]
+            heading = (
+                headings[min(i, len(headings) - 1)] if cut != "  " else (under or headings)[-1]
+            )
             if cell.content:
                 before = cells.get(heading.holds)
                 cells[heading.holds] = cell if before is None else _joined([before, " ", cell])

@@ -2,7 +2,6 @@
 one reading makes sense."""
 
 import re
-from collections.abc import Collection
 from itertools import islice, product
 
 from argo_compiler.script.syntax.building.sentences import build
@@ -19,9 +18,7 @@ from argo_compiler.script.syntax.words.word import Word
 Reading = tuple[Branch, list[Word]]
 _MOST_TRIED = 32
 """ways to put the misspelt words of a sentence right"""
-_MIXED = re.compile(
-    r"(?<![\w.,'-])(?=[lIiOo|]*[0-9])(?=[0-9]*[lIiOo|])([0-9lIiOo|]+)(?![\w|]|-\w)"
-)
+_MIXED = re.compile(r"(?<![\w.,'-])(?=[lIiOo|]*[0-9])(?=[0-9]*[lIiOo|])([0-9lIiOo|]+)(?![\w|]|-\w)")
 _DIGITS = str.maketrans("lIi|Oo", "111100")
 _NAMED = re.compile(r"(?:valve|ventil|gauge|manometer)s?\s+$", re.IGNORECASE)
 """behind these a letter may be one"""
@@ -30,9 +27,7 @@ _NAMED = re.compile(r"(?:valve|ventil|gauge|manometer)s?\s+$", re.IGNORECASE)
 class Understanding:
     """Reads sentences of one language."""
 
-    def __init__(
-        self, language: Language, names: Collection[str], diagnostics: Diagnostics
-    ) -> None:
+    def __init__(self, language: Language, names: frozenset[str], diagnostics: Diagnostics) -> None:
         self.language = language
         self.known = frozenset(language.words)
         self.names = names

@@ -235,7 +235,10 @@ MANNERS: Phrases = {
     ("UNIT_S", 900.0): "quarter of an hour|quarters of an hour|quarter-hour{s}|quarter hour{s}",
     ("UNIT_S", 60.0): "min|mins|minute{s}|'",
     ("UNIT_S", 1.0): "s|sec|secs|seconds",
-    ("RATE", 1.0): "m / s|metre{s} per second|meter{s} per second|metre{s} a second|meter{s} a second",
+    (
+        "RATE",
+        1.0,
+    ): "m / s|metre{s} per second|meter{s} per second|metre{s} a second|meter{s} a second",
     ("RATE", 0.01): "cm / s|centimetre{s} per second|centimeter{s} per second",
     ("RATE", 1 / 3.6): "km / h|kmh|kph|kilometre{s} per hour|kilometer{s} per hour",
 }

@@ -138,7 +138,29 @@ PROSE = Prose(
         "EVENT": "an event such as `a gas leak`",
     },
     untold=frozenset(
-        "STRING LPAR_CALLED LPAR_BOUND SECOND_BOUND JOINTS STANDING SHOWN_IN ABOUT LEAVING JOINT "
-        "X Y Z RAD MODE VALUE FINISHING STOPPING INCLUDED EXCLUDED ENDLESS IN_CIRCLES".split()
+        [
+            "STRING",
+            "LPAR_CALLED",
+            "LPAR_BOUND",
+            "SECOND_BOUND",
+            "JOINTS",
+            "STANDING",
+            "SHOWN_IN",
+            "ABOUT",
+            "LEAVING",
+            "JOINT",
+            "X",
+            "Y",
+            "Z",
+            "RAD",
+            "MODE",
+            "VALUE",
+            "FINISHING",
+            "STOPPING",
+            "INCLUDED",
+            "EXCLUDED",
+            "ENDLESS",
+            "IN_CIRCLES",
+        ]
     ),
 )

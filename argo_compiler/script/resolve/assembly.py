@@ -100,10 +100,6 @@ def _transitions(
             decided = True
         if target is not None:
             found.append(Transition(target=target, conditions=conditions))
-        elif conditions:
-            message = "a condition leads to a task, and here the mission ends"
-            hint = "write `return to the docking station`, or let it be the last thing to do"
-            diagnostics.error("no-target", message, _source(item), hint)
     following = None if decided else _name(item.next, names)
     if following is not None:
         found.append(Transition(target=following))

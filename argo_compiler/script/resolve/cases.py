@@ -1,9 +1,11 @@
 """What is done if something is so: after a value, after a failure, after an event."""
 
+from itertools import combinations, pairwise
 from typing import TYPE_CHECKING
 
 from argo_compiler.il import OnFailure
 from argo_compiler.script.resolve.context import Context
+from argo_compiler.script.resolve.excluding import exclude
 from argo_compiler.script.resolve.program import (
     Ahead,
     Alternatives,
@@ -14,6 +16,7 @@ from argo_compiler.script.resolve.program import (
     Node,
     Target,
     Way,
+    in_branch,
 )
 from argo_compiler.script.syntax.tree import orders
 from argo_compiler.script.syntax.tree.conditions import Condition, InState, State, Test, TooLate
@@ -53,8 +56,26 @@ class Cases:
             self.diagnostics.error("unfinished", message, case.span, hint)
         elif _is_failure(condition):
             self._failure(case, block)
+        elif case.chained and (inner := self._other_case(case, block)) is not block:
+            if inner is not None:
+                self._values(case, condition, inner)
         else:
             self._values(case, condition, block)
+
+    def _other_case(self, case: Case, block: Block) -> Block | None:
+        """Where a condition of `otherwise, if ...` stands; None if there is no other one before."""
+        before = self.context.choice
+        if isinstance(before, Choice) and before.listed and before.otherwise.first is None:
+            return before.otherwise
+        do = block.last
+        if isinstance(before, Way) and isinstance(do, Do) and before in do.ways:
+            if before.target is not Ahead.GO_ON:
+                return block  # the first way whose condition holds is taken
+            choice = Choice(self._taken(do, before), case.span)
+            self._to_choice(do, before, choice, block)
+            return choice.otherwise
+        self._otherwise_of_what(case)
+        return None
 
     # ---- values
 
@@ -75,7 +96,8 @@ class Cases:
             return
         choice = Choice(alternatives, case.span, negated=condition.negated, bound=self._bound(do))
         self.context.put([choice], block, do)
-        self.context.step.append(choice)
+        if not in_branch(block):
+            self.context.step.append(choice)
         self._branch(case, choice.then)
         self.context.choice = choice
 
@@ -103,7 +125,7 @@ class Cases:
             way = self.planner.home_ahead(home)
             ending = None if way is None else Leave(way, home.span)
         self.planner.carry_out(orders_, branch)
-        if ending is not None and ending.target is not Ahead.GO_ON:
+        if ending is not None:
             context.put([ending], branch, branch.last)
         context.memory.last = memory
         context.docked, context.recent, context.step = docked, recent, step
@@ -117,8 +139,8 @@ class Cases:
             if before.otherwise.first is not None:
                 message = "there are two `otherwise` for one condition"
                 self.diagnostics.error("second-route", message, case.span, "leave one out")
-                return
-            self._branch(case, before.otherwise)
+            elif self._is_of_all(before, case):
+                self._branch(case, before.otherwise)
             return
         do = block.last
         target = self._target(case)
@@ -131,11 +153,41 @@ class Cases:
             self._branch(case, choice.otherwise)
             self.context.choice = choice
             return
+        self._otherwise_of_what(case)
+
+    def _otherwise_of_what(self, case: Case) -> None:
         if not self.context.whole:
             return  # the condition may be what was not understood
         message = "`Otherwise` of what? No condition stands before it"
         hint = "write it behind the condition whose other case it is"
         self.diagnostics.error("otherwise", message, case.span, hint)
+
+    def _is_of_all(self, last: Choice, case: Case) -> bool:
+        """Whether `otherwise` behind several conditions is clear: it is what is done if none of
+        them holds, which is put so that it is. If two may hold, it may be that of the last."""
+        chain = [last]
+        while isinstance(before := chain[0].before, Choice) and chain[0].bound:
+            chain.insert(0, before)
+        if isinstance(last.then.last, Choice):
+            self._ambiguous_otherwise(case)  # `if ..., check #2 unless ...; otherwise ...`
+            return False
+        several = [c for c in chain if c is last or not isinstance(c.then.last, Leave)]
+        if len(several) == 1:
+            return True
+        clear = all(exclude(a.alternatives, b.alternatives) for a, b in combinations(several, 2))
+        if not clear or any(c.negated or c.otherwise.first is not None for c in chain):
+            self._ambiguous_otherwise(case)
+            return False
+        for outer, inner in pairwise(chain):
+            assert inner.block is not None
+            inner.block.remove(inner)
+            outer.otherwise.append(inner)
+        return True
+
+    def _ambiguous_otherwise(self, case: Case) -> None:
+        message = "`otherwise` can be meant for the last of these conditions, or for all"
+        hint = "write `otherwise, if ...`, or say each condition in a step of its own"
+        self.diagnostics.error("ambiguous-otherwise", message, case.span, hint)
 
     def _rest(self, case: Case, block: Block) -> None:
         """The way that a task leads on if none of its conditions holds, wherever that is said."""

@@ -91,6 +91,8 @@ class _Lowering:
         self.points: dict[int, Point] = {}
         self.homes: dict[int, Point] = {}
         self.apart: list[Do] = []
+        self.onward = Point()
+        """where `go on` leads: behind all conditions of a step"""
         self.jumped: set[int] = set()
         """the nodes that a way from elsewhere leads to, by identity"""
 
@@ -100,7 +102,20 @@ class _Lowering:
         for do in self.apart:
             item = Item(do)
             self._place(item, self.homes[id(do)])
+        self._end()
         return Lowered(self.items, self.ranges)
+
+    def _end(self) -> None:
+        """A way with a condition leads to a task: where the mission ends, to one that does nothing,
+        and behind which nothing follows."""
+        end = Point()
+        for item in self.items:
+            for i, (conditions, point) in enumerate(item.ways):
+                if conditions and point.reached() is None:
+                    item.ways[i] = (conditions, end)
+                    end.item = end.item or Item(Do("END", Action.WAIT, wait=MEETING))
+        if end.item is not None:
+            self.items.append(end.item)
 
     # ---- where ways lead
 
@@ -120,9 +135,9 @@ class _Lowering:
     def _point(self, node: Node) -> Point:
         return self.points.setdefault(id(node), Point())
 
-    def _target(self, target: Target, following: Point) -> Point:
+    def _target(self, target: Target) -> Point:
         if target is Ahead.GO_ON:
-            return following
+            return self.onward
         if target is Ahead.END:
             return Point()
         if isinstance(target, HomeAhead):
@@ -140,11 +155,16 @@ class _Lowering:
 
     # ---- blocks
 
-    def _block(self, block: Block, entry: Point, following: Point) -> None:
-        """Lays a block out: `entry` is where it is come to, `following` where it leads."""
-        before: Item | None = None
+    def _block(
+        self, block: Block, entry: Point, following: Point, before: Item | None = None
+    ) -> None:
+        """Lays a block out: `entry` is where it is come to, `following` where it leads. `before`
+        is the task from which alone it is come to, if a condition there may decide in it."""
         point = entry
+        around = onward = self.onward
         for node in block:
+            known = isinstance(block.owner, Choice) or (isinstance(node, Choice) and node.bound)
+            self.onward = onward = onward if known else self._onward(node, following)
             if isinstance(node, Do) and node.action is Action.START:
                 # The mission passes over it: what leads to it leads to what follows.
                 behind = (
@@ -160,8 +180,16 @@ class _Lowering:
             behind = self.points.setdefault(id(node.after), Point()) if node.after else following
             before = self._node(node, own, behind, before)
             point = behind
+        self.onward = around
         if block.first is None:
             entry.same = following
+
+    def _onward(self, node: Node, following: Point) -> Point:
+        """Where a node leads if none of the conditions that belong to it is looked at."""
+        after = node.after
+        while isinstance(after, Choice) and after.bound:
+            after = after.after
+        return following if after is None else self._point(after)
 
     def _node(self, node: Node, entry: Point, behind: Point, before: Item | None) -> Item | None:
         """Lays a node out; the task whose ways a condition behind it may be added to."""
@@ -173,7 +201,7 @@ class _Lowering:
             case Round():
                 self._round(node, entry, behind)
             case Leave():
-                entry.same = self._target(node.target, behind)
+                entry.same = self._target(node.target)
         return None
 
     def _place(self, item: Item, entry: Point) -> None:
@@ -184,7 +212,7 @@ class _Lowering:
         item = Item(do, next=behind)
         self._place(item, entry)
         for way in do.ways:
-            target = self._target(way.target, behind)
+            target = self._target(way.target)
             for conditions in way.alternatives or ((),):
                 item.ways.append((conditions, target))
         if do.failure is not None:
@@ -199,19 +227,16 @@ class _Lowering:
         self, choice: Choice, entry: Point, behind: Point, before: Item | None
     ) -> Item | None:
         """Decides at the task before it, or at a place of its own if others come here as well."""
-        shared = before is not None and before.next is entry and id(choice) not in self.jumped
-        if shared:
-            item = before
-            assert item is not None
-        else:
+        item = before
+        if item is None or not self._comes_only_from(item, entry, choice):
             item = Item(_meeting(choice))
             self._place(item, entry)
         then, otherwise = Point(), Point()
         taken, left = (otherwise, then) if choice.negated else (then, otherwise)
         item.ways += [(conditions, taken) for conditions in choice.alternatives]
         item.next = left
-        self._branch(choice.then, then, behind)
-        self._branch(choice.otherwise, otherwise, behind)
+        for block, point in ((choice.then, then), (choice.otherwise, otherwise)):
+            self._block(block, point, behind, item if point is left else None)
         # A condition behind this one is looked at here as well if the task leads on to it alone.
         alone = choice.otherwise.first is None and not choice.negated and _leaves(choice.then)
         if alone and behind.item is None:
@@ -219,13 +244,11 @@ class _Lowering:
             return item
         return None
 
-    def _branch(self, block: Block, entry: Point, behind: Point) -> None:
-        only = block.first
-        if isinstance(only, Leave) and only.target is Ahead.END:
-            # A way with a condition leads to a task: this one does nothing, and nothing follows.
-            self._place(Item(Do("END", Action.WAIT, only.span, wait=MEETING)), entry)
-        else:
-            self._block(block, entry, behind)
+    def _comes_only_from(self, item: Item, entry: Point, choice: Choice) -> bool:
+        """Whether a condition is come to from this task alone, if none of its ways is taken."""
+        if item.next is not entry or id(choice) in self.jumped:
+            return False
+        return all(conditions and point is not entry for conditions, point in item.ways)
 
     # ---- rounds
 

@@ -73,7 +73,7 @@ class Manners:
             nodes.insert(0, wait)
         again = manner.more and manner.times == 1
         once = manner.times == 1 and not manner.more
-        asked = any(getattr(manner, name) is not None for name in _ROUND)
+        asked = manner.endless or any(getattr(manner, name) is not None for name in _ROUND)
         if asked and not again and not once and tasks[0].action is not Action.START:
             round_ = self._round(order, manner, nodes)
             nodes = nodes if round_ is None else [round_]
@@ -109,7 +109,8 @@ class Manners:
         for do in tasks:
             if manner.speed is not None:
                 do.velocity = manner.speed
-            if manner.time_limit is not None and do.action is not Action.WAIT:
+            # Of a patrol it is the limit of all its rounds, of a wait what ends it.
+            if manner.time_limit is not None and not isinstance(order, orders.Patrol | orders.Wait):
                 do.time_limit = manner.time_limit
             if manner.reading_limit is not None:
                 do.reading_limit = manner.reading_limit

@@ -9,6 +9,7 @@ from argo_compiler.script.resolve import making
 from argo_compiler.script.resolve.cases import Cases
 from argo_compiler.script.resolve.context import Context
 from argo_compiler.script.resolve.edits import Edits
+from argo_compiler.script.resolve.fitting import fits
 from argo_compiler.script.resolve.manners import Manners
 from argo_compiler.script.resolve.program import (
     Ahead,
@@ -76,6 +77,8 @@ class Planner:
             hint = "write it as a step of its own"
             self.diagnostics.error("route", message, order.span, hint)
             return
+        if not fits(order, self.context):
+            return
         match order:
             case orders.Amend() | orders.Retry():
                 self.manners.amend(order)
@@ -89,6 +92,8 @@ class Planner:
                 self._leave(Leave(order.step, order.span), block)
             case orders.Add() | orders.Delete() | orders.Move() | orders.Replace():
                 self.edits.carry_out(order)
+                if isinstance(order, orders.Add):
+                    self.manners.furnish(order, self.context.recent)
             case orders.Patrol():
                 self._patrol(order, block)
             case _:
@@ -227,11 +232,6 @@ class Planner:
     # ---- orders of one word
 
     def _plain(self, order: orders.Plain, block: Block) -> None:
-        if order.manner is not None and order.word is not Word.MEET:
-            message = f"`{order.word}` has no such thing"
-            hint = "write it behind what is to be done so"
-            self.diagnostics.error("stray-clause", message, order.span, hint)
-            return
         match order.word:
             case Word.DONE:
                 self.done = True

@@ -74,15 +74,6 @@ class Repeating:
 
     def repeat(self, order: orders.Repeat, block: Block) -> None:
         """Notes that steps are repeated: a round is put here, which they come into later."""
-        manner = order.manner
-        said = manner is not None and any(
-            getattr(manner, name) is not None for name in ("speed", "retries", "leaving", "pose")
-        )
-        if said:
-            message = "a repetition has no such thing of its own"
-            hint = "write it behind the steps that it is said of"
-            self.diagnostics.error("stray-clause", message, order.span, hint)
-            return
         base = "Repeat"
         if order.steps is not None:
             ends = dict.fromkeys((order.steps.points[0], order.steps.points[-1]))
@@ -127,12 +118,14 @@ def limits_of(context: Context, order: Order, more_is_added: bool) -> Limits | N
     until = _until(context, order)
     if until is None:
         return None
-    if not (count or manner.duration or manner.time_limit or until or manner.endless):
+    rounds = isinstance(order, orders.Patrol | orders.Repeat | orders.Follow | orders.Amend)
+    duration = manner.duration or (manner.time_limit if rounds else None) or 0.0
+    if not (count or duration or until or manner.endless):
         _endless(context, what, order.span)
         return None
     return Limits(
         count=count,
-        duration=manner.duration or manner.time_limit or 0.0,
+        duration=duration,
         every=manner.every or 0.0,
         until=until,
         soft=bool(manner.finishing),

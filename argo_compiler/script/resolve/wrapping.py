@@ -97,7 +97,7 @@ class Wrapping:
             hint = "let one lie in the other as a whole, or separate them"
             self.diagnostics.error("overlap", message, order.span, hint)
             return []
-        return self._together(order, tops, known)
+        return self._together(order, tops)
 
     def _all(self, round_: Round) -> list[Node]:
         found: list[Node] = []
@@ -108,7 +108,7 @@ class Wrapping:
                 found.append(node)
         return found
 
-    def _together(self, order: orders.Repeat, tops: list[Node], known: set[int]) -> list[Node]:
+    def _together(self, order: orders.Repeat, tops: list[Node]) -> list[Node]:
         """From the first to the last of the nodes, in the order of their block."""
         assert order.steps is not None
         ends = {id(node) for node in tops}

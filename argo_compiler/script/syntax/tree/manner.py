@@ -25,7 +25,6 @@ class Manner:
     """m/s on the way to each task"""
     leaving: float | None = None
     """m/s on the way to the task after"""
-    retries: int | None = None
     delay: float | None = None
     """s to wait before it"""
     time_limit: float | None = None

@@ -38,7 +38,8 @@ def joined(words: list[Word]) -> list[Word]:
         name = _is_name(words, i)
         if joints:
             said = " ".join(joint.value for joint in joints)
-            kind = _type(said, word)
+            limits = word.type == "AT_MOST" and _limits(words[i + 1 : i + 2])
+            kind = None if limits else _type(said, word)
             if name:
                 kind = "NEXT"
             elif named == len(found) - 1 >= 0:
@@ -58,6 +59,11 @@ def _is_name(words: list[Word], i: int) -> bool:
         return False
     after = words[i + 1] if i + 1 < len(words) else None
     return after is not None and after.type == "JOINT" and after.value == ":"
+
+
+def _limits(after: list[Word]) -> bool:
+    """Whether `at most` is said of rounds or of a time, not of a value."""
+    return bool(after) and after[0].type in ("TIMES", "DURATION")
 
 
 def _type(said: str, word: Word) -> str | None:

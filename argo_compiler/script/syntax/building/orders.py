@@ -51,7 +51,7 @@ def _measure(part: Part) -> Order:
         span=part.span,
         manner=_manner(part),
         what=part.the(Nouns),
-        bare=not part.has("MEASURE", "KEEP_MEASURING"),
+        bare=not part.has("MEASURE", "KEEP_MEASURING", "BE_MEASURED"),
         keep=part.has("KEEP_MEASURING"),
     )
 
@@ -153,6 +153,7 @@ RULES: dict[str, Make] = {
     "measure": _measure,
     "keep": _measure,
     "bare": _measure,
+    "passive": _measure,
     "go": _go,
     "jump": lambda part: orders.Jump(span=part.span, step=part.the(Steps)),
     "home": _home,

@@ -1,13 +1,19 @@
 """The language of a script, with the names of its site."""
 
+import re
 from collections.abc import Iterable
 from dataclasses import dataclass
 from functools import lru_cache
+from itertools import islice
 
-from argo_compiler.script.syntax.words import english
+from argo_compiler.script.syntax.words import english, german
 from argo_compiler.script.syntax.words.english_prose import PROSE
-from argo_compiler.script.syntax.words.lexicon import Lexicon
+from argo_compiler.script.syntax.words.lexicon import Lexicon, folded
 from argo_compiler.script.syntax.words.prose import Prose
+
+_WORD = re.compile(r"[^\W\d_]+")
+_MOST = 4000
+"""words from which the language is told"""
 
 
 @dataclass(frozen=True)
@@ -15,26 +21,36 @@ class Language:
     """A lexicon, and all words that a text in it may have."""
 
     lexicon: Lexicon
+    prose: Prose
+    """what stands around its sentences"""
 
     @property
     def words(self) -> set[str]:
         return self.lexicon.words
 
-    @property
-    def prose(self) -> Prose:
-        """What stands around its sentences."""
-        return PROSE
-
     @classmethod
     def of(cls, text: str, places: Iterable[str]) -> "Language":
-        """The language that a text is written in."""
-        return cls(_english(tuple(sorted(places))))
+        """The language of which a text has more words that are none of the other's."""
+        names = tuple(sorted(places))
+        one, two = _lexicons(names)
+        said = [folded(word.group().lower()) for word in islice(_WORD.finditer(text), _MOST)]
+        score = sum((word in two.words) - (word in one.words) for word in said)
+        return cls(two, PROSE) if score > 0 else cls(one, PROSE)
 
 
 @lru_cache(maxsize=8)
-def _english(places: tuple[str, ...]) -> Lexicon:
-    lexicon = Lexicon("English", *english.PARTS)
+def _lexicons(places: tuple[str, ...]) -> tuple[Lexicon, Lexicon]:
+    one = Lexicon("English", english.PARTS, "the", "a an straight directly then please also")
+    two = Lexicon(
+        "German",
+        (*german.PARTS, german.OWN),
+        "der die das den dem des am im zum zur beim vom ins",
+        "ein eine einen einem einer eines bitte dann direkt gleich auch",
+        verbs_first=False,
+    )
     for place in places:
-        words = [word for word in place.lower().split() if word not in ("the", "a", "an")]
-        lexicon.add(("PLACE", place), [" ".join(words)])
-    return lexicon
+        pieces = [word for word in place.lower().split() if word not in ("the", "a", "an")]
+        for lexicon in (one, two):
+            lexicon.add(("PLACE", place), [" ".join(pieces)])
+    one.other, two.other = two, one
+    return one, two

@@ -5,10 +5,12 @@ import re
 
 from argo_compiler.script.syntax.words.joints import joined
 from argo_compiler.script.syntax.words.lengths import read_clock, read_glued
-from argo_compiler.script.syntax.words.lexicon import Entry, Lexicon, Node
+from argo_compiler.script.syntax.words.lexicon import Lexicon, folded
 from argo_compiler.script.syntax.words.merging import merged
-from argo_compiler.script.syntax.words.numbers import read_figure
+from argo_compiler.script.syntax.words.numbers import Figure, compose, read_figure, split_number
+from argo_compiler.script.syntax.words.phrases import longest
 from argo_compiler.script.syntax.words.word import Word
+from argo_compiler.script.syntax.words.word_order import arranged
 
 _PIECE = re.compile(
     r"""(?P<STRING>"(?:[^"\\]|\\.)*"(?:\s*"(?:[^"\\]|\\.)*")*)
@@ -24,8 +26,8 @@ _PIECE = re.compile(
 _QUOTED = re.compile(r"\"(?:[^\"\\]|\\.)*\"")
 _SIGNS = {"(": "LPAR", ")": "RPAR", "[": "LSQB", "]": "RSQB", "-": "DASH", "=": "EQUAL"}
 _JOINTS = {",": ",", ";": ";", ":": ":", "&": "and"}
-_PASSED_OVER = frozenset(["the", "a", "an", "straight", "directly", "then", "please", "also"])
-"""within a phrase"""
+_LONGEST = 60
+"""letters of a number in one word"""
 _NAMES = {("AREA", "NUMBER"), ("KIND", "IDENT"), ("KIND", "NUMBER"), ("AREA",), ("PLACE",)}
 """what is often put between quotation marks, and means the same without"""
 _NAMING = frozenset(["STEP", "SHOWN_IN", "ABOUT", "LPAR_CALLED", "LSQB"])
@@ -34,34 +36,50 @@ _UNSAID = frozenset(["FILLER", "IDLE"])
 
 
 def words(text: str, lexicon: Lexicon) -> list[Word]:
-    """The words of `text`, with the joints between them told apart by what they join."""
-    return joined(merged(_looked_up(text, lexicon)))
+    """The words of `text`, with the joints between them told apart by what they join; in another
+    language where only in that one every word is known."""
+    found = _in(text, lexicon)
+    if lexicon.other is None or all(word.type != "WORD" for word in found):
+        return found
+    other = _in(text, lexicon.other)
+    return found if any(word.type == "WORD" for word in other) else other
+
+
+def _in(text: str, lexicon: Lexicon) -> list[Word]:
+    found = merged(_looked_up(text, lexicon))
+    return joined(found if lexicon.verbs_first else arranged(found))
 
 
 def _looked_up(text: str, lexicon: Lexicon) -> list[Word]:
     pieces = list(_PIECE.finditer(_lower(text)))
+    said = [folded(piece.group()) for piece in pieces]
+    apart: set[int] = set()
     found: list[Word] = []
     i = 0
     while i < len(pieces):
-        entry, n = _longest(pieces, i, lexicon.root)
-        if entry is None and pieces[i].lastgroup == "STRING":
+        if i in apart:
+            i += 1
+            continue
+        phrase = longest(said, i, lexicon)
+        if phrase is None and pieces[i].lastgroup == "STRING":
             inner = [] if _is_name(found) else _unwrapped(pieces[i], text, lexicon)
             if inner and not (i + 1 < len(pieces) and pieces[i + 1].group() == ":"):
                 found += inner
                 i += 1
                 continue
-        if entry is None:
+        if phrase is None:
             after = pieces[i + 1] if i + 1 < len(pieces) else None
-            found.append(_plain(pieces[i], after, found[-1].type if found else "", text))
+            found.append(_plain(pieces[i], after, found, text, lexicon))
             i += 1
             continue
-        if entry[0] not in _UNSAID:
-            start, end = pieces[i].start(), pieces[i + n - 1].end()
-            value = entry[1]
-            if entry[0] == "KIND":
-                value = (*value, i > 0 and pieces[i - 1].group() == "the")
-            found.append(Word(entry[0], value, start, end))
-        i += n
+        type_, value = phrase.entry
+        if type_ not in _UNSAID:
+            if type_ == "KIND":
+                value = (*value, i > 0 and said[i - 1] in lexicon.definite)
+            end = pieces[i + phrase.length - 1].end()
+            found.append(Word(type_, value, pieces[i].start(), end))
+        apart.update(phrase.apart)
+        i += phrase.length
     return found
 
 
@@ -83,47 +101,50 @@ def _unwrapped(piece: re.Match[str], text: str, lexicon: Lexicon) -> list[Word]:
     return [Word(w.type, w.value, w.start + start, w.end + start) for w in inner]
 
 
-def _longest(pieces: list[re.Match[str]], i: int, root: Node) -> tuple[Entry | None, int]:
-    """The longest phrase from piece `i` on, and how many pieces it takes."""
-    node, best, n = root, None, 0
-    for k in range(i, len(pieces)):
-        piece = pieces[k].group()
-        step = node.next.get(piece)
-        if step is None:
-            if node is root or piece not in _PASSED_OVER:
-                break
-            continue
-        node = step
-        if node.entry is not None:
-            best, n = node.entry, k - i + 1
-    return best, n
-
-
-def _plain(piece: re.Match[str], after: re.Match[str] | None, last: str, text: str) -> Word:
+def _plain(
+    piece: re.Match[str],
+    after: re.Match[str] | None,
+    before: list[Word],
+    text: str,
+    lexicon: Lexicon,
+) -> Word:
     """The word of a piece that is in no lexicon."""
     said, kind = piece.group(), piece.lastgroup or "WORD"
     value: object = said
-    if kind == "NUMBER":
-        value = read_figure(said)
-        kind = kind if value is not None else "BAD_NUMBER"
-    elif kind == "ORDINAL":
-        value = int(said[:-2])
-    elif kind == "STRING":
-        value = unquoted(text[piece.start() : piece.end()])
-        kind = kind if value is not None else "BAD_STRING"
-    elif kind == "CLOCK":
-        length = read_clock(said)
-        kind, value = ("CLOCK", said) if length is None else ("DURATION", length)
-    elif kind == "GLUED":
-        length = read_glued(said)
-        kind, value = ("GLUED", said) if length is None else ("DURATION", length)
-    elif kind == "SIGN":
-        kind = "JOINT" if said in _JOINTS else _SIGNS.get(said, "SIGN")
-        value = _JOINTS.get(said, said)
-        if kind == "DASH" and after is not None and after.lastgroup == "NUMBER":
-            negative = last not in ("NUMBER", "IDENT") and after.start() == piece.end()
-            kind = "MINUS" if negative else kind
+    match kind:
+        case "NUMBER":
+            value = read_figure(said)
+            kind = kind if value is not None else "BAD_NUMBER"
+        case "ORDINAL":
+            value = int(said[:-2])
+        case "STRING":
+            value = unquoted(text[piece.start() : piece.end()])
+            kind = kind if value is not None else "BAD_STRING"
+        case "CLOCK" | "GLUED":
+            length = read_clock(said) if kind == "CLOCK" else read_glued(said)
+            kind, value = (kind, said) if length is None else ("DURATION", length)
+        case "WORD":
+            kind, value = _compound(said, lexicon)
+        case "SIGN":
+            kind = "JOINT" if said in _JOINTS else _SIGNS.get(said, "SIGN")
+            value = _JOINTS.get(said, said)
+            if kind == "DASH" and after is not None and after.lastgroup == "NUMBER":
+                last = before[-1].type if before else ""
+                negative = last not in ("NUMBER", "IDENT") and after.start() == piece.end()
+                kind = "MINUS" if negative else kind
     return Word(kind, value, piece.start(), piece.end())
+
+
+def _compound(said: str, lexicon: Lexicon) -> tuple[str, object]:
+    """`zweihundertfünf` and `dreimal`; any other word is one that is not known."""
+    head = folded(said)
+    times = head.endswith("mal")
+    parts = split_number(head.removesuffix("mal"), lexicon.numerals)
+    if parts and len(said) <= _LONGEST:
+        number, n = compose(parts)
+        if n == len(parts):
+            return "TIMES" if times else "NUMBER", Figure(float(number))
+    return "WORD", said
 
 
 def unquoted(text: str) -> str | None:

@@ -16,15 +16,33 @@ class Node:
 
     entry: Entry | None = None
     next: "dict[str, Node]" = field(default_factory=dict)
+    parted: dict[tuple[str, ...], Entry] = field(default_factory=dict)
+    """by what ends it behind other words: `kehre … zurück`"""
 
 
 class Lexicon:
     """All phrases of a language, found by their first words, the longest first."""
 
-    def __init__(self, name: str, *parts: Phrases) -> None:
+    def __init__(
+        self,
+        name: str,
+        parts: Iterable[Phrases],
+        definite: str = "",
+        passed_over: str = "",
+        verbs_first: bool = True,
+    ) -> None:
         self.name = name
+        self.definite = frozenset(definite.split())
+        """articles, and words that have one in them, which say that it is one that is known"""
+        self.passed_over = frozenset(passed_over.split()) | self.definite
+        """words that may stand within a phrase"""
+        self.verbs_first = verbs_first
+        """whether a verb stands before all that it is said of, as the grammar has it"""
+        self.other: Lexicon | None = None
+        """of another language, in which a sentence may be as well"""
         self.root = Node()
         self.words: set[str] = set()
+        self.numerals: dict[str, float] = {}
         self.phrases: dict[Entry, list[str]] = {}
         for part in parts:
             for entry, text in part.items():
@@ -33,15 +51,31 @@ class Lexicon:
     def add(self, entry: Entry, phrases: Iterable[str]) -> None:
         """Adds phrases, in lower case; one that is there already must not mean anything else."""
         for phrase in phrases:
+            head, _, end = phrase.partition(" … ")
             node = self.root
-            pieces = phrase.split()
-            for piece in pieces:
-                node = node.next.setdefault(piece, Node())
-            if node.entry not in (None, entry):
-                raise ValueError(f"{self.name}: `{phrase}` is {node.entry} and {entry}")
-            node.entry = entry
-            self.words.update(p for p in pieces if p[0].isalpha())
+            for piece in head.split():
+                node = node.next.setdefault(folded(piece), Node())
+            last = tuple(folded(piece) for piece in end.split())
+            there = node.parted.get(last) if end else node.entry
+            if there not in (None, entry):
+                raise ValueError(f"{self.name}: `{phrase}` is {there} and {entry}")
+            if end:
+                node.parted[last] = entry
+            else:
+                node.entry = entry
+            pieces = [piece for piece in phrase.split() if piece[0].isalpha()]
+            self.words.update(pieces, map(folded, pieces))
             self.phrases.setdefault(entry, []).append(phrase)
+            if entry[0] == "NUMBER_WORD" and len(pieces) == 1:
+                self.numerals[folded(phrase)] = entry[1]
+
+
+_FOLDED = str.maketrans({"ä": "ae", "ö": "oe", "ü": "ue", "ß": "ss"})
+
+
+def folded(piece: str) -> str:
+    """A word without umlauts, as it is often typed."""
+    return piece if piece.isascii() else piece.translate(_FOLDED)
 
 
 def expand(text: str) -> list[str]:

@@ -34,7 +34,23 @@ def merged(words: list[Word]) -> list[Word]:
             word = Word("DURATION", Length(word.value, word.value), word.start, word.end)
         i += 1
         _add(word, after, found)
-    return found
+    return _last_if(found)
+
+
+def _last_if(words: list[Word]) -> list[Word]:
+    """`check checkpoint 3, if there is a reason`: at the end of a sentence a condition belongs to
+    what stands before it, with or without a comma."""
+    at = next((i for i in range(len(words) - 1, 0, -1) if words[i].type == "IF"), 0)
+    if at < 2 or words[at].value is not None or words[at - 1].value != ",":
+        return words
+    last = words[-1] if words[-1].value != "." else words[-2]
+    compared = last.type == "NUMBER" and words[words.index(last) - 1].type in _RELATIONS
+    asked = compared or last.type in ("STATE", "FAILS", "QUANTITY", "IS")
+    if not asked or any(word.type in VERBS for word in words[at:]):
+        return words
+    if any(word.type == "IF" for word in words[:at]):
+        return words
+    return [*words[:at], replace(words[at], type="IF_ONLY"), *words[at + 1 :]]
 
 
 def _tells_order(words: list[Word], i: int) -> bool:

@@ -265,7 +265,10 @@ CONDITIONS: Phrases = {
     ),
     ("UNLESS", None): "es sei denn|außer wenn|sofern nicht|ausser wenn",
     ("ELSE", None): "sonst|ansonsten|andernfalls|anderenfalls|wenn nicht ,|falls nicht ,",
-    ("IN_ALL_OTHERS", None): "in allen anderen fällen|in allen übrigen fällen|in jedem anderen fall",
+    (
+        "IN_ALL_OTHERS",
+        None,
+    ): "in allen anderen fällen|in allen übrigen fällen|in jedem anderen fall",
     ("LAST_ROUND", None): "nach der letzten runde",
     ("TOO_LATE", None): "es zu spät ist|es dafür zu spät ist|zu spät|es zu spät dafür ist",
     ("OLDER", None): "älter als",
@@ -353,7 +356,10 @@ CONDITIONS: Phrases = {
         "ein wert außerhalb des normalbereichs liegt|"
         "irgendein wert außerhalb des normalbereichs liegt"
     ),
-    ("EVENT", EventKind.TIME_UP): "zeit um ist|zeit abgelaufen ist|ablauf der zeit|zeit ist um|zeit um",
+    (
+        "EVENT",
+        EventKind.TIME_UP,
+    ): "zeit um ist|zeit abgelaufen ist|ablauf der zeit|zeit ist um|zeit um",
     ("EVENT", EventKind.ALL_CLEAR): (
         "entwarnung|entwarnung gegeben wird|gefahr vorüber ist|gefahr vorbei ist|entwarnung kommt"
     ),
@@ -381,7 +387,10 @@ MANNERS: Phrases = {
         "ein zweites mal|wiederum"
     ),
     ("TIME_WORD", None): "mal|male|malen|- mal|runde{n}|durchgänge{n}|durchgang",
-    ("WITHIN", None): "innerhalb von|innerhalb|binnen|innerhalb der ersten|in den ersten|in höchstens",
+    (
+        "WITHIN",
+        None,
+    ): "innerhalb von|innerhalb|binnen|innerhalb der ersten|in den ersten|in höchstens",
     ("MEASURING", None): "messung von|prüfung von|messung an|prüfung an|ablesung von",
     ("EVERYTHING", None): "alles|alle schritte|das ganze",
     ("BY", None): "durch|mit|gegen",
@@ -425,7 +434,10 @@ MANNERS: Phrases = {
     ("PREFERABLY", None): "möglichst|wenn möglich|falls möglich|vorzugsweise",
     ("ANY_TIME", None): "jederzeit|zu jeder zeit|zu beliebiger zeit",
     ("LEAVING", None): "abfahrt mit|verlassend mit",
-    ("AGE", None): "gemessen innerhalb der letzten|gemessen in den letzten|nicht älter als|in den letzten",
+    (
+        "AGE",
+        None,
+    ): "gemessen innerhalb der letzten|gemessen in den letzten|nicht älter als|in den letzten",
     ("LPAR_CALLED", None): "( genannt",
     ("LPAR_BOUND", None): "( mit zweiter grenze",
     ("SECOND_BOUND", None): "mit zweiter grenze",
@@ -434,7 +446,10 @@ MANNERS: Phrases = {
     ("Z", None): "z",
     ("HEADING", None): "ausrichtung|blickrichtung",
     ("RAD", None): "rad",
-    ("EARLIEST", None): "nicht vor|nicht früher als|frühestens nach|frühestens|nicht vor ablauf von",
+    (
+        "EARLIEST",
+        None,
+    ): "nicht vor|nicht früher als|frühestens nach|frühestens|nicht vor ablauf von",
     ("UNIT_S", 86400.0): "tag{e}|tagen|tages",
     ("UNIT_S", 3600.0): "h|std .|std|stunde{n}",
     ("UNIT_S", 2700.0): "dreiviertelstunde{n}|dreiviertel stunde{n}",

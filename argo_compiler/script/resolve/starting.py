@@ -1,6 +1,7 @@
 """Where a mission starts and ends."""
 
 import math
+from dataclasses import replace
 
 from argo_compiler.catalog import Area
 from argo_compiler.diagnostics import Span
@@ -8,7 +9,7 @@ from argo_compiler.errors import Remedy
 from argo_compiler.model import Pose
 from argo_compiler.script.resolve import making
 from argo_compiler.script.resolve.context import Context
-from argo_compiler.script.resolve.header import HeaderValues
+from argo_compiler.script.resolve.header import AreaChoice, HeaderValues
 from argo_compiler.script.resolve.program import Do, HomeAhead
 from argo_compiler.script.syntax.spelling import alternatives
 from argo_compiler.script.syntax.tree import orders
@@ -53,8 +54,23 @@ class Starting:
             self._conflict(order.span)
             return []
         self.start_area = area.number if area else None
+        if order.ends_there and not self._ends_in(area, order.span):
+            return []
         self.start = making.start(pose, order.span)
         return [self.start]
+
+    def _ends_in(self, area: Area | None, span: Span) -> bool:
+        """Lets the mission end where it starts."""
+        end = self.header.end
+        if area is None or (end.area is not None and end.area != area.number):
+            message = "the mission can't end here"
+            if area is not None:
+                message = f"the mission is to end in starting area {end.area}, not {area.number}"
+            hint = "say in another sentence where it ends"
+            self.diagnostics.error("area-conflict", message, span, hint)
+            return False
+        self.header = replace(self.header, end=AreaChoice(area.number, span, said=True))
+        return True
 
     def _conflict(self, span: Span) -> None:
         wanted = self.header.start

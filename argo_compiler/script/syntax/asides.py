@@ -7,7 +7,6 @@ for something is never taken for such.
 import re
 from collections.abc import Iterator
 from functools import cache
-from itertools import pairwise
 
 from argo_compiler.script.syntax.grammar import StumbleError
 from argo_compiler.script.syntax.source import ScriptText, join
@@ -52,6 +51,7 @@ _ASKING = frozenset(
 """words of these types are in no title"""
 _NAMED = frozenset(["KIND", "HASH", "STEP", "AREA", "DOCK", "FLOOR"])
 _LABELS = frozenset(["NUMBER", "IDENT", "STRING", "HASH"])
+_HEADING = frozenset(["WORD", "NUMBER", "ORDINAL", "FLOOR", "FLOOR_NAME", "TIME_WORD", "STEP"])
 _LONGEST_TITLE = 14
 """words"""
 _TOKEN = re.compile(r"[\w'-]+|[^\w\s]")
@@ -135,8 +135,12 @@ class Asides:
         tokens = [token.lower() for token in _TOKEN.findall(content)]
         article, before = _words(self.prose.determiner), _words(self.prose.preposition)
         return any(
-            token in article and last[0].isalpha() and last not in before and last not in article
-            for last, token in pairwise(tokens)
+            token in article
+            and after[0].isalpha()
+            and last[0].isalpha()
+            and last not in before
+            and last not in article
+            for last, token, after in zip(tokens, tokens[1:], tokens[2:], strict=False)
         )
 
     def is_title(self, text: ScriptText) -> bool:
@@ -165,6 +169,9 @@ class Asides:
             aside = text[dash.end() :].strip()
             if not self.asks(aside):
                 yield text[: dash.start()].strip(), [aside]
+        colon = content.find(": ")
+        if colon > 0 and self._is_section(text[:colon]):
+            yield text[colon + 1 :].strip(), [text[: colon + 1]]
         reason = begins(self.prose.reason)
         for cut in _CUT.finditer(content):
             if not reason.match(content, cut.end()):
@@ -175,6 +182,13 @@ class Asides:
                 aside = text[cut.end() : behind].strip()
                 if not self.asks(aside[len(aside.content.split()[0]) :]):
                     yield join([text[: cut.start()], text[behind:]]), [aside]
+
+    def _is_section(self, text: ScriptText) -> bool:
+        """Whether a text is the heading of what follows in the same line."""
+        words = {*text.content.lower().split()}
+        return bool(words & _words(self.prose.section)) and not (
+            {*self.understanding.types(text)} - _HEADING or self.asks(text)
+        )
 
     def _without_brackets(self, text: ScriptText) -> tuple[ScriptText, list[ScriptText]]:
         kept: list[ScriptText] = []

@@ -29,7 +29,8 @@ _ANY_LABEL = re.compile(r"[^\W\d_][\w'/-]*\.?(?:\s+[\w'/-]+){0,6}\s*:(?=\s|$)")
 _PROSE = frozenset(
     ["designation", "anomaly_specification", "real_time_reporting", "after_mission_report", "site"]
 )
-_WHOLE = re.compile(r"(?:(?:ANY_ORDER|THIS_ORDER|(?:AT_MOST|WITHIN) DURATION) )+")
+_WHOLE = re.compile(r"(?:(?:ANY_ORDER|THIS_ORDER|(?:AT_MOST|WITHIN) DURATION(?: TOTAL)?) )+")
+_JOINTS = frozenset(["NEXT", "JOINT", "AND_NOUN", "AND_AMOUNT", "AND_TEST", "AND_NUMBER"])
 _INTRODUCTION = re.compile(r"(?:WORD )?(?:TO )?(?:MEASURE )?(?:ALL )?KIND (?:ANY|THIS)_ORDER ")
 _AREAS = frozenset(["initial_position", "end_of_mission"])
 
@@ -305,14 +306,17 @@ class Fields:
         self.header.areas_open = Text(span=text.span(), text=text.content)
         return True
 
+    def says_whole(self, text: ScriptText) -> bool:
+        """Whether a text is about the mission as a whole, if nothing is ordered before it."""
+        types = [t for t in self.understanding.types(text) if t not in _JOINTS]
+        return _WHOLE.fullmatch("".join(f"{type_} " for type_ in types)) is not None
+
     def whole_mission(self, text: ScriptText) -> bool:
         """Reads what is said of the mission as a whole by itself: `In any order, at most 40 min`.
         False: that is not what it says."""
-        found = [w for w in self.understanding.words(text) if w.type != "NEXT"]
-        types = [w.type for w in found if not w.type.startswith(("AND_", "JOINT"))]
-        if _WHOLE.fullmatch("".join(f"{type_} " for type_ in types)) is None:
+        if not self.says_whole(text):
             return False
-        for word in found:
+        for word in self.understanding.words(text):
             if word.type in ("ANY_ORDER", "THIS_ORDER"):
                 order = Order.ANY if word.type == "ANY_ORDER" else Order.PRECISE
                 self._set("order", order, _of(text, word))

@@ -40,7 +40,7 @@ def _hint(
     parts = []
     if at is not None and at.type == "WORD":
         meant = candidates(text.content[at.start : at.end], understanding.known)
-        if meant:
+        if meant and text.content[at.start : at.end].lower() not in meant:
             parts.append(f"is {alternatives(f'`{word}`' for word in sorted(meant)[:3])} meant?")
     if at is None or (stumble.at < len(found) and found[stumble.at] is at):
         follow = _may_follow(stumble, understanding)

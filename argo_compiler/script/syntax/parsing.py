@@ -16,14 +16,15 @@ from argo_compiler.script.syntax.layout import Item, Mark, items_of, lines_of, s
 from argo_compiler.script.syntax.rows import tables
 from argo_compiler.script.syntax.source import Diagnostics, ScriptText, Source
 from argo_compiler.script.syntax.tree.facts import Fact
-from argo_compiler.script.syntax.tree.orders import Sentence
+from argo_compiler.script.syntax.tree.orders import Sentence, Start
 from argo_compiler.script.syntax.tree.script import Script, Step, Text, Unread
-from argo_compiler.script.syntax.understanding import Understanding
+from argo_compiler.script.syntax.understanding import Reading, Understanding
 from argo_compiler.script.syntax.words.language import Language
 
 MAX_LINES = 120_000
 """of a script; one with more is refused unread"""
 
+Said = Sentence | Fact | Unread
 _EDITS = ("ADD", "DELETE", "REPLACE", "MOVE")
 
 
@@ -76,6 +77,8 @@ class _Parser:
     """whether a letter has come to its end"""
     stopped: bool = False
     """whether there are too many errors"""
+    ordered: bool = False
+    """whether anything is to be done by now but to start"""
     begun: bool = False
     """whether anything but a title has been read"""
 
@@ -152,12 +155,10 @@ class _Parser:
         if self.fields.is_field(text):
             self.begun = True
             text = self.fields.read(text)
-        said = [s for one in sentences(text) if (s := self._sentence(one, item)) is not None]
+        said = [node for one in sentences(text) for node in self._sentence(one, item)]
         return self._of(item, said, list(self._steps(item.items)))
 
-    def _of(
-        self, item: Item, said: list[Sentence | Fact | Unread], inner: list[Step]
-    ) -> Step | None:
+    def _of(self, item: Item, said: list[Said], inner: list[Step]) -> Step | None:
         if not said and not inner and item.line.number is None:
             return None
         return Step(
@@ -191,21 +192,23 @@ class _Parser:
 
     # ---- sentences
 
-    def _sentence(self, text: ScriptText, item: Item) -> Sentence | Fact | Unread | None:
+    def _sentence(self, text: ScriptText, item: Item) -> list[Said]:
         text = self.understanding.figures(text)
-        stands_over = item.line.heading or text.content.endswith(":")
-        if stands_over and self.fields.introduces(text):
-            return None
-        reading = self.understanding.read(text)
         if not self.understanding.types(text):
             self.note(text, "a remark")
-            return None
+            return []
+        stands_over = item.line.heading or text.content.endswith(":")
+        if stands_over and self.fields.introduces(text):
+            return []
+        if not self.ordered and self.fields.whole_mission(text):
+            return []
+        reading = self.understanding.read(text)
         if isinstance(reading, StumbleError) or "WORD" in self.understanding.types(text):
             respelled = self.understanding.respelled(text)
             if respelled is not None:
                 text, reading = respelled, self.understanding.read(respelled)
                 if stands_over and self.fields.introduces(text):
-                    return None
+                    return []
         if isinstance(reading, StumbleError):
             cut = self.asides.without(text)
             if cut is not None:
@@ -215,50 +218,75 @@ class _Parser:
                 reading = self.understanding.read(text)
         if isinstance(reading, StumbleError):
             return self._not_understood(text, item, reading)
+        return [self._node(text, reading)]
+
+    def _node(self, text: ScriptText, reading: Reading) -> Said:
         self.begun = True
         for idle in self.asides.idle(text):
             self.diagnostics.note("no-effect", f"`{idle.content}` has no effect", idle.span())
         node = self.understanding.node(text, reading)
+        if isinstance(node, Sentence):
+            self.ordered |= any(not isinstance(order, Start) for order in node.orders)
         return Unread(span=text.span()) if node is None else node
 
-    def _not_understood(self, text: ScriptText, item: Item, stumble: StumbleError) -> Unread | None:
+    def _not_understood(self, text: ScriptText, item: Item, stumble: StumbleError) -> list[Said]:
         """What makes no sense: said of the mission as a whole, a title, small talk or an error."""
-        if self.fields.whole_mission(text) or self._title(text, item):
-            return None
+        if self.fields.whole_mission(text):
+            return []
+        titled = self._title(text, item)
+        if titled is not None:
+            return titled
         free = item.line.mark in (Mark.NONE, Mark.BULLET) and item.line.number is None
         if free and self.fields.leaves_open(text):
-            return None
+            return []
         if free and self.asides.is_small_talk(text):
             self.note(text, "a remark")
-            return None
+            return []
         if not self.fields.is_unknown(text):
             not_understood(text, stumble, self.understanding, self.diagnostics)
         self.begun = True
-        return Unread(span=text.span())
+        return [Unread(span=text.span())]
 
-    def _title(self, text: ScriptText, item: Item) -> bool:
-        """Takes a text for a title, if it may be one; what it says of the mission is read."""
-        line = item.line
+    def _title(self, text: ScriptText, item: Item) -> list[Said] | None:
+        """Takes a text for a title, if it may be one, and reads what stands behind a comma in it:
+        `Evening round, at most 40 minutes`. None: it is none."""
         header = self.fields.header
-        first = not self.begun and header.title is None and line.number is None
+        first = not self.begun and header.title is None and item.line.number is None
         if not first and not self._is_heading(text, item):
-            return False
-        head = text
-        if first and not self.asides.is_title(text):
-            comma = text.content.find(",")
-            rest = text[comma + 1 :].strip()
-            head = text[:comma] if comma > 0 else text
-            if comma < 0 or not self.asides.is_title(head) or not self.fields.whole_mission(rest):
-                return False
-        elif not self.asides.is_title(text):
-            return False
+            return None
+        if self.asides.is_title(text):
+            head, behind = text, []
+        elif first and "," in text.content:
+            head = text[: text.content.index(",")]
+            behind = self._behind_title(text[len(head.content) + 1 :].strip())
+            if not self.asides.is_title(head) or not behind:
+                return None
+        else:
+            return None
         if first:
             header.title = Text(span=head.span(), text=head.content)
-            if not self.asides.is_explicit_title(head):
-                self.note(head, "the title")
-        else:
-            self.note(text, "a heading")
-        return True
+        if not first or not self.asides.is_explicit_title(head):
+            self.note(head, "the title" if first else "a heading")
+        said: list[Said] = []
+        for part in behind:
+            reading = self.understanding.read(part)
+            if not self.fields.whole_mission(part) and not isinstance(reading, StumbleError):
+                said.append(self._node(part, reading))
+        return said
+
+    def _behind_title(self, text: ScriptText) -> list[ScriptText]:
+        """The parts of what stands behind a title, if all of them make sense."""
+        if self._makes_sense(text):
+            return [text]
+        commas = [i for i, sign in enumerate(text.content) if sign == ","]
+        ends = [*commas, len(text.content)]
+        parts = [
+            text[a:b].strip() for a, b in zip([0, *(c + 1 for c in commas)], ends, strict=True)
+        ]
+        return parts if all(self._makes_sense(part) for part in parts) else []
+
+    def _makes_sense(self, text: ScriptText) -> bool:
+        return self.fields.says_whole(text) or self.understanding.fits(text)
 
     def _is_heading(self, text: ScriptText, item: Item) -> bool:
         """Whether a line stands over others: marked as a heading, or with items of its own."""

@@ -95,7 +95,8 @@ def _start(part: Part) -> Order:
         hint = "name a starting area or a place: `start in starting area 1`"
         part.error("start", "a mission starts at a place", hint)
         return orders.Start(span=part.span, where=None)
-    return orders.Start(span=part.span, manner=_manner(part), where=where)
+    ends = part.has("END")
+    return orders.Start(span=part.span, manner=_manner(part), where=where, ends_there=ends)
 
 
 def _start_here(part: Part) -> Order:

@@ -58,6 +58,8 @@ class Start(Order):
 
     where: Location | None
     here: bool = False
+    ends_there: bool = False
+    """`start and end in starting area 1`"""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

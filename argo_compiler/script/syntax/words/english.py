@@ -195,7 +195,11 @@ MANNERS: Phrases = {
     ("SINCE_START", None): "after the start|after mission start|after the mission's start",
     ("IF_TIME", None): "if there is time|time permitting|if time allows|if time permits",
     ("PRIORITY", None): "with priority|priority",
-    ("ANY_ORDER", None): "in any order",
+    (
+        "ANY_ORDER",
+        None,
+    ): "in any order|in whatever order|in whichever order|order does not matter|order doesn't matter|"
+    "order is free",
     ("THIS_ORDER", None): "in this order|in this precise order|in the given order",
     ("TOTAL", None): "in total|in all|altogether",
     ("MODE", Mode.AUTONOMOUS): "autonomous{ly}",

@@ -66,7 +66,8 @@ PROSE = Prose(
     greeting="hello|hi|dear|hey|good morning|good afternoon|good evening|good day",
     closing=(
         "best|best regards|kind regards|warm regards|many thanks|best wishes|regards|thanks|"
-        "thank you|cheers|yours|sincerely|sincerely yours|see you|have a nice day|have a good day|"
+        "thank you|thx|cheers|"
+        "yours|sincerely|sincerely yours|see you|have a nice day|have a good day|"
         "have a nice weekend"
     ),
     remark=(
@@ -77,9 +78,14 @@ PROSE = Prose(
         "i hope|we hope|hope|let me know|let us know|as discussed|as agreed|here is|here are|"
         "please find|attached|looking forward|if you have any questions|if there are any questions|"
         "call me if|below is|below are|see below|this is the|these are the|sorry for|many thanks|"
-        "thank you|thanks"
+        "thank you|thanks|thx|bye|good luck|have fun|cheers|that's it|"
+        "that is it"
     ),
     reason="because|which|who|since it|since the|as it|so that|in order to|for the",
+    section=(
+        "changes|change|tasks|task|steps|plan|round|tour|part|section|mission|orders|instructions|"
+        "programme|program|inspection|schedule|route|list|addition|additions|update|updates|todo"
+    ),
     preposition=(
         "of|at|in|on|for|to|from|with|by|after|before|during|and|or|near|around|over|under|through|"
         "between|per|about|without|within|along|behind|beside|next|is|are|was|were|it's|that's|"

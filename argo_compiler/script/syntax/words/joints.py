@@ -40,6 +40,8 @@ def joined(words: list[Word]) -> list[Word]:
             said = " ".join(joint.value for joint in joints)
             limits = word.type == "AT_MOST" and _limits(words[i + 1 : i + 2])
             kind = None if limits else _type(said, word)
+            if kind == "COLON" and word.type == "KIND" and _is_named(found):
+                kind = "NAMELY"
             if name:
                 kind = "NEXT"
             elif named == len(found) - 1 >= 0:
@@ -64,6 +66,12 @@ def _is_name(words: list[Word], i: int) -> bool:
 def _limits(after: list[Word]) -> bool:
     """Whether `at most` is said of rounds or of a time, not of a value."""
     return bool(after) and after[0].type in ("TIMES", "DURATION")
+
+
+def _is_named(found: list[Word]) -> bool:
+    """Whether the words end with a checkpoint's number: `Checkpoint #4: valve R25`."""
+    types = [word.type for word in found[-2:]]
+    return types in (["HASH", "NUMBER"], ["KIND", "NUMBER"])
 
 
 def _type(said: str, word: Word) -> str | None:

@@ -31,6 +31,8 @@ class Prose:
     """how sentences begin that ask for nothing"""
     reason: str
     """how clauses begin that ask for nothing"""
+    section: str
+    """words of headings that may stand before a sentence: `Changes of 14 May: ...`"""
     preposition: str
     """words behind which a title may have an article"""
     determiner: str

@@ -7,6 +7,7 @@ for something is never taken for such.
 import re
 from collections.abc import Iterator
 from functools import cache
+from itertools import pairwise
 
 from argo_compiler.script.syntax.grammar import StumbleError
 from argo_compiler.script.syntax.source import ScriptText, join
@@ -105,7 +106,14 @@ class Asides:
     def is_small_talk(self, text: ScriptText) -> bool:
         """Whether a sentence is one of those that letters are made of, and no more."""
         found = begins(self.prose.small_talk).match(text.content)
-        return found is not None and not self.asks(text[found.end() :].strip())
+        if found is None or self.names(text):
+            return False
+        return not self.asks(text[found.end() :].strip())
+
+    def names(self, text: ScriptText) -> bool:
+        """Whether a text names a checkpoint, a starting area or a step."""
+        types = self.understanding.types(text)
+        return any(a in _NAMED and b in _LABELS for a, b in pairwise(types))
 
     def is_signature(self, text: ScriptText) -> bool:
         """Whether a line behind the end of a letter is a name, an address or the like."""
@@ -167,7 +175,7 @@ class Asides:
             yield outer, brackets
         for dash in _DASH.finditer(content):
             aside = text[dash.end() :].strip()
-            if not self.asks(aside):
+            if not self.asks(aside) and not self.names(aside):
                 yield text[: dash.start()].strip(), [aside]
         colon = content.find(": ")
         if colon > 0 and self._is_section(text[:colon]):
@@ -196,7 +204,7 @@ class Asides:
         start = 0
         for found in _BRACKETS.finditer(text.content):
             inner = text[found.start() : found.end()].strip()
-            if self.asks(inner[1:-1]):
+            if self.asks(inner[1:-1]) or self.names(inner):
                 continue
             kept.append(text[start : found.start()])
             cut.append(inner)

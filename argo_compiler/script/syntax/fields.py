@@ -32,6 +32,8 @@ _PROSE = frozenset(
 _WHOLE = re.compile(r"(?:(?:ANY_ORDER|THIS_ORDER|(?:AT_MOST|WITHIN) DURATION(?: TOTAL)?) )+")
 _JOINTS = frozenset(["NEXT", "JOINT", "AND_NOUN", "AND_AMOUNT", "AND_TEST", "AND_NUMBER"])
 _INTRODUCTION = re.compile(r"(?:WORD )?(?:TO )?(?:MEASURE )?(?:ALL )?KIND (?:ANY|THIS)_ORDER ")
+_SAME = {"start_area": "initial_position", "end_area": "end_of_mission"}
+"""fields that say the same"""
 _AREAS = frozenset(["initial_position", "end_of_mission"])
 
 
@@ -150,7 +152,10 @@ class Fields:
                 self._place(name, value)
             case "start_area" | "end_area":
                 chosen = self.areas.chosen(value)
-                self._set(name, chosen, value, chosen and (chosen.area, chosen.as_planned))
+                same = _SAME[name]
+                key = (chosen.area,) if chosen and chosen.area is not None else ()
+                if chosen is not None and self._is_new(same, key, value):
+                    setattr(self.header, name, chosen)
             case "dock":
                 self._dock(value)
             case "current":
@@ -236,7 +241,8 @@ class Fields:
         """`docked in starting area 1 or 2`, or any other place."""
         if name == "end_of_mission" and self.is_none(value):
             chosen = AreaChosen(span=value.span(), area=None, as_planned=False)
-            self._set("end_area", chosen, value, (None, False))
+            if self._is_new(name, (), value):
+                self.header.end_area = chosen
             return
         where = self.understanding.location(value) if not self.areas.names_areas(value) else None
         if where is None or isinstance(where, tuple) or self.areas.names_dock(value):

@@ -13,12 +13,11 @@ branch or the place of a word in the sentence"""
 
 
 class StumbleError(Exception):
-    """The parser can't go on from word `at`; it would with one of the terminals `accepted`."""
+    """The parser can't go on from word `at`."""
 
-    def __init__(self, at: int, accepted: frozenset[str]) -> None:
+    def __init__(self, at: int) -> None:
         super().__init__(at)
         self.at = at
-        self.accepted = accepted
 
 
 @dataclass
@@ -44,7 +43,7 @@ class Grammar:
                 found = stumble
             self._known[key] = found
         if isinstance(found, StumbleError):
-            raise StumbleError(found.at, found.accepted)
+            raise StumbleError(found.at)
         return found
 
     def _parse(self, words: tuple[str, ...], start: str) -> Branch:
@@ -55,9 +54,16 @@ class Grammar:
                 parser.feed_token(Token(type_, "", start_pos=at, end_pos=at + 1))
             at = len(words)
             tree = parser.feed_token(Token("$END", "", start_pos=at, end_pos=at))
-        except UnexpectedToken as error:
-            raise StumbleError(at, frozenset(error.accepts or error.expected)) from None
+        except UnexpectedToken:
+            raise StumbleError(at) from None
         return _branch(tree)
+
+    def accepted(self, words: tuple[str, ...]) -> frozenset[str]:
+        """The types of words with which a sentence that begins with these may go on."""
+        parser = self.parser.parse_interactive("", "sentence")
+        for at, type_ in enumerate(words):
+            parser.feed_token(Token(type_, "", start_pos=at, end_pos=at + 1))
+        return frozenset(parser.accepts())
 
 
 def _branch(tree: Tree[Token]) -> Branch:

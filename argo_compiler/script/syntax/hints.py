@@ -43,7 +43,8 @@ def _hint(
         if meant and text.content[at.start : at.end].lower() not in meant:
             parts.append(f"is {alternatives(f'`{word}`' for word in sorted(meant)[:3])} meant?")
     if at is None or (stumble.at < len(found) and found[stumble.at] is at):
-        follow = _may_follow(stumble, understanding)
+        before = tuple(word.type for word in found[: stumble.at])
+        follow = _may_follow(before, understanding)
         if follow:
             parts.append(f"here may stand {alternatives(follow)}")
     samples = understanding.language.prose.samples
@@ -52,14 +53,15 @@ def _hint(
     return "; ".join(parts)
 
 
-def _may_follow(stumble: StumbleError, understanding: Understanding) -> list[str]:
-    """What the grammar accepts where it stumbled, in words of the language. Where a sentence begins
-    too much may stand to be told."""
-    if stumble.accepted.issuperset(VERBS[:4]):
+def _may_follow(before: tuple[str, ...], understanding: Understanding) -> list[str]:
+    """What the grammar accepts behind these words, in words of the language. Where an order may
+    begin there is too much to be told."""
+    accepted = understanding.grammar.accepted(before)
+    if accepted.issuperset(VERBS[:4]):
         return []
     prose, lexicon = understanding.language.prose, understanding.language.lexicon
-    shown = {type_: said for type_, said in prose.kinds.items() if type_ in stumble.accepted}
+    shown = {type_: said for type_, said in prose.kinds.items() if type_ in accepted}
     for (type_, _), phrases in lexicon.phrases.items():
-        if type_ in stumble.accepted and type_ not in prose.untold:
+        if type_ in accepted and type_ not in prose.untold:
             shown.setdefault(type_, f"`{phrases[0]}`")
     return list(dict.fromkeys(shown.values()))[:_MOST]

@@ -148,14 +148,20 @@ class _Parser:
 
     def _step(self, item: Item) -> Step | None:
         text = self._without_letter(item)
-        if self.asides.is_remark(text.content):
-            self.note(text, "a remark")
-            return self._of(item, [], list(self._steps(item.items)))
         text = self.fields.relabelled(text)
         if self.fields.is_field(text):
             self.begun = True
             text = self.fields.read(text)
-        said = [node for one in sentences(text) for node in self._sentence(one, item)]
+        said: list[Said] = []
+        remark = False
+        for sentence in sentences(text):
+            # What stands behind a remark is one as well, unless it makes sense.
+            after = remark and not self.understanding.fits(sentence)
+            remark = after or self.asides.is_remark(sentence.content)
+            if remark:
+                self.note(sentence, "a remark")
+            else:
+                said += self._sentence(sentence, item)
         return self._of(item, said, list(self._steps(item.items)))
 
     def _of(self, item: Item, said: list[Said], inner: list[Step]) -> Step | None:
@@ -233,15 +239,15 @@ class _Parser:
         """What makes no sense: said of the mission as a whole, a title, small talk or an error."""
         if self.fields.whole_mission(text):
             return []
-        titled = self._title(text, item)
-        if titled is not None:
-            return titled
         free = item.line.mark in (Mark.NONE, Mark.BULLET) and item.line.number is None
         if free and self.fields.leaves_open(text):
             return []
         if free and self.asides.is_small_talk(text):
             self.note(text, "a remark")
             return []
+        titled = self._title(text, item)
+        if titled is not None:
+            return titled
         if not self.fields.is_unknown(text):
             not_understood(text, stumble, self.understanding, self.diagnostics)
         self.begun = True

@@ -109,7 +109,7 @@ class _Rows:
             message = f"`{aside.content}` is taken for a remark and has no effect"
             self.diagnostics.note("no-effect", message, aside.span())
         number = cells.get("number")
-        mark: list[str | ScriptText] = []
+        mark: list[str | ScriptText] = ["- "]
         if number is not None and _FIRST_NUMBER.fullmatch(number.content.strip(" .)#")):
             mark = [number.content.strip(" .)#"), ". "]
         wholes = [_joined([*mark, *parts], text) for parts in self._readings(cells)]

@@ -71,20 +71,12 @@ class ConditionResolver:
 
     def _empty(self, conditions: tuple[Condition, ...], tests: Sequence[Test]) -> bool:
         """Whether no value satisfies all the bounds for one checkpoint: then an error says so."""
-        for condition in conditions:
-            others = [c for c in conditions if c.object_id == condition.object_id]
-            low = [c for c in others if c.type in (ConditionType.GREATER, ConditionType.WITHIN)]
-            high = [c for c in others if c.type is ConditionType.LESS]
-            for one, other in product(low, high):
-                a, b = one.param1, other.param1
-                both = one.inclusive and other.inclusive
-                if a is not None and b is not None and (a > b or (a == b and not both)):
-                    said = self.nouns.said(tests[0].span, tests[-1].span)
-                    message = f"no value is `{said}`"
-                    hint = "is `or` meant?"
-                    self.diagnostics.error("condition", message, tests[-1].span, hint)
-                    return True
-        return False
+        if not contradict(conditions):
+            return False
+        said = self.nouns.said(tests[0].span, tests[-1].span)
+        message = f"no value is `{said}`"
+        self.diagnostics.error("condition", message, tests[-1].span, "is `or` meant?")
+        return True
 
     def _test(self, test: Test) -> list[tuple[Condition, ...]] | None:
         """Alternatives for one test; of several checkpoints all, or one with `or`."""
@@ -195,6 +187,20 @@ class ConditionResolver:
             hint = f"write the value in {checkpoint.unit}, not in {amount.unit}"
             self.diagnostics.error("unit", message, amount.span, hint)
         return value
+
+
+def contradict(conditions: Sequence[Condition]) -> bool:
+    """Whether no value satisfies all the bounds for one of the checkpoints."""
+    for condition in conditions:
+        others = [c for c in conditions if c.object_id == condition.object_id]
+        low = [c for c in others if c.type in (ConditionType.GREATER, ConditionType.WITHIN)]
+        high = [c for c in others if c.type is ConditionType.LESS]
+        for one, other in product(low, high):
+            a, b = one.param1, other.param1
+            both = one.inclusive and other.inclusive
+            if a is not None and b is not None and (a > b or (a == b and not both)):
+                return True
+    return False
 
 
 _Bound = tuple[ConditionType, float | None, float | None, bool]

@@ -12,13 +12,13 @@ from argo_compiler.script.resolve.locating import Locator
 from argo_compiler.script.resolve.lookup import Lookup
 from argo_compiler.script.resolve.lowering import lower_program
 from argo_compiler.script.resolve.planning import Planner
-from argo_compiler.script.resolve.program import Node
+from argo_compiler.script.resolve.program import Do, Node, all_nodes
 from argo_compiler.script.resolve.starting import Starting
 from argo_compiler.script.resolve.stepping import Stepping
 from argo_compiler.script.syntax.parsing import parse
 from argo_compiler.script.syntax.source import Diagnostics, Source
 from argo_compiler.script.syntax.tree.places import Steps
-from argo_compiler.script.syntax.tree.script import Script
+from argo_compiler.script.syntax.tree.script import Script, Text
 
 
 class Resolved(Model):
@@ -97,7 +97,7 @@ def _mission(
     text = said.designation or said.title
     return Mission(
         designation=text.text if text else "",
-        site=lookup.catalog.site,
+        site=_site(said.site, lookup.catalog.site),
         mode=said.mode or Mode.AUTONOMOUS,
         max_duration=said.max_duration[0] if said.max_duration else None,
         start_area=starting.start_area,
@@ -110,5 +110,26 @@ def _mission(
         tasks=tasks,
         groups=groups,
         reactions=tuple(context.reactions.found),
+        current=_current(said.current, context, names),
         left_out=said.left_out,
     )
+
+
+def _current(said: Steps | None, context: Context, names: dict[int, str]) -> str | None:
+    """The name of the task that a script calls the current one."""
+    if said is None:
+        return None
+    (point,) = said.points
+    if isinstance(point, str):
+        return point
+    nodes = context.nodes_of(said) or []
+    tasks = [node for node in all_nodes(nodes) if isinstance(node, Do)]
+    if not tasks and nodes:
+        message = f"step {point} leaves nothing to do"
+        context.diagnostics.error("empty-step", message, said.span, "name another step")
+    return names[id(tasks[0])] if tasks else None
+
+
+def _site(said: Text | None, site: str) -> str:
+    """The site that a script names; its own, in the site's spelling, if it names none."""
+    return site if said is None or said.text.lower() == site.lower() else said.text

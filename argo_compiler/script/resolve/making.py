@@ -29,3 +29,8 @@ def measurement(checkpoint: int, source: Span | None) -> Do:
 def wait(rule: WaitRule, source: Span | None) -> Do:
     """Standing still."""
     return Do("WAIT", Action.WAIT, source, wait=rule)
+
+
+def meeting(source: Span | None) -> Do:
+    """A place at which nothing is done."""
+    return Do("MEET", Action.WAIT, source, wait=WaitRule(duration=0))

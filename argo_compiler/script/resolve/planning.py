@@ -118,7 +118,7 @@ class Planner:
             case orders.Wait():
                 return self._wait(order)
             case orders.Plain(word=Word.MEET):
-                return [making.wait(WaitRule(duration=0), order.span)]
+                return [making.meeting(order.span)]
         message = "this can't be done here"
         self.diagnostics.error("route", message, order.span, "write it as a step of its own")
         return []

@@ -4,7 +4,7 @@ A program is mutable: orders add to it, change it and wrap parts of it into roun
 `lowering` makes the tasks, transitions and groups of a mission from it.
 """
 
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 from dataclasses import dataclass, field
 from enum import StrEnum
 
@@ -160,7 +160,7 @@ class Leave(Node):
     span: Span
 
 
-def all_nodes(block: Block) -> Iterator[Node]:
+def all_nodes(block: Iterable[Node]) -> Iterator[Node]:
     """All nodes of a block and of those in it, in the order of the tasks that they become."""
     stack: list[Iterator[Node]] = [iter(block)]
     while stack:

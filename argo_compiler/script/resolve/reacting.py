@@ -1,6 +1,6 @@
 """From `if a gas leak is detected, ...` to a reaction of the mission."""
 
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, fields, replace
 
 from argo_compiler.diagnostics import Span
 from argo_compiler.il import Afterwards, EventKind, Reaction, Response
@@ -8,6 +8,7 @@ from argo_compiler.model import Pose
 from argo_compiler.script.resolve.locating import Locator
 from argo_compiler.script.syntax.source import Diagnostics
 from argo_compiler.script.syntax.tree.conditions import Battery, Condition, Occurs
+from argo_compiler.script.syntax.tree.manner import Manner
 from argo_compiler.script.syntax.tree.orders import (
     Amend,
     Case,
@@ -32,6 +33,7 @@ class _Reacting:
     until: EventKind | None = None
     afterwards: Afterwards = Afterwards.END
     hold_limit: float | None = None
+    on_limit: Afterwards = Afterwards.WAIT
     priority: int | None = None
 
     @property
@@ -88,6 +90,7 @@ class Reactions:
                 until=doing.until,
                 afterwards=doing.afterwards,
                 hold_limit=doing.hold_limit,
+                on_limit=doing.on_limit,
                 priority=doing.priority,
                 source=whole,
             )
@@ -121,10 +124,10 @@ class Reactions:
     def _order(self, order: Order, doing: _Reacting) -> _Reacting | None:
         """What the reaction does with one order more; None if it can't."""
         if order.manner is not None:
-            if order.manner.priority is not None:
-                doing = replace(doing, priority=order.manner.priority)
-            if order.manner.until is not None:
-                doing = replace(doing, until=self._awaited(order))
+            furnished = self._furnished(order, order.manner, doing)
+            if furnished is None:
+                return None
+            doing = furnished
         match order:
             case Amend():
                 return doing
@@ -152,6 +155,28 @@ class Reactions:
         self.diagnostics.error("reaction", message, order.span, hint)
         return None
 
+    def _furnished(self, order: Order, manner: Manner, doing: _Reacting) -> _Reacting | None:
+        """What is said of how long it holds, for what, and how urgent it is."""
+        used = {"priority", "until", "duration", "time_limit", "on_limit"}
+        used |= {"pose"} if isinstance(order, Home) else set()
+        used |= {"person"} if isinstance(order, Wait) else set()
+        for field in fields(manner):
+            if field.name not in used and getattr(manner, field.name) not in (None, False):
+                what = field.name.replace("_", " ")
+                message = f"a reaction has no {what}"
+                self.diagnostics.error("reaction", message, order.span, "leave it out")
+                return None
+        limit = manner.time_limit if manner.time_limit is not None else manner.duration
+        if limit is not None:
+            doing = replace(doing, hold_limit=limit)
+        if manner.on_limit is not None:
+            doing = replace(doing, on_limit=manner.on_limit)
+        if manner.priority is not None:
+            doing = replace(doing, priority=manner.priority)
+        if manner.until is not None:
+            doing = replace(doing, until=self._awaited(order))
+        return doing
+
     def _responds(self, doing: _Reacting, response: Response, order: Order) -> _Reacting | None:
         if doing.response in (None, Response.PAUSE, response):
             return replace(doing, response=response)
@@ -160,6 +185,8 @@ class Reactions:
         return None
 
     def _waits(self, order: Wait, doing: _Reacting) -> _Reacting:
+        if order.manner is not None and order.manner.person:
+            return replace(doing, afterwards=Afterwards.WAIT)
         if doing.until is not None or (order.manner and order.manner.until):
             return replace(doing, response=doing.response or Response.PAUSE)
         if doing.drives:
@@ -174,6 +201,8 @@ class Reactions:
                 return None
             pose, number = area.dock, area.number
         found = self._responds(doing, Response.RETURN, order)
+        if order.manner is not None and order.manner.pose is not None:
+            pose = self.locator.point(order.manner.pose)
         return None if found is None else replace(found, pose=pose, area=number)
 
     def _goes(self, order: Go, doing: _Reacting) -> _Reacting | None:

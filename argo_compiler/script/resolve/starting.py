@@ -107,7 +107,7 @@ class Starting:
     def docking_area(self, dock: DockLocation) -> Area | None:
         """The area into whose dock the mission drives at its end: the one that is named, else that
         of the header's end, else that of the start, else the nearest to it, with a warning."""
-        option = self.header.end.area
+        option = None if self.header.end.as_planned else self.header.end.area
         if dock.area is not None:
             named = dock.area.area
             if option is not None and option != named:

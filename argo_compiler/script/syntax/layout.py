@@ -55,6 +55,7 @@ _STEP = re.compile(r"step\s+([0-9]{1,6})\b[.:)]?\s*", re.IGNORECASE)
 _LETTER = re.compile(r"\(?([a-z]|[ivx]{1,4})[.)]\s+", re.IGNORECASE)
 _BULLET = re.compile(r"[-*+•–‣◦]\s+(?:\[[ xX]?\]\s+)?|#+\s+")
 _RULE = re.compile(r"([-=_~*])\1{2,}")
+QUOTED = re.compile(r'"(?:[^"\\]|\\.)*"')
 _RUN_IN = re.compile(r"(?:^|[,;.!])\s+([0-9]{1,3})[.)]\s+(?=[^\W\d_])")
 
 
@@ -105,7 +106,10 @@ def _split(line: Line) -> Iterator[Line]:
     """The steps of a line that has more than one: `1. ..., 2. ..., 3. ...`."""
     expected = (line.number or 0) + 1
     start = 0
+    quoted = [m.span() for m in QUOTED.finditer(line.text.content)]
     for found in _RUN_IN.finditer(line.text.content):
+        if any(a < found.start() < b for a, b in quoted):
+            continue
         if line.number is None or int(found[1]) != expected:
             continue
         yield Line(line.text[start : found.start()].strip(), line.indent, line.mark, expected - 1)
@@ -128,7 +132,10 @@ def items_of(
     around: list[Item] = []
     for line in lines:
         follows = line.mark is Mark.NONE and around and not line.first and not alone(line.text)
-        if follows and not alone(around[-1].text) and _goes_on(around[-1], line, complete):
+        if follows and (
+            _is_unfinished(around[-1].text, line.text)
+            or (not alone(around[-1].text) and _goes_on(around[-1], line, complete))
+        ):
             around[-1].text = _joined(around[-1].text, line.text, words)
             continue
         item = Item(line.text, line)
@@ -137,6 +144,13 @@ def items_of(
         (around[-1].items if around else top).append(item)
         around.append(item)
     return top
+
+
+def _is_unfinished(text: ScriptText, following: ScriptText) -> bool:
+    """Whether a text plainly goes on: after a comma, and from one quoted piece to the next."""
+    content = text.content
+    quoted = content.endswith('"') and following.content.startswith('"')
+    return quoted or content.endswith(",")
 
 
 def _goes_on(item: Item, line: Line, complete: Callable[[ScriptText], bool]) -> bool:

@@ -1,7 +1,7 @@
 """Numbers, amounts and lengths of time: what can be read in two ways is asked about."""
 
 from dataclasses import dataclass
-from math import isnan
+from math import isinf, isnan
 
 from argo_compiler.il import MAX_TIME_S
 from argo_compiler.script.syntax.building.part import Make, Part
@@ -54,8 +54,9 @@ def decimal(part: Part, figure: Figure, unit: str = "") -> float:
     elif isnan(figure.value):
         part.error("number", f"`{part.said}` is several numbers, not one", "write one number")
         return 0.0
-    elif figure.value >= 1e308:
+    elif isinf(figure.value):
         part.error("number", f"{part.said} is too large a number", "write a smaller one")
+        return 0.0
     return figure.value
 
 
@@ -71,11 +72,12 @@ def seconds(part: Part, word: Word) -> float:
         part.error("ambiguous-duration", message, f"write `{length.first}` or `{length.second}`")
     elif length.seconds <= 0:
         part.error("duration", "a duration of zero", "write, say, `10 minutes`")
+        return 1.0
     elif length.seconds > MAX_TIME_S:
         message = f"a duration of {length.seconds:g} s is too long"
         part.error("duration", message, f"at most {MAX_TIME_S:g} s are counted")
         return MAX_TIME_S
-    return max(length.seconds, 1e-9)
+    return length.seconds
 
 
 def speed(part: Part, word: Word) -> float:
@@ -101,6 +103,9 @@ def _signed(part: Part) -> Signed:
     word = part.word("NUMBER")
     assert word is not None
     sign = -1 if part.has("MINUS") else 1
+    if isinf(word.value.value):
+        part.error("number", f"{part.said} is too large a number", "write a smaller one")
+        return Signed(0.0)
     return Signed(sign * word.value.value, word.value.listed)
 
 

@@ -36,6 +36,8 @@ def _more(part: Part) -> Manner:
 def _for(part: Part) -> Manner:
     if event := part.word("EVENT"):
         return Manner(until=_until_event(part, event.value))
+    if part.has("PERSON"):
+        return Manner(person=True)
     return Manner(duration=_seconds(part))
 
 

@@ -59,5 +59,7 @@ class Manner:
     shown_in: str | None = None
     object_id: str | None = None
     pose: Coordinates | None = None
+    person: bool = False
+    """`for the operator`"""
     on_limit: Afterwards | None = None
     """of a reaction's hold"""

@@ -147,10 +147,10 @@ def items_of(
 
 
 def _is_unfinished(text: ScriptText, following: ScriptText) -> bool:
-    """Whether a text plainly goes on: after a comma, and from one quoted piece to the next."""
+    """Whether a text plainly goes on: after a comma or `and`, and between quoted pieces."""
     content = text.content
     quoted = content.endswith('"') and following.content.startswith('"')
-    return quoted or content.endswith(",")
+    return quoted or content.endswith((",", " and", " or", '":'))
 
 
 def _goes_on(item: Item, line: Line, complete: Callable[[ScriptText], bool]) -> bool:

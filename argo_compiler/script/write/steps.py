@@ -1,53 +1,40 @@
-"""The canonical script's steps in order: tasks, patrols, and the lines that repeat steps."""
+"""The canonical script's steps in order: tasks, patrols, and the steps that are repeated."""
 
 from collections import Counter
-from collections.abc import Iterable
+from collections.abc import Iterator
 from dataclasses import dataclass, field
 
 from argo_compiler.catalog import Catalog
 from argo_compiler.diagnostics import Diagnostic, Severity, Span
 from argo_compiler.diagnostics.subject import subject_of
-from argo_compiler.il import Action, Group, Mission, Stop, Task, Transition
+from argo_compiler.il import Action, Group, Mission, Task
 from argo_compiler.il.grouping import GroupNesting
-from argo_compiler.model import Pose
-from argo_compiler.script.write.sayable import require_sayable
-from argo_compiler.script.write.tasks import (
-    Places,
-    TaskContext,
-    clauses,
-    command,
-)
-from argo_compiler.script.write.text import (
-    UnwritableError,
-    duration,
-    point,
-    quote,
-    statement,
-    times,
-)
+from argo_compiler.script.write.places import Places
+from argo_compiler.script.write.rounds import Patrol, RoundNames, limits, patrols
+from argo_compiler.script.write.tasks import command, manners
+from argo_compiler.script.write.text import UnwritableError, capital, point, quote
+from argo_compiler.script.write.ways import Around, step_of, ways
 
-SAID = frozenset(
-    [
-        "name",
-        "start",
-        "end",
-        "max_repeat_count",
-        "max_repeat_duration",
-        "count_interruptions",
-        "stop",
-        "source",
-    ]
-)
-"""the fields of a group that a script can say"""
+
+@dataclass(frozen=True, slots=True)
+class Said:
+    """What is said of a part of a mission."""
+
+    subject: str
+    """the part, as diagnostics name it"""
+    sentences: tuple[str, ...]
+    """with line breaks where a line may be broken"""
+    number: int | None = None
+    """of the step"""
+    source: Span | None = None
+    about: tuple[Task | Group, ...] = ()
 
 
 @dataclass
 class Steps:
     """The steps of a mission, and what they say of its header."""
 
-    lines: list[str] = field(default_factory=list)
-    rounds: list[str] = field(default_factory=list)
-    """the lines that repeat steps and stand behind all of them"""
+    said: list[Said] = field(default_factory=list)
     start_area: int | None = None
     end_area: int | None = None
     starts: bool = False
@@ -67,24 +54,14 @@ def unwritable(what: str, subject: str, span: Span | None, error: UnwritableErro
     )
 
 
-@dataclass(frozen=True)
-class _Patrol:
-    """A group that is the patrol of a floor."""
-
-    index: int
-    """of the group in the mission"""
-    last: int
-    """the position of its last task"""
-    floor: int
-
-
 def write_steps(mission: Mission, catalog: Catalog, places: Places) -> Steps:
     """The steps of the mission's tasks and groups."""
     return _Writer(mission, catalog, places).write()
 
 
 class _Writer:
-    """Goes through the tasks, and writes a group where its place among the groups comes."""
+    """Goes through the tasks, and writes a group as soon as its last task is written and the groups
+    before it in the mission are."""
 
     def __init__(self, mission: Mission, catalog: Catalog, places: Places) -> None:
         self.mission = mission
@@ -93,198 +70,134 @@ class _Writer:
         self.places = places
         self.layout = GroupNesting.of(mission)
         self.result = Steps()
-        self.defaults = _default_names(mission.tasks)
-        self.number = 0
-        self.steps: dict[str, int] = {}
-        self.places_of = {r.index: place for place, r in enumerate(self.layout.ranges)}
+        self.usual = _usual_names(mission, self._docks())
+        self.patrols = patrols(mission, catalog, self.layout, self.usual)
+        self.order = list(self._order())
+        self.steps = {
+            self.tasks[one].name: number
+            for number, one in enumerate(self.order, start=1)
+            if isinstance(one, int)
+        } | {
+            self.tasks[first].name: self.order.index(patrol) + 1
+            for first, patrol in self.patrols.items()
+        }
         self.following = _following(mission.tasks)
-        self.used: Counter[str] = Counter()
-        self.written = 0
-        """groups, in the mission's order"""
+        self.names = RoundNames(self.layout)
+
+    def _order(self) -> Iterator[int | Patrol | Group]:
+        """What the steps are of: tasks by their position, patrols and groups."""
+        last = {r.index: r.last for r in self.layout.ranges}
+        written = i = 0
+        while i < len(self.tasks):
+            patrol = self.patrols.get(i)
+            if patrol is not None:
+                written = patrol.index + 1
+                yield patrol
+                i = patrol.last
+            else:
+                yield i
+            i += 1
+            while written < len(self.mission.groups) and last[written] < i:
+                yield self.mission.groups[written]
+                written += 1
 
     def write(self) -> Steps:
-        patrols = self._patrols()
-        self._number_steps(patrols)
-        i = 0
-        while i < len(self.tasks):
-            patrol = patrols.get(i)
+        groups = {id(group): k for k, group in enumerate(self.mission.groups)}
+        for number, one in enumerate(self.order, start=1):
+            part: Task | Group
+            if isinstance(one, int):
+                part, kind, of = self.tasks[one], "tasks", "task"
+            else:
+                index = one.index if isinstance(one, Patrol) else groups[id(one)]
+                part, kind, of = self.mission.groups[index], "groups", "group"
+            subject = subject_of(kind, part.name)
             try:
-                if patrol is not None:
-                    self._write_patrol(patrol)
+                if isinstance(one, int):
+                    sentences = tuple(self._task(one))
+                elif isinstance(one, Patrol):
+                    sentences = (self._patrol(one),)
                 else:
-                    self._write_task(i)
+                    sentences = (self._repeat(groups[id(one)], one),)
             except UnwritableError as error:
-                task = self.tasks[i]
-                found = unwritable(
-                    f"task '{task.name}'", subject_of("tasks", task.name), task.source, error
-                )
+                found = unwritable(f"{of} '{part.name}'", subject, part.source, error)
                 self.result.diagnostics.append(found)
-            i = patrol.last + 1 if patrol is not None else i + 1
-        self.result.rounds += self._repeats(len(self.mission.groups))
+                continue
+            said = tuple(map(capital, sentences))
+            self.result.said.append(Said(subject, said, number, part.source, (part,)))
         return self.result
 
     # ---- tasks
 
-    def _number_steps(self, patrols: dict[int, "_Patrol"]) -> None:
-        """The steps of those tasks that are called as a reader expects: others go by name."""
-        i = step = 0
-        while i < len(self.tasks):
-            step += 1
-            if self.defaults[i]:
-                self.steps[self.tasks[i].name] = step
-            i = patrols[i].last + 1 if i in patrols else i + 1
-
-    def _around(self, i: int) -> TaskContext:
+    def _task(self, i: int) -> Iterator[str]:
+        task = self.tasks[i]
+        said = self._command(i, task)
+        if not self.usual[i]:
+            said = f"{quote(task.name)}:\n{said}"
         inner = self.layout.innermost[i]
         group = "" if inner is None else self.layout.ranges[inner].group.name
-        return TaskContext(self.following[i], group, bool(self.layout.ending[i]), self.steps)
+        yield ",\n".join([said, *manners(task, group)])
+        yield from ways(task, Around(self.following[i], bool(self.layout.ending[i]), self.steps))
 
-    def _write_task(self, i: int) -> None:
-        task = self.tasks[i]
-        said, named = self._command(i, task)
-        self._step(said, None if named else task.name, clauses(task, self._around(i)))
-
-    def _step(self, said: str, name: str | None, rest: Iterable[str]) -> None:
-        said = said[0].upper() + said[1:] if name is None else f"{quote(name)}:\n{said}"
-        self.number += 1
-        self.result.lines += statement(f"{self.number}. {said}", rest)
-
-    def _command(self, i: int, task: Task) -> tuple[str, bool]:
-        """What the task does, and whether that gives it its name."""
+    def _command(self, i: int, task: Task) -> str:
         if task.action is Action.START:
             self.result.starts = True
-            return self._start(i, task), task.name == "START"
-        area = self._dock_area(i, task)
-        if area is not None:
-            self.result.end_area = area
-            return f"return to the docking station in starting area {area}", True
-        return command(task, self.places), self.defaults[i]
+            return self._start(i, task)
+        if i in self._docks():
+            self.result.end_area = self.mission.end_area
+            return f"return to the docking station in starting area {self.mission.end_area}"
+        return command(task, self.places)
 
     def _start(self, i: int, task: Task) -> str:
+        """Where the mission starts; `here` keeps it where it stands, and what is said of it."""
         number = self.mission.start_area
         area = None if number is None else self.catalog.area(number)
-        if i == 0 < len(self.tasks) - 1 and area is not None and task.pose == area.dock:
-            self.result.start_area = number
-            return f"set the starting point in starting area {number}"
-        if task.pose is None:
-            return "start here"
-        if i > 0 or task.name != "START" or len(self.tasks) == 1:
-            return f"start here at {point(task.pose)}"
-        # Named by its area, it would set the mission's `start_area`.
-        return f"set the starting point at {self.places.name(task.pose) or point(task.pose)}"
+        plain = Task(name=task.name, action=Action.START, pose=task.pose, source=task.source)
+        following = self.following[i]
+        ways_on = tuple(t.target for t in task.transitions if not t.conditions)
+        plain = plain.model_copy(update={"transitions": task.transitions})
+        alone = i == 0 < len(self.tasks) - 1 and task == plain and ways_on == (following,)
+        if alone and len(task.transitions) == 1:
+            if area is not None and task.pose == area.dock:
+                self.result.start_area = number
+                return f"set the starting point in starting area {number}"
+            name = None if task.pose is None else self.places.name(task.pose)
+            if name is not None:
+                return f"set the starting point at {name}"
+        return command(task, self.places)
 
-    def _dock_area(self, i: int, task: Task) -> int | None:
-        """The area in whose docking station the mission ends with this task."""
+    def _docks(self) -> tuple[int, ...]:
+        """The last task, if the mission ends with it in the docking station of its end area."""
         number = self.mission.end_area
         area = None if number is None else self.catalog.area(number)
-        last = i + 1 == len(self.tasks) and task.action is Action.WAYPOINT
-        found = last and task.name == "DOCK" and area is not None and task.pose == area.dock
-        return number if found else None
+        if area is None or not self.tasks:
+            return ()
+        task = self.tasks[-1]
+        plain = Task(
+            name="DOCK",
+            action=Action.WAYPOINT,
+            pose=area.dock,
+            velocity=task.velocity,
+            source=task.source,
+        )
+        return (len(self.tasks) - 1,) if task == plain and not self.layout.ending[-1] else ()
 
     # ---- groups
 
-    def _patrols(self) -> dict[int, "_Patrol"]:
-        """The groups that can be written as the patrol of a floor, by their first task.
-
-        A patrol stands where its tasks do, so that the groups before it must end before it.
-        """
-        floors: dict[tuple[Pose | None, ...], int] = {}
-        for floor in self.catalog.floors:
-            floors.setdefault(floor.patrol, floor.number)
-        longest = max((len(poses) for poses in floors), default=0)
-        found: dict[int, _Patrol] = {}
-        furthest = -1
-        for index, group in enumerate(self.mission.groups):
-            place = self.places_of[index]
-            r = self.layout.ranges[place]
-            before, furthest = furthest, max(furthest, r.last)
-            limited = group.max_repeat_count or group.max_repeat_duration
-            limited = limited and not (group.every or group.until)
-            if before >= r.first or r.last - r.first >= longest or not limited:
-                continue
-            number = floors.get(tuple(task.pose for task in self.tasks[r.first : r.last + 1]))
-            if number is None or not self._is_round(place):
-                continue
-            found[r.first] = _Patrol(index, r.last, number)
-        return found
-
-    def _group_name(self, index: int, base: str) -> str | None:
-        """The name that the group must be given; None if it is called so without."""
-        place = self.places_of[index]
-        r, parent = self.layout.ranges[place], self.layout.parent[place]
-        default = f"{base} ({self.used[base] + 1})" if self.used[base] else base
-        if parent is not None:
-            around = self.layout.ranges[parent]
-            if (around.first, around.last) == (r.first, r.last):
-                return r.group.name
-            default = f"{around.group.name}/{default}"
-        if r.group.name != default:
-            return r.group.name
-        self.used[base] += 1
-        return None
-
-    def _is_round(self, place: int) -> bool:
-        """Whether the tasks have nothing that those of a patrol don't have."""
-        r = self.layout.ranges[place]
-        for i in range(r.first, r.last + 1):
-            task, following = self.tasks[i], self.following[i]
-            plain = Task(
-                name=task.name,
-                action=Action.WAYPOINT,
-                group=r.group.name,
-                pose=task.pose,
-                transitions=() if following is None else (Transition(target=following),),
-                source=task.source,
-            )
-            if task != plain or not self.defaults[i] or self.layout.innermost[i] != place:
-                return False
-        return True
-
-    def _write_patrol(self, patrol: "_Patrol") -> None:
-        self.result.lines += self._repeats(patrol.index)
-        self.written = patrol.index + 1
+    def _patrol(self, patrol: Patrol) -> str:
         group = self.mission.groups[patrol.index]
-        said = f"patrol floor {patrol.floor}\n{_limits(group)}"
-        self._step(said, self._group_name(patrol.index, f"Patrol floor {patrol.floor}"), ())
-
-    def _repeats(self, end: int) -> list[str]:
-        """The lines for the groups before the one of that index that are not written yet."""
-        lines: list[str] = []
-        for index in range(self.written, end):
-            group = self.mission.groups[index]
-            try:
-                lines += statement(self._repeat(index, group))
-            except UnwritableError as error:
-                at = subject_of("groups", group.name)
-                found = unwritable(f"group '{group.name}'", at, group.source, error)
-                self.result.diagnostics.append(found)
-        self.written = end
-        return lines
+        base = f"Patrol floor {patrol.floor}"
+        name = self.names.own(patrol.index, base)
+        said = f"patrol floor {patrol.floor}\n{limits(group)}"
+        return said if name is None else f"{quote(name)}:\n{said}"
 
     def _repeat(self, index: int, group: Group) -> str:
-        require_sayable(group, SAID)
-        points = [self.steps.get(name, name) for name in dict.fromkeys((group.start, group.end))]
-        base = f"Repeat {' to '.join(map(str, points))}".replace("/", "-")
-        name = self._group_name(index, base)
-        steps = "step" if len(points) == 1 else "steps"
-        said = "\nto ".join(quote(p) if isinstance(p, str) else str(p) for p in points)
-        opening = "Repeat" if name is None else f"{quote(name)}:\nrepeat"
-        return f"{opening} {steps} {said}\n{_limits(group)}"
-
-
-def _limits(group: Group) -> str:
-    """How often and how long: `for 10 min or 3 times,\nfinishing the round`."""
-    said = []
-    if group.max_repeat_duration:
-        said.append(f"for {duration(group.max_repeat_duration)}")
-    if group.max_repeat_count:
-        said.append(times(group.max_repeat_count))
-    text = " or ".join(said) or "endlessly"
-    if group.stop is Stop.SOFT:
-        text += ",\nfinishing the round"
-    if group.count_interruptions:
-        text += ",\ninterruptions included"
-    return text
+        points = dict.fromkeys((group.start, group.end))
+        said = [step_of(name, self.steps).removeprefix("step ") for name in points]
+        base = f"Repeat {' to '.join(str(self.steps.get(p, p)) for p in points)}".replace("/", "-")
+        name = self.names.own(index, base)
+        steps = "step" if len(said) == 1 else "steps"
+        opening = "repeat" if name is None else f"{quote(name)}:\nrepeat"
+        return f"{opening} {steps} {' to '.join(said)} {limits(group)}"
 
 
 def _following(tasks: tuple[Task, ...]) -> list[str | None]:
@@ -298,20 +211,25 @@ def _following(tasks: tuple[Task, ...]) -> list[str | None]:
     return following[::-1]
 
 
-def _default_names(tasks: tuple[Task, ...]) -> list[bool]:
+def _usual_names(mission: Mission, docks: tuple[int, ...]) -> list[bool]:
     """Whether each task is called as a script calls it that gives it no name."""
     used: Counter[str] = Counter()
     found = []
-    for task in tasks:
-        if task.action is Action.WAIT:
-            found.append(False)  # a person gives it a name of its own
-            continue
-        if task.action is Action.WAYPOINT:
-            base, default = "WAYPOINT", f"WAYPOINT {used['WAYPOINT'] + 1}"
-        else:
-            base = "START" if task.action is Action.START else f"MEASURE {task.object_id}"
-            default = f"{base} ({used[base] + 1})" if used[base] else base
+    for i, task in enumerate(mission.tasks):
+        base = "DOCK" if i in docks else _base(task)
+        count = used[base] + 1
+        usual = f"{base} {count}" if base == Action.WAYPOINT else base
+        if base != Action.WAYPOINT and count > 1:
+            usual = f"{base} ({count})"
         # A task of another name does not count; see the assembly of a plan.
-        found.append(task.name == default)
-        used[base] += task.name == default
+        found.append(task.name == usual)
+        used[base] += task.name == usual
     return found
+
+
+def _base(task: Task) -> str:
+    if task.action is Action.MEASURE:
+        return f"MEASURE {task.object_id}"
+    if task.action is Action.WAIT and task.wait is not None and task.wait.duration == 0:
+        return "MEET"
+    return str(task.action)

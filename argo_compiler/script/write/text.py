@@ -4,13 +4,13 @@ from collections.abc import Iterable
 from math import degrees, radians
 
 from argo_compiler.model import Pose
-from argo_compiler.script.syntax.protocol import MAX_STATEMENT
+from argo_compiler.script.syntax.words.numbers import read_figure
 
-_WIDTH = 100
+WIDTH = 100
 """characters in a line, where the text can be broken"""
 _PIECE = 70
 """characters in a piece of quoted text"""
-_INDENT = "   "
+INDENT = "   "
 _MARKS = '*`"\\'
 """printable ASCII that needs an escape"""
 
@@ -55,17 +55,19 @@ def _is_ligature(character: str) -> bool:
 
 
 def number(value: float) -> str:
-    """The number as it is read back, without a point where it is whole."""
+    """The number as it is read back: without a point where it is whole, and with a nought behind
+    three decimals, which could be thousands."""
     if value == int(value) and abs(value) < 1e15:
         return str(int(value))
-    return repr(float(value))
+    said = repr(float(value))
+    return said if read_figure(said.lstrip("-")).other is None else f"{said}0"
 
 
 def duration(seconds: float) -> str:
-    """A time span as it is read back: `10 min`, `90.5 s`."""
+    """A time span as it is read back: `10 minutes`, `90.5 s`."""
     minutes = seconds / 60
     if minutes >= 1 and minutes == int(minutes) and int(minutes) * 60.0 == seconds < 1e9:
-        return f"{int(minutes)} min"
+        return "1 minute" if minutes == 1 else f"{int(minutes)} minutes"
     return f"{number(seconds)} s"
 
 
@@ -85,41 +87,39 @@ def times(count: int) -> str:
     return {1: "once", 2: "twice"}.get(count, f"{count} times")
 
 
-def statement(opening: str, clauses: Iterable[str] = ()) -> list[str]:
-    """The lines of a step of several clauses: one if it is short, else one or more a clause.
+def listed(items: Iterable[str]) -> str:
+    """The items with commas, behind each of which the line may be broken."""
+    return ",\n".join(items)
 
-    They are broken where they have a line break. What is too long for a statement goes on in
-    further ones. Raises UnwritableError if a single clause is too long for one.
+
+def capital(sentence: str) -> str:
+    """The sentence with a capital at its beginning."""
+    return sentence[0].upper() + sentence[1:]
+
+
+def paragraph(opening: str, sentences: Iterable[str], indent: str = INDENT) -> list[str]:
+    """The lines of sentences: one if that is short, else one or more for each of them.
+
+    A sentence goes on in the next line behind a comma, and between pieces of quoted text.
     """
-    parts = [opening, *clauses]
-    line = "; ".join(parts).replace("\n", " ") + "."
-    if len(line) <= _WIDTH:
+    said = [f"{sentence}." for sentence in sentences]
+    line = opening + " ".join(said).replace("\n", " ")
+    if len(line) <= WIDTH:
         return [line]
-    whole = len(line) <= MAX_STATEMENT
     lines: list[str] = []
-    for i, part in enumerate(parts):
-        end = ";" if whole and i + 1 < len(parts) else "."
-        if whole and i > 0:
-            lines += wrapped(part + end, _INDENT)
-        else:
-            lines += wrapped(part[0].upper() + part[1:] + end)
+    for i, sentence in enumerate(said):
+        lines += wrapped(sentence if i else opening + sentence, indent if i else "")
     return lines
 
 
 def wrapped(text: str, indent: str = "") -> list[str]:
-    """The text in lines of at most `_WIDTH` characters, where its line breaks allow that.
-
-    Raises UnwritableError if it is too long for a statement.
-    """
-    if len(text) > MAX_STATEMENT - _WIDTH:
-        said = text[:40].replace("\n", " ")
-        raise UnwritableError(f"`{said}...` is longer than {MAX_STATEMENT} characters")
+    """The text in lines of at most `WIDTH` characters, where its line breaks allow that."""
     lines: list[str] = []
     current = indent
     for chunk in text.split("\n"):
-        if current.strip() and len(current) + 1 + len(chunk) > _WIDTH:
+        if current.strip() and len(current) + 1 + len(chunk) > WIDTH:
             lines.append(current)
-            current = _INDENT + chunk
+            current = indent + INDENT + chunk
         else:
             current += (" " if current.strip() else "") + chunk
     return [*lines, current]

@@ -138,7 +138,8 @@ CONDITIONS: Phrases = {
     (
         "AT_MOST",
         None,
-    ): "at most|<=|no more than|not more than|less than or equal to|up to|taking at most",
+    ): "at most|<=|no more than|not more than|less than or equal to|up to",
+    ("TAKING", None): "taking at most",
     ("BETWEEN", None): "between",
     ("FROM", None): "from",
     (

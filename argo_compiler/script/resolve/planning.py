@@ -28,7 +28,6 @@ from argo_compiler.script.syntax.tree.conditions import Occurs
 from argo_compiler.script.syntax.tree.orders import Order, Sentence, Word
 from argo_compiler.script.syntax.tree.places import DockLocation, FloorName, Location
 
-
 _WHOLE_PLAN = (
     orders.Repeat | orders.Add | orders.Delete | orders.Move | orders.Replace | orders.Start
 )

@@ -90,7 +90,7 @@ class Wrapping:
             self.diagnostics.error("empty-step", message, order.steps.span, hint)
             return []
         known = {id(node) for node in nodes}
-        block = _around(nodes, known, self.context.program)
+        block = _around(nodes, known, self.context.program, order.name or "")
         tops = topmost(nodes, block)
         if any(not _covered(top, known) for top in tops):
             message = "these steps and those of another repetition have only some in common"
@@ -165,8 +165,9 @@ def _leads_to(last: Node, round_: Round) -> bool:
     return False
 
 
-def _around(nodes: list[Node], known: set[int], program: Block) -> Block:
-    """The innermost block that all nodes lie in; that around a round which they make up."""
+def _around(nodes: list[Node], known: set[int], program: Block, name: str) -> Block:
+    """The innermost block that all nodes lie in; that around a round which they make up, unless
+    the name says that it lies in that round: `Alpha/Beta`."""
     chain = _blocks_around(nodes[0])
     common = {id(block): i for i, block in enumerate(chain)}
     at = 0
@@ -178,6 +179,8 @@ def _around(nodes: list[Node], known: set[int], program: Block) -> Block:
     while at + 1 < len(chain):
         owner = chain[at].owner
         if not (isinstance(owner, Round) and _covered(owner, known)):
+            break
+        if name.startswith(f"{owner.title}/"):
             break
         at += 1
     return chain[at] if chain else program

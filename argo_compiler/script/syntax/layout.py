@@ -112,6 +112,9 @@ def _split(line: Line) -> Iterator[Line]:
             continue
         if line.number is None or int(found[1]) != expected:
             continue
+        before = line.text.content[: found.start()]
+        if before.count("(") > before.count(")"):
+            continue  # `(1, 2, 5) heading 90 degrees` in step 4
         yield Line(line.text[start : found.start()].strip(), line.indent, line.mark, expected - 1)
         start = found.end()
         expected += 1

@@ -3,6 +3,7 @@
 from collections.abc import Sequence
 
 from argo_compiler.il import Condition, ConditionType, EventKind
+from argo_compiler.script.resolve.conditions import contradict
 from argo_compiler.script.write.text import UnwritableError, duration, number, quote
 
 _RELATIONS = {
@@ -42,6 +43,8 @@ def event(kind: EventKind) -> str:
 
 def conditions(held: Sequence[Condition]) -> str:
     """All of the conditions: `checkpoint #1 is above 2.5 and checkpoint #4 is abnormal`."""
+    if contradict(held):
+        raise UnwritableError("no value satisfies all of its conditions at once")
     return " and\n".join(condition(c) for c in held)
 
 

@@ -49,6 +49,13 @@ class RoundNames:
         self.layout = layout
         self.places = {r.index: place for place, r in enumerate(layout.ranges)}
         self.used: Counter[str] = Counter()
+        self.twice = {
+            (r.first, r.last)
+            for r, parent in zip(layout.ranges, layout.parent, strict=True)
+            if parent is not None
+            and (r.first, r.last) == (layout.ranges[parent].first, layout.ranges[parent].last)
+        }
+        """ranges of groups of which one lies in the other: their names tell which"""
 
     def own(self, index: int, base: str) -> str | None:
         """The name that the group must be given; None if it is called so without."""
@@ -56,11 +63,8 @@ class RoundNames:
         r, parent = self.layout.ranges[place], self.layout.parent[place]
         default = f"{base} ({self.used[base] + 1})" if self.used[base] else base
         if parent is not None:
-            around = self.layout.ranges[parent]
-            if (around.first, around.last) == (r.first, r.last):
-                return r.group.name
-            default = f"{around.group.name}/{default}"
-        if r.group.name != default:
+            default = f"{self.layout.ranges[parent].group.name}/{default}"
+        if r.group.name != default or (r.first, r.last) in self.twice:
             return r.group.name
         self.used[base] += 1
         return None

@@ -12,7 +12,7 @@ from argo_compiler.il.grouping import GroupNesting
 from argo_compiler.script.write.places import Places
 from argo_compiler.script.write.rounds import Patrol, RoundNames, limits, patrols
 from argo_compiler.script.write.tasks import command, manners
-from argo_compiler.script.write.text import UnwritableError, capital, point, quote
+from argo_compiler.script.write.text import UnwritableError, capital, quote
 from argo_compiler.script.write.ways import Around, step_of, ways
 
 

@@ -60,7 +60,8 @@ def number(value: float) -> str:
     if value == int(value) and abs(value) < 1e15:
         return str(int(value))
     said = repr(float(value))
-    return said if read_figure(said.lstrip("-")).other is None else f"{said}0"
+    figure = read_figure(said.lstrip("-"))
+    return f"{said}0" if figure is not None and figure.other is not None else said
 
 
 def duration(seconds: float) -> str:

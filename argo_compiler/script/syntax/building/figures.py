@@ -87,7 +87,7 @@ def speed(part: Part, word: Word) -> float:
     if value <= 0:
         part.error("speed", "a speed of zero", "write, say, `at 0.3 m/s`")
         return 1.0
-    return float(f"{value * factor:.12g}")
+    return value if factor == 1 else float(f"{value * factor:.12g}")
 
 
 def single(part: Part) -> float:

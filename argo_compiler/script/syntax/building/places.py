@@ -86,7 +86,11 @@ def _height(part: Part) -> dict[str, float]:
 
 def _heading(part: Part) -> dict[str, float]:
     if word := part.word("QUANTITY"):
-        return {"yaw": radians(word.value[0].value)}
+        figure, unit = word.value
+        if unit != "deg":
+            hint = "write `heading 90 degrees` or `heading 1.5 rad`"
+            part.error("unit", f"a heading is no number of {unit}", hint)
+        return {"yaw": (-1 if part.has("MINUS") else 1) * radians(figure.value)}
     value = single(part)
     return {"yaw": value if part.has("RAD") else radians(value)}
 

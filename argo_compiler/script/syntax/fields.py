@@ -25,6 +25,7 @@ from argo_compiler.script.syntax.words.prose import begins
 from argo_compiler.script.syntax.words.word import Word
 
 _STOP = re.compile(r"[.!](?=\s|$)")
+_QUOTED = re.compile(r'"(?:[^"\\]|\\.)*"(?:[\s,]*"(?:[^"\\]|\\.)*")*')
 _ANY_LABEL = re.compile(r"[^\W\d_][\w'/-]*\.?(?:\s+[\w'/-]+){0,6}\s*:(?=\s|$)")
 _PROSE = frozenset(
     ["designation", "anomaly_specification", "real_time_reporting", "after_mission_report", "site"]
@@ -121,7 +122,10 @@ class Fields:
         return text
 
     def _end(self, name: str, content: str) -> int:
-        """Where the value of a field ends: at the next label or, unless it is prose, sentence."""
+        """Where the value of a field ends: at the next label or, unless it is prose, sentence;
+        what stands in quotation marks is no part of either."""
+        if quoted := _QUOTED.match(content):
+            return quoted.end()
         ends = [
             m.start()
             for m in self.prose.label.finditer(content)

@@ -7,7 +7,7 @@ from dataclasses import dataclass, field
 from argo_compiler.catalog import Catalog
 from argo_compiler.diagnostics import Diagnostic, Severity, Span
 from argo_compiler.diagnostics.subject import subject_of
-from argo_compiler.il import Action, Group, Mission, Task
+from argo_compiler.il import Action, Group, Mission, Task, Transition
 from argo_compiler.il.grouping import GroupNesting
 from argo_compiler.script.write.places import Places
 from argo_compiler.script.write.rounds import Patrol, RoundNames, limits, patrols
@@ -201,12 +201,13 @@ class _Writer:
 
 
 def _following(tasks: tuple[Task, ...]) -> list[str | None]:
-    """For each task, the next one that is not START."""
+    """For each task, the next one that is not START; a START that leads elsewhere is in the way."""
     following: list[str | None] = []
     name = None
     for task in reversed(tasks):
         following.append(name)
-        if task.action is not Action.START:
+        usual = () if name is None else (Transition(target=name),)
+        if task.action is not Action.START or task.transitions != usual:
             name = task.name
     return following[::-1]
 

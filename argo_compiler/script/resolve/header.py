@@ -3,10 +3,13 @@
 from dataclasses import dataclass
 
 from argo_compiler.diagnostics import Span
-from argo_compiler.script.syntax.tree.script import AreaChosen, Areas, Header
+from argo_compiler.errors import Remedy
 from argo_compiler.script.syntax.source import Diagnostics
 from argo_compiler.script.syntax.spelling import alternatives
 from argo_compiler.script.syntax.tree.places import Coordinates
+from argo_compiler.script.syntax.tree.script import AreaChosen, Areas, Header
+
+_REMEDIES = {"start": Remedy.CHOOSE_START, "end": Remedy.CHOOSE_END}
 
 
 @dataclass(frozen=True)
@@ -35,12 +38,23 @@ def header_values(
     header: Header, diagnostics: Diagnostics, start_area: int | None, end_area: int | None
 ) -> HeaderValues:
     """The choices; the options must be among what it offers."""
+    if header.areas_open is not None:
+        if start_area is None:
+            _left_open("start", header.areas_open.span, diagnostics)
+        if end_area is None:
+            _left_open("end", header.areas_open.span, diagnostics)
     return HeaderValues(
         start=_choice("start", header.start_area, header.initial_position, start_area, diagnostics),
         end=_choice("end", header.end_area, header.end_of_mission, end_area, diagnostics),
         dock_said=header.dock_said,
         dock=header.dock,
     )
+
+
+def _left_open(which: str, span: Span, diagnostics: Diagnostics) -> None:
+    message = f"the script leaves the {which} to the preparation"
+    hint = "choose a starting area for it"
+    diagnostics.error("area-choice", message, span, hint, (_REMEDIES[which],))
 
 
 def _choice(
@@ -50,24 +64,27 @@ def _choice(
     option: int | None,
     diagnostics: Diagnostics,
 ) -> AreaChoice:
-    flag = f"--{which}-area"
+    """The area of the mission's start or end: that of the option or of the header line, else the
+    only one that the cell offers."""
+    remedies = (_REMEDIES[which],)
     if header is not None:
         if option is not None and option != header.area:
-            message = f"{flag} {option} contradicts the script"
-            hint = f"leave {flag} out, or take this line out of the script"
+            message = f"--{which}-area {option} contradicts the script"
+            hint = f"leave --{which}-area out, or take this line out of the script"
             diagnostics.error("area-conflict", message, header.span, hint)
         return AreaChoice(header.area, header.span, header.as_planned, said=True)
-    offered = sorted(set(cell.areas)) if cell else []
-    if not offered:
+    if cell is None:
         return AreaChoice(option, said=option is not None)
-    assert cell is not None
-    span = cell.span
-    choices = alternatives(f"{flag} {number}" for number in offered)
-    if option is not None and option not in offered:
-        message = f"{flag} {option} is not what the script offers"
-        diagnostics.error("area-not-offered", message, span, f"give {choices}")
+    offered, span = sorted(set(cell.areas)), cell.span
+    areas = alternatives(str(number) for number in offered)
+    if option is not None and offered and option not in offered:
+        message = f"the {which} in area {option} is not what the script offers"
+        diagnostics.error("area-not-offered", message, span, f"choose area {areas}", remedies)
     elif option is None and len(offered) > 1:
-        areas = alternatives(str(number) for number in offered)
         message = f"the script leaves the {which} to the preparation: starting area {areas}"
-        diagnostics.error("area-choice", message, span, f"choose with {choices}")
-    return AreaChoice(option if option is not None else offered[0], span, said=True)
+        diagnostics.error("area-choice", message, span, f"choose area {areas}", remedies)
+    elif option is None and not offered:
+        message = f"this names no starting area for the mission's {which}"
+        diagnostics.error("no-area", message, span, "write, say, `starting area 1`", remedies)
+    area = option if option is not None else next(iter(offered), None)
+    return AreaChoice(area, span, said=True)

@@ -57,7 +57,8 @@ class AreaCells:
         self._refuse_strays(value, tail, covered)
         if self.diagnostics.errors > errors:
             return None
-        return Areas(span=value.span(), text=value.content, areas=tuple(areas))
+        at = value[found[0][0].start : found[0][0].end] if found else value
+        return Areas(span=at.span(), text=value.content, areas=tuple(areas))
 
     def may_ask(self, aside: ScriptText) -> bool:
         """Whether words behind an area may change what it means."""

@@ -47,11 +47,11 @@ class Item:
 
 
 _NUMBER = re.compile(
-    r"\(?(?:step\s+)?([0-9]{1,6})\s*(?:[.)](?![0-9])|:(?![0-9])|\s-\s+(?=[^\W\d_]))\s*",
+    r"\(?(?:(?:step|schritt)\s+)?([0-9]{1,6})\s*(?:[.)](?![0-9])|:(?![0-9])|\s-\s+(?=[^\W\d_]))\s*",
     re.IGNORECASE,
 )
 _SUB_NUMBER = re.compile(r"[0-9]{1,4}\.[0-9]{1,4}[.)]?\s+(?=[A-Z])")
-_STEP = re.compile(r"step\s+([0-9]{1,6})\b[.:)]?\s*", re.IGNORECASE)
+_STEP = re.compile(r"(?:step|schritt)\s+([0-9]{1,6})\b[.:)]?\s*", re.IGNORECASE)
 _LETTER = re.compile(r"\(?([a-z]|[ivx]{1,4})[.)]\s+", re.IGNORECASE)
 _BULLET = re.compile(r"[-*+•–‣◦]\s+(?:\[[ xX]?\]\s+)?|#+\s+")
 _RULE = re.compile(r"([-=_~*])\1{2,}")
@@ -59,8 +59,15 @@ QUOTED = re.compile(r'"(?:[^"\\]|\\.)*"')
 _RUN_IN = re.compile(r"(?:^|[,;.!])\s+([0-9]{1,3})[.)]\s+(?=[^\W\d_])")
 
 
-_SENTENCE_END = re.compile(r"(?:[.!?…]+|;(?=\s*(?:if|otherwise|else|when)\b))(?=\s|$)", re.I)
+_SENTENCE_END = re.compile(r"(?:[.!?…]+|;(?=\s*(?:if|otherwise|else|when|wenn|falls|sonst)\b))(?=\s|$)", re.I)
 _ABBREVIATION = re.compile(r"\b(?:no|nr|approx|ca|max|min|e\.g|i\.e|z\.b)\.$", re.IGNORECASE)
+_LABELLED = re.compile(r"\b(?:no|nr)\.$", re.IGNORECASE)
+_LABEL = re.compile(r"\s*[A-Za-z]?-?[0-9]")
+_ORDINAL = re.compile(r"(?<![\w.,])[0-9]{1,2}\.$")
+_ORDINAL_OF = re.compile(
+    r"(?:\s*(?:,|und|oder|bis)\s*[0-9]{1,2}\.)*\s+(?:stock|etage|geschoss|ebene|deck)", re.I
+)
+"""`im 1. und 2. Stock`"""
 _LAST_HALF = re.compile(r"([^\W\d_]+)-$")
 _FIRST_HALF = re.compile(r"[^\W\d_]+")
 
@@ -200,7 +207,17 @@ def sentences(text: ScriptText) -> list[ScriptText]:
         more = goes_on and end.end() < len(text.content)
         if more and _ABBREVIATION.search(text.content[: end.start() + 1]):
             continue
+        if _goes_on_behind(text.content, end.start() + 1):
+            continue
         found.append(text[start : end.start()].strip())
         start = end.end()
     found.append(text[start:].strip())
     return [sentence for sentence in found if sentence.content]
+
+
+def _goes_on_behind(content: str, stop: int) -> bool:
+    """Whether a full stop belongs to `Nr. R25` or `2. Stock`."""
+    if _LABELLED.search(content, max(0, stop - 5), stop) and _LABEL.match(content, stop):
+        return True
+    ordinal = _ORDINAL.search(content, max(0, stop - 4), stop)
+    return ordinal is not None and _ORDINAL_OF.match(content, stop) is not None

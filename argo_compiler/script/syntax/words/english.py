@@ -2,7 +2,7 @@
 
 from argo_compiler.il import EventKind, Mode
 from argo_compiler.script.syntax.tree.nouns import Kind
-from argo_compiler.script.syntax.words.lexicon import Phrases
+from argo_compiler.script.syntax.words.lexicon import Phrases, expand
 from argo_compiler.script.syntax.words.numbers import Figure
 
 NOTHING: Phrases = {
@@ -112,8 +112,8 @@ NOUNS: Phrases = {
         ("ORDINAL", n): f"{word}|{n}{suffix}"
         for n, (word, suffix) in enumerate(
             zip(
-                "first second third fourth fifth sixth seventh eighth ninth tenth".split(),
-                "st nd rd th th th th th th th".split(),
+                expand("first|second|third|fourth|fifth|sixth|seventh|eighth|ninth|tenth"),
+                expand("st|nd|rd|th|th|th|th|th|th|th"),
                 strict=True,
             ),
             start=1,
@@ -251,9 +251,9 @@ MANNERS: Phrases = {
     ("RATE", 1 / 3.6): "km / h|kmh|kph|kilometre{s} per hour|kilometer{s} per hour",
 }
 
-_UNITS = "one two three four five six seven eight nine".split()
-_TEENS = "ten eleven twelve thirteen fourteen fifteen sixteen seventeen eighteen nineteen".split()
-_TENS = "twenty thirty forty fifty sixty seventy eighty ninety".split()
+_UNITS = expand("one|two|three|four|five|six|seven|eight|nine")
+_TEENS = expand("ten|eleven|twelve|thirteen|fourteen|fifteen|sixteen|seventeen|eighteen|nineteen")
+_TENS = expand("twenty|thirty|forty|fifty|sixty|seventy|eighty|ninety")
 
 FIGURES: Phrases = {
     **{("NUMBER_WORD", n): word for n, word in enumerate(_UNITS + _TEENS, start=1)},

@@ -6,7 +6,7 @@ so on, as well.
 
 from argo_compiler.il import EventKind, Mode
 from argo_compiler.script.syntax.tree.nouns import Kind
-from argo_compiler.script.syntax.words.lexicon import Phrases
+from argo_compiler.script.syntax.words.lexicon import Phrases, expand
 from argo_compiler.script.syntax.words.numbers import Figure
 
 
@@ -45,8 +45,8 @@ NOTHING: Phrases = {
         "als nächstes|als erstes|im anschluss|hierauf|nun|jetzt|auch|ebenfalls|ebenso|sofort|"
         "unverzüglich|umgehend|gleich|direkt|einfach|roboter{s}|soll|sollen|sollte|muss|müssen|wir|"
         "du|dir|so|also|von dort|von da|von dort aus|davon|dort|lass|lasst|lassen sie|könntest du|"
-        "könnten sie|könnt ihr|kannst du|können sie|würdest du|würden sie|ich möchte dass|"
-        "ich hätte gern dass|lang|hin|mir"
+        "könnten sie|könnt ihr|kannst du|können sie|würdest du|würden sie|ich möchte , dass|"
+        "wir möchten , dass|ich hätte gern , dass|es muss|es müssen|es soll|es sollen|lang|hin|mir"
     ),
     ("IDLE", None): (
         "heute|heute nacht|heute abend|heute früh|heute morgen|heute vormittag|heute nachmittag|"
@@ -62,7 +62,8 @@ VERBS: Phrases = {
         f"{_parted('ab', 'lies liest lest lese lesen')}|{_parted('aus', 'lies liest lest lesen')}|"
         f"{_parted('an', 'sieh sieht seht sehe sehen')}|"
         f"{_parted('an', 'schau schaut schaue schauen')}|"
-        f"{_parted('auf', 'nimm nimmt nehmt nehmen')}|wirf einen blick auf|werfen sie einen blick auf"
+        f"{_parted('auf', 'nimm nimmt nehmt nehmen')}|wirf einen blick auf|"
+        f"werfen sie einen blick auf"
     ),
     ("KEEP_MEASURING", None): (
         "prüfe laufend|prüfe fortlaufend|prüfe weiter|lies laufend|lies weiter|"
@@ -78,7 +79,8 @@ VERBS: Phrases = {
         "fahre … an|fährt … an|anfahren|hinfahren|rolle|rollt|rollen"
     ),
     ("HOME", None): (
-        "fahr{e} nach hause|fährt nach hause|fahren sie nach hause|fahre heim|fährt heim|heimfahren|"
+        "fahr{e} nach hause|fährt nach hause|fahren sie nach hause|fahre heim|fährt heim|"
+        "heimfahren|"
         "geh{e} nach hause|geht nach hause|komm{e} nach hause|kommt nach hause|nach hause fahren|"
         "nach hause|kehr{e} heim|kehrt heim|heimkehren|docke an|dockt an|andocken|docken sie an|"
         "zurück zur basis|fahre zurück zur basis|nach hause gehen|nach hause kommen"
@@ -122,7 +124,8 @@ VERBS: Phrases = {
     ("RECHARGE", None): (
         f"lade|lädt|laden {{sie}}|{_parted('auf', 'lade lädt laden')}|lade den akku|"
         "lade den akku auf|lädt den akku auf|den akku laden|den akku aufladen|akku laden|"
-        "akku aufladen|lade ihn auf|lade ihn|ihn aufladen|ihn laden|lade sie auf|lade die batterie auf|lade die batterie|die batterie laden|"
+        "akku aufladen|lade ihn auf|lade ihn|ihn aufladen|ihn laden|lade sie auf|"
+        "lade die batterie auf|lade die batterie|die batterie laden|"
         "die batterie aufladen|batterie laden|batterie aufladen|lade nach|nachladen|lädt nach"
     ),
     ("REPORT", None): (
@@ -181,7 +184,8 @@ VERBS: Phrases = {
 
 NOUNS: Phrases = {
     ("KIND", (Kind.CHECKPOINT, False)): (
-        "kontrollpunkt{s}|kontrollpunktes|prüfpunkt{s}|messpunkt{s}|checkpoint|prüfstelle|messstelle"
+        "kontrollpunkt{s}|kontrollpunktes|prüfpunkt{s}|messpunkt{s}|checkpoint|prüfstelle|"
+        "messstelle"
     ),
     ("KIND", (Kind.CHECKPOINT, True)): (
         "kontrollpunkte{n}|prüfpunkte{n}|messpunkte{n}|checkpoints|prüfstellen|messstellen"
@@ -251,7 +255,7 @@ NOUNS: Phrases = {
     **{
         ("ORDINAL", n): f"{word}e|{word}en|{word}er|{word}es|{word}em"
         for n, word in enumerate(
-            "erst zweit dritt viert fünft sechst siebt acht neunt zehnt".split(), start=1
+            expand("erst|zweit|dritt|viert|fünft|sechst|siebt|acht|neunt|zehnt"), start=1
         )
     },
 }
@@ -263,7 +267,7 @@ CONDITIONS: Phrases = {
         "wird … entdeckt|wird … festgestellt|tritt … auf|sollte … liegen|sollte … sein|"
         "sollte … steigen|sollte … fallen|sollte … sinken"
     ),
-    ("UNLESS", None): "es sei denn|außer wenn|sofern nicht|ausser wenn",
+    ("UNLESS", None): "es sei denn {,}|es sei denn , dass|außer wenn|außer , wenn|sofern nicht",
     ("ELSE", None): "sonst|ansonsten|andernfalls|anderenfalls|wenn nicht ,|falls nicht ,",
     (
         "IN_ALL_OTHERS",
@@ -329,7 +333,8 @@ CONDITIONS: Phrases = {
         "heiße stelle|heißen stelle|heiße stellen|heißer stelle|hotspot{s}|hot spot{s}|überhitzung"
     ),
     ("EVENT", EventKind.ABNORMAL_SOUND): (
-        "ungewöhnliches {pumpen}geräusch|ungewöhnlichen {pumpen}geräusch|auffälliges {pumpen}geräusch|"
+        "ungewöhnliches {pumpen}geräusch|ungewöhnlichen {pumpen}geräusch|"
+        "auffälliges {pumpen}geräusch|"
         "auffälligen {pumpen}geräusch|ungewöhnlichem {pumpen}geräusch|auffälligem {pumpen}geräusch|"
         "abnormales {pumpen}geräusch|abnormalen {pumpen}geräusch"
     ),
@@ -344,7 +349,8 @@ CONDITIONS: Phrases = {
     ),
     ("EVENT", EventKind.CONNECTION_LOST): (
         "verbindung verloren|verbindungsverlust{es}|verbindungsabbruch{s}|verbindung abbricht|"
-        "verbindung verloren geht|verbindung abreißt|verbindung verloren ist|verlust der verbindung|"
+        "verbindung verloren geht|verbindung abreißt|verbindung verloren ist|"
+        "verlust der verbindung|"
         "abbruch der verbindung"
     ),
     ("EVENT", EventKind.EMERGENCY_STOP): "not-halt|nothalt|not-aus|notaus|not-stopp|notstopp",
@@ -398,7 +404,8 @@ MANNERS: Phrases = {
     ("AFTER", None): "nach|hinter",
     ("LATEST", None): "spätestens nach|nicht später als|spätestens|spätestens bis",
     ("SINCE_START", None): (
-        "nach dem start|nach missionsstart|nach missionsbeginn|nach beginn|nach dem beginn der mission|"
+        "nach dem start|nach missionsstart|nach missionsbeginn|nach beginn|"
+        "nach dem beginn der mission|"
         "nach beginn der mission|nach dem start der mission"
     ),
     ("IF_TIME", None): (
@@ -462,9 +469,9 @@ MANNERS: Phrases = {
     ("RATE", 1 / 3.6): "km / h|kmh|km / std|kilometer{n} pro stunde|stundenkilometer{n}",
 }
 
-_UNITS = "ein zwei drei vier fünf sechs sieben acht neun".split()
-_TEENS = "zehn elf zwölf dreizehn vierzehn fünfzehn sechzehn siebzehn achtzehn neunzehn".split()
-_TENS = "zwanzig dreißig vierzig fünfzig sechzig siebzig achtzig neunzig".split()
+_UNITS = expand("ein|zwei|drei|vier|fünf|sechs|sieben|acht|neun")
+_TEENS = expand("zehn|elf|zwölf|dreizehn|vierzehn|fünfzehn|sechzehn|siebzehn|achtzehn|neunzehn")
+_TENS = expand("zwanzig|dreißig|vierzig|fünfzig|sechzig|siebzig|achtzig|neunzig")
 
 FIGURES: Phrases = {
     **{("NUMBER_WORD", n): word for n, word in enumerate(_UNITS + _TEENS, start=1)},

@@ -6,8 +6,7 @@ from dataclasses import dataclass
 from functools import lru_cache
 from itertools import islice
 
-from argo_compiler.script.syntax.words import english, german
-from argo_compiler.script.syntax.words.english_prose import PROSE
+from argo_compiler.script.syntax.words import english, english_prose, german, german_prose
 from argo_compiler.script.syntax.words.lexicon import Lexicon, folded
 from argo_compiler.script.syntax.words.prose import Prose
 
@@ -35,7 +34,7 @@ class Language:
         one, two = _lexicons(names)
         said = [folded(word.group().lower()) for word in islice(_WORD.finditer(text), _MOST)]
         score = sum((word in two.words) - (word in one.words) for word in said)
-        return cls(two, PROSE) if score > 0 else cls(one, PROSE)
+        return cls(two, german_prose.PROSE) if score > 0 else cls(one, english_prose.PROSE)
 
 
 @lru_cache(maxsize=8)
@@ -45,7 +44,7 @@ def _lexicons(places: tuple[str, ...]) -> tuple[Lexicon, Lexicon]:
         "German",
         (*german.PARTS, german.OWN),
         "der die das den dem des am im zum zur beim vom ins",
-        "ein eine einen einem einer eines bitte dann direkt gleich auch",
+        "ein eine einen einem einer eines bitte dann direkt gleich auch the",
         verbs_first=False,
     )
     for place in places:

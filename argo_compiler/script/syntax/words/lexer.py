@@ -37,12 +37,17 @@ _UNSAID = frozenset(["FILLER", "IDLE"])
 
 def words(text: str, lexicon: Lexicon) -> list[Word]:
     """The words of `text`, with the joints between them told apart by what they join; in another
-    language where only in that one every word is known."""
+    language where far more of them are known in that one."""
     found = _in(text, lexicon)
-    if lexicon.other is None or all(word.type != "WORD" for word in found):
+    unknown = _unknown(found)
+    if lexicon.other is None or not unknown:
         return found
     other = _in(text, lexicon.other)
-    return found if any(word.type == "WORD" for word in other) else other
+    return other if 2 * _unknown(other) < unknown else found
+
+
+def _unknown(words: list[Word]) -> int:
+    return sum(word.type == "WORD" for word in words)
 
 
 def _in(text: str, lexicon: Lexicon) -> list[Word]:

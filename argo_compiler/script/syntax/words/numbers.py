@@ -69,8 +69,8 @@ def compose(values: Sequence[float | None]) -> tuple[float, int]:
         if value is None or value != int(value):
             break
         number = int(value)
-        if number == 1000 and part > 0:
-            total, part, last = total + part * 1000, 0, 1000
+        if number == 1000 and (part > 0 or n == 0):
+            total, part, last = total + max(part, 1) * 1000, 0, 1000
         elif number == 100 and 0 < part < 100:
             part, last = part * 100, 100
         elif number < last or n == 0:

@@ -48,6 +48,10 @@ def _told(words: list[Word], i: int) -> list[Word]:
             return [replace(word, type="FOR")]
         case "IS" if last == "" and after not in _PREDICATES:
             return [replace(word, type="IF")]
+        case "TOTAL" if after == "TIMES":
+            return [words[i + 1], word]
+        case "TIMES" if last == "TOTAL":
+            return []
         case "TO" if after in _MOVED:
             return []
         case "BY" if after == "STEP" and last in ("GO_ON", "JUMP"):

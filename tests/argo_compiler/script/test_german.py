@@ -426,6 +426,14 @@ PAIRS = [
         "Es müssen die Kontrollpunkte 3 und 5 geprüft werden.",
         "Checkpoints 3 and 5 must be checked.",
     ),
+    (
+        "Prüfe Kontrollpunkt 3 und warte auf den Bediener.",
+        "Check checkpoint 3 and wait for the operator.",
+    ),
+    (
+        "Prüfe Kontrollpunkt 3. Bei einem positiven Hindernis anhalten.",
+        "Check checkpoint 3. If a positive obstacle is detected, pause.",
+    ),
 ]
 """in German and in English; `!` stands before a script that says itself where it starts"""
 

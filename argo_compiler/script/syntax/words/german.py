@@ -298,6 +298,7 @@ CONDITIONS: Phrases = {
         "höchstens|maximal|<=|kleiner oder gleich|kleiner gleich|nicht mehr als|nicht größer als|"
         "nicht länger als|bis zu"
     ),
+    ("TAKING", None): "wobei es höchstens dauert|dauer höchstens",
     ("BETWEEN", None): "zwischen",
     ("FROM", None): "von|vom|aus|ab",
     ("STATE", "normal"): (
@@ -342,6 +343,12 @@ CONDITIONS: Phrases = {
         "plattformalarm{s}|allgemeiner plattformalarm|allgemeinen plattformalarm|"
         "allgemeinem plattformalarm|gpa|räumungsalarm|evakuierungsalarm|räumungsalarm ( gpa )"
     ),
+    ("EVENT", EventKind.POSITIVE_OBSTACLE): (
+        "positives hindernis|positiven hindernis|positivem hindernis|positive hindernisse"
+    ),
+    ("EVENT", EventKind.NEGATIVE_OBSTACLE): (
+        "negatives hindernis|negativen hindernis|negativem hindernis|negative hindernisse"
+    ),
     ("EVENT", EventKind.LOW_BATTERY): (
         "akku schwach|schwacher akku|schwachem akku|schwachen akku|niedriger akkustand|"
         "niedrigem akkustand|schwache batterie|schwacher batterie|akku ist schwach|"
@@ -385,6 +392,7 @@ MANNERS: Phrases = {
     ("AT", None): "an|am|bei|beim",
     ("ON", None): "auf",
     ("FOR", None): "für|während|über einen zeitraum von|für die dauer von|auf die",
+    ("PERSON", None): "bediener{s}|person|aufsicht|leitwarte",
     ("EVERY", None): "im abstand von|in abständen von|im takt von|immer alle",
     ("TIMES", Figure(1.0)): "einmal|ein mal|ein einziges mal",
     ("TIMES", Figure(2.0)): "zweimal",

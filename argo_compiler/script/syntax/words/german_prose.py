@@ -1,8 +1,9 @@
 """What stands around sentences in German, besides what does in English: labels are often mixed."""
 
+from dataclasses import replace
+
 from argo_compiler.il import Mode, Order
 from argo_compiler.script.syntax.words import english_prose
-from argo_compiler.script.syntax.words.prose import Prose
 
 LABELS = {
     "designation": "bezeichnung|bezeichnung der mission|missionsbezeichnung|name der mission|name",
@@ -38,7 +39,8 @@ def _both(german: str, english: str) -> str:
     return f"{german}|{english}"
 
 
-PROSE = Prose(
+PROSE = replace(
+    _ENGLISH,
     labels={name: _both(text, _ENGLISH.labels[name]) for name, text in LABELS.items()},
     values={
         ("order", Order.ANY): _both(
@@ -101,6 +103,11 @@ PROSE = Prose(
         "viele gruesse|mit freundlichen gruessen|gruss|danke|vielen dank|danke schön|besten dank|"
         "mfg|schönes wochenende|schönen tag noch|schönen feierabend",
         _ENGLISH.closing,
+    ),
+    section=_both(
+        "änderungen|änderung|aufgaben|aufgabe|schritte|plan|runde|rundgang|abschnitt|teil|mission|"
+        "aufträge|anweisungen|ablauf",
+        _ENGLISH.section,
     ),
     remark=_both(
         "hinweis|hinweise|anmerkung|anmerkungen|bemerkung|bemerkungen|kommentar|notiz|notizen|"
@@ -168,6 +175,4 @@ PROSE = Prose(
         "UNLESS": "prüfe Kontrollpunkt 4, es sei denn Kontrollpunkt 2 ist auffällig",
         "ELSE": "wenn der Wert über 5 liegt, fahre fort, sonst prüfe Kontrollpunkt 4",
     },
-    kinds=_ENGLISH.kinds,
-    untold=_ENGLISH.untold,
 )

@@ -10,7 +10,16 @@ from argo_compiler.script.resolve.conditions import ConditionResolver
 from argo_compiler.script.resolve.locating import Locator
 from argo_compiler.script.resolve.lookup import Lookup
 from argo_compiler.script.resolve.nouns import Memory, NounResolver
-from argo_compiler.script.resolve.program import Block, Choice, Do, HomeAhead, Node, Way
+from argo_compiler.script.resolve.program import (
+    Block,
+    Choice,
+    Do,
+    HomeAhead,
+    Node,
+    Way,
+    all_nodes,
+    own_names,
+)
 from argo_compiler.script.resolve.reacting import Reactions
 from argo_compiler.script.syntax.source import Diagnostics
 from argo_compiler.script.syntax.tree.places import Steps
@@ -41,6 +50,8 @@ class Context:
     named: dict[str, Do] = field(default_factory=dict)
     docked: Do | None = None
     """the drive into the docking station after which nothing more can come"""
+    own_names: dict[str, Do] | None = None
+    """the tasks by name, as long as the program is not changed"""
     home_ways: list[HomeAhead] = field(default_factory=list)
     rounds: int = 0
     """how many rounds have been asked for"""
@@ -62,6 +73,7 @@ class Context:
 
     def put(self, nodes: Iterable[Node], block: Block, anchor: Node | None) -> None:
         """Puts nodes into a block, behind the anchor; None: before all."""
+        self.own_names = None
         for node in nodes:
             block.insert_after(anchor, node)
             anchor = node
@@ -77,6 +89,7 @@ class Context:
 
     def forget(self, do: Do) -> None:
         """Takes note of a task that is no longer in the program."""
+        self.own_names = None
         if do.object_id is not None:
             self.measured.get(do.object_id, {}).pop(id(do), None)
 
@@ -117,10 +130,19 @@ class Context:
             found += nodes
         return found
 
+    def _by_own_name(self, name: str) -> Do | None:
+        """A task by the name that it has where the script gives none: `MEASURE 4 (2)`."""
+        if self.own_names is None:
+            tasks = [node for node in all_nodes(self.program) if isinstance(node, Do)]
+            self.own_names = dict(zip(own_names(tasks), tasks, strict=True))
+        return self.own_names.get(name)
+
     def _of_point(self, point: int | str, span: Span) -> list[Node] | None:
         if isinstance(point, str):
             do = self.named.get(point)
-            if do is not None and do.listed:
+            if do is None or not do.listed:
+                do = self._by_own_name(point)
+            if do is not None:
                 return [do, *_bound_to(do)]
             message = f"there is no task `{point}`"
             self.diagnostics.error("unknown-step", message, span, "name a task or a step")

@@ -1,5 +1,7 @@
 """Syntax tree to mission, and the whole way from text to mission in one call."""
 
+from functools import cache
+
 from argo_compiler.catalog import Catalog
 from argo_compiler.diagnostics import Diagnostic, DiagnosticError
 from argo_compiler.garbage_collector import collector_held
@@ -78,6 +80,7 @@ def _mission(
     if diagnostics.errors:
         return None
 
+    @cache
     def find(steps: Steps) -> Node | None:
         nodes = context.nodes_of(steps)
         if nodes is not None and not nodes:
@@ -97,7 +100,7 @@ def _mission(
     text = said.designation or said.title
     return Mission(
         designation=text.text if text else "",
-        site=_site(said.site, lookup.catalog.site),
+        site=_site(script, lookup, diagnostics),
         mode=said.mode or Mode.AUTONOMOUS,
         max_duration=said.max_duration[0] if said.max_duration else None,
         start_area=starting.start_area,
@@ -130,6 +133,14 @@ def _current(said: Steps | None, context: Context, names: dict[int, str]) -> str
     return names[id(tasks[0])] if tasks else None
 
 
-def _site(said: Text | None, site: str) -> str:
-    """The site that a script names; its own, in the site's spelling, if it names none."""
-    return site if said is None or said.text.lower() == site.lower() else said.text
+def _site(script: Script, lookup: Lookup, diagnostics: Diagnostics) -> str:
+    """The site that the script says it is for, else that of the catalogue."""
+    site, said = lookup.catalog.site, script.header.site
+    if said is None:
+        return site
+    if said.text.lower() != site.lower():
+        message = f"the script is for `{said.text}`; it is read with the catalogue of {site}"
+        hint = "are its checkpoints and places those of the other site?"
+        diagnostics.warning("other-site", message, said.span, hint)
+        return said.text
+    return site

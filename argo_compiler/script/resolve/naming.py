@@ -3,8 +3,8 @@
 from collections import Counter
 from collections.abc import Sequence
 
-from argo_compiler.il import Action
 from argo_compiler.script.resolve.lowering import Item, Range
+from argo_compiler.script.resolve.program import own_names
 from argo_compiler.script.syntax.source import Diagnostics
 
 _DEEPEST = 500
@@ -24,18 +24,7 @@ def name_tasks(items: Sequence[Item], diagnostics: Diagnostics) -> list[str]:
             hint = "give each task a name of its own"
             diagnostics.error("repeated-name", message, item.do.source, hint)
         own.add(name)
-    used: Counter[str] = Counter()
-
-    def numbered(base: str) -> str:
-        while True:
-            used[base] += 1
-            found = base if used[base] == 1 else f"{base} ({used[base]})"
-            if base == Action.WAYPOINT:
-                found = f"{base} {used[base]}"
-            if found not in own:
-                return found
-
-    return [numbered(i.do.base) if i.do.name is None else i.do.name for i in items]
+    return own_names([item.do for item in items])
 
 
 def name_groups(ranges: Sequence[Range], diagnostics: Diagnostics) -> dict[int, str]:

@@ -4,7 +4,7 @@ from collections.abc import Sequence
 from dataclasses import replace
 
 from argo_compiler.diagnostics import Span
-from argo_compiler.il import EventKind, WaitRule
+from argo_compiler.il import EventKind, OnFailure, WaitRule
 from argo_compiler.script.resolve import making
 from argo_compiler.script.resolve.cases import Cases
 from argo_compiler.script.resolve.context import Context
@@ -60,10 +60,28 @@ class Planner:
                 # `three times: check checkpoint 17`
                 prefix = order
                 continue
+            if i and isinstance(orders_[i - 1], orders.Retry) and self._given_up(order):
+                continue
             if prefix is not None:
                 order = self.manners.with_prefix(order, prefix)
                 prefix = None
             self.order(order, block)
+
+    def _given_up(self, order: Order) -> bool:
+        """`retry twice, then abort`: what is done if it fails all the same."""
+        match order:
+            case orders.Plain(word=Word.ABORT, manner=None):
+                self.manners.on_failure(OnFailure.ABORT)
+            case orders.Plain(word=Word.END) | orders.Home():
+                message = "this can be meant for the case that it still fails, or for any case"
+                hint = (
+                    "write `if it still fails, ...` for the first, and a sentence of its own for "
+                )
+                hint += "the second"
+                self.diagnostics.error("ambiguous-case", message, order.span, hint)
+            case _:
+                return False
+        return True
 
     def order(self, order: Order, block: Block) -> None:
         """Carries one order out."""
@@ -142,6 +160,11 @@ class Planner:
     def _wait(self, order: orders.Wait) -> list[Do]:
         manner = order.manner
         until = manner.until if manner is not None else None
+        if order.person:
+            message = "a mission does not wait for a person"
+            hint = "let somebody pause it there, or write how long: `wait 5 minutes`"
+            self.diagnostics.error("wait", message, order.span, hint)
+            return []
         if manner is None or (manner.duration is None and until is None):
             message = "this does not say how long, or for what"
             hint = "write `wait 90 s`, `wait until #1 is below 3` or `wait for the all-clear`"

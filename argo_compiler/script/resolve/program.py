@@ -4,7 +4,8 @@ A program is mutable: orders add to it, change it and wrap parts of it into roun
 `lowering` makes the tasks, transitions and groups of a mission from it.
 """
 
-from collections.abc import Iterable, Iterator
+from collections import Counter
+from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass, field
 from enum import StrEnum
 
@@ -203,3 +204,20 @@ def leads_away(node: Node | None) -> bool:
             for w in node.ways
         )
     return False
+
+
+def own_names(tasks: Sequence[Do]) -> list[str]:
+    """The names of tasks: the script's own ones, and numbered ones for the others."""
+    own = {do.name for do in tasks if do.name is not None}
+    used: Counter[str] = Counter()
+
+    def numbered(base: str) -> str:
+        while True:
+            used[base] += 1
+            found = base if used[base] == 1 else f"{base} ({used[base]})"
+            if base == Action.WAYPOINT:
+                found = f"{base} {used[base]}"
+            if found not in own:
+                return found
+
+    return [numbered(do.base) if do.name is None else do.name for do in tasks]

@@ -57,6 +57,8 @@ _LONGEST_TITLE = 14
 """words"""
 _TOKEN = re.compile(r"[\w'-]+|[^\w\s]")
 _BRACKETS = re.compile(r"\s*\([^()]*\)")
+_FIGURES = re.compile(r"\d\s*[,;]|[,;]\s*\S{0,6}\s?\d")
+"""of coordinates or of a list"""
 _DASH = re.compile(r"\s-{1,2}\s")
 _CUT = re.compile(r",\s*|\s+")
 
@@ -204,7 +206,8 @@ class Asides:
         start = 0
         for found in _BRACKETS.finditer(text.content):
             inner = text[found.start() : found.end()].strip()
-            if self.asks(inner[1:-1]) or self.names(inner):
+            asks = self.asks(inner[1:-1]) or self.names(inner)
+            if asks or _FIGURES.search(inner.content):
                 continue
             kept.append(text[start : found.start()])
             cut.append(inner)

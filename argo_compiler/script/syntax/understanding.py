@@ -97,7 +97,7 @@ class Understanding:
             for (word, _), meant_word in zip(reversed(slips), reversed(chosen), strict=True):
                 fixed = fixed.replace(word.start, word.end, meant_word)
             reading = self.read(fixed)
-            if not isinstance(reading, StumbleError):
+            if not isinstance(reading, StumbleError) and _all_known(reading[1]):
                 said = " ".join(word.removesuffix("s") for word in chosen)
                 found.setdefault(said, (fixed, chosen))
         if len(found) != 1:
@@ -127,6 +127,10 @@ class Understanding:
         if said.lower() != meant:
             message = f"read `{said}` as `{meant}`"
             self.diagnostics.warning("respelled", message, text.span(start, end))
+
+
+def _all_known(found: list[Word]) -> bool:
+    return all(word.type != "WORD" for word in found)
 
 
 def quotes(content: str) -> list[tuple[int, int]]:

@@ -125,10 +125,8 @@ def test_a_waypoint_that_is_about_an_object_is_moved_and_deleted_like_any_other(
 
 def test_a_hint_is_kept_and_does_nothing(catalog: Catalog) -> None:
     text = steps("Check checkpoint #1") + "   Hint: at least 3 robots, add valve R99\n"
-    script = parse(text, catalog_words(catalog))
-    assert isinstance(script, Protocol)
-    (hint,) = script.hints
-    assert hint.text == "at least 3 robots, add valve R99"
+    (hint,) = parse(text).remarks
+    assert hint.text == "Hint: at least 3 robots, add valve R99"
     assert (hint.span.line, hint.span.column) == (4, 4)
     assert import_script(text, catalog).diagnostics == ()
 

@@ -1,5 +1,6 @@
 """Makes conditions."""
 
+from collections.abc import Iterator, Sequence
 from dataclasses import replace
 
 from argo_compiler.script.syntax.building.figures import Signed, seconds
@@ -97,13 +98,23 @@ def _battery(part: Part) -> Battery:
     return Battery(span=part.span, relation=compared.relation, level=compared.bound)
 
 
+def _joints(words: Sequence[Word]) -> Iterator[str]:
+    """What joins the tests; a comma alone is as the joint behind it: `A, B or C`."""
+    found: list[str] = []
+    for word in reversed(words):
+        said = "or" if word.type.startswith("OR_") else "and"
+        found.append(found[-1] if found and word.value == "," else said)
+    return reversed(found)
+
+
 def _condition(part: Part) -> Condition:
     """The alternatives; a test without a subject has that of the test before it."""
     alternatives: list[list[Asked]] = [[]]
     subject: Nouns | None = None
+    joints = _joints(part.every(Word))
     for child in part.children:
         if isinstance(child, Word):
-            if child.type.startswith("OR_"):
+            if next(joints) == "or":
                 alternatives.append([])
             continue
         if isinstance(child, Test):

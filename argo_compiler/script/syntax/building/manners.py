@@ -34,6 +34,8 @@ def _more(part: Part) -> Manner:
 
 
 def _for(part: Part) -> Manner:
+    if part.has("TIMES"):
+        return _times(part)
     if event := part.word("EVENT"):
         return Manner(until=_until_event(part, event.value))
     if part.has("PERSON"):

@@ -51,7 +51,7 @@ def _measure(part: Part) -> Order:
         span=part.span,
         manner=_manner(part),
         what=part.the(Nouns),
-        bare=not part.has("MEASURE", "KEEP_MEASURING", "BE_MEASURED"),
+        bare=not part.has("MEASURE", "KEEP_MEASURING", "BE_MEASURED", "ADD"),
         keep=part.has("KEEP_MEASURING"),
     )
 
@@ -152,6 +152,7 @@ def _replace(part: Part) -> Order:
 RULES: dict[str, Make] = {
     "order": _order,
     "measure": _measure,
+    "append": _measure,
     "keep": _measure,
     "bare": _measure,
     "passive": _measure,
@@ -161,7 +162,9 @@ RULES: dict[str, Make] = {
     "start": _start,
     "start_here": _start_here,
     "patrol": _patrol,
-    "wait": lambda part: orders.Wait(span=part.span, manner=_manner(part)),
+    "wait": lambda part: orders.Wait(
+        span=part.span, manner=_manner(part), person=part.has("FOR_PERSON")
+    ),
     "word": _word,
     "retry": lambda part: orders.Retry(span=part.span, manner=_manner(part)),
     "repeat": _repeat,

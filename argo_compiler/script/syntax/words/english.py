@@ -39,12 +39,13 @@ VERBS: Phrases = {
         "come{s} back|it goes home|return{s} to base|home"
     ),
     ("START", None): (
-        "set a starting point|set the starting point|set a start point|set the start point|"
+        "set start|set a starting point|set the starting point|set a start point|set the start point|"
         "start{s}|begin{s}|start{s} from|begin{s} from|leave{s}|leaves from|leave from|"
         "is waiting|is standing|stands|starts out"
     ),
     ("PATROL", None): "patrol{s}",
     ("WAIT", None): "wait{s}|stay{s}",
+    ("FOR_PERSON", None): "for operator|for an operator|for a person|for somebody",
     ("PAUSE", None): "pause{s}|stop{s}|halt{s}|stand{s} still|hold{s}|stop{s} the round",
     ("END", None): (
         "end the mission|finish the mission|stop the mission|terminate the mission|end|"
@@ -140,6 +141,7 @@ CONDITIONS: Phrases = {
         None,
     ): "at most|<=|no more than|not more than|less than or equal to|up to",
     ("TAKING", None): "taking at most",
+    ("MINUS", None): "minus",
     ("BETWEEN", None): "between",
     ("FROM", None): "from",
     (
@@ -160,10 +162,14 @@ CONDITIONS: Phrases = {
     ("EVENT", EventKind.HOT_SPOT): "hot spot{s}|hotspot{s}",
     ("EVENT", EventKind.ABNORMAL_SOUND): "abnormal {pump} sound|abnormal {pump} noise",
     ("EVENT", EventKind.PLATFORM_ALARM): "{general} platform alarm|gpa|evacuation alarm ( gpa )",
+    ("EVENT", None): "obstacle{s}",
     ("EVENT", EventKind.POSITIVE_OBSTACLE): "positive obstacle{s}",
     ("EVENT", EventKind.NEGATIVE_OBSTACLE): "negative obstacle{s}",
     ("EVENT", EventKind.LOW_BATTERY): "low battery|battery is low",
-    ("EVENT", EventKind.CONNECTION_LOST): "connection loss|connection is lost|loss of connection",
+    (
+        "EVENT",
+        EventKind.CONNECTION_LOST,
+    ): "connection loss|connection lost|connection is lost|loss of connection",
     ("EVENT", EventKind.EMERGENCY_STOP): "emergency stop",
     ("EVENT", EventKind.DYSFUNCTION): "dysfunction|malfunction",
     ("EVENT", EventKind.ABNORMAL_READING): (
@@ -173,14 +179,20 @@ CONDITIONS: Phrases = {
     ),
     ("EVENT", EventKind.TIME_UP): "time is up|time is over",
     ("EVENT", EventKind.ALL_CLEAR): "all-clear|all clear|all clear is given|danger is over",
-    ("EVENT", EventKind.BATTERY_CHARGED): "battery is charged|battery is full",
-    ("EVENT", EventKind.CONNECTION_RESTORED): "it is restored|connection is restored",
+    (
+        "EVENT",
+        EventKind.BATTERY_CHARGED,
+    ): "battery is charged|battery is full|battery charged|battery full",
+    (
+        "EVENT",
+        EventKind.CONNECTION_RESTORED,
+    ): "it is restored|connection is restored|connection restored",
 }
 
 MANNERS: Phrases = {
     ("TO", None): "to|into",
     ("IN", None): "in|inside",
-    ("AT", None): "at|at the",
+    ("AT", None): "at|at the|at speed of|with speed of",
     ("ON", None): "on|onto",
     ("FOR", None): "for",
     ("PERSON", None): "operator|a person|supervisor",
@@ -188,6 +200,7 @@ MANNERS: Phrases = {
     ("TIMES", Figure(1.0)): "once",
     ("TIMES", Figure(2.0)): "twice",
     ("MORE", Figure(1.0)): "again|once more|one more time|a second time",
+    ("MORE_WORD", None): "more|further",
     ("TIME_WORD", None): "time{s}|round{s}",
     ("WITHIN", None): "within|within the first|in at most",
     ("MEASURING", None): "measuring of|measurement of",
@@ -292,7 +305,7 @@ FIGURES: Phrases = {
 }
 
 JOINTS: Phrases = {
-    ("JOINT", "and"): "and",
+    ("JOINT", "and"): "and|as well as",
     ("JOINT", "or"): "or",
 }
 

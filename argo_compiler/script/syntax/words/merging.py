@@ -18,6 +18,8 @@ def merged(words: list[Word]) -> list[Word]:
     """The words, those that belong together in one; words of two senses told apart."""
     if any(word.type == "NUMBER_WORD" for word in words):
         words = _numbers(words)
+    if any(word.type == "MORE_WORD" for word in words):
+        words = _further(words)
     found: list[Word] = []
     i = 0
     while i < len(words):
@@ -76,6 +78,26 @@ def _numbers(words: list[Word]) -> list[Word]:
         else:
             found.append(words[i])
             i += 1
+    return found
+
+
+def _further(words: list[Word]) -> list[Word]:
+    """`three more times`, `twice more`: how often besides what is done already."""
+    found: list[Word] = []
+    for word in words:
+        last, before = (found[-1] if found else None), (found[-2] if len(found) > 1 else None)
+        if word.type == "MORE_WORD" and last is not None and last.type == "TIMES":
+            found[-1] = Word("MORE", last.value, last.start, word.end)
+        elif (
+            word.type == "TIME_WORD"
+            and last is not None
+            and last.type == "MORE_WORD"
+            and before is not None
+            and before.type == "NUMBER"
+        ):
+            found[-2:] = [Word("MORE", before.value, before.start, word.end)]
+        else:
+            found.append(word)
     return found
 
 

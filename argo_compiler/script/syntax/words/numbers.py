@@ -29,7 +29,7 @@ class Figure:
     @property
     def whole(self) -> int | None:
         """The whole number that it is; None if it has decimals or can be read in two ways."""
-        if self.other is not None or self.listed or self.value != int(self.value):
+        if self.other is not None or self.listed or not self.value.is_integer():
             return None
         return int(self.value)
 

@@ -16,7 +16,7 @@ def assemble(
     items = lowered.items
     names = name_tasks(items, diagnostics)
     by_item = {id(item): name for item, name in zip(items, names, strict=True)}
-    groups = name_groups(lowered.ranges, diagnostics)
+    groups = name_groups(lowered.ranges)
     shown = [""] * len(items)
     for r in lowered.ranges:  # the inner ones come later
         shown[r.first : r.last + 1] = [groups[id(r.round)]] * (r.last + 1 - r.first)

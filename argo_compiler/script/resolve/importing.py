@@ -14,13 +14,16 @@ from argo_compiler.script.resolve.locating import Locator
 from argo_compiler.script.resolve.lookup import Lookup
 from argo_compiler.script.resolve.lowering import lower_program
 from argo_compiler.script.resolve.planning import Planner
-from argo_compiler.script.resolve.program import Do, Node, all_nodes
+from argo_compiler.script.resolve.program import Do, Node, all_nodes, depth
 from argo_compiler.script.resolve.starting import Starting
 from argo_compiler.script.resolve.stepping import Stepping
 from argo_compiler.script.syntax.parsing import parse
 from argo_compiler.script.syntax.source import Diagnostics, Source
 from argo_compiler.script.syntax.tree.places import Steps
-from argo_compiler.script.syntax.tree.script import Script, Text
+from argo_compiler.script.syntax.tree.script import Script
+
+
+_DEEPEST = 100
 
 
 class Resolved(Model):
@@ -91,6 +94,11 @@ def _mission(
             diagnostics.error("empty-step", message, steps.span, hint)
         return nodes[0] if nodes else None
 
+    if depth(context.program) > _DEEPEST:
+        message = f"more than {_DEEPEST} repetitions or conditions lie in one another"
+        hint = "repeat the steps more often in one of them"
+        diagnostics.error("deep-rounds", message, None, hint)
+        return None
     tasks, groups, names = assemble(
         lower_program(context.program, find, starting.home), diagnostics
     )

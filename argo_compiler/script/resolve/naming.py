@@ -7,9 +7,6 @@ from argo_compiler.script.resolve.lowering import Item, Range
 from argo_compiler.script.resolve.program import own_names
 from argo_compiler.script.syntax.source import Diagnostics
 
-_DEEPEST = 500
-"""repetitions in one another; the name of each has those of all around it"""
-
 
 def name_tasks(items: Sequence[Item], diagnostics: Diagnostics) -> list[str]:
     """A name for each task. Waypoints are numbered through; of others the second is
@@ -27,7 +24,7 @@ def name_tasks(items: Sequence[Item], diagnostics: Diagnostics) -> list[str]:
     return own_names([item.do for item in items])
 
 
-def name_groups(ranges: Sequence[Range], diagnostics: Diagnostics) -> dict[int, str]:
+def name_groups(ranges: Sequence[Range]) -> dict[int, str]:
     """The name of each round, by the round's identity: `Alpha/Beta` lies in `Alpha`."""
     own = {r.round.name for r in ranges if r.round.name is not None}
     used: Counter[str] = Counter()
@@ -50,9 +47,4 @@ def name_groups(ranges: Sequence[Range], diagnostics: Diagnostics) -> dict[int, 
         inside = parent is None or base.startswith(f"{parent}/")
         names[id(r.round)] = base if inside else f"{parent}/{base}"
         around.append(r)
-        if len(around) > _DEEPEST:
-            message = f"more than {_DEEPEST} repetitions lie in one another"
-            hint = "repeat the steps more often in one of them"
-            diagnostics.error("deep-rounds", message, r.round.span, hint)
-            return bases
     return names

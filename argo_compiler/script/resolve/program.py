@@ -173,6 +173,16 @@ def all_nodes(block: Iterable[Node]) -> Iterator[Node]:
         stack.extend(iter(inner) for inner in reversed(inner_blocks(node)))
 
 
+def depth(block: Block) -> int:
+    """How many blocks lie in one another."""
+    deepest, waiting = 0, [(block, 1)]
+    while waiting:
+        block, level = waiting.pop()
+        deepest = max(deepest, level)
+        waiting += [(inner, level + 1) for node in block for inner in inner_blocks(node)]
+    return deepest
+
+
 def inner_blocks(node: Node) -> tuple[Block, ...]:
     """The blocks of a node, in order."""
     match node:

@@ -197,8 +197,12 @@ def _blocks_around(node: Node) -> list[Block]:
 
 def _covered(node: Node, known: set[int]) -> bool:
     """Whether a node is one of these, or a round of them."""
-    if id(node) in known or not _repeats(node):
-        return True
-    if isinstance(node, Round):
-        return all(isinstance(n, Choice) or _covered(n, known) for n in node.body)
-    return False
+    waiting = [node]
+    while waiting:
+        node = waiting.pop()
+        if id(node) in known or not _repeats(node):
+            continue
+        if not isinstance(node, Round):
+            return False
+        waiting += [inner for inner in node.body if not isinstance(inner, Choice)]
+    return True

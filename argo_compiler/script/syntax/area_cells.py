@@ -96,7 +96,9 @@ class AreaCells:
         """`1`, `none`, `1, as planned`."""
         said, comma, behind = value.content.partition(",")
         planned = ("as planned", behind.strip().lower()) in self.prose.meanings
-        number = re.fullmatch(r"(?:(?:(?:starting )?area|startbereich)\s+)?([0-9]{1,4})", said.strip().lower())
+        number = re.fullmatch(
+            r"(?:(?:(?:starting )?area|startbereich)\s+)?([0-9]{1,4})", said.strip().lower()
+        )
         none = ("none", said.strip().lower()) in self.prose.meanings
         if (number is None and not none) or bool(comma) != planned:
             message = f"can't understand `{value.content}` here"

@@ -59,7 +59,9 @@ QUOTED = re.compile(r'"(?:[^"\\]|\\.)*"')
 _RUN_IN = re.compile(r"(?:^|[,;.!])\s+([0-9]{1,3})[.)]\s+(?=[^\W\d_])")
 
 
-_SENTENCE_END = re.compile(r"(?:[.!?…]+|;(?=\s*(?:if|otherwise|else|when|wenn|falls|sonst)\b))(?=\s|$)", re.I)
+_SENTENCE_END = re.compile(
+    r"(?:[.!?…]+|;(?=\s*(?:if|otherwise|else|when|wenn|falls|sonst)\b))(?=\s|$)", re.I
+)
 _ABBREVIATION = re.compile(r"\b(?:no|nr|approx|ca|max|min|e\.g|i\.e|z\.b)\.$", re.IGNORECASE)
 _LABELLED = re.compile(r"\b(?:no|nr)\.$", re.IGNORECASE)
 _LABEL = re.compile(r"\s*[A-Za-z]?-?[0-9]")

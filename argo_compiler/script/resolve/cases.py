@@ -4,6 +4,7 @@ from itertools import combinations, pairwise
 from typing import TYPE_CHECKING
 
 from argo_compiler.il import OnFailure
+from argo_compiler.script.resolve.accepting import accepts
 from argo_compiler.script.resolve.context import Context
 from argo_compiler.script.resolve.excluding import exclude
 from argo_compiler.script.resolve.program import (
@@ -115,15 +116,21 @@ class Cases:
         orders_ = list(case.orders)
         ending: Leave | None = None
         if orders_ and isinstance(orders_[-1], orders.Plain) and orders_[-1].word in _POLICIES:
-            last = orders_.pop()
+            last = orders_[-1]
             assert isinstance(last, orders.Plain)
+            if not accepts(last, self.diagnostics):
+                return
+            orders_.pop()
             ahead = Ahead.GO_ON if last.word is Word.GO_ON else Ahead.END
             ending = Leave(ahead, last.span)
         home = orders_[-1] if orders_ and isinstance(orders_[-1], orders.Home) else None
         if home is not None and (ending is None or ending.target is Ahead.END):
-            orders_.pop()
-            way = self.planner.home_ahead(home)
-            ending = None if way is None else Leave(way, home.span)
+            if home.manner is None and home.name is None:
+                orders_.pop()
+                way = self.planner.home_ahead(home)
+                ending = None if way is None else Leave(way, home.span)
+            else:
+                ending = Leave(Ahead.END, home.span)
         self.planner.carry_out(orders_, branch)
         if ending is not None:
             context.put([ending], branch, branch.last)
@@ -216,7 +223,7 @@ class Cases:
         if len(case.orders) != 1:
             return None
         (order,) = case.orders
-        if order.manner is not None:
+        if order.manner is not None or order.name is not None:
             return None
         match order:
             case orders.Jump():
@@ -242,12 +249,16 @@ class Cases:
         rest: list[Order] = []
         for order in case.orders:
             if isinstance(order, orders.Retry):
-                self.planner.manners.amend(order)
+                self.planner.order(order, block)
             else:
                 rest.append(order)
         if not rest:
             return
-        if len(rest) == 1 and rest[0].manner is None:
+        if any(do.failure or do.on_failure is not OnFailure.CONTINUE for do in recent):
+            message = "what is done if it fails is said already"
+            self.diagnostics.error("second-route", message, case.span, "leave one of the two out")
+            return
+        if len(rest) == 1 and rest[0].manner is None and rest[0].name is None:
             match rest[0]:
                 case orders.Plain(word=word) if word in _POLICIES:
                     self.planner.manners.on_failure(_POLICIES[word])
@@ -277,6 +288,10 @@ class Cases:
             self.diagnostics.error("too-late", message, case.span, hint)
             return
         (do,) = recent
+        if do.missed is not None:
+            message = "what is done if it is too late is said already"
+            self.diagnostics.error("second-route", message, case.span, "leave one of the two out")
+            return
         do.missed = Block(do)
         self._branch(Case(span=case.span, condition=None, orders=case.orders), do.missed)
 

@@ -5,6 +5,7 @@ from collections.abc import Sequence
 from argo_compiler.il import Action
 from argo_compiler.script.resolve import making
 from argo_compiler.script.resolve.context import Context
+from argo_compiler.script.resolve.manners import Manners
 from argo_compiler.script.resolve.program import Choice, Do, Node
 from argo_compiler.script.syntax.spelling import alternatives
 from argo_compiler.script.syntax.tree import orders
@@ -18,8 +19,9 @@ Edit = orders.Add | orders.Delete | orders.Move | orders.Replace
 class Edits:
     """Carries changes out, in the order of the script."""
 
-    def __init__(self, context: Context) -> None:
+    def __init__(self, context: Context, manners: Manners) -> None:
         self.context = context
+        self.manners = manners
         self.diagnostics = context.diagnostics
 
     def carry_out(self, edit: Edit) -> None:
@@ -43,10 +45,10 @@ class Edits:
             self.context.fail()
             return
         tasks = [making.measurement(c.id, edit.span) for c in checkpoints]
-        if edit.name is not None:
-            tasks[0].name = edit.name
-        self._put(tasks, anchors, edit.side)
-        self.context.step += tasks
+        self.manners.name(edit, tasks)
+        nodes = self.manners.apply(edit, tasks)
+        self._put(nodes, anchors, edit.side)
+        self.context.step += nodes
         self.context.recent = tasks
         self.context.remember(checkpoints)
 

@@ -5,7 +5,7 @@ from functools import cache
 from argo_compiler.catalog import Catalog
 from argo_compiler.diagnostics import Diagnostic, DiagnosticError
 from argo_compiler.garbage_collector import collector_held
-from argo_compiler.il import Mission, Mode, Order
+from argo_compiler.il import Mission, Mode
 from argo_compiler.model import Model
 from argo_compiler.script.resolve.assembly import assemble
 from argo_compiler.script.resolve.context import Context
@@ -13,6 +13,7 @@ from argo_compiler.script.resolve.header import header_values
 from argo_compiler.script.resolve.locating import Locator
 from argo_compiler.script.resolve.lookup import Lookup
 from argo_compiler.script.resolve.lowering import lower_program
+from argo_compiler.script.resolve.ordering import Ordering
 from argo_compiler.script.resolve.planning import Planner
 from argo_compiler.script.resolve.program import Do, Node, all_nodes, depth
 from argo_compiler.script.resolve.starting import Starting
@@ -75,11 +76,13 @@ def _mission(
         context.fail()
     starting = Starting(context, header)
     starting.begin()
-    planner = Planner(context, starting)
+    ordering = Ordering(context, script.header)
+    planner = Planner(context, starting, ordering)
     stepping = Stepping(context, planner, script.header)
     stepping.all(script.steps)
     starting.finish()
     planner.repeating.finish()
+    order = ordering.finish(context.program)
     if diagnostics.errors:
         return None
 
@@ -106,7 +109,7 @@ def _mission(
         return None
     said = script.header
     text = said.designation or said.title
-    return Mission(
+    mission = Mission(
         designation=text.text if text else "",
         site=_site(script, lookup, diagnostics),
         mode=said.mode or Mode.AUTONOMOUS,
@@ -114,7 +117,7 @@ def _mission(
         start_area=starting.start_area,
         end_area=starting.end_area,
         dock=starting.dock,
-        order=said.order or Order.PRECISE,
+        order=order,
         anomaly_specification=said.anomaly_specification.text if said.anomaly_specification else "",
         real_time_reporting=said.real_time_reporting.text if said.real_time_reporting else "",
         after_mission_report=said.after_mission_report.text if said.after_mission_report else "",
@@ -123,7 +126,10 @@ def _mission(
         reactions=tuple(context.reactions.found),
         current=_current(said.current, context, names),
         left_out=said.left_out,
+        before=ordering.named(names),
     )
+    ordering.check(mission)
+    return None if diagnostics.errors else mission
 
 
 def _current(said: Steps | None, context: Context, names: dict[int, str]) -> str | None:

@@ -4,17 +4,16 @@ from collections.abc import Sequence
 from dataclasses import fields, replace
 
 from argo_compiler.diagnostics import Span
-from argo_compiler.il import Action, JointState, OnFailure, TimeWindow, WaitRule
+from argo_compiler.il import OnFailure, WaitRule
 from argo_compiler.script.resolve import making
+from argo_compiler.script.resolve.accepting import ROUND, said
 from argo_compiler.script.resolve.context import Context
+from argo_compiler.script.resolve.furnishing import Furnishing
 from argo_compiler.script.resolve.program import Choice, Do, Node, Round
-from argo_compiler.script.resolve.repeating import Repeating, limits_of
+from argo_compiler.script.resolve.repeating import limits_of, timed
 from argo_compiler.script.syntax.tree import orders
 from argo_compiler.script.syntax.tree.manner import Manner
 from argo_compiler.script.syntax.tree.orders import Order
-
-_ROUND = ("times", "every", "until", "duration", "at_most", "finishing")
-"""what makes a round of an order"""
 
 
 class Manners:
@@ -23,7 +22,7 @@ class Manners:
     def __init__(self, context: Context) -> None:
         self.context = context
         self.diagnostics = context.diagnostics
-        self.repeating = Repeating(context)
+        self.furnishing = Furnishing(context.locator, context.diagnostics)
 
     def name(self, order: Order, tasks: Sequence[Do]) -> None:
         """Gives the task of an order the name that the script gives it."""
@@ -37,20 +36,19 @@ class Manners:
 
     def with_prefix(self, order: Order, prefix: Order) -> Order:
         """An order with the manner that stands before it: `three times: check checkpoint 17`."""
+        if order.name is None:
+            order = replace(order, name=prefix.name)
         if order.manner is None:
             return replace(order, manner=prefix.manner)
-        merged = self._merged(prefix.manner, order.manner, order.span)
-        return replace(order, manner=merged)
+        return replace(order, manner=self._merged(prefix.manner, order.manner, order.span))
 
     def _merged(self, first: Manner | None, second: Manner, span: Span) -> Manner:
-        if first is None:
-            return second
         values = {f.name: getattr(second, f.name) for f in fields(Manner)}
         for field in fields(Manner):
-            value = getattr(first, field.name)
-            if value in (None, False):
+            value = getattr(first, field.name, field.default)
+            if value == field.default:
                 continue
-            if values[field.name] not in (None, False, value):
+            if values[field.name] not in (field.default, value):
                 what = field.name.replace("_", " ")
                 message = f"the {what} is said twice"
                 self.diagnostics.error("repeated-limit", message, span, "leave one of them out")
@@ -61,36 +59,41 @@ class Manners:
 
     def apply(self, order: Order, tasks: Sequence[Do]) -> list[Node]:
         """The tasks as nodes, with a wait before them, a round or a choice around them."""
-        nodes: list[Node] = list(tasks)
-        manner = order.manner
-        if manner is None:
-            return nodes
-        self.furnish(order, tasks)
-        if isinstance(order, orders.Wait):
-            return self._conditional(manner, order, nodes)
-        if manner.delay is not None:
-            wait = making.wait(WaitRule(duration=manner.delay), order.span)
-            nodes.insert(0, wait)
-        again = manner.more and manner.times == 1
-        once = manner.times == 1 and not manner.more
-        asked = manner.endless or any(getattr(manner, name) is not None for name in _ROUND)
-        if asked and not again and not once and tasks[0].action is not Action.START:
-            round_ = self._round(order, manner, nodes)
-            nodes = nodes if round_ is None else [round_]
-        return self._conditional(manner, order, nodes)
+        if isinstance(order, orders.Wait) and order.manner is not None:
+            # What limits a wait ends it, and is no limit of the task.
+            order = replace(order, manner=replace(order.manner, time_limit=None))
+        if not _is_round(order):
+            self.furnish(order, tasks)
+            return self.around(order, list(tasks))
+        round_order = timed(self.context, order)
+        if round_order is None:
+            return list(tasks)
+        self.furnish(round_order, tasks)
+        round_ = self._round(round_order, tasks)
+        return self.around(order, list(tasks) if round_ is None else [round_])
 
-    def _round(self, order: Order, manner: Manner, nodes: Sequence[Node]) -> Round | None:
-        limits = limits_of(self.context, order, more_is_added=False)
+    def _round(self, order: Order, tasks: Sequence[Do]) -> Round | None:
+        manner = order.manner
+        if manner is not None and manner.times == 1 and (manner.more or manner.every is not None):
+            # `once every ten minutes`, `again every ten minutes`
+            order = replace(order, manner=replace(manner, times=None, more=False))
+        limits = limits_of(self.context, order)
         if limits is None:
             return None
-        base = " and ".join(node.base for node in nodes if isinstance(node, Do))
+        base = " and ".join(do.base for do in tasks)
         round_ = Round(
             f"Repeat {base}".replace("/", "-"), limits, order.span, self.context.new_round()
         )
-        self.context.put(nodes, round_.body, None)
+        self.context.put(tasks, round_.body, None)
         return round_
 
-    def _conditional(self, manner: Manner, order: Order, nodes: list[Node]) -> list[Node]:
+    def around(self, order: Order, nodes: list[Node]) -> list[Node]:
+        """The nodes with a wait before them, in the case that is said of them only."""
+        manner = order.manner
+        if manner is None:
+            return nodes
+        if manner.delay is not None:
+            nodes.insert(0, making.wait(WaitRule(duration=manner.delay), order.span))
         if manner.condition is None:
             return nodes
         found = self.context.conditions.alternatives(manner.condition)
@@ -102,50 +105,8 @@ class Manners:
 
     def furnish(self, order: Order, tasks: Sequence[Do]) -> None:
         """Applies to each of the tasks what is said of each."""
-        manner = order.manner
-        if manner is None or not tasks:
-            return
-        pose = self.context.locator.point(manner.pose) if manner.pose is not None else None
-        for do in tasks:
-            if manner.speed is not None:
-                do.velocity = manner.speed
-            # Of a patrol it is the limit of all its rounds, of a wait what ends it.
-            if manner.time_limit is not None and not isinstance(order, orders.Patrol | orders.Wait):
-                do.time_limit = manner.time_limit
-            if manner.reading_limit is not None:
-                do.reading_limit = manner.reading_limit
-            if manner.optional:
-                do.optional = True
-            if manner.priority is not None:
-                do.priority = manner.priority
-            if manner.earliest is not None or manner.latest is not None or manner.soft_window:
-                do.window = TimeWindow(
-                    earliest=manner.earliest or 0.0,
-                    latest=manner.latest,
-                    hard=not manner.soft_window,
-                )
-            if manner.joints is not None:
-                joints = manner.joints
-                do.joints = JointState(
-                    names=joints.names,
-                    positions=joints.positions,
-                    velocities=joints.velocities,
-                    efforts=joints.efforts,
-                )
-            if manner.shown_in is not None:
-                do.shown_in = manner.shown_in
-            if pose is not None:
-                do.pose = pose
-            if manner.object_id is not None:
-                self._about(do, manner.object_id, order.span)
-        if manner.leaving is not None:
-            tasks[-1].leaving = manner.leaving
-
-    def _about(self, do: Do, object_id: str, span: Span) -> None:
-        if do.action is Action.MEASURE:
-            message = "a measurement is about its checkpoint"
-            self.diagnostics.error("stray-clause", message, span, "leave `about object` out")
-        do.object_id = object_id
+        if order.manner is not None:
+            self.furnishing.furnish(order.manner, order.span, tasks)
 
     # ---- what is said of tasks that are planned already
 
@@ -159,21 +120,33 @@ class Manners:
                 self.diagnostics.error("no-task", message, order.span, hint)
             return
         if isinstance(order, orders.Retry):
-            times = order.manner.times if order.manner is not None else None
-            at_most = order.manner.at_most if order.manner is not None else None
-            for do in recent:
-                do.retries = next((n for n in (times, at_most) if n is not None), 1)
-            return
-        manner = order.manner
-        assert manner is not None
-        asked = [n for n in _ROUND if getattr(manner, n) is not None]
-        if asked or manner.condition is not None or manner.delay is not None:
-            message = "it is not clear what this belongs to"
-            hint = "write it in the sentence of what is to be done"
-            self.diagnostics.error("stray-clause", message, order.span, hint)
-        self.furnish(order, recent)
+            self._retry(order, recent)
+        else:
+            self.furnish(order, recent)
+
+    def _retry(self, order: orders.Retry, recent: Sequence[Do]) -> None:
+        manner = order.manner if order.manner is not None else Manner()
+        counts = [n for n in (manner.times, manner.at_most) if n is not None]
+        retries = counts[0] if counts else 1
+        if len(counts) > 1 or any(do.retries not in (0, retries) for do in recent):
+            message = "how often it is retried is said twice"
+            self.diagnostics.error("repeated-limit", message, order.span, "leave one of them out")
+        for do in recent:
+            do.retries = retries
 
     def on_failure(self, policy: OnFailure) -> None:
         """What the last tasks do when they fail."""
         for do in self.context.recent:
             do.on_failure = policy
+
+
+def _is_round(order: Order) -> bool:
+    """Whether what is said of an order makes a round of it."""
+    if isinstance(order, orders.Wait):
+        return False  # how long it lasts, and until when, is said of the wait
+    if isinstance(order, orders.Measure) and order.keep:
+        return True
+    if order.manner is None:
+        return False
+    found = said(order.manner) & ROUND
+    return bool(found) and not (found <= {"times", "more"} and order.manner.times == 1)

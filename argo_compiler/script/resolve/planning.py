@@ -6,11 +6,13 @@ from dataclasses import replace
 from argo_compiler.diagnostics import Span
 from argo_compiler.il import EventKind, OnFailure, WaitRule
 from argo_compiler.script.resolve import making
+from argo_compiler.script.resolve.accepting import accepts, said
 from argo_compiler.script.resolve.cases import Cases
 from argo_compiler.script.resolve.context import Context
 from argo_compiler.script.resolve.edits import Edits
 from argo_compiler.script.resolve.fitting import fits
 from argo_compiler.script.resolve.manners import Manners
+from argo_compiler.script.resolve.ordering import Ordering
 from argo_compiler.script.resolve.program import (
     Ahead,
     Block,
@@ -21,7 +23,7 @@ from argo_compiler.script.resolve.program import (
     in_branch,
     leads_away,
 )
-from argo_compiler.script.resolve.repeating import Repeating
+from argo_compiler.script.resolve.repeating import Repeating, timed
 from argo_compiler.script.resolve.starting import Starting
 from argo_compiler.script.syntax.tree import orders
 from argo_compiler.script.syntax.tree.conditions import Occurs
@@ -36,13 +38,14 @@ _WHOLE_PLAN = (
 class Planner:
     """Plans sentences, into the program or into a block of it."""
 
-    def __init__(self, context: Context, starting: Starting) -> None:
+    def __init__(self, context: Context, starting: Starting, ordering: Ordering) -> None:
         self.context = context
         self.diagnostics = context.diagnostics
         self.starting = starting
         self.manners = Manners(context)
         self.repeating = Repeating(context)
-        self.edits = Edits(context)
+        self.ordering = ordering
+        self.edits = Edits(context, self.manners)
         self.cases = Cases(context, self)
         self.done = False
 
@@ -58,7 +61,7 @@ class Planner:
         for i, order in enumerate(orders_):
             if isinstance(order, orders.Amend) and i + 1 < len(orders_):
                 # `three times: check checkpoint 17`
-                prefix = order
+                prefix = order if prefix is None else self.manners.with_prefix(order, prefix)
                 continue
             if i and isinstance(orders_[i - 1], orders.Retry) and self._given_up(order):
                 continue
@@ -89,6 +92,9 @@ class Planner:
             hint = "move `Done!` to the end"
             self.diagnostics.error("after-done", "this comes after `Done!`", order.span, hint)
             return
+        if not accepts(order, self.diagnostics):
+            self.context.fail()
+            return
         if isinstance(order, _WHOLE_PLAN) and in_branch(block):
             message = "this changes the plan, so it can't be done in one case only"
             hint = "write it as a step of its own"
@@ -98,13 +104,14 @@ class Planner:
             return
         match order:
             case orders.Amend() | orders.Retry():
-                self.manners.amend(order)
+                self._amend(order)
             case orders.Plain():
                 self._plain(order, block)
             case orders.Start():
                 self._planned(order, self.starting.set(order), block)
             case orders.Repeat():
                 self.repeating.repeat(order, block)
+                self._say_order(order, [block.last] if block.last is not None else [])
             case orders.Jump():
                 self._leave(Leave(order.step, order.span), block)
             case orders.Add() | orders.Delete() | orders.Move() | orders.Replace():
@@ -115,6 +122,14 @@ class Planner:
                 self._patrol(order, block)
             case _:
                 self._planned(order, self.tasks(order), block)
+
+    def _amend(self, order: Order) -> None:
+        recent = self.context.recent
+        if order.manner is not None and order.manner.order is not None:
+            self.ordering.say(order.manner.order, recent, order.span)
+            if not recent and said(order.manner) == {"order"}:
+                return  # said of all tasks
+        self.manners.amend(order)
 
     # ---- tasks
 
@@ -170,8 +185,14 @@ class Planner:
             hint = "write `wait 90 s`, `wait until #1 is below 3` or `wait for the all-clear`"
             self.diagnostics.error("wait", message, order.span, hint)
             return []
+        if until is None and manner.time_limit is not None:
+            message = "a wait that lasts for a time has no other limit"
+            self.diagnostics.error("wait", message, order.span, "leave one of them out")
         if until is None:
             return [making.wait(WaitRule(duration=manner.duration), order.span)]
+        if manner.time_limit is not None and manner.duration is not None:
+            message = "how long it waits at most is said twice"
+            self.diagnostics.error("repeated-limit", message, order.span, "leave one of them out")
         limit = manner.time_limit if manner.time_limit is not None else manner.duration
         match until.alternatives:
             case ((Occurs(event=EventKind() as event),),):
@@ -205,6 +226,7 @@ class Planner:
         context = self.context
         self.manners.name(order, tasks)
         nodes = self.manners.apply(order, tasks)
+        self._say_order(order, tasks)
         context.put(nodes, block, block.last)
         context.step += nodes
         context.recent = tasks
@@ -213,6 +235,10 @@ class Planner:
             context.note(do)
         if tasks[-1].docks and block is context.program:
             context.docked = tasks[-1]
+
+    def _say_order(self, order: Order, nodes: Sequence[Node]) -> None:
+        if order.manner is not None and order.manner.order is not None:
+            self.ordering.say(order.manner.order, nodes, order.span)
 
     def _may_go_on(self, order: Order, block: Block) -> bool:
         docked = self.context.docked
@@ -236,16 +262,21 @@ class Planner:
     def _patrol(self, order: orders.Patrol, block: Block) -> None:
         tasks: list[Do] = []
         nodes: list[Node] = []
+        limited = timed(self.context, order)
+        if limited is None:
+            return
         for base, poses in self.repeating.places(order):
-            round_ = self.repeating.round(order, base)
+            round_ = self.repeating.round(limited, base)
             if round_ is None:
                 return
             stops = [making.waypoint(pose, order.span) for pose in poses]
-            self.manners.furnish(order, stops)
+            self.manners.furnish(limited, stops)
             self.context.put(stops, round_.body, None)
             tasks += stops
             nodes.append(round_)
         if nodes and self._may_go_on(order, block):
+            self._say_order(order, tasks)
+            nodes = self.manners.around(order, nodes)
             self.context.put(nodes, block, block.last)
             self.context.step += nodes
             self.context.recent = tasks

@@ -1,13 +1,14 @@
 """From `if a gas leak is detected, ...` to a reaction of the mission."""
 
-from dataclasses import dataclass, fields, replace
+from dataclasses import dataclass, replace
 
 from argo_compiler.diagnostics import Span
 from argo_compiler.il import Afterwards, EventKind, Reaction, Response
 from argo_compiler.model import Pose
+from argo_compiler.script.resolve.accepting import said
 from argo_compiler.script.resolve.locating import Locator
 from argo_compiler.script.syntax.source import Diagnostics
-from argo_compiler.script.syntax.tree.conditions import Battery, Condition, Occurs
+from argo_compiler.script.syntax.tree.conditions import Battery, Condition, Occurs, Relation
 from argo_compiler.script.syntax.tree.manner import Manner
 from argo_compiler.script.syntax.tree.orders import (
     Amend,
@@ -68,11 +69,17 @@ class Reactions:
         if response is None or events is None:
             self._unfinished(case) if events is not None else None
             return
-        for event, span in events:
-            self._react(event, span, response, doing, case.span)
+        for event, span, level in events:
+            self._react(event, level, span, response, doing, case.span)
 
     def _react(
-        self, event: EventKind, span: Span, response: Response, doing: _Reacting, whole: Span
+        self,
+        event: EventKind,
+        level: float | None,
+        span: Span,
+        response: Response,
+        doing: _Reacting,
+        whole: Span,
     ) -> None:
         before = self.lines.get(event)
         if before is not None:
@@ -92,12 +99,13 @@ class Reactions:
                 hold_limit=doing.hold_limit,
                 on_limit=doing.on_limit,
                 priority=doing.priority,
+                battery_below=level,
                 source=whole,
             )
         )
 
-    def _events(self, condition: Condition) -> list[tuple[EventKind, Span]] | None:
-        found: list[tuple[EventKind, Span]] = []
+    def _events(self, condition: Condition) -> list[tuple[EventKind, Span, float | None]] | None:
+        found: list[tuple[EventKind, Span, float | None]] = []
         for tests in condition.alternatives:
             if len(tests) > 1:
                 message = "a reaction follows one event, not several at the same time"
@@ -106,7 +114,10 @@ class Reactions:
                 return None
             (test,) = tests
             if isinstance(test, Battery):
-                found.append((EventKind.LOW_BATTERY, test.span))
+                level = self._level(test)
+                if level is None:
+                    return None
+                found.append((EventKind.LOW_BATTERY, test.span, level))
             elif not isinstance(test, Occurs):
                 message = "values and events can't be asked for in one condition"
                 hint = "write a sentence for each"
@@ -118,8 +129,25 @@ class Reactions:
                 self.diagnostics.error("ambiguous-event", message, test.span, hint)
                 return None
             else:
-                found.append((test.event, test.span))
+                found.append((test.event, test.span, None))
         return found
+
+    def _level(self, battery: Battery) -> float | None:
+        """The share of the charge below which the battery is to be called low."""
+        amount = battery.level
+        message, hint = "", "write, say, `if the battery drops below 30 %`"
+        if battery.relation not in (Relation.LESS, Relation.AT_MOST):
+            message = "a reaction follows a battery that is low, not one that is charged"
+            hint += ", or `wait until the battery is charged`"
+        elif amount.unit != "%":
+            unit = f"in {amount.unit}" if amount.unit else "without a unit"
+            message = f"the battery's charge is a share of it, in %, not a number {unit}"
+        elif not 0.0 < amount.value < 100.0:
+            message = "no battery ever drops below this, or each is below it"
+        if message:
+            self.diagnostics.error("battery", message, battery.span, hint)
+            return None
+        return amount.value / 100.0
 
     def _order(self, order: Order, doing: _Reacting) -> _Reacting | None:
         """What the reaction does with one order more; None if it can't."""
@@ -160,12 +188,12 @@ class Reactions:
         used = {"priority", "until", "duration", "time_limit", "on_limit"}
         used |= {"pose"} if isinstance(order, Home) else set()
         used |= {"person"} if isinstance(order, Wait) else set()
-        for field in fields(manner):
-            if field.name not in used and getattr(manner, field.name) not in (None, False):
-                what = field.name.replace("_", " ")
-                message = f"a reaction has no {what}"
-                self.diagnostics.error("reaction", message, order.span, "leave it out")
-                return None
+        left = sorted(said(manner) - used)
+        if left or order.name is not None:
+            what = left[0].replace("_", " ") if left else "name"
+            message = f"a reaction has no {what}"
+            self.diagnostics.error("stray-clause", message, order.span, "leave it out")
+            return None
         limit = manner.time_limit if manner.time_limit is not None else manner.duration
         if limit is not None:
             doing = replace(doing, hold_limit=limit)

@@ -1,5 +1,7 @@
 """Rounds: patrols, steps that are repeated, and what limits them."""
 
+from dataclasses import replace
+
 from argo_compiler.diagnostics import Span
 from argo_compiler.il import Condition
 from argo_compiler.model import Pose
@@ -64,7 +66,8 @@ class Repeating:
 
     def round(self, order: Order, base: str) -> Round | None:
         """An empty round with the limits that are said of an order."""
-        limits = limits_of(self.context, order, more_is_added=True)
+        timed_order = timed(self.context, order)
+        limits = None if timed_order is None else limits_of(self.context, timed_order)
         if limits is None:
             self.context.fail()
             return None
@@ -95,7 +98,31 @@ class Repeating:
         self.pending.clear()
 
 
-def limits_of(context: Context, order: Order, more_is_added: bool) -> Limits | None:
+def timed(context: Context, order: Order) -> Order | None:
+    """The order of a round with the limit of time that is said of all its rounds as how long they
+    last; None, with an error, if it is not clear whether each or all are meant."""
+    manner = order.manner
+    if manner is None or manner.time_limit is None:
+        return order
+    single = isinstance(order, orders.Measure | orders.Add | orders.Go | orders.Home)
+    keeps = isinstance(order, orders.Measure) and order.keep
+    if single and manner.duration is not None:
+        return order
+    others = manner.times is not None or manner.at_most is not None or manner.until is not None
+    if single and not keeps and (others or manner.every is None):
+        message = "this limit can be read as that of each attempt, or of all together"
+        hint = "write `for 10 minutes` if it is how long all rounds last at most, or the limit of "
+        hint += "each in a sentence of its own"
+        context.diagnostics.error("ambiguous-duration", message, order.span, hint)
+        return None
+    if manner.duration is not None:
+        message = "how long is said twice"
+        context.diagnostics.error("repeated-limit", message, order.span, "leave one of them out")
+        return None
+    return replace(order, manner=replace(manner, duration=manner.time_limit, time_limit=None))
+
+
+def limits_of(context: Context, order: Order) -> Limits | None:
     """The limits that are said of an order; None, with an error, if nothing ends its rounds."""
     manner = order.manner
     diagnostics = context.diagnostics
@@ -103,29 +130,34 @@ def limits_of(context: Context, order: Order, more_is_added: bool) -> Limits | N
     if manner is None:
         _endless(context, what, order.span)
         return None
-    count = manner.times or 0
-    if manner.times == 0:
+    if manner.times == 0 or manner.at_most == 0:
         message = f"a {what} of no rounds"
         diagnostics.error("rounds", message, order.span, "write how often, say, `three times`")
         return None
-    if manner.more and more_is_added:
-        count += 1
-    if manner.at_most is not None:
-        count = manner.at_most
+    if manner.times is not None and manner.at_most is not None:
+        message = "how often is said twice"
+        diagnostics.error("repeated-limit", message, order.span, "leave one of them out")
+        return None
+    count = manner.times or manner.at_most or 0
+    if manner.more and isinstance(order, orders.Repeat):
+        count += 1  # what is repeated has been done once
     if count > _MOST:
         diagnostics.error("number", "this is too large a number", order.span, f"at most {_MOST}")
         return None
     until = _until(context, order)
     if until is None:
         return None
-    rounds = isinstance(order, orders.Patrol | orders.Repeat | orders.Follow | orders.Amend)
-    duration = manner.duration or (manner.time_limit if rounds else None) or 0.0
-    if not (count or duration or until or manner.endless):
+    limited = count or manner.duration or until
+    if manner.endless and limited:
+        message = f"this {what} is said to end, and not to"
+        diagnostics.error("repeated-limit", message, order.span, "leave one of them out")
+        return None
+    if not limited and not manner.endless:
         _endless(context, what, order.span)
         return None
     return Limits(
         count=count,
-        duration=duration,
+        duration=manner.duration or 0.0,
         every=manner.every or 0.0,
         until=until,
         soft=bool(manner.finishing),

@@ -1,15 +1,18 @@
 """Goes through the steps of a script, with those that lie within others."""
 
 from collections.abc import Sequence
+from dataclasses import replace
 
+from argo_compiler.il import Order as TaskOrder
+from argo_compiler.script.resolve.accepting import accepts, said
 from argo_compiler.script.resolve.context import Context
 from argo_compiler.script.resolve.planning import Planner
-from argo_compiler.script.resolve.program import Block
+from argo_compiler.script.resolve.program import Block, Do, all_nodes
 from argo_compiler.script.syntax.tree import facts, orders
 from argo_compiler.script.syntax.tree.facts import Fact
 from argo_compiler.script.syntax.tree.manner import Manner
 from argo_compiler.script.syntax.tree.orders import Order, Sentence
-from argo_compiler.script.syntax.tree.places import DockLocation
+from argo_compiler.script.syntax.tree.places import AreaLocation, DockLocation
 from argo_compiler.script.syntax.tree.script import Header, Step, Unread
 
 
@@ -54,26 +57,41 @@ class Stepping:
                 self.planner.sentence(sentence, block)
             if self.context.diagnostics.errors > errors:
                 self.context.fail()
-        inner = block
-        if following is not None:
-            round_ = self.planner.repeating.round(following, "Repeat")
-            if round_ is None:
+        inner, free = block, None
+        if following is not None and following.manner is not None:
+            if not accepts(following, self.context.diagnostics):
                 return
-            self.context.put([round_], block, block.last)
-            self.context.step.append(round_)
-            inner = round_.body
+            if said(following.manner) == {"order"}:
+                free = {id(node) for node in all_nodes(block)}
+            else:
+                round_ = self.planner.repeating.round(following, "Repeat")
+                if round_ is None:
+                    return
+                self.context.put([round_], block, block.last)
+                self.context.step.append(round_)
+                inner = round_.body
         for one in step.steps:
             self._step(one, inner)
+        if following is not None and following.manner and following.manner.order is not None:
+            known = free or set()
+            tasks = [n for n in all_nodes(inner) if isinstance(n, Do) and id(n) not in known]
+            self.planner.ordering.say(following.manner.order, tasks, following.span)
 
     def _taken(self, sentences: list[Sentence | Fact | Unread]) -> Order | None:
         """`Do the following twice:`, taken out of the sentences over inner steps."""
         last = sentences[-1] if sentences else None
-        if isinstance(last, Sentence) and last.orders and not last.cases:
-            order = last.orders[-1]
-            if isinstance(order, orders.Follow | orders.Amend):
-                sentences.pop()
-                return order
-        return None
+        if not isinstance(last, Sentence) or last.cases or not last.orders:
+            return None
+        *before, order = last.orders
+        if isinstance(order, orders.Amend) and not before:
+            order = orders.Follow(span=order.span, name=order.name, manner=order.manner)
+        if not isinstance(order, orders.Follow):
+            return None
+        found: Order = order
+        while before and isinstance(before[-1], orders.Amend):
+            found = self.planner.manners.with_prefix(found, before.pop())
+        sentences[-1:] = [replace(last, orders=tuple(before))] if before else []
+        return found
 
     def _fact(self, fact: Fact) -> None:
         match fact:
@@ -81,16 +99,26 @@ class Stepping:
                 self._max_duration(fact.seconds, fact)
             case facts.BackWithin():
                 self._max_duration(fact.seconds, fact)
-                if isinstance(fact.where, DockLocation):
-                    home = orders.Home(span=fact.span, dock=fact.where)
-                    self.planner.order(home, self.context.program)
+                self._back(fact)
             case facts.RoundsDriven():
                 manner = Manner(times=fact.count)
                 order = orders.Repeat(span=fact.span, steps=fact.steps, manner=manner)
                 self.planner.order(order, self.context.program)
-            case _:
-                message = "this can't be planned yet"
-                self.context.diagnostics.error("fact", message, fact.span, "leave it out")
+            case facts.Precedence():
+                self.planner.ordering.precedence(fact)
+            case facts.OrderFree():
+                self.planner.ordering.say(TaskOrder.ANY, (), fact.span)
+
+    def _back(self, fact: facts.BackWithin) -> None:
+        dock = fact.where
+        if isinstance(dock, AreaLocation):
+            dock = DockLocation(span=fact.span, area=dock)
+        if not isinstance(dock, DockLocation):
+            message = "a mission ends in a docking station by a certain time, not at a place"
+            hint = "name the starting area: `it has to be back in starting area 1`"
+            self.context.diagnostics.error("fact", message, fact.span, hint)
+            return
+        self.planner.order(orders.Home(span=fact.span, dock=dock), self.context.program)
 
     def _max_duration(self, seconds: float, fact: Fact) -> None:
         said = self.header.max_duration

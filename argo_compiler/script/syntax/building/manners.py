@@ -5,7 +5,7 @@ from dataclasses import fields, replace
 from itertools import pairwise
 from typing import Any
 
-from argo_compiler.il import Afterwards, EventKind
+from argo_compiler.il import Afterwards, EventKind, Order
 from argo_compiler.script.syntax.building.figures import Signed, seconds, speed, whole
 from argo_compiler.script.syntax.building.part import Make, Part
 from argo_compiler.script.syntax.tree.conditions import Condition, Occurs
@@ -79,6 +79,12 @@ def _flag(part: Part) -> Manner:
             return Manner(finishing=False)
         case "ENDLESS":
             return Manner(endless=True)
+        case "IN_CIRCLES":
+            return Manner(in_circles=True)
+        case "ANY_ORDER":
+            return Manner(order=Order.ANY)
+        case "THIS_ORDER":
+            return Manner(order=Order.PRECISE)
         case "PREFERABLY":
             return Manner(soft_window=True)
         case "ANY_TIME":
@@ -125,9 +131,9 @@ def combined(part: Part, manners: Iterable[Manner]) -> Manner | None:
     for manner in manners:
         for field in fields(manner):
             value = getattr(manner, field.name)
-            if value is None or value is False:
+            if value == field.default:
                 continue
-            if field.name in values and field.name != "finishing":
+            if field.name in values:
                 what = field.name.replace("_", " ")
                 part.error("repeated-limit", f"the {what} is said twice", "leave one of them out")
             values[field.name] = value

@@ -128,6 +128,7 @@ _RULES: dict[str, Make] = {
     "back_within": _back_within,
     "precedence": _precedence,
     "rounds_driven": _rounds_driven,
+    "order_free": lambda part: facts.OrderFree(span=part.span),
 }
 
 

@@ -36,6 +36,11 @@ class Precedence(Fact):
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
+class OrderFree(Fact):
+    """`The order does not matter`."""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
 class RoundsDriven(Fact):
     """`Steps 2 and 3 are a round that is driven three times`."""
 

@@ -2,7 +2,7 @@
 
 from dataclasses import dataclass
 
-from argo_compiler.il import Afterwards
+from argo_compiler.il import Afterwards, Order
 from argo_compiler.script.syntax.tree.conditions import Condition
 from argo_compiler.script.syntax.tree.places import Coordinates
 
@@ -53,6 +53,9 @@ class Manner:
     """whether the round is completed when the time is up"""
     count_interruptions: bool = False
     endless: bool = False
+    in_circles: bool = False
+    order: Order | None = None
+    """whether the tasks may change places"""
     condition: Condition | None = None
     """`check #8 if it is above 5`"""
     joints: Joints | None = None

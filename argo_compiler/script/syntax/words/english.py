@@ -212,11 +212,19 @@ MANNERS: Phrases = {
     ("SINCE_START", None): "after the start|after mission start|after the mission's start",
     ("IF_TIME", None): "if there is time|time permitting|if time allows|if time permits",
     ("PRIORITY", None): "with priority|priority",
-    (
-        "ANY_ORDER",
-        None,
-    ): "in any order|in whatever order|in whichever order|order does not matter|order doesn't matter|"
-    "order is free",
+    ("ANY_ORDER", None): (
+        "in any order|in whatever order is best|in whichever order is best|in the best order|"
+        "in whatever order|in an arbitrary order|in any sequence|in whatever order you like|"
+        "in whatever order is quickest|in the order that is best"
+    ),
+    ("ORDER_FREE", None): (
+        "order does not matter|order doesn't matter|order is free|order is not important|"
+        "order is up to you|order is not fixed|you may choose the order|"
+        "they may be visited in any order|they can be visited in any order|"
+        "they may be done in any order|they can be done in any order|"
+        "checkpoints may be visited in any order|checkpoints can be visited in any order|"
+        "steps may be done in any order|steps can be done in any order"
+    ),
     ("THIS_ORDER", None): "in this order|in this precise order|in the given order",
     ("TOTAL", None): "in total|in all|altogether",
     ("MODE", Mode.AUTONOMOUS): "autonomous{ly}",

@@ -1,0 +1,111 @@
+"""Which orders make use of what is said of how, when and how often something is done.
+
+All that a manner can say is either used by the order that it is said of, or an error: nothing is
+passed over. A test tries each with each.
+"""
+
+from collections.abc import Mapping
+from dataclasses import fields
+
+from argo_compiler.script.syntax.source import Diagnostics
+from argo_compiler.script.syntax.tree import orders
+from argo_compiler.script.syntax.tree.manner import Manner
+from argo_compiler.script.syntax.tree.orders import Order, Word
+
+ROUND = frozenset(
+    ["times", "more", "at_most", "every", "duration", "until", "finishing", "count_interruptions"]
+    + ["endless", "in_circles"]
+)
+"""what makes a round of an order, or is said of one"""
+OF_TASKS = frozenset(
+    ["speed", "leaving", "time_limit", "reading_limit", "optional", "priority", "earliest"]
+    + ["latest", "soft_window", "joints", "shown_in", "object_id"]
+)
+"""what is said of each task of an order"""
+_CASE = frozenset(["delay", "condition"])
+_ONCE_MORE = frozenset(["times", "more"])
+_NOTHING: frozenset[str] = frozenset()
+
+_USED: Mapping[type[Order], frozenset[str]] = {
+    orders.Measure: OF_TASKS | ROUND | _CASE | {"pose", "order"},
+    orders.Add: OF_TASKS | ROUND | _CASE | {"pose"},
+    orders.Go: OF_TASKS | ROUND | _CASE,
+    orders.Home: OF_TASKS | ROUND | _CASE,
+    orders.Start: OF_TASKS,
+    orders.Wait: OF_TASKS | _CASE | {"duration", "until", "pose"},
+    orders.Patrol: OF_TASKS - {"reading_limit", "object_id"} | ROUND | _CASE | {"order"},
+    orders.Repeat: ROUND | {"time_limit", "order"},
+    orders.Follow: ROUND | {"time_limit", "order"},
+    orders.Amend: OF_TASKS | {"pose", "order"},
+    orders.Retry: _ONCE_MORE | {"at_most"},
+}
+"""of other orders nothing can be said"""
+_NAMED = (orders.Measure, orders.Add, orders.Go, orders.Home, orders.Start, orders.Wait) + (
+    orders.Patrol,
+    orders.Repeat,
+    orders.Follow,
+)
+"""what a name can be given to"""
+_WORDS = {
+    "leaving": "a speed of leaving",
+    "delay": "a wait before it",
+    "time_limit": "a limit of time",
+    "reading_limit": "a time to read",
+    "optional": "that it may be left out",
+    "earliest": "a time before which it is not done",
+    "latest": "a time by which it is done",
+    "soft_window": "that a time is only preferred",
+    "times": "how often",
+    "more": "that it is done again",
+    "at_most": "how often at most",
+    "every": "every so often",
+    "duration": "for how long",
+    "until": "until when",
+    "finishing": "whether a round is finished",
+    "count_interruptions": "that interruptions count",
+    "endless": "that it never ends",
+    "in_circles": "that it is done in circles",
+    "condition": "in which case",
+    "joints": "joints",
+    "shown_in": "where it is shown",
+    "object_id": "an object",
+    "pose": "where it stands",
+    "order": "an order",
+    "person": "a person to wait for",
+    "on_limit": "what happens when a hold is over",
+}
+
+
+def said(manner: Manner) -> frozenset[str]:
+    """The fields that say something."""
+    return frozenset(
+        field.name for field in fields(manner) if getattr(manner, field.name) != field.default
+    )
+
+
+def accepts(order: Order, diagnostics: Diagnostics) -> bool:
+    """Whether an order makes use of all that is said of it; if not, an error says what is left."""
+    meets = isinstance(order, orders.Plain) and order.word is Word.MEET
+    if order.name is not None and not meets and not isinstance(order, _NAMED):
+        message = f"the name `{order.name}` stands before what is no task"
+        hint = "write it before the order that plans the task, or leave it out"
+        diagnostics.error("stray-clause", message, order.span, hint)
+        return False
+    if order.manner is None:
+        return True
+    used = _USED[orders.Wait] if meets else _USED.get(type(order), _NOTHING)
+    if isinstance(order, orders.Wait) and {"times", "more"} <= said(order.manner):
+        used |= _ONCE_MORE if order.manner.times == 1 else _NOTHING  # `wait again`
+    left = [name for name in _said_in_order(order.manner) if name not in used]
+    if not left:
+        return True
+    what = " and ".join(_WORDS.get(name, f"a {name}") for name in left)
+    message = f"this can't be said here: {what}"
+    hint = "write it behind what is to be done so, or leave it out"
+    diagnostics.error("stray-clause", message, order.span, hint)
+    return False
+
+
+def _said_in_order(manner: Manner) -> list[str]:
+    found = said(manner)
+    return [field.name for field in fields(manner) if field.name in found]

@@ -1,0 +1,133 @@
+"""Whether the order of the tasks is free, and what has to come before what."""
+
+from collections.abc import Iterable, Mapping
+from dataclasses import dataclass, field
+from itertools import pairwise
+
+from argo_compiler.catalog import CheckpointInfo
+from argo_compiler.checks.precedence import check_precedence
+from argo_compiler.diagnostics import Severity, Span
+from argo_compiler.il import Action, Mission, Order
+from argo_compiler.script.resolve.context import Context
+from argo_compiler.script.resolve.program import Block, Do, Node, all_nodes, inner_blocks
+from argo_compiler.script.syntax.tree.facts import Precedence
+from argo_compiler.script.syntax.tree.script import Header
+
+_Checkpoints = tuple[CheckpointInfo, ...]
+
+
+@dataclass
+class Ordering:
+    """What the script has said of the order so far. Mutable: each sentence may add to it."""
+
+    context: Context
+    header: Header
+    free: list[tuple[Span, list[Node]]] = field(default_factory=list)
+    """what is said to be done in any order; nothing: all"""
+    precise: list[tuple[Span, list[Node]]] = field(default_factory=list)
+    """what is said to be done in the order in which it is written"""
+    asked: list[tuple[Span, _Checkpoints, _Checkpoints]] = field(default_factory=list)
+    pairs: list[tuple[Span, Do, Do]] = field(default_factory=list)
+    """what has to come before what; known when all is planned"""
+
+    def say(self, order: Order, nodes: Iterable[Node], span: Span) -> None:
+        """The order of these is said; of nothing: of all."""
+        said = self.free if order is Order.ANY else self.precise
+        said.append((span, list(nodes)))
+
+    def precedence(self, fact: Precedence) -> None:
+        """Takes down that checkpoints come before others."""
+        first, second = self.context.nouns.all(fact.first), self.context.nouns.all(fact.second)
+        if first is not None and second is not None:
+            self.asked.append((fact.span, tuple(first), tuple(second)))
+
+    def finish(self, program: Block) -> Order:
+        """The order of the mission, when all is planned."""
+        order = self._order(program)
+        if order is Order.ANY:
+            for span, nodes in self.precise:
+                self.pairs += [(span, a, b) for a, b in pairwise(_tasks(nodes))]
+        for span, first, second in self.asked:
+            for one in first:
+                for other in second:
+                    self._pair(span, one, other)
+        return order
+
+    def _order(self, program: Block) -> Order:
+        diagnostics = self.context.diagnostics
+        said = self.header.order
+        for span, nodes in self.precise:
+            if not nodes and (said is Order.ANY or self.free):
+                self._contradiction(span)
+        if not self.free:
+            return said or Order.PRECISE
+        span = self.free[0][0]
+        if said is Order.PRECISE:
+            self._contradiction(span)
+        free = {id(do) for _, nodes in self.free for do in _tasks(nodes)}
+        others = [do for do in _tasks(program) if _may_move(do) and id(do) not in free]
+        fixed = others[0] if others else None
+        if all(nodes for _, nodes in self.free) and fixed is not None:
+            line = f" of line {fixed.source.line}" if fixed.source is not None else ""
+            message = (
+                f"only some tasks are to be done in any order here, not `{fixed.base}`{line}: the "
+                "order of a mission is free as a whole, or not at all"
+            )
+            hint = "write `The order is free.` if that is so of all, and what has to come before "
+            hint += "what: `Checkpoint 7 has to be read before checkpoint 18`"
+            diagnostics.error("partly-free", message, span, hint)
+        return Order.ANY
+
+    def _contradiction(self, span: Span) -> None:
+        message = "the script says elsewhere that the order is another one"
+        hint = "leave one of the two out"
+        self.context.diagnostics.error("repeated-field", message, span, hint)
+
+    def _pair(self, span: Span, first: CheckpointInfo, second: CheckpointInfo) -> None:
+        context = self.context
+        found: list[Do] = []
+        for checkpoint in (first, second):
+            planned = list(context.measured.get(str(checkpoint.id), {}).values())
+            name = f"checkpoint #{checkpoint.id}"
+            if len(planned) == 1:
+                found += planned
+            elif planned:
+                message = f"{name} is measured more than once, so it is not clear what comes first"
+                hint = "leave this out, or write the order in which they are measured"
+                context.diagnostics.error("ambiguous-edit", message, span, hint)
+            elif context.whole:
+                hint = f"ask for it: `Check the {name}`"
+                context.diagnostics.error("not-planned", f"{name} is not in the plan", span, hint)
+        if len(found) == 2:
+            self.pairs.append((span, found[0], found[1]))
+
+    def named(self, names: Mapping[int, str]) -> tuple[tuple[str, str], ...]:
+        """The pairs by the names of their tasks."""
+        return tuple(dict.fromkeys((names[id(a)], names[id(b)]) for _, a, b in self.pairs))
+
+    def check(self, mission: Mission) -> None:
+        """Says where the order that is written does not keep to what has to come before what."""
+        if not self.pairs:
+            return
+        span = self.pairs[0][0]
+        for found in check_precedence(mission):
+            code = found.code.removeprefix("il.")
+            say = self.context.diagnostics.error
+            if found.severity is not Severity.ERROR:
+                say = self.context.diagnostics.warning
+            say(code, found.message, span, found.hint)
+
+
+def _tasks(nodes: Iterable[Node]) -> list[Do]:
+    """The tasks that nodes are, or have in them."""
+    found: list[Do] = []
+    for node in nodes:
+        if isinstance(node, Do):
+            found.append(node)
+        for block in inner_blocks(node):
+            found += [do for do in all_nodes(block) if isinstance(do, Do)]
+    return found
+
+
+def _may_move(do: Do) -> bool:
+    return do.action in (Action.MEASURE, Action.WAYPOINT) and not do.docks

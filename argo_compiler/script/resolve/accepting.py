@@ -13,13 +13,17 @@ from argo_compiler.script.syntax.tree.manner import Manner
 from argo_compiler.script.syntax.tree.orders import Order, Word
 
 ROUND = frozenset(
-    ["times", "more", "at_most", "every", "duration", "until", "finishing", "count_interruptions"]
-    + ["endless", "in_circles"]
+    {
+        *("times", "more", "at_most", "every", "duration", "until", "endless", "in_circles"),
+        *("finishing", "count_interruptions"),
+    }
 )
 """what makes a round of an order, or is said of one"""
 OF_TASKS = frozenset(
-    ["speed", "leaving", "time_limit", "reading_limit", "optional", "priority", "earliest"]
-    + ["latest", "soft_window", "joints", "shown_in", "object_id"]
+    {
+        *("speed", "leaving", "time_limit", "reading_limit", "optional", "priority", "earliest"),
+        *("latest", "soft_window", "joints", "shown_in", "object_id"),
+    }
 )
 """what is said of each task of an order"""
 _CASE = frozenset(["delay", "condition"])
@@ -40,10 +44,9 @@ _USED: Mapping[type[Order], frozenset[str]] = {
     orders.Retry: _ONCE_MORE | {"at_most"},
 }
 """of other orders nothing can be said"""
-_NAMED = (orders.Measure, orders.Add, orders.Go, orders.Home, orders.Start, orders.Wait) + (
-    orders.Patrol,
-    orders.Repeat,
-    orders.Follow,
+_NAMED = (
+    *(orders.Measure, orders.Add, orders.Go, orders.Home, orders.Start, orders.Wait),
+    *(orders.Patrol, orders.Repeat, orders.Follow),
 )
 """what a name can be given to"""
 _WORDS = {

@@ -112,10 +112,10 @@ class Ordering:
         span = self.pairs[0][0]
         for found in check_precedence(mission):
             code = found.code.removeprefix("il.")
-            say = self.context.diagnostics.error
-            if found.severity is not Severity.ERROR:
-                say = self.context.diagnostics.warning
-            say(code, found.message, span, found.hint)
+            if found.severity is Severity.ERROR:
+                self.context.diagnostics.error(code, found.message, span, found.hint)
+            else:
+                self.context.diagnostics.warning(code, found.message, span, found.hint)
 
 
 def _tasks(nodes: Iterable[Node]) -> list[Do]:

@@ -2,10 +2,11 @@
 
 from dataclasses import dataclass, field
 from functools import cache
-from importlib.resources import files
 
 from lark import Lark, Token, Tree
 from lark.exceptions import UnexpectedToken
+
+from argo_compiler.script.syntax.tables import load_parser
 
 Branch = tuple[str, tuple["Branch | int", ...], int, int]
 """a rule, its parts, and which words it covers, from the first to behind the last; a part is a
@@ -76,21 +77,4 @@ def _branch(tree: Tree[Token]) -> Branch:
 @cache
 def sentence_grammar() -> Grammar:
     """The grammar in `sentence.lark` beside this module."""
-    text = files(__package__).joinpath("sentence.lark").read_text(encoding="utf-8")
-    return Grammar(
-        Lark(
-            text + f"\n%declare {' '.join(terminals(text))}",
-            parser="lalr",
-            lexer="basic",
-            start=["sentence", "location"],
-            propagate_positions=True,
-            maybe_placeholders=False,
-        )
-    )
-
-
-def terminals(text: str) -> list[str]:
-    """The names in capitals of a grammar's text."""
-    import re
-
-    return sorted(set(re.findall(r"\b[A-Z][A-Z_]+\b|\b[XYZ]\b", re.sub(r"//.*", "", text))))
+    return Grammar(load_parser())

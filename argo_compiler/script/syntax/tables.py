@@ -1,4 +1,4 @@
-"""The tables of the parsers, saved beside the grammars: to make them takes a second or two.
+"""The parser's tables, saved beside the grammar: to make them takes a second or two.
 
 `make generated` writes them. Tables of another grammar, or of another version of Lark, are not
 used: then the parser makes its own, and only the start takes longer.
@@ -6,19 +6,20 @@ used: then the parser makes its own, and only the start takes longer.
 
 import io
 import pickle
+import re
 import zlib
-from collections.abc import Iterator, Sequence
 from hashlib import sha256
 from importlib.metadata import version
 from importlib.resources import files
 from pathlib import Path
 from typing import Any
 
-from lark import Lark, Token
-from lark.lark import PostLex
+from lark import Lark
 
 from argo_compiler.garbage_collector import collector_held
 
+STARTS = ["sentence", "location"]
+_NAME = "sentence"
 _KEY = 32
 """bytes at the beginning of the tables, by which it is told what they are of"""
 
@@ -28,48 +29,40 @@ _PackedRow = list[tuple[tuple[int, Any], tuple[int, ...]]]
 """the terminals at which it does the same; mostly there are a hundred of them and one action"""
 
 
-class WholeWords(PostLex):
-    """Lets WORD match everywhere, so that no keyword is found at the start of a longer word."""
-
-    always_accept = ("WORD",)
-
-    def process(self, stream: Iterator[Token]) -> Iterator[Token]:
-        return stream
-
-
-def make_parser(name: str, starts: Sequence[str]) -> Lark:
-    """The parser of the grammar `<name>.lark`, by the rules `starts`, its tables made anew."""
-    return Lark.open_from_package(
-        __package__,
-        f"{name}.lark",
+def make_parser() -> Lark:
+    """The parser of sentences, its tables made anew. Its terminals are types of words, made by the
+    lexicons and not by Lark."""
+    text = files(__package__).joinpath(f"{_NAME}.lark").read_text(encoding="utf-8")
+    return Lark(
+        f"{text}\n%declare {' '.join(terminals(text))}",
         parser="lalr",
-        start=list(starts),
+        lexer="basic",
+        start=STARTS,
         propagate_positions=True,
         maybe_placeholders=False,
-        postlex=WholeWords(),
     )
 
 
 @collector_held()
-def load_parser(name: str, starts: Sequence[str]) -> Lark:
+def load_parser() -> Lark:
     """As `make_parser`, with the saved tables if they are of this grammar and this Lark."""
-    saved = files(__package__).joinpath(f"{name}.tables")
+    saved = files(__package__).joinpath(f"{_NAME}.tables")
     data = saved.read_bytes() if saved.is_file() else b""
-    if data[:_KEY] != _key(name, starts):
-        return make_parser(name, starts)
+    if data[:_KEY] != _key():
+        return make_parser()
     tables = pickle.loads(zlib.decompress(data[_KEY:]))
     rows = tables["data"]["parser"]["parser"]
     rows["states"] = {state: _unpacked(row) for state, row in rows["states"].items()}
     return Lark.load(tables)
 
 
-def save_tables(name: str, starts: Sequence[str], folder: Path) -> None:
+def save_tables(folder: Path) -> None:
     """Writes the tables that `load_parser` reads, unless they are there."""
-    path, key = folder / f"{name}.tables", _key(name, starts)
+    path, key = folder / f"{_NAME}.tables", _key()
     if path.exists() and path.read_bytes()[:_KEY] == key:
         return
     buffer = io.BytesIO()
-    make_parser(name, starts).save(buffer)
+    make_parser().save(buffer)
     tables = pickle.loads(buffer.getvalue())
     rows = tables["data"]["parser"]["parser"]
     known: dict[tuple[int, ...], tuple[int, ...]] = {}
@@ -78,12 +71,17 @@ def save_tables(name: str, starts: Sequence[str], folder: Path) -> None:
     path.write_bytes(key + packed)
 
 
+def terminals(text: str) -> list[str]:
+    """The names in capitals of a grammar's text."""
+    return sorted(set(re.findall(r"\b[A-Z][A-Z_]+\b|\b[XYZ]\b", re.sub(r"//.*", "", text))))
+
+
 def _packed(row: _Row, known: dict[tuple[int, ...], tuple[int, ...]]) -> _PackedRow:
     """A row by its actions; lists of terminals that are alike become one."""
-    terminals: dict[str, list[int]] = {}
+    found: dict[str, list[int]] = {}
     for terminal, action in row.items():
-        terminals.setdefault(repr(action), []).append(terminal)
-    keys = [tuple(found) for found in terminals.values()]
+        found.setdefault(repr(action), []).append(terminal)
+    keys = [tuple(terminals) for terminals in found.values()]
     return [(row[key[0]], known.setdefault(key, key)) for key in keys]
 
 
@@ -91,8 +89,8 @@ def _unpacked(row: _PackedRow) -> _Row:
     return {terminal: action for action, terminals in row for terminal in terminals}
 
 
-def _key(name: str, starts: Sequence[str]) -> bytes:
-    found = sha256(f"{version('lark')} {__name__} {starts}".encode())
-    for part in ("common.lark", f"{name}.lark", "tables.py"):
+def _key() -> bytes:
+    found = sha256(f"{version('lark')} {__name__} {STARTS}".encode())
+    for part in (f"{_NAME}.lark", "tables.py"):
         found.update(files(__package__).joinpath(part).read_bytes())
     return found.digest()

@@ -1,64 +1,62 @@
-"""The saved tables of the parsers are those of the grammars, and parse as new ones do."""
+"""The saved tables of the parser are those of the grammar, and parse as new ones do."""
 
+import re
 from pathlib import Path
 
 import pytest
-from lark import Lark, UnexpectedInput
+from lark import Lark
 
 from argo_compiler.script.syntax import tables
-from argo_compiler.script.syntax.protocol import FORMS as PROTOCOL_FORMS
-from argo_compiler.script.syntax.protocol import PROTOCOL_STARTS
-from argo_compiler.script.syntax.sheet import FORMS as SHEET_FORMS
-from argo_compiler.script.syntax.sheet import SHEET_STARTS
+from argo_compiler.script.syntax.grammar import Grammar, StumbleError
+from argo_compiler.script.syntax.words.language import Language
+from argo_compiler.script.syntax.words.lexer import words
 
-GRAMMARS = [("protocol", PROTOCOL_STARTS, PROTOCOL_FORMS), ("sheet", SHEET_STARTS, SHEET_FORMS)]
+DOCS = Path(__file__).parents[3] / "docs" / "script.md"
 
 
-@pytest.mark.parametrize(("name", "starts", "forms"), GRAMMARS)
-def test_saved_tables_parse_as_new_ones(
-    name: str, starts: tuple[str, ...], forms: tuple[str, ...], monkeypatch: pytest.MonkeyPatch
-) -> None:
-    new = tables.make_parser(name, starts)
+def test_saved_tables_parse_as_new_ones(monkeypatch: pytest.MonkeyPatch) -> None:
+    new = Grammar(tables.make_parser())
 
-    def not_current(*_: object) -> Lark:
-        pytest.fail(f"the tables of {name} are not up to date: run `make generated`")
+    def not_current() -> Lark:
+        pytest.fail("the tables are not up to date: run `make generated`")
 
     monkeypatch.setattr(tables, "make_parser", not_current)
-    saved = tables.load_parser(name, starts)
-    assert {t.name for t in saved.terminals} == {t.name for t in new.terminals}
-    for form in forms:
-        words = form.lower().split(" ")
-        for length in range(len(words) + 1):
-            outcomes = []
-            for parser in (saved, new):
-                state = parser.parse_interactive(" ".join(words[:length]), starts[0])
-                try:
-                    state.exhaust_lexer()
-                except UnexpectedInput as stumble:
-                    outcomes.append((type(stumble), state.accepts()))
-                else:
-                    outcomes.append((None, state.accepts()))
-            assert outcomes[0] == outcomes[1]
-        trees = []
-        for parser in (saved, new):
-            try:
-                trees.append(parser.parse(form.lower(), starts[0]))
-            except UnexpectedInput as stumble:
-                trees.append(type(stumble))
-        assert trees[0] == trees[1]
+    saved = Grammar(tables.load_parser())
+    for types in sentences():
+        for length in range(len(types) + 1):
+            assert outcome(saved, types[:length]) == outcome(new, types[:length])
+        half = types[: len(types) // 2]
+        assert saved.accepted(half) == new.accepted(half)
+
+
+def sentences() -> list[tuple[str, ...]]:
+    """The types of the words in the lines of the language's reference."""
+    text = DOCS.read_text(encoding="utf-8")
+    lines = [
+        line for box in re.findall(r"```protocol\n(.*?)```", text, re.S) for line in box.split("\n")
+    ]
+    lexicon = Language.of("", ()).lexicon
+    return list(dict.fromkeys(tuple(w.type for w in words(line, lexicon)) for line in lines))
+
+
+def outcome(grammar: Grammar, types: tuple[str, ...]) -> object:
+    try:
+        return grammar.tree(types)
+    except StumbleError as stumble:
+        return stumble.at
 
 
 def test_tables_of_another_lark_are_not_used(monkeypatch: pytest.MonkeyPatch) -> None:
     made = []
     monkeypatch.setattr(tables, "version", lambda package: f"another {package}")
-    monkeypatch.setattr(tables, "make_parser", lambda *grammar: made.append(grammar))
-    tables.load_parser("sheet", SHEET_STARTS)
-    assert made == [("sheet", SHEET_STARTS)]
+    monkeypatch.setattr(tables, "make_parser", lambda: made.append(True))
+    tables.load_parser()
+    assert made == [True]
 
 
 def test_tables_are_written_once(tmp_path: Path) -> None:
-    tables.save_tables("sheet", SHEET_STARTS, tmp_path)
-    path = tmp_path / "sheet.tables"
+    tables.save_tables(tmp_path)
+    path = tmp_path / "sentence.tables"
     written = path.stat().st_mtime_ns, path.read_bytes()
-    tables.save_tables("sheet", SHEET_STARTS, tmp_path)
+    tables.save_tables(tmp_path)
     assert (path.stat().st_mtime_ns, path.read_bytes()) == written

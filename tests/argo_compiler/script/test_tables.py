@@ -25,8 +25,9 @@ def test_saved_tables_parse_as_new_ones(monkeypatch: pytest.MonkeyPatch) -> None
     for types in sentences():
         for length in range(len(types) + 1):
             assert outcome(saved, types[:length]) == outcome(new, types[:length])
-        half = types[: len(types) // 2]
-        assert saved.accepted(half) == new.accepted(half)
+        if isinstance(outcome(saved, types), tuple):
+            half = types[: len(types) // 2]
+            assert saved.accepted(half) == new.accepted(half)
 
 
 def sentences() -> list[tuple[str, ...]]:

@@ -12,7 +12,7 @@ from argo_compiler.script.syntax.words.numbers import Figure
 
 def _forms(stems: str) -> str:
     """The forms of weak verbs: `prüfe`, `prüft`, `prüfen`, `prüfen sie`."""
-    return "|".join(f"{s}{{e}}|{s}t|{s}en {{sie}}" for s in stems.split())
+    return "|".join(f"{s}{{e}}|{s}t|{s}st|{s}en {{sie}}" for s in stems.split())
 
 
 def _parted(particle: str, forms: str) -> str:
@@ -40,7 +40,7 @@ _GO = "geh gehe geht gehen"
 
 NOTHING: Phrases = {
     ("FILLER", None): (
-        "der|die|das|den|dem|des|ein|eine|einen|einem|einer|eines|bitte|dann|danach|anschließend|"
+        "der|die|das|den|dem|des|ein|eine|einen|einem|einer|eines|bitte|dann|erst|erstmal|danach|anschließend|"
         "daraufhin|zuerst|zunächst|schließlich|zuletzt|abschließend|zum schluss|am schluss|am ende|"
         "als nächstes|als erstes|im anschluss|hierauf|nun|jetzt|auch|ebenfalls|ebenso|sofort|"
         "unverzüglich|umgehend|gleich|direkt|einfach|roboter{s}|soll|sollen|sollte|muss|müssen|wir|"
@@ -82,7 +82,8 @@ VERBS: Phrases = {
         "fahr{e} nach hause|fährt nach hause|fahren sie nach hause|fahre heim|fährt heim|"
         "heimfahren|"
         "geh{e} nach hause|geht nach hause|komm{e} nach hause|kommt nach hause|nach hause fahren|"
-        "nach hause|kehr{e} heim|kehrt heim|heimkehren|docke an|dockt an|andocken|docken sie an|"
+        "nach hause|kehr{e} heim|kehrt heim|heimkehren|heim|"
+        f"{_parted('an', 'dock docke dockt docken')}|"
         "zurück zur basis|fahre zurück zur basis|nach hause gehen|nach hause kommen"
     ),
     ("START", None): (
@@ -92,7 +93,8 @@ VERBS: Phrases = {
     ),
     ("PATROL", None): (
         f"{_forms('patrouillier')}|{_parted('ab', 'patrouilliere patrouilliert patrouillieren')}|"
-        "bestreife|bestreifen|auf streife|mache eine patrouille"
+        "patrouilliere durch|patrouilliert durch|patrouillieren durch|patrouille|fahre … patrouille|"
+        "fährt … patrouille|bestreife|bestreifen|durchstreife|durchstreifen|mache eine patrouille"
     ),
     ("WAIT", None): (
         "warte|wartet|warten {sie}|warte … ab|wartet … ab|warten sie … ab|abwarten|bleibe|bleibt|"
@@ -160,7 +162,8 @@ VERBS: Phrases = {
         "geh{e} weiter zu|weiter zu|überspringe alles bis"
     ),
     ("RETRY", None): (
-        "versuche es noch einmal|versuche es nochmal|versuche es noch mal|versuche es erneut|"
+        "versuche es {noch}|versuch es {noch}|versuchen sie es {noch}|es versuchen|"
+        "nochmals versuchen|versuche es noch einmal|versuche es nochmal|versuche es noch mal|versuche es erneut|"
         "versuch es noch einmal|versuch es nochmal|versuch es erneut|noch einmal versuchen|"
         "nochmal versuchen|erneut versuchen|es erneut versuchen|es noch einmal versuchen|"
         "versuchen sie es erneut|versuchen sie es noch einmal|es nochmal versuchen|"
@@ -170,7 +173,8 @@ VERBS: Phrases = {
     ("MEET", None): "hier weiter|ab hier weiter|hier geht es weiter",
     ("START_HERE", None): "starte hier|start hier|beginne hier|beginn hier",
     ("MAX_DURATION", None): (
-        "die mission darf dauern|mission darf dauern|mission dauert|die mission dauert|"
+        "die mission darf … dauern|mission darf … dauern|sie darf … dauern|"
+        "es darf … dauern|die mission darf dauern|mission darf dauern|mission dauert|die mission dauert|"
         "die mission darf|mission darf|maximale dauer der mission ist|maximale dauer ist|"
         "maximaldauer ist|höchstdauer ist|maximale dauer der mission beträgt|"
         "maximale dauer beträgt|höchstdauer beträgt|"
@@ -184,7 +188,7 @@ VERBS: Phrases = {
 
 NOUNS: Phrases = {
     ("KIND", (Kind.CHECKPOINT, False)): (
-        "kontrollpunkt{s}|kontrollpunktes|prüfpunkt{s}|messpunkt{s}|checkpoint|prüfstelle|"
+        "kontrollpunkt{s}|kontrollpunktes|kp|prüfpunkt{s}|messpunkt{s}|checkpoint|prüfstelle|"
         "messstelle"
     ),
     ("KIND", (Kind.CHECKPOINT, True)): (
@@ -237,7 +241,7 @@ NOUNS: Phrases = {
         "beide{n}|sie beide|alle beide|sie … liegen|sie … sind|sie … steigen|sie … fallen|"
         "sie … sinken"
     ),
-    ("THIS", None): "dieser|diese|dieses|diesen|diesem|dies",
+    ("THIS", None): "dieser|diese|dieses|diesen|diesem|dies|die ablesung|die messung|die prüfung|der versuch",
     ("OF", "value"): (
         "wert von|wert an|wert am|wert bei|wert auf|wert|messwert von|messwert an|messwert|"
         "werte von|werte an|anzeige von|anzeige an|werte"
@@ -247,7 +251,7 @@ NOUNS: Phrases = {
         "füllstand von|füllstand an|füllstand am|füllstand|pegel von|pegel an|pegel|stand von|"
         "stand an"
     ),
-    ("OF", "pressure"): "druck von|druck an|druck am|druck bei|druck auf|druck",
+    ("OF", "pressure"): "drücke|drücke von|drücke an|druck von|druck an|druck am|druck bei|druck auf|druck",
     ("VALUE", "value"): "sein wert|ihr wert|dessen wert|deren wert",
     ("VALUE", "pressure"): "sein druck|ihr druck|dessen druck|deren druck",
     ("VALUE", "level"): "sein füllstand|ihr füllstand|dessen füllstand|deren füllstand",
@@ -389,7 +393,10 @@ CONDITIONS: Phrases = {
 MANNERS: Phrases = {
     ("TO", None): "zu|zum|zur|ins|in richtung|richtung|bis an",
     ("IN", None): "in|im|innerhalb des|innerhalb der",
-    ("AT", None): "an|am|bei|beim",
+    ("AT", None): (
+        "an|am|bei|beim|mit einer geschwindigkeit von|mit der geschwindigkeit|mit geschwindigkeit|"
+        "bei einer geschwindigkeit von"
+    ),
     ("ON", None): "auf",
     ("FOR", None): "für|während|über einen zeitraum von|für die dauer von|auf die",
     ("PERSON", None): "bediener{s}|person|aufsicht|leitwarte",
@@ -530,10 +537,11 @@ PARTS = (NOTHING, VERBS, NOUNS, CONDITIONS, MANNERS, FIGURES, JOINTS)
 OWN: Phrases = {
     ("BACK", None): (
         f"{_parted('zurück', _DRIVE)}|{_parted('zurück', _TURN)}|{_parted('zurück', _COME)}|"
-        f"{_parted('zurück', _GO)}|zurück … fahren|zurück … kehren|zurück"
+        f"{_parted('zurück', _GO)}|zurück … fahren|zurück … kehren|zurück|rückkehr"
     ),
     ("KIND", (Kind.PRESSURE_GAUGE, None)): "manometer|druckmanometer|druckmesser|druckmessgerät",
     ("KIND", (Kind.LIQUID_LEVEL_GAUGE, None)): "füllstandsmesser|füllstandmesser",
+    ("ON_FAILURE", None): "bei misserfolg|im fehlerfall|bei fehlschlag|schlägt … fehl",
     ("THEY", None): "sie",
     ("HE", None): "er",
 }

@@ -2,6 +2,7 @@
 
 import json
 import re
+from functools import lru_cache
 
 from argo_compiler.script.syntax.words.joints import joined
 from argo_compiler.script.syntax.words.lengths import read_clock, read_glued
@@ -35,6 +36,8 @@ _JOINING = frozenset(["JOINT", "TO", "DASH", "UPTO"])
 _UNSAID = frozenset(["FILLER", "IDLE"])
 
 
+# A sentence is looked at several times: what it is, whether it makes sense, what it says.
+@lru_cache(maxsize=256)
 def words(text: str, lexicon: Lexicon) -> list[Word]:
     """The words of `text`, with the joints between them told apart by what they join; in another
     language where far more of them are known in that one."""

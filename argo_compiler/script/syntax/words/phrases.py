@@ -48,7 +48,7 @@ def _parted(
             end = k + len(last)
             if tuple(said[k:end]) == last and _may_end(said, end, last, lexicon):
                 return Found(entry, behind - at, range(k, end))
-        if said[k] in (".", ";", ":") or _type(said[k], lexicon) in _STOPS:
+        if said[k] in (";", ":") or _type(said[k], lexicon) in _STOPS:
             return None
     return None
 

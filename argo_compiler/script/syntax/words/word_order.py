@@ -42,7 +42,9 @@ def _told(words: list[Word], i: int) -> list[Word]:
             return [replace(word, type="TO")]
         case "AFTER" if after in _SPOTS - {"STRING", "WORD"}:
             return [replace(word, type="TO")]
-        case "AT" if after == "EVENT":
+        case "AT" if after == "EVENT" or (
+            after in ("VALUE", "OF", "BATTERY") and _then(words, i + 2) in _RELATIONS
+        ):
             return [replace(word, type="IF")]
         case "IF" | "IF_ONLY" | "ON" if after in ("EVENT", "PERSON") and _waits(words, i):
             return [replace(word, type="FOR")]
@@ -70,6 +72,10 @@ def _told(words: list[Word], i: int) -> list[Word]:
         case "HE" if last in _OPENING or after in ("NOT", *_RELATIONS, "STATE", "FAILS"):
             return [replace(word, type="IT")]
         case "HE":
+            return []
+        case "ON_FAILURE":
+            return [replace(word, type="IF"), replace(word, type="FAILS")]
+        case "THEM" if after == "KIND" and _then(words, i + 2) in ("NUMBER", "IDENT", "HASH"):
             return []
         case "THEY":
             return [replace(word, type="THEM")]
@@ -128,7 +134,10 @@ def _compared(words: list[Word]) -> list[Word]:
 
 def _is_needed(words: list[Word], i: int) -> bool:
     """Whether `ist` stands before what it says; at the end of a condition it says nothing."""
-    return _then(words, i + 1) in _PREDICATES
+    if _then(words, i + 1) in _PREDICATES or i == 0:
+        return True
+    asks = any(word.type in _OPENING for word in words[:i])
+    return not asks or words[i - 1].type not in _ASKED | _AMOUNTS
 
 
 # ---- verbs

@@ -427,8 +427,8 @@ PAIRS = [
         "Checkpoints 3 and 5 must be checked.",
     ),
     (
-        "Prüfe Kontrollpunkt 3 und warte auf den Bediener.",
-        "Check checkpoint 3 and wait for the operator.",
+        "Prüfe Kontrollpunkt 3. Die Reihenfolge ist egal.",
+        "Check checkpoint 3. The order does not matter.",
     ),
     (
         "Prüfe Kontrollpunkt 3. Bei einem positiven Hindernis anhalten.",

@@ -100,6 +100,9 @@ VERBS: Phrases = {
         "warte|wartet|warten {sie}|warte … ab|wartet … ab|warten sie … ab|abwarten|bleibe|bleibt|"
         "bleib|bleiben {sie}|bleib{e} stehen|bleibt stehen|verweile|verweilt|verweilen"
     ),
+    ("FOR_PERSON", None): (
+        "auf bediener|auf operator|auf jemanden|auf person|auf aufsicht|für bediener"
+    ),
     ("PAUSE", None): (
         f"{_forms('pausier stopp')}|{_parted('an', 'halt halte hält haltet halten')}|halt|"
         "halte die runde an|unterbrich die runde|unterbricht die runde|unterbreche die runde|"
@@ -120,7 +123,7 @@ VERBS: Phrases = {
     ("GO_ON", None): (
         f"{_parted('fort', _DRIVE)}|{_parted('weiter', 'mach mache macht machen')}|"
         f"{_parted('weiter', _DRIVE)}|setze … fort|setzt … fort|setzen sie … fort|"
-        "setze die mission fort|die mission fortsetzen|mission fortsetzen|fortsetzen|"
+        "weiter|setze die mission fort|die mission fortsetzen|mission fortsetzen|fortsetzen|"
         "die mission fortführen|nimm die mission wieder auf"
     ),
     ("RECHARGE", None): (
@@ -241,7 +244,10 @@ NOUNS: Phrases = {
         "beide{n}|sie beide|alle beide|sie … liegen|sie … sind|sie … steigen|sie … fallen|"
         "sie … sinken"
     ),
-    ("THIS", None): "dieser|diese|dieses|diesen|diesem|dies|die ablesung|die messung|die prüfung|der versuch",
+    (
+        "THIS",
+        None,
+    ): "dieser|diese|dieses|diesen|diesem|dies|die ablesung|die messung|die prüfung|der versuch",
     ("OF", "value"): (
         "wert von|wert an|wert am|wert bei|wert auf|wert|messwert von|messwert an|messwert|"
         "werte von|werte an|anzeige von|anzeige an|werte"
@@ -251,7 +257,10 @@ NOUNS: Phrases = {
         "füllstand von|füllstand an|füllstand am|füllstand|pegel von|pegel an|pegel|stand von|"
         "stand an"
     ),
-    ("OF", "pressure"): "drücke|drücke von|drücke an|druck von|druck an|druck am|druck bei|druck auf|druck",
+    (
+        "OF",
+        "pressure",
+    ): "drücke|drücke von|drücke an|druck von|druck an|druck am|druck bei|druck auf|druck",
     ("VALUE", "value"): "sein wert|ihr wert|dessen wert|deren wert",
     ("VALUE", "pressure"): "sein druck|ihr druck|dessen druck|deren druck",
     ("VALUE", "level"): "sein füllstand|ihr füllstand|dessen füllstand|deren füllstand",
@@ -303,6 +312,7 @@ CONDITIONS: Phrases = {
         "nicht länger als|bis zu"
     ),
     ("TAKING", None): "wobei es höchstens dauert|dauer höchstens",
+    ("MINUS", None): "minus",
     ("BETWEEN", None): "zwischen",
     ("FROM", None): "von|vom|aus|ab",
     ("STATE", "normal"): (
@@ -347,6 +357,7 @@ CONDITIONS: Phrases = {
         "plattformalarm{s}|allgemeiner plattformalarm|allgemeinen plattformalarm|"
         "allgemeinem plattformalarm|gpa|räumungsalarm|evakuierungsalarm|räumungsalarm ( gpa )"
     ),
+    ("EVENT", None): "hindernis|hindernisse|hindernisses|hindernissen",
     ("EVENT", EventKind.POSITIVE_OBSTACLE): (
         "positives hindernis|positiven hindernis|positivem hindernis|positive hindernisse"
     ),
@@ -407,6 +418,7 @@ MANNERS: Phrases = {
         "nochmal|noch mal|noch einmal|nochmals|erneut|abermals|wieder|ein weiteres mal|"
         "ein zweites mal|wiederum"
     ),
+    ("MORE_WORD", None): "weitere{n}|zusätzliche{n}|weiteres",
     ("TIME_WORD", None): "mal|male|malen|- mal|runde{n}|durchgänge{n}|durchgang",
     (
         "WITHIN",
@@ -431,6 +443,11 @@ MANNERS: Phrases = {
     ),
     ("PRIORITY", None): "mit priorität|mit der priorität|priorität|mit wichtigkeit|wichtigkeit",
     ("ANY_ORDER", None): "in beliebiger reihenfolge|in einer beliebigen reihenfolge|beliebig",
+    ("ORDER_FREE", None): (
+        "die reihenfolge ist egal|reihenfolge ist egal|reihenfolge ist beliebig|"
+        "reihenfolge spielt keine rolle|reihenfolge ist frei|auf die reihenfolge kommt es nicht an|"
+        "die reihenfolge ist dir überlassen|reihenfolge ist nicht wichtig"
+    ),
     ("THIS_ORDER", None): (
         "in dieser reihenfolge|genau in dieser reihenfolge|in genau dieser reihenfolge|"
         "in der angegebenen reihenfolge|in dieser genauen reihenfolge"

@@ -46,6 +46,7 @@ def _lexicons(places: tuple[str, ...]) -> tuple[Lexicon, Lexicon]:
         "der die das den dem des am im zum zur beim vom ins",
         "ein eine einen einem einer eines bitte dann direkt gleich auch the",
         verbs_first=False,
+        plural_article="die",
     )
     for place in places:
         pieces = [word for word in place.lower().split() if word not in ("the", "a", "an")]

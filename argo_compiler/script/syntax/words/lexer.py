@@ -3,6 +3,7 @@
 import json
 import re
 from functools import lru_cache
+from typing import Any
 
 from argo_compiler.script.syntax.words.joints import joined
 from argo_compiler.script.syntax.words.lengths import read_clock, read_glued
@@ -83,7 +84,7 @@ def _looked_up(text: str, lexicon: Lexicon) -> list[Word]:
         type_, value = phrase.entry
         if type_ not in _UNSAID:
             if type_ == "KIND":
-                value = (*value, i > 0 and said[i - 1] in lexicon.definite)
+                value = _definite(value, said[i - 1] if i > 0 else "", lexicon)
             end = pieces[i + phrase.length - 1].end()
             found.append(Word(type_, value, pieces[i].start(), end))
         apart.update(phrase.apart)
@@ -97,6 +98,13 @@ def _is_name(before: list[Word]) -> bool:
         return False
     listed = len(before) > 1 and before[-2].type == "STRING"
     return before[-1].type in _NAMING or (listed and before[-1].type in _JOINING)
+
+
+def _definite(kind: tuple[Any, bool | None], last: str, lexicon: Lexicon) -> tuple[Any, ...]:
+    """A kind with whether an article says that it is known which; `die` is the article of
+    several where the noun is the same for one."""
+    plural = last == lexicon.plural_article if kind[1] is None and last else kind[1]
+    return kind[0], plural or kind[1], last in lexicon.definite
 
 
 def _unwrapped(piece: re.Match[str], text: str, lexicon: Lexicon) -> list[Word]:

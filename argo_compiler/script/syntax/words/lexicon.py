@@ -30,12 +30,14 @@ class Lexicon:
         definite: str = "",
         passed_over: str = "",
         verbs_first: bool = True,
+        plural_article: str = "",
     ) -> None:
         self.name = name
         self.definite = frozenset(definite.split())
         """articles, and words that have one in them, which say that it is one that is known"""
         self.passed_over = frozenset(passed_over.split()) | self.definite
         """words that may stand within a phrase"""
+        self.plural_article = plural_article
         self.verbs_first = verbs_first
         """whether a verb stands before all that it is said of, as the grammar has it"""
         self.other: Lexicon | None = None

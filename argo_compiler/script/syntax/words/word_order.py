@@ -46,7 +46,7 @@ def _told(words: list[Word], i: int) -> list[Word]:
             after in ("VALUE", "OF", "BATTERY") and _then(words, i + 2) in _RELATIONS
         ):
             return [replace(word, type="IF")]
-        case "IF" | "IF_ONLY" | "ON" if after in ("EVENT", "PERSON") and _waits(words, i):
+        case "IF" | "IF_ONLY" if after == "EVENT" and _waits(words, i):
             return [replace(word, type="FOR")]
         case "IS" if last == "" and after not in _PREDICATES:
             return [replace(word, type="IF")]

@@ -10,7 +10,6 @@ from argo_compiler.script.resolve.accepting import accepts, said
 from argo_compiler.script.resolve.cases import Cases
 from argo_compiler.script.resolve.context import Context
 from argo_compiler.script.resolve.edits import Edits
-from argo_compiler.script.resolve.fitting import fits
 from argo_compiler.script.resolve.manners import Manners
 from argo_compiler.script.resolve.ordering import Ordering
 from argo_compiler.script.resolve.program import (
@@ -99,8 +98,6 @@ class Planner:
             message = "this changes the plan, so it can't be done in one case only"
             hint = "write it as a step of its own"
             self.diagnostics.error("route", message, order.span, hint)
-            return
-        if not fits(order, self.context):
             return
         match order:
             case orders.Amend() | orders.Retry():

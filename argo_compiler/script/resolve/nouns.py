@@ -66,8 +66,7 @@ class NounResolver:
             clear = clear and one is not None
             found += one or []
         if nouns.but:
-            out = self.each(Nouns(span=nouns.span, nouns=nouns.but))
-            return self._without(found, out, nouns) if clear and out is not None else None
+            return self._without(found, nouns) if clear else None
         return found if clear else None
 
     def one(self, nouns: Nouns) -> CheckpointInfo | None:
@@ -85,14 +84,22 @@ class NounResolver:
         """What was measured last, where a condition names nothing."""
         return self._pronoun(Pronoun(span=span))
 
-    def _without(
-        self, found: list[CheckpointInfo], out: list[CheckpointInfo], nouns: Nouns
-    ) -> list[CheckpointInfo]:
-        for noun, checkpoint in zip(nouns.but, out, strict=False):
-            if checkpoint not in found:
-                message = f"{checkpoint.name} (#{checkpoint.id}) is none of these anyway"
-                hint = "is another one meant?"
-                self.diagnostics.warning("needless-exception", message, noun.span, hint)
+    def _without(self, found: list[CheckpointInfo], nouns: Nouns) -> Found:
+        """What is left of them; `the valve` is one of theirs."""
+        out: list[CheckpointInfo] = []
+        kind: Kind | None = None
+        for noun in nouns.but:
+            kind = noun.kind or kind if isinstance(noun, Named) else kind
+            inside = [c for c in found if agrees(c, noun.kind)] if isinstance(noun, TheOne) else []
+            one = inside if _is_told(noun, inside) else self._noun(noun, kind, plural=True)
+            if one is None:
+                return None
+            for checkpoint in one:
+                if checkpoint not in found:
+                    message = f"{checkpoint.name} (#{checkpoint.id}) is none of these anyway"
+                    hint = "is another one meant?"
+                    self.diagnostics.warning("needless-exception", message, noun.span, hint)
+            out += one
         return [checkpoint for checkpoint in found if checkpoint not in out]
 
     def _noun(self, noun: Noun, kind: Kind | None, plural: bool) -> Found:
@@ -186,10 +193,18 @@ class NounResolver:
             message = f"there is no {noun.kind}{where} on {self.lookup.catalog.site}"
             self.diagnostics.error("unknown-checkpoint", message, noun.span, "name another floor")
             return None
+        if noun.count is not None and noun.count != len(found):
+            names = alternatives((f"{c.name} (#{c.id})" for c in found[:6]), "and")
+            message = f"`{self.said(noun.span)}`: there are {len(found)}, {names}"
+            self.diagnostics.error("ambiguous-checkpoint", message, noun.span, "name them")
+            return None
         return found
 
     def _the_one(self, noun: TheOne) -> Found:
         last = [c for c in self.memory.last if agrees(c, noun.kind)]
+        if noun.plural:
+            everything = AllOf(span=noun.span, kind=noun.kind, floors=noun.floors)
+            return last if len(last) > 1 and not noun.floors else self._of_kind(everything)
         if not noun.floors and len(last) == 1:
             return last
         if not noun.floors and not last:
@@ -228,3 +243,10 @@ class NounResolver:
         line = self.diagnostics.source.lines[first.line - 1]
         end = last if last is not None and last.line == first.line else first
         return line[first.column - 1 : end.column - 1 + end.length]
+
+
+def _is_told(noun: Noun, inside: list[CheckpointInfo]) -> bool:
+    """Whether a phrase without a name tells which of these are meant."""
+    if not isinstance(noun, TheOne) or noun.floors:
+        return False
+    return bool(inside) if noun.plural else len(inside) == 1

@@ -30,6 +30,8 @@ _ASKING = frozenset(
         "QUANTITY",
         "TIMES",
         "AT_MOST",
+        "MOST_TIME",
+        "MOST_TIMES",
         "AT_LEAST",
         "WITHIN",
         "LATEST",

@@ -30,7 +30,7 @@ _ANY_LABEL = re.compile(r"[^\W\d_][\w'/-]*\.?(?:\s+[\w'/-]+){0,6}\s*:(?=\s|$)")
 _PROSE = frozenset(
     ["designation", "anomaly_specification", "real_time_reporting", "after_mission_report", "site"]
 )
-_WHOLE = re.compile(r"(?:(?:ANY_ORDER|THIS_ORDER|(?:AT_MOST|WITHIN) DURATION(?: TOTAL)?) )+")
+_WHOLE = re.compile(r"(?:(?:ANY_ORDER|THIS_ORDER|(?:MOST_TIME|WITHIN DURATION)(?: TOTAL)?) )+")
 _JOINTS = frozenset(["NEXT", "JOINT", "AND_NOUN", "AND_AMOUNT", "AND_TEST", "AND_NUMBER"])
 _INTRODUCTION = re.compile(r"(?:WORD )?(?:TO )?(?:MEASURE )?(?:ALL )?KIND (?:ANY|THIS)_ORDER ")
 _SAME = {"start_area": "initial_position", "end_area": "end_of_mission"}
@@ -225,8 +225,8 @@ class Fields:
             self._is_new("max_duration", "none", value)
             return
         found = self.understanding.words(value)
-        lengths = [w for w in found if w.type == "DURATION"]
-        others = [w for w in found if w.type not in ("DURATION", "AT_MOST", "TOTAL")]
+        lengths = [w for w in found if w.type in ("DURATION", "MOST_TIME")]
+        others = [w for w in found if w not in lengths and w.type != "TOTAL"]
         if len(lengths) != 1 or others:
             at = _of(value, others[0]) if lengths and others else value
             message = f"`{value.content}` is no duration"

@@ -43,6 +43,17 @@ def _between(part: Part) -> Between:
     return Between(span=part.span, low=low, high=high, inclusive=part.has("FROM"))
 
 
+def _exactly(part: Part) -> Between:
+    amount = part.the(Amount)
+    return Between(span=part.span, low=amount, high=amount, inclusive=True)
+
+
+def _beyond(part: Part) -> Compared:
+    """`75 % or more`."""
+    relation = Relation.AT_LEAST if part.has("OR_MORE") else Relation.AT_MOST
+    return Compared(span=part.span, relation=relation, bound=part.the(Amount))
+
+
 def _predicate(part: Part) -> tuple[Predicate, bool]:
     negated = part.has("NOT")
     state = part.word("STATE")
@@ -52,7 +63,8 @@ def _predicate(part: Part) -> tuple[Predicate, bool]:
     elif state is not None or part.has("FAILS"):
         found = InState(span=part.span, state=State(state.value) if state else State.FAILED)
     else:
-        found = next(c for c in part.children if isinstance(c, Compared | Between))
+        plain = next((c for c in part.children if isinstance(c, Compared | Between)), None)
+        found = plain or _exactly(part)
     return found, negated
 
 
@@ -128,6 +140,8 @@ def _condition(part: Part) -> Condition:
 RULES: dict[str, Make] = {
     "compared": _compared,
     "between": _between,
+    "exactly": _exactly,
+    "beyond": _beyond,
     "predicate": _predicate,
     "age": _age,
     "stale": _stale,

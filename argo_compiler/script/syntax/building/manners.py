@@ -59,9 +59,12 @@ def _between_times(part: Part) -> Manner:
 
 
 def _at_most(part: Part) -> Manner:
-    if word := part.word("TIMES"):
+    if word := part.word("MOST_TIMES"):
         return Manner(at_most=whole(part, word.value))
-    return Manner(time_limit=_seconds(part))
+    word = part.word("MOST_TIME", "DURATION")
+    assert word is not None
+    limit = seconds(part, word)
+    return Manner(mission_time=limit) if part.has("TOTAL") else Manner(time_limit=limit)
 
 
 def _priority(part: Part) -> Manner:

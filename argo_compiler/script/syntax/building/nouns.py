@@ -83,17 +83,19 @@ def _floors(part: Part) -> tuple[FloorName, ...]:
 
 def _all(part: Part) -> AllOf:
     kind, _ = _kind(part.word("KIND"))
-    return AllOf(span=part.span, kind=kind or Kind.CHECKPOINT, floors=_floors(part))
+    number = part.word("NUMBER")
+    count = 2 if part.has("BOTH") else whole(part, number.value) if number else None
+    return AllOf(span=part.span, kind=kind or Kind.CHECKPOINT, floors=_floors(part), count=count)
 
 
 def _the_one(part: Part) -> TheOne:
-    kind, _ = _kind(part.word("KIND"))
-    return TheOne(span=part.span, kind=kind or Kind.CHECKPOINT, floors=_floors(part))
+    kind, plural = _kind(part.word("KIND"))
+    return TheOne(span=part.span, kind=kind or Kind.CHECKPOINT, floors=_floors(part), plural=plural)
 
 
 def _pronoun(part: Part) -> Pronoun:
     value = part.word("VALUE")
-    return Pronoun(span=part.span, every=part.has("THEM"), quantity=_quantity(value))
+    return Pronoun(span=part.span, every=part.has("THEM", "BOTH"), quantity=_quantity(value))
 
 
 def _nouns(part: Part) -> Nouns:

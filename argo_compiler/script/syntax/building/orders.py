@@ -6,7 +6,7 @@ from argo_compiler.script.syntax.building.manners import combined
 from argo_compiler.script.syntax.building.part import Make, Part
 from argo_compiler.script.syntax.tree import orders
 from argo_compiler.script.syntax.tree.manner import Manner
-from argo_compiler.script.syntax.tree.nouns import Nouns
+from argo_compiler.script.syntax.tree.nouns import Nouns, Pronoun
 from argo_compiler.script.syntax.tree.orders import Order, Side
 from argo_compiler.script.syntax.tree.places import (
     AreaLocation,
@@ -57,10 +57,11 @@ def _measure(part: Part) -> Order:
 
 
 def _go(part: Part) -> Order:
-    return _towards(part, _where(part))
+    return _towards(part, where(part))
 
 
-def _where(part: Part) -> Location | FloorName:
+def where(part: Part) -> Location | FloorName:
+    """The place that a rule names."""
     for child in part.children:
         if isinstance(child, tuple):
             (floor, *others) = child
@@ -90,13 +91,13 @@ def _home(part: Part) -> Order:
 
 
 def _start(part: Part) -> Order:
-    where = _where(part)
-    if isinstance(where, FloorName):
+    place = where(part)
+    if isinstance(place, FloorName):
         hint = "name a starting area or a place: `start in starting area 1`"
         part.error("start", "a mission starts at a place", hint)
         return orders.Start(span=part.span, where=None)
     ends = part.has("END")
-    return orders.Start(span=part.span, manner=_manner(part), where=where, ends_there=ends)
+    return orders.Start(span=part.span, manner=_manner(part), where=place, ends_there=ends)
 
 
 def _start_here(part: Part) -> Order:
@@ -115,7 +116,20 @@ def _word(part: Part) -> Order:
 
 
 def _repeat(part: Part) -> Order:
-    return orders.Repeat(span=part.span, manner=_manner(part), steps=part.first(Steps))
+    return orders.Repeat(
+        span=part.span,
+        manner=_manner(part),
+        steps=part.first(Steps),
+        last=part.first(Pronoun) is not None,
+    )
+
+
+def _wait(part: Part) -> Order:
+    here = all(isinstance(c, Word | Manner) for c in part.children)
+    place = None if here else where(part)
+    manner = _manner(part)
+    person = manner is not None and manner.person
+    return orders.Wait(span=part.span, manner=manner, where=place, person=person)
 
 
 def _things(part: Part) -> list[Nouns | Steps]:
@@ -128,6 +142,8 @@ def _side(part: Part) -> Side:
 
 def _add(part: Part) -> Order:
     what, anchor = _things(part)
+    if isinstance(part.children[0], Side):  # `after step 2, insert checkpoint 20`
+        what, anchor = anchor, what
     assert isinstance(what, Nouns)
     return orders.Add(
         span=part.span, manner=_manner(part), what=what, side=part.the(Side), anchor=anchor
@@ -136,6 +152,10 @@ def _add(part: Part) -> Order:
 
 def _delete(part: Part) -> Order:
     return orders.Delete(span=part.span, what=_things(part)[0])
+
+
+def _spare(part: Part) -> Order:
+    return orders.Spare(span=part.span, what=part.the(Nouns))
 
 
 def _move(part: Part) -> Order:
@@ -162,9 +182,8 @@ RULES: dict[str, Make] = {
     "start": _start,
     "start_here": _start_here,
     "patrol": _patrol,
-    "wait": lambda part: orders.Wait(
-        span=part.span, manner=_manner(part), person=part.has("FOR_PERSON")
-    ),
+    "wait": _wait,
+    "spare": _spare,
     "word": _word,
     "retry": lambda part: orders.Retry(span=part.span, manner=_manner(part)),
     "repeat": _repeat,

@@ -88,7 +88,7 @@ def _both(first: Measure, second: Measure) -> Measure:
 
 
 def _max_duration(part: Part) -> facts.Fact:
-    word = part.word("DURATION")
+    word = part.word("DURATION", "MOST_TIME")
     assert word is not None
     return facts.MaxDuration(span=part.span, seconds=figures.seconds(part, word))
 

@@ -29,6 +29,8 @@ class Manner:
     """s to wait before it"""
     time_limit: float | None = None
     """s"""
+    mission_time: float | None = None
+    """s, of the whole mission"""
     reading_limit: float | None = None
     """s"""
     optional: bool = False

@@ -52,6 +52,8 @@ class AllOf(Node):
     kind: Kind
     floors: tuple[FloorName, ...] = ()
     """none: the whole site"""
+    count: int | None = None
+    """how many there are, if that is said: `both valves`"""
     quantity: Quantity | None = None
 
 
@@ -61,6 +63,8 @@ class TheOne(Node):
 
     kind: Kind
     floors: tuple[FloorName, ...] = ()
+    plural: bool = False
+    """`the valves on the third floor`"""
     quantity: Quantity | None = None
 
 

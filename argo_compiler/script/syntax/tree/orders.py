@@ -76,6 +76,8 @@ class Wait(Order):
     event: EventKind | None = None
     person: bool = False
     """for the operator"""
+    where: Location | FloorName | None = None
+    """None: where it is"""
 
 
 class Word(StrEnum):
@@ -126,6 +128,8 @@ class Repeat(Order):
 
     steps: Steps | None
     """None: all"""
+    last: bool = False
+    """`repeat this`: what was said last"""
 
 
 class Side(StrEnum):
@@ -149,6 +153,13 @@ class Delete(Order):
     """`Delete the measuring of checkpoint #2`."""
 
     what: Nouns | Steps
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Spare(Order):
+    """`Don't check checkpoint 19`."""
+
+    what: Nouns
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

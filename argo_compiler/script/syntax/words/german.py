@@ -231,6 +231,7 @@ NOUNS: Phrases = {
         "dockingstation|docking-station|docking station|dock|ladestation|dockstation|andockstation|"
         "seine dockingstation|seiner dockingstation"
     ),
+    ("PARK", None): "park|parke|parkt|parken",
     ("ALL", None): "alle{n}|aller|sämtliche{n}|jedes|jeden|jede|jeder|jedem",
     ("EXCEPT", None): (
         "außer|ausser|mit ausnahme von|mit ausnahme|bis auf|ausgenommen|abgesehen von|aber nicht|"
@@ -240,10 +241,8 @@ NOUNS: Phrases = {
         "es|ihn|sie … liegt|sie … ist|sie … steigt|sie … fällt|sie … sinkt|er … liegt|er … ist|"
         "er … steigt|er … fällt|er … sinkt"
     ),
-    ("THEM", None): (
-        "beide{n}|sie beide|alle beide|sie … liegen|sie … sind|sie … steigen|sie … fallen|"
-        "sie … sinken"
-    ),
+    ("BOTH", None): "beide{n}|sie beide|alle beide",
+    ("THEM", None): ("sie … liegen|sie … sind|sie … steigen|sie … fallen|sie … sinken"),
     (
         "THIS",
         None,
@@ -361,6 +360,7 @@ CONDITIONS: Phrases = {
     ("EVENT", EventKind.POSITIVE_OBSTACLE): (
         "positives hindernis|positiven hindernis|positivem hindernis|positive hindernisse"
     ),
+    ("EVENT", None): "hindernis{se}",
     ("EVENT", EventKind.NEGATIVE_OBSTACLE): (
         "negatives hindernis|negativen hindernis|negativem hindernis|negative hindernisse"
     ),
@@ -418,7 +418,11 @@ MANNERS: Phrases = {
         "nochmal|noch mal|noch einmal|nochmals|erneut|abermals|wieder|ein weiteres mal|"
         "ein zweites mal|wiederum"
     ),
+    ("TIMES", Figure(3.0)): "dreimal",
     ("MORE_WORD", None): "weitere{n}|zusätzliche{n}|weiteres",
+    ("OR_MORE", None): "oder [mehr/höher/darüber]",
+    ("OR_LESS", None): "oder [weniger/niedriger/darunter]",
+    ("EXACTLY", None): "genau|exakt",
     ("TIME_WORD", None): "mal|male|malen|- mal|runde{n}|durchgänge{n}|durchgang",
     (
         "WITHIN",

@@ -10,9 +10,24 @@ VERBS = (
     *("MEASURE", "KEEP_MEASURING", "GO", "HOME", "START", "START_HERE", "PATROL", "WAIT", "PAUSE"),
     *("END", "ABORT", "GO_ON", "RECHARGE", "REPORT", "REPEAT", "DO_FOLLOWING", "ADD", "DELETE"),
     *("REPLACE", "MOVE", "JUMP", "RETRY", "DOCK", "DONE", "MEET"),
+    *("PARK", "SPARE"),
 )
-_NOUNS = ["KIND", "HASH", "IDENT", "STRING", "ALL", "IT", "THEM", "THIS", "OF", "VALUE"]
-_TESTS = ["IS", "GREATER", "LESS", "AT_LEAST", "AT_MOST", "BETWEEN", "STATE", "NOT", "FAILS"]
+_NOUNS = [
+    *("KIND", "HASH", "IDENT", "STRING", "ALL", "IT", "THEM", "BOTH", "THIS", "OF", "VALUE"),
+    "EVERYTHING",
+]
+_TESTS = [
+    "IS",
+    "GREATER",
+    "LESS",
+    "AT_LEAST",
+    "AT_MOST",
+    "BETWEEN",
+    "EXACTLY",
+    "STATE",
+    "NOT",
+    "FAILS",
+]
 _PLACES = ["FLOOR", "FLOOR_NAME", "ORDINAL", "AREA", "PLACE"]
 _JOINED = {
     **dict.fromkeys(VERBS, "DO"),
@@ -38,15 +53,14 @@ def joined(words: list[Word]) -> list[Word]:
         name = _is_name(words, i)
         if joints:
             said = " ".join(joint.value for joint in joints)
-            limits = word.type == "AT_MOST" and _limits(words[i + 1 : i + 2])
-            kind = None if limits else _type(said, word)
+            kind = _type(said, word)
             if kind == "COLON" and word.type == "KIND" and _is_named(found):
                 kind = "NAMELY"
             if name:
                 kind = "NEXT"
             elif named == len(found) - 1 >= 0:
                 kind = "COLON"
-            if kind is not None:
+            if kind is not None and (found or "or" in said):
                 found.append(Word(kind, said, joints[0].start, joints[-1].end))
             word = Word(word.type, word.value, word.start, word.end, said)
             joints = []
@@ -61,11 +75,6 @@ def _is_name(words: list[Word], i: int) -> bool:
         return False
     after = words[i + 1] if i + 1 < len(words) else None
     return after is not None and after.type == "JOINT" and after.value == ":"
-
-
-def _limits(after: list[Word]) -> bool:
-    """Whether `at most` is said of rounds or of a time, not of a value."""
-    return bool(after) and after[0].type in ("TIMES", "DURATION")
 
 
 def _is_named(found: list[Word]) -> bool:

@@ -1,13 +1,19 @@
 """The words of a language: which phrase is which terminal of the grammar, and what it means."""
 
+import re
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field
+from itertools import product
 from typing import Any
 
 Entry = tuple[str, Any]
 """a terminal and its value"""
 Phrases = Mapping[Entry, str]
-"""by entry, its phrases, separated by bars; `check{s}` is `check` and `checks`"""
+"""by entry, its phrases, separated by bars; `check{s}` is `check` and `checks`, `[a/b] c` is `a c`
+and `b c`"""
+
+
+_ARTICLES = frozenset(["the", "a", "an"])
 
 
 @dataclass(slots=True)
@@ -55,7 +61,9 @@ class Lexicon:
         for phrase in phrases:
             head, _, end = phrase.partition(" … ")
             node = self.root
-            for piece in head.split():
+            for k, piece in enumerate(head.split()):
+                if k and piece in _ARTICLES & self.passed_over:
+                    continue  # wherever it stands within a phrase
                 node = node.next.setdefault(folded(piece), Node())
             last = tuple(folded(piece) for piece in end.split())
             there = node.parted.get(last) if end else node.entry
@@ -80,17 +88,19 @@ def folded(piece: str) -> str:
     return piece if piece.isascii() else piece.translate(_FOLDED)
 
 
+_GROUP = re.compile(r"\{(.*?)\}|\[(.*?)\]")
+
+
 def expand(text: str) -> list[str]:
-    """The phrases that `text` lists: `check{s}` is two, `a|b` are two."""
+    """The phrases that `text` lists: `check{s}` is two, `a|b` are two, `[a/b] c` are two."""
     found: list[str] = []
     for phrase in text.split("|"):
-        forms = [""]
-        rest = phrase.strip()
-        while rest:
-            head, opening, rest = rest.partition("{")
-            inner, _, rest = rest.partition("}") if opening else ("", "", "")
-            forms = [f + head for f in forms]
-            if opening:
-                forms += [f + inner for f in forms]
-        found += [" ".join(f.split()) for f in forms]
+        # Literal text, what may be there, and what is one of several, one after the other.
+        parts = _GROUP.split(phrase)
+        choices = [
+            [part] if k % 3 == 0 else ["", part] if k % 3 == 1 else part.split("/")
+            for k, part in enumerate(parts)
+            if part is not None
+        ]
+        found += dict.fromkeys(" ".join("".join(form).split()) for form in product(*choices))
     return found

@@ -11,7 +11,8 @@ from argo_compiler.script.syntax.words.lengths import Length, told
 from argo_compiler.script.syntax.words.numbers import Figure, compose
 from argo_compiler.script.syntax.words.word import Word
 
-_RELATIONS = frozenset(["GREATER", "LESS", "AT_LEAST", "AT_MOST", "BETWEEN"])
+_RELATIONS = frozenset(["GREATER", "LESS", "AT_LEAST", "AT_MOST", "BETWEEN", "EXACTLY"])
+_LIMITS = {"TIMES": "MOST_TIMES", "DURATION": "MOST_TIME"}
 
 
 def merged(words: list[Word]) -> list[Word]:
@@ -32,11 +33,15 @@ def merged(words: list[Word]) -> list[Word]:
         elif word.type == "ORDINAL" and _tells_order(words, i):
             i += 1
             continue  # `checkpoint 13 first, then ...`
+        elif word.type == "UNIT_S" and after is not None and after.type == "NUMBER":
+            length = _length(after.value, word.value)  # `not before minute 10`
+            word = Word("DURATION", length, word.start, after.end)
+            i += 1
         elif word.type == "UNIT_S" and word.value > 1:
             word = Word("DURATION", Length(word.value, word.value), word.start, word.end)
         i += 1
         _add(word, after, found)
-    return _last_if(found)
+    return _last_if(_limited(found))
 
 
 def _last_if(words: list[Word]) -> list[Word]:
@@ -53,6 +58,27 @@ def _last_if(words: list[Word]) -> list[Word]:
     if any(word.type == "IF" for word in words[:at]):
         return words
     return [*words[:at], replace(words[at], type="IF_ONLY"), *words[at + 1 :]]
+
+
+def _limited(words: list[Word]) -> list[Word]:
+    """The words with limits in one: `at most 10 times`, `50 minutes at most`."""
+    if not any(word.type == "AT_MOST" for word in words):
+        return words
+    found: list[Word] = []
+    i = 0
+    while i < len(words):
+        word = words[i]
+        after = words[i + 1] if i + 1 < len(words) else None
+        if word.type == "AT_MOST" and after is not None and after.type in _LIMITS:
+            found.append(Word(_LIMITS[after.type], after.value, word.start, after.end))
+            i += 1
+        elif word.type == "AT_MOST" and found and found[-1].type in _LIMITS:
+            last = found.pop()
+            found.append(Word(_LIMITS[last.type], last.value, last.start, word.end))
+        else:
+            found.append(word)
+        i += 1
+    return found
 
 
 def _tells_order(words: list[Word], i: int) -> bool:
@@ -120,6 +146,8 @@ def _counted(word: Word, after: Word) -> Word | None:
             return Word("SPEED", (figure, after.value), word.start, after.end)
         case "UNIT":
             return Word("QUANTITY", (figure, after.value), word.start, after.end)
+        case "ORDINAL" if after.value == 2 and figure.value == 1:  # `one second`
+            return Word("DURATION", Length(1.0), word.start, after.end)
         case _:
             return None
 
@@ -165,8 +193,22 @@ def _add(word: Word, after: Word | None, found: list[Word]) -> None:
         word = Word("DURATION", Length(longer), before.start, word.end)
     elif word.type == "SPEED" and last is not None and last.type in ("AT", "BY"):
         found.pop()
+    elif word.type == "MORE_WORD" and last is not None and last.type == "TIMES":
+        found[-1] = Word("MORE", last.value, last.start, word.end)  # `twice more`
+        return
+    elif word.type == "TIME_WORD" and last is not None and last.type == "MORE_WORD":
+        if len(found) > 1 and found[-2].type == "NUMBER":  # `two more times`
+            found.pop()
+            word = Word("MORE", found[-1].value, found.pop().start, word.end)
     elif word.type == "MEASURE" and after is not None and after.type in _RELATIONS:
         word = replace(word, type="IS", value=None)
+    elif word.type in ("NUMBER", "QUANTITY") and [w.type for w in found[-2:]] == ["IS", "AT"]:
+        found.pop()  # `is at 5 bar`
+    elif word.type == "MEASURE" and last is not None and last.type == "NOT":
+        found.pop()
+        word = Word("SPARE", None, last.start, word.end)  # `don't check checkpoint 19`
+    elif word.type in VERBS and last is not None and last.type == "IT" and _begins(found):
+        found.pop()  # `it reads checkpoint 4`
     elif word.type == "IF" and last is not None and last.type != "JOINT":
         word = replace(word, type="IF_ONLY")
     elif word.type == "UNLESS" and (last is None or last.value in (";", ".")):
@@ -177,6 +219,11 @@ def _add(word: Word, after: Word | None, found: list[Word]) -> None:
     elif word.type in ("ON", "IN") and after is not None and after.type == "EVENT":
         word = replace(word, type="IF")
     found.append(word)
+
+
+def _begins(found: list[Word]) -> bool:
+    """Whether the last word begins a sentence or what is joined to one."""
+    return len(found) < 2 or found[-2].type == "JOINT"
 
 
 def _hours_and(hours: Word, minutes: Word, after: Word | None) -> bool:

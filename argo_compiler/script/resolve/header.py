@@ -86,5 +86,6 @@ def _choice(
     elif option is None and not offered:
         message = f"this names no starting area for the mission's {which}"
         diagnostics.error("no-area", message, span, "write, say, `starting area 1`", remedies)
-    area = option if option is not None else next(iter(offered), None)
+    chosen = option if option in offered or not offered else None
+    area = chosen if chosen is not None else next(iter(offered), None)
     return AreaChoice(area, span, said=True)

@@ -99,19 +99,19 @@ class Cells:
         line, text = lines[i], lines[i].strip()
         if _MARKED.match(line.content) or self.fields.is_field(text):
             return False
+        if line.content[0] == "\t" and self._before_cell(lines, i):
+            return True
         if self.understanding.fits(text):
             return False
-        if line.content[0].isspace() and above is not None:
-            return True
-        if not self._before_cell(lines, i):
-            return False
-        if line.content[0].isspace() or above is None:
-            return line.content[0].isspace()
-        return text.content[0].isupper() and not text.content.endswith(_SENTENCE_ENDS)
+        if line.content[0].isspace():
+            return above is not None or self._before_cell(lines, i)
+        ends = text.content.endswith(_SENTENCE_ENDS) or ":" in text.content
+        opens = above is not None and text.content[0].isupper() and not ends
+        return opens and self._before_cell(lines, i, 1)
 
-    def _before_cell(self, lines: Sequence[ScriptText], i: int) -> bool:
+    def _before_cell(self, lines: Sequence[ScriptText], i: int, most: int = 3) -> bool:
         """Whether the next line that has a label, a few lines on, is a cell's."""
-        for k in range(i + 1, min(i + 4, len(lines))):
+        for k in range(i + 1, min(i + 1 + most, len(lines))):
             text = lines[k].strip()
             if not text.content or _MARKED.match(text.content):
                 return False

@@ -30,12 +30,15 @@ _ANY_LABEL = re.compile(r"[^\W\d_][\w'/-]*\.?(?:\s+[\w'/-]+){0,6}\s*:(?=\s|$)")
 _PROSE = frozenset(
     ["designation", "anomaly_specification", "real_time_reporting", "after_mission_report", "site"]
 )
+_AREAS = frozenset(["initial_position", "end_of_mission"])
+_CELLS = frozenset(
+    [*_AREAS, "anomaly_specification", "real_time_reporting", "after_mission_report"]
+)
 _WHOLE = re.compile(r"(?:(?:ANY_ORDER|THIS_ORDER|(?:MOST_TIME|WITHIN DURATION)(?: TOTAL)?) )+")
 _JOINTS = frozenset(["NEXT", "JOINT", "AND_NOUN", "AND_AMOUNT", "AND_TEST", "AND_NUMBER"])
 _INTRODUCTION = re.compile(r"(?:WORD )?(?:TO )?(?:MEASURE )?(?:ALL )?KIND (?:ANY|THIS)_ORDER ")
 _SAME = {"start_area": "initial_position", "end_area": "end_of_mission"}
 """fields that say the same"""
-_AREAS = frozenset(["initial_position", "end_of_mission"])
 
 
 @dataclass
@@ -65,7 +68,7 @@ class Fields:
     def is_cell(self, text: ScriptText) -> bool:
         """Whether a line begins with the label of a field that may have several lines."""
         label = self.prose.label.match(text.content)
-        return label is not None and label.lastgroup in _PROSE | _AREAS
+        return label is not None and label.lastgroup in _CELLS
 
     def relabelled(self, text: ScriptText) -> ScriptText:
         """The text with a misspelt label put right."""
@@ -116,7 +119,7 @@ class Fields:
                 return value
             end = self._end(name, value.content)
             rest = value[end:].strip()
-            said = value[: len(value.content[:end].rstrip(" ,;."))]
+            said = value[: len(value.content[:end].rstrip(" ,;" if name in _PROSE else " ,;."))]
             self._read(name, said, text[: label.end()])
             text = rest[len(rest.content) - len(rest.content.lstrip(" ,;.")) :]
         return text

@@ -172,9 +172,9 @@ def _goes_on(item: Item, line: Line, complete: Callable[[ScriptText], bool]) -> 
     ended = item.text.content.endswith((".", "!", "?"))
     if whole and rest:
         return item.line.mark is Mark.NONE and ended
-    if line.heading and (ended or whole):
+    if ended or (whole and line.heading):
         return False
-    return not rest or (not ended and complete(join([last, line.text])))
+    return not (whole or rest) or complete(join([last, line.text]))
 
 
 def _joined(above: ScriptText, below: ScriptText, words: Collection[str]) -> ScriptText:

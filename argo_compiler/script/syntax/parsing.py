@@ -128,7 +128,14 @@ class _Parser:
         """Whether a text makes sense by itself."""
         if self.fields.is_field(text):
             return True
-        return all(self.understanding.fits(sentence) for sentence in sentences(text))
+        return all(self._fits(sentence) for sentence in sentences(text))
+
+    def _fits(self, sentence: ScriptText) -> bool:
+        understanding = self.understanding
+        return understanding.fits(sentence) or (
+            "WORD" in understanding.types(sentence)
+            and understanding.respelled(sentence, quiet=True) is not None
+        )
 
     # ---- lines
 
@@ -224,6 +231,11 @@ class _Parser:
                 reading = self.understanding.read(text)
         if isinstance(reading, StumbleError):
             return self._not_understood(text, item, reading)
+        joint = self.understanding.unfinished(text)
+        if joint is not None:
+            message = f"nothing stands behind `{joint.content}`"
+            hint = "say what follows, or leave it out"
+            self.diagnostics.error("unfinished", message, joint.span(), hint)
         return [self._node(text, reading)]
 
     def _node(self, text: ScriptText, reading: Reading) -> Said:

@@ -34,6 +34,11 @@ class Understanding:
         """words of the site's names, in lower case"""
         self.diagnostics = diagnostics
         self.grammar = sentence_grammar()
+        joints = [phrase for word in ("and", "or") for phrase in self._phrases("JOINT", word)]
+        self._joint = re.compile(rf"\b(?:{'|'.join(joints)})\s*$", re.IGNORECASE)
+
+    def _phrases(self, type_: str, value: str) -> list[str]:
+        return self.language.lexicon.phrases.get((type_, value), [])
 
     def words(self, text: ScriptText) -> list[Word]:
         return words(text.content, self.language.lexicon)
@@ -54,7 +59,9 @@ class Understanding:
         found = self.words(text)
         if not found:
             return text.content != ""  # words that mean nothing
-        if any(word.type == "WORD" for word in found):
+        if any(word.type == "WORD" for word in found) or self.unfinished(text) is not None:
+            return False
+        if text.content.endswith(","):
             return False
         try:
             tree = self.grammar.tree(tuple(word.type for word in found))
@@ -62,6 +69,11 @@ class Understanding:
             return False
         last = found[-1]
         return not (last.type == "KIND" and not last.value[2]) and not _is_amend(tree)
+
+    def unfinished(self, text: ScriptText) -> ScriptText | None:
+        """The joint with which a text ends, if it does."""
+        joint = self._joint.search(text.content)
+        return None if joint is None else text[joint.start() : joint.end()]
 
     def node(self, text: ScriptText, reading: Reading) -> Sentence | Fact | None:
         """What a sentence says; None with an error."""
@@ -81,11 +93,12 @@ class Understanding:
 
     # ---- slips
 
-    def respelled(self, text: ScriptText) -> ScriptText | None:
-        """The text with misspelt words put right, if it makes sense then and in one way only."""
+    def respelled(self, text: ScriptText, quiet: bool = False) -> ScriptText | None:
+        """The text with misspelt words put right, if it makes sense then and in one way only; with
+        a warning for each, unless it is to be quiet."""
         slips: list[tuple[Word, tuple[str, ...]]] = []
         for word in self.words(text):
-            if word.type == "WORD":
+            if word.type == "WORD" and str(word.value) not in self.known:
                 meant = candidates(text.content[word.start : word.end], self.known)
                 if meant:
                     slips.append((word, meant))
@@ -103,7 +116,7 @@ class Understanding:
         if len(found) != 1:
             return None
         ((fixed, chosen),) = found.values()
-        for (word, _), meant_word in zip(slips, chosen, strict=True):
+        for (word, _), meant_word in zip(slips, () if quiet else chosen, strict=not quiet):
             self._warn(text, word.start, word.end, meant_word)
         return fixed
 

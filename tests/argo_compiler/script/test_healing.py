@@ -5,7 +5,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from argo_compiler.diagnostics import Severity
-from argo_compiler.script import heal
+from argo_compiler.script.syntax.healing import heal
 
 WORDS = """
     a and anomaly check checkpoint connected docked duration gauge in is mission mission's normal on
@@ -111,8 +111,6 @@ def test_intact_letters_come_before_doubled_ones_and_those_before_lost_ones() ->
         ("“Starting area” 1", '"Starting area" 1'),
         ("the\u00a0value", "the value"),
         ("checkpoint **after** it", "checkpoint after it"),
-        ("# Mission", "Mission"),
-        ("- 1. Check", "1. Check"),
         ("val\u00adue", "value"),
         ("ﬁrst ﬂoor", "first floor"),
         ("value  \t ", "value"),

@@ -5,7 +5,7 @@ from pathlib import Path
 import pytest
 
 from argo_compiler.catalog import Catalog
-from argo_compiler.diagnostics import DiagnosticError
+from argo_compiler.diagnostics import DiagnosticError, Severity
 from argo_compiler.errors import ArgoError
 from argo_compiler.script import import_script, parse, read_script
 from argo_compiler.script.syntax.parsing import MAX_LINES
@@ -70,8 +70,6 @@ def test_no_file(tmp_path: Path) -> None:
     [
         ("", "script.empty"),
         ("\ufeff \n\t\r\n", "script.empty"),
-        ("hello world", "script.unrecognised"),
-        ("x" * 100_000, "script.unrecognised"),
         ("\n" * 20_000, "script.empty"),
         ("Mission Protocol\n" * (MAX_LINES + 1), "script.too-long"),
     ],
@@ -83,14 +81,25 @@ def test_what_is_no_script(text: str, code: str) -> None:
     assert error.code == code
 
 
-def test_an_unrecognised_script_shows_how_each_kind_begins() -> None:
-    with pytest.raises(DiagnosticError, match=r"(?s)Mission's designation.*Mission Protocol #2"):
-        parse("\n\nDear robot")
+@pytest.mark.parametrize(
+    ("text", "code"),
+    [
+        ("hello world", "script.nothing-to-do"),
+        ("\n\nDear robot", "script.nothing-to-do"),
+        ("x" * 100_000, "script.long-line"),
+    ],
+)
+def test_what_asks_for_nothing(text: str, code: str, catalog: Catalog) -> None:
+    with pytest.raises(DiagnosticError) as caught:
+        import_script(text, catalog)
+    errors = [d for d in caught.value.diagnostics if d.severity is Severity.ERROR]
+    assert [error.code for error in errors] == [code]
 
 
 def test_too_many_errors_end_the_reading(catalog: Catalog) -> None:
     text = "Mission Protocol\n" + "1. gibberish\n" * 15_000
     with pytest.raises(DiagnosticError) as caught:
         import_script(text, catalog)
-    assert len(caught.value.diagnostics) == 102
-    assert caught.value.diagnostics[-1].code == "script.too-many-errors"
+    errors = [d for d in caught.value.diagnostics if d.severity is Severity.ERROR]
+    assert len(errors) == 102
+    assert errors[-1].code == "script.too-many-errors"

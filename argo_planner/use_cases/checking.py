@@ -21,6 +21,7 @@ from argo_compiler.files.reading import FileError
 from argo_compiler.stages import stage
 from argo_env.planning.opening import OpenedSite
 from argo_env.planning.poses_to_read_from import unseen_from_poses
+from argo_env.planning.speeds_to_drive_at import too_fast
 from argo_planner.use_cases.importing import SourceKind, Upload, kind_of, load, refuse_areas
 
 MOST_PLACES = 1_000
@@ -65,6 +66,7 @@ def check_source(
             found += analyse(loaded.mission, catalog, travel).diagnostics
         if site is not None:
             found += tuple(unseen_from_poses(loaded.mission, site))
+            found += tuple(too_fast(loaded.mission, site.navigator.robot))
     return by_place((*loaded.diagnostics, *loaded.placed(found)))
 
 

@@ -6,6 +6,10 @@ SITE = {
     "site.duplicate-key": error(
         "A mapping in the site's file has the same key twice.", "Remove one of the two."
     ),
+    "site.faster-than-robot": warning(
+        "A task asks for a speed that the robot is not known to drive at.",
+        "Ask for at most the robot's own speed.",
+    ),
     "site.not-seen-from-pose": warning(
         "A task measures from a pose that does not see its checkpoint where the plan has it.",
         "Give another pose, or none: then the robot chooses one.",

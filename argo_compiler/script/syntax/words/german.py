@@ -100,9 +100,6 @@ VERBS: Phrases = {
         "warte|wartet|warten {sie}|warte … ab|wartet … ab|warten sie … ab|abwarten|bleibe|bleibt|"
         "bleib|bleiben {sie}|bleib{e} stehen|bleibt stehen|verweile|verweilt|verweilen"
     ),
-    ("FOR_PERSON", None): (
-        "auf bediener|auf operator|auf jemanden|auf person|auf aufsicht|für bediener"
-    ),
     ("PAUSE", None): (
         f"{_forms('pausier stopp')}|{_parted('an', 'halt halte hält haltet halten')}|halt|"
         "halte die runde an|unterbrich die runde|unterbricht die runde|unterbreche die runde|"
@@ -151,6 +148,8 @@ VERBS: Phrases = {
         "ergänze|ergänzt|ergänzen {sie}"
     ),
     ("DELETE", None): (
+        "ignoriere|ignoriert|ignorieren|überspringe|überspringt|überspringen|"
+        f"{_parted('aus', 'lass lasse lässt lassen')}|"
         f"lösche|löscht|löschen {{sie}}|entferne|entfernt|entfernen {{sie}}|"
         f"{_forms('streich')}|{_parted('heraus', 'nimm nimmt nehmt nehmen')}"
     ),
@@ -162,7 +161,7 @@ VERBS: Phrases = {
     ("JUMP", None): (
         "spring{e} zu|springt zu|springen sie zu|weiter mit|fahre fort mit|fährt fort mit|"
         "mach{e} weiter mit|macht weiter mit|weitermachen mit|weiter bei|fortfahren mit|"
-        "geh{e} weiter zu|weiter zu|überspringe alles bis"
+        "geh{e} weiter zu|weiter zu|überspringe alles bis|überspringe bis"
     ),
     ("RETRY", None): (
         "versuche es {noch}|versuch es {noch}|versuchen sie es {noch}|es versuchen|"

@@ -46,6 +46,12 @@ def _told(words: list[Word], i: int) -> list[Word]:
             after in ("VALUE", "OF", "BATTERY") and _then(words, i + 2) in _RELATIONS
         ):
             return [replace(word, type="IF")]
+        case "MEASURE" if after == "NOT":
+            return [replace(word, type="SPARE")]
+        case "NOT" if last == "MEASURE":
+            return []
+        case "ON" if after == "PERSON" and _waits(words, i):
+            return [replace(word, type="FOR")]
         case "IF" | "IF_ONLY" if after == "EVENT" and _waits(words, i):
             return [replace(word, type="FOR")]
         case "IS" if last == "" and after not in _PREDICATES:
@@ -75,7 +81,11 @@ def _told(words: list[Word], i: int) -> list[Word]:
             return []
         case "ON_FAILURE":
             return [replace(word, type="IF"), replace(word, type="FAILS")]
-        case "THEM" if after == "KIND" and _then(words, i + 2) in ("NUMBER", "IDENT", "HASH"):
+        case "THEM" | "BOTH" if after == "KIND" and _then(words, i + 2) in (
+            "NUMBER",
+            "IDENT",
+            "HASH",
+        ):
             return []
         case "THEY":
             return [replace(word, type="THEM")]

@@ -31,7 +31,7 @@ def limits(group: Group) -> str:
         said.append(times(group.max_repeat_count))
     if group.until:
         said.append(f"until {conditions(group.until)}")
-    text = " or ".join(said) or "endlessly"
+    text = " or\n".join(said) or "endlessly"
     if group.every:
         text = f"every {duration(group.every)}, {text}"
     if group.stop is Stop.SOFT:

@@ -10,7 +10,7 @@ from argo_compiler.diagnostics import Severity, Span
 from argo_compiler.il import Action, Mission, Order
 from argo_compiler.script.resolve.context import Context
 from argo_compiler.script.resolve.program import Block, Do, Node, all_nodes, inner_blocks
-from argo_compiler.script.syntax.tree.facts import Precedence
+from argo_compiler.script.syntax.tree.facts import Precedence, StepsOrdered
 from argo_compiler.script.syntax.tree.script import Header
 
 _Checkpoints = tuple[CheckpointInfo, ...]
@@ -27,6 +27,7 @@ class Ordering:
     precise: list[tuple[Span, list[Node]]] = field(default_factory=list)
     """what is said to be done in the order in which it is written"""
     asked: list[tuple[Span, _Checkpoints, _Checkpoints]] = field(default_factory=list)
+    steps: list[StepsOrdered] = field(default_factory=list)
     pairs: list[tuple[Span, Do, Do]] = field(default_factory=list)
     """what has to come before what; known when all is planned"""
 
@@ -51,6 +52,9 @@ class Ordering:
             for one in first:
                 for other in second:
                     self._pair(span, one, other)
+        for fact in self.steps:
+            nodes = [self.context.nodes_of(steps) or () for steps in (fact.first, fact.second)]
+            self.pairs += [(fact.span, a, b) for a in _tasks(nodes[0]) for b in _tasks(nodes[1])]
         return order
 
     def _order(self, program: Block) -> Order:

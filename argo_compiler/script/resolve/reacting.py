@@ -213,7 +213,7 @@ class Reactions:
         return None
 
     def _waits(self, order: Wait, doing: _Reacting) -> _Reacting:
-        if order.manner is not None and order.manner.person:
+        if order.manner is not None and order.manner.person and doing.drives:
             return replace(doing, afterwards=Afterwards.WAIT)
         if doing.until is not None or (order.manner and order.manner.until):
             return replace(doing, response=doing.response or Response.PAUSE)

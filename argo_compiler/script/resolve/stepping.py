@@ -106,6 +106,8 @@ class Stepping:
                 self.planner.order(order, self.context.program)
             case facts.Precedence():
                 self.planner.ordering.precedence(fact)
+            case facts.StepsOrdered():
+                self.planner.ordering.steps.append(fact)
             case facts.OrderFree():
                 self.planner.ordering.say(TaskOrder.ANY, (), fact.span)
 

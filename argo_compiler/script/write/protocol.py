@@ -54,4 +54,4 @@ def parts_said(mission: Mission, catalog: Catalog) -> tuple[list[str], list[Said
             reactions.append(Said(subject, (sentence,), source=reaction.source))
     if diagnostics:
         raise DiagnosticError("mission", diagnostics)
-    return header_lines(mission, catalog, steps), steps.said, reactions
+    return header_lines(mission, catalog, steps), steps.said, [*steps.orders, *reactions]

@@ -1,9 +1,9 @@
 """How the canonical script says reactions."""
 
-from argo_compiler.il import Afterwards, Reaction, Response
+from argo_compiler.il import Afterwards, EventKind, Reaction, Response
 from argo_compiler.script.write.conditions import event
 from argo_compiler.script.write.places import Places
-from argo_compiler.script.write.text import UnwritableError, duration, point
+from argo_compiler.script.write.text import UnwritableError, duration, number, point
 
 _RESPONSES = {
     Response.REPORT: "report it",
@@ -21,7 +21,7 @@ _DRIVES = (Response.RETURN, Response.SAFE_AREA)
 def reaction_said(reaction: Reaction, places: Places) -> str:
     """`if a gas leak is detected, return to the docking station`"""
     _require_used(reaction)
-    clauses = [f"if {event(reaction.event)}", _response(reaction, places)]
+    clauses = [f"if {_occurs(reaction)}", _response(reaction, places)]
     holding = _holding(reaction)
     if holding and reaction.until is not None and reaction.response in _DRIVES:
         clauses.append(f"wait {holding}")
@@ -32,6 +32,16 @@ def reaction_said(reaction: Reaction, places: Places) -> str:
     if reaction.afterwards is not Afterwards.END:
         clauses.append(_AFTERWARDS[reaction.afterwards])
     return ",\n".join(clauses)
+
+
+def _occurs(reaction: Reaction) -> str:
+    level = reaction.battery_below
+    if level is None:
+        return event(reaction.event)
+    percent = next((p for p in (level * 100, round(level * 100, 9)) if p / 100 == level), None)
+    if percent is None or reaction.event is not EventKind.LOW_BATTERY:
+        raise UnwritableError("this level of the battery is no number of percent: `battery_below`")
+    return f"the battery drops below {number(percent)} %"
 
 
 def _holding(reaction: Reaction) -> str:
@@ -78,5 +88,7 @@ def _require_used(reaction: Reaction) -> None:
             "on_limit": reaction.on_limit is not Afterwards.WAIT,
         }
     names = [f"`{name}`" for name, given in unused.items() if given]
+    if reaction.response is Response.PAUSE and reaction.afterwards is Afterwards.WAIT:
+        names.append("`afterwards`")
     if names:
         raise UnwritableError(f"{', '.join(names)} has no effect on what it does")

@@ -108,6 +108,7 @@ def patrols(
 def _targets(mission: Mission) -> set[str]:
     """The tasks that are led to from elsewhere than the task before them, or named."""
     found = {mission.tasks[0].name} if mission.tasks else set()
+    found |= {name for pair in mission.before for name in pair}
     for i, task in enumerate(mission.tasks):
         following = mission.tasks[i + 1].name if i + 1 < len(mission.tasks) else None
         ways = {t.target for t in task.transitions if t.conditions or t.target != following}

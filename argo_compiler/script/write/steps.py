@@ -35,6 +35,8 @@ class Steps:
     """The steps of a mission, and what they say of its header."""
 
     said: list[Said] = field(default_factory=list)
+    orders: list[Said] = field(default_factory=list)
+    """what has to come before what"""
     start_area: int | None = None
     end_area: int | None = None
     starts: bool = False
@@ -124,6 +126,10 @@ class _Writer:
                 continue
             said = tuple(map(capital, sentences))
             self.result.said.append(Said(subject, said, number, part.source, (part,)))
+        for first, second in dict.fromkeys(self.mission.before):
+            one, other = (step_of(name, self.steps) for name in (first, second))
+            sentence = f"Do {one} before {other}"
+            self.result.orders.append(Said("before", (sentence,)))
         return self.result
 
     # ---- tasks

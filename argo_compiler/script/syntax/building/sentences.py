@@ -107,6 +107,13 @@ def _precedence(part: Part) -> facts.Fact:
     return facts.Precedence(span=part.span, first=first, second=second)
 
 
+def _steps_ordered(part: Part) -> facts.Fact:
+    first, second = part.every(Steps)
+    if part.the(Side) is Side.AFTER:
+        first, second = second, first
+    return facts.StepsOrdered(span=part.span, first=first, second=second)
+
+
 def _rounds_driven(part: Part) -> facts.Fact:
     word = part.word("TIMES")
     assert word is not None
@@ -127,6 +134,7 @@ _RULES: dict[str, Make] = {
     "max_duration": _max_duration,
     "back_within": _back_within,
     "precedence": _precedence,
+    "steps_ordered": _steps_ordered,
     "rounds_driven": _rounds_driven,
     "order_free": lambda part: facts.OrderFree(span=part.span),
 }

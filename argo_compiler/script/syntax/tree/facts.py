@@ -41,6 +41,14 @@ class OrderFree(Fact):
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
+class StepsOrdered(Fact):
+    """`Do step 2 before step 5`."""
+
+    first: Steps
+    second: Steps
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
 class RoundsDriven(Fact):
     """`Steps 2 and 3 are a round that is driven three times`."""
 

@@ -128,7 +128,7 @@ class _Writer:
             self.result.said.append(Said(subject, said, number, part.source, (part,)))
         for first, second in dict.fromkeys(self.mission.before):
             one, other = (step_of(name, self.steps) for name in (first, second))
-            sentence = f"Do {one} before {other}"
+            sentence = f"Always do {one} before {other}"
             self.result.orders.append(Said("before", (sentence,)))
         return self.result
 

@@ -42,7 +42,7 @@ class OrderFree(Fact):
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class StepsOrdered(Fact):
-    """`Do step 2 before step 5`."""
+    """`Always do step 2 before step 5`."""
 
     first: Steps
     second: Steps

@@ -174,7 +174,7 @@ VERBS: Phrases = {
         "than|"
         "please note that the maximum duration of the mission is"
     ),
-    ("DO", None): "do",
+    ("KEEP_ORDER", None): "keep|always do",
     ("BACK_IN", None): "it has to be back in|robot has to be back in|it must be back in",
     ("ROUND_DRIVEN", None): "are a round that is driven|are driven|are repeated|are a round driven",
 }

@@ -99,6 +99,11 @@ def test_what_is_asked_back_can_be_written(reading: str, catalog: Catalog) -> No
     assert imported(f"Wait {reading}, then check checkpoint 3.", catalog).tasks
 
 
+@pytest.mark.parametrize("said", ["minutes", "hours", "h", "min", "s"])
+def test_a_unit_without_a_number_is_no_length(said: str, catalog: Catalog) -> None:
+    assert messages(f"Wait {said}, then check checkpoint 3.", catalog)
+
+
 @pytest.mark.parametrize("said", ["1.2.3 s", "1,2,3 s", "12,34.5 s", "1.20,000 s", "0 s"])
 def test_what_no_one_writes_is_an_error(said: str, catalog: Catalog) -> None:
     assert messages(f"Wait {said}, then check checkpoint 3.", catalog)

@@ -359,7 +359,6 @@ CONDITIONS: Phrases = {
     ("EVENT", EventKind.POSITIVE_OBSTACLE): (
         "positives hindernis|positiven hindernis|positivem hindernis|positive hindernisse"
     ),
-    ("EVENT", None): "hindernis{se}",
     ("EVENT", EventKind.NEGATIVE_OBSTACLE): (
         "negatives hindernis|negativen hindernis|negativem hindernis|negative hindernisse"
     ),

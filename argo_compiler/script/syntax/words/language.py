@@ -47,6 +47,7 @@ def _lexicons(places: tuple[str, ...]) -> tuple[Lexicon, Lexicon]:
         "ein eine einen einem einer eines bitte dann direkt gleich auch the",
         verbs_first=False,
         plural_article="die",
+        plural_ending="n",
     )
     for place in places:
         pieces = [word for word in place.lower().split() if word not in ("the", "a", "an")]

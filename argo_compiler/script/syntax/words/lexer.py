@@ -85,6 +85,8 @@ def _looked_up(text: str, lexicon: Lexicon) -> list[Word]:
         if type_ not in _UNSAID:
             if type_ == "KIND":
                 value = _definite(value, said[i - 1] if i > 0 else "", lexicon)
+            elif type_ == "UNIT_S" and _is_one(value, said, i, found, lexicon):
+                type_ = "A_UNIT"
             end = pieces[i + phrase.length - 1].end()
             found.append(Word(type_, value, pieces[i].start(), end))
         apart.update(phrase.apart)
@@ -98,6 +100,15 @@ def _is_name(before: list[Word]) -> bool:
         return False
     listed = len(before) > 1 and before[-2].type == "STRING"
     return before[-1].type in _NAMING or (listed and before[-1].type in _JOINING)
+
+
+def _is_one(seconds: float, said: list[str], i: int, found: list[Word], lexicon: Lexicon) -> bool:
+    """Whether a unit of time stands for one of it: `an hour`, `every minute`, `quarter-hour`."""
+    if len(said[i]) > 3 and said[i].endswith(lexicon.plural_ending):
+        return False
+    counted = i > 0 and said[i - 1] in lexicon.passed_over and seconds > 1
+    every = bool(found) and found[-1].type in ("EVERY", "ALL") and seconds > 1
+    return counted or every or seconds in (900.0, 1800.0, 2700.0)
 
 
 def _definite(kind: tuple[Any, bool | None], last: str, lexicon: Lexicon) -> tuple[Any, ...]:

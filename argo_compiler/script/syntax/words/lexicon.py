@@ -37,6 +37,7 @@ class Lexicon:
         passed_over: str = "",
         verbs_first: bool = True,
         plural_article: str = "",
+        plural_ending: str = "s",
     ) -> None:
         self.name = name
         self.definite = frozenset(definite.split())
@@ -44,6 +45,7 @@ class Lexicon:
         self.passed_over = frozenset(passed_over.split()) | self.definite
         """words that may stand within a phrase"""
         self.plural_article = plural_article
+        self.plural_ending = plural_ending
         self.verbs_first = verbs_first
         """whether a verb stands before all that it is said of, as the grammar has it"""
         self.other: Lexicon | None = None

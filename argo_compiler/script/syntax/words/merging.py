@@ -12,6 +12,7 @@ from argo_compiler.script.syntax.words.numbers import Figure, compose
 from argo_compiler.script.syntax.words.word import Word
 
 _RELATIONS = frozenset(["GREATER", "LESS", "AT_LEAST", "AT_MOST", "BETWEEN", "EXACTLY"])
+_UNITS = ("UNIT_S", "A_UNIT")
 _LIMITS = {"TIMES": "MOST_TIMES", "DURATION": "MOST_TIME"}
 
 
@@ -37,7 +38,7 @@ def merged(words: list[Word]) -> list[Word]:
             length = _length(after.value, word.value)  # `not before minute 10`
             word = Word("DURATION", length, word.start, after.end)
             i += 1
-        elif word.type == "UNIT_S" and word.value > 1:
+        elif word.type == "A_UNIT":
             word = Word("DURATION", Length(word.value, word.value), word.start, word.end)
         i += 1
         _add(word, after, found)
@@ -129,16 +130,16 @@ def _further(words: list[Word]) -> list[Word]:
 
 def _counted(word: Word, after: Word) -> Word | None:
     """A number and what it counts, as one word."""
-    if word.type == "HALF" and after.type == "UNIT_S":
+    if word.type == "HALF" and after.type in _UNITS:
         return Word("DURATION", Length(after.value / 2, after.value), word.start, after.end)
-    if word.type == "DURATION" and after.type == "UNIT_S":
+    if word.type == "DURATION" and after.type in _UNITS:
         length = _of_clock(word.value, after.value)
         return None if length is None else Word("DURATION", length, word.start, after.end)
     if word.type != "NUMBER":
         return None
     figure: Figure = word.value
     match after.type:
-        case "UNIT_S":
+        case "UNIT_S" | "A_UNIT":
             return Word("DURATION", _length(figure, after.value), word.start, after.end)
         case "TIME_WORD" | "X":
             return Word("TIMES", figure, word.start, after.end)

@@ -4,7 +4,7 @@ All that a manner can say is either used by the order that it is said of, or an 
 passed over. A test tries each with each.
 """
 
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from dataclasses import fields
 
 from argo_compiler.script.syntax.source import Diagnostics
@@ -22,6 +22,7 @@ ROUND = frozenset(
 OF_TASKS = frozenset(
     {
         *("speed", "leaving", "time_limit", "reading_limit", "optional", "priority", "earliest"),
+        *("rank", "by_importance"),
         *("latest", "soft_window", "joints", "shown_in", "object_id"),
     }
 )
@@ -39,7 +40,7 @@ _USED: Mapping[type[Order], frozenset[str]] = {
     orders.Wait: OF_TASKS | _CASE | {"duration", "until", "pose"},
     orders.Patrol: OF_TASKS - {"reading_limit", "object_id"} | ROUND | _CASE | {"order"},
     orders.Repeat: ROUND | {"time_limit", "order"},
-    orders.Follow: ROUND | {"time_limit", "order"},
+    orders.Follow: ROUND | {"time_limit", "order", "by_importance"},
     orders.Amend: OF_TASKS | {"pose", "order"},
     orders.Retry: _ONCE_MORE | {"at_most"},
 }
@@ -74,6 +75,8 @@ _WORDS = {
     "object_id": "an object",
     "pose": "where it stands",
     "order": "an order",
+    "rank": "a priority",
+    "by_importance": "that some are more important than others",
     "person": "a person to wait for",
     "on_limit": "what happens when a hold is over",
 }
@@ -84,6 +87,11 @@ def said(manner: Manner) -> frozenset[str]:
     return frozenset(
         field.name for field in fields(manner) if getattr(manner, field.name) != field.default
     )
+
+
+def words_of(names: Iterable[str]) -> str:
+    """Fields in words."""
+    return " and ".join(_WORDS.get(name, f"a {name}") for name in names)
 
 
 def accepts(order: Order, diagnostics: Diagnostics) -> bool:
@@ -102,8 +110,7 @@ def accepts(order: Order, diagnostics: Diagnostics) -> bool:
     left = [name for name in _said_in_order(order.manner) if name not in used]
     if not left:
         return True
-    what = " and ".join(_WORDS.get(name, f"a {name}") for name in left)
-    message = f"this can't be said here: {what}"
+    message = f"this can't be said here: {words_of(left)}"
     hint = "write it behind what is to be done so, or leave it out"
     diagnostics.error("stray-clause", message, order.span, hint)
     return False

@@ -12,6 +12,8 @@ from argo_compiler.script.syntax.tree.manner import Joints, Manner
 _FRESH = Do("", Action.MEASURE)
 """what a task has of which nothing is said"""
 _MOST_PRIORITY = 1_000_000
+_SHOWN = 8
+"""priorities that a note names"""
 
 
 class Furnishing:
@@ -28,12 +30,17 @@ class Furnishing:
             hint = f"write a number from 1 to {_MOST_PRIORITY}"
             self.diagnostics.error("number", message, span, hint)
             return
+        if manner.rank is not None and manner.priority not in (None, manner.rank):
+            message = "the priority is said twice"
+            self.diagnostics.error("repeated-limit", message, span, "leave one of them out")
+        if manner.by_importance:
+            self._by_importance(manner, span, tasks)
         given = {
             "velocity": manner.speed,
             "time_limit": manner.time_limit,
             "reading_limit": manner.reading_limit,
             "optional": manner.optional or None,
-            "priority": manner.priority,
+            "priority": manner.rank if manner.priority is None else manner.priority,
             "joints": _joint_state(manner.joints),
             "shown_in": manner.shown_in,
             "pose": None if manner.pose is None else self.locator.point(manner.pose),
@@ -46,6 +53,20 @@ class Furnishing:
                 self._about(do, manner.object_id, span)
         if tasks:
             self._set(tasks[-1], "leaving", manner.leaving, span)
+
+    def _by_importance(self, manner: Manner, span: Span, tasks: Sequence[Do]) -> None:
+        """Gives the first of the tasks the highest priority, and the last one 1."""
+        if len(tasks) < 2 or manner.priority is not None or manner.rank is not None:
+            message = "this is said of several tasks, of which each is less important than the last"
+            hint = "write `Check checkpoints 3, 7 and 12, the most important first`"
+            self.diagnostics.error("stray-clause", message, span, hint)
+            return
+        names = ", ".join(f"`{do.base}` {len(tasks) - i}" for i, do in enumerate(tasks[:_SHOWN]))
+        more = ", and so on" if len(tasks) > _SHOWN else ""
+        message = f"taken as these priorities: {names}{more}"
+        self.diagnostics.note("priority-taken", message, span)
+        for i, do in enumerate(tasks):
+            self._set(do, "priority", len(tasks) - i, span)
 
     def _set(self, do: Do, name: str, value: object, span: Span) -> None:
         if value is None:

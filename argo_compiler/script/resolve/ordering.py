@@ -28,6 +28,8 @@ class Ordering:
     """what is said to be done in the order in which it is written"""
     asked: list[tuple[Span, _Checkpoints, _Checkpoints]] = field(default_factory=list)
     steps: list[StepsOrdered] = field(default_factory=list)
+    left_out: list[Span] = field(default_factory=list)
+    """where it is said that what does not fit is left out"""
     pairs: list[tuple[Span, Do, Do]] = field(default_factory=list)
     """what has to come before what; known when all is planned"""
 
@@ -35,6 +37,10 @@ class Ordering:
         """The order of these is said; of nothing: of all."""
         said = self.free if order is Order.ANY else self.precise
         said.append((span, list(nodes)))
+
+    def leave_out(self, span: Span) -> None:
+        """Each task may be left out where not all can be done."""
+        self.left_out.append(span)
 
     def precedence(self, fact: Precedence) -> None:
         """Takes down that checkpoints come before others."""
@@ -45,6 +51,8 @@ class Ordering:
     def finish(self, program: Block) -> Order:
         """The order of the mission, when all is planned."""
         order = self._order(program)
+        for do in _tasks(program) if self.left_out else ():
+            do.optional = do.optional or _may_move(do)
         if order is Order.ANY:
             for span, nodes in self.precise:
                 self.pairs += [(span, a, b) for a, b in pairwise(_tasks(nodes))]
@@ -64,6 +72,10 @@ class Ordering:
             if not nodes and (said is Order.ANY or self.free):
                 self._contradiction(span)
         if not self.free:
+            if self.left_out and said is None and not self.precise:
+                message = "what does not fit is left out: the order is taken to be free, too"
+                diagnostics.note("order-taken", message, self.left_out[0])
+                return Order.ANY
             return said or Order.PRECISE
         span = self.free[0][0]
         if said is Order.PRECISE:

@@ -5,7 +5,7 @@ from dataclasses import dataclass, replace
 from argo_compiler.diagnostics import Span
 from argo_compiler.il import Afterwards, EventKind, Reaction, Response
 from argo_compiler.model import Pose
-from argo_compiler.script.resolve.accepting import said
+from argo_compiler.script.resolve.accepting import said, words_of
 from argo_compiler.script.resolve.locating import Locator
 from argo_compiler.script.syntax.source import Diagnostics
 from argo_compiler.script.syntax.tree.conditions import Battery, Condition, Occurs, Relation
@@ -190,9 +190,10 @@ class Reactions:
         used |= {"person"} if isinstance(order, Wait) else set()
         left = sorted(said(manner) - used)
         if left or order.name is not None:
-            what = left[0].replace("_", " ") if left else "name"
-            message = f"a reaction has no {what}"
-            self.diagnostics.error("stray-clause", message, order.span, "leave it out")
+            what = words_of(left) if left else "a name"
+            message = f"of a reaction this can't be said: {what}"
+            hint = "leave it out; how urgent it is, is said by a number: `with priority 90`"
+            self.diagnostics.error("stray-clause", message, order.span, hint)
             return None
         limit = manner.time_limit if manner.time_limit is not None else manner.duration
         if limit is not None:

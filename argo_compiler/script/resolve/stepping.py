@@ -55,13 +55,15 @@ class Stepping:
                 self._fact(sentence)
             else:
                 self.planner.sentence(sentence, block)
+                for fact in sentence.facts:
+                    self._fact(fact)
             if self.context.diagnostics.errors > errors:
                 self.context.fail()
         inner, free = block, None
         if following is not None and following.manner is not None:
             if not accepts(following, self.context.diagnostics):
                 return
-            if said(following.manner) == {"order"}:
+            if said(following.manner) <= {"order", "by_importance"}:
                 free = {id(node) for node in all_nodes(block)}
             else:
                 round_ = self.planner.repeating.round(following, "Repeat")
@@ -72,10 +74,14 @@ class Stepping:
                 inner = round_.body
         for one in step.steps:
             self._step(one, inner)
-        if following is not None and following.manner and following.manner.order is not None:
+        if following is not None and following.manner is not None:
             known = free or set()
             tasks = [n for n in all_nodes(inner) if isinstance(n, Do) and id(n) not in known]
-            self.planner.ordering.say(following.manner.order, tasks, following.span)
+            if following.manner.order is not None:
+                self.planner.ordering.say(following.manner.order, tasks, following.span)
+            if following.manner.by_importance:
+                of_each = Manner(by_importance=True)
+                self.planner.manners.furnishing.furnish(of_each, following.span, tasks)
 
     def _taken(self, sentences: list[Sentence | Fact | Unread]) -> Order | None:
         """`Do the following twice:`, taken out of the sentences over inner steps."""
@@ -108,6 +114,8 @@ class Stepping:
                 self.planner.ordering.precedence(fact)
             case facts.StepsOrdered():
                 self.planner.ordering.steps.append(fact)
+            case facts.LeaveOut():
+                self.planner.ordering.leave_out(fact.span)
             case facts.OrderFree():
                 self.planner.ordering.say(TaskOrder.ANY, (), fact.span)
 

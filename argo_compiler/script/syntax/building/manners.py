@@ -74,6 +74,13 @@ def _priority(part: Part) -> Manner:
     return Manner(priority=sign * whole(part, word.value))
 
 
+def _ranked(part: Part) -> Manner:
+    word = part.children[0]
+    message = f"`{part.said}` is taken as priority {word.value}, of high 3, medium 2 and low 1"
+    part.diagnostics.note("priority-taken", message, part.span)
+    return Manner(rank=word.value)
+
+
 def _flag(part: Part) -> Manner:
     match part.children[0].type:
         case "FINISHING":
@@ -159,6 +166,8 @@ RULES: dict[str, Make] = {
     "at_most": _at_most,
     "if_time": lambda part: Manner(optional=True),
     "priority": _priority,
+    "ranked": _ranked,
+    "by_importance": lambda part: Manner(by_importance=True),  # noqa: ARG005
     "only_if": lambda part: Manner(condition=part.the(Condition)),
     "unless": lambda part: Manner(condition=replace(part.the(Condition), negated=True)),
     "flag": _flag,

@@ -48,10 +48,10 @@ def _case(part: Part) -> Case:
 
 
 def _sentence(part: Part) -> Sentence | facts.Fact:
-    fact = part.first(facts.Fact)
-    if fact is not None:
-        return fact
-    return Sentence(span=part.span, orders=_joined(part), cases=part.every(Case))
+    said = part.every(facts.Fact)
+    if said and isinstance(part.children[0], facts.Fact):
+        return said[0]
+    return Sentence(span=part.span, orders=_joined(part), cases=part.every(Case), facts=said)
 
 
 def _joined(part: Part) -> tuple[Order, ...]:
@@ -137,6 +137,7 @@ _RULES: dict[str, Make] = {
     "steps_ordered": _steps_ordered,
     "rounds_driven": _rounds_driven,
     "order_free": lambda part: facts.OrderFree(span=part.span),
+    "leave_out": lambda part: facts.LeaveOut(span=part.span),
 }
 
 

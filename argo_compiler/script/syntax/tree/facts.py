@@ -49,6 +49,11 @@ class StepsOrdered(Fact):
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
+class LeaveOut(Fact):
+    """`Leave out what does not fit`: each task may be."""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
 class RoundsDriven(Fact):
     """`Steps 2 and 3 are a round that is driven three times`."""
 

@@ -35,6 +35,10 @@ class Manner:
     """s"""
     optional: bool = False
     priority: int | None = None
+    rank: int | None = None
+    """a priority in words"""
+    by_importance: bool = False
+    """whether each of the tasks is worth more than those behind it"""
     earliest: float | None = None
     """s after the mission's start"""
     latest: float | None = None

@@ -6,6 +6,7 @@ from typing import Self
 
 from argo_compiler.il import EventKind
 from argo_compiler.script.syntax.tree.conditions import Condition
+from argo_compiler.script.syntax.tree.facts import Fact
 from argo_compiler.script.syntax.tree.manner import Manner
 from argo_compiler.script.syntax.tree.node import Node
 from argo_compiler.script.syntax.tree.nouns import Nouns
@@ -207,3 +208,5 @@ class Sentence(Node):
 
     orders: tuple[Order, ...] = ()
     cases: tuple[Case, ...] = ()
+    facts: tuple[Fact, ...] = ()
+    """what is said of the mission beside: `but checkpoint 9 before checkpoint 14`"""

@@ -539,6 +539,28 @@ MANNERS: Phrases = {
         "if [we/you/it] {still} [have/has] {enough} time {left}|optional{ly}|only if there's time"
     ),
     ("PRIORITY", None): "with priority|priority",
+    ("RANKED", 3): (
+        "with high priority|high priority|with priority high|priority high|with top priority|"
+        "top priority|with the highest priority"
+    ),
+    ("RANKED", 2): (
+        "with medium priority|medium priority|with priority medium|priority medium|"
+        "with normal priority|normal priority"
+    ),
+    ("RANKED", 1): (
+        "with low priority|low priority|with priority low|priority low|with the lowest priority"
+    ),
+    ("BY_IMPORTANCE", None): (
+        "by importance|in order of importance|by priority|in order of priority|"
+        "most important first|most important one first|most important ones first"
+    ),
+    ("LEAVE_OUT", None): (
+        "leave out what does not fit|leave out whatever does not fit|skip what does not fit|"
+        "leave out what doesn't fit|what does not fit may be left out|"
+        "what does not fit is left out|as many as fit|do as many as fit|check as many as fit|"
+        "as many of them as fit"
+    ),
+    ("BUT", None): "but",
     ("ANY_ORDER", None): (
         "in [any/whatever/whichever/any convenient/free/best/arbitrary/shortest/fastest/optimal] "
         "[order/sequence]|in no particular order|in order that [suits/is] best|"

@@ -27,8 +27,7 @@ def compare_header(header: dict[str, Any], mission: Mission, catalog: Catalog) -
 def compare_requirements(
     requirements: dict[str, Any], mission: Mission, steps: Sequence[Step]
 ) -> Iterator[str]:
-    """What of the requirements differs; the plan language has no order between two tasks that may
-    change places otherwise, and no level of the battery, so that these are not judged."""
+    """What of the requirements differs."""
     for name, wanted in requirements.items():
         if name in REQUIREMENTS and (difference := REQUIREMENTS[name](wanted, mission, steps)):
             yield difference
@@ -67,10 +66,24 @@ def _speed(wanted: dict[str, float], _: Mission, steps: Sequence[Step]) -> str |
     return None
 
 
+def _before(wanted: Sequence[Sequence[str]], mission: Mission, _: Sequence[Step]) -> str | None:
+    of = {task.name: task.object_id for task in mission.tasks}
+    got = {(of.get(first), of.get(second)) for first, second in mission.before}
+    return None if got == {tuple(pair) for pair in wanted} else f"before should be {wanted}"
+
+
+def _battery_below(wanted: float, mission: Mission, _: Sequence[Step]) -> str | None:
+    got = [r.battery_below for r in mission.reactions if r.battery_below is not None]
+    right = len(got) == 1 and abs(got[0] - wanted / 100) < 1e-9
+    return None if right else f"the battery should be low below {wanted} %, is below {got}"
+
+
 REQUIREMENTS: dict[str, Callable[[Any, Mission, Sequence[Step]], str | None]] = {
     "optional": _optional,
     "priority": _priority,
     "window": _window,
     "speed": _speed,
+    "before": _before,
+    "battery_below": _battery_below,
 }
 """How each is read from a mission and the steps of its first trace."""

@@ -77,6 +77,7 @@ _WORDS = {
     "order": "an order",
     "rank": "a priority",
     "by_importance": "that some are more important than others",
+    "mission_time": "how long the mission may take",
     "person": "a person to wait for",
     "on_limit": "what happens when a hold is over",
 }

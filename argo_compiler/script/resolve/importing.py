@@ -23,7 +23,6 @@ from argo_compiler.script.syntax.source import Diagnostics, Source
 from argo_compiler.script.syntax.tree.places import Steps
 from argo_compiler.script.syntax.tree.script import Script
 
-
 _DEEPEST = 100
 
 

@@ -11,6 +11,7 @@ from argo_compiler.script.resolve.program import Block, Do, all_nodes
 from argo_compiler.script.syntax.tree import facts, orders
 from argo_compiler.script.syntax.tree.facts import Fact
 from argo_compiler.script.syntax.tree.manner import Manner
+from argo_compiler.script.syntax.tree.node import Node
 from argo_compiler.script.syntax.tree.orders import Order, Sentence
 from argo_compiler.script.syntax.tree.places import AreaLocation, DockLocation
 from argo_compiler.script.syntax.tree.script import Header, Step, Unread
@@ -54,7 +55,7 @@ class Stepping:
             elif isinstance(sentence, Fact):
                 self._fact(sentence)
             else:
-                self.planner.sentence(sentence, block)
+                self.planner.sentence(self._without_limit(sentence), block)
                 for fact in sentence.facts:
                     self._fact(fact)
             if self.context.diagnostics.errors > errors:
@@ -82,6 +83,22 @@ class Stepping:
             if following.manner.by_importance:
                 of_each = Manner(by_importance=True)
                 self.planner.manners.furnishing.furnish(of_each, following.span, tasks)
+
+    def _without_limit(self, sentence: Sentence) -> Sentence:
+        """The sentence without how long the mission may take: `at most 25 minutes in total`."""
+        kept: list[Order] = []
+        for order in sentence.orders:
+            manner = order.manner
+            if manner is None or manner.mission_time is None:
+                kept.append(order)
+                continue
+            self._max_duration(manner.mission_time, order)
+            rest = replace(manner, mission_time=None)
+            if said(rest):
+                kept.append(replace(order, manner=rest))
+            elif not isinstance(order, orders.Amend):
+                kept.append(replace(order, manner=None))
+        return replace(sentence, orders=tuple(kept))
 
     def _taken(self, sentences: list[Sentence | Fact | Unread]) -> Order | None:
         """`Do the following twice:`, taken out of the sentences over inner steps."""
@@ -130,7 +147,7 @@ class Stepping:
             return
         self.planner.order(orders.Home(span=fact.span, dock=dock), self.context.program)
 
-    def _max_duration(self, seconds: float, fact: Fact) -> None:
+    def _max_duration(self, seconds: float, fact: Node) -> None:
         said = self.header.max_duration
         if said is not None and said[0] != seconds:
             message = f"line {said[1].span.line} says another maximum duration"

@@ -333,7 +333,7 @@ class Fields:
             if word.type in ("ANY_ORDER", "THIS_ORDER"):
                 order = Order.ANY if word.type == "ANY_ORDER" else Order.PRECISE
                 self._set("order", order, _of(text, word))
-            elif word.type == "DURATION":
+            elif word.type in ("DURATION", "MOST_TIME"):
                 self._duration(_of(text, word))
         return True
 

@@ -71,6 +71,9 @@ CLAUSES = {
     "about": 'about object "pump"',
     "joints": 'with joints ["arm"] at [1.5]',
     "any order": "in any order",
+    "mission time": "no more than 25 minutes in total",
+    "high priority": "with high priority",
+    "by importance": "by importance",
 }
 SAME = {
     ("patrol", "stopping"),

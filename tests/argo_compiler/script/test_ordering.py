@@ -2,7 +2,7 @@
 
 import pytest
 
-from argo_compiler.diagnostics import DiagnosticError
+from argo_compiler.diagnostics import DiagnosticError, Severity
 from argo_compiler.il import EventKind, Order
 from argo_compiler.script import import_script
 
@@ -14,7 +14,8 @@ def read(catalog, *lines):
 def refused(catalog, *lines):
     with pytest.raises(DiagnosticError) as error:
         read(catalog, *lines)
-    return {(d.code.removeprefix("script."), d.span.line) for d in error.value.diagnostics}
+    errors = (d for d in error.value.diagnostics if d.severity is Severity.ERROR)
+    return {(d.code.removeprefix("script."), d.span.line) for d in errors}
 
 
 class TestOrder:
@@ -122,7 +123,9 @@ class TestImportance:
         mission = read(catalog, "Check #4 and #8.", "Leave out what does not fit.").mission
         assert mission.order is Order.ANY
         assert [t.optional for t in mission.tasks] == [False, True, True]
-        mission = read(catalog, "Order: precise", "Check #4.", "Leave out what does not fit.").mission
+        mission = read(
+            catalog, "Order: precise", "Check #4.", "Leave out what does not fit."
+        ).mission
         assert (mission.order, mission.tasks[1].optional) == (Order.PRECISE, True)
 
 

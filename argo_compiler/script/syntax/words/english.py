@@ -560,7 +560,6 @@ MANNERS: Phrases = {
         "what does not fit is left out|as many as fit|do as many as fit|check as many as fit|"
         "as many of them as fit"
     ),
-    ("BUT", None): "but",
     ("ANY_ORDER", None): (
         "in [any/whatever/whichever/any convenient/free/best/arbitrary/shortest/fastest/optimal] "
         "[order/sequence]|in no particular order|in order that [suits/is] best|"
@@ -670,7 +669,8 @@ FIGURES: Phrases = {
 }
 
 JOINTS: Phrases = {
-    ("JOINT", "and"): "and|but|plus|as well as|+",
+    ("JOINT", "and"): "and|plus|as well as|+",
+    ("JOINT", "but"): "but",
     ("JOINT", "or"): "or",
 }
 

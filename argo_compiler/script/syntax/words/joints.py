@@ -91,4 +91,6 @@ def _type(said: str, word: Word) -> str | None:
         return "OR_DO" if "or" in said else "NEXT"
     if ":" in said:
         return "COLON"
+    if "but" in said and what in ("NOUN", "NUMBER"):
+        return "BUT"  # `in any order, but checkpoint 9 before checkpoint 14`
     return f"{'OR' if 'or' in said else 'AND'}_{what}"

@@ -224,7 +224,13 @@ class NounResolver:
             self._nothing_before(noun.span)
             return None
         if noun.every and len(last) == len(self.memory.before) == 1:
-            return [*self.memory.before, *last]
+            both = [*self.memory.before, *last]
+            if not noun.or_one:
+                return both
+            one, two = (f"{c.name} (#{c.id})" for c in both)
+            message = f"`{self.said(noun.span)}` can be {two}, or both {one} and {two}"
+            self.diagnostics.error("ambiguous-pronoun", message, noun.span, "name them")
+            return None
         if len(last) == 1 or noun.every:
             return list(last)
         names = alternatives(f"{c.name} (#{c.id})" for c in last[:6])

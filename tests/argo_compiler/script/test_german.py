@@ -526,6 +526,9 @@ UNCLEAR = [
     # Which words belong to the second verb?
     "Prüfe Kontrollpunkt 3, Ventil R25, Ventil R12 ablesen.",
     "Prüfe Ventil R25 und 5.",
+    "Prüfe Druck 3.",
+    "Prüfe Kontrollpunkt 1. Prüfe Kontrollpunkt 3. Prüfe sie noch einmal.",
+    "Warte Minuten.",
     "Prüfe Kontrollpunkt 3 oder 4.",
     "Prüfe Kontrollpunkt 3. Wenn er über 5 bar ist.",
     "Warte 1.200 s.",

@@ -95,7 +95,13 @@ def _the_one(part: Part) -> TheOne:
 
 def _pronoun(part: Part) -> Pronoun:
     value = part.word("VALUE")
-    return Pronoun(span=part.span, every=part.has("THEM", "BOTH"), quantity=_quantity(value))
+    them = part.word("THEM", "BOTH")
+    return Pronoun(
+        span=part.span,
+        every=them is not None,
+        or_one=them is not None and them.value == "or one",
+        quantity=_quantity(value),
+    )
 
 
 def _nouns(part: Part) -> Nouns:

@@ -40,7 +40,8 @@ _GO = "geh gehe geht gehen"
 
 NOTHING: Phrases = {
     ("FILLER", None): (
-        "der|die|das|den|dem|des|ein|eine|einen|einem|einer|eines|bitte|dann|erst|erstmal|danach|anschließend|"
+        "der|die|das|den|dem|des|ein|eine|einen|einem|einer|eines|bitte|dann|erst|erstmal|danach|"
+        "anschließend|"
         "daraufhin|zuerst|zunächst|schließlich|zuletzt|abschließend|zum schluss|am schluss|am ende|"
         "als nächstes|als erstes|im anschluss|hierauf|nun|jetzt|auch|ebenfalls|ebenso|sofort|"
         "unverzüglich|umgehend|gleich|direkt|einfach|roboter{s}|soll|sollen|sollte|muss|müssen|wir|"
@@ -93,7 +94,8 @@ VERBS: Phrases = {
     ),
     ("PATROL", None): (
         f"{_forms('patrouillier')}|{_parted('ab', 'patrouilliere patrouilliert patrouillieren')}|"
-        "patrouilliere durch|patrouilliert durch|patrouillieren durch|patrouille|fahre … patrouille|"
+        "patrouilliere durch|patrouilliert durch|patrouillieren durch|patrouille|"
+        "fahre … patrouille|"
         "fährt … patrouille|bestreife|bestreifen|durchstreife|durchstreifen|mache eine patrouille"
     ),
     ("WAIT", None): (
@@ -165,7 +167,8 @@ VERBS: Phrases = {
     ),
     ("RETRY", None): (
         "versuche es {noch}|versuch es {noch}|versuchen sie es {noch}|es versuchen|"
-        "nochmals versuchen|versuche es noch einmal|versuche es nochmal|versuche es noch mal|versuche es erneut|"
+        "nochmals versuchen|versuche es noch einmal|versuche es nochmal|versuche es noch mal|"
+        "versuche es erneut|"
         "versuch es noch einmal|versuch es nochmal|versuch es erneut|noch einmal versuchen|"
         "nochmal versuchen|erneut versuchen|es erneut versuchen|es noch einmal versuchen|"
         "versuchen sie es erneut|versuchen sie es noch einmal|es nochmal versuchen|"
@@ -176,12 +179,14 @@ VERBS: Phrases = {
     ("START_HERE", None): "starte hier|start hier|beginne hier|beginn hier",
     ("MAX_DURATION", None): (
         "die mission darf … dauern|mission darf … dauern|sie darf … dauern|"
-        "es darf … dauern|die mission darf dauern|mission darf dauern|mission dauert|die mission dauert|"
+        "es darf … dauern|die mission darf dauern|mission darf dauern|mission dauert|"
+        "die mission dauert|"
         "die mission darf|mission darf|maximale dauer der mission ist|maximale dauer ist|"
         "maximaldauer ist|höchstdauer ist|maximale dauer der mission beträgt|"
         "maximale dauer beträgt|höchstdauer beträgt|"
         "bitte beachte dass die maximale dauer der mission beträgt"
     ),
+    ("KEEP_ORDER", None): "behalte bei|halte ein|mache immer",
     ("BACK_IN", None): "muss zurück sein in|roboter muss zurück sein in|er muss zurück sein in",
     ("ROUND_DRIVEN", None): (
         "sind eine runde die gefahren wird|werden gefahren|werden wiederholt|sind eine runde"
@@ -246,19 +251,10 @@ NOUNS: Phrases = {
         "THIS",
         None,
     ): "dieser|diese|dieses|diesen|diesem|dies|die ablesung|die messung|die prüfung|der versuch",
-    ("OF", "value"): (
-        "wert von|wert an|wert am|wert bei|wert auf|wert|messwert von|messwert an|messwert|"
-        "werte von|werte an|anzeige von|anzeige an|werte"
-    ),
-    ("OF", "position"): "stellung von|stellung an|stellung|position von|position an|position",
-    ("OF", "level"): (
-        "füllstand von|füllstand an|füllstand am|füllstand|pegel von|pegel an|pegel|stand von|"
-        "stand an"
-    ),
-    (
-        "OF",
-        "pressure",
-    ): "drücke|drücke von|drücke an|druck von|druck an|druck am|druck bei|druck auf|druck",
+    ("OF", "value"): ("[wert/werte/messwert/messwerte/anzeige] [von/vom/an/am/bei/beim/auf]"),
+    ("OF", "position"): "[stellung/stellungen/position] [von/vom/an/am]",
+    ("OF", "level"): "[füllstand/füllstände/pegel/stand] [von/vom/an/am/bei/auf]",
+    ("OF", "pressure"): "[druck/drücke] [von/vom/an/am/bei/beim/auf]",
     ("VALUE", "value"): "sein wert|ihr wert|dessen wert|deren wert",
     ("VALUE", "pressure"): "sein druck|ihr druck|dessen druck|deren druck",
     ("VALUE", "level"): "sein füllstand|ihr füllstand|dessen füllstand|deren füllstand",
@@ -554,6 +550,10 @@ JOINTS: Phrases = {
 PARTS = (NOTHING, VERBS, NOUNS, CONDITIONS, MANNERS, FIGURES, JOINTS)
 
 OWN: Phrases = {
+    ("SHOWN", "value"): "[wert/werte/messwert/messwerte]",
+    ("SHOWN", "position"): "[stellung/stellungen/position]",
+    ("SHOWN", "level"): "[füllstand/füllstände/pegel]",
+    ("SHOWN", "pressure"): "[druck/drücke]",
     ("BACK", None): (
         f"{_parted('zurück', _DRIVE)}|{_parted('zurück', _TURN)}|{_parted('zurück', _COME)}|"
         f"{_parted('zurück', _GO)}|zurück … fahren|zurück … kehren|zurück|rückkehr"
@@ -564,5 +564,6 @@ OWN: Phrases = {
     ("THEY", None): "sie",
     ("HE", None): "er",
 }
-"""What only German has, and what `word_order` makes of it: words whose plural looks the same, what
-means going to a place or going home, and pronouns that may be the robot's."""
+"""What only German has, and what `word_order` makes of it: what a checkpoint shows, which is that
+of the one behind it or of the last one; words whose plural looks the same; what means going to a
+place or going home; pronouns that may be the robot's."""

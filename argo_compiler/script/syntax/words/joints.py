@@ -1,7 +1,7 @@
 """Joints: what a comma, `and` or `or` joins, told by the word behind it.
 
-The parser looks one word ahead. Whether `, and` goes on with a list of checkpoints, with a condition
-or with another order is known there only because the joint's type says so.
+The parser looks one word ahead. Whether `, and` goes on with a list of checkpoints, with a
+condition or with another order is known there only because the joint's type says so.
 """
 
 from argo_compiler.script.syntax.words.word import Word

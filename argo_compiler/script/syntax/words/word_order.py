@@ -43,7 +43,7 @@ def _told(words: list[Word], i: int) -> list[Word]:
         case "AFTER" if after in _SPOTS - {"STRING", "WORD"}:
             return [replace(word, type="TO")]
         case "AT" if after == "EVENT" or (
-            after in ("VALUE", "OF", "BATTERY") and _then(words, i + 2) in _RELATIONS
+            after in ("VALUE", "SHOWN", "BATTERY") and _then(words, i + 2) in _RELATIONS
         ):
             return [replace(word, type="IF")]
         case "MEASURE" if after == "NOT":
@@ -66,7 +66,9 @@ def _told(words: list[Word], i: int) -> list[Word]:
             return []
         case "GO_ON" | "GO" if after == "BY" and _then(words, i + 2) == "STEP":
             return [replace(word, type="JUMP")]
-        case "OF" if after not in _NAMED:
+        case "SHOWN" if after in _NAMED - {"NUMBER", "HASH"}:
+            return [replace(word, type="OF")]
+        case "SHOWN" if after not in _NAMED:
             return [replace(word, type="VALUE")]
         case "NUMBER" if after == "SIGN" and _is_ordinal(words, i):
             return [Word("ORDINAL", word.value.whole, word.start, word.end)]
@@ -88,7 +90,7 @@ def _told(words: list[Word], i: int) -> list[Word]:
         ):
             return []
         case "THEY":
-            return [replace(word, type="THEM")]
+            return [replace(word, type="THEM", value="or one")]
     return [word]
 
 

@@ -182,6 +182,7 @@ def _around(nodes: list[Node], known: set[int], program: Block, name: str) -> Bl
             break
         if name.startswith(f"{owner.title}/"):
             break
+        known.add(id(owner))
         at += 1
     return chain[at] if chain else program
 

@@ -37,7 +37,7 @@ _USED: Mapping[type[Order], frozenset[str]] = {
     orders.Go: OF_TASKS | ROUND | _CASE,
     orders.Home: OF_TASKS | ROUND | _CASE,
     orders.Start: OF_TASKS,
-    orders.Wait: OF_TASKS | _CASE | {"duration", "until", "pose"},
+    orders.Wait: OF_TASKS - {"speed"} | _CASE | {"duration", "until", "pose"},
     orders.Patrol: OF_TASKS - {"reading_limit", "object_id"} | ROUND | _CASE | {"order"},
     orders.Repeat: ROUND | {"time_limit", "order"},
     orders.Follow: ROUND | {"time_limit", "order", "by_importance"},
@@ -108,6 +108,8 @@ def accepts(order: Order, diagnostics: Diagnostics) -> bool:
     used = _USED[orders.Wait] if meets else _USED.get(type(order), _NOTHING)
     if isinstance(order, orders.Wait) and {"times", "more"} <= said(order.manner):
         used |= _ONCE_MORE if order.manner.times == 1 else _NOTHING  # `wait again`
+    if isinstance(order, orders.Wait) and order.where is not None:
+        used |= {"speed"}  # of the way to the place
     left = [name for name in _said_in_order(order.manner) if name not in used]
     if not left:
         return True

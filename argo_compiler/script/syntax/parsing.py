@@ -122,7 +122,9 @@ class _Parser:
         """Whether a line never goes on with the one above it."""
         content = text.content
         asides = self.asides
-        return self.fields.is_field(text) or asides.is_remark(content) or asides.opens(content)
+        numbered = content[-1:].isdigit() and asides.is_explicit_title(text)
+        alone = numbered or asides.is_remark(content) or asides.opens(content)
+        return alone or self.fields.is_field(text)
 
     def is_complete(self, text: ScriptText) -> bool:
         """Whether a text makes sense by itself."""

@@ -322,13 +322,13 @@ CONDITIONS: Phrases = {
     ),
     ("AT_LEAST", None): (
         "at least|>=|≥|[no/not] [less/lower/smaller/fewer] than|not [below/under]|"
-        "[greater/more/higher/larger] than or equal to|[greater/above] or equal {to}|"
+        "[is/] [greater/more/higher/larger] than or equal to|[is/] [greater/above] or equal {to}|"
         "equal {to} or [greater than/more than/above]|reach{es}|reached|has reached|a minimum of|"
         "minimum of"
     ),
     ("AT_MOST", None): (
         "at most|<=|≤|[no/not] [more/higher/greater/larger/bigger] than|not [above/over/exceeding]|"
-        "[less/lower/smaller] than or equal to|[less/below] or equal {to}|"
+        "[is/] [less/lower/smaller] than or equal to|[is/] [less/below] or equal {to}|"
         "equal {to} or [less than/below]|up to {and including}|does not exceed|doesn't exceed|"
         "maximum of|maximum|max|max .|maximally|limited to"
     ),

@@ -3,6 +3,7 @@
 from itertools import combinations, pairwise
 from typing import TYPE_CHECKING
 
+from argo_compiler.catalog import CheckpointInfo
 from argo_compiler.il import OnFailure
 from argo_compiler.script.resolve.accepting import accepts
 from argo_compiler.script.resolve.context import Context
@@ -18,6 +19,7 @@ from argo_compiler.script.resolve.program import (
     Target,
     Way,
     in_branch,
+    leads_away,
 )
 from argo_compiler.script.syntax.tree import orders
 from argo_compiler.script.syntax.tree.conditions import Condition, InState, State, Test, TooLate
@@ -41,9 +43,22 @@ class Cases:
         self.context = context
         self.diagnostics = context.diagnostics
         self.planner = planner
+        self.asked: tuple[CheckpointInfo, ...] = ()
+        """what `it` means in a condition, and where that does not hold"""
 
     def add(self, case: Case, block: Block) -> None:
-        """Plans one case."""
+        """Plans one case. After it, `it` may be what the condition asks of, or what is measured in
+        that case only."""
+        memory = self.context.memory
+        before = memory.last
+        if case.condition is None or case.chained:
+            memory.last = self.asked
+        else:
+            self.asked = before
+        self._add(case, block)
+        memory.last = (*before, *(c for c in memory.last if c not in before))
+
+    def _add(self, case: Case, block: Block) -> None:
         condition = case.condition
         if condition is None:
             self._otherwise(case, block)
@@ -134,7 +149,8 @@ class Cases:
         self.planner.carry_out(orders_, branch)
         if ending is not None:
             context.put([ending], branch, branch.last)
-        context.memory.last = memory
+        if leads_away(branch.last):
+            context.memory.last = memory
         context.docked, context.recent, context.step = docked, recent, step
 
     def _otherwise(self, case: Case, block: Block) -> None:

@@ -19,6 +19,7 @@ from argo_compiler.script.syntax.tree.conditions import (
     State,
     Test,
 )
+from argo_compiler.script.syntax.tree.nouns import Pronoun
 
 _MOST = 64
 """alternatives of one condition"""
@@ -101,9 +102,34 @@ class ConditionResolver:
         self.diagnostics.warning("not-measured", message, test.span, hint)
 
     def _subjects(self, test: Test) -> Sequence[CheckpointInfo] | None:
-        if test.subject is not None:
-            return self.nouns.each(test.subject)
-        return self.nouns.last(test.span)
+        subject = test.subject
+        it = subject is None or (
+            len(subject.nouns) == 1
+            and isinstance(subject.nouns[0], Pronoun)
+            and not subject.nouns[0].every
+        )
+        if subject is not None and not it:
+            return self.nouns.each(subject)
+        measured = self.nouns.memory.last
+        fitting = [c for c in measured if self._fits(test, c)]
+        if len(fitting) == 1 < len(measured):
+            return fitting
+        return self.nouns.last(test.span) if subject is None else self.nouns.each(subject)
+
+    def _fits(self, test: Test, checkpoint: CheckpointInfo) -> bool:
+        """Whether the units that are said are those of values that a checkpoint has."""
+        match test.predicate:
+            case Compared(bound=bound):
+                amounts = [bound]
+            case Between(low=low, high=high):
+                amounts = [low, high]
+            case _:
+                return True
+        return all(
+            not amount.unit
+            or units.converted(amount.value, amount.unit, checkpoint.unit) is not None
+            for amount in amounts
+        )
 
     def _of(self, test: Test, checkpoint: CheckpointInfo) -> list[tuple[Condition, ...]] | None:
         """Alternatives for one checkpoint."""

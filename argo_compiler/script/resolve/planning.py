@@ -67,6 +67,11 @@ class Planner:
             if prefix is not None:
                 order = self.manners.with_prefix(order, prefix)
                 prefix = None
+            if isinstance(order, orders.Retry) and _several(orders_[:i]):
+                message = "this can be meant for the last of these only, or for each of them"
+                hint = "write `check checkpoints 1 and 4, retry twice` for each, or two sentences"
+                self.diagnostics.error("ambiguous-manner", message, order.span, hint)
+                continue
             self.order(order, block)
 
     def _given_up(self, order: Order) -> bool:
@@ -323,3 +328,8 @@ class Planner:
                 return None
             pose = area.dock
         return HomeAhead(pose, order.dock.span)
+
+
+def _several(orders_: Sequence[Order]) -> bool:
+    """Whether the last two orders both measure: what is said next may be said of both."""
+    return len(orders_) > 1 and all(isinstance(order, orders.Measure) for order in orders_[-2:])

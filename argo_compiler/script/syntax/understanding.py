@@ -35,7 +35,9 @@ class Understanding:
         self.diagnostics = diagnostics
         self.grammar = sentence_grammar()
         joints = [phrase for word in ("and", "or") for phrase in self._phrases("JOINT", word)]
-        self._joint = re.compile(rf"(?<!\w)(?:{'|'.join(map(re.escape, joints))})\s*$", re.IGNORECASE)
+        self._joint = re.compile(
+            rf"(?<!\w)(?:{'|'.join(map(re.escape, joints))})\s*$", re.IGNORECASE
+        )
 
     def _phrases(self, type_: str, value: str) -> list[str]:
         return self.language.lexicon.phrases.get((type_, value), [])

@@ -1,0 +1,165 @@
+"""Sentences that are easily misread: each is read as it is meant, or asked about."""
+
+import pytest
+
+from argo_compiler.catalog import Catalog
+from argo_compiler.diagnostics import DiagnosticError, Severity
+from argo_compiler.il import ConditionType, EventKind, Mission, OnFailure, Response
+from argo_compiler.script import import_script
+
+
+def read(text: str, catalog: Catalog) -> Mission:
+    return import_script(f"Start in starting area 1.\n{text}", catalog).mission
+
+
+def measured(mission: Mission) -> list[str | None]:
+    return [task.object_id for task in mission.tasks if task.object_id is not None]
+
+
+def bounds(mission: Mission, name: str) -> list[list[tuple[str | None, ConditionType, object]]]:
+    task = mission.task(name)
+    assert task is not None
+    return [[(c.object_id, c.type, c.param1) for c in t.conditions] for t in task.transitions]
+
+
+@pytest.mark.parametrize(
+    ("text", "code", "readings"),
+    [
+        ("Check checkpoint 1 or 4.", "ambiguous-or", ["which of them", "both"]),
+        ("Check valve R25 and 5.", "ambiguous-checkpoint", ["valve R12"]),
+        ("Maximum duration: 1.200 s\nCheck #1.", "ambiguous-duration", ["1.2 s", "1200 s"]),
+        (
+            "Check #1. If it is above 5, check #4. If it is above 80, check #8.",
+            "ambiguous-pronoun",
+            ["#1", "#4"],
+        ),
+        ("Check #1 and check #4, retry twice.", "ambiguous-manner", ["last", "each"]),
+        ("Check #1, retry once, then return home.", "ambiguous-case", ["fails", "any case"]),
+        ("Check #1. If it is above 5, check #4; then check #8.", "ambiguous-case", ["this case"]),
+        ("Check #1 and #4 not in any order.", "not-understood", ["`not`"]),
+        ("Order: not any\nCheck #1.", "field", ["`not any`"]),
+        (
+            "End of the mission: anywhere but starting area 2\nCheck #1.",
+            "not-understood",
+            ["anywhere"],
+        ),
+        ("Check #1. Go to the docking station in starting area 2 and wait.", "wait", ["how long"]),
+        ("Check #1. If it is above 5 and below 3, check #4.", "condition", ["no value"]),
+    ],
+)
+def test_what_is_asked_about(text: str, code: str, readings: list[str], catalog: Catalog) -> None:
+    with pytest.raises(DiagnosticError) as caught:
+        read(text, catalog)
+    errors = [d for d in caught.value.diagnostics if d.severity is Severity.ERROR]
+    assert [error.code for error in errors] == [f"script.{code}"]
+    assert all(reading in errors[0].message for reading in readings)
+    assert errors[0].span is not None
+
+
+@pytest.mark.parametrize(
+    ("text", "checkpoints"),
+    [
+        ("Check pressure gauges 1, 5 and 8.", ["1", "8", "18"]),
+        ("1. Check checkpoint 1, 2. Check checkpoint 4", ["1", "4"]),
+        ("Check all valves on the third floor except R31.", ["11"]),
+    ],
+)
+def test_lists(text: str, checkpoints: list[str], catalog: Catalog) -> None:
+    assert measured(read(text, catalog)) == checkpoints
+
+
+def test_a_decimal_comma(catalog: Catalog) -> None:
+    mission = read("Check checkpoint 1. If it is above 4,5, check checkpoint 8.", catalog)
+    assert bounds(mission, "MEASURE 1") == [[("1", ConditionType.GREATER, 4.5)]]
+    assert measured(mission) == ["1", "8"]
+
+
+def test_each_event_that_is_named(catalog: Catalog) -> None:
+    text = "Check #1.\nIf a gas leak or a hot spot is detected, return to the docking station."
+    reactions = read(text, catalog).reactions
+    assert [r.event for r in reactions] == [EventKind.GAS_LEAK, EventKind.HOT_SPOT]
+    assert {r.response for r in reactions} == {Response.RETURN}
+
+
+def test_the_dock_that_is_named(catalog: Catalog) -> None:
+    area = catalog.area(2)
+    assert area is not None
+    mission = read("Check #1. Go to the docking station in starting area 2.", catalog)
+    assert (mission.tasks[-1].pose, mission.end_area) == (area.dock, 2)
+    text = "Check #1. If the platform alarm sounds, go to the dock in starting area 2 and wait."
+    (reaction,) = read(text, catalog).reactions
+    assert (reaction.pose, reaction.area, reaction.afterwards) == (area.dock, 2, "wait")
+
+
+def test_each_checkpoint_that_is_asked_of(catalog: Catalog) -> None:
+    text = "Check #1 and #4. If checkpoint 1 or checkpoint 4 is abnormal, check checkpoint 8."
+    found = bounds(read(text, catalog), "MEASURE 4")
+    assert found == [[(n, ConditionType.ABNORMAL, None)] for n in ("1", "4")]
+
+
+def test_an_end_that_is_only_for_a_failure(catalog: Catalog) -> None:
+    text = "Check #1; if it fails, return to the docking station and end the mission. Check #4."
+    mission = read(text, catalog)
+    first = mission.task("MEASURE 1")
+    assert first is not None
+    assert [way.target for way in first.transitions] == ["MEASURE 4"]
+    assert (first.on_failure, first.failure_target) == (OnFailure.BRANCH, "DOCK")
+
+
+def test_a_condition_with_its_other_case_stays_in_its_round(catalog: Catalog) -> None:
+    mission = import_script(
+        "1. Start in starting area 1.\n2. Check #1\n"
+        "3. Check #4. If it is above 5, check #8, otherwise check #14.\n"
+        "4. Repeat steps 2 to 3 twice",
+        catalog,
+    ).mission
+    (group,) = mission.groups
+    names = [task.name for task in mission.tasks]
+    inside = names[names.index(group.start) : names.index(group.end) + 1]
+    assert {"MEASURE 1", "MEASURE 4", "MEASURE 8", "MEASURE 14"} <= {*inside}
+    assert group.max_repeat_count == 2
+
+
+def test_a_condition_behind_a_patrol_is_looked_at_after_it(catalog: Catalog) -> None:
+    mission = import_script(
+        "1. Start in starting area 1.\n2. Check #1\n"
+        "3. Patrol the first floor for 10 minutes. If checkpoint #1 is above 4, check #8.\n"
+        "4. Check #14",
+        catalog,
+    ).mission
+    (group,) = mission.groups
+    end = mission.task(group.end)
+    assert end is not None
+    (way,) = end.transitions
+    assert way.conditions == ()
+    assert bounds(mission, way.target) == [[("1", ConditionType.GREATER, 4.0)], []]
+
+
+@pytest.mark.parametrize(
+    "text", ["Check #1 and #4, retry twice.", "Check #1. Check #4, retry twice."]
+)
+def test_retries_are_those_of_the_sentence(text: str, catalog: Catalog) -> None:
+    retries = [task.retries for task in read(text, catalog).tasks[1:]]
+    assert retries == ([2, 2] if "#1 and" in text else [0, 2])
+
+
+def test_it_is_what_has_the_unit(catalog: Catalog) -> None:
+    text = "Check #1. If it is above 5, check #2. If it is above 80 %, check #8."
+    mission = read(text, catalog)
+    asked = [c for t in mission.tasks for w in t.transitions for c in w.conditions]
+    assert [(c.object_id, c.param1) for c in asked] == [("1", 5.0), ("2", 80.0)]
+
+
+def test_several_conditions_are_looked_at_in_turn(catalog: Catalog) -> None:
+    text = "Check #1. If #1 is above 5, check #2. If #1 is above 3, check #3. Check #4."
+    mission = read(text, catalog)
+    branch = mission.task("MEASURE 2")
+    assert branch is not None
+    assert bounds(mission, branch.transitions[0].target)[0] == [("1", ConditionType.GREATER, 3.0)]
+
+
+def test_otherwise_behind_conditions_that_exclude_each_other_is_of_all(catalog: Catalog) -> None:
+    text = "Check #1. If #1 is above 5, check #2. If #1 is below 3, check #3. Otherwise check #4."
+    first = read(text, catalog).task("MEASURE 1")
+    assert first is not None
+    assert [w.target for w in first.transitions] == ["MEASURE 2", "MEASURE 3", "MEASURE 4"]

@@ -334,8 +334,10 @@ CONDITIONS: Phrases = {
     ),
     ("TAKING", None): "taking at most",
     ("MINUS", None): "minus",
-    ("OR_MORE", None): "[or/and] [more/higher/greater/above/over/larger/upwards]",
-    ("OR_LESS", None): "[or/and] [less/lower/below/under/smaller/fewer]",
+    ("OR_MORE", "or"): "or [more/higher/greater/above/over/larger/upwards]",
+    ("OR_MORE", "and"): "and [more/higher/greater/above/over/larger/upwards]",
+    ("OR_LESS", "or"): "or [less/lower/below/under/smaller/fewer]",
+    ("OR_LESS", "and"): "and [less/lower/below/under/smaller/fewer]",
     ("EXACTLY", None): "exactly|[equal/equals/exactly equal] {to}|precisely|=",
     ("BETWEEN", None): (
         "between|in between|[in/within/inside] the [range/interval/band/limits] [of/between]|"

@@ -11,6 +11,7 @@ from argo_compiler.script.syntax.words.lengths import Length, told
 from argo_compiler.script.syntax.words.numbers import Figure, compose
 from argo_compiler.script.syntax.words.word import Word
 
+_BEYOND = {"OR_MORE": "GREATER", "OR_LESS": "LESS"}
 _RELATIONS = frozenset(["GREATER", "LESS", "AT_LEAST", "AT_MOST", "BETWEEN", "EXACTLY"])
 _UNITS = ("UNIT_S", "A_UNIT")
 _LIMITS = {"TIMES": "MOST_TIMES", "DURATION": "MOST_TIME"}
@@ -22,6 +23,8 @@ def merged(words: list[Word]) -> list[Word]:
         words = _numbers(words)
     if any(word.type == "MORE_WORD" for word in words):
         words = _further(words)
+    if any(word.type in _BEYOND for word in words):
+        words = _joined_bounds(words)
     found: list[Word] = []
     i = 0
     while i < len(words):
@@ -105,6 +108,19 @@ def _numbers(words: list[Word]) -> list[Word]:
         else:
             found.append(words[i])
             i += 1
+    return found
+
+
+def _joined_bounds(words: list[Word]) -> list[Word]:
+    """`above 5 and below 7` has two bounds, `5 and below` has one."""
+    found: list[Word] = []
+    for i, word in enumerate(words):
+        after = words[i + 1].type if i + 1 < len(words) else ""
+        if word.type in _BEYOND and word.value and after in ("NUMBER", "NUMBER_WORD", "MINUS"):
+            middle = word.start + len(word.value)
+            found.append(Word("JOINT", word.value, word.start, middle))
+            word = Word(_BEYOND[word.type], None, middle + 1, word.end)
+        found.append(word)
     return found
 
 

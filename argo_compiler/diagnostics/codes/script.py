@@ -11,6 +11,10 @@ SCRIPT = {
         "A line comes after the protocol has said that it is done.",
         "Move it up, or remove the earlier `Done!`.",
     ),
+    "script.ambiguous-case": error(
+        "What stands behind a case can be meant for this case only, or for any.",
+        "Write `, then ...` for the first, a sentence of its own for the second.",
+    ),
     "script.ambiguous-checkpoint": error(
         "Several checkpoints have the name that the script uses.", "Name it by its number."
     ),
@@ -19,8 +23,8 @@ SCRIPT = {
         "Write it without the tab as it is meant.",
     ),
     "script.ambiguous-duration": error(
-        "A duration such as `10:30` can be minutes and seconds, or hours and minutes.",
-        "Write the units: `10 min 30 s`.",
+        "A duration can be read in two ways, or be that of each or of all together.",
+        "Write its units, as in `10 min 30 s`, or what it is said of in a sentence of its own.",
     ),
     "script.ambiguous-edit": error(
         "An edit fits more than one step of the plan.", "Say which of them is meant."
@@ -28,6 +32,24 @@ SCRIPT = {
     "script.ambiguous-event": error(
         "An obstacle may stand in the way, or be a part of the way that is missing.",
         "Write `a positive obstacle` or `a negative obstacle`.",
+    ),
+    "script.ambiguous-floor": error(
+        "A number behind a floor can be another floor or something else.",
+        "Write `floors 1 and 2`, or name what else is meant.",
+    ),
+    "script.ambiguous-number": error(
+        "A number can be read in two ways, such as `1.200`.", "Write it as the hint shows."
+    ),
+    "script.ambiguous-or": error(
+        "Checkpoints that are to be measured are joined by `or`.",
+        "Write `and` for all of them, or name the one that is meant.",
+    ),
+    "script.ambiguous-otherwise": error(
+        "`Otherwise` can belong to the last of several conditions or to all of them.",
+        "Write `otherwise, if ...`, or each condition in a step of its own.",
+    ),
+    "script.ambiguous-pronoun": error(
+        "A word such as `it` can mean several checkpoints.", "Name the one."
     ),
     "script.ambiguous-step": error(
         "More than one step has the number that is named.",
@@ -45,6 +67,10 @@ SCRIPT = {
         "The option chooses a starting area that the script does not offer.",
         "Choose one that the script names.",
     ),
+    "script.battery": error(
+        "A level of the battery is no share of its charge, or not one that it drops below.",
+        "Write, say, `if the battery drops below 30 %`.",
+    ),
     "script.bound-task": error(
         "A task that belongs to a condition is to be moved, replaced or taken out.",
         "Change the line that asks for it.",
@@ -57,20 +83,25 @@ SCRIPT = {
         "A condition is asked for that missions do not have.",
         "Compare one checkpoint: less than, greater than, or between two values.",
     ),
+    "script.coordinates": error("Coordinates are two or three numbers.", "Write `(12.5, 3, 2.5)`."),
     "script.deep-rounds": error(
         "Too many repetitions lie in one another.",
         "Repeat the steps more often in one of them.",
+    ),
+    "script.dock-assumed": warning(
+        "The script does not say which docking station, and one was assumed.",
+        "Name its starting area.",
     ),
     "script.duration": error(
         "A duration is zero, or its units are mixed up.",
         "Write hours before minutes before seconds, each once: `1 h 30 min`.",
     ),
+    "script.empty": error(
+        "The script is empty.", "Name a file with a mission sheet or a mission protocol."
+    ),
     "script.empty-name": error(
         "The quotation marks in front of a command have nothing between them.",
         "Write a name there, or leave them out.",
-    ),
-    "script.empty": error(
-        "The script is empty.", "Name a file with a mission sheet or a mission protocol."
     ),
     "script.empty-range": error(
         "A range of checkpoints has its numbers the wrong way round.",
@@ -80,10 +111,6 @@ SCRIPT = {
         "The mission is to go on at a step that plans nothing.",
         "Name a step that measures or drives.",
     ),
-    "script.end-at-dock": warning(
-        "A condition can't end the mission on the spot; the robot returns to its dock first.",
-        "Write `return to the docking station` if that is meant.",
-    ),
     "script.endless-patrol": error(
         "A patrol would never end.", "Say for how long or how often it is driven."
     ),
@@ -91,9 +118,17 @@ SCRIPT = {
         "A repetition would never end.",
         "Say for how long or how often, or `endlessly` where a condition leaves it.",
     ),
+    "script.fact": error(
+        "A mission ends in a docking station by a certain time, not at a place.",
+        "Name the starting area.",
+    ),
     "script.failure": error(
         "What is to happen after a failure is not what a mission can do then.",
         "Use one of the forms in the hint.",
+    ),
+    "script.field": error(
+        "A field of the header has a value that it can't have.",
+        "Write one of those that the hint names.",
     ),
     "script.healed": warning(
         "A word that text recognition had cut was put together again.",
@@ -104,29 +139,29 @@ SCRIPT = {
         "Say the floor or the height that is meant.",
     ),
     "script.long-line": error("A line or cell is too long to be a script's.", "Shorten it."),
-    "script.missing-field": warning(
-        "The sheet lacks a field, and something was assumed for it.",
-        "Add the field if it is meant otherwise.",
+    "script.needless-exception": warning(
+        "What is left out of some checkpoints is none of them anyway.",
+        "Name the one that is meant, or leave the exception away.",
+    ),
+    "script.no-area": error(
+        "The sheet names no starting area.",
+        "Name one in the sheet, or choose the areas to start and to end in.",
     ),
     "script.no-effect": note(
         "Words such as a title, a greeting or a remark ask for nothing: the mission is the same "
         "without them.",
         "Nothing has to be done; if they are meant to ask for something, say it in other words.",
     ),
-    "script.no-area": error(
-        "The sheet names no starting area.",
-        "Name one in the sheet, or choose the areas to start and to end in.",
-    ),
     "script.no-start": error(
         "The protocol does not say where the robot starts.", "Set a starting point."
-    ),
-    "script.no-target": error(
-        "A condition leads to a task, and none follows.",
-        "Name a step, or return to the docking station.",
     ),
     "script.no-task": error(
         "Something is said of the task before, and there is none.",
         "Write it behind the task that it belongs to.",
+    ),
+    "script.not-measured": warning(
+        "A condition asks for a checkpoint that is not measured before it.",
+        "Measure it before, unless somebody else tells its value.",
     ),
     "script.not-planned": error(
         "An edit names what is not in the plan at this point.",
@@ -139,16 +174,40 @@ SCRIPT = {
         "The script asks for nothing to be done.", "Add a step, such as a checkpoint to read."
     ),
     "script.number": error("A number is too large.", "Correct the number."),
+    "script.one-checkpoint": error(
+        "Several checkpoints are named where there can be one.", "Name one of them."
+    ),
     "script.one-name": error(
         "One name stands before several tasks.", "Give each task a line and a name."
+    ),
+    "script.order-taken": note(
+        "What does not fit is left out, and nothing is said of the order: it is taken to be free.",
+        "Write `Order: precise` if it is not.",
     ),
     "script.other-site": warning(
         "The script says that it is for another site than the one that it is read with.",
         "Check the chosen site, or the script's.",
     ),
+    "script.otherwise": error(
+        "What is said for all other cases stands behind no condition, or leads nowhere.",
+        "Write it behind the condition whose other case it is.",
+    ),
     "script.overlap": error(
         "Two repetitions have some of their steps in common.",
         "Let one lie in the other as a whole, or separate them.",
+    ),
+    "script.partly-free": error(
+        "Only some of the tasks are to be done in any order.",
+        "Say that the order is free, and what has to come before what.",
+    ),
+    "script.precedence": error(
+        "The order that is written does not keep to what has to come before what. A warning where "
+        "the order is free.",
+        "Move a task, or take the requirement back.",
+    ),
+    "script.priority-taken": note(
+        "An importance in words is taken as a number.",
+        "Write `with priority 7` if another one is meant.",
     ),
     "script.quantity": warning(
         "The script asks for a quantity that this kind of checkpoint does not show.",
@@ -157,6 +216,9 @@ SCRIPT = {
     "script.quoted-text": error(
         "A quoted text has an escape that does not exist.",
         'Write a backslash as `\\\\` and a quotation mark as `\\"`.',
+    ),
+    "script.range": error(
+        "A range of checkpoints does not go from a number to a number.", "Name each of them."
     ),
     "script.reaction": error(
         "A reaction has a response that does not exist, or two of them.",
@@ -188,11 +250,10 @@ SCRIPT = {
         "The protocol sets a second starting point.", "Keep one of them, or edit the first."
     ),
     "script.self-move": error("A step is to stand before or after itself.", "Name another place."),
-    "script.speed": error("A speed is zero or no number.", "Write, say, `at 0.3 m/s`."),
-    "script.step-number": warning(
-        "The numbers of the steps are not one after the other.",
-        "Check whether a line is missing or in the wrong place.",
+    "script.several-floors": error(
+        "The robot is sent to several floors at a time.", "Write an order for each of them."
     ),
+    "script.speed": error("A speed is zero or no number.", "Write, say, `at 0.3 m/s`."),
     "script.speed-shared": warning(
         "A speed holds for every way that leads to a task, not only for the one that the script "
         "says it of.",
@@ -202,6 +263,13 @@ SCRIPT = {
         "A task is to be left at a speed, but the mission ends with it.",
         "Give the speed to the task that the way leads to.",
     ),
+    "script.start": error(
+        "A mission starts at a place, not on a floor.", "Name a starting area or a place."
+    ),
+    "script.step-number": warning(
+        "The numbers of the steps are not one after the other.",
+        "Check whether a line is missing or in the wrong place.",
+    ),
     "script.step-range": error(
         "Steps are named the wrong way round, or several where one is meant.",
         "Write the earlier one first, or name one.",
@@ -209,8 +277,9 @@ SCRIPT = {
     "script.stray-clause": error(
         "A part of the line belongs to nothing before it.", "Write it behind what it belongs to."
     ),
-    "script.stray-text": error(
-        "Text stands where no field of the sheet is.", "Move it to the field that it belongs to."
+    "script.too-late": error(
+        "What is done if it is too late follows no task that is due by a certain time.",
+        "Write it behind such a task.",
     ),
     "script.too-long": error("The script has too many lines.", "Divide the mission."),
     "script.too-many-errors": error(
@@ -248,13 +317,13 @@ SCRIPT = {
     "script.unreadable": error(
         "The script's file can't be read, or is no text.", "Check the path, and save it as UTF-8."
     ),
-    "script.unrecognised": error(
-        "The text is neither a mission sheet nor a mission protocol.",
-        "Begin it as the hint shows.",
-    ),
     "script.unwritable": error(
         "A part of the mission can't be said in a script.",
         "Keep the mission as JSON, or change what is named.",
+    ),
+    "script.wait": error(
+        "A wait does not say how long or for what, or says more than one wait can.",
+        "Write `wait 90 s`, `wait until #1 is below 3` or `wait for the all-clear`.",
     ),
     "script.which-checkpoint": error("It is not said which checkpoint is compared.", "Name it."),
 }

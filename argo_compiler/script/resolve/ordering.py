@@ -61,8 +61,10 @@ class Ordering:
                 for other in second:
                     self._pair(span, one, other)
         for fact in self.steps:
-            nodes = [self.context.nodes_of(steps) or () for steps in (fact.first, fact.second)]
-            self.pairs += [(fact.span, a, b) for a in _tasks(nodes[0]) for b in _tasks(nodes[1])]
+            first_of, second_of = (
+                _tasks(self.context.nodes_of(steps) or ()) for steps in (fact.first, fact.second)
+            )
+            self.pairs += [(fact.span, a, b) for a in first_of for b in second_of]
         return order
 
     def _order(self, program: Block) -> Order:
@@ -127,11 +129,10 @@ class Ordering:
             return
         span = self.pairs[0][0]
         for found in check_precedence(mission):
-            code = found.code.removeprefix("il.")
             if found.severity is Severity.ERROR:
-                self.context.diagnostics.error(code, found.message, span, found.hint)
+                self.context.diagnostics.error("precedence", found.message, span, found.hint)
             else:
-                self.context.diagnostics.warning(code, found.message, span, found.hint)
+                self.context.diagnostics.warning("precedence", found.message, span, found.hint)
 
 
 def _tasks(nodes: Iterable[Node]) -> list[Do]:

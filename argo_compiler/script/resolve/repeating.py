@@ -168,8 +168,10 @@ def limits_of(context: Context, order: Order) -> Limits | None:
 def _endless(context: Context, what: str, span: Span) -> None:
     hint = "say how long or how often: `for 10 minutes`, `three times`, `endlessly`"
     message = f"this {what} would never end"
-    code = "endless-patrol" if what == "patrol" else "endless-repeat"
-    context.diagnostics.error(code, message, span, hint)
+    if what == "patrol":
+        context.diagnostics.error("endless-patrol", message, span, hint)
+    else:
+        context.diagnostics.error("endless-repeat", message, span, hint)
 
 
 def _until(context: Context, order: Order) -> tuple[Condition, ...] | None:

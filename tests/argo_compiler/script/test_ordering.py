@@ -70,12 +70,12 @@ class TestPrecedence:
         pair = "Checkpoint 8 has to be read before checkpoint 4."
         mission = read(catalog, "Check #8 and #4.", pair).mission
         assert mission.before == (("MEASURE 8", "MEASURE 4"),)
-        assert refused(catalog, "Check #4 and #8.", pair) == {("order-broken", 3)}
+        assert refused(catalog, "Check #4 and #8.", pair) == {("precedence", 3)}
 
     def test_a_free_order_that_does_not_keep_to_it_yet_is_a_warning(self, catalog):
         pair = "Checkpoint 8 has to be read before checkpoint 4."
         found = read(catalog, "Check #4 and #8 in any order.", pair)
-        assert [d.code for d in found.diagnostics] == ["script.order-broken"]
+        assert [d.code for d in found.diagnostics] == ["script.precedence"]
 
     @pytest.mark.parametrize(
         ("lines", "code"),
@@ -84,7 +84,7 @@ class TestPrecedence:
             (["Check #4, #8 and #4.", "#4 has to be read before #8."], "ambiguous-edit"),
             (
                 ["Check #4 and #8.", "#4 has to be read before #8.", "#8 must be read before #4."],
-                "before-itself",
+                "precedence",
             ),
         ],
     )

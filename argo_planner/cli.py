@@ -38,6 +38,12 @@ class ArgoCommands(LazyGroup):
             "errors.",
         ),
         _command(
+            "explain",
+            "explain",
+            "explain_mission",
+            "Say back in plain sentences what was understood of a mission, and what was assumed.",
+        ),
+        _command(
             "compile",
             "compile",
             "compile_mission",
@@ -87,8 +93,8 @@ class ArgoCommands(LazyGroup):
             "schema",
             "schema",
             "show_schema",
-            "Print the JSON Schema of a mission, a machine, a mission's progress or a file of "
-            "faults.",
+            "Print the JSON Schema of a mission, a machine, its progress, a file of faults or a "
+            "reading.",
         ),
         _command(
             "doctor",

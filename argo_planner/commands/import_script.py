@@ -16,8 +16,9 @@ from argo_planner.terminal.files import (
     say_written,
     write_text,
 )
-from argo_planner.terminal.importing import import_shown
+from argo_planner.terminal.importing import import_shown, show_reading
 from argo_planner.terminal.options import EndArea, Force, SiteOption, StartArea
+from argo_planner.terminal.verbosity import is_quiet
 from argo_planner.use_cases.importing import SourceKind, kind_of
 
 
@@ -39,6 +40,9 @@ def import_script(
     check_outputs([script, site], [output], force=force)
     if output != STANDARD_OUTPUT:
         require_mission_output(output)
-    mission = import_shown(upload, open_site(site), start_area, end_area).mission
-    write_text(output, mission_text(mission))
-    say_written(output, ", ".join(task.name for task in mission.tasks))
+    opened = open_site(site)
+    imported = import_shown(upload, opened, start_area, end_area)
+    write_text(output, mission_text(imported.mission))
+    say_written(output, ", ".join(task.name for task in imported.mission.tasks))
+    if output != STANDARD_OUTPUT and not is_quiet():
+        show_reading(imported, opened)

@@ -2,10 +2,11 @@
 
 import sys
 
-from argo_compiler.diagnostics import to_text
+from argo_compiler.diagnostics import DiagnosticError, to_text
 from argo_env.planning.opening import OpenedSite
 from argo_planner.terminal.verbosity import is_quiet
 from argo_planner.terminal.words import with_options
+from argo_planner.use_cases.explaining import reading_of, write_reading
 from argo_planner.use_cases.importing import ImportedMission, Upload, import_mission
 
 
@@ -17,3 +18,11 @@ def import_shown(
     if imported.warnings and not is_quiet():
         print(to_text(with_options(imported.warnings), upload.name), file=sys.stderr)
     return imported
+
+
+def show_reading(imported: ImportedMission, site: OpenedSite) -> None:
+    """What was understood of a mission, in plain sentences; what can't be said so is named."""
+    try:
+        print(write_reading(reading_of(imported, site)), end="")
+    except DiagnosticError as error:
+        print(to_text(error.diagnostics, imported.source_name), file=sys.stderr)

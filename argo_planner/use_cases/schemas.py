@@ -12,13 +12,19 @@ class FileKind(StrEnum):
     MACHINE = "machine"
     PROGRESS = "progress"
     FAULTS = "faults"
+    READING = "reading"
 
 
 def schema(kind: FileKind) -> str:
     """The JSON Schema of files of that kind."""
-    if kind is not FileKind.FAULTS:
+    if kind in SchemaName:
         return read_schema(SchemaName(kind))
     from argo_compiler.schemas.generate import schema_of
+
+    if kind is FileKind.READING:
+        from argo_compiler.script.write.reading import Reading
+
+        return schema_of(Reading, kind)
     from argo_env.faults.kinds import FaultFile
 
     return schema_of(FaultFile, kind)

@@ -127,8 +127,8 @@ class _Writer:
             said = tuple(map(capital, sentences))
             self.result.said.append(Said(subject, said, number, part.source, (part,)))
         for first, second in dict.fromkeys(self.mission.before):
-            one, other = (step_of(name, self.steps) for name in (first, second))
-            sentence = f"Always do {one} before {other}"
+            before, after = (step_of(name, self.steps) for name in (first, second))
+            sentence = f"Always do {before} before {after}"
             self.result.orders.append(Said("before", (sentence,)))
         return self.result
 

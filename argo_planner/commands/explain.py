@@ -1,0 +1,39 @@
+"""`argo explain`: what was understood of a mission, in plain sentences."""
+
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+from argo_compiler.diagnostics.codes.code import Severity
+from argo_env.planning.opening import open_site
+from argo_planner.terminal.files import STANDARD_OUTPUT, check_outputs, read_upload, write_text
+from argo_planner.terminal.options import EndArea, Force, SiteOption, Source, StartArea
+from argo_planner.use_cases.explaining import Format, reading_of, write_reading
+from argo_planner.use_cases.importing import import_mission
+
+
+def explain_mission(
+    source: Source,
+    site: SiteOption = "umad",
+    format: Annotated[Format, typer.Option("--format", help="for people or programs")] = (
+        Format.TEXT
+    ),
+    strict: Annotated[
+        bool, typer.Option("--strict", help="exit with status 1 if there are warnings")
+    ] = False,
+    output: Annotated[
+        Path | None, typer.Option("-o", "--output", help="a file to write it to; else it is shown")
+    ] = None,
+    start_area: StartArea = None,
+    end_area: EndArea = None,
+    force: Force = False,
+) -> None:
+    """Say back in plain sentences what was understood of a mission, and what was assumed."""
+    check_outputs([source, site], [output], force=force)
+    opened = open_site(site)
+    imported = import_mission(read_upload(source), opened, start_area, end_area)
+    reading = reading_of(imported, opened)
+    write_text(output or STANDARD_OUTPUT, write_reading(reading, format))
+    if strict and any(d.severity is Severity.WARNING for d in imported.warnings):
+        raise typer.Exit(1)

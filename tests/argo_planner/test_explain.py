@@ -1,0 +1,105 @@
+"""`argo explain`: what was understood, said back so that reading it gives the same mission."""
+
+import json
+from pathlib import Path
+
+import pytest
+import yaml
+from typer.testing import CliRunner
+
+from argo_compiler.diagnostics import DiagnosticError
+from argo_compiler.files.mission_file import read_mission
+from argo_compiler.il import Mission
+from argo_planner.cli import app
+from argo_planner.use_cases.schemas import FileKind, schema
+from tests.yard import SITE
+
+SCRIPT = """\
+Mission Protocol #1
+1. Start in starting area 1.
+2. Chekc checkpoint #1 at 0.3 m/s. If it is abnormal, return to the docking station.
+3. Check checkpoint #2 tonight, retry twice. If it fails, go to step 2.
+4. Repeat steps 2 to 3 three times.
+
+If a gas leak is detected, return to the docking station.
+"""
+
+
+@pytest.fixture
+def folder(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> Path:
+    monkeypatch.chdir(tmp_path)
+    (tmp_path / "yard.yaml").write_text(yaml.safe_dump(SITE), encoding="utf-8")
+    (tmp_path / "s.txt").write_text(SCRIPT, encoding="utf-8")
+    return tmp_path
+
+
+def explained(*words: str) -> str:
+    result = CliRunner().invoke(app, ["explain", *words, "--site", "yard.yaml"])
+    assert result.exception is None, result.exception
+    return result.stdout
+
+
+def mission_of(source: str) -> Mission:
+    result = CliRunner().invoke(
+        app, ["import", source, "-o", f"{source}.json", "--site", "yard.yaml"]
+    )
+    assert result.exception is None, result.exception
+    mission = read_mission(Path(f"{source}.json"))
+    parts = {
+        name: tuple(part.model_copy(update={"source": None}) for part in getattr(mission, name))
+        for name in ("tasks", "groups", "reactions")
+    }
+    return mission.model_copy(update=parts)
+
+
+@pytest.mark.usefixtures("folder")
+def test_a_script_is_said_back_with_what_was_assumed() -> None:
+    said = explained("s.txt")
+    assert "2. Check checkpoint #1, at 0.3 m/s." in said
+    assert "#1 is gauge 1 on floor 1; abnormal is less than" in said
+    assert "Note: assumed: read `Chekc` as `check`" in said
+    assert "If it fails, go to step 2." in said
+    assert "Note: no effect: line 4: `tonight` has no effect" in said
+    assert "repeat steps 2 to 3 3 times" in said.lower()
+    assert "If a gas leak is detected, return to the docking station" in said
+
+
+def test_what_is_said_back_is_the_same_mission(folder: Path) -> None:
+    (folder / "back.txt").write_text(explained("s.txt"), encoding="utf-8")
+    assert mission_of("back.txt") == mission_of("s.txt")
+
+
+@pytest.mark.usefixtures("folder")
+def test_for_programs_it_is_data_with_a_schema() -> None:
+    found = json.loads(explained("s.txt", "--format", "json"))
+    known = json.loads(schema(FileKind.READING))
+    assert set(found) == set(known["properties"])
+    assert set(found["entries"][0]) == set(known["$defs"]["Entry"]["properties"])
+    first = next(e for e in found["entries"] if e["name"] == "MEASURE 1")
+    assert first["assumed"] == ["read `Chekc` as `check`"]
+    assert first["source"]["line"] == 3
+
+
+@pytest.mark.usefixtures("folder")
+def test_an_import_says_what_was_understood() -> None:
+    result = CliRunner().invoke(app, ["import", "s.txt", "-o", "m.json", "--site", "yard.yaml"])
+    assert "2. Check checkpoint #1, at 0.3 m/s." in result.stdout
+
+
+@pytest.mark.usefixtures("folder")
+def test_a_mission_is_explained_as_its_script_is() -> None:
+    mission_of("s.txt")
+    assert "3. Check checkpoint #2, retry twice." in explained("s.txt.json")
+
+
+@pytest.mark.usefixtures("folder")
+def test_warnings_fail_only_where_that_is_asked_for() -> None:
+    words = ["explain", "s.txt", "--site", "yard.yaml"]
+    assert CliRunner().invoke(app, words).exit_code == 0
+    assert CliRunner().invoke(app, [*words, "--strict"]).exit_code == 1
+
+
+def test_errors_are_those_of_the_import(folder: Path) -> None:
+    (folder / "s.txt").write_text("1. Fly to the moon.\n", encoding="utf-8")
+    result = CliRunner().invoke(app, ["explain", "s.txt", "--site", "yard.yaml"])
+    assert isinstance(result.exception, DiagnosticError)

@@ -93,8 +93,7 @@ class ArgoCommands(LazyGroup):
             "schema",
             "schema",
             "show_schema",
-            "Print the JSON Schema of a mission, a machine, its progress, a file of faults or a "
-            "reading.",
+            "Print the JSON Schema of a mission, a machine, its progress, faults or a reading.",
         ),
         _command(
             "doctor",

@@ -6,7 +6,7 @@ a line that makes no sense by itself, or the next of which makes none, goes on.
 """
 
 import re
-from collections.abc import Callable, Collection, Iterator, Sequence
+from collections.abc import Callable, Collection, Iterable, Iterator, Sequence
 from dataclasses import dataclass, field
 from enum import StrEnum
 
@@ -44,6 +44,19 @@ class Item:
     text: ScriptText
     line: Line
     items: "list[Item]" = field(default_factory=list)
+    parts: list[ScriptText] = field(default_factory=list)
+    """the lines of the text, while they are gathered"""
+    tail: ScriptText | None = None
+    """the last sentence of the parts"""
+
+    def finish(self) -> "Item":
+        """The item with its lines in one text."""
+        if self.parts:
+            self.text = join([self.text, *self.parts])
+            self.parts = []
+        for item in self.items:
+            item.finish()
+        return self
 
 
 _NUMBER = re.compile(
@@ -70,6 +83,9 @@ _ORDINAL_OF = re.compile(
     r"(?:\s*(?:,|und|oder|bis)\s*[0-9]{1,2}\.)*\s+(?:stock|etage|geschoss|ebene|deck)", re.I
 )
 """`im 1. und 2. Stock`"""
+_NEXT_SIGN = re.compile(r"\s*(\S)")
+_LONGEST_SENTENCE = 2000
+"""characters; no line goes on with a longer one"""
 _LAST_HALF = re.compile(r"([^\W\d_]+)-$")
 _FIRST_HALF = re.compile(r"[^\W\d_]+")
 
@@ -132,30 +148,54 @@ def _split(line: Line) -> Iterator[Line]:
 
 
 def items_of(
-    lines: Sequence[Line],
+    lines: Iterable[Line],
     complete: Callable[[ScriptText], bool],
     alone: Callable[[ScriptText], bool],
     words: Collection[str],
-) -> list[Item]:
+) -> Iterator[Item]:
     """The steps and paragraphs, those that lie within others inside of them. `complete` tells
     whether a text makes sense by itself, `alone` whether a line never goes on with another one, and
     `words` whether a hyphen at the end of a line divides a word."""
-    top: list[Item] = []
     around: list[Item] = []
     for line in lines:
-        follows = line.mark is Mark.NONE and around and not line.first and not alone(line.text)
-        if follows and (
-            _is_unfinished(around[-1].text, line.text)
-            or (not alone(around[-1].text) and _goes_on(around[-1], line, complete))
-        ):
-            around[-1].text = _joined(around[-1].text, line.text, words)
-            continue
+        if line.mark is Mark.NONE and around and not line.first and not alone(line.text):
+            above = around[-1]
+            last = above.tail or above.text
+            goes_on = _is_unfinished(last, line.text)
+            if goes_on or (not alone(above.text) and _goes_on(above, last, line, complete)):
+                _append(above, last, line.text, words)
+                continue
         item = Item(line.text, line)
         while around and not _lies_in(line, around[-1].line):
-            around.pop()
-        (around[-1].items if around else top).append(item)
+            outer = around.pop()
+            if not around:
+                yield outer.finish()
+        if around:
+            around[-1].items.append(item)
         around.append(item)
-    return top
+    if around:
+        yield around[0].finish()
+
+
+def _append(item: Item, last: ScriptText, below: ScriptText, words: Collection[str]) -> None:
+    """Lets an item go on with a line; a word that a hyphen divides becomes whole."""
+    left, right = _LAST_HALF.search(last.content), _FIRST_HALF.match(below.content)
+    if left is not None and right is not None and (left[1] + right[0]).lower() in words:
+        whole = last[: len(last.content) - 1]
+        offsets = [*whole.offsets, *below.offsets]
+        joined = ScriptText(whole.content + below.content, offsets, last.source)
+        in_text = not item.parts
+        cut = item.text if in_text else item.parts.pop()
+        offsets = [*cut.offsets[:-1], *below.offsets]
+        merged = ScriptText(cut.content[:-1] + below.content, offsets, cut.source)
+        if in_text:
+            item.text = merged
+        else:
+            item.parts.append(merged)
+    else:
+        joined = join([last, below])
+        item.parts.append(below)
+    item.tail = joined[_bounds(joined.content)[-1][0] :]
 
 
 def _is_unfinished(text: ScriptText, following: ScriptText) -> bool:
@@ -165,25 +205,19 @@ def _is_unfinished(text: ScriptText, following: ScriptText) -> bool:
     return quoted or content.endswith((",", " and", " or", '":'))
 
 
-def _goes_on(item: Item, line: Line, complete: Callable[[ScriptText], bool]) -> bool:
-    """Whether a line without a mark goes on with the text above it."""
-    last = sentences(item.text)[-1] if item.text.content else item.text
+def _goes_on(
+    item: Item, last: ScriptText, line: Line, complete: Callable[[ScriptText], bool]
+) -> bool:
+    """Whether a line without a mark goes on with the last sentence above it."""
+    if len(last.content) > _LONGEST_SENTENCE:
+        return False
     whole, rest = complete(last), complete(line.text)
-    ended = item.text.content.endswith((".", "!", "?"))
+    ended = last.content.endswith((".", "!", "?"))
     if whole and rest:
         return item.line.mark is Mark.NONE and ended
     if ended or (whole and line.heading):
         return False
     return not (whole or rest) or complete(join([last, line.text]))
-
-
-def _joined(above: ScriptText, below: ScriptText, words: Collection[str]) -> ScriptText:
-    """Two lines in one; a word that a hyphen divides becomes whole."""
-    left, right = _LAST_HALF.search(above.content), _FIRST_HALF.match(below.content)
-    if left is None or right is None or (left[1] + right[0]).lower() not in words:
-        return join([above, below])
-    whole = above[: len(above.content) - 1]
-    return ScriptText(whole.content + below.content, [*whole.offsets, *below.offsets], above.source)
 
 
 def _lies_in(line: Line, outer: Line) -> bool:
@@ -199,22 +233,31 @@ def _lies_in(line: Line, outer: Line) -> bool:
 
 def sentences(text: ScriptText) -> list[ScriptText]:
     """The sentences of a text, without their full stops."""
-    found: list[ScriptText] = []
-    start = 0
-    quoted = quotes(text.content)
-    for end in _SENTENCE_END.finditer(text.content):
-        if any(a < end.start() < b for a, b in quoted):
-            continue
-        goes_on = not text.content[end.end() :].lstrip()[:1].isupper()
-        more = goes_on and end.end() < len(text.content)
-        if more and _ABBREVIATION.search(text.content[: end.start() + 1]):
-            continue
-        if _goes_on_behind(text.content, end.start() + 1):
-            continue
-        found.append(text[start : end.start()].strip())
-        start = end.end()
-    found.append(text[start:].strip())
+    found = (text[start:end].strip() for start, end in _bounds(text.content))
     return [sentence for sentence in found if sentence.content]
+
+
+def _bounds(content: str) -> list[tuple[int, int]]:
+    """Where the sentences of a text begin and end; at least one."""
+    found: list[tuple[int, int]] = []
+    start = k = 0
+    quoted = quotes(content)
+    for end in _SENTENCE_END.finditer(content):
+        while k < len(quoted) and quoted[k][1] <= end.start():
+            k += 1
+        if k < len(quoted) and quoted[k][0] < end.start():
+            continue
+        behind = _NEXT_SIGN.match(content, end.end())
+        more = behind is not None and not behind[1].isupper()
+        if more and _ABBREVIATION.search(content, max(0, end.start() - 8), end.start() + 1):
+            continue
+        if _goes_on_behind(content, end.start() + 1):
+            continue
+        found.append((start, end.start()))
+        start = end.end()
+    if content[start:].strip() or not found:
+        found.append((start, len(content)))
+    return found
 
 
 def _goes_on_behind(content: str, stop: int) -> bool:

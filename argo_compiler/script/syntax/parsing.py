@@ -1,7 +1,7 @@
 """Script text to syntax tree."""
 
 import re
-from collections.abc import Collection, Iterator
+from collections.abc import Collection, Iterable, Iterator
 from dataclasses import dataclass, field
 
 from argo_compiler.diagnostics import DiagnosticError
@@ -24,6 +24,8 @@ from argo_compiler.script.syntax.words.language import Language
 MAX_LINES = 120_000
 """of a script; one with more is refused unread"""
 
+_LONGEST_MENDED = 300
+"""characters of a sentence that is mended to see whether it goes on"""
 Said = Sentence | Fact | Unread
 _EDITS = ("ADD", "DELETE", "REPLACE", "MOVE")
 
@@ -89,7 +91,7 @@ class _Parser:
         healed = heal(source, self._vocabulary(source.text), rows)
         self.diagnostics.extend(healed.diagnostics)
         texts = Cells(self.fields, self.understanding).joined(healed.lines)
-        items = items_of(list(lines_of(texts)), self.is_complete, self.stands_alone, language.words)
+        items = items_of(lines_of(texts), self.is_complete, self.stands_alone, language.words)
         steps = list(self._steps(items))
         first = [_step_of(sentence) for sentence in self.fields.first]
         last = [_step_of(sentence) for sentence in self.fields.last]
@@ -135,13 +137,14 @@ class _Parser:
     def _fits(self, sentence: ScriptText) -> bool:
         understanding = self.understanding
         return understanding.fits(sentence) or (
-            "WORD" in understanding.types(sentence)
+            len(sentence.content) <= _LONGEST_MENDED
+            and "WORD" in understanding.types(sentence)
             and understanding.respelled(sentence, quiet=True) is not None
         )
 
     # ---- lines
 
-    def _steps(self, items: list[Item]) -> Iterator[Step]:
+    def _steps(self, items: Iterable[Item]) -> Iterator[Step]:
         for item in items:
             if self.stopped:
                 return

@@ -7,7 +7,7 @@ for something is never taken for such.
 import re
 from collections.abc import Iterator
 from functools import cache
-from itertools import pairwise
+from itertools import islice, pairwise
 
 from argo_compiler.script.syntax.grammar import StumbleError
 from argo_compiler.script.syntax.source import ScriptText, join
@@ -55,6 +55,8 @@ _ASKING = frozenset(
 _NAMED = frozenset(["KIND", "HASH", "STEP", "AREA", "DOCK", "FLOOR"])
 _LABELS = frozenset(["NUMBER", "IDENT", "STRING", "HASH"])
 _HEADING = frozenset(["WORD", "NUMBER", "ORDINAL", "FLOOR", "FLOOR_NAME", "TIME_WORD", "STEP"])
+_MOST_REASONS = 3
+"""in a sentence"""
 _LONGEST_TITLE = 14
 """words"""
 _TOKEN = re.compile(r"[\w'-]+|[^\w\s]")
@@ -185,9 +187,8 @@ class Asides:
         if colon > 0 and self._is_section(text[:colon]):
             yield text[colon + 1 :].strip(), [text[: colon + 1]]
         reason = begins(self.prose.reason)
-        for cut in _CUT.finditer(content):
-            if not reason.match(content, cut.end()):
-                continue
+        cuts = (cut for cut in _CUT.finditer(content) if reason.match(content, cut.end()))
+        for cut in islice(cuts, _MOST_REASONS):
             comma = content.find(",", cut.end())
             end = comma if comma > 0 else len(content)
             for behind in (len(content), end):

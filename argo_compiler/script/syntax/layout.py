@@ -86,6 +86,10 @@ _ORDINAL_OF = re.compile(
 _NEXT_SIGN = re.compile(r"\s*(\S)")
 _LONGEST_SENTENCE = 2000
 """characters; no line goes on with a longer one"""
+_LONGEST_STRANGE = 300
+"""characters; lines that make no sense are put together up to here"""
+_DEEPEST = 20
+"""items that lie in one another; what lies deeper is taken to lie there"""
 _LAST_HALF = re.compile(r"([^\W\d_]+)-$")
 _FIRST_HALF = re.compile(r"[^\W\d_]+")
 
@@ -172,7 +176,8 @@ def items_of(
                 yield outer.finish()
         if around:
             around[-1].items.append(item)
-        around.append(item)
+        if len(around) < _DEEPEST:
+            around.append(item)
     if around:
         yield around[0].finish()
 
@@ -217,7 +222,9 @@ def _goes_on(
         return item.line.mark is Mark.NONE and ended
     if ended or (whole and line.heading):
         return False
-    return not (whole or rest) or complete(join([last, line.text]))
+    if not whole and not rest and len(last.content) <= _LONGEST_STRANGE:
+        return True
+    return complete(join([last, line.text]))
 
 
 def _lies_in(line: Line, outer: Line) -> bool:

@@ -16,6 +16,8 @@ from argo_compiler.script.syntax.words.lexer import words
 from argo_compiler.script.syntax.words.word import Word
 
 Reading = tuple[Branch, list[Word]]
+_MOST_SLIPS = 8
+"""misspelt words in a sentence; one with more is none of the language's"""
 _MOST_TRIED = 32
 """ways to put the misspelt words of a sentence right"""
 _MIXED = re.compile(r"(?<![\w.,'-])(?=[lIiOo|]*[0-9])(?=[0-9]*[lIiOo|])([0-9lIiOo|]+)(?![\w|]|-\w)")
@@ -104,7 +106,7 @@ class Understanding:
                 meant = candidates(text.content[word.start : word.end], self.known)
                 if meant:
                     slips.append((word, meant))
-        if not slips:
+        if not 0 < len(slips) <= _MOST_SLIPS:
             return None
         found: dict[str, tuple[ScriptText, tuple[str, ...]]] = {}
         for chosen in islice(product(*(meant for _, meant in slips)), _MOST_TRIED):

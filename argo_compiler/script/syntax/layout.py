@@ -147,8 +147,10 @@ def _split(line: Line) -> Iterator[Line]:
         yield Line(line.text[start : found.start()].strip(), line.indent, line.mark, expected - 1)
         start = found.end()
         expected += 1
-    number = expected - 1 if line.number is not None else None
-    yield Line(line.text[start:].strip(), line.indent, line.mark, number)
+    if start == 0:
+        yield line
+    else:
+        yield Line(line.text[start:].strip(), line.indent, line.mark, expected - 1)
 
 
 def items_of(

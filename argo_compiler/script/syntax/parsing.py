@@ -299,14 +299,15 @@ class _Parser:
 
     def _behind_title(self, text: ScriptText) -> list[ScriptText]:
         """The parts of what stands behind a title, if all of them make sense."""
-        if self._makes_sense(text):
-            return [text]
         commas = [i for i, sign in enumerate(text.content) if sign == ","]
         ends = [*commas, len(text.content)]
         parts = [
             text[a:b].strip() for a, b in zip([0, *(c + 1 for c in commas)], ends, strict=True)
         ]
-        return parts if all(self._makes_sense(part) for part in parts) else []
+        for behind in (parts, [text]):
+            if all(self._makes_sense(part) for part in behind):
+                return behind
+        return []
 
     def _makes_sense(self, text: ScriptText) -> bool:
         return self.fields.says_whole(text) or self.understanding.fits(text)

@@ -1,0 +1,199 @@
+"""Steps, bullets, tables, letters and titles: what belongs together, and what has no effect."""
+
+import pytest
+
+from argo_compiler.catalog import Catalog
+from argo_compiler.diagnostics import Diagnostic, DiagnosticError, Severity
+from argo_compiler.il import Order
+from argo_compiler.script import Resolved, import_script
+
+START = "Start in starting area 1\n"
+
+
+def findings(text: str, catalog: Catalog) -> tuple[Diagnostic, ...]:
+    try:
+        result: Resolved | DiagnosticError = import_script(text, catalog)
+    except DiagnosticError as error:
+        result = error
+    return result.diagnostics
+
+
+def errors(text: str, catalog: Catalog) -> list[tuple[int, str]]:
+    """The lines of the errors, with the words at which they are."""
+    lines = text.split("\n")
+    found = [d for d in findings(text, catalog) if d.severity is Severity.ERROR]
+    spans = [d.span for d in found if d.span is not None]
+    return [(s.line, lines[s.line - 1][s.column - 1 : s.column - 1 + s.length]) for s in spans]
+
+
+def notes(text: str, catalog: Catalog) -> list[str]:
+    return [d.message.split("`")[1] for d in findings(text, catalog) if d.severity is Severity.NOTE]
+
+
+def measured(text: str, catalog: Catalog) -> list[str]:
+    tasks = import_script(text, catalog).mission.tasks
+    return [t.object_id for t in tasks if t.object_id is not None]
+
+
+@pytest.mark.parametrize(
+    "lines",
+    [
+        "1. Check #4\n2. Check #8",
+        "1) Check #4\n2) Check #8",
+        "(1) Check #4\n(2) Check #8",
+        "Step 1: check #4\nstep 2: check #8",
+        "1 - Check #4\n2 - Check #8",
+        "- Check #4\n- Check #8",
+        "* Check #4\n* Check #8",
+        "+ Check #4\n+ Check #8",
+        "• Check #4\n– Check #8",
+        "- [ ] Check #4\n- [x] Check #8",
+        "1. Check #4, 2. Check #8",
+        "1. Check #4\n   a) Check #8",
+        "Tasks:\n1. Check #4\n2. Check #8",
+        "# Tasks\n- #4\n- #8",
+        "Tasks\n=====\n\n- #4\n- #8",
+        "Floor 1\n - #4\nFloor 2\n - #8",
+        "1. Check\n   #4\n2. Check #8",
+        "1. Check\n#4 and\n#8",
+        "Check check-\npoint 4 and #8",
+        "Check #4.\nCheck #8.",
+    ],
+)
+def test_steps_in_all_shapes(lines: str, catalog: Catalog) -> None:
+    assert measured(START + lines, catalog) == ["4", "8"]
+
+
+@pytest.mark.parametrize(
+    "table",
+    [
+        "| No | Checkpoint | Reading |\n|----|---|---|\n| 1 | #4 | valve R25 |\n| 2 | #8 | |",
+        "No\tCheckpoint\tReading\n1\t#4\tvalve R25\n2\t#8\tpressure gauge 5",
+        "No  Checkpoint  Remark\n1   4           the red one\n2   8",
+        "| Checkpoint | Reading |\n| #4 | valve R25 |\n| | pressure gauge 5 |",
+        "| Action | Checkpoint |\n| check | #4 |\n| read | #8 |",
+    ],
+)
+def test_tables(table: str, catalog: Catalog) -> None:
+    assert measured(f"{START}\n{table}\n", catalog) == ["4", "8"]
+
+
+def test_what_a_table_says_of_its_steps(catalog: Catalog) -> None:
+    table = (
+        "| Checkpoint | Priority | Optional | Speed |\n"
+        "| #4 | high | no | 0.3 m/s |\n| #8 | low | yes | |"
+    )
+    first, second = import_script(f"{START}\n{table}", catalog).mission.tasks[1:]
+    assert first.priority is not None
+    assert second.priority is not None
+    assert first.priority > second.priority
+    assert (first.optional, second.optional) == (False, True)
+
+
+def test_a_column_that_there_is_not(catalog: Catalog) -> None:
+    text = f"{START}\n| Checkpoint | Colour |\n| #4 | red |"
+    assert errors(text, catalog) == [(3, "Colour")]
+
+
+def test_a_letter(catalog: Catalog) -> None:
+    text = """\
+Dear Marc,
+
+I hope you are well. Please start in starting area 1 and check checkpoint 4 tonight (it was odd).
+Then check valve R12, which is next to the ladder. Note: the lamp is broken.
+Check checkpoint 8 - it's the one at the door.
+
+Kind regards
+Ines Miller
+"""
+    assert measured(text, catalog) == ["4", "5", "8"]
+    assert notes(text, catalog) == [
+        "Dear Marc,",
+        "I hope you are well",
+        "tonight",
+        "(it was odd)",
+        "which is next to the ladder",
+        "Note: the lamp is broken",
+        "it's the one at the door",
+        "Kind regards",
+        "Ines Miller",
+    ]
+
+
+def test_titles_and_headings_are_notes(catalog: Catalog) -> None:
+    text = f"Weekly tour, unit A\n\n{START}Safety rules:\n- check #4"
+    assert notes(text, catalog) == ["Weekly tour, unit A", "Safety rules:"]
+    assert import_script(text, catalog).mission.designation == "Weekly tour, unit A"
+
+
+@pytest.mark.parametrize(
+    "title",
+    [
+        "Close valve R12",
+        "Send an SMS to the control room",
+        "Do not use any stairs",
+        "Photograph the pump",
+        "Round, but not on floor 2",
+        "Tour, 20 minutes, then wait",
+    ],
+)
+def test_a_title_swallows_no_instruction(title: str, catalog: Catalog) -> None:
+    assert [line for line, _ in errors(f"{title}\n{START}Check #4", catalog)] == [1]
+
+
+def test_a_title_may_say_something_of_the_mission(catalog: Catalog) -> None:
+    text = "Evening round, start and end in starting area 2, in any order, at most 15 minutes\n- #4"
+    mission = import_script(text, catalog).mission
+    assert (mission.designation, mission.order) == ("Evening round", Order.ANY)
+    assert (mission.max_duration, mission.start_area, mission.end_area) == (900, 2, 2)
+
+
+@pytest.mark.parametrize(
+    ("line", "words"),
+    [
+        ("Do not use any stairs", None),
+        ("send an SMS", "send"),
+        ("Close valve R12", "Close"),
+        ("Check #8. If it looks strange, check #9. Otherwise check #10", None),
+        ("Repeat steps 2 to 3 a few times", "few"),
+        ("Check #8 (and valve R12)", None),
+        ("Check #8 or", "or"),
+    ],
+)
+def test_what_cant_be_done_is_one_error_in_its_line(
+    line: str, words: str | None, catalog: Catalog
+) -> None:
+    text = f"1. {START}2. Check #4\n3. {line}\n4. If it is above 5, check #8\n5. Otherwise check #9"
+    ((number, said),) = errors(text, catalog)
+    assert number == 3
+    assert words is None or said == words
+
+
+def test_a_line_that_makes_no_sense_leaves_those_around_it_as_they_are(catalog: Catalog) -> None:
+    text = f"{START}Check #4\nFly to the moon\nCheck #8"
+    assert [line for line, _ in errors(text, catalog)] == [3]
+
+
+@pytest.mark.parametrize(("said", "meant"), [("#l7", "17"), ("checkpoint 1O", "10"), ("#I2", "12")])
+def test_a_letter_among_digits_is_a_digit_with_a_warning(
+    said: str, meant: str, catalog: Catalog
+) -> None:
+    result = import_script(f"{START}Check {said}", catalog)
+    assert [t.object_id for t in result.mission.tasks][1:] == [meant]
+    (warning,) = result.diagnostics
+    assert warning.code == "script.respelled"
+    assert warning.severity is Severity.WARNING
+
+
+def test_names_with_letters_and_digits_stay_as_they_are(catalog: Catalog) -> None:
+    (error,) = findings(f"{START}Check valve R1O", catalog)
+    assert error.code == "script.unknown-checkpoint"
+
+
+def test_hints_tell_what_fits(catalog: Catalog) -> None:
+    (few,) = findings(f"1. {START}2. Check #4\n3. Repeat steps 1 to 2 a few times", catalog)
+    assert few.hint is not None
+    assert "`repeat steps 2 to 4 three times`" in few.hint
+    (slip,) = findings(f"{START}Check chekpont 4 quirkily", catalog)
+    assert slip.hint is not None
+    assert "`checkpoint`" in slip.hint

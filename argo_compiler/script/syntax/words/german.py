@@ -414,8 +414,10 @@ MANNERS: Phrases = {
     ),
     ("TIMES", Figure(3.0)): "dreimal",
     ("MORE_WORD", None): "weitere{n}|zusätzliche{n}|weiteres",
-    ("OR_MORE", None): "oder [mehr/höher/darüber]",
-    ("OR_LESS", None): "oder [weniger/niedriger/darunter]",
+    ("OR_MORE", "or"): "oder [mehr/höher/darüber]",
+    ("OR_MORE", "and"): "und [mehr/höher/darüber]",
+    ("OR_LESS", "or"): "oder [weniger/niedriger/darunter]",
+    ("OR_LESS", "and"): "und [weniger/niedriger/darunter]",
     ("EXACTLY", None): "genau|exakt",
     ("TIME_WORD", None): "mal|male|malen|- mal|runde{n}|durchgänge{n}|durchgang",
     (
@@ -440,6 +442,17 @@ MANNERS: Phrases = {
         "wenn die zeit es erlaubt|falls die zeit es erlaubt"
     ),
     ("PRIORITY", None): "mit priorität|mit der priorität|priorität|mit wichtigkeit|wichtigkeit",
+    ("RANKED", 3): "[mit/] [hoher/höchster] priorität|priorität hoch|mit priorität hoch",
+    ("RANKED", 2): ("[mit/] [mittlerer/normaler] priorität|priorität mittel|mit priorität mittel"),
+    ("RANKED", 1): "[mit/] [niedriger/niedrigster/geringer] priorität|priorität niedrig",
+    ("BY_IMPORTANCE", None): (
+        "nach [wichtigkeit/priorität]|in der reihenfolge der [wichtigkeit/priorität]|"
+        "[das/die/den] [wichtigste/wichtigsten] zuerst|wichtigste zuerst|wichtigstes zuerst"
+    ),
+    ("LEAVE_OUT", None): (
+        "lass weg was nicht passt|lass weg , was nicht passt|was nicht passt entfällt|"
+        "was nicht passt , entfällt|so viele wie möglich|so viele wie hineinpassen"
+    ),
     ("ANY_ORDER", None): "in beliebiger reihenfolge|in einer beliebigen reihenfolge|beliebig",
     ("ORDER_FREE", None): (
         "die reihenfolge ist egal|reihenfolge ist egal|reihenfolge ist beliebig|"
@@ -544,6 +557,7 @@ FIGURES: Phrases = {
 
 JOINTS: Phrases = {
     ("JOINT", "and"): "und|sowie",
+    ("JOINT", "but"): "aber|jedoch",
     ("JOINT", "or"): "oder|beziehungsweise",
 }
 

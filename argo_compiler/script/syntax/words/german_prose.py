@@ -115,6 +115,7 @@ PROSE = replace(
         _ENGLISH.remark,
     ),
     small_talk=_both(
+        "könntet ihr den roboter|könnten sie den roboter|könntest du den roboter|"
         "ich hoffe|wir hoffen|wie besprochen|wie vereinbart|anbei|hier ist|hier sind|im anhang|"
         "bei fragen|falls es fragen gibt|vielen dank|danke|entschuldigung|unten steht|das ist der|"
         "das ist die|das sind die|es geht um",

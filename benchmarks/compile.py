@@ -46,7 +46,7 @@ from argo_compiler.catalog import (
 )
 from argo_compiler.hfsm import Executor, lower
 from argo_compiler.model import Pose
-from argo_compiler.script import catalog_words, parse
+from argo_compiler.script import parse
 from argo_compiler.script.resolve.importing import resolve
 
 SIZES = (1_000, 10_000, 30_000, 100_000)
@@ -114,7 +114,8 @@ def make_script(tasks: int, catalog: Catalog) -> str:
                     f"Check checkpoint #{k}. If the value is between {draw.randint(1, 20)} and"
                     f" {draw.randint(21, 90)}, go to step {to}; otherwise go on",
                     f"Measure checkpoint #{k}; if it is below {draw.random() * 9:.2f} and the value"
-                    f" of checkpoint #{draw.randint(1, 60)} is at least 3, continue with step {to}",
+                    f" of checkpoint #{1 + (k + draw.randint(1, 58)) % 60} is at least 3,"
+                    f" continue with step {to}",
                 ]
             )
         elif kind < 0.50:
@@ -150,6 +151,12 @@ def make_script(tasks: int, catalog: Catalog) -> str:
     return "\n".join(lines + groups) + "\n"
 
 
+def _names(catalog: Catalog) -> tuple[list[str], str, list[str]]:
+    """The names of places, of the script, and of checkpoints, as `parse` takes them."""
+    places = [place.name for place in catalog.places]
+    return places, "script", [checkpoint.name for checkpoint in catalog.checkpoints]
+
+
 def stages(text: str, catalog: Catalog) -> dict[str, float]:
     """Seconds of each stage from the text to an executor."""
     seconds: dict[str, float] = {}
@@ -161,7 +168,7 @@ def stages(text: str, catalog: Catalog) -> dict[str, float]:
         seconds[name] = time.process_time() - began
         return result
 
-    script = timed("parse", parse, text, catalog_words(catalog))
+    script = timed("parse", parse, text, *_names(catalog))
     resolved = timed("resolve", resolve, script, catalog)
     machine = timed("lower", lower, resolved.mission)
     timed("executor", Executor, machine)
@@ -172,7 +179,7 @@ def stages(text: str, catalog: Catalog) -> dict[str, float]:
 def peak_memory(text: str, catalog: Catalog) -> float:
     """MB that Python objects took at most on the way."""
     tracemalloc.start()
-    mission = resolve(parse(text, catalog_words(catalog)), catalog).mission
+    mission = resolve(parse(text, *_names(catalog)), catalog).mission
     Executor(lower(mission))
     _, peak = tracemalloc.get_traced_memory()
     tracemalloc.stop()

@@ -12,6 +12,7 @@ from argo_compiler.script.syntax.source import Diagnostics
 from argo_compiler.script.syntax.tree import conditions as said
 from argo_compiler.script.syntax.tree.conditions import (
     Amount,
+    Asked,
     Between,
     Compared,
     InState,
@@ -70,7 +71,7 @@ class ConditionResolver:
                 return None
         return tuple(found)
 
-    def _empty(self, conditions: tuple[Condition, ...], tests: Sequence[Test]) -> bool:
+    def _empty(self, conditions: tuple[Condition, ...], tests: Sequence[Asked]) -> bool:
         """Whether no value satisfies all the bounds for one checkpoint: then an error says so."""
         if not contradict(conditions):
             return False

@@ -139,7 +139,7 @@ def agrees(checkpoint: CheckpointInfo, kind: Kind) -> bool:
     """Whether a checkpoint is of a kind."""
     if kind is Kind.GAUGE:
         return checkpoint.kind in _GAUGES
-    return kind is Kind.CHECKPOINT or checkpoint.kind == kind
+    return kind is Kind.CHECKPOINT or checkpoint.kind.value == kind.value
 
 
 def _same_place(said: str, known: str) -> bool:

@@ -1,5 +1,6 @@
 """The parser of sentences: words in, a tree of rules out."""
 
+from collections.abc import Callable
 from dataclasses import dataclass, field
 from functools import cache
 
@@ -64,7 +65,8 @@ class Grammar:
         parser = self.parser.parse_interactive("", "sentence")
         for at, type_ in enumerate(words):
             parser.feed_token(Token(type_, "", start_pos=at, end_pos=at + 1))
-        return frozenset(parser.accepts())
+        accepts: Callable[[], set[str]] = parser.accepts
+        return frozenset(accepts())
 
 
 def _branch(tree: Tree[Token]) -> Branch:

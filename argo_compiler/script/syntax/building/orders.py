@@ -64,12 +64,13 @@ def where(part: Part) -> Location | FloorName:
     """The place that a rule names."""
     for child in part.children:
         if isinstance(child, tuple):
-            (floor, *others) = child
+            floor: FloorName = child[0]
+            others = child[1:]
             if others:
                 message = "the robot can go to one floor at a time"
                 part.error("several-floors", message, "write an order for each of them")
             return floor
-        if not isinstance(child, Word | Manner):
+        if isinstance(child, AreaLocation | DockLocation | PlaceLocation | Coordinates):
             return child
     raise AssertionError("the grammar lets the place be left out")
 
@@ -82,12 +83,11 @@ def _towards(part: Part, where: Location | FloorName) -> Order:
 
 def _home(part: Part) -> Order:
     """`Go home`, `return to the docking station`, `dock in starting area 1`."""
-    where = part.first(DockLocation | AreaLocation | PlaceLocation | Coordinates)
-    if where is None:
-        where = DockLocation(span=part.span)
-    elif isinstance(where, AreaLocation):
-        where = DockLocation(span=part.span, area=where)
-    return _towards(part, where)
+    named = any(not isinstance(child, Word | Manner) for child in part.children)
+    place = where(part) if named else DockLocation(span=part.span)
+    if isinstance(place, AreaLocation):
+        place = DockLocation(span=part.span, area=place)
+    return _towards(part, place)
 
 
 def _start(part: Part) -> Order:

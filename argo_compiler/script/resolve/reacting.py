@@ -32,9 +32,11 @@ class _Reacting:
     pose: Pose | None = None
     area: int | None = None
     until: EventKind | None = None
-    afterwards: Afterwards = Afterwards.END
+    afterwards: Afterwards | None = None
+    """None: not said"""
     hold_limit: float | None = None
-    on_limit: Afterwards = Afterwards.WAIT
+    on_limit: Afterwards | None = None
+    """None: not said"""
     priority: int | None = None
 
     @property
@@ -61,6 +63,10 @@ class Reactions:
             if step is None:
                 return
             doing = step
+        held = self._held(doing, case.span)
+        if held is None:
+            return
+        doing = held
         response = doing.response
         if response is None and doing.until is not None:
             response = Response.PAUSE
@@ -95,9 +101,9 @@ class Reactions:
                 pose=doing.pose,
                 area=doing.area,
                 until=doing.until,
-                afterwards=doing.afterwards,
+                afterwards=doing.afterwards or Afterwards.END,
                 hold_limit=doing.hold_limit,
-                on_limit=doing.on_limit,
+                on_limit=doing.on_limit or Afterwards.WAIT,
                 priority=doing.priority,
                 battery_below=level,
                 source=whole,
@@ -164,14 +170,17 @@ class Reactions:
             case Plain(word=Word.PAUSE):
                 return replace(doing, response=doing.response or Response.PAUSE)
             case Plain(word=Word.RECHARGE):
+                if doing.until not in (None, EventKind.BATTERY_CHARGED):
+                    self._twice(order)
+                    return None
                 response = doing.response or Response.PAUSE
                 return replace(doing, until=EventKind.BATTERY_CHARGED, response=response)
             case Plain(word=Word.GO_ON):
-                return replace(doing, afterwards=Afterwards.RESUME)
+                return self._afterwards(order, doing, Afterwards.RESUME)
             case Plain(word=Word.ABORT) | Plain(word=Word.END) if not doing.drives:
                 return self._responds(doing, Response.ABORT, order)
             case Plain(word=Word.END):
-                return replace(doing, afterwards=Afterwards.END)
+                return self._afterwards(order, doing, Afterwards.END)
             case Wait():
                 return self._waits(order, doing)
             case Home():
@@ -182,6 +191,36 @@ class Reactions:
         hint = "it can report, pause, return, drive to a place, recharge, wait, resume or abort"
         self.diagnostics.error("reaction", message, order.span, hint)
         return None
+
+    def _afterwards(
+        self, order: Order, doing: _Reacting, afterwards: Afterwards
+    ) -> _Reacting | None:
+        ended = doing.response is Response.ABORT
+        if ended or doing.afterwards not in (None, afterwards):
+            self._twice(order)
+            return None
+        return replace(doing, afterwards=afterwards)
+
+    def _twice(self, order: Order) -> None:
+        message = "this is not what was said before of the same event"
+        self.diagnostics.error("reaction", message, order.span, "leave one of the two out")
+
+    def _held(self, doing: _Reacting, span: Span) -> _Reacting | None:
+        """The reaction with what happens when the time for which it holds is over."""
+        if doing.hold_limit is None:
+            return doing
+        message = hint = ""
+        if doing.drives and doing.until is None:
+            message = "after its drive a reaction holds until an event, not for a time"
+            hint = "write, say, `return and wait until the all-clear for at most 10 minutes`"
+        elif doing.on_limit is None and doing.until is not None and doing.afterwards is None:
+            message = "this does not say what happens if the time is over before that event"
+            hint = "add `or else go on`, `or else end the mission` or `or else wait`"
+        if message:
+            self.diagnostics.error("reaction", message, span, hint)
+            return None
+        on_limit = doing.on_limit or doing.afterwards or Afterwards.RESUME
+        return replace(doing, on_limit=on_limit)
 
     def _furnished(self, order: Order, manner: Manner, doing: _Reacting) -> _Reacting | None:
         """What is said of how long it holds, for what, and how urgent it is."""
@@ -195,6 +234,9 @@ class Reactions:
             hint = "leave it out; how urgent it is, is said by a number: `with priority 90`"
             self.diagnostics.error("stray-clause", message, order.span, hint)
             return None
+        if manner.time_limit is not None and manner.duration is not None:
+            self._twice(order)
+            return None
         limit = manner.time_limit if manner.time_limit is not None else manner.duration
         if limit is not None:
             doing = replace(doing, hold_limit=limit)
@@ -203,23 +245,32 @@ class Reactions:
         if manner.priority is not None:
             doing = replace(doing, priority=manner.priority)
         if manner.until is not None:
-            doing = replace(doing, until=self._awaited(order))
+            awaited = self._awaited(order)
+            if awaited is None:
+                return None
+            if doing.until not in (None, awaited):
+                self._twice(order)
+                return None
+            doing = replace(doing, until=awaited)
         return doing
 
     def _responds(self, doing: _Reacting, response: Response, order: Order) -> _Reacting | None:
-        if doing.response in (None, Response.PAUSE, response):
+        said = doing.afterwards is not None and response is Response.ABORT
+        if doing.response in (None, Response.PAUSE, response) and not said:
             return replace(doing, response=response)
         message = "two things to do at once in this event"
         self.diagnostics.error("reaction", message, order.span, "leave one of them out")
         return None
 
-    def _waits(self, order: Wait, doing: _Reacting) -> _Reacting:
+    def _waits(self, order: Wait, doing: _Reacting) -> _Reacting | None:
         if order.manner is not None and order.manner.person and doing.drives:
-            return replace(doing, afterwards=Afterwards.WAIT)
+            return self._afterwards(order, doing, Afterwards.WAIT)
         if doing.until is not None or (order.manner and order.manner.until):
             return replace(doing, response=doing.response or Response.PAUSE)
+        if doing.hold_limit is not None:
+            return replace(doing, response=doing.response or Response.PAUSE)
         if doing.drives:
-            return replace(doing, afterwards=Afterwards.WAIT)
+            return self._afterwards(order, doing, Afterwards.WAIT)
         return replace(doing, response=doing.response or Response.PAUSE)
 
     def _home(self, order: Order, dock: DockLocation, doing: _Reacting) -> _Reacting | None:

@@ -10,7 +10,11 @@ _RESPONSES = {
     Response.PAUSE: "pause",
     Response.ABORT: "abort the mission",
 }
-_ON_LIMIT = {Afterwards.RESUME: "resume", Afterwards.END: "end the mission"}
+_ON_LIMIT = {
+    Afterwards.RESUME: "resume",
+    Afterwards.END: "end the mission",
+    Afterwards.WAIT: "wait",
+}
 _AFTERWARDS = {
     Afterwards.RESUME: "and resume",
     Afterwards.WAIT: "and wait for the operator",
@@ -51,7 +55,7 @@ def _holding(reaction: Reaction) -> str:
         said.append(f"until {event(reaction.until)}")
     if reaction.hold_limit is not None:
         said.append(f"for at most {duration(reaction.hold_limit)}")
-    if reaction.on_limit is not Afterwards.WAIT:
+    if reaction.hold_limit is not None or reaction.on_limit is not Afterwards.WAIT:
         said.append(f"or else {_ON_LIMIT[reaction.on_limit]}")
     return " ".join(said)
 
@@ -79,6 +83,9 @@ def _require_used(reaction: Reaction) -> None:
     unused = {
         "pose": reaction.pose is not None and reaction.response not in _DRIVES,
         "area": reaction.area is not None and reaction.response is not Response.RETURN,
+        "hold_limit": reaction.hold_limit is not None
+        and reaction.response in _DRIVES
+        and reaction.until is None,
     }
     if reaction.response in (Response.REPORT, Response.ABORT):
         unused |= {

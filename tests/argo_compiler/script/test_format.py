@@ -8,6 +8,7 @@ from hypothesis import assume, given, settings
 from argo_compiler.catalog import Catalog
 from argo_compiler.checks import check
 from argo_compiler.diagnostics import DiagnosticError, Severity
+from argo_compiler.files.mission_file import read_mission
 from argo_compiler.il import (
     Action,
     Afterwards,
@@ -26,6 +27,7 @@ from argo_compiler.il import (
 )
 from argo_compiler.model import Pose
 from argo_compiler.script import format_script, import_script
+from argo_compiler.script.write.reading import read_back
 from tests.argo_compiler.hfsm.random_missions import missions as tangled_missions
 from tests.conftest import examples
 from tests.missions_sound import sound_missions
@@ -268,3 +270,48 @@ def test_a_round_that_lies_in_one_of_the_same_steps(catalog: Catalog) -> None:
         for name in ("A", "A/B")
     )
     assert_kept(Mission(site=catalog.site, tasks=(task,), groups=groups), catalog)
+
+
+# ---- what is documented, shipped, and said back
+
+DOCS = (Path(__file__).parents[3] / "docs" / "script.md").read_text(encoding="utf-8")
+EXACT = DOCS[DOCS.index("## The exact forms") : DOCS.index("## Reading back")]
+BLOCKS = [block.split("```")[0] for block in EXACT.split("```protocol\n")[1:]]
+SAMPLES = [line for block in BLOCKS for line in block.splitlines()]
+
+
+@pytest.mark.parametrize("line", SAMPLES)
+def test_every_exact_form_of_the_reference_is_kept(line: str, catalog: Catalog) -> None:
+    steps = "Start area: none\n\n1. Check checkpoint #1.\n2. Check checkpoint #4.\n3. "
+    text = f"{steps}Check checkpoint #8.\n\n{line}." if _is_apart(line) else f"{steps}{line}."
+    mission = import_script(text.replace("..", "."), catalog).mission
+    assert_kept(mission.model_copy(update={"dock": HERE}), catalog)
+
+
+def _is_apart(line: str) -> bool:
+    return line.startswith(("If ", "Always ", '"Alpha"'))
+
+
+def test_shipped_missions_are_kept(catalog: Catalog) -> None:
+    folder = Path(__file__).parents[3] / "scenarios" / "umad" / "missions"
+    found = sorted(folder.glob("*.json"))
+    assert found
+    for path in found:
+        assert_kept(read_mission(path), catalog)
+
+
+@pytest.mark.parametrize("tangled", [True, False])
+def test_what_is_said_back_is_the_same_mission(tangled: bool, catalog: Catalog) -> None:
+    @settings(max_examples=examples(30), deadline=None)
+    @given(tangled_missions() if tangled else sound_missions(catalog, most=5))
+    def read_again(drawn: Mission) -> None:
+        mission = drawn.model_copy(update={"site": catalog.site})
+        found = check(mission, catalog)
+        assume(all(d.severity is not Severity.ERROR for d in found))
+        try:
+            text = read_back(mission, catalog, found).text
+        except DiagnosticError:
+            return
+        assert read(text, catalog) == bare(mission)
+
+    read_again()

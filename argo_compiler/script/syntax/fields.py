@@ -90,10 +90,15 @@ class Fields:
             self.diagnostics.warning("respelled", f"read `{said}` as `{meant_word}`", span)
         return fixed
 
+    def has_value(self, text: ScriptText) -> bool:
+        """Whether a line has the shape of a field."""
+        label = _ANY_LABEL.match(text.content)
+        return label is not None and bool(text.content[label.end() :].strip())
+
     def is_unknown(self, text: ScriptText) -> bool:
         """Whether a line that makes no sense has a label that there is not; then it is said."""
         label = _ANY_LABEL.match(text.content)
-        if label is None or not text.content[label.end() :].strip():
+        if label is None or not self.has_value(text):
             return False
         said = text[: label.end() - 1].strip()
         if {"IF", *VERBS} & {*self.understanding.types(said)}:
@@ -201,8 +206,8 @@ class Fields:
         return Text(span=value.span(), text=text)
 
     def _nothing(self, value: ScriptText, label: ScriptText) -> None:
-        types = {*self.understanding.types(value)}
-        if types & {"AREA", "KIND", "HASH", "DOCK", *VERBS}:
+        types = self.understanding.types(value)
+        if {*types} & {"AREA", "KIND", "HASH", "DOCK"} or {*types[:1]} & {*VERBS}:
             message = f"a field `{label.content.rstrip(' :')}` has no effect on a mission"
             hint = "write what is to be done as a sentence, or take the line out"
             self.diagnostics.error("unknown-label", message, label.span(), hint)

@@ -316,6 +316,8 @@ class _Parser:
         """Whether a line stands over others: marked as a heading, or with items of its own."""
         line = item.line
         whole = text.content == item.text.content.rstrip(".!")
+        if self.fields.has_value(text):
+            return False
         return line.heading or (
             whole and line.number is None and (bool(item.items) or text.content.endswith(":"))
         )

@@ -141,7 +141,8 @@ class Asides:
             ):
                 return True
         if len(types) > 1 and types[0] == "WORD" and types[1] in _NAMED and len(types) > 2:
-            return types[2] in _LABELS
+            numbered = types[1] == "HASH" and text.content[found[1].start] != "#"
+            return types[2] in _LABELS and not numbered  # `Protocol no. 4` is a title
         return self._has_object(text.content)
 
     def _has_object(self, content: str) -> bool:

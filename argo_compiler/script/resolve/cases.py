@@ -1,13 +1,12 @@
 """What is done if something is so: after a value, after a failure, after an event."""
 
-from itertools import combinations, pairwise
 from typing import TYPE_CHECKING
 
 from argo_compiler.catalog import CheckpointInfo
-from argo_compiler.il import OnFailure
 from argo_compiler.script.resolve.accepting import accepts
 from argo_compiler.script.resolve.context import Context
-from argo_compiler.script.resolve.excluding import exclude
+from argo_compiler.script.resolve.excluding import put_together
+from argo_compiler.script.resolve.failing import POLICIES, Failures, is_failure
 from argo_compiler.script.resolve.program import (
     Ahead,
     Alternatives,
@@ -22,18 +21,11 @@ from argo_compiler.script.resolve.program import (
     leads_away,
 )
 from argo_compiler.script.syntax.tree import orders
-from argo_compiler.script.syntax.tree.conditions import Condition, InState, State, Test, TooLate
-from argo_compiler.script.syntax.tree.nouns import Pronoun
-from argo_compiler.script.syntax.tree.orders import Case, Order, Rest, Word
+from argo_compiler.script.syntax.tree.conditions import Condition, Test, TooLate
+from argo_compiler.script.syntax.tree.orders import Case, Rest, Word
 
 if TYPE_CHECKING:  # a case's orders are planned as any others are
     from argo_compiler.script.resolve.planning import Planner
-
-_POLICIES = {
-    Word.ABORT: OnFailure.ABORT,
-    Word.END: OnFailure.ABORT,
-    Word.GO_ON: OnFailure.CONTINUE,
-}
 
 
 class Cases:
@@ -43,6 +35,7 @@ class Cases:
         self.context = context
         self.diagnostics = context.diagnostics
         self.planner = planner
+        self.failures = Failures(context, planner, self._branch)
         self.asked: tuple[CheckpointInfo, ...] = ()
         """what `it` means in a condition, and where that does not hold"""
 
@@ -63,15 +56,18 @@ class Cases:
         if condition is None:
             self._otherwise(case, block)
         elif any(isinstance(t, TooLate) for tests in condition.alternatives for t in tests):
-            self._too_late(case, condition)
+            self.context.choice = None
+            self.failures.too_late(case, condition)
         elif not any(isinstance(t, Test) for tests in condition.alternatives for t in tests):
+            self.context.choice = None
             self.context.reactions.add(case)
         elif not case.orders:
             message = "this does not say what to do"
             hint = "add, say, `go to step 5` or `return to the docking station`"
             self.diagnostics.error("unfinished", message, case.span, hint)
-        elif _is_failure(condition):
-            self._failure(case, block)
+        elif is_failure(condition):
+            self.context.choice = None
+            self.failures.failure(case, block)
         elif case.chained and (inner := self._other_case(case, block)) is not block:
             if inner is not None:
                 self._values(case, condition, inner)
@@ -130,7 +126,7 @@ class Cases:
         context.step = []
         orders_ = list(case.orders)
         ending: Leave | None = None
-        if orders_ and isinstance(orders_[-1], orders.Plain) and orders_[-1].word in _POLICIES:
+        if orders_ and isinstance(orders_[-1], orders.Plain) and orders_[-1].word in POLICIES:
             last = orders_[-1]
             assert isinstance(last, orders.Plain)
             if not accepts(last, self.diagnostics):
@@ -187,30 +183,13 @@ class Cases:
 
     def _is_of_all(self, last: Choice, case: Case) -> bool:
         """Whether `otherwise` behind several conditions is clear: it is what is done if none of
-        them holds, which is put so that it is. If two may hold, it may be that of the last."""
-        chain = [last]
-        while isinstance(before := chain[0].before, Choice) and chain[0].bound:
-            chain.insert(0, before)
-        if isinstance(last.then.last, Choice):
-            self._ambiguous_otherwise(case)  # `if ..., check #2 unless ...; otherwise ...`
-            return False
-        several = [c for c in chain if c is last or not isinstance(c.then.last, Leave)]
-        if len(several) == 1:
+        them holds, which is put so that it is."""
+        if put_together(last):
             return True
-        clear = all(exclude(a.alternatives, b.alternatives) for a, b in combinations(several, 2))
-        if not clear or any(c.negated or c.otherwise.first is not None for c in chain):
-            self._ambiguous_otherwise(case)
-            return False
-        for outer, inner in pairwise(chain):
-            assert inner.block is not None
-            inner.block.remove(inner)
-            outer.otherwise.append(inner)
-        return True
-
-    def _ambiguous_otherwise(self, case: Case) -> None:
         message = "`otherwise` can be meant for the last of these conditions, or for all"
         hint = "write `otherwise, if ...`, or say each condition in a step of its own"
         self.diagnostics.error("ambiguous-otherwise", message, case.span, hint)
+        return False
 
     def _rest(self, case: Case, block: Block) -> None:
         """The way that a task leads on if none of its conditions holds, wherever that is said."""
@@ -251,70 +230,3 @@ class Cases:
             case orders.Plain(word=Word.END) | orders.Plain(word=Word.ABORT):
                 return Ahead.END
         return None
-
-    # ---- failures
-
-    def _failure(self, case: Case, block: Block) -> None:
-        """What is done if the last task fails."""
-        recent = self.context.recent
-        if not recent:
-            message = "there is no task before this that could fail"
-            hint = "write it behind the task that it is said of"
-            self.diagnostics.error("no-task", message, case.span, hint)
-            return
-        rest: list[Order] = []
-        for order in case.orders:
-            if isinstance(order, orders.Retry):
-                self.planner.order(order, block)
-            else:
-                rest.append(order)
-        if not rest:
-            return
-        if any(do.failure or do.on_failure is not OnFailure.CONTINUE for do in recent):
-            message = "what is done if it fails is said already"
-            self.diagnostics.error("second-route", message, case.span, "leave one of the two out")
-            return
-        if len(rest) == 1 and rest[0].manner is None and rest[0].name is None:
-            match rest[0]:
-                case orders.Plain(word=word) if word in _POLICIES:
-                    self.planner.manners.on_failure(_POLICIES[word])
-                    return
-                case orders.Home(dock=dock) if dock.area is None:
-                    self.planner.manners.on_failure(OnFailure.RETURN)
-                    return
-        if len(recent) > 1:
-            message = "several tasks are meant here, and each would need orders of its own"
-            hint = "write one sentence for each of them"
-            self.diagnostics.error("failure", message, case.span, hint)
-            return
-        do = recent[-1]
-        do.failure = Block(do)
-        self._branch(Case(span=case.span, condition=None, orders=tuple(rest)), do.failure)
-
-    # ---- windows that are missed
-
-    def _too_late(self, case: Case, condition: Condition) -> None:
-        """What is done if the window of the last task is missed."""
-        recent = self.context.recent
-        alone = len(condition.alternatives) == len(condition.alternatives[0]) == 1
-        if not alone or len(recent) != 1 or recent[0].window is None:
-            message = "this has to follow one task that is to be done by a certain time"
-            hint = "write `Check checkpoint #1 not later than 10 minutes after the start. If it is "
-            hint += "too late, go to step 5.`"
-            self.diagnostics.error("too-late", message, case.span, hint)
-            return
-        (do,) = recent
-        if do.missed is not None:
-            message = "what is done if it is too late is said already"
-            self.diagnostics.error("second-route", message, case.span, "leave one of the two out")
-            return
-        do.missed = Block(do)
-        self._branch(Case(span=case.span, condition=None, orders=case.orders), do.missed)
-
-
-def _is_failure(condition: Condition) -> bool:
-    """Whether it asks only whether the last task has failed."""
-    match condition.alternatives:
-        case ((Test(predicate=InState(state=State.FAILED), subject=subject),),):
-            return subject is None or all(isinstance(n, Pronoun) for n in subject.nouns)
-    return False

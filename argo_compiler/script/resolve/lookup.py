@@ -65,7 +65,7 @@ class Lookup:
         found = self.called(identifier, kind)
         if len(found) == 1:
             return found[0]
-        name = f"{kind or 'checkpoint'} {identifier.upper() if not identifier.isdecimal() else identifier}"
+        name = f"{kind or 'checkpoint'} {identifier.upper()}"
         if found:
             readings = alternatives(f"{c.name} (#{c.id})" for c in found)
             message = f"`{name}` can be read as {readings}"

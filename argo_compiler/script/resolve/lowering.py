@@ -1,7 +1,7 @@
 """From a program to tasks, transitions and groups.
 
-Each node has a point at which it is come to. A task's ways lead to points; which task a point is, is
-known when all nodes have been gone through. Where ways meet and no task stands, a place of no
+Each node has a point at which it is come to. A task's ways lead to points; which task a point is,
+is known when all nodes have been gone through. Where ways meet and no task stands, a place of no
 duration is put: before a condition that more than one way comes to, and at the end of a round.
 """
 

@@ -1,4 +1,4 @@
-"""Applies what is said of an order's manner: to its tasks, or as a round or a choice around them."""
+"""Applies what is said of an order's manner: to its tasks, or as a round or choice around them."""
 
 from collections.abc import Sequence
 from dataclasses import fields, replace

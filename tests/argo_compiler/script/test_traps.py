@@ -163,3 +163,9 @@ def test_otherwise_behind_conditions_that_exclude_each_other_is_of_all(catalog: 
     first = read(text, catalog).task("MEASURE 1")
     assert first is not None
     assert [w.target for w in first.transitions] == ["MEASURE 2", "MEASURE 3", "MEASURE 4"]
+
+
+def test_otherwise_is_not_of_a_failure(catalog: Catalog) -> None:
+    text = "Check #1. If #1 is above 5, check #2. If it fails, check #3; otherwise check #4."
+    with pytest.raises(DiagnosticError, match="of what"):
+        read(text, catalog)

@@ -2,6 +2,7 @@
 
 import json
 import re
+from dataclasses import replace
 from functools import lru_cache
 from typing import Any
 
@@ -56,7 +57,15 @@ def _unknown(words: list[Word]) -> int:
 
 def _in(text: str, lexicon: Lexicon) -> list[Word]:
     found = merged(_looked_up(text, lexicon))
-    return joined(found if lexicon.verbs_first else arranged(found))
+    return joined(_goals(found if lexicon.verbs_first else arranged(found)))
+
+
+def _goals(words: list[Word]) -> list[Word]:
+    """The words; `go from starting area 2` does not say where to, so that `from` makes no sense."""
+    for i in range(1, len(words)):
+        if words[i].type == "FROM" and words[i - 1].type in ("GO", "HOME"):
+            words[i] = replace(words[i], type="STRAY")
+    return words
 
 
 def _looked_up(text: str, lexicon: Lexicon) -> list[Word]:

@@ -434,6 +434,32 @@ PAIRS = [
         "Prüfe Kontrollpunkt 3. Bei einem positiven Hindernis anhalten.",
         "Check checkpoint 3. If a positive obstacle is detected, pause.",
     ),
+    (
+        "Prüfe Kontrollpunkt 1. Wenn der Wert 5 bar oder mehr beträgt, prüfe Ventil R25.",
+        "Check checkpoint 1. If the value is 5 bar or more, check valve R25.",
+    ),
+    (
+        "Prüfe Kontrollpunkt 1. Wenn der Wert genau 5 bar ist, prüfe Ventil R25.",
+        "Check checkpoint 1. If the value is exactly 5 bar, check valve R25.",
+    ),
+    (
+        "Kontrollpunkt 3 muss vor Kontrollpunkt 5 geprüft werden. Prüfe Kontrollpunkt 3 und 5.",
+        "Checkpoint 3 must be checked before checkpoint 5. Check checkpoint 3 and 5.",
+    ),
+    ("Prüfe Kontrollpunkt 3 mit hoher Priorität.", "Check checkpoint 3 with high priority."),
+    (
+        "Die Mission darf höchstens 20 Minuten dauern. Prüfe Kontrollpunkt 3.",
+        "The mission may take at most 20 minutes. Check checkpoint 3.",
+    ),
+    ("Prüfe beide Ventile im dritten Stock.", "Check both valves on the third floor."),
+    (
+        "Prüfe alle drei Kontrollpunkte im vierten Stock.",
+        "Check all three checkpoints on the fourth floor.",
+    ),
+    (
+        "Prüfe Kontrollpunkt 3. Falls das fehlschlägt, versuche es bis zu dreimal.",
+        "Check checkpoint 3. If this fails, try again up to three times.",
+    ),
 ]
 """in German and in English; `!` stands before a script that says itself where it starts"""
 

@@ -129,7 +129,7 @@ def _is_list(words: list[Word], i: int) -> bool:
 
 
 def _compared(words: list[Word]) -> list[Word]:
-    """`5 bar übersteigt`: the relation before the amount."""
+    """`5 bar übersteigt`, `5 bar oder mehr beträgt`: the relation before the amount."""
     found: list[Word] = []
     for i, word in enumerate(words):
         behind = word.type in ("GREATER", "LESS") and _then(words, i + 1) not in (
@@ -139,6 +139,8 @@ def _compared(words: list[Word]) -> list[Word]:
         if behind and found and found[-1].type in ("NUMBER", "QUANTITY"):
             at = len(found) - (2 if len(found) > 1 and found[-2].type == "MINUS" else 1)
             found.insert(at, word)
+        elif word.type == "IS" and len(found) > 1 and found[-1].type in ("OR_MORE", "OR_LESS"):
+            found.insert(len(found) - 2, word)
         else:
             found.append(word)
     return found

@@ -36,6 +36,7 @@ _USED: Mapping[type[Order], frozenset[str]] = {
     orders.Add: OF_TASKS | ROUND | _CASE | {"pose"},
     orders.Go: OF_TASKS | ROUND | _CASE,
     orders.Home: OF_TASKS | ROUND | _CASE,
+    orders.Visit: frozenset(["speed"]),
     orders.Start: OF_TASKS,
     orders.Wait: OF_TASKS - {"speed"} | _CASE | {"duration", "until", "pose"},
     orders.Patrol: OF_TASKS - {"reading_limit", "object_id"} | ROUND | _CASE | {"order"},

@@ -45,6 +45,10 @@ class Context:
     """the tasks of the last order"""
     choice: Choice | Way | None = None
     """the condition that `otherwise` belongs to"""
+    spared: dict[str, Span] = field(default_factory=dict)
+    """the checkpoints that are not to be measured, and where that is said"""
+    before: list[Node] = field(default_factory=list)
+    """the nodes of the step before"""
     measured: dict[str, dict[int, Do]] = field(default_factory=dict)
     """the measurements in the program, by checkpoint"""
     named: dict[str, Do] = field(default_factory=dict)
@@ -68,6 +72,7 @@ class Context:
     def begin_step(self, number: int | None) -> None:
         """What is planned from now on belongs to this step; without a number, to the one before."""
         if number is not None:
+            self.before = self.step or self.before
             self.step = []
             self.steps[number] = None if number in self.steps else self.step
 

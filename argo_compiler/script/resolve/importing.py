@@ -79,6 +79,7 @@ def _mission(
     planner = Planner(context, starting, ordering)
     stepping = Stepping(context, planner, script.header)
     stepping.all(script.steps)
+    planner.finish()
     starting.finish()
     planner.repeating.finish()
     order = ordering.finish(context.program)

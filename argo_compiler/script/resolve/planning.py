@@ -3,6 +3,7 @@
 from collections.abc import Sequence
 from dataclasses import replace
 
+from argo_compiler.catalog import CheckpointInfo
 from argo_compiler.diagnostics import Span
 from argo_compiler.il import EventKind, OnFailure, WaitRule
 from argo_compiler.script.resolve import making
@@ -47,6 +48,8 @@ class Planner:
         self.edits = Edits(context, self.manners)
         self.cases = Cases(context, self)
         self.done = False
+        self.visiting: tuple[orders.Visit, list[CheckpointInfo]] | None = None
+        """a drive to a checkpoint, of which it has not been said yet what to do there"""
 
     def sentence(self, sentence: Sentence, block: Block) -> None:
         """Carries a sentence out."""
@@ -104,7 +107,15 @@ class Planner:
             hint = "write it as a step of its own"
             self.diagnostics.error("route", message, order.span, hint)
             return
+        if self.visiting is not None and not isinstance(order, orders.Measure):
+            self.leave_unvisited()
         match order:
+            case orders.Spare():
+                self._spare(order)
+            case orders.Visit():
+                self._visit(order)
+            case orders.Wait(where=where) if where is not None:
+                self._wait_at(order, where, block)
             case orders.Amend() | orders.Retry():
                 self._amend(order)
             case orders.Plain():
@@ -125,6 +136,54 @@ class Planner:
             case _:
                 self._planned(order, self.tasks(order), block)
 
+    def _visit(self, order: orders.Visit) -> None:
+        found = self.context.nouns.all(order.what)
+        if found is None:
+            self.context.fail()
+            return
+        self.context.remember(found)
+        self.visiting = (order, found)
+
+    def leave_unvisited(self) -> None:
+        """Says where a drive to a checkpoint is not followed by what is to be done there."""
+        if self.visiting is None:
+            return
+        (order, (checkpoint, *_)), self.visiting = self.visiting, None
+        message = f"this does not say what to do at {checkpoint.name} (#{checkpoint.id})"
+        hint = f"write `check checkpoint {checkpoint.id}`"
+        self.diagnostics.error("visit", message, order.span, hint)
+
+    def _wait_at(self, order: orders.Wait, where: Location | FloorName, block: Block) -> None:
+        """`The robot waits at the front of the site`: it starts there, if nothing is said of how
+        long; else it goes there and waits."""
+        begins = order.manner is None and self.context.program.first is None
+        if begins and self.starting.start_at is None and not isinstance(where, FloorName):
+            self.order(orders.Start(span=order.span, where=where), block)
+            return
+        self.order(orders.Go(span=order.span, where=where), block)
+        self.order(replace(order, where=None), block)
+
+    def _spare(self, order: orders.Spare) -> None:
+        """Notes what is not to be checked; what is in the plan can't be."""
+        for checkpoint in self.context.nouns.all(order.what) or ():
+            self.context.spared[str(checkpoint.id)] = order.span
+
+    def finish(self) -> None:
+        """Looks whether what is not to be checked is in the plan, and what is not, why it is said."""
+        self.leave_unvisited()
+        for key, span in self.context.spared.items():
+            tasks = list(self.context.measured.get(key, {}).values())
+            lines = sorted({s.line for do in tasks if (s := do.source)})
+            if tasks:
+                message = (
+                    f"line {lines[0]} asks for checkpoint #{key}" if lines else "it is asked for"
+                )
+                hint = "leave one of the two out, or write `except` in the line that asks for it"
+                self.diagnostics.error("spared", message, span, hint)
+            else:
+                message = f"checkpoint #{key} is not in the plan anyway, so that this has no effect"
+                self.diagnostics.note("no-effect", message, span)
+
     def _amend(self, order: Order) -> None:
         recent = self.context.recent
         if order.manner is not None and order.manner.order is not None:
@@ -144,7 +203,12 @@ class Planner:
                     self.context.fail()
                     return []
                 self.context.remember(found)
-                return [making.measurement(c.id, order.span) for c in found]
+                tasks = [making.measurement(c.id, order.span) for c in found]
+                if self.visiting is not None and self.visiting[1] == found[:1]:
+                    self.manners.furnish(self.visiting[0], tasks[:1])
+                    self.visiting = None
+                self.leave_unvisited()
+                return tasks
             case orders.Go():
                 return self._go(order.where, order)
             case orders.Home():

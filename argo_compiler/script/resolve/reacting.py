@@ -29,6 +29,8 @@ class _Reacting:
 
     response: Response | None = None
     reported: bool = False
+    ended: bool = False
+    """by words that may be followed by the way home: `stop the mission and ...`"""
     pose: Pose | None = None
     area: int | None = None
     until: EventKind | None = None
@@ -178,9 +180,14 @@ class Reactions:
             case Plain(word=Word.GO_ON):
                 return self._afterwards(order, doing, Afterwards.RESUME)
             case Plain(word=Word.ABORT) | Plain(word=Word.END) if not doing.drives:
-                return self._responds(doing, Response.ABORT, order)
+                ended = order.word is Word.END
+                aborts = self._responds(doing, Response.ABORT, order)
+                return None if aborts is None else replace(aborts, ended=ended)
             case Plain(word=Word.END):
                 return self._afterwards(order, doing, Afterwards.END)
+            case Wait(where=where) if where is not None:
+                there = self._goes(Go(span=order.span, where=where), doing)
+                return None if there is None else self._waits(order, there)
             case Wait():
                 return self._waits(order, doing)
             case Home():
@@ -256,7 +263,9 @@ class Reactions:
 
     def _responds(self, doing: _Reacting, response: Response, order: Order) -> _Reacting | None:
         said = doing.afterwards is not None and response is Response.ABORT
-        if doing.response in (None, Response.PAUSE, response) and not said:
+        stops = doing.ended and response is Response.RETURN  # `stop the mission and go home`
+        fits = doing.response in (None, Response.PAUSE, response) or stops
+        if fits and not said:
             return replace(doing, response=response)
         message = "two things to do at once in this event"
         self.diagnostics.error("reaction", message, order.span, "leave one of them out")

@@ -3,16 +3,18 @@
 from dataclasses import replace
 
 from argo_compiler.diagnostics import Span
-from argo_compiler.il import Condition
+from argo_compiler.il import Action, Condition
 from argo_compiler.model import Pose
-from argo_compiler.script.resolve.context import Context
-from argo_compiler.script.resolve.program import Block, Limits, Round
+from argo_compiler.script.resolve.context import Context, topmost
+from argo_compiler.script.resolve.program import Block, Do, Limits, Round
 from argo_compiler.script.resolve.wrapping import Repetition, Wrapping
 from argo_compiler.script.syntax.tree import orders
+from argo_compiler.script.syntax.tree.manner import Manner
 from argo_compiler.script.syntax.tree.orders import Order
 from argo_compiler.script.syntax.tree.places import FloorName, PlaceLocation
 
 _MOST = 1_000_000_000
+_MOST_AGAIN = 1000
 
 
 class Repeating:
@@ -77,6 +79,12 @@ class Repeating:
 
     def repeat(self, order: orders.Repeat, block: Block) -> None:
         """Notes that steps are repeated: a round is put here, which they come into later."""
+        if order.last:
+            self._repeat_last(order, block)
+            return
+        if order.steps is not None and self._is_once_more(order, block):
+            self._once_more(order, block)
+            return
         base = "Repeat"
         if order.steps is not None:
             ends = dict.fromkeys((order.steps.points[0], order.steps.points[-1]))
@@ -89,6 +97,59 @@ class Repeating:
         context.put([round_], block, block.last)
         context.recent = []
         context.choice = None
+
+    def _repeat_last(self, order: orders.Repeat, block: Block) -> None:
+        """`Repeat this twice`: the step before, or what was said before in the same step."""
+        context = self.context
+        nodes = topmost(context.step or context.before, block)
+        starts = any(isinstance(n, Do) and n.action is Action.START for n in nodes)
+        one = not context.step or len(nodes) == 1 or all(n in context.recent for n in nodes)
+        if not nodes or starts or not one or nodes[-1] is not block.last:
+            message = "it is not clear what is to be repeated"
+            hint = "name the steps: `repeat steps 2 and 3 twice`"
+            self.diagnostics.error("step-range", message, order.span, hint)
+            return
+        round_ = self.round(order, "Repeat")
+        if round_ is None:
+            return
+        anchor = nodes[0].before
+        for node in nodes:
+            block.remove(node)
+            round_.body.append(node)
+        block.insert_after(anchor, round_)
+        context.choice = None
+
+    def _is_once_more(self, order: orders.Repeat, block: Block) -> bool:
+        """Whether steps are done here again, and not in a round where they stand."""
+        manner = order.manner
+        if manner is None:
+            return True
+        assert order.steps is not None
+        if not manner.more or manner != Manner(times=manner.times, more=True):
+            return False
+        known = all(self.context.steps.get(p) for p in order.steps.points if isinstance(p, int))
+        nodes = self.context.nodes_of(order.steps) if known else None
+        return bool(nodes) and topmost(nodes or (), block)[-1:] != [block.last]
+
+    def _once_more(self, order: orders.Repeat, block: Block) -> None:
+        """`4. Repeat step 2`: what it does is done here again."""
+        assert order.steps is not None
+        nodes = self.context.nodes_of(order.steps)
+        if nodes is None:
+            return
+        plain = all(isinstance(n, Do) and not (n.ways or n.failure or n.missed) for n in nodes)
+        if not nodes or not plain:
+            message = "this does not say how often, and can't be done once more"
+            hint = "say how often: `twice`, `three times in total`, `until ...`"
+            self.diagnostics.error("endless-repeat", message, order.span, hint)
+            return
+        times = order.manner.times if order.manner is not None else 1
+        tasks = [n for n in nodes if isinstance(n, Do)] * min(times or 1, _MOST_AGAIN)
+        again = [replace(n, ways=[], name=None) for n in tasks]
+        self.context.put(again, block, block.last)
+        self.context.step += again
+        self.context.recent = again
+        self.context.choice = None
 
     def finish(self) -> None:
         """Fills the rounds with what is to be repeated, in the order in which it was asked for."""

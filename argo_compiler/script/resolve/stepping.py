@@ -89,16 +89,24 @@ class Stepping:
         kept: list[Order] = []
         for order in sentence.orders:
             manner = order.manner
-            if manner is None or manner.mission_time is None:
+            limit = None if manner is None else manner.mission_time or self._limit(order, manner)
+            if manner is None or limit is None:
                 kept.append(order)
                 continue
-            self._max_duration(manner.mission_time, order)
-            rest = replace(manner, mission_time=None)
+            self._max_duration(limit, order)
+            own = None if manner.mission_time is None else manner.time_limit
+            rest = replace(manner, mission_time=None, time_limit=own)
             if said(rest):
                 kept.append(replace(order, manner=rest))
             elif not isinstance(order, orders.Amend):
                 kept.append(replace(order, manner=None))
         return replace(sentence, orders=tuple(kept))
+
+    def _limit(self, order: Order, manner: Manner) -> float | None:
+        """A limit of time that can only be the mission's: of its start, or before all else."""
+        first = isinstance(order, orders.Amend) and self.context.program.first is None
+        alone = first and said(manner) == {"time_limit"}
+        return manner.time_limit if alone or isinstance(order, orders.Start) else None
 
     def _taken(self, sentences: list[Sentence | Fact | Unread]) -> Order | None:
         """`Do the following twice:`, taken out of the sentences over inner steps."""

@@ -45,6 +45,9 @@ def _between(part: Part) -> Between:
 
 def _exactly(part: Part) -> Between:
     amount = part.the(Amount)
+    message = "a measured value is hardly ever exactly this one"
+    hint = "write `between 4.9 and 5.1 bar`, `at least 5 bar` or `at most 5 bar`"
+    part.error("condition", message, hint)
     return Between(span=part.span, low=amount, high=amount, inclusive=True)
 
 

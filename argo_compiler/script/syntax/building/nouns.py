@@ -48,7 +48,7 @@ def _quantity(word: Word | None) -> Quantity | None:
     return None if word is None else Quantity(word.value)
 
 
-def _named(part: Part) -> list[Noun]:
+def named(part: Part) -> list[Noun]:
     """The checkpoint; several where a number is a list without blanks: `1,4`."""
     kind, plural = _kind(part.word("KIND"))
     (label, listed), *upto = part.every(tuple)
@@ -120,7 +120,7 @@ def _nouns(part: Part) -> Nouns:
 RULES: dict[str, Make] = {
     "label": _label,
     "upto": _upto,
-    "named": _named,
+    "named": named,
     "of": _of,
     "aka": _aka,
     "all": _all,

@@ -2,7 +2,9 @@
 
 from dataclasses import replace
 
+from argo_compiler.script.syntax.building.figures import whole
 from argo_compiler.script.syntax.building.manners import combined
+from argo_compiler.script.syntax.building.nouns import named
 from argo_compiler.script.syntax.building.part import Make, Part
 from argo_compiler.script.syntax.tree import orders
 from argo_compiler.script.syntax.tree.manner import Manner
@@ -107,7 +109,10 @@ def _start_here(part: Part) -> Order:
 
 def _patrol(part: Part) -> Order:
     places = next(c for c in part.children if isinstance(c, list))
-    return orders.Patrol(span=part.span, manner=_manner(part), places=tuple(places))
+    said = part.every(Manner)
+    if rounds := part.word("NUMBER"):
+        said = (Manner(times=whole(part, rounds.value)), *said)
+    return orders.Patrol(span=part.span, manner=combined(part, said), places=tuple(places))
 
 
 def _word(part: Part) -> Order:
@@ -154,6 +159,15 @@ def _delete(part: Part) -> Order:
     return orders.Delete(span=part.span, what=_things(part)[0])
 
 
+def _target(part: Part) -> Nouns:
+    (noun,) = named(part)
+    return Nouns(span=part.span, nouns=(noun,))
+
+
+def _visit(part: Part) -> Order:
+    return orders.Visit(span=part.span, manner=_manner(part), what=part.the(Nouns))
+
+
 def _spare(part: Part) -> Order:
     return orders.Spare(span=part.span, what=part.the(Nouns))
 
@@ -183,6 +197,8 @@ RULES: dict[str, Make] = {
     "start_here": _start_here,
     "patrol": _patrol,
     "wait": _wait,
+    "target": _target,
+    "visit": _visit,
     "spare": _spare,
     "word": _word,
     "retry": lambda part: orders.Retry(span=part.span, manner=_manner(part)),

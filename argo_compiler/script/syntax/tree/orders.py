@@ -40,6 +40,13 @@ class Measure(Order):
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
+class Visit(Order):
+    """`Drive to checkpoint 5 at 0.3 m/s`: on the way to what is measured there."""
+
+    what: Nouns
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
 class Go(Order):
     """`Go to the front of the site`."""
 

@@ -7,7 +7,8 @@ from argo_compiler.script.syntax.words.numbers import Figure
 
 NOTHING: Phrases = {
     ("FILLER", None): (
-        "the|a|an|please|kindly|just|then|there|straight|directly|at once|immediately|right away|"
+        "the|a|an|please|either|please to|go [up/down/over/there] and|kindly|just|then|there|"
+        "straight|directly|at once|immediately|right away|"
         "now|as well|too|also|could you please|could you|can you please|would you please|"
         "i would like you to|we need you to|have|let|make sure to|should|must|will|shall|has to|"
         "have to|will have to|"
@@ -78,6 +79,7 @@ VERBS: Phrases = {
         "[begin/begins/start/starts] [the/its] [mission/round/tour]|"
         "[mission/round/tour/it all] [starts/begins] {from}"
     ),
+    ("ROUNDS_OF", None): "[rounds/laps/tours] [of/on/around/through]",
     ("PATROL", None): (
         "patrol{s}|patrolling|"
         "[make/do/perform/makes/does/performs] a [patrol/round/tour] [of/on/around]|"
@@ -380,7 +382,8 @@ CONDITIONS: Phrases = {
         "[anywhere/somewhere/at any time/during the mission/on the way/]|"
         "[is/has been] [raised/triggered/given/activated/pressed/pushed/hit/used/sounded/"
         "announced]|"
-        "occur{s}|happen{s}|appear{s}|arise{s}|sounds|rings|goes off|comes on|comes up|shows up|"
+        "occur{s}|sound|happen{s}|appear{s}|arise{s}|sounds|rings|goes off|comes on|comes up|"
+        "shows up|"
         "turns up|pops up|breaks out|is present|is active|is there|has occurred|detected|found|"
         "heard|seen|anywhere|during the [mission/round]|at any [point/moment]"
     ),
@@ -497,7 +500,7 @@ CONDITIONS: Phrases = {
 MANNERS: Phrases = {
     ("TO", None): "to|into",
     ("IN", None): "in|inside",
-    ("AT", None): "at|at the|at speed of|with speed of",
+    ("AT", None): "[at/driving at/moving at]|[at/with] [speed/velocity] of",
     ("ON", None): "on|onto",
     ("FOR", None): "for {the next}|over a period of|for a period of|for the duration of",
     ("PERSON", None): "operator|person|supervisor|control room|somebody|someone",

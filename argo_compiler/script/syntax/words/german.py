@@ -235,6 +235,7 @@ NOUNS: Phrases = {
         "dockingstation|docking-station|docking station|dock|ladestation|dockstation|andockstation|"
         "seine dockingstation|seiner dockingstation"
     ),
+    ("ROUNDS_OF", None): "[runden/rundgänge/patrouillen] [durch/auf/um/in]",
     ("PARK", None): "park|parke|parkt|parken",
     ("ALL", None): "alle{n}|aller|sämtliche{n}|jedes|jeden|jede|jeder|jedem",
     ("EXCEPT", None): (

@@ -10,7 +10,7 @@ VERBS = (
     *("MEASURE", "KEEP_MEASURING", "GO", "HOME", "START", "START_HERE", "PATROL", "WAIT", "PAUSE"),
     *("END", "ABORT", "GO_ON", "RECHARGE", "REPORT", "REPEAT", "DO_FOLLOWING", "ADD", "DELETE"),
     *("REPLACE", "MOVE", "JUMP", "RETRY", "DOCK", "DONE", "MEET"),
-    *("PARK", "SPARE"),
+    *("PARK", "SPARE", "FROM"),
 )
 _NOUNS = [
     *("KIND", "HASH", "IDENT", "STRING", "ALL", "IT", "THEM", "BOTH", "THIS", "OF", "VALUE"),

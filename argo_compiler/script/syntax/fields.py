@@ -13,7 +13,7 @@ from argo_compiler.script.syntax.asides import Asides
 from argo_compiler.script.syntax.building.figures import seconds
 from argo_compiler.script.syntax.building.part import Part
 from argo_compiler.script.syntax.source import Diagnostics, ScriptText
-from argo_compiler.script.syntax.spelling import alternatives, candidates, nearest
+from argo_compiler.script.syntax.spelling import alternatives
 from argo_compiler.script.syntax.tree import orders
 from argo_compiler.script.syntax.tree.orders import Sentence
 from argo_compiler.script.syntax.tree.places import Coordinates, Steps
@@ -26,14 +26,10 @@ from argo_compiler.script.syntax.words.word import Word
 
 _STOP = re.compile(r"[.!](?=\s|$)")
 _QUOTED = re.compile(r'"(?:[^"\\]|\\.)*"(?:[\s,]*"(?:[^"\\]|\\.)*")*')
-_ANY_LABEL = re.compile(r"[^\W\d_][\w'/-]*\.?(?:\s+[\w'/-]+){0,6}\s*:(?=\s|$)")
 _PROSE = frozenset(
     ["designation", "anomaly_specification", "real_time_reporting", "after_mission_report", "site"]
 )
 _AREAS = frozenset(["initial_position", "end_of_mission"])
-_CELLS = frozenset(
-    [*_AREAS, "anomaly_specification", "real_time_reporting", "after_mission_report"]
-)
 _WHOLE = re.compile(r"(?:(?:ANY_ORDER|THIS_ORDER|(?:MOST_TIME|WITHIN DURATION)(?: TOTAL)?) )+")
 _JOINTS = frozenset(["NEXT", "JOINT", "AND_NOUN", "AND_AMOUNT", "AND_TEST", "AND_NUMBER"])
 _INTRODUCTION = re.compile(r"(?:WORD )?(?:TO )?(?:MEASURE )?(?:ALL )?KIND (?:ANY|THIS)_ORDER ")
@@ -42,7 +38,7 @@ _SAME = {"start_area": "initial_position", "end_area": "end_of_mission"}
 
 
 @dataclass
-class Fields:
+class HeaderFields:
     """Reads fields. Mutable: the header grows field by field."""
 
     understanding: Understanding
@@ -58,60 +54,6 @@ class Fields:
     def __post_init__(self) -> None:
         self.prose = self.understanding.language.prose
         self.areas = AreaCells(self.understanding, self.asides, self.diagnostics)
-
-    # ---- labels
-
-    def is_field(self, text: ScriptText) -> bool:
-        """Whether a line begins with a field's label."""
-        return self.prose.label.match(text.content) is not None
-
-    def is_cell(self, text: ScriptText) -> bool:
-        """Whether a line begins with the label of a field that may have several lines."""
-        label = self.prose.label.match(text.content)
-        return label is not None and label.lastgroup in _CELLS
-
-    def relabelled(self, text: ScriptText) -> ScriptText:
-        """The text with a misspelt label put right."""
-        label = _ANY_LABEL.match(text.content)
-        if label is None or ":" not in text.content or self.is_field(text):
-            return text
-        fixed, found = text, []
-        for word in reversed(list(re.finditer(r"[\w'-]+", label[0]))):
-            if word[0].lower() in self.prose.label_words:
-                continue
-            meant = candidates(word[0], self.prose.label_words)
-            if len(meant) != 1:
-                return text
-            fixed = fixed.replace(word.start(), word.end(), meant[0])
-            found.append((word[0], meant[0], text.span(word.start(), word.end())))
-        if not found or not self.is_field(fixed):
-            return text
-        for said, meant_word, span in found:
-            self.diagnostics.warning("respelled", f"read `{said}` as `{meant_word}`", span)
-        return fixed
-
-    def has_value(self, text: ScriptText) -> bool:
-        """Whether a line has the shape of a field."""
-        label = _ANY_LABEL.match(text.content)
-        return label is not None and bool(text.content[label.end() :].strip())
-
-    def is_unknown(self, text: ScriptText) -> bool:
-        """Whether a line that makes no sense has a label that there is not; then it is said."""
-        label = _ANY_LABEL.match(text.content)
-        if label is None or not self.has_value(text):
-            return False
-        said = text[: label.end() - 1].strip()
-        if {"IF", *VERBS} & {*self.understanding.types(said)}:
-            return False
-        close = nearest(said.content, self.prose.shown_labels, 1)
-        hint = f"the fields are {alternatives((f'`{k}:`' for k in self.prose.shown_labels), 'and')}"
-        hint = f"is `{close[0]}:` meant? {hint}" if close else hint
-        self.diagnostics.error(
-            "unknown-label", f"there is no field `{said.content}`", said.span(), hint
-        )
-        return True
-
-    # ---- values
 
     def read(self, text: ScriptText) -> ScriptText:
         """Reads the fields that a line begins with, perhaps several: `Start: area 2, end: area 1.`

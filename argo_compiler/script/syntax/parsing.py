@@ -8,10 +8,11 @@ from argo_compiler.diagnostics import DiagnosticError
 from argo_compiler.garbage_collector import collector_held
 from argo_compiler.script.syntax.asides import Asides
 from argo_compiler.script.syntax.cells import Cells
-from argo_compiler.script.syntax.fields import Fields
+from argo_compiler.script.syntax.fields import HeaderFields
 from argo_compiler.script.syntax.grammar import StumbleError
 from argo_compiler.script.syntax.healing import MOST_ERRORS, heal
 from argo_compiler.script.syntax.hints import not_understood
+from argo_compiler.script.syntax.labels import Labels
 from argo_compiler.script.syntax.layout import Item, Mark, items_of, lines_of, sentences
 from argo_compiler.script.syntax.rows import tables
 from argo_compiler.script.syntax.source import Diagnostics, ScriptText, Source
@@ -49,8 +50,9 @@ def parse(
     words = frozenset(word for name in (*names, *places) for word in name.lower().split())
     understanding = Understanding(language, words, diagnostics)
     asides = Asides(understanding)
-    fields = Fields(understanding, asides, diagnostics)
-    return _Parser(understanding, asides, fields, diagnostics).script()
+    labels = Labels(understanding, diagnostics)
+    fields = HeaderFields(understanding, asides, diagnostics)
+    return _Parser(understanding, asides, fields, labels, diagnostics).script()
 
 
 def _require_size(source: Source) -> None:
@@ -66,13 +68,31 @@ def _require_size(source: Source) -> None:
         raise DiagnosticError(source.name, diagnostics.entries)
 
 
+def _vocabulary(understanding: Understanding, text: str) -> frozenset[str]:
+    """The words by which cut ones are put together. Those that only edits have are none of
+    them, unless the script has them elsewhere: `a⇥d` is `and` rather than `add`."""
+    if "\t" not in text:
+        return frozenset()
+    phrases = understanding.language.lexicon.phrases
+    edits = (said for kind in _EDITS for said in phrases.get((kind, None), ()))
+    unsaid = {word for said in edits for word in said.split()}
+    unsaid -= set(re.findall(r"[\w'-]+", text.lower()))
+    for alike in phrases.values():
+        # `check points` and `checkpoints` are one: no cut between them leaves a doubt.
+        parts = (said.split() for said in alike)
+        unsaid.update(p[1] for p in parts if len(p) == 2 and "".join(p) in alike)
+    known: frozenset[str] = understanding.known | understanding.language.prose.words
+    return understanding.names | (known - unsaid)
+
+
 @dataclass
 class _Parser:
     """Reads one script. Mutable: what a line is depends on those before it."""
 
     understanding: Understanding
     asides: Asides
-    fields: Fields
+    fields: HeaderFields
+    labels: Labels
     diagnostics: Diagnostics
     remarks: list[Text] = field(default_factory=list)
     closed: bool = False
@@ -88,9 +108,9 @@ class _Parser:
         source = self.diagnostics.source
         language = self.understanding.language
         rows = tables(source, self.understanding, self.diagnostics)
-        healed = heal(source, self._vocabulary(source.text), rows)
+        healed = heal(source, _vocabulary(self.understanding, source.text), rows)
         self.diagnostics.extend(healed.diagnostics)
-        texts = Cells(self.fields, self.understanding).joined(healed.lines)
+        texts = Cells(self.labels, self.understanding).joined(healed.lines)
         items = items_of(lines_of(texts), self.is_complete, self.stands_alone, language.words)
         steps = list(self._steps(items))
         first = [_step_of(sentence) for sentence in self.fields.first]
@@ -104,33 +124,17 @@ class _Parser:
             diagnostics=self.diagnostics.by_place(),
         )
 
-    def _vocabulary(self, text: str) -> frozenset[str]:
-        """The words by which cut ones are put together. Those that only edits have are none of
-        them, unless the script has them elsewhere: `a⇥d` is `and` rather than `add`."""
-        if "\t" not in text:
-            return frozenset()
-        phrases = self.understanding.language.lexicon.phrases
-        edits = (said for kind in _EDITS for said in phrases.get((kind, None), ()))
-        unsaid = {word for said in edits for word in said.split()}
-        unsaid -= set(re.findall(r"[\w'-]+", text.lower()))
-        for alike in phrases.values():
-            # `check points` and `checkpoints` are one: no cut between them leaves a doubt.
-            parts = (said.split() for said in alike)
-            unsaid.update(p[1] for p in parts if len(p) == 2 and "".join(p) in alike)
-        known: frozenset[str] = self.understanding.known | self.understanding.language.prose.words
-        return self.understanding.names | (known - unsaid)
-
     def stands_alone(self, text: ScriptText) -> bool:
         """Whether a line never goes on with the one above it."""
         content = text.content
         asides = self.asides
         numbered = content[-1:].isdigit() and asides.is_explicit_title(text)
         alone = numbered or asides.is_remark(content) or asides.opens(content)
-        return alone or self.fields.is_field(text)
+        return alone or self.labels.is_field(text)
 
     def is_complete(self, text: ScriptText) -> bool:
         """Whether a text makes sense by itself."""
-        if self.fields.is_field(text):
+        if self.labels.is_field(text):
             return True
         return all(self._fits(sentence) for sentence in sentences(text))
 
@@ -160,8 +164,8 @@ class _Parser:
 
     def _step(self, item: Item) -> Step | None:
         text = self._without_letter(item)
-        text = self.fields.relabelled(text)
-        if self.fields.is_field(text):
+        text = self.labels.relabelled(text)
+        if self.labels.is_field(text):
             self.begun = True
             text = self.fields.read(text)
         said: list[Said] = []
@@ -265,7 +269,7 @@ class _Parser:
         titled = self._title(text, item)
         if titled is not None:
             return titled
-        if not self.fields.is_unknown(text):
+        if not self.labels.is_unknown(text):
             not_understood(text, stumble, self.understanding, self.diagnostics)
         self.begun = True
         return [Unread(span=text.span())]
@@ -316,7 +320,7 @@ class _Parser:
         """Whether a line stands over others: marked as a heading, or with items of its own."""
         line = item.line
         whole = text.content == item.text.content.rstrip(".!")
-        if self.fields.has_value(text):
+        if self.labels.has_value(text):
             return False
         return line.heading or (
             whole and line.number is None and (bool(item.items) or text.content.endswith(":"))

@@ -11,6 +11,7 @@ from argo_compiler.il import Action, Mission, Order
 from argo_compiler.script.resolve.context import Context
 from argo_compiler.script.resolve.program import Block, Do, Node, all_nodes, inner_blocks
 from argo_compiler.script.syntax.tree.facts import Precedence, StepsOrdered
+from argo_compiler.script.syntax.tree.places import Steps
 from argo_compiler.script.syntax.tree.script import Header
 
 _Checkpoints = tuple[CheckpointInfo, ...]
@@ -30,8 +31,8 @@ class Ordering:
     steps: list[StepsOrdered] = field(default_factory=list)
     left_out: list[Span] = field(default_factory=list)
     """where it is said that what does not fit is left out"""
-    pairs: list[tuple[Span, Do, Do]] = field(default_factory=list)
-    """what has to come before what; known when all is planned"""
+    pairs: list[tuple[Span, Do | str, Do | str]] = field(default_factory=list)
+    """what has to come before what, names if it was left out; known when all is planned"""
 
     def say(self, order: Order, nodes: Iterable[Node], span: Span) -> None:
         """The order of these is said; of nothing: of all."""
@@ -61,11 +62,21 @@ class Ordering:
                 for other in second:
                     self._pair(span, one, other)
         for fact in self.steps:
-            first_of, second_of = (
-                _tasks(self.context.nodes_of(steps) or ()) for steps in (fact.first, fact.second)
-            )
+            first_of, second_of = self._of_steps(fact.first), self._of_steps(fact.second)
             self.pairs += [(fact.span, a, b) for a in first_of for b in second_of]
         return order
+
+    def _of_steps(self, steps: Steps) -> list[Do | str]:
+        """The tasks of steps; those that were left out, by their names."""
+        if set(steps.points) <= set(self.header.left_out):
+            return [str(point) for point in steps.points]
+        nodes = self.context.nodes_of(steps)
+        tasks = _tasks(nodes or ())
+        if nodes is not None and not tasks:
+            hint = "name a step that measures or drives"
+            message = "no task of this step is in the plan"
+            self.context.diagnostics.error("not-planned", message, steps.span, hint)
+        return list(tasks)
 
     def _order(self, program: Block) -> Order:
         diagnostics = self.context.diagnostics
@@ -121,7 +132,11 @@ class Ordering:
 
     def named(self, names: Mapping[int, str]) -> tuple[tuple[str, str], ...]:
         """The pairs by the names of their tasks."""
-        return tuple(dict.fromkeys((names[id(a)], names[id(b)]) for _, a, b in self.pairs))
+
+        def name(one: Do | str) -> str:
+            return one if isinstance(one, str) else names[id(one)]
+
+        return tuple(dict.fromkeys((name(a), name(b)) for _, a, b in self.pairs))
 
     def check(self, mission: Mission) -> None:
         """Says where the order that is written does not keep to what has to come before what."""

@@ -66,6 +66,13 @@ class TestPrecedence:
         mission = read(catalog, *lines).mission
         assert (mission.order, mission.before) == (Order.ANY, (("MEASURE 4", "MEASURE 1"),))
 
+    def test_a_pair_with_what_was_left_out(self, catalog):
+        lines = ['Left out: "MEASURE 8"', "1. Check #4."]
+        mission = read(catalog, *lines, '2. Always do step "MEASURE 8" before step 1.').mission
+        assert mission.before == (("MEASURE 8", "MEASURE 4"),)
+        refusal = {("not-planned", 4)}
+        assert refused(catalog, *lines, "2. Always do step 1 before step 2.") == refusal
+
     def test_a_precise_order_has_to_keep_to_it(self, catalog):
         pair = "Checkpoint 8 has to be read before checkpoint 4."
         mission = read(catalog, "Check #8 and #4.", pair).mission

@@ -9,7 +9,7 @@ from dataclasses import dataclass
 
 from argo_compiler.il import Action
 from argo_compiler.script.resolve.context import Context, topmost
-from argo_compiler.script.resolve.program import Block, Choice, Do, Leave, Node, Round
+from argo_compiler.script.resolve.program import Block, Choice, Do, Leave, Node, Round, nodes_from
 from argo_compiler.script.syntax.tree import orders
 
 
@@ -90,6 +90,8 @@ class Wrapping:
             self.diagnostics.error("empty-step", message, order.steps.span, hint)
             return []
         known = {id(node) for node in nodes}
+        if order.steps.through and not all(isinstance(p, int) for p in order.steps.points):
+            known |= _between(nodes[0], nodes[-1])
         block = _around(nodes, known, self.context.program, order.name or "")
         tops = topmost(nodes, block)
         if any(not _covered(top, known) for top in tops):
@@ -163,6 +165,16 @@ def _leads_to(last: Node, round_: Round) -> bool:
         if _repeats(node):
             return False
     return False
+
+
+def _between(first: Node, last: Node) -> set[int]:
+    """What lies between two nodes, both included; nothing if the last does not follow."""
+    found: set[int] = set()
+    for node in nodes_from(first):
+        found.add(id(node))
+        if node is last:
+            return found
+    return set()
 
 
 def _around(nodes: list[Node], known: set[int], program: Block, name: str) -> Block:

@@ -615,8 +615,8 @@ def test_ways_to_say_where_it_starts(start: str, catalog: Catalog) -> None:
 @pytest.mark.parametrize(
     ("line", "code"),
     [
-        ("Battery: full", "no-effect"),
-        ("Colour of the robot: red", "no-effect"),
+        ("Battery: full", "unknown-label"),
+        ("Colour of the robot: red", "unknown-label"),
         ("Mode: automatic", "field"),
         ("Mode: supervisory\nMain mode: autonomous", "repeated-field"),
         ("Start area: 2", "area-conflict"),

@@ -22,6 +22,7 @@ from argo_compiler.hfsm import (
 )
 from argo_compiler.il import Action, EventKind, Mission
 from argo_compiler.script import import_script
+from argo_compiler.script.write.protocol import format_script
 from tests.argo_compiler.script.conftest import CATALOG
 from tests.argo_compiler.script.sentences import HORIZON, Interpreter, Writer, script, value
 from tests.conftest import examples
@@ -71,10 +72,13 @@ def test_what_is_carried_out_is_what_the_sentences_say() -> None:
         except DiagnosticError as error:
             met.update({d.code for d in error.diagnostics if d.severity == "error"})
             return
-        assert carried_out(mission) == Interpreter(steps, rounds).run(), text
+        done = carried_out(mission)
+        assert done == Interpreter(steps, rounds).run(), text
         met["run"] += 1
         met["joined"] += any(t.name.startswith("end of") for t in mission.tasks)
         met["decided behind"] += any(t.name.startswith("after") for t in mission.tasks)
+        again = import_script(format_script(mission, CATALOG), CATALOG).mission
+        assert carried_out(again) == done, text
 
     compare()
     assert met["run"] > 0.9 * (met.total() - met["joined"] - met["decided behind"])

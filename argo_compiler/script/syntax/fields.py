@@ -21,7 +21,6 @@ from argo_compiler.script.syntax.tree.script import AreaChosen, Header, Text
 from argo_compiler.script.syntax.understanding import Understanding
 from argo_compiler.script.syntax.words.joints import VERBS
 from argo_compiler.script.syntax.words.lexer import unquoted
-from argo_compiler.script.syntax.words.prose import begins
 from argo_compiler.script.syntax.words.word import Word
 
 _STOP = re.compile(r"[.!](?=\s|$)")
@@ -30,9 +29,6 @@ _PROSE = frozenset(
     ["designation", "anomaly_specification", "real_time_reporting", "after_mission_report", "site"]
 )
 _AREAS = frozenset(["initial_position", "end_of_mission"])
-_WHOLE = re.compile(r"(?:(?:ANY_ORDER|THIS_ORDER|(?:MOST_TIME|WITHIN DURATION)(?: TOTAL)?) )+")
-_JOINTS = frozenset(["NEXT", "JOINT", "AND_NOUN", "AND_AMOUNT", "AND_TEST", "AND_NUMBER"])
-_INTRODUCTION = re.compile(r"(?:WORD )?(?:TO )?(?:MEASURE )?(?:ALL )?KIND (?:ANY|THIS)_ORDER ")
 _SAME = {"start_area": "initial_position", "end_area": "end_of_mission"}
 """fields that say the same"""
 
@@ -97,11 +93,11 @@ class HeaderFields:
             case "nothing":
                 self._nothing(value, label)
             case "mode":
-                self._set(name, self._meaning(name, value, Mode), value)
+                self.set(name, self._meaning(name, value, Mode), value)
             case "order":
-                self._set(name, self._meaning(name, value, Order), value)
+                self.set(name, self._meaning(name, value, Order), value)
             case "max_duration":
-                self._duration(value)
+                self.duration(value)
             case "initial_position" | "end_of_mission":
                 self._place(name, value)
             case "start_area" | "end_area":
@@ -118,9 +114,9 @@ class HeaderFields:
                 self._left_out(value)
             case _:
                 text = self._text(value)
-                self._set(name, text, value, text and text.text)
+                self.set(name, text, value, text and text.text)
 
-    def _set(self, name: str, meaning: Any, value: ScriptText, key: Any = None) -> None:
+    def set(self, name: str, meaning: Any, value: ScriptText, key: Any = None) -> None:
         """Keeps a field, unless it stands elsewhere with another value; None: it has an error.
         The key is what tells two values apart, where the meaning has its place in it."""
         if meaning is not None and self._is_new(name, meaning if key is None else key, value):
@@ -170,7 +166,8 @@ class HeaderFields:
     def is_none(self, value: ScriptText) -> bool:
         return ("none", _plain(value)) in self.prose.meanings
 
-    def _duration(self, value: ScriptText) -> None:
+    def duration(self, value: ScriptText) -> None:
+        """Reads the maximum duration."""
         if self.is_none(value):
             self._is_new("max_duration", "none", value)
             return
@@ -189,7 +186,7 @@ class HeaderFields:
         length = seconds(part, word)
         if self.diagnostics.errors == errors:
             node = Text(span=value.span(), text=value.content)
-            self._set("max_duration", (length, node), value, length)
+            self.set("max_duration", (length, node), value, length)
 
     def _place(self, name: str, value: ScriptText) -> None:
         """`docked in starting area 1 or 2`, or any other place."""
@@ -201,7 +198,7 @@ class HeaderFields:
         where = self.understanding.location(value) if not self.areas.names_areas(value) else None
         if where is None or isinstance(where, tuple) or self.areas.names_dock(value):
             areas = self.areas.read(value)
-            self._set(name, areas, value, areas and areas.areas)
+            self.set(name, areas, value, areas and areas.areas)
             return
         if not self._is_new(name, _plain(value), value):
             return
@@ -233,7 +230,7 @@ class HeaderFields:
         if point is None:
             self._no_value(value, 'write a step or a name: `3`, `"MEASURE 4"`')
         else:
-            self._set("current", Steps(span=value.span(), points=(point,)), value, point)
+            self.set("current", Steps(span=value.span(), points=(point,)), value, point)
 
     def _left_out(self, value: ScriptText) -> None:
         found = [w for w in self.understanding.words(value) if not w.type.startswith("AND_")]
@@ -241,48 +238,11 @@ class HeaderFields:
         if len(names) != len([w for w in found if w.type != "JOINT"]) or not names:
             self._no_value(value, 'write names in quotation marks: `"MEASURE 4", "MEASURE 8"`')
         else:
-            self._set("left_out", names, value)
+            self.set("left_out", names, value)
 
     def _no_value(self, value: ScriptText, hint: str) -> None:
         message = f"can't understand `{value.content}` here"
         self.diagnostics.error("field", message, value.span(), hint)
-
-    # ---- said in sentences
-
-    def introduces(self, text: ScriptText) -> bool:
-        """Reads the sentence over the steps: `Control the checkpoints in this precise order:`."""
-        types = self.understanding.types(text)
-        if not _INTRODUCTION.fullmatch("".join(f"{type_} " for type_ in types)):
-            return False
-        order = Order.ANY if types[-1] == "ANY_ORDER" else Order.PRECISE
-        self._set("order", order, text)
-        return True
-
-    def leaves_open(self, text: ScriptText) -> bool:
-        """Reads a sentence that leaves the docks open: `The docks are chosen on the day`."""
-        said = begins(self.prose.left_open).match(text.content)
-        if said is None or self.areas.may_ask(text[said.end() :]):
-            return False
-        self.header.areas_open = Text(span=text.span(), text=text.content)
-        return True
-
-    def says_whole(self, text: ScriptText) -> bool:
-        """Whether a text is about the mission as a whole, if nothing is ordered before it."""
-        types = [t for t in self.understanding.types(text) if t not in _JOINTS]
-        return _WHOLE.fullmatch("".join(f"{type_} " for type_ in types)) is not None
-
-    def whole_mission(self, text: ScriptText) -> bool:
-        """Reads what is said of the mission as a whole by itself: `In any order, at most 40 min`.
-        False: that is not what it says."""
-        if not self.says_whole(text):
-            return False
-        for word in self.understanding.words(text):
-            if word.type in ("ANY_ORDER", "THIS_ORDER"):
-                order = Order.ANY if word.type == "ANY_ORDER" else Order.PRECISE
-                self._set("order", order, _of(text, word))
-            elif word.type in ("DURATION", "MOST_TIME"):
-                self._duration(_of(text, word))
-        return True
 
 
 def _of(text: ScriptText, word: Word) -> ScriptText:

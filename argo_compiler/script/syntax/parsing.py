@@ -2,24 +2,22 @@
 
 import re
 from collections.abc import Collection, Iterable, Iterator
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 
 from argo_compiler.diagnostics import DiagnosticError
 from argo_compiler.garbage_collector import collector_held
 from argo_compiler.script.syntax.asides import Asides
 from argo_compiler.script.syntax.cells import Cells
 from argo_compiler.script.syntax.fields import HeaderFields
-from argo_compiler.script.syntax.grammar import StumbleError
 from argo_compiler.script.syntax.healing import MOST_ERRORS, heal
-from argo_compiler.script.syntax.hints import not_understood
 from argo_compiler.script.syntax.labels import Labels
 from argo_compiler.script.syntax.layout import Item, Mark, items_of, lines_of, sentences
 from argo_compiler.script.syntax.rows import tables
+from argo_compiler.script.syntax.sentence_reading import Said, SentenceReader
 from argo_compiler.script.syntax.source import Diagnostics, ScriptText, Source
-from argo_compiler.script.syntax.tree.facts import Fact
-from argo_compiler.script.syntax.tree.orders import Sentence, Start
-from argo_compiler.script.syntax.tree.script import Script, Step, Text, Unread
-from argo_compiler.script.syntax.understanding import Reading, Understanding
+from argo_compiler.script.syntax.tree.orders import Sentence
+from argo_compiler.script.syntax.tree.script import Script, Step
+from argo_compiler.script.syntax.understanding import Understanding
 from argo_compiler.script.syntax.words.language import Language
 
 MAX_LINES = 120_000
@@ -27,7 +25,6 @@ MAX_LINES = 120_000
 
 _LONGEST_MENDED = 300
 """characters of a sentence that is mended to see whether it goes on"""
-Said = Sentence | Fact | Unread
 _EDITS = ("ADD", "DELETE", "REPLACE", "MOVE")
 
 
@@ -52,7 +49,8 @@ def parse(
     asides = Asides(understanding)
     labels = Labels(understanding, diagnostics)
     fields = HeaderFields(understanding, asides, diagnostics)
-    return _Parser(understanding, asides, fields, labels, diagnostics).script()
+    reader = SentenceReader(understanding, asides, fields, labels, diagnostics)
+    return _Parser(understanding, asides, fields, labels, diagnostics, reader).script()
 
 
 def _require_size(source: Source) -> None:
@@ -94,15 +92,11 @@ class _Parser:
     fields: HeaderFields
     labels: Labels
     diagnostics: Diagnostics
-    remarks: list[Text] = field(default_factory=list)
+    reader: SentenceReader
     closed: bool = False
     """whether a letter has come to its end"""
     stopped: bool = False
     """whether there are too many errors"""
-    ordered: bool = False
-    """whether anything is to be done by now but to start"""
-    begun: bool = False
-    """whether anything but a title has been read"""
 
     def script(self) -> Script:
         source = self.diagnostics.source
@@ -120,7 +114,7 @@ class _Parser:
             source_text=source.text,
             header=self.fields.header,
             steps=(*first, *steps, *last),
-            remarks=tuple(self.remarks),
+            remarks=tuple(self.reader.remarks),
             diagnostics=self.diagnostics.by_place(),
         )
 
@@ -166,7 +160,7 @@ class _Parser:
         text = self._without_letter(item)
         text = self.labels.relabelled(text)
         if self.labels.is_field(text):
-            self.begun = True
+            self.reader.begun = True
             text = self.fields.read(text)
         said: list[Said] = []
         remark = False
@@ -175,9 +169,9 @@ class _Parser:
             after = remark and not self.understanding.fits(sentence)
             remark = after or self.asides.is_remark(sentence.content)
             if remark:
-                self.note(sentence, "a remark")
+                self.reader.note(sentence, "a remark")
             else:
-                said += self._sentence(sentence, item)
+                said += self.reader.read(sentence, item)
         return self._of(item, said, list(self._steps(item.items)))
 
     def _of(self, item: Item, said: list[Said], inner: list[Step]) -> Step | None:
@@ -197,134 +191,13 @@ class _Parser:
             return text
         greeting = self.asides.greeting(text)
         if greeting:
-            self.note(text[:greeting].strip(), "a greeting")
+            self.reader.note(text[:greeting].strip(), "a greeting")
             return text[greeting:].strip()
         if self.asides.closing(text) or (self.closed and self.asides.is_signature(text)):
             self.closed = True
-            self.note(text, "the end of a letter")
+            self.reader.note(text, "the end of a letter")
             return text[:0]
         return text
-
-    def note(self, text: ScriptText, what: str) -> None:
-        """Says that a text has no effect."""
-        said = text.content if len(text.content) <= 60 else f"{text.content[:57]}..."
-        message = f"`{said}` is taken for {what} and has no effect"
-        self.diagnostics.note("no-effect", message, text.span())
-        self.remarks.append(Text(span=text.span(), text=text.content))
-
-    # ---- sentences
-
-    def _sentence(self, text: ScriptText, item: Item) -> list[Said]:
-        text = self.understanding.figures(text)
-        if not self.understanding.types(text):
-            self.note(text, "a remark")
-            return []
-        stands_over = item.line.heading or text.content.endswith(":")
-        if stands_over and self.fields.introduces(text):
-            return []
-        if not self.ordered and self.fields.whole_mission(text):
-            return []
-        reading = self.understanding.read(text)
-        if isinstance(reading, StumbleError) or "WORD" in self.understanding.types(text):
-            respelled = self.understanding.respelled(text)
-            if respelled is not None:
-                text, reading = respelled, self.understanding.read(respelled)
-                if stands_over and self.fields.introduces(text):
-                    return []
-        if isinstance(reading, StumbleError):
-            cut = self.asides.without(text)
-            if cut is not None:
-                text, asides = cut
-                for aside in asides:
-                    self.note(aside, "a remark")
-                reading = self.understanding.read(text)
-        if isinstance(reading, StumbleError):
-            return self._not_understood(text, item, reading)
-        joint = self.understanding.unfinished(text)
-        if joint is not None:
-            message = f"nothing stands behind `{joint.content}`"
-            hint = "say what follows, or leave it out"
-            self.diagnostics.error("unfinished", message, joint.span(), hint)
-        return [self._node(text, reading)]
-
-    def _node(self, text: ScriptText, reading: Reading) -> Said:
-        self.begun = True
-        for idle in self.asides.idle(text):
-            self.diagnostics.note("no-effect", f"`{idle.content}` has no effect", idle.span())
-        node = self.understanding.node(text, reading)
-        if isinstance(node, Sentence):
-            self.ordered |= any(not isinstance(order, Start) for order in node.orders)
-        return Unread(span=text.span()) if node is None else node
-
-    def _not_understood(self, text: ScriptText, item: Item, stumble: StumbleError) -> list[Said]:
-        """What makes no sense: said of the mission as a whole, a title, small talk or an error."""
-        if self.fields.whole_mission(text):
-            return []
-        free = item.line.mark in (Mark.NONE, Mark.BULLET) and item.line.number is None
-        if free and self.fields.leaves_open(text):
-            return []
-        if free and self.asides.is_small_talk(text):
-            self.note(text, "a remark")
-            return []
-        titled = self._title(text, item)
-        if titled is not None:
-            return titled
-        if not self.labels.is_unknown(text):
-            not_understood(text, stumble, self.understanding, self.diagnostics)
-        self.begun = True
-        return [Unread(span=text.span())]
-
-    def _title(self, text: ScriptText, item: Item) -> list[Said] | None:
-        """Takes a text for a title, if it may be one, and reads what stands behind a comma in it:
-        `Evening round, at most 40 minutes`. None: it is none."""
-        header = self.fields.header
-        first = not self.begun and header.title is None and item.line.number is None
-        if not first and not self._is_heading(text, item):
-            return None
-        if self.asides.is_title(text):
-            head, behind = text, []
-        elif first and "," in text.content:
-            head = text[: text.content.index(",")]
-            behind = self._behind_title(text[len(head.content) + 1 :].strip())
-            if not self.asides.is_title(head) or not behind:
-                return None
-        else:
-            return None
-        if first:
-            header.title = Text(span=head.span(), text=head.content)
-        if not first or not self.asides.is_explicit_title(head):
-            self.note(head, "the title" if first else "a heading")
-        said: list[Said] = []
-        for part in behind:
-            reading = self.understanding.read(part)
-            if not self.fields.whole_mission(part) and not isinstance(reading, StumbleError):
-                said.append(self._node(part, reading))
-        return said
-
-    def _behind_title(self, text: ScriptText) -> list[ScriptText]:
-        """The parts of what stands behind a title, if all of them make sense."""
-        commas = [i for i, sign in enumerate(text.content) if sign == ","]
-        ends = [*commas, len(text.content)]
-        parts = [
-            text[a:b].strip() for a, b in zip([0, *(c + 1 for c in commas)], ends, strict=True)
-        ]
-        for behind in (parts, [text]):
-            if all(self._makes_sense(part) for part in behind):
-                return behind
-        return []
-
-    def _makes_sense(self, text: ScriptText) -> bool:
-        return self.fields.says_whole(text) or self.understanding.fits(text)
-
-    def _is_heading(self, text: ScriptText, item: Item) -> bool:
-        """Whether a line stands over others: marked as a heading, or with items of its own."""
-        line = item.line
-        whole = text.content == item.text.content.rstrip(".!")
-        if self.labels.has_value(text):
-            return False
-        return line.heading or (
-            whole and line.number is None and (bool(item.items) or text.content.endswith(":"))
-        )
 
 
 def _step_of(sentence: Sentence) -> Step:

@@ -1,0 +1,157 @@
+"""Reads the sentences of a script one after the other: which say what, and which have no effect."""
+
+from dataclasses import dataclass, field
+
+from argo_compiler.script.syntax.asides import Asides
+from argo_compiler.script.syntax.fields import HeaderFields
+from argo_compiler.script.syntax.grammar import StumbleError
+from argo_compiler.script.syntax.hints import not_understood
+from argo_compiler.script.syntax.labels import Labels
+from argo_compiler.script.syntax.layout import Item, Mark
+from argo_compiler.script.syntax.preamble import Preamble
+from argo_compiler.script.syntax.source import Diagnostics, ScriptText
+from argo_compiler.script.syntax.tree.facts import Fact
+from argo_compiler.script.syntax.tree.orders import Sentence, Start
+from argo_compiler.script.syntax.tree.script import Text, Unread
+from argo_compiler.script.syntax.understanding import Reading, Understanding
+
+Said = Sentence | Fact | Unread
+
+
+@dataclass
+class SentenceReader:
+    """Reads sentences. Mutable: what one is depends on those before it."""
+
+    understanding: Understanding
+    asides: Asides
+    fields: HeaderFields
+    labels: Labels
+    diagnostics: Diagnostics
+    remarks: list[Text] = field(default_factory=list)
+    ordered: bool = False
+    """whether anything is to be done by now but to start"""
+    begun: bool = False
+    """whether anything but a title has been read"""
+
+    def __post_init__(self) -> None:
+        self.preamble = Preamble(self.understanding, self.fields)
+
+    def note(self, text: ScriptText, what: str) -> None:
+        """Says that a text has no effect."""
+        said = text.content if len(text.content) <= 60 else f"{text.content[:57]}..."
+        message = f"`{said}` is taken for {what} and has no effect"
+        self.diagnostics.note("no-effect", message, text.span())
+        self.remarks.append(Text(span=text.span(), text=text.content))
+
+    def read(self, text: ScriptText, item: Item) -> list[Said]:
+        """What a sentence says; nothing where it has no effect."""
+        text = self.understanding.figures(text)
+        if not self.understanding.types(text):
+            self.note(text, "a remark")
+            return []
+        stands_over = item.line.heading or text.content.endswith(":")
+        if stands_over and self.preamble.introduces(text):
+            return []
+        if not self.ordered and self.preamble.whole_mission(text):
+            return []
+        reading = self.understanding.read(text)
+        if isinstance(reading, StumbleError) or "WORD" in self.understanding.types(text):
+            respelled = self.understanding.respelled(text)
+            if respelled is not None:
+                text, reading = respelled, self.understanding.read(respelled)
+                if stands_over and self.preamble.introduces(text):
+                    return []
+        if isinstance(reading, StumbleError):
+            cut = self.asides.without(text)
+            if cut is not None:
+                text, asides = cut
+                for aside in asides:
+                    self.note(aside, "a remark")
+                reading = self.understanding.read(text)
+        if isinstance(reading, StumbleError):
+            return self._not_understood(text, item, reading)
+        joint = self.understanding.unfinished(text)
+        if joint is not None:
+            message = f"nothing stands behind `{joint.content}`"
+            hint = "say what follows, or leave it out"
+            self.diagnostics.error("unfinished", message, joint.span(), hint)
+        return [self._node(text, reading)]
+
+    def _node(self, text: ScriptText, reading: Reading) -> Said:
+        self.begun = True
+        for idle in self.asides.idle(text):
+            self.diagnostics.note("no-effect", f"`{idle.content}` has no effect", idle.span())
+        node = self.understanding.node(text, reading)
+        if isinstance(node, Sentence):
+            self.ordered |= any(not isinstance(order, Start) for order in node.orders)
+        return Unread(span=text.span()) if node is None else node
+
+    def _not_understood(self, text: ScriptText, item: Item, stumble: StumbleError) -> list[Said]:
+        """What makes no sense: said of the mission as a whole, a title, small talk or an error."""
+        if self.preamble.whole_mission(text):
+            return []
+        free = item.line.mark in (Mark.NONE, Mark.BULLET) and item.line.number is None
+        if free and self.preamble.leaves_open(text):
+            return []
+        if free and self.asides.is_small_talk(text):
+            self.note(text, "a remark")
+            return []
+        titled = self._title(text, item)
+        if titled is not None:
+            return titled
+        if not self.labels.is_unknown(text):
+            not_understood(text, stumble, self.understanding, self.diagnostics)
+        self.begun = True
+        return [Unread(span=text.span())]
+
+    def _title(self, text: ScriptText, item: Item) -> list[Said] | None:
+        """Takes a text for a title, if it may be one, and reads what stands behind a comma in it:
+        `Evening round, at most 40 minutes`. None: it is none."""
+        header = self.fields.header
+        first = not self.begun and header.title is None and item.line.number is None
+        if not first and not self._is_heading(text, item):
+            return None
+        if self.asides.is_title(text):
+            head, behind = text, []
+        elif first and "," in text.content:
+            head = text[: text.content.index(",")]
+            behind = self._behind_title(text[len(head.content) + 1 :].strip())
+            if not self.asides.is_title(head) or not behind:
+                return None
+        else:
+            return None
+        if first:
+            header.title = Text(span=head.span(), text=head.content)
+        if not first or not self.asides.is_explicit_title(head):
+            self.note(head, "the title" if first else "a heading")
+        said: list[Said] = []
+        for part in behind:
+            reading = self.understanding.read(part)
+            if not self.preamble.whole_mission(part) and not isinstance(reading, StumbleError):
+                said.append(self._node(part, reading))
+        return said
+
+    def _behind_title(self, text: ScriptText) -> list[ScriptText]:
+        """The parts of what stands behind a title, if all of them make sense."""
+        commas = [i for i, sign in enumerate(text.content) if sign == ","]
+        ends = [*commas, len(text.content)]
+        parts = [
+            text[a:b].strip() for a, b in zip([0, *(c + 1 for c in commas)], ends, strict=True)
+        ]
+        for behind in (parts, [text]):
+            if all(self._makes_sense(part) for part in behind):
+                return behind
+        return []
+
+    def _makes_sense(self, text: ScriptText) -> bool:
+        return self.preamble.says_whole(text) or self.understanding.fits(text)
+
+    def _is_heading(self, text: ScriptText, item: Item) -> bool:
+        """Whether a line stands over others: marked as a heading, or with items of its own."""
+        line = item.line
+        whole = text.content == item.text.content.rstrip(".!")
+        if self.labels.has_value(text):
+            return False
+        return line.heading or (
+            whole and line.number is None and (bool(item.items) or text.content.endswith(":"))
+        )

@@ -37,6 +37,10 @@ SCRIPT = {
         "A number behind a floor can be another floor or something else.",
         "Write `floors 1 and 2`, or name what else is meant.",
     ),
+    "script.ambiguous-manner": error(
+        "A clause can be meant for the last of several orders only, or for each of them.",
+        "Write it behind a list of what it is said of, or in two sentences.",
+    ),
     "script.ambiguous-number": error(
         "A number can be read in two ways, such as `1.200`.", "Write it as the hint shows."
     ),
@@ -263,6 +267,10 @@ SCRIPT = {
         "A task is to be left at a speed, but the mission ends with it.",
         "Give the speed to the task that the way leads to.",
     ),
+    "script.spared": error(
+        "A checkpoint is asked for, and elsewhere the script says that it is not to be checked.",
+        "Leave one of the two out.",
+    ),
     "script.start": error(
         "A mission starts at a place, not on a floor.", "Name a starting area or a place."
     ),
@@ -320,6 +328,10 @@ SCRIPT = {
     "script.unwritable": error(
         "A part of the mission can't be said in a script.",
         "Keep the mission as JSON, or change what is named.",
+    ),
+    "script.visit": error(
+        "The robot is sent to a checkpoint, and nothing is said of what to do there.",
+        "Write `check checkpoint 4`.",
     ),
     "script.wait": error(
         "A wait does not say how long or for what, or says more than one wait can.",

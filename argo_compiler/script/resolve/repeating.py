@@ -122,9 +122,9 @@ class Repeating:
     def _is_once_more(self, order: orders.Repeat, block: Block) -> bool:
         """Whether steps are done here again, and not in a round where they stand."""
         manner = order.manner
-        if manner is None:
-            return True
         assert order.steps is not None
+        if manner is None:
+            return len(order.steps.points) == 1
         if not manner.more or manner != Manner(times=manner.times, more=True):
             return False
         known = all(self.context.steps.get(p) for p in order.steps.points if isinstance(p, int))

@@ -9,15 +9,15 @@ from argo_compiler.diagnostics.codes.code import Severity
 from argo_env.planning.opening import open_site
 from argo_planner.terminal.files import STANDARD_OUTPUT, check_outputs, read_upload, write_text
 from argo_planner.terminal.options import EndArea, Force, SiteOption, Source, StartArea
-from argo_planner.use_cases.explaining import Format, reading_of, write_reading
+from argo_planner.use_cases.explaining import ReadingFormat, reading_of, write_reading
 from argo_planner.use_cases.importing import import_mission
 
 
 def explain_mission(
     source: Source,
     site: SiteOption = "umad",
-    format: Annotated[Format, typer.Option("--format", help="for people or programs")] = (
-        Format.TEXT
+    format: Annotated[ReadingFormat, typer.Option("--format", help="for people or programs")] = (
+        ReadingFormat.TEXT
     ),
     strict: Annotated[
         bool, typer.Option("--strict", help="exit with status 1 if there are warnings")

@@ -22,9 +22,9 @@ def schema(kind: FileKind) -> str:
     from argo_compiler.schemas.generate import schema_of
 
     if kind is FileKind.READING:
-        from argo_compiler.script.write.reading import Reading
+        from argo_compiler.script.write.reading import MissionReading
 
-        return schema_of(Reading, kind)
+        return schema_of(MissionReading, kind)
     from argo_env.faults.kinds import FaultFile
 
     return schema_of(FaultFile, kind)

@@ -74,7 +74,7 @@ def test_for_programs_it_is_data_with_a_schema() -> None:
     found = json.loads(explained("s.txt", "--format", "json"))
     known = json.loads(schema(FileKind.READING))
     assert set(found) == set(known["properties"])
-    assert set(found["entries"][0]) == set(known["$defs"]["Entry"]["properties"])
+    assert set(found["entries"][0]) == set(known["$defs"]["ReadingEntry"]["properties"])
     first = next(e for e in found["entries"] if e["name"] == "MEASURE 1")
     assert first["assumed"] == ["read `Chekc` as `check`"]
     assert first["source"]["line"] == 3

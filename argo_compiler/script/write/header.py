@@ -5,14 +5,14 @@ import re
 from argo_compiler.catalog import Catalog
 from argo_compiler.il import Mission, Mode, Order
 from argo_compiler.model import Pose
-from argo_compiler.script.write.steps import Steps
+from argo_compiler.script.write.steps import StepsSaid
 from argo_compiler.script.write.text import duration, point, quote
 
 _TITLE = re.compile(r"Mission Protocol(?: #[1-9][0-9]{0,5})?")
 _PLAIN = re.compile(r"[A-Z][a-z]+(?: [a-z]+| #?[0-9]{1,4})*")
 
 
-def header_lines(mission: Mission, catalog: Catalog, steps: Steps) -> list[str]:
+def header_lines(mission: Mission, catalog: Catalog, steps: StepsSaid) -> list[str]:
     """The title, and the fields that differ from what is meant without a line; in each line, breaks
     where it may be broken."""
     lines = []

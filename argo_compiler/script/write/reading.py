@@ -29,7 +29,7 @@ _ASSUMING = frozenset(
 """warnings of what was taken though the script does not say it so"""
 
 
-class Part(StrEnum):
+class PartSaid(StrEnum):
     """What an entry of a reading is about."""
 
     HEADER = "header"
@@ -40,10 +40,10 @@ class Part(StrEnum):
     REACTION = "reaction"
 
 
-class Entry(Model):
+class ReadingEntry(Model):
     """What is said of one part of the mission."""
 
-    part: Part
+    part: PartSaid
     name: str = ""
     """of the task, the round or the event"""
     step: int | None = None
@@ -57,13 +57,13 @@ class Entry(Model):
     """where the script asks for it"""
 
 
-class Reading(Model):
+class MissionReading(Model):
     """A mission in plain sentences."""
 
     source_name: str
     text: str
     """all of it as a script, in which the marks stand in remarks"""
-    entries: tuple[Entry, ...]
+    entries: tuple[ReadingEntry, ...]
     assumed: tuple[str, ...] = ()
     """what was assumed of the mission as a whole"""
     no_effect: tuple[Diagnostic, ...] = ()
@@ -76,7 +76,7 @@ def read_back(
     catalog: Catalog,
     diagnostics: Iterable[Diagnostic] = (),
     source_name: str = "mission",
-) -> Reading:
+) -> MissionReading:
     """The reading of a mission, with what its import and its checks said of it.
 
     Raises DiagnosticError if the script language can't say the mission.
@@ -88,7 +88,7 @@ def read_back(
         if one.span is not None:
             by_line[one.span.line].append(one.message)
     header, steps, others = parts_said(mission, catalog)
-    entries = [Entry(part=Part.HEADER, sentences=(_plain(line),)) for line in header]
+    entries = [ReadingEntry(part=PartSaid.HEADER, sentences=(_plain(line),)) for line in header]
     lines = [line for field in header for line in wrapped(field)]
     for part in (steps, others):
         lines += [""] if part else []
@@ -96,7 +96,7 @@ def read_back(
             line = said.source.line if said.source is not None else 0
             entries.append(_entry(said, catalog, by_line.pop(line, [])))
             lines += [*lines_of([said]), *_marks(entries[-1])]
-    reading = Reading(
+    reading = MissionReading(
         source_name=source_name,
         text="",
         entries=tuple(entries),
@@ -108,11 +108,13 @@ def read_back(
     return reading.model_copy(update={"text": text})
 
 
-def _entry(said: Said, catalog: Catalog, assumed: Sequence[str]) -> Entry:
+def _entry(said: Said, catalog: Catalog, assumed: Sequence[str]) -> ReadingEntry:
     kind, _, name = said.subject.partition("[")
-    part = {"groups": Part.ROUND, "reactions": Part.REACTION, "before": Part.ORDER}.get(kind)
-    return Entry(
-        part=part or Part.TASK,
+    part = {"groups": PartSaid.ROUND, "reactions": PartSaid.REACTION, "before": PartSaid.ORDER}.get(
+        kind
+    )
+    return ReadingEntry(
+        part=part or PartSaid.TASK,
         name=said.about[0].name if said.about else name.strip("]'\""),
         step=said.number,
         sentences=tuple(map(_plain, said.sentences)),
@@ -156,14 +158,14 @@ def _conditions(part: Task | Group) -> Iterator[Condition]:
         yield from part.wait.conditions
 
 
-def _marks(entry: Entry) -> Iterator[str]:
+def _marks(entry: ReadingEntry) -> Iterator[str]:
     for said in entry.meaning:
         yield f"{INDENT}Note: {_remark(said)}"
     for said in entry.assumed:
         yield f"{INDENT}Note: assumed: {_remark(said)}"
 
 
-def _last_marks(reading: Reading) -> list[str]:
+def _last_marks(reading: MissionReading) -> list[str]:
     found = [f"Note: assumed: {_remark(said)}" for said in reading.assumed]
     found += [f"Note: no effect: {_remark(_placed(d))}" for d in reading.no_effect]
     found += [f"Note: warning: {_remark(_placed(d))}" for d in reading.warnings]

@@ -12,7 +12,7 @@ from argo_compiler.script.write.text import duration, times
 
 
 @dataclass(frozen=True, slots=True)
-class Patrol:
+class FloorPatrol:
     """A group that is the patrol of a floor."""
 
     index: int
@@ -72,7 +72,7 @@ class RoundNames:
 
 def patrols(
     mission: Mission, catalog: Catalog, layout: GroupNesting, usual: list[bool]
-) -> dict[int, Patrol]:
+) -> dict[int, FloorPatrol]:
     """The groups that can be written as the patrol of a floor, by their first task. `usual` tells
     which tasks are called as a script calls them.
 
@@ -84,7 +84,7 @@ def patrols(
     longest = max((len(poses) for poses in floors), default=0)
     places = {r.index: place for place, r in enumerate(layout.ranges)}
     targets = _targets(mission)
-    found: dict[int, Patrol] = {}
+    found: dict[int, FloorPatrol] = {}
     furthest = -1
     for index, group in enumerate(mission.groups):
         place = places[index]
@@ -101,7 +101,7 @@ def patrols(
         if all(usual[i] and layout.innermost[i] == place for i in whole) and all(
             _is_stop(mission.tasks, i, group.name) for i in whole
         ):
-            found[r.first] = Patrol(index, r.last, number)
+            found[r.first] = FloorPatrol(index, r.last, number)
     return found
 
 

@@ -10,7 +10,7 @@ from argo_compiler.diagnostics.subject import subject_of
 from argo_compiler.il import Action, Group, Mission, Task, Transition
 from argo_compiler.il.grouping import GroupNesting
 from argo_compiler.script.write.places import Places
-from argo_compiler.script.write.rounds import Patrol, RoundNames, limits, patrols
+from argo_compiler.script.write.rounds import FloorPatrol, RoundNames, limits, patrols
 from argo_compiler.script.write.tasks import command, manners
 from argo_compiler.script.write.text import UnwritableError, capital, quote
 from argo_compiler.script.write.ways import Around, step_of, ways
@@ -31,7 +31,7 @@ class Said:
 
 
 @dataclass
-class Steps:
+class StepsSaid:
     """The steps of a mission, and what they say of its header."""
 
     said: list[Said] = field(default_factory=list)
@@ -56,7 +56,7 @@ def unwritable(what: str, subject: str, span: Span | None, error: UnwritableErro
     )
 
 
-def write_steps(mission: Mission, catalog: Catalog, places: Places) -> Steps:
+def write_steps(mission: Mission, catalog: Catalog, places: Places) -> StepsSaid:
     """The steps of the mission's tasks and groups."""
     return _Writer(mission, catalog, places).write()
 
@@ -71,7 +71,7 @@ class _Writer:
         self.catalog = catalog
         self.places = places
         self.layout = GroupNesting.of(mission)
-        self.result = Steps()
+        self.result = StepsSaid()
         self.usual = _usual_names(mission, self._docks())
         self.patrols = patrols(mission, catalog, self.layout, self.usual)
         self.order = list(self._order())
@@ -86,7 +86,7 @@ class _Writer:
         self.following = _following(mission.tasks)
         self.names = RoundNames(self.layout)
 
-    def _order(self) -> Iterator[int | Patrol | Group]:
+    def _order(self) -> Iterator[int | FloorPatrol | Group]:
         """What the steps are of: tasks by their position, patrols and groups."""
         last = {r.index: r.last for r in self.layout.ranges}
         written = i = 0
@@ -103,20 +103,20 @@ class _Writer:
                 yield self.mission.groups[written]
                 written += 1
 
-    def write(self) -> Steps:
+    def write(self) -> StepsSaid:
         groups = {id(group): k for k, group in enumerate(self.mission.groups)}
         for number, one in enumerate(self.order, start=1):
             part: Task | Group
             if isinstance(one, int):
                 part, kind, of = self.tasks[one], "tasks", "task"
             else:
-                index = one.index if isinstance(one, Patrol) else groups[id(one)]
+                index = one.index if isinstance(one, FloorPatrol) else groups[id(one)]
                 part, kind, of = self.mission.groups[index], "groups", "group"
             subject = subject_of(kind, part.name)
             try:
                 if isinstance(one, int):
                     sentences = tuple(self._task(one))
-                elif isinstance(one, Patrol):
+                elif isinstance(one, FloorPatrol):
                     sentences = (self._patrol(one),)
                 else:
                     sentences = (self._repeat(groups[id(one)], one),)
@@ -189,7 +189,7 @@ class _Writer:
 
     # ---- groups
 
-    def _patrol(self, patrol: Patrol) -> str:
+    def _patrol(self, patrol: FloorPatrol) -> str:
         group = self.mission.groups[patrol.index]
         base = f"Patrol floor {patrol.floor}"
         name = self.names.own(patrol.index, base)

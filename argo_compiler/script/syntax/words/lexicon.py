@@ -17,11 +17,11 @@ _ARTICLES = frozenset(["the", "a", "an"])
 
 
 @dataclass(slots=True)
-class Node:
-    """Where a phrase has come to, word by word."""
+class PhraseStart:
+    """The words with which phrases begin, and what may follow."""
 
     entry: Entry | None = None
-    next: "dict[str, Node]" = field(default_factory=dict)
+    next: "dict[str, PhraseStart]" = field(default_factory=dict)
     parted: dict[tuple[str, ...], Entry] = field(default_factory=dict)
     """by what ends it behind other words: `kehre … zurück`"""
 
@@ -50,7 +50,7 @@ class Lexicon:
         """whether a verb stands before all that it is said of, as the grammar has it"""
         self.other: Lexicon | None = None
         """of another language, in which a sentence may be as well"""
-        self.root = Node()
+        self.root = PhraseStart()
         self.words: set[str] = set()
         self.numerals: dict[str, float] = {}
         self.phrases: dict[Entry, list[str]] = {}
@@ -66,7 +66,7 @@ class Lexicon:
             for k, piece in enumerate(head.split()):
                 if k and piece in _ARTICLES & self.passed_over:
                     continue  # wherever it stands within a phrase
-                node = node.next.setdefault(folded(piece), Node())
+                node = node.next.setdefault(folded(piece), PhraseStart())
             last = tuple(folded(piece) for piece in end.split())
             there = node.parted.get(last) if end else node.entry
             if there not in (None, entry):

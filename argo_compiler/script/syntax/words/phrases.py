@@ -4,7 +4,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 from argo_compiler.script.syntax.words.joints import VERBS
-from argo_compiler.script.syntax.words.lexicon import Entry, Lexicon, Node
+from argo_compiler.script.syntax.words.lexicon import Entry, Lexicon, PhraseStart
 
 _PREPOSITIONS = frozenset(["ab", "an", "auf", "aus", "durch", "ein"])
 """what ends a parted verb only where its clause ends"""
@@ -23,7 +23,7 @@ class Found:
 
 def longest(said: Sequence[str], at: int, lexicon: Lexicon) -> Found | None:
     """The longest phrase from piece `at` on; of a parted one its end decides."""
-    node: Node = lexicon.root
+    node: PhraseStart = lexicon.root
     best: Found | None = None
     for k in range(at, len(said)):
         step = node.next.get(said[k])
@@ -40,7 +40,7 @@ def longest(said: Sequence[str], at: int, lexicon: Lexicon) -> Found | None:
 
 
 def _parted(
-    said: Sequence[str], at: int, behind: int, node: Node, lexicon: Lexicon
+    said: Sequence[str], at: int, behind: int, node: PhraseStart, lexicon: Lexicon
 ) -> Found | None:
     """The parted phrase that is begun, if its end is found in the same clause."""
     for k in range(behind, len(said)):

@@ -439,10 +439,6 @@ PAIRS = [
         "Check checkpoint 1. If the value is 5 bar or more, check valve R25.",
     ),
     (
-        "Prüfe Kontrollpunkt 1. Wenn der Wert genau 5 bar ist, prüfe Ventil R25.",
-        "Check checkpoint 1. If the value is exactly 5 bar, check valve R25.",
-    ),
-    (
         "Kontrollpunkt 3 muss vor Kontrollpunkt 5 geprüft werden. Prüfe Kontrollpunkt 3 und 5.",
         "Checkpoint 3 must be checked before checkpoint 5. Check checkpoint 3 and 5.",
     ),
@@ -555,6 +551,7 @@ UNCLEAR = [
     "Prüfe Druck 3.",
     "Prüfe Kontrollpunkt 1. Prüfe Kontrollpunkt 3. Prüfe sie noch einmal.",
     "Warte Minuten.",
+    "Prüfe Kontrollpunkt 1. Wenn der Wert genau 5 bar ist, prüfe Ventil R25.",
     "Fahre ab Startbereich 2.",
     "Go from starting area 2.",
     "Prüfe Kontrollpunkt 3 nicht.",

@@ -21,6 +21,7 @@ from argo_compiler.script.syntax.tree.script import AreaChosen, Header, Text
 from argo_compiler.script.syntax.understanding import Understanding
 from argo_compiler.script.syntax.words.joints import VERBS
 from argo_compiler.script.syntax.words.lexer import unquoted
+from argo_compiler.script.syntax.words.prose import Prose
 from argo_compiler.script.syntax.words.word import Word
 
 _STOP = re.compile(r"[.!](?=\s|$)")
@@ -34,7 +35,7 @@ _SAME = {"start_area": "initial_position", "end_area": "end_of_mission"}
 
 
 @dataclass
-class HeaderFields:
+class ScriptFields:
     """Reads fields. Mutable: the header grows field by field."""
 
     understanding: Understanding
@@ -60,26 +61,12 @@ class HeaderFields:
             value = text[label.end() :].strip()
             if name == "steps":
                 return value
-            end = self._end(name, value.content)
+            end = _end(self.prose, name, value.content)
             rest = value[end:].strip()
             said = value[: len(value.content[:end].rstrip(" ,;" if name in _PROSE else " ,;."))]
             self._read(name, said, text[: label.end()])
             text = rest[len(rest.content) - len(rest.content.lstrip(" ,;.")) :]
         return text
-
-    def _end(self, name: str, content: str) -> int:
-        """Where the value of a field ends: at the next label or, unless it is prose, sentence;
-        what stands in quotation marks is no part of either."""
-        if quoted := _QUOTED.match(content):
-            return quoted.end()
-        ends = [
-            m.start()
-            for m in self.prose.label.finditer(content)
-            if content[: m.start()].rstrip()[-1:] in (",", ";", ".")
-        ]
-        if name not in _PROSE and (stop := _STOP.search(content)):
-            ends.append(stop.end())
-        return min((e for e in ends if e > 0), default=len(content))
 
     def _read(self, name: str, value: ScriptText, label: ScriptText) -> None:
         if not value.content:
@@ -243,6 +230,21 @@ class HeaderFields:
     def _no_value(self, value: ScriptText, hint: str) -> None:
         message = f"can't understand `{value.content}` here"
         self.diagnostics.error("field", message, value.span(), hint)
+
+
+def _end(prose: Prose, name: str, content: str) -> int:
+    """Where the value of a field ends: at the next label or, unless it is prose, sentence;
+    what stands in quotation marks is no part of either."""
+    if quoted := _QUOTED.match(content):
+        return quoted.end()
+    ends = [
+        m.start()
+        for m in prose.label.finditer(content)
+        if content[: m.start()].rstrip()[-1:] in (",", ";", ".")
+    ]
+    if name not in _PROSE and (stop := _STOP.search(content)):
+        ends.append(stop.end())
+    return min((e for e in ends if e > 0), default=len(content))
 
 
 def _of(text: ScriptText, word: Word) -> ScriptText:

@@ -8,7 +8,7 @@ from argo_compiler.diagnostics import DiagnosticError
 from argo_compiler.garbage_collector import collector_held
 from argo_compiler.script.syntax.asides import Asides
 from argo_compiler.script.syntax.cells import Cells
-from argo_compiler.script.syntax.fields import HeaderFields
+from argo_compiler.script.syntax.fields import ScriptFields
 from argo_compiler.script.syntax.healing import MOST_ERRORS, heal
 from argo_compiler.script.syntax.labels import Labels
 from argo_compiler.script.syntax.layout import Item, Mark, items_of, lines_of, sentences
@@ -48,7 +48,7 @@ def parse(
     understanding = Understanding(language, words, diagnostics)
     asides = Asides(understanding)
     labels = Labels(understanding, diagnostics)
-    fields = HeaderFields(understanding, asides, diagnostics)
+    fields = ScriptFields(understanding, asides, diagnostics)
     reader = SentenceReader(understanding, asides, fields, labels, diagnostics)
     return _Parser(understanding, asides, fields, labels, diagnostics, reader).script()
 
@@ -89,7 +89,7 @@ class _Parser:
 
     understanding: Understanding
     asides: Asides
-    fields: HeaderFields
+    fields: ScriptFields
     labels: Labels
     diagnostics: Diagnostics
     reader: SentenceReader

@@ -3,7 +3,7 @@
 from dataclasses import dataclass, field
 
 from argo_compiler.script.syntax.asides import Asides
-from argo_compiler.script.syntax.fields import HeaderFields
+from argo_compiler.script.syntax.fields import ScriptFields
 from argo_compiler.script.syntax.grammar import StumbleError
 from argo_compiler.script.syntax.hints import not_understood
 from argo_compiler.script.syntax.labels import Labels
@@ -24,7 +24,7 @@ class SentenceReader:
 
     understanding: Understanding
     asides: Asides
-    fields: HeaderFields
+    fields: ScriptFields
     labels: Labels
     diagnostics: Diagnostics
     remarks: list[Text] = field(default_factory=list)

@@ -10,7 +10,7 @@ import re
 from collections.abc import Sequence
 from dataclasses import dataclass
 
-from argo_compiler.script.syntax.labels import Labels
+from argo_compiler.script.syntax.labels import FieldLabels
 from argo_compiler.script.syntax.source import ScriptText, join
 from argo_compiler.script.syntax.understanding import Understanding
 
@@ -33,7 +33,7 @@ class _Cell:
 class Cells:
     """Puts the lines of a cell into one."""
 
-    def __init__(self, labels: Labels, understanding: Understanding) -> None:
+    def __init__(self, labels: FieldLabels, understanding: Understanding) -> None:
         self.labels = labels
         self.understanding = understanding
         self.label = labels.prose.label

@@ -22,7 +22,7 @@ _CELLS = frozenset(
 
 
 @dataclass(frozen=True)
-class Labels:
+class FieldLabels:
     """Tells fields by their labels."""
 
     understanding: Understanding

@@ -14,7 +14,7 @@ from argo_compiler.script.syntax.source import ScriptText, join
 from argo_compiler.script.syntax.understanding import quotes
 
 
-class Mark(StrEnum):
+class LineMark(StrEnum):
     """What a line begins with."""
 
     NUMBER = "number"
@@ -24,12 +24,12 @@ class Mark(StrEnum):
 
 
 @dataclass(slots=True)
-class Line:
+class ScriptLine:
     """A line without its mark."""
 
     text: ScriptText
     indent: int
-    mark: Mark = Mark.NONE
+    mark: LineMark = LineMark.NONE
     number: int | None = None
     first: bool = False
     """whether it is the first line of a paragraph"""
@@ -38,18 +38,18 @@ class Line:
 
 
 @dataclass(slots=True)
-class Item:
+class LineItem:
     """A step, a bullet or a paragraph: its text, and what lies within it."""
 
     text: ScriptText
-    line: Line
-    items: "list[Item]" = field(default_factory=list)
+    line: ScriptLine
+    items: "list[LineItem]" = field(default_factory=list)
     parts: list[ScriptText] = field(default_factory=list)
     """the lines of the text, while they are gathered"""
     tail: ScriptText | None = None
     """the last sentence of the parts"""
 
-    def finish(self) -> "Item":
+    def finish(self) -> "LineItem":
         """The item with its lines in one text."""
         if self.parts:
             self.text = join([self.text, *self.parts])
@@ -94,15 +94,15 @@ _LAST_HALF = re.compile(r"([^\W\d_]+)-$")
 _FIRST_HALF = re.compile(r"[^\W\d_]+")
 
 
-def lines_of(texts: Sequence[ScriptText]) -> Iterator[Line]:
+def lines_of(texts: Sequence[ScriptText]) -> Iterator[ScriptLine]:
     """The lines that say anything, with their marks."""
     first = True
-    above: Line | None = None
+    above: ScriptLine | None = None
     for text in texts:
         stripped = text.strip()
         rule = stripped.content[:3] and _RULE.fullmatch(stripped.content)
         if rule and above is not None:
-            above.heading = above.heading or (not first and above.mark is Mark.NONE)
+            above.heading = above.heading or (not first and above.mark is LineMark.NONE)
         if not stripped.content or rule:
             first = True
             continue
@@ -111,7 +111,7 @@ def lines_of(texts: Sequence[ScriptText]) -> Iterator[Line]:
             line.first = first
             first = False
             if above is not None:
-                if line.mark is not Mark.NONE and above.mark is Mark.NONE:
+                if line.mark is not LineMark.NONE and above.mark is LineMark.NONE:
                     above.heading = True
                 yield above
             above = line
@@ -119,19 +119,21 @@ def lines_of(texts: Sequence[ScriptText]) -> Iterator[Line]:
         yield above
 
 
-def _marked(text: ScriptText, indent: int) -> Line:
+def _marked(text: ScriptText, indent: int) -> ScriptLine:
     if bullet := _BULLET.match(text.content):
         inner = _marked(text[bullet.end() :].strip(), indent)
-        mark = inner.mark if inner.number else Mark.BULLET
-        return Line(inner.text, indent, mark, inner.number, heading=text.content.startswith("#"))
+        mark = inner.mark if inner.number else LineMark.BULLET
+        return ScriptLine(
+            inner.text, indent, mark, inner.number, heading=text.content.startswith("#")
+        )
     if number := _NUMBER.match(text.content) or _STEP.match(text.content):
-        return Line(text[number.end() :].strip(), indent, Mark.NUMBER, int(number[1]))
+        return ScriptLine(text[number.end() :].strip(), indent, LineMark.NUMBER, int(number[1]))
     if letter := _LETTER.match(text.content) or _SUB_NUMBER.match(text.content):
-        return Line(text[letter.end() :].strip(), indent, Mark.LETTER)
-    return Line(text, indent)
+        return ScriptLine(text[letter.end() :].strip(), indent, LineMark.LETTER)
+    return ScriptLine(text, indent)
 
 
-def _split(line: Line) -> Iterator[Line]:
+def _split(line: ScriptLine) -> Iterator[ScriptLine]:
     """The steps of a line that has more than one: `1. ..., 2. ..., 3. ...`."""
     expected = (line.number or 0) + 1
     start = 0
@@ -144,34 +146,36 @@ def _split(line: Line) -> Iterator[Line]:
         before = line.text.content[: found.start()]
         if before.count("(") > before.count(")"):
             continue  # `(1, 2, 5) heading 90 degrees` in step 4
-        yield Line(line.text[start : found.start()].strip(), line.indent, line.mark, expected - 1)
+        yield ScriptLine(
+            line.text[start : found.start()].strip(), line.indent, line.mark, expected - 1
+        )
         start = found.end()
         expected += 1
     if start == 0:
         yield line
     else:
-        yield Line(line.text[start:].strip(), line.indent, line.mark, expected - 1)
+        yield ScriptLine(line.text[start:].strip(), line.indent, line.mark, expected - 1)
 
 
 def items_of(
-    lines: Iterable[Line],
+    lines: Iterable[ScriptLine],
     complete: Callable[[ScriptText], bool],
     alone: Callable[[ScriptText], bool],
     words: Collection[str],
-) -> Iterator[Item]:
+) -> Iterator[LineItem]:
     """The steps and paragraphs, those that lie within others inside of them. `complete` tells
     whether a text makes sense by itself, `alone` whether a line never goes on with another one, and
     `words` whether a hyphen at the end of a line divides a word."""
-    around: list[Item] = []
+    around: list[LineItem] = []
     for line in lines:
-        if line.mark is Mark.NONE and around and not line.first and not alone(line.text):
+        if line.mark is LineMark.NONE and around and not line.first and not alone(line.text):
             above = around[-1]
             last = above.tail or above.text
             goes_on = _is_unfinished(last, line.text)
             if goes_on or (not alone(above.text) and _goes_on(above, last, line, complete)):
                 _append(above, last, line.text, words)
                 continue
-        item = Item(line.text, line)
+        item = LineItem(line.text, line)
         while around and not _lies_in(line, around[-1].line):
             outer = around.pop()
             if not around:
@@ -184,7 +188,7 @@ def items_of(
         yield around[0].finish()
 
 
-def _append(item: Item, last: ScriptText, below: ScriptText, words: Collection[str]) -> None:
+def _append(item: LineItem, last: ScriptText, below: ScriptText, words: Collection[str]) -> None:
     """Lets an item go on with a line; a word that a hyphen divides becomes whole."""
     left, right = _LAST_HALF.search(last.content), _FIRST_HALF.match(below.content)
     if left is not None and right is not None and (left[1] + right[0]).lower() in words:
@@ -213,7 +217,7 @@ def _is_unfinished(text: ScriptText, following: ScriptText) -> bool:
 
 
 def _goes_on(
-    item: Item, last: ScriptText, line: Line, complete: Callable[[ScriptText], bool]
+    item: LineItem, last: ScriptText, line: ScriptLine, complete: Callable[[ScriptText], bool]
 ) -> bool:
     """Whether a line without a mark goes on with the last sentence above it."""
     if len(last.content) > _LONGEST_SENTENCE:
@@ -221,7 +225,7 @@ def _goes_on(
     whole, rest = complete(last), complete(line.text)
     ended = last.content.endswith((".", "!", "?"))
     if whole and rest:
-        return item.line.mark is Mark.NONE and ended
+        return item.line.mark is LineMark.NONE and ended
     if ended or (whole and line.heading):
         return False
     if not whole and not rest and len(last.content) <= _LONGEST_STRANGE:
@@ -229,13 +233,13 @@ def _goes_on(
     return complete(join([last, line.text]))
 
 
-def _lies_in(line: Line, outer: Line) -> bool:
+def _lies_in(line: ScriptLine, outer: ScriptLine) -> bool:
     """Whether a line lies within another one: a letter under a number, or what is indented."""
-    if line.mark is Mark.NONE:
-        return outer.mark is not Mark.NONE and line.indent > outer.indent
-    if outer.mark is Mark.NONE:
+    if line.mark is LineMark.NONE:
+        return outer.mark is not LineMark.NONE and line.indent > outer.indent
+    if outer.mark is LineMark.NONE:
         return False
-    if outer.mark is Mark.NUMBER and line.mark is Mark.LETTER:
+    if outer.mark is LineMark.NUMBER and line.mark is LineMark.LETTER:
         return True
     return line.indent > outer.indent
 

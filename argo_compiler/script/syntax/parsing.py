@@ -10,8 +10,8 @@ from argo_compiler.script.syntax.asides import Asides
 from argo_compiler.script.syntax.cells import Cells
 from argo_compiler.script.syntax.fields import ScriptFields
 from argo_compiler.script.syntax.healing import MOST_ERRORS, heal
-from argo_compiler.script.syntax.labels import Labels
-from argo_compiler.script.syntax.layout import Item, Mark, items_of, lines_of, sentences
+from argo_compiler.script.syntax.labels import FieldLabels
+from argo_compiler.script.syntax.layout import LineItem, LineMark, items_of, lines_of, sentences
 from argo_compiler.script.syntax.rows import tables
 from argo_compiler.script.syntax.sentence_reading import Said, SentenceReader
 from argo_compiler.script.syntax.source import Diagnostics, ScriptText, Source
@@ -47,7 +47,7 @@ def parse(
     words = frozenset(word for name in (*names, *places) for word in name.lower().split())
     understanding = Understanding(language, words, diagnostics)
     asides = Asides(understanding)
-    labels = Labels(understanding, diagnostics)
+    labels = FieldLabels(understanding, diagnostics)
     fields = ScriptFields(understanding, asides, diagnostics)
     reader = SentenceReader(understanding, asides, fields, labels, diagnostics)
     return _Parser(understanding, asides, fields, labels, diagnostics, reader).script()
@@ -90,7 +90,7 @@ class _Parser:
     understanding: Understanding
     asides: Asides
     fields: ScriptFields
-    labels: Labels
+    labels: FieldLabels
     diagnostics: Diagnostics
     reader: SentenceReader
     closed: bool = False
@@ -142,7 +142,7 @@ class _Parser:
 
     # ---- lines
 
-    def _steps(self, items: Iterable[Item]) -> Iterator[Step]:
+    def _steps(self, items: Iterable[LineItem]) -> Iterator[Step]:
         for item in items:
             if self.stopped:
                 return
@@ -156,7 +156,7 @@ class _Parser:
             if step is not None:
                 yield step
 
-    def _step(self, item: Item) -> Step | None:
+    def _step(self, item: LineItem) -> Step | None:
         text = self._without_letter(item)
         text = self.labels.relabelled(text)
         if self.labels.is_field(text):
@@ -174,7 +174,7 @@ class _Parser:
                 said += self.reader.read(sentence, item)
         return self._of(item, said, list(self._steps(item.items)))
 
-    def _of(self, item: Item, said: list[Said], inner: list[Step]) -> Step | None:
+    def _of(self, item: LineItem, said: list[Said], inner: list[Step]) -> Step | None:
         if not said and not inner and item.line.number is None:
             return None
         return Step(
@@ -184,10 +184,10 @@ class _Parser:
             steps=tuple(inner),
         )
 
-    def _without_letter(self, item: Item) -> ScriptText:
+    def _without_letter(self, item: LineItem) -> ScriptText:
         """The text of an item without what makes a letter of it."""
         text = item.text
-        if item.line.mark is not Mark.NONE:
+        if item.line.mark is not LineMark.NONE:
             return text
         greeting = self.asides.greeting(text)
         if greeting:

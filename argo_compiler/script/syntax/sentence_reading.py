@@ -6,8 +6,8 @@ from argo_compiler.script.syntax.asides import Asides
 from argo_compiler.script.syntax.fields import ScriptFields
 from argo_compiler.script.syntax.grammar import StumbleError
 from argo_compiler.script.syntax.hints import not_understood
-from argo_compiler.script.syntax.labels import Labels
-from argo_compiler.script.syntax.layout import Item, Mark
+from argo_compiler.script.syntax.labels import FieldLabels
+from argo_compiler.script.syntax.layout import LineItem, LineMark
 from argo_compiler.script.syntax.preamble import Preamble
 from argo_compiler.script.syntax.source import Diagnostics, ScriptText
 from argo_compiler.script.syntax.tree.facts import Fact
@@ -25,7 +25,7 @@ class SentenceReader:
     understanding: Understanding
     asides: Asides
     fields: ScriptFields
-    labels: Labels
+    labels: FieldLabels
     diagnostics: Diagnostics
     remarks: list[Text] = field(default_factory=list)
     ordered: bool = False
@@ -43,7 +43,7 @@ class SentenceReader:
         self.diagnostics.note("no-effect", message, text.span())
         self.remarks.append(Text(span=text.span(), text=text.content))
 
-    def read(self, text: ScriptText, item: Item) -> list[Said]:
+    def read(self, text: ScriptText, item: LineItem) -> list[Said]:
         """What a sentence says; nothing where it has no effect."""
         text = self.understanding.figures(text)
         if not self.understanding.types(text):
@@ -86,11 +86,13 @@ class SentenceReader:
             self.ordered |= any(not isinstance(order, Start) for order in node.orders)
         return Unread(span=text.span()) if node is None else node
 
-    def _not_understood(self, text: ScriptText, item: Item, stumble: StumbleError) -> list[Said]:
+    def _not_understood(
+        self, text: ScriptText, item: LineItem, stumble: StumbleError
+    ) -> list[Said]:
         """What makes no sense: said of the mission as a whole, a title, small talk or an error."""
         if self.preamble.whole_mission(text):
             return []
-        free = item.line.mark in (Mark.NONE, Mark.BULLET) and item.line.number is None
+        free = item.line.mark in (LineMark.NONE, LineMark.BULLET) and item.line.number is None
         if free and self.preamble.leaves_open(text):
             return []
         if free and self.asides.is_small_talk(text):
@@ -104,7 +106,7 @@ class SentenceReader:
         self.begun = True
         return [Unread(span=text.span())]
 
-    def _title(self, text: ScriptText, item: Item) -> list[Said] | None:
+    def _title(self, text: ScriptText, item: LineItem) -> list[Said] | None:
         """Takes a text for a title, if it may be one, and reads what stands behind a comma in it:
         `Evening round, at most 40 minutes`. None: it is none."""
         header = self.fields.header
@@ -146,7 +148,7 @@ class SentenceReader:
     def _makes_sense(self, text: ScriptText) -> bool:
         return self.preamble.says_whole(text) or self.understanding.fits(text)
 
-    def _is_heading(self, text: ScriptText, item: Item) -> bool:
+    def _is_heading(self, text: ScriptText, item: LineItem) -> bool:
         """Whether a line stands over others: marked as a heading, or with items of its own."""
         line = item.line
         whole = text.content == item.text.content.rstrip(".!")

@@ -75,13 +75,11 @@ class _Writer:
         self.usual = _usual_names(mission, self._docks())
         self.patrols = patrols(mission, catalog, self.layout, self.usual)
         self.order = list(self._order())
+        first_of = {id(patrol): first for first, patrol in self.patrols.items()}
         self.steps = {
-            self.tasks[one].name: number
+            self.tasks[one if isinstance(one, int) else first_of[id(one)]].name: number
             for number, one in enumerate(self.order, start=1)
-            if isinstance(one, int)
-        } | {
-            self.tasks[first].name: self.order.index(patrol) + 1
-            for first, patrol in self.patrols.items()
+            if isinstance(one, int | FloorPatrol)
         }
         self.following = _following(mission.tasks)
         self.names = RoundNames(self.layout)

@@ -96,6 +96,11 @@ class Cases:
         do = block.last
         if isinstance(do, Leave) and not self.planner.comes_here(case.span, block):
             return
+        if isinstance(do, Do) and any(way.otherwise for way in do.ways):
+            message = "this is never looked at: `otherwise` before it leads elsewhere"
+            hint = "write this condition before the `otherwise`"
+            self.diagnostics.error("second-route", message, case.span, hint)
+            return
         if alternatives is None:
             return
         target = self._target(case)
@@ -165,7 +170,7 @@ class Cases:
         target = self._target(case)
         if isinstance(before, Way) and isinstance(do, Do):
             if target is not None:
-                do.ways.append(Way((), target, case.span))
+                do.ways.append(Way((), target, case.span, otherwise=True))
                 return
             choice = Choice(self._taken(do, before), case.span)
             self._to_choice(do, before, choice, block)
@@ -196,7 +201,7 @@ class Cases:
         do, target = block.last, self._target(case)
         if isinstance(do, Do) and target is not None:
             last_round = case.rest is Rest.LAST_ROUND
-            do.ways.append(Way((), target, case.span, last_round))
+            do.ways.append(Way((), target, case.span, last_round=last_round))
             return
         message = f"`{case.rest}` is said of a task, and leads to another one"
         hint = f"write it behind the task: `{case.rest}, go to step 5`"

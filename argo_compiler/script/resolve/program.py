@@ -45,6 +45,8 @@ class Way:
     alternatives: Alternatives
     target: Target
     span: Span
+    otherwise: bool = False
+    """whether no condition behind it is looked at any more"""
     last_round: bool = False
     """of a way without conditions: it is taken after the last round that ends with its task"""
 

@@ -578,6 +578,10 @@ def test_a_statement_goes_on_in_the_next_line(catalog: Catalog) -> None:
             "ambiguous-otherwise",
         ),
         ("Go to step 2. If #1 is above 5, check #2", "second-route"),
+        (
+            "Check #2; if it is above 5, go on; otherwise go to step 2. If #2 is above 3, check #3",
+            "second-route",
+        ),
         ("If #1 is above 5, repeat steps 2 to 3 twice", "route"),
         ("Repeat step 2 twice if #1 is above 5", "stray-clause"),
         ("Wait 10 s at 0.3 m/s", "stray-clause"),

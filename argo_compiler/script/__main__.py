@@ -1,9 +1,24 @@
-"""Writes the tables of the grammar anew: `python -m argo_compiler.script`."""
+"""Writes what is made from the grammar: `python -m argo_compiler.script [PAGE]`.
 
+That is the parser's tables and, between the marks of the page `docs/script.md` if it is named, all
+that can be said.
+"""
+
+import sys
 from importlib.resources import files
 from pathlib import Path
 
+from argo_compiler.script.reference import BEGIN, END, as_markdown
 from argo_compiler.script.syntax.tables import save_tables
+from argo_compiler.script.syntax.words.language import Language
 
 if __name__ == "__main__":
     save_tables(Path(str(files("argo_compiler.script.syntax"))))
+    for argument in sys.argv[1:]:
+        page = Path(argument)
+        text = page.read_text(encoding="utf-8")
+        before, after = text.partition(BEGIN)[0], text.partition(END)[2]
+        english = Language.of("check", ()).lexicon
+        assert english.other is not None
+        said = as_markdown([english, english.other])
+        page.write_text(f"{before}{BEGIN}\n{said}\n{END}{after}", encoding="utf-8")

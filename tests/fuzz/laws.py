@@ -13,7 +13,7 @@ from dataclasses import dataclass
 from argo_compiler.checks import check
 from argo_compiler.diagnostics import DiagnosticError, Severity
 from argo_compiler.il import Mission
-from argo_compiler.script import import_script
+from argo_compiler.script import format_script, import_script
 from tests.argo_compiler.script.conftest import CATALOG
 from tests.fuzz.sentences import Said, Sayer, text_of
 

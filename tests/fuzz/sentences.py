@@ -13,7 +13,7 @@ from argo_compiler.script.syntax.words.language import Language
 from argo_compiler.script.syntax.words.lexicon import Lexicon
 from tests.argo_compiler.script.conftest import CATALOG
 
-_DEEPEST = 14
+_DEEPEST = 8
 """rules in one another before the shortest way out is taken"""
 _SIGNS = {
     "NEXT": (", then ", " and ", ", ", "; "),
@@ -63,8 +63,12 @@ class Sayer:
             self.phrases[type_] += phrases
 
     def sentence(self, start: str = "sentence") -> list[Said]:
-        """The words of a sentence."""
-        return [Said(type_, self.word(type_)) for type_ in self._derived(start)]
+        """The words of a sentence, mostly a short one: a long one has a mistake somewhere."""
+        longest = self.rng.choice((8, 12, 20, 40))
+        types = self._derived(start)
+        while len(types) > longest:
+            types = self._derived(start)
+        return [Said(type_, self.word(type_)) for type_ in types]
 
     def word(self, type_: str) -> str:
         """A phrase for a terminal."""

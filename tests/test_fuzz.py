@@ -1,6 +1,6 @@
-"""A short run of the fuzzer; CONTRIBUTING has the long one."""
+"""Short runs of the fuzzer; CONTRIBUTING has the long ones."""
 
-from tests.fuzz import fuzz
+from tests.fuzz import fuzz, fuzz_sentences
 
 
 def test_mutated_scripts_and_files_end_in_missions_or_diagnostics() -> None:
@@ -8,3 +8,10 @@ def test_mutated_scripts_and_files_end_in_missions_or_diagnostics() -> None:
     assert not failures, failures[0].traceback
     assert all(outcomes[f"{kind}: mission"] > 20 for kind in ("script", "file"))
     assert all(outcomes[f"{kind}: refused"] > 20 for kind in ("script", "file"))
+
+
+def test_sentences_made_from_the_grammar_keep_the_laws() -> None:
+    outcomes, failures = fuzz_sentences(range(200), seed=0)
+    assert not failures, failures[0].traceback
+    assert outcomes["sentence: mission"] > 30
+    assert outcomes["sentence: refused"] > 30

@@ -21,7 +21,7 @@ from argo_compiler.analysis.study import Study
 from argo_compiler.analysis.transitions import transitions
 from argo_compiler.analysis.travel import Travel
 from argo_compiler.analysis.values import find_paths, make_fields
-from argo_compiler.analysis.verification import unproved
+from argo_compiler.analysis.verification_claims import unproved
 from argo_compiler.analysis.witnessing import make_witnesses
 from argo_compiler.analysis.worst import worst_duration
 from argo_compiler.catalog import Catalog

@@ -13,7 +13,9 @@ from dataclasses import dataclass
 
 from argo_compiler.analysis.facts import Analysis, Bounds
 from argo_compiler.analysis.travel import Leg, NoWay, Standing, Travel
-from argo_compiler.analysis.verification import GroupLayout, Proved, Verifier
+from argo_compiler.analysis.verification import Verifier
+from argo_compiler.analysis.verification_layout import GroupLayout
+from argo_compiler.analysis.verification_walk import Proved
 from argo_compiler.analysis.witness import Invariant, LeastSpent, LeastWitness
 from argo_compiler.catalog import Catalog
 from argo_compiler.diagnostics import Diagnostic

@@ -50,7 +50,7 @@ def _endless(study: Study, traps: tuple[tuple[int, ...], ...]) -> Iterator[Diagn
             if traps
             else "no path leads to its end"
         )
-        if study.all.reached(study.flow.done):
+        if study.with_failures.reached(study.flow.done):
             why += ", unless an action fails"
         yield study.diagnostic(
             "no-end",

@@ -29,7 +29,7 @@ class Study:
     flow: Flow
     nominal: Paths
     """if every action succeeds and every measurement gives a value"""
-    all: Paths
+    with_failures: Paths
     """whatever fails"""
 
     @cached_property

@@ -25,11 +25,11 @@ def worst_duration(study: Study) -> Bound | None:
     """A bound of the duration (s) over all runs; None if that was not looked at."""
     if study.travel is None or len(study.flow.leaves) > _MOST_LEAVES:
         return None
-    legs = Legs(study.flow, study.all, study.travel, study.mission)
+    legs = Legs(study.flow, study.with_failures, study.travel, study.mission)
     if legs.blocked or legs.too_many:
         return None
     try:
-        within = longest(study.flow, study.all, legs)
+        within = longest(study.flow, study.with_failures, legs)
     except BoundsTooLargeError:
         return None
     if study.extent is not None and study.extent.duration is not None:

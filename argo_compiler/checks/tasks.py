@@ -9,7 +9,7 @@ from argo_compiler.checks.timing import (
     check_unused_fields,
     check_wait,
     check_window,
-    is_plain,
+    has_timing_or_branch,
 )
 from argo_compiler.diagnostics import Diagnostic, Severity
 from argo_compiler.il import Action, Mission, OnFailure, Task
@@ -76,7 +76,7 @@ class TaskChecks:
                 if starts > 1:
                     yield self._second_start(self.subjects.task(i), task)
                 yield from check_unused_fields(self.subjects.task(i), task)
-            if not is_plain(task):
+            if has_timing_or_branch(task):
                 yield from self._timing(self.subjects.task(i), task)
             transitions = task.transitions
             if len(transitions) != 1 or transitions[0].conditions:

@@ -15,7 +15,8 @@ from argo_compiler.diagnostics import Span
 from argo_compiler.model import Model, Pose
 
 MAX_TIME_S = 1e12
-"""of each time in a mission: some 30,000 years, as far as a clock in s counts milliseconds"""
+"""of each time in a mission, and of its clock: some 30,000 years, as far as a clock in s counts
+milliseconds"""
 MAX_COUNT = 1_000_000_000
 """of rounds, and of the numbers that rank reactions and tell areas apart"""
 MAX_RETRIES = 1_000_000

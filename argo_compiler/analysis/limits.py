@@ -30,7 +30,6 @@ AGE_WORK = 3_000_000
 """steps that ages of values may take to look at"""
 RESERVE_SHARE = 0.2
 """of the battery that is to be left at the dock: the charge that the robot calls low"""
-_DRIVES = (Response.RETURN, Response.SAFE_AREA)
 _SHOWN = 8  # stretches of a path that a message spells out
 
 
@@ -75,7 +74,7 @@ def _blocked_retreats(study: Study, travel: Travel) -> Iterator[Diagnostic]:
     if back and mission.dock is not None:
         retreats.append((mission.dock, "dock", "return to the dock"))
     for reaction in mission.reactions:
-        if reaction.response in _DRIVES and reaction.pose is not None:
+        if reaction.response.drives and reaction.pose is not None:
             where = "dock" if reaction.response is Response.RETURN else "safe area"
             place = f"go to the {where} of the reaction to {reaction.event}"
             retreats.append(

@@ -112,10 +112,7 @@ class Study:
         """Whether an event may end the mission."""
         return any(
             r.response is Response.ABORT
-            or (
-                r.response in (Response.RETURN, Response.SAFE_AREA)
-                and r.afterwards is Afterwards.END
-            )
+            or (r.response.drives and r.afterwards is Afterwards.END)
             or (r.hold_limit is not None and r.on_limit is Afterwards.END)
             for r in self.mission.reactions
         )

@@ -169,7 +169,7 @@ def reaction_words(reaction: Reaction) -> str:
     parts = [_RESPONSES[reaction.response]]
     if reaction.until is not None:
         parts.append(f"until {reaction.until.replace('_', ' ')}")
-    if reaction.response in (Response.RETURN, Response.SAFE_AREA):
+    if reaction.response.drives:
         parts.append(f"then {_AFTERWARDS[reaction.afterwards]}")
     if reaction.hold_limit is not None:
         parts.append(f"after {reaction.hold_limit:g} s at most {_AFTERWARDS[reaction.on_limit]}")

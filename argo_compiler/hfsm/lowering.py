@@ -245,7 +245,7 @@ def _unconditional_target(task: Task) -> str | None:
 
 def _reaction_state(reaction: Reaction, mission: Mission) -> ReactionState:
     task = None
-    if reaction.response in (Response.RETURN, Response.SAFE_AREA):
+    if reaction.response.drives:
         returns = reaction.response is Response.RETURN
         task = Task(
             name=reaction_task_name(reaction.event),

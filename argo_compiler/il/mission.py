@@ -134,6 +134,11 @@ class Response(StrEnum):
     ABORT = "abort"
     """end the mission where the robot stands"""
 
+    @property
+    def drives(self) -> bool:
+        """Whether it drives somewhere."""
+        return self in (Response.RETURN, Response.SAFE_AREA)
+
 
 class Afterwards(StrEnum):
     """What happens to the mission when the drive of a reaction has ended."""
@@ -329,6 +334,11 @@ class Reaction(Model):
     priority: int | None = Field(default=None, ge=-MAX_COUNT, le=MAX_COUNT)
     """the greater one goes first; None: by how bad the event is, see `DEFAULT_PRIORITIES`"""
     source: Span | None = None
+
+    @property
+    def holds(self) -> bool:
+        """Whether it stands still until something occurs or a person resumes."""
+        return self.until is not None or self.response is Response.PAUSE
 
     @property
     def rank(self) -> tuple[int, int]:

@@ -349,7 +349,7 @@ class SentenceBuilder:
 
     def _reaction(self, clause: Clause) -> bool:
         draft = self.drafts[-1]
-        drives = draft.response in (Response.RETURN, Response.SAFE_AREA)
+        drives = draft.response is not None and draft.response.drives
         match clause.kind:
             case "event":
                 self._event(clause, draft)

@@ -12,6 +12,7 @@ from argo_compiler.diagnostics import Diagnostic, Severity
 from argo_compiler.il import Action, Group, Mission, Stop, Task
 from argo_compiler.il.grouping import GroupNesting, GroupRange, group_ranges, parent_name
 from argo_compiler.il.subjects import Subjects
+from argo_compiler.il.ways import branches, default_target
 from argo_compiler.nearest_name import nearest_name
 
 MIN_HARD_DURATION_S = 1e-3
@@ -257,10 +258,8 @@ def _ways_out(task: Task) -> Iterator[tuple[str | None, str]]:
     """The targets of a task's ways with their fields; None for the unconditional one."""
     for k, transition in enumerate(task.transitions):
         yield f".transitions[{k}].target" if transition.conditions else None, transition.target
-    if task.failure_target is not None:
-        yield ".failure_target", task.failure_target
-    if task.window is not None and task.window.missed_target is not None:
-        yield ".window.missed_target", task.window.missed_target
+    for field, target in branches(task).items():
+        yield f".{field}", target
 
 
 def _endless(group: Group) -> bool:
@@ -317,7 +316,7 @@ def _target_bounds(mission: Mission, layout: GroupNesting) -> tuple[list[int], l
             continue
         targets = [position.get(target, i) for field, target in _ways_out(task) if field]
         if _goes_on(layout, i):
-            default = next((t.target for t in task.transitions if not t.conditions), None)
+            default = default_target(task)
             targets.append(end if default is None else position.get(default, i))
         for target in targets:
             lowest[innermost] = min(lowest[innermost], target)

@@ -1,16 +1,14 @@
 """Diagnostics about how a mission ends: whether it can, what goes on without limit, and where."""
 
-import math
 from collections.abc import Iterable, Iterator
 
 from argo_compiler.analysis.kept import KeptLoop
 from argo_compiler.analysis.study import Study, listed
 from argo_compiler.diagnostics import Diagnostic, Severity
 from argo_compiler.il import Action, Task
+from argo_compiler.il.docked import at_dock
 from argo_compiler.model import Pose
 
-DOCKED_DISTANCE_M = 0.1
-DOCKED_ANGLE = math.radians(5.0)
 _PATHS = 200  # diagnostics that come with a path
 _WAY_OUT = (
     "lead a transition out of it, or make it a group with max_repeat_count or max_repeat_duration"
@@ -196,8 +194,4 @@ def _stands_at(study: Study, leaf: int, dock: Pose) -> bool:
 
 
 def _leads_to(task: Task, dock: Pose) -> bool:
-    if task.action is not Action.WAYPOINT or task.pose is None:
-        return False
-    away = math.dist((task.pose.x, task.pose.y, task.pose.z), (dock.x, dock.y, dock.z))
-    turned = abs((task.pose.yaw - dock.yaw + math.pi) % (2 * math.pi) - math.pi)
-    return away <= DOCKED_DISTANCE_M and turned <= DOCKED_ANGLE
+    return task.action is Action.WAYPOINT and task.pose is not None and at_dock(task.pose, dock)

@@ -8,15 +8,13 @@ from bisect import bisect_left
 from collections.abc import Iterator
 
 from argo_compiler.checks.diagnostic import diagnostic_about
+from argo_compiler.checks.instant_loops import MIN_TIME_S
 from argo_compiler.diagnostics import Diagnostic, Severity
 from argo_compiler.il import Action, Group, Mission, Stop, Task
 from argo_compiler.il.grouping import GroupNesting, GroupRange, group_ranges, parent_name
 from argo_compiler.il.subjects import Subjects
 from argo_compiler.il.ways import branches, default_target
 from argo_compiler.nearest_name import nearest_name
-
-MIN_HARD_DURATION_S = 1e-3
-"""A group that a time-out enters again has to last: each visit is a step of the machine."""
 
 MIN_PERIOD_S = 1.0
 """Rounds that are late are made up for at once, so not too many may come to be late in a pause."""
@@ -125,14 +123,14 @@ def _check_ends(mission: Mission, subjects: Subjects) -> Iterator[Diagnostic]:
                 "swap its start and end or reorder the tasks",
                 field=".start",
             )
-        if group.stop is Stop.HARD and 0 < group.max_repeat_duration < MIN_HARD_DURATION_S:
+        if group.stop is Stop.HARD and 0 < group.max_repeat_duration < MIN_TIME_S:
             yield _error(
                 subjects.group(i),
                 group,
                 "il.group-duration",
                 f"the time of group '{group.name}' is up after {group.max_repeat_duration:g} s, "
                 "before any action could be carried out",
-                f"allow it at least {MIN_HARD_DURATION_S:g} s, or 0 for no limit",
+                f"allow it at least {MIN_TIME_S:g} s, or 0 for no limit",
                 field=".max_repeat_duration",
             )
         if 0 < group.every < MIN_PERIOD_S:

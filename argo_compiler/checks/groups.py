@@ -39,8 +39,9 @@ def check_groups(mission: Mission) -> tuple[Diagnostic, ...]:
         *_check_starts(mission, ranges, subjects),
     ]
     if not diagnostics and ranges:
-        diagnostics += _check_endless(mission, subjects)
-        diagnostics += _check_leaving(mission, subjects)
+        layout = GroupNesting.of(mission)
+        diagnostics += _check_endless(mission, layout, subjects)
+        diagnostics += _check_leaving(mission, layout, subjects)
     return (*diagnostics, *_check_unused(mission.groups, subjects))
 
 
@@ -218,12 +219,13 @@ def _check_unused(groups: tuple[Group, ...], subjects: Subjects) -> Iterator[Dia
                 yield diagnostic.model_copy(update={"severity": Severity.WARNING})
 
 
-def _check_leaving(mission: Mission, subjects: Subjects) -> Iterator[Diagnostic]:
+def _check_leaving(
+    mission: Mission, layout: GroupNesting, subjects: Subjects
+) -> Iterator[Diagnostic]:
     """Each way that leaves a repeated group before the end of its round (G14).
 
     Endless groups have no other way out, and groups of one round nothing to lose.
     """
-    layout = GroupNesting.of(mission)
     position = {task.name: i for i, task in enumerate(mission.tasks)}
     for i, task in enumerate(mission.tasks):
         if layout.innermost[i] is None:
@@ -268,13 +270,14 @@ def _timed_out(group: Group) -> bool:
     return group.stop is Stop.HARD and group.max_repeat_duration > 0
 
 
-def _check_endless(mission: Mission, subjects: Subjects) -> Iterator[Diagnostic]:
+def _check_endless(
+    mission: Mission, layout: GroupNesting, subjects: Subjects
+) -> Iterator[Diagnostic]:
     """Endless groups that no transition leaves, and no time-out of a group around them.
 
     A transition leaves a group if its target lies outside the group's range. So the lowest and the
     highest target of all members decide; they are gathered from the innermost groups outward.
     """
-    layout = GroupNesting.of(mission)
     lowest, highest = _target_bounds(mission, layout)
     bounded = [False] * len(layout.ranges)
     for i, r in enumerate(layout.ranges):

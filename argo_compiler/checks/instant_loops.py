@@ -23,7 +23,7 @@ def check_instant_loops(mission: Mission) -> Iterator[Diagnostic]:
     instant = {
         task.name
         for task in mission.tasks
-        if any(is_instant(task) for is_instant in (_ends_at_once, _fails_at_once, _may_be_missed))
+        if _ends_at_once(task) or _fails_at_once(task) or _may_be_missed(task)
     }
     if not instant:
         return

@@ -3,10 +3,11 @@
 from collections.abc import Iterable, Iterator
 
 from argo_compiler.analysis.kept import KeptLoop
-from argo_compiler.analysis.study import Study, listed
+from argo_compiler.analysis.study import Study
 from argo_compiler.diagnostics import Diagnostic, Severity
 from argo_compiler.il import Action, Task
 from argo_compiler.il.docked import at_dock
+from argo_compiler.listing import quoted
 from argo_compiler.model import Pose
 
 _PATHS = 200  # diagnostics that come with a path
@@ -86,7 +87,7 @@ def _follow(leaves: tuple[int, ...]) -> str:
 
 
 def _tasks(study: Study, leaves: tuple[int, ...]) -> str:
-    return f"task{'s' if len(leaves) > 1 else ''} {listed([study.name(i) for i in leaves])}"
+    return f"task{'s' if len(leaves) > 1 else ''} {quoted([study.name(i) for i in leaves])}"
 
 
 def _unbounded(study: Study, trapped: set[int]) -> Iterator[Diagnostic]:
@@ -101,7 +102,7 @@ def _unbounded(study: Study, trapped: set[int]) -> Iterator[Diagnostic]:
         groups = [study.flow.groups[g].name for g in loop.groups]
         parts = [
             *([_tasks(study, loop.leaves)] if loop.leaves else []),
-            *([f"group{'s' if len(groups) > 1 else ''} {listed(groups)}"] if groups else []),
+            *([f"group{'s' if len(groups) > 1 else ''} {quoted(groups)}"] if groups else []),
         ]
         single = len(loop.leaves) + len(loop.groups) == 1
         they = "it" if single else "they"

@@ -7,7 +7,7 @@ from collections.abc import Callable, Iterator
 from argo_compiler.analysis.bounds import Extent
 from argo_compiler.analysis.facts import Bound, Bounds, Stretch
 from argo_compiler.analysis.quantities import energy_words, time_words
-from argo_compiler.analysis.study import Study, listed
+from argo_compiler.analysis.study import Study
 from argo_compiler.analysis.travel import NoWay, Travel
 from argo_compiler.analysis.values import told_by_others
 from argo_compiler.analysis.windows import time_limits, windows
@@ -24,6 +24,7 @@ from argo_compiler.il import (
     Response,
     Task,
 )
+from argo_compiler.listing import quoted
 from argo_compiler.model import Pose
 
 AGE_WORK = 3_000_000
@@ -149,8 +150,8 @@ def _cut_short(
         Severity.WARNING,
         f"the plan may take {up_to}, longer than the mission's maximum duration of "
         f"{time_words(limit)}: {ends}"
-        + (f"; if nothing fails, {listed(lost)} will not be done by then" if lost else "")
-        + (f"; {listed(unsure)} may not be done, or not in all rounds" if unsure else ""),
+        + (f"; if nothing fails, {quoted(lost)} will not be done by then" if lost else "")
+        + (f"; {quoted(unsure)} may not be done, or not in all rounds" if unsure else ""),
         "leave out tasks, shorten groups, or allow more time",
         subject="max_duration",
     )

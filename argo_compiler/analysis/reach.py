@@ -2,9 +2,10 @@
 
 from collections.abc import Iterator
 
-from argo_compiler.analysis.study import Study, listed
+from argo_compiler.analysis.study import Study
 from argo_compiler.analysis.transitions import why_never
 from argo_compiler.diagnostics import Diagnostic, Severity
+from argo_compiler.listing import quoted
 
 _REASONS = 3  # ways to a task that a message speaks of
 
@@ -73,9 +74,9 @@ def _note(study: Study, ways: Ways, source: int, conditional: int | None) -> Non
 def _why(reasons: list[str], lost: list[str]) -> str:
     names = list(dict.fromkeys(lost))
     if names and reasons:
-        reasons = [*reasons, f"{listed(names)} can't be reached either"]
+        reasons = [*reasons, f"{quoted(names)} can't be reached either"]
     elif len(names) == 1:
-        reasons = [f"only {listed(names)} leads to it, and that task can't be reached either"]
+        reasons = [f"only {quoted(names)} leads to it, and that task can't be reached either"]
     elif names:
-        reasons = [f"only {listed(names)} lead to it, and those tasks can't be reached either"]
+        reasons = [f"only {quoted(names)} lead to it, and those tasks can't be reached either"]
     return "; ".join(reasons) or "no transition leads to it"

@@ -14,6 +14,7 @@ from functools import cached_property
 
 from argo_compiler.catalog import Interval
 from argo_compiler.il import Condition, ConditionType
+from argo_compiler.listing import listed
 
 
 @dataclass(frozen=True)
@@ -91,9 +92,7 @@ class Scale:
             while k < count and regions >> k & 1:
                 k += 1
             pieces.append(self._stretch(first, k - 1))
-        if not pieces:
-            return "nothing"
-        return pieces[0] if len(pieces) == 1 else f"{', '.join(pieces[:-1])} or {pieces[-1]}"
+        return listed(pieces, "or") or "nothing"
 
     def _stretch(self, first: int, last: int) -> str:
         low = None if first == 0 else self.bounds[(first - 1) // 2]

@@ -184,11 +184,3 @@ class Study:
             span=span,
             subject=subject,
         )
-
-
-def listed(names: list[str]) -> str:
-    """Names in quotes: `'A', 'B' and 'C'`, the rest of a long list only counted."""
-    shown = [f"'{name}'" for name in names[:_NAMES]]
-    if len(names) > _NAMES:
-        shown.append(f"{len(names) - _NAMES} more")
-    return shown[0] if len(shown) == 1 else f"{', '.join(shown[:-1])} and {shown[-1]}"

@@ -5,6 +5,7 @@ from collections.abc import Iterable, Mapping, Sequence
 
 from argo_compiler.diagnostics import Span
 from argo_compiler.il import Action, Group, Stop, Task, Transition
+from argo_compiler.listing import listed
 from argo_compiler.script.resolve.plan import (
     MEETING,
     Home,
@@ -16,7 +17,7 @@ from argo_compiler.script.resolve.plan import (
 from argo_compiler.script.resolve.rounds import PlannedRange, close_rounds
 from argo_compiler.script.syntax.commands import Plain
 from argo_compiler.script.syntax.source import Diagnostics
-from argo_compiler.script.syntax.spelling import alternatives, nearest
+from argo_compiler.script.syntax.spelling import nearest
 from argo_compiler.script.syntax.terms import StepRef
 
 Steps = Mapping[int, Sequence[Item] | None]
@@ -130,13 +131,13 @@ class _Assembly:
             found = self.by_name.get(point)
             if found is None:
                 close = nearest(point, self.by_name)
-                hint = f"the nearest names are {alternatives(f'`{n}`' for n in close)}"
+                hint = f"the nearest names are {listed((f'`{n}`' for n in close), 'or')}"
                 message = f"there is no task `{point}`"
                 self.diagnostics.error("unknown-step", message, span, hint if close else None)
             return found
         if point not in self.steps:
             known = sorted(self.steps, key=lambda n: (abs(n - point), n))[:3]
-            near = alternatives((str(number) for number in sorted(known)), "and")
+            near = listed(sorted(known))
             hint = f"the nearest steps are {near}"
             message = f"there is no step {point}"
             self.diagnostics.error("unknown-step", message, span, hint if known else None)

@@ -3,9 +3,9 @@
 from dataclasses import dataclass
 
 from argo_compiler.diagnostics import Span
+from argo_compiler.listing import listed
 from argo_compiler.script.syntax.nodes import AreaField, AreaHeader, Protocol
 from argo_compiler.script.syntax.source import Diagnostics
-from argo_compiler.script.syntax.spelling import alternatives
 from argo_compiler.script.syntax.terms import Coordinates
 
 
@@ -65,12 +65,12 @@ def _choice(
         return AreaChoice(option, said=option is not None)
     assert cell is not None
     span = cell.areas[0].span
-    choices = alternatives(f"{flag} {number}" for number in offered)
+    choices = listed((f"{flag} {number}" for number in offered), "or")
     if option is not None and option not in offered:
         message = f"{flag} {option} is not what the script offers"
         diagnostics.error("area-not-offered", message, span, f"give {choices}")
     elif option is None and len(offered) > 1:
-        areas = alternatives(str(number) for number in offered)
+        areas = listed(offered, "or")
         message = f"the script leaves the {which} to the preparation: starting area {areas}"
         diagnostics.error("area-choice", message, span, f"choose with {choices}")
     return AreaChoice(option if option is not None else offered[0], span, said=True)

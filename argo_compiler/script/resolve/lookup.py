@@ -6,9 +6,10 @@ from rapidfuzz.distance import OSA
 
 from argo_compiler.catalog import Area, Catalog, CheckpointInfo, CheckpointKind, Floor
 from argo_compiler.diagnostics import Span
+from argo_compiler.listing import listed
 from argo_compiler.model import Pose
 from argo_compiler.script.syntax.source import Diagnostics
-from argo_compiler.script.syntax.spelling import alternatives, nearest
+from argo_compiler.script.syntax.spelling import nearest
 from argo_compiler.script.syntax.terms import (
     FloorName,
     Name,
@@ -59,9 +60,7 @@ class Lookup:
         found = self._by_number.get(number)
         if found is None:
             close = sorted(self._by_number, key=lambda known: (abs(known - number), known))[:3]
-            hint = (
-                f"the nearest numbers are {alternatives((f'#{n}' for n in sorted(close)), 'and')}"
-            )
+            hint = f"the nearest numbers are {listed(f'#{n}' for n in sorted(close))}"
             message = f"there is no checkpoint #{number} on {self.catalog.site}"
             self.diagnostics.error("unknown-checkpoint", message, span, hint if close else None)
         return found
@@ -71,14 +70,14 @@ class Lookup:
         if len(found) == 1:
             return found[0]
         if found:
-            numbers = alternatives((f"#{c.id}" for c in found), "and")
+            numbers = listed(f"#{c.id}" for c in found)
             message = f"checkpoints {numbers} are all called {name.text}"
             hint = "name the checkpoint by its number"
             self.diagnostics.error("ambiguous-checkpoint", message, name.span, hint)
             return None
         close = nearest(name.text, (c.name for c in self.catalog.checkpoints))
         message = f"there is no {name.text} on {self.catalog.site}"
-        hint = f"the nearest names are {alternatives(close, 'and')}"
+        hint = f"the nearest names are {listed(close)}"
         self.diagnostics.error("unknown-checkpoint", message, name.span, hint if close else None)
         return None
 
@@ -87,7 +86,7 @@ class Lookup:
             return True
         others = self._by_name.get(name.text.lower(), [])
         if others:
-            its = f"{name.text} is checkpoint {alternatives(f'#{c.id}' for c in others)}"
+            its = f"{name.text} is checkpoint {listed((f'#{c.id}' for c in others), 'or')}"
         else:
             its = f"there is no {name.text} on {self.catalog.site}"
         message = f"checkpoint #{found.id} is {found.name}, and {its}"
@@ -98,7 +97,7 @@ class Lookup:
     def area(self, number: int, span: Span | None) -> Area | None:
         found = self.catalog.area(number)
         if found is None:
-            known = alternatives((str(a.number) for a in self.catalog.areas), "and")
+            known = listed(a.number for a in self.catalog.areas)
             message = f"there is no starting area {number} on {self.catalog.site}"
             self.diagnostics.error("unknown-area", message, span, f"the starting areas are {known}")
         return found
@@ -112,7 +111,7 @@ class Lookup:
             return min(floors, key=lambda f: f.z)
         found = next((f for f in floors if f.number == floor.number), None)
         if found is None:
-            known = alternatives((str(f.number) for f in floors), "and")
+            known = listed(f.number for f in floors)
             message = f"there is no floor {floor.number} on {self.catalog.site}"
             hint = f"the floors are {known}, counted from the bottom"
             self.diagnostics.error("unknown-floor", message, floor.span, hint)
@@ -133,7 +132,7 @@ class Lookup:
         message = f"there is no place `{location.name}` on {self.catalog.site}"
         known = [place.name for place in self.catalog.places]
         known += [f"starting area {area.number}" for area in self.catalog.areas]
-        hint = f"the places are {alternatives([*known, 'the docking station'], 'and')}"
+        hint = f"the places are {listed([*known, 'the docking station'])}"
         self.diagnostics.error("unknown-place", message, location.span, hint)
         return None
 

@@ -6,6 +6,7 @@ from argo_compiler.catalog import CheckpointInfo
 from argo_compiler.diagnostics import Span
 from argo_compiler.errors import Remedy
 from argo_compiler.il import Action, JointState, Reaction, Task
+from argo_compiler.listing import listed
 from argo_compiler.model import Pose
 from argo_compiler.script.resolve.conditions import resolve_alternatives
 from argo_compiler.script.resolve.header import HeaderValues
@@ -47,7 +48,6 @@ from argo_compiler.script.syntax.commands import (
 )
 from argo_compiler.script.syntax.nodes import Protocol
 from argo_compiler.script.syntax.source import Diagnostics
-from argo_compiler.script.syntax.spelling import alternatives
 from argo_compiler.script.syntax.terms import (
     DockLocation,
     FloorName,
@@ -219,7 +219,7 @@ class Planner:
                 self.start_area = area.number
                 self.start = start_item(area.dock, wanted.span)
         elif self.whole and not wanted.said:
-            known = alternatives(str(a.number) for a in self.lookup.catalog.areas)
+            known = listed((a.number for a in self.lookup.catalog.areas), "or")
             hint = f"write `Set a starting point in starting area 1`, or choose area {known}"
             message = "the protocol sets no starting point"
             self.diagnostics.error("no-start", message, None, hint, (Remedy.CHOOSE_START,))
@@ -753,7 +753,7 @@ class Planner:
         name = f"checkpoint #{checkpoint.id}"
         if items:
             lines = sorted({s.line for item in items[:20] if (s := item.source)})
-            where = alternatives((str(line) for line in lines), "and")
+            where = listed(lines)
             message = f"{name} is measured more than once at this point: lines {where}"
             hint = "say which of them is meant by its step: `step 3`"
             self.diagnostics.error("ambiguous-edit", message, thing.span, hint)

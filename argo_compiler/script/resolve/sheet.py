@@ -6,12 +6,12 @@ from argo_compiler.catalog import Area
 from argo_compiler.diagnostics import Span
 from argo_compiler.errors import Remedy
 from argo_compiler.il import Mission, Mode, Order
+from argo_compiler.listing import listed
 from argo_compiler.script.resolve.assembly import assemble
 from argo_compiler.script.resolve.lookup import Lookup
 from argo_compiler.script.resolve.plan import Plan, dock_item, measure_item, start_item
 from argo_compiler.script.syntax.nodes import AreaField, Sheet, TextField
 from argo_compiler.script.syntax.source import Diagnostics
-from argo_compiler.script.syntax.spelling import alternatives
 
 
 def sheet_mission(
@@ -83,7 +83,7 @@ def _choose_area(
     remedies = (Remedy.CHOOSE_START if which == "start" else Remedy.CHOOSE_END,)
     offered = sorted({area.value for area in field.areas}) if field else []
     span = field.areas[0].span if field and field.areas else _span(field)
-    areas = alternatives(str(number) for number in offered)
+    areas = listed(offered, "or")
     if option is not None and offered and option not in offered:
         message = f"the {which} in area {option} is not what the sheet offers"
         diagnostics.error("area-not-offered", message, span, f"choose area {areas}", remedies)
@@ -97,7 +97,7 @@ def _choose_area(
         diagnostics.error("area-choice", message, span, f"choose area {areas}", remedies)
     elif whole:
         message = f"the sheet names no starting area for the mission's {which}"
-        known = alternatives(str(area.number) for area in lookup.catalog.areas)
+        known = listed((area.number for area in lookup.catalog.areas), "or")
         hint = f"name one in the sheet, or choose area {known}"
         diagnostics.error("no-area", message, span, hint, remedies)
     return None

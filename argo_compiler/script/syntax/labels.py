@@ -3,8 +3,9 @@
 import re
 
 from argo_compiler.diagnostics import Diagnostic
+from argo_compiler.listing import listed
 from argo_compiler.script.syntax.source import Diagnostics, ScriptText
-from argo_compiler.script.syntax.spelling import alternatives, nearest
+from argo_compiler.script.syntax.spelling import nearest
 
 PROTOCOL_LABELS = (
     "Designation",
@@ -40,7 +41,7 @@ def name_unknown_label(text: ScriptText, known: tuple[str, ...], diagnostics: Di
     if any(label.lower() == k.lower() for k in known):
         return
     close = nearest(label, known)
-    hint = f"the labels are {alternatives((f'`{k}:`' for k in known), 'and')}"
+    hint = f"the labels are {listed(f'`{k}:`' for k in known)}"
     if close:
         hint = f"`{close[0]}:` is the nearest; {hint}"
     diagnostics.entries[-1] = Diagnostic(

@@ -52,11 +52,3 @@ def most_alike(text: str, forms: Sequence[str]) -> str:
     """The one of the `forms` that `text` resembles most, its beginning above all."""
     key = text.lstrip("0123456789.) ").lower()
     return max(forms, key=lambda form: JaroWinkler.similarity(key, form.lower()))
-
-
-def alternatives(choices: Iterable[str], conjunction: str = "or") -> str:
-    """`a`, `b` or `c`, as a sentence has it."""
-    items = list(choices)
-    if len(items) < 2:
-        return "".join(items)
-    return f"{', '.join(items[:-1])} {conjunction} {items[-1]}"

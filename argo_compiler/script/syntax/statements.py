@@ -12,9 +12,10 @@ from lark.exceptions import UnexpectedToken
 from lark.lexer import PatternRE, PatternStr
 from lark.parsers.lalr_interactive_parser import InteractiveParser
 
+from argo_compiler.listing import listed
 from argo_compiler.script.syntax.shapes import Shapes, StumbleError, Syntax
 from argo_compiler.script.syntax.source import Diagnostics, ScriptText
-from argo_compiler.script.syntax.spelling import alternatives, most_alike, nearest, respell
+from argo_compiler.script.syntax.spelling import most_alike, nearest, respell
 from argo_compiler.script.syntax.tables import load_parser
 
 _MOST_EXPECTED = 8
@@ -193,9 +194,9 @@ def _report(
         message = f"can't understand `{text.content[at:end]}` here"
     hint = ""
     if len(expected) <= _MOST_EXPECTED:
-        hint = f"expected {alternatives(expected)}; "
+        hint = f"expected {listed(expected, 'or')}; "
     elif close := nearest(str(stumble.token), words):
-        hint = f"a word that fits here: {alternatives(f'`{w}`' for w in close)}; "
+        hint = f"a word that fits here: {listed((f'`{w}`' for w in close), 'or')}; "
     form = most_alike(original.content, grammar.forms)
     span = text.span(at, end) if at < end else text.span(end)
     diagnostics.error("not-understood", message, span, f"{hint}write a line such as: {form}")

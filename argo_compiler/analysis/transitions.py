@@ -7,7 +7,7 @@ from argo_compiler.analysis.regions import Scale
 from argo_compiler.analysis.study import Study
 from argo_compiler.analysis.values import GuardStatus, objects_of
 from argo_compiler.diagnostics import Diagnostic, Severity
-from argo_compiler.hfsm.conditions import words
+from argo_compiler.hfsm.conditions import all_words, words
 from argo_compiler.il import Action, Condition
 
 _SEARCHES = 10  # objects for which a path that does not measure them is looked up
@@ -144,7 +144,7 @@ def _always(study: Study, leaf: int, k: int) -> bool:
 
 def _always_taken(study: Study, leaf: int, k: int, index: int) -> Diagnostic:
     task = study.task(leaf)
-    held = " and ".join(words(c) for c in task.transitions[index].conditions)
+    held = all_words(task.transitions[index].conditions)
     after = len(task.transitions) > 1
     return study.diagnostic(
         "transition-always",

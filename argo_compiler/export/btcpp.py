@@ -9,7 +9,7 @@ from collections.abc import Iterable, Iterator
 
 from argo_compiler.diagnostics import Diagnostic
 from argo_compiler.export.exporter import refusal, refuse
-from argo_compiler.export.xml import Attributes, XmlWriter, number
+from argo_compiler.export.xml import Attributes, XmlWriter
 from argo_compiler.il import (
     Action,
     Condition,
@@ -26,6 +26,7 @@ from argo_compiler.il.grouping import GroupNesting, GroupRange
 from argo_compiler.il.reserved import RETURN_TASK
 from argo_compiler.il.ways import default_target, start_task
 from argo_compiler.model import Pose
+from argo_compiler.number_text import number
 
 MAX_MSEC = 2**32 - 1
 

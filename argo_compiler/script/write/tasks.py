@@ -15,10 +15,11 @@ from argo_compiler.il import (
     WaitRule,
 )
 from argo_compiler.model import Pose
+from argo_compiler.number_text import number
 from argo_compiler.script.syntax.protocol import protocol_grammar
 from argo_compiler.script.syntax.shapes import StumbleError
 from argo_compiler.script.write.sayable import require_sayable
-from argo_compiler.script.write.text import UnwritableError, duration, number, point, quote, times
+from argo_compiler.script.write.text import UnwritableError, duration, point, quote, times
 
 _WORDS = re.compile(r"[a-z]+(?: [a-z]+)*")
 _ON_FAILURE = {

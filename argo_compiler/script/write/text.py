@@ -4,6 +4,7 @@ from collections.abc import Iterable
 from math import degrees, radians
 
 from argo_compiler.model import Pose
+from argo_compiler.number_text import number
 from argo_compiler.script.syntax.protocol import MAX_STATEMENT
 
 _WIDTH = 100
@@ -52,13 +53,6 @@ def _escaped(character: str) -> str:
 
 def _is_ligature(character: str) -> bool:
     return "\ufb00" <= character <= "\ufb4f"
-
-
-def number(value: float) -> str:
-    """The number as it is read back, without a point where it is whole."""
-    if value == int(value) and abs(value) < 1e15:
-        return str(int(value))
-    return repr(float(value))
 
 
 def duration(seconds: float) -> str:

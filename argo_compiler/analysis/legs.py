@@ -56,6 +56,8 @@ class Cost:
     """Wh"""
 
     def __add__(self, other: "Cost") -> "Cost":
+        if self is FREE:
+            return other
         return Cost(self.time + other.time, self.energy + other.energy)
 
     def __or__(self, other: "Cost") -> "Cost":

@@ -6,6 +6,7 @@ This shares nothing with the bits of the analysis but the form of its witnesses.
 from bisect import bisect_left
 from collections.abc import Mapping
 from dataclasses import dataclass
+from functools import cached_property
 from itertools import pairwise
 
 from argo_compiler.analysis.verification_layout import END, Place
@@ -16,7 +17,7 @@ Ranges = tuple[float, float, float, float]
 """of a checkpoint: between what its values lie, and its nominal ones"""
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True)
 class ClaimedScale:
     """The readings of one checkpoint, and where its bits lie among those of all."""
 
@@ -27,23 +28,23 @@ class ClaimedScale:
     abnormal: int
     """and of those that may be called abnormal"""
 
-    @property
+    @cached_property
     def missing(self) -> int:
         return 1 << (2 * len(self.bounds) + 1)
 
-    @property
+    @cached_property
     def unreadable(self) -> int:
         return self.missing << 1
 
-    @property
+    @cached_property
     def failed(self) -> int:
         return self.missing << 2
 
-    @property
+    @cached_property
     def width(self) -> int:
         return 2 * len(self.bounds) + 4
 
-    @property
+    @cached_property
     def full(self) -> int:
         return (1 << self.width) - 1
 

@@ -72,42 +72,50 @@ class MissionWalk:
             state |= scale.missing << scale.shift
         return self.layout.begin, state, 0
 
-    def steps(self, here: Place) -> Iterator[Step]:
+    def steps(self, here: Place) -> list[Step]:
         """Where the mission may go on from a place, with which readings."""
         kind, at = here
         late = self.states.late.get(here, 0)
         state = self.states.places[here]
         if kind == "task":
-            yield from self._leave_task(at, state, late)
-        elif kind == "round":
-            yield from self._end_round(at, state, late)
-        elif kind == "cut":
+            return self._leave_task(at, state, late)
+        if kind == "round":
+            return self._end_round(at, state, late)
+        found: list[Step] = []
+        if kind == "cut":
             around = self.layout.parent[at]
             if around is not None and self.layout.timed[around]:
-                yield ("cut", around), state, late
+                found.append((("cut", around), state, late))
             if self.layout.hard[at]:
                 self.proved.ends.add(at)
-                yield from self._after_last(at, state, late)
+                found.append(self._after_last(at, state, late))
+        return found
 
-    def _leave_task(self, at: int, state: int, late: int) -> Iterator[Step]:
+    def _leave_task(self, at: int, state: int, late: int) -> list[Step]:
+        found: list[Step] = []
         task = self.mission.tasks[at]
         own = self._late(task)
         ended = self._after(task, state)
         # A WAIT runs no action, so what is late may still come when it has ended. Other tasks begin
         # when the action before has ended, but may have failed by time before they begin.
-        passing = late if task.wait is not None or self._by_time(task) else 0
+        by_time = self._by_time(task)
+        passing = late if task.wait is not None or by_time else 0
+        goes_on = False
         if self._may_fail(task):
+            goes_on = self._may_go_on(task)
             failed = self._after_failure(task, state)
-            lost = passing | (own if self._by_time(task) else 0)
-            if self._may_go_on(task):
+            lost = passing | (own if by_time else 0)
+            if goes_on:
                 ended |= failed
                 passing = lost
-            for place in self._failure_places(task):
-                yield place, failed | lost, lost
+            found += [(place, failed | lost, lost) for place in self._failure_places(task)]
         inside = self.layout.innermost[at]
         if inside is not None and self.layout.timed[inside]:
-            yield ("cut", inside), state | late | own, late | own
-        yield from self._ways(at, task, ended | passing | self._told, passing)
+            found.append((("cut", inside), state | late | own, late | own))
+        fresh = None
+        if task.action is Action.MEASURE and not (self.failures or goes_on):
+            fresh = task.object_id
+        return found + self._ways(at, task, ended | passing | self._told, passing, fresh)
 
     def _late(self, task: Task) -> int:
         """What may come from the task's action while it is cancelled."""
@@ -173,29 +181,28 @@ class MissionWalk:
         elif task.on_failure in (OnFailure.RETURN, OnFailure.ABORT):
             yield END
 
-    def _ways(self, at: int, task: Task, state: int, late: int) -> Iterator[Step]:
-        """T2 and T3: the transitions in order, then the unconditional one."""
+    def _ways(self, at: int, task: Task, state: int, late: int, fresh: str | None) -> list[Step]:
+        """T2 and T3: the transitions in order, then the unconditional one. The checkpoint `fresh`
+        was just measured."""
+        found: list[Step] = []
         changing = late | self._told
-        fresh = None
-        unmeasured = self.failures or (self._may_fail(task) and self._may_go_on(task))
-        if task.action is Action.MEASURE and not unmeasured:
-            fresh = task.object_id
         for k, transition in enumerate(task.transitions):
             if not transition.conditions:
                 continue
             taken, rest, certain = self._test(transition.conditions, state, fresh)
             if taken is not None:
                 self.proved.transitions.add((at, k))
-                yield self.layout.place(transition.target), taken | changing, late
+                found.append((self.layout.place(transition.target), taken | changing, late))
                 if certain:
                     self.proved.certain.add((at, k))
-                    return
+                    return found
             state = rest | changing
         ending = self.layout.ending[at]
         if ending is not None:
-            yield ("round", ending), state, late
+            found.append((("round", ending), state, late))
         else:
-            yield from self._unconditional(at, state, late)
+            found.append(self._unconditional(at, state, late))
+        return found
 
     def _test(
         self, conditions: tuple[Condition, ...], state: int, fresh: str | None
@@ -252,34 +259,34 @@ class MissionWalk:
             self._satisfying[id(condition)] = found
         return found
 
-    def _unconditional(self, at: int, state: int, late: int) -> Iterator[Step]:
+    def _unconditional(self, at: int, state: int, late: int) -> Step:
         for k, transition in enumerate(self.mission.tasks[at].transitions):
             if not transition.conditions:
                 self.proved.transitions.add((at, k))
-                yield self.layout.place(transition.target), state, late
-                return
-        yield END, 0, 0
+                return self.layout.place(transition.target), state, late
+        return END, 0, 0
 
-    def _end_round(self, number: int, state: int, late: int) -> Iterator[Step]:
+    def _end_round(self, number: int, state: int, late: int) -> list[Step]:
         """G5 to G8."""
+        found: list[Step] = []
         group = self.mission.groups[number]
         changing = late | self._told
         held, left, certain = self._test(group.until, state, None)
         if group.max_repeat_count != 1 and not (group.until and certain):
             self.proved.repeats.add(number)
             start = "task", self.layout.position[group.start]
-            yield start, (left | changing if group.until else state), late
+            found.append((start, left | changing if group.until else state, late))
         limited = group.max_repeat_count > 0 or group.max_repeat_duration > 0
         if limited or (group.until and held is not None):
             if not self.layout.hard[number]:
                 self.proved.ends.add(number)
             after = state if limited or held is None else held | changing
-            yield from self._after_last(number, after, late)
+            found.append(self._after_last(number, after, late))
+        return found
 
-    def _after_last(self, number: int, state: int, late: int) -> Iterator[Step]:
+    def _after_last(self, number: int, state: int, late: int) -> Step:
         """G6, G7: the next group outward decides, or the unconditional transition is taken."""
         around = self.layout.ending_around[number]
         if around is not None:
-            yield ("round", around), state, late
-        else:
-            yield from self._unconditional(self.layout.last[number], state, late)
+            return ("round", around), state, late
+        return self._unconditional(self.layout.last[number], state, late)

@@ -48,7 +48,7 @@ def limits(study: Study, travel: Travel, worst: Bound | None = None) -> Iterator
             yield from _cut_short(study, extent, study.mission.max_duration, worst)
         else:
             yield from _too_long(study, extent.duration, study.mission.max_duration)
-    yield from windows(study, extent.moments)
+    yield from windows(study, extent)
     if travel.battery is not None:
         yield from _too_far(study, extent.energy, travel.battery)
         yield from _no_way_back(study, extent.energy, travel)

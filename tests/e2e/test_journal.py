@@ -182,7 +182,7 @@ def test_runs_that_are_killed_lose_nothing(argo, folder, navigator, record_prope
 
 
 def test_kill_and_resume_by_the_command(
-    argo_process, folder: Path, tmp_path: Path, navigator
+    argo, argo_process, folder: Path, tmp_path: Path, navigator
 ) -> None:
     journal = tmp_path / "run.journal"
     begin = (
@@ -201,7 +201,7 @@ def test_kill_and_resume_by_the_command(
             assert line, "it has ended without a reading"
             line = process.stderr.readline()
         process.send_signal(signal.SIGSTOP)
-        refused = argo_process("resume", journal)
+        refused = argo("resume", journal)
         process.kill()
     assert (refused.returncode, refused.stderr.count("in use")) == (2, 1)
     result = argo_process("resume", journal, "--report", tmp_path / "report")
@@ -216,7 +216,7 @@ def test_kill_and_resume_by_the_command(
     reference = simulated(PLAN, navigator, **settings(3))
     require_complete(record, reference, told)
     assert len(record.resumed) == 1
-    again = argo_process("resume", journal, "--report", tmp_path / "again")
+    again = argo("resume", journal, "--report", tmp_path / "again")
     assert again.returncode == 0, again.stderr
     assert "had ended already" in again.stderr
     assert (tmp_path / "again" / "report.json").read_text(encoding="utf-8") == text

@@ -152,9 +152,12 @@ class Episodes:
     def pool(self) -> Pool:
         """All instances that episodes draw from, made when they are asked for."""
         if self._pool is None:
+            source = self.source
             # A source of somebody else's may give other instances each time.
-            make = _shared_pool if type(self.source) is RandomRoutes else _make_pool
-            self._pool = make(self.source, self.options, self.numbers)
+            if type(source) is RandomRoutes:
+                self._pool = _shared_pool(source, self.options, self.numbers)
+            else:
+                self._pool = _make_pool(source, self.options, self.numbers)
         return self._pool
 
     def _draw(self, number: int) -> RouteInstance:

@@ -175,7 +175,7 @@ def load_robot(name: str = "tracker") -> RobotSpec:
     if not os.path.isfile(path):
         known = sorted(p.stem for p in robot_folder().glob("*.yaml") if "." not in p.stem)
         raise NotFound(f"no robot `{name}`; there are: {', '.join(known)}")
-    spec = _described(RobotSpec, path, path.read_text(encoding="utf-8"))
+    spec: RobotSpec = _described(RobotSpec, path, path.read_text(encoding="utf-8"))
     if not os.path.isfile(calibrated):
         return spec
     paces = _described(Calibration, calibrated, calibrated.read_text(encoding="utf-8"))

@@ -15,6 +15,10 @@ from argo_compiler.il import Action, Condition, ConditionType, Mission, OnFailur
 Step = tuple[Place, int, int]
 """where to, the readings that may be there, and those that may still come there"""
 
+# An enumeration's members are found slowly, and these are looked at with each task.
+_MEASURE, _WAIT = Action.MEASURE, Action.WAIT
+_CONTINUE, _BRANCH = OnFailure.CONTINUE, OnFailure.BRANCH
+_ENDING = (OnFailure.RETURN, OnFailure.ABORT)
 _AGED = (ConditionType.STALE, ConditionType.ABNORMAL)
 
 
@@ -59,7 +63,7 @@ class MissionWalk:
             for task in mission.tasks
             for condition in (() if task.wait is None else task.wait.conditions)
         }
-        measured = {task.object_id for task in mission.tasks if task.action is Action.MEASURE}
+        measured = {task.object_id for task in mission.tasks if task.action is _MEASURE}
         for object_id, scale in states.scales.items():
             # What a mission waits for or never measures may be told at any time (C8).
             if object_id in waited or object_id not in measured:
@@ -113,20 +117,20 @@ class MissionWalk:
         if inside is not None and self.layout.timed[inside]:
             found.append((("cut", inside), state | late | own, late | own))
         fresh = None
-        if task.action is Action.MEASURE and not (self.failures or goes_on):
+        if task.action is _MEASURE and not (self.failures or goes_on):
             fresh = task.object_id
         return found + self._ways(at, task, ended | passing | self._told, passing, fresh)
 
     def _late(self, task: Task) -> int:
         """What may come from the task's action while it is cancelled."""
-        if task.action is not Action.MEASURE or task.object_id not in self.states.scales:
+        if task.action is not _MEASURE or task.object_id not in self.states.scales:
             return 0
         return self.states.late_readings(task.object_id, self.failures)
 
     def _after(self, task: Task, state: int) -> int:
         """The readings when a task has ended (C3), by the robot or by hand (H3)."""
         o = task.object_id
-        if task.action is not Action.MEASURE or o not in self.states.scales:
+        if task.action is not _MEASURE or o not in self.states.scales:
             return state
         scale = self.states.scales[o]
         # A success without a number is unreadable; by hand there may be no value.
@@ -135,7 +139,7 @@ class MissionWalk:
 
     def _after_failure(self, task: Task, state: int) -> int:
         o = task.object_id
-        if task.action is not Action.MEASURE or o not in self.states.scales:
+        if task.action is not _MEASURE or o not in self.states.scales:
             return state
         scale = self.states.scales[o]
         others = scale.unreadable if self.failures else 0
@@ -144,7 +148,7 @@ class MissionWalk:
     def _may_fail(self, task: Task) -> bool:
         """Whether a task may fail for good; without failures, by time alone (W3, W5)."""
         waits = task.wait is not None and task.wait.limit is not None
-        return self._missable(task) or waits or (self.failures and task.action is not Action.WAIT)
+        return self._missable(task) or waits or (self.failures and task.action is not _WAIT)
 
     def _missable(self, task: Task) -> bool:
         window = task.window
@@ -157,15 +161,15 @@ class MissionWalk:
     def _by_itself(self, task: Task) -> bool:
         """Whether it may fail otherwise than by a missed window."""
         waits = task.wait is not None and task.wait.limit is not None
-        return waits or (self.failures and task.action is not Action.WAIT)
+        return waits or (self.failures and task.action is not _WAIT)
 
     def _to_missed(self, task: Task) -> str | None:
         return None if task.window is None else task.window.missed_target
 
     def _may_go_on(self, task: Task) -> bool:
         """Whether some failure for good counts as any other end (T8)."""
-        goes_on = task.on_failure is OnFailure.CONTINUE or (
-            task.on_failure is OnFailure.BRANCH and task.failure_target is None
+        goes_on = task.on_failure is _CONTINUE or (
+            task.on_failure is _BRANCH and task.failure_target is None
         )
         return goes_on and (self._by_itself(task) or self._to_missed(task) is None)
 
@@ -176,9 +180,9 @@ class MissionWalk:
             yield self.layout.place(missed)
             if not self._by_itself(task):
                 return
-        if task.on_failure is OnFailure.BRANCH and task.failure_target is not None:
+        if task.on_failure is _BRANCH and task.failure_target is not None:
             yield self.layout.place(task.failure_target)
-        elif task.on_failure in (OnFailure.RETURN, OnFailure.ABORT):
+        elif task.on_failure in _ENDING:
             yield END
 
     def _ways(self, at: int, task: Task, state: int, late: int, fresh: str | None) -> list[Step]:

@@ -52,14 +52,14 @@ def check_instant_loops(mission: Mission) -> Iterator[Diagnostic]:
 
 def _ends_at_once(task: Task) -> bool:
     rule = task.wait
-    if task.action is not Action.WAIT or rule is None:
+    if rule is None or task.action is not Action.WAIT:
         return False
     return bool(rule.conditions) if rule.duration is None else rule.duration < MIN_TIME_S
 
 
 def _fails_at_once(task: Task) -> bool:
     limit = task.wait.limit if task.wait is not None else None
-    return task.action is Action.WAIT and limit is not None and limit < MIN_TIME_S
+    return limit is not None and limit < MIN_TIME_S and task.action is Action.WAIT
 
 
 def _may_be_missed(task: Task) -> bool:

@@ -38,9 +38,9 @@ def place_of(tables: Tables, progress: Progress, now: float, away: float) -> Con
         leaf,
         place.new_visit(),
         now - progress.since - away,
+        now,
         progress.attempt,
         progress.occurred,
-        look_at=now,
     )
     if progress.paused or progress.reaction:
         place.interrupted_at = now

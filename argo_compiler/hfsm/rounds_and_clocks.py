@@ -202,14 +202,14 @@ class Configuration:
             ):
                 return False
             return not group.until or not self.hold(group.until, now)
-        return self.hold(way.guards, now)
+        return not way.guards or self.hold(way.guards, now)
 
     def _enter(
         self, leaf: LeafNode | None, keep: int, domain: GroupNode | None, now: float
     ) -> None:
         """Leaves all below `domain`, which is the last of `keep` groups, and enters the leaf."""
         self.visits += 1
-        self.visit = TaskVisit(leaf, self.visits, now, look_at=now)
+        self.visit = TaskVisit(leaf, self.visits, now, now)
         frames = self.frames
         changed = len(frames) > keep
         if changed:

@@ -141,8 +141,10 @@ class Legs:
 
     def way(self, source: Source, target: int) -> Cost:
         """The same, if the robot does not have to wait at the place."""
-        if self.travel is None or not self.flow.is_leaf(target):
+        if not self.flow.is_leaf(target):
             return FREE
+        if self.travel is None:
+            return _UNLIMITED
         return self._steps.get((source, target), FREE)
 
     def missing(self, source: Source, target: int) -> Cost:

@@ -81,6 +81,16 @@ def test_folders_import_each_other_in_no_circle():
         pytest.fail(" imports ".join(reversed(error.args[1])))
 
 
+def test_the_checkers_of_witnesses_share_no_code_with_the_analysis():
+    analysis = "argo_compiler.analysis."
+    forms = {analysis + name for name in ("facts", "travel", "witness")}
+    checkers = {m for m in TREES if m.startswith((analysis + "verif", analysis + "bound_verif"))}
+    assert checkers
+    for module in checkers:
+        others = {other for other in imports_of(module) if other.startswith(analysis)}
+        assert others <= forms | checkers, module
+
+
 def test_no_two_public_classes_have_one_name():
     homes = defaultdict(list)
     for module, tree in TREES.items():

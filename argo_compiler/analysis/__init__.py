@@ -13,7 +13,7 @@ from argo_compiler.analysis.facts import (
     Verdict,
 )
 from argo_compiler.analysis.travel import Leg, NoWay, Standing, Travel
-from argo_compiler.analysis.verification import unproved
+from argo_compiler.analysis.verification_claims import unproved
 from argo_compiler.analysis.witness import (
     Invariant,
     KeptReading,

@@ -21,7 +21,7 @@ from argo_compiler.analysis.study import Study
 from argo_compiler.analysis.transitions import transitions
 from argo_compiler.analysis.travel import Travel
 from argo_compiler.analysis.values import find_paths, make_fields
-from argo_compiler.analysis.verification import unproved
+from argo_compiler.analysis.verification_claims import unproved
 from argo_compiler.analysis.witnessing import make_witnesses
 from argo_compiler.analysis.worst import worst_duration
 from argo_compiler.catalog import Catalog
@@ -78,7 +78,7 @@ def _analysis(mission: Mission, catalog: Catalog | None, travel: Travel | None) 
         travel,
         flow,
         nominal=find_paths(flow, fields, failures=False),
-        all=find_paths(flow, fields, failures=True),
+        with_failures=find_paths(flow, fields, failures=True),
     )
     unjudged = []
     if len(fields.shift) < len(fields.scales):
@@ -174,7 +174,7 @@ def without_verdicts(analysis: Analysis, wrong: Sequence[str]) -> Analysis:
 def _reach(study: Study, node: int) -> Verdict:
     if study.nominal.reached(node):
         return Verdict.POSSIBLE
-    return Verdict.AFTER_FAILURE if study.all.reached(node) else Verdict.NEVER
+    return Verdict.AFTER_FAILURE if study.with_failures.reached(node) else Verdict.NEVER
 
 
 def _task_facts(study: Study, leaf: int) -> TaskFacts:
@@ -197,7 +197,7 @@ def _conditional(study: Study, leaf: int, k: int) -> Verdict:
         return Verdict.ALWAYS
     if k < len(nominal) and nominal[k].possible:
         return Verdict.POSSIBLE
-    looks = study.all.conditional(study.flow, leaf)
+    looks = study.with_failures.conditional(study.flow, leaf)
     return Verdict.AFTER_FAILURE if k < len(looks) and looks[k].possible else Verdict.NEVER
 
 
@@ -206,7 +206,7 @@ def _unconditional(study: Study, leaf: int) -> Verdict:
     flow = study.flow
     for paths, verdict in (
         (study.nominal, Verdict.POSSIBLE),
-        (study.all, Verdict.AFTER_FAILURE),
+        (study.with_failures, Verdict.AFTER_FAILURE),
     ):
         if paths.reached(leaf) and paths.tail_possible(flow, leaf):
             node = flow.leaves[leaf].tail

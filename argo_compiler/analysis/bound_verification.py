@@ -13,7 +13,9 @@ from dataclasses import dataclass
 
 from argo_compiler.analysis.facts import Analysis, Bounds
 from argo_compiler.analysis.travel import Leg, NoWay, Standing, Travel
-from argo_compiler.analysis.verification import GroupLayout, Proved, Verifier
+from argo_compiler.analysis.verification import Verifier
+from argo_compiler.analysis.verification_layout import GroupLayout
+from argo_compiler.analysis.verification_walk import Proved
 from argo_compiler.analysis.witness import Invariant, LeastSpent, LeastWitness
 from argo_compiler.catalog import Catalog
 from argo_compiler.diagnostics import Diagnostic
@@ -61,6 +63,19 @@ class _Visit:
     repeated: int | None = None
 
 
+@dataclass(frozen=True, slots=True)
+class _Way:
+    """A visit, from one place."""
+
+    visit: _Visit
+    entered: tuple[int, ...]
+    """the groups that are entered on the way, from the outside in"""
+    time: float
+    """s of the way and the action, or the wait, at least"""
+    energy: float
+    """Wh, likewise"""
+
+
 class LeastSteps:
     """The steps of a mission if nothing fails, and what each of them takes at least.
 
@@ -83,6 +98,10 @@ class LeastSteps:
         """places that are come to at the same time"""
         self._spread()
         self._work = self._least_work()
+        self._ways_on = {
+            place: tuple(self._way(place, visit) for visit in visits)
+            for place, visits in self._visits.items()
+        }
 
     def around(self, place: Place) -> tuple[int, ...]:
         """The groups that a place lies in, from the outside in."""
@@ -110,8 +129,8 @@ class LeastSteps:
         here = spent[place]
         for other in self._onward.get(place, ()):
             yield other, here
-        for visit in self._visits.get(place, ()):
-            yield from self._come(place, visit, here, spent, periods, of_time)
+        for way in self._ways_on.get(place, ()):
+            yield from self._come(way, here, spent, periods, of_time)
         kind, at = place
         if kind == "round":
             last = self._last_round(at, here, spent, periods, of_time)
@@ -124,14 +143,13 @@ class LeastSteps:
 
     def _come(
         self,
-        source: Place,
-        visit: _Visit,
+        way: _Way,
         here: float,
         spent: Spent,
         periods: tuple[float, ...],
         of_time: bool,
     ) -> Iterator[tuple[Place, float]]:
-        i, repeated = visit.task, visit.repeated
+        i, repeated = way.visit.task, way.visit.repeated
         missed = begun = here
         if repeated is not None:
             missed = begun = here - periods[repeated]
@@ -140,19 +158,21 @@ class LeastSteps:
                 # Round n is not begun before it is due (G13).
                 entered = spent.get(("entered", repeated), -math.inf)
                 begun = max(begun, entered + (every - periods[repeated]))
-        inside = self.around(("task", i))
-        kept = sum(a == b for a, b in zip(inside, self.around(source), strict=False))
-        for g in inside[kept:]:
+        for g in way.entered:
             yield ("entered", g), begun
-        ended = begun + self._cost(source, i, of_time)
+        ended = begun + (way.time if of_time else way.energy)
         window = self.mission.tasks[i].window
+        if window is None:
+            yield ("task", i), ended
+            return
         # Windows count from the mission's start: in a group, all rounds share them.
-        if of_time and window is not None and not inside:
+        shared = self.layout.innermost[i] is not None
+        if of_time and not shared:
             ended = max(ended, window.earliest + self._work.get(i, (0.0, 0.0))[0])
         yield ("task", i), ended
         deadline = self._deadline(i)
         if deadline is not None:
-            yield ("missed", i), max(missed, deadline) if of_time and not inside else missed
+            yield ("missed", i), max(missed, deadline) if of_time and not shared else missed
 
     def _last_round(
         self, g: int, here: float, spent: Spent, periods: tuple[float, ...], of_time: bool
@@ -172,20 +192,24 @@ class LeastSteps:
                 ends.append(here + max(due - 1, 0) * periods[g])
         return min(ends, default=None)
 
-    def _cost(self, source: Place, i: int, of_time: bool) -> float:
-        """The way from a place to a task, and its action, or the wait."""
+    def _way(self, source: Place, visit: _Visit) -> _Way:
+        inside = self.around(("task", visit.task))
+        kept = sum(a == b for a, b in zip(inside, self.around(source), strict=False))
+        return _Way(visit, inside[kept:], *self._cost(source, visit.task))
+
+    def _cost(self, source: Place, i: int) -> tuple[float, float]:
+        """s and Wh of the way from a place to a task, and its action, or the wait."""
         task = self.mission.tasks[i]
         if task.wait is not None:
-            return (task.wait.duration or 0.0) if of_time else 0.0
-        least = math.inf
+            return task.wait.duration or 0.0, 0.0
+        time = energy = math.inf
         for robot in self._robots.get(source, ()):
-            if not robot.there:
-                taken = self._work[i][0 if of_time else 1]
-            else:
+            taken = self._work[i]
+            if robot.there:
                 leg = self._leg(robot.standing, i)
-                taken = leg.duration if of_time else leg.energy
-            least = min(least, taken)
-        return max(least, 0.0)
+                taken = leg.duration, leg.energy
+            time, energy = min(time, taken[0]), min(energy, taken[1])
+        return max(time, 0.0), max(energy, 0.0)
 
     def _least_work(self) -> dict[int, tuple[float, float]]:
         """s and Wh of each task's action, wherever the robot comes from."""

@@ -2,6 +2,7 @@
 
 import math
 from dataclasses import dataclass
+from functools import cached_property
 
 from argo_compiler.analysis.facts import Bound, Bounds, Stretch
 from argo_compiler.analysis.flow import Flow
@@ -22,8 +23,14 @@ class Extent:
     duration: Bounds | None
     energy: Bounds | None
     loops: tuple[Loop, ...]
-    moments: tuple[TaskEnd, ...] = ()
-    """of each leaf, where durations are known"""
+    levels: Levels
+    level: LevelGraph
+    """the mission's"""
+
+    @cached_property
+    def moments(self) -> tuple[TaskEnd, ...]:
+        """When each leaf has ended, where durations are known."""
+        return moments(self.levels, self.level)
 
 
 def too_many_cuts(flow: Flow) -> bool:
@@ -44,15 +51,13 @@ def measure(flow: Flow, paths: Paths, legs: Legs, endless: bool) -> Extent:
     levels = Levels(flow, paths, legs)
     level = levels.mission()
     duration = energy = None
-    ended: tuple[TaskEnd, ...] = ()
     ends = [way for way in level.outs if way[1][1] == flow.done]
     # What can't be done as planned fails: then nothing is known of a path without failures.
     if ends and legs.travel is not None and not legs.too_slow:
         endless = endless or bool(levels.loops)
         duration = _bounds(flow, legs, level, "time", endless)
         energy = _bounds(flow, legs, level, "energy", endless)
-        ended = moments(levels, level)
-    return Extent(duration, energy, tuple(levels.loops.values()), ended)
+    return Extent(duration, energy, tuple(levels.loops.values()), levels, level)
 
 
 def longest(flow: Flow, paths: Paths, legs: Legs) -> float:

@@ -1,16 +1,15 @@
 """Diagnostics about how a mission ends: whether it can, what goes on without limit, and where."""
 
-import math
 from collections.abc import Iterable, Iterator
 
 from argo_compiler.analysis.kept import KeptLoop
-from argo_compiler.analysis.study import Study, listed
+from argo_compiler.analysis.study import Study
 from argo_compiler.diagnostics import Diagnostic, Severity
 from argo_compiler.il import Action, Task
+from argo_compiler.il.docked import at_dock
+from argo_compiler.listing import quoted
 from argo_compiler.model import Pose
 
-DOCKED_DISTANCE_M = 0.1
-DOCKED_ANGLE = math.radians(5.0)
 _PATHS = 200  # diagnostics that come with a path
 _WAY_OUT = (
     "lead a transition out of it, or make it a group with max_repeat_count or max_repeat_duration"
@@ -50,7 +49,7 @@ def _endless(study: Study, traps: tuple[tuple[int, ...], ...]) -> Iterator[Diagn
             if traps
             else "no path leads to its end"
         )
-        if study.all.reached(study.flow.done):
+        if study.with_failures.reached(study.flow.done):
             why += ", unless an action fails"
         yield study.diagnostic(
             "no-end",
@@ -88,7 +87,7 @@ def _follow(leaves: tuple[int, ...]) -> str:
 
 
 def _tasks(study: Study, leaves: tuple[int, ...]) -> str:
-    return f"task{'s' if len(leaves) > 1 else ''} {listed([study.name(i) for i in leaves])}"
+    return f"task{'s' if len(leaves) > 1 else ''} {quoted([study.name(i) for i in leaves])}"
 
 
 def _unbounded(study: Study, trapped: set[int]) -> Iterator[Diagnostic]:
@@ -103,7 +102,7 @@ def _unbounded(study: Study, trapped: set[int]) -> Iterator[Diagnostic]:
         groups = [study.flow.groups[g].name for g in loop.groups]
         parts = [
             *([_tasks(study, loop.leaves)] if loop.leaves else []),
-            *([f"group{'s' if len(groups) > 1 else ''} {listed(groups)}"] if groups else []),
+            *([f"group{'s' if len(groups) > 1 else ''} {quoted(groups)}"] if groups else []),
         ]
         single = len(loop.leaves) + len(loop.groups) == 1
         they = "it" if single else "they"
@@ -196,8 +195,4 @@ def _stands_at(study: Study, leaf: int, dock: Pose) -> bool:
 
 
 def _leads_to(task: Task, dock: Pose) -> bool:
-    if task.action is not Action.WAYPOINT or task.pose is None:
-        return False
-    away = math.dist((task.pose.x, task.pose.y, task.pose.z), (dock.x, dock.y, dock.z))
-    turned = abs((task.pose.yaw - dock.yaw + math.pi) % (2 * math.pi) - math.pi)
-    return away <= DOCKED_DISTANCE_M and turned <= DOCKED_ANGLE
+    return task.action is Action.WAYPOINT and task.pose is not None and at_dock(task.pose, dock)

@@ -6,6 +6,7 @@ up, whatever was under way; and one node is the end of the mission.
 """
 
 from dataclasses import dataclass, field
+from functools import cached_property
 
 from argo_compiler.hfsm.model import MISSION, Hfsm, Leaf, StateTransition
 from argo_compiler.il import Action, Condition, Mission, Stop, WaitRule
@@ -67,29 +68,18 @@ class LeafFlow:
     """the node after a failure for good, where that is not the same as any other end"""
     measures: str | None
     """the object whose value its action measures"""
-    missed: int | None = None
+    missed: int | None
     """the node after a missed window, where that is not the same as after a failure for good"""
+    wait: WaitRule | None
+    """how long it lasts, of a task that runs no action"""
+    earliest: float
+    """s since the mission's start before which it does not begin at its place"""
+    deadline: float | None
+    """s since the mission's start at which it has failed if it has not ended; None: never"""
 
     @property
     def name(self) -> str:
         return self.leaf.task.name
-
-    @property
-    def wait(self) -> WaitRule | None:
-        """How long it lasts, of a task that runs no action."""
-        return self.leaf.task.wait if self.leaf.task.action is Action.WAIT else None
-
-    @property
-    def earliest(self) -> float:
-        """s since the mission's start before which it does not begin at its place."""
-        window = self.leaf.task.window
-        return 0.0 if window is None else window.earliest
-
-    @property
-    def deadline(self) -> float | None:
-        """s since the mission's start at which it has failed if it has not ended; None: never."""
-        window = self.leaf.task.window
-        return window.latest if window is not None and window.hard else None
 
     @property
     def may_give_up(self) -> bool:
@@ -109,7 +99,7 @@ class Flow:
     timed: tuple[bool, ...] = field(default=())
     """of each group: whether its time, or that of a group around it, may be up at any moment"""
 
-    @property
+    @cached_property
     def done(self) -> int:
         return len(self.leaves) + 2 * len(self.groups)
 
@@ -170,14 +160,18 @@ class _Builder:
 
     def _leaf_flow(self, leaf: Leaf) -> LeafFlow:
         *conditional, last = leaf.transitions
+        task, window = leaf.task, leaf.task.window
         return LeafFlow(
             leaf=leaf,
             parent=self.groups[leaf.parent],
             conditional=tuple((t.conditions, self._node(t)) for t in conditional),
             tail=self._node(last),
             failure=None if leaf.failure is None else self._node(leaf.failure),
-            measures=leaf.task.object_id if leaf.task.action is Action.MEASURE else None,
+            measures=task.object_id if task.action is Action.MEASURE else None,
             missed=None if leaf.missed is None else self._node(leaf.missed),
+            wait=task.wait if task.action is Action.WAIT else None,
+            earliest=0.0 if window is None else window.earliest,
+            deadline=window.latest if window is not None and window.hard else None,
         )
 
     def _group_flows(self) -> tuple[GroupFlow, ...]:

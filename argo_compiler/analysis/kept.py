@@ -35,6 +35,8 @@ def kept_loops(study: Study) -> Iterator[KeptLoop]:
     for leaf, object_id in search.places():
         if leaf in trapped:
             continue
+        if search.work < 0:
+            break
         closed: dict[frozenset[int], int] = {}
         for reading in search.readings(leaf, object_id):
             nodes = search.kept(leaf, object_id, reading)

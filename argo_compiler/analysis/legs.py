@@ -56,6 +56,8 @@ class Cost:
     """Wh"""
 
     def __add__(self, other: "Cost") -> "Cost":
+        if self is FREE:
+            return other
         return Cost(self.time + other.time, self.energy + other.energy)
 
     def __or__(self, other: "Cost") -> "Cost":
@@ -139,8 +141,10 @@ class Legs:
 
     def way(self, source: Source, target: int) -> Cost:
         """The same, if the robot does not have to wait at the place."""
-        if self.travel is None or not self.flow.is_leaf(target):
+        if not self.flow.is_leaf(target):
             return FREE
+        if self.travel is None:
+            return _UNLIMITED
         return self._steps.get((source, target), FREE)
 
     def missing(self, source: Source, target: int) -> Cost:
@@ -403,18 +407,22 @@ class _CutWays:
         self.places = places
         self.detours: list[list[int]] = []
         """for each leaf, those that the robot may have been on the way to when it was begun"""
-        self.cut: set[int] = set()
         self._found: dict[tuple[int, float | None], Cost] = {}
-        self._parts: list[list[int]] | None = None
+        self._order: dict[int, int] = {}
+        """of each leaf, so that it comes after its detours"""
+        self._endless: set[int] = set()
+        """leaves with detours that lead back to them"""
 
     def chain(self, cuts: dict[Source, dict[tuple[int, int], None]]) -> None:
         """From now on, cancelled actions may follow each other."""
         self.detours = [[] for _ in self.flow.leaves]
         for pairs in cuts.values():
             for x, target in pairs:
-                self.cut.add(x)
                 if x != target and x not in self.detours[target]:
                     self.detours[target].append(x)
+        for place, part in enumerate(components(self.detours)):
+            self._order |= dict.fromkeys(part, place)
+            self._endless.update(part if len(part) > 1 else ())
 
     def most(self, x: int, target: int) -> Cost:
         """From on the way to x to another leaf, at most."""
@@ -426,24 +434,29 @@ class _CutWays:
         """The rest of the way to x at a speed, at most."""
         if (x, velocity) not in self._found:
             if self.detours:
-                self._measure(velocity)
+                self._measure(x, velocity)
             else:
                 self._found[x, velocity] = self._to(self.origins[x], x, velocity)
         return self._found[x, velocity]
 
-    def _measure(self, velocity: float | None) -> None:
-        """The longest way to each leaf at a speed, from wherever the robot may be before it."""
-        if self._parts is None:
-            self._parts = components(self.detours)
-        for part in self._parts:
-            endless = len(part) > 1
-            for x in self.cut.intersection(part):
-                cost = self._to(self.origins[x], x, velocity)
-                for y in self.detours[x]:
-                    if endless:
-                        break
-                    cost = cost | (self._found[y, velocity] + self._between(y, x, velocity))
-                self._found[x, velocity] = _UNLIMITED if endless else cost
+    def _measure(self, leaf: int, velocity: float | None) -> None:
+        """The longest way to a leaf at a speed, from wherever the robot may be before it, and to
+        those that it may have been on the way to before."""
+        needed: set[int] = set()
+        pending = [leaf]
+        while pending:
+            x = pending.pop()
+            if x not in needed and (x, velocity) not in self._found:
+                needed.add(x)
+                pending += () if x in self._endless else self.detours[x]
+        for x in sorted(needed, key=self._order.__getitem__):
+            if x in self._endless:
+                self._found[x, velocity] = _UNLIMITED
+                continue
+            cost = self._to(self.origins[x], x, velocity)
+            for y in self.detours[x]:
+                cost = cost | (self._found[y, velocity] + self._between(y, x, velocity))
+            self._found[x, velocity] = cost
 
     def _between(self, x: int, target: int, velocity: float | None) -> Cost:
         standings = [place.standing for place in self.places[x]]

@@ -10,7 +10,7 @@ import heapq
 import math
 from collections.abc import Generator, Iterator
 from dataclasses import dataclass, field
-from typing import TypeGuard, cast
+from typing import NamedTuple, TypeGuard, cast
 
 from argo_compiler.analysis.flow import NOWHERE, Flow
 from argo_compiler.analysis.legs import ANY, BEGIN, FREE, NOTHING, Cost, Legs, QuantityRange, Source
@@ -34,8 +34,7 @@ class BoundsTooLargeError(Exception):
     """The bounds would take too long to compute."""
 
 
-@dataclass(frozen=True, slots=True)
-class Hop:
+class Hop(NamedTuple):
     """A step between two nodes of a level."""
 
     target: int
@@ -333,13 +332,14 @@ def is_entry(key: Key) -> TypeGuard[Entry]:
 
 def _least(graph: LevelGraph, measure: str, clock: _Clock | None) -> None:
     """Dijkstra's algorithm. With a clock, times are those since the mission's start."""
+    of_time = measure == "time"
     distance = [math.inf] * len(graph.keys)
     before: list[tuple[int, Out | None] | None] = [None] * len(graph.keys)
     heap: list[tuple[float, int]] = []
 
     def reach(hop: Hop, here: float, node: int | None) -> None:
         if clock is None:
-            there = here + getattr(hop.cost, measure).least
+            there = here + (hop.cost.time if of_time else hop.cost.energy).least
         else:
             latest = 0.0 if node is None else graph.most[measure][node]
             there = clock.soonest(hop, graph.keys[hop.target], here, latest)
@@ -363,12 +363,13 @@ def _most(
     graph: LevelGraph, measure: str, order: list[int], looping: list[bool], clock: _Clock | None
 ) -> None:
     """The longest ways; without bound in loops and after them."""
+    of_time = measure == "time"
     distance = [-math.inf] * len(graph.keys)
     before: list[tuple[int, Out | None] | None] = [None] * len(graph.keys)
 
     def reach(hop: Hop, here: float, node: int | None) -> None:
         if clock is None:
-            there = here + getattr(hop.cost, measure).most
+            there = here + (hop.cost.time if of_time else hop.cost.energy).most
         else:
             there = clock.latest(hop, graph.keys[hop.target], here)
         if there > distance[hop.target]:

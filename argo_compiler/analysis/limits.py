@@ -7,7 +7,7 @@ from collections.abc import Callable, Iterator
 from argo_compiler.analysis.bounds import Extent
 from argo_compiler.analysis.facts import Bound, Bounds, Stretch
 from argo_compiler.analysis.quantities import energy_words, time_words
-from argo_compiler.analysis.study import Study, listed
+from argo_compiler.analysis.study import Study
 from argo_compiler.analysis.travel import NoWay, Travel
 from argo_compiler.analysis.values import told_by_others
 from argo_compiler.analysis.windows import time_limits, windows
@@ -24,13 +24,13 @@ from argo_compiler.il import (
     Response,
     Task,
 )
+from argo_compiler.listing import quoted
 from argo_compiler.model import Pose
 
 AGE_WORK = 3_000_000
 """steps that ages of values may take to look at"""
 RESERVE_SHARE = 0.2
 """of the battery that is to be left at the dock: the charge that the robot calls low"""
-_DRIVES = (Response.RETURN, Response.SAFE_AREA)
 _SHOWN = 8  # stretches of a path that a message spells out
 
 
@@ -48,7 +48,7 @@ def limits(study: Study, travel: Travel, worst: Bound | None = None) -> Iterator
             yield from _cut_short(study, extent, study.mission.max_duration, worst)
         else:
             yield from _too_long(study, extent.duration, study.mission.max_duration)
-    yield from windows(study, extent.moments)
+    yield from windows(study, extent)
     if travel.battery is not None:
         yield from _too_far(study, extent.energy, travel.battery)
         yield from _no_way_back(study, extent.energy, travel)
@@ -75,7 +75,7 @@ def _blocked_retreats(study: Study, travel: Travel) -> Iterator[Diagnostic]:
     if back and mission.dock is not None:
         retreats.append((mission.dock, "dock", "return to the dock"))
     for reaction in mission.reactions:
-        if reaction.response in _DRIVES and reaction.pose is not None:
+        if reaction.response.drives and reaction.pose is not None:
             where = "dock" if reaction.response is Response.RETURN else "safe area"
             place = f"go to the {where} of the reaction to {reaction.event}"
             retreats.append(
@@ -150,8 +150,8 @@ def _cut_short(
         Severity.WARNING,
         f"the plan may take {up_to}, longer than the mission's maximum duration of "
         f"{time_words(limit)}: {ends}"
-        + (f"; if nothing fails, {listed(lost)} will not be done by then" if lost else "")
-        + (f"; {listed(unsure)} may not be done, or not in all rounds" if unsure else ""),
+        + (f"; if nothing fails, {quoted(lost)} will not be done by then" if lost else "")
+        + (f"; {quoted(unsure)} may not be done, or not in all rounds" if unsure else ""),
         "leave out tasks, shorten groups, or allow more time",
         subject="max_duration",
     )

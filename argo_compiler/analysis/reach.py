@@ -2,9 +2,10 @@
 
 from collections.abc import Iterator
 
-from argo_compiler.analysis.study import Study, listed
+from argo_compiler.analysis.study import Study
 from argo_compiler.analysis.transitions import why_never
 from argo_compiler.diagnostics import Diagnostic, Severity
+from argo_compiler.listing import quoted
 
 _REASONS = 3  # ways to a task that a message speaks of
 
@@ -12,7 +13,9 @@ _REASONS = 3  # ways to a task that a message speaks of
 def unreachable_tasks(study: Study) -> Iterator[Diagnostic]:
     """One for each task that can't be reached, whatever is measured and whatever fails."""
     lost = [
-        i for i in range(len(study.flow.leaves)) if not study.all.reached(i) and study.is_own(i)
+        i
+        for i in range(len(study.flow.leaves))
+        if not study.with_failures.reached(i) and study.is_own(i)
     ]
     reasons = _ways_in(study, lost)
     for leaf in lost:
@@ -40,12 +43,12 @@ def _ways_in(study: Study, lost: list[int]) -> dict[int, Ways]:
         if leaf.tail in found and leaf.tail != i:
             _note(study, found[leaf.tail], i, None)
         for way in (leaf.failure, leaf.missed):
-            if way in found and way != i and not study.all.reached(i):
+            if way in found and way != i and not study.with_failures.reached(i):
                 found[way][1].append(study.name(i))
     for number, group in enumerate(flow.groups):
         if group.onward not in found:
             continue
-        if study.all.reached(flow.round_end(number)):
+        if study.with_failures.reached(flow.round_end(number)):
             if len(found[group.onward][0]) < _REASONS:
                 found[group.onward][0].append(
                     f"group '{group.name}', after which it would come, is repeated without limit"
@@ -57,7 +60,7 @@ def _ways_in(study: Study, lost: list[int]) -> dict[int, Ways]:
 
 def _note(study: Study, ways: Ways, source: int, conditional: int | None) -> None:
     reasons, lost = ways
-    if not study.all.reached(source):
+    if not study.with_failures.reached(source):
         lost.append(study.name(source))
     elif len(reasons) < _REASONS:
         if conditional is None:
@@ -71,9 +74,9 @@ def _note(study: Study, ways: Ways, source: int, conditional: int | None) -> Non
 def _why(reasons: list[str], lost: list[str]) -> str:
     names = list(dict.fromkeys(lost))
     if names and reasons:
-        reasons = [*reasons, f"{listed(names)} can't be reached either"]
+        reasons = [*reasons, f"{quoted(names)} can't be reached either"]
     elif len(names) == 1:
-        reasons = [f"only {listed(names)} leads to it, and that task can't be reached either"]
+        reasons = [f"only {quoted(names)} leads to it, and that task can't be reached either"]
     elif names:
-        reasons = [f"only {listed(names)} lead to it, and those tasks can't be reached either"]
+        reasons = [f"only {quoted(names)} lead to it, and those tasks can't be reached either"]
     return "; ".join(reasons) or "no transition leads to it"

@@ -10,9 +10,11 @@ other in one long number, so that joining what is known on two paths is a single
 from bisect import bisect_left
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
+from functools import cached_property
 
 from argo_compiler.catalog import Interval
 from argo_compiler.il import Condition, ConditionType
+from argo_compiler.listing import listed
 
 
 @dataclass(frozen=True)
@@ -26,29 +28,34 @@ class Scale:
     abnormal: int = -1
     """the regions of values that the robot may call abnormal; -1: all of them"""
 
-    @property
+    @cached_property
     def missing(self) -> int:
         """The bit for: there may be no reading."""
         return 1 << (2 * len(self.bounds) + 1)
 
-    @property
+    @cached_property
     def unreadable(self) -> int:
         """The bit for: the reading may be unreadable."""
         return self.missing << 1
 
-    @property
+    @cached_property
     def failed(self) -> int:
         """The bit for: the reading may have failed otherwise."""
         return self.missing << 2
 
-    @property
+    @cached_property
     def without_value(self) -> int:
         return self.missing | self.unreadable | self.failed
 
-    @property
+    @cached_property
     def width(self) -> int:
         """How many bits a set takes."""
         return 2 * len(self.bounds) + 4
+
+    @cached_property
+    def full(self) -> int:
+        """All bits of a set."""
+        return (1 << self.width) - 1
 
     def satisfying(self, condition: Condition) -> int:
         """What a reading may be that satisfies a condition on this object, its age apart."""
@@ -85,9 +92,7 @@ class Scale:
             while k < count and regions >> k & 1:
                 k += 1
             pieces.append(self._stretch(first, k - 1))
-        if not pieces:
-            return "nothing"
-        return pieces[0] if len(pieces) == 1 else f"{', '.join(pieces[:-1])} or {pieces[-1]}"
+        return listed(pieces, "or") or "nothing"
 
     def _stretch(self, first: int, last: int) -> str:
         low = None if first == 0 else self.bounds[(first - 1) // 2]
@@ -171,13 +176,13 @@ class Fields:
         shift = self.shift.get(object_id)
         if shift is None:
             return scale.possible | scale.without_value
-        return (state >> shift) & ((1 << scale.width) - 1)
+        return (state >> shift) & scale.full
 
     def set(self, state: int, object_id: str, regions: int) -> int:
         shift = self.shift.get(object_id)
         if shift is None:
             return state
-        old = (state >> shift) & ((1 << self.scales[object_id].width) - 1)
+        old = (state >> shift) & self.scales[object_id].full
         return state ^ ((old ^ regions) << shift)
 
 

@@ -29,7 +29,7 @@ class Study:
     flow: Flow
     nominal: Paths
     """if every action succeeds and every measurement gives a value"""
-    all: Paths
+    with_failures: Paths
     """whatever fails"""
 
     @cached_property
@@ -112,10 +112,7 @@ class Study:
         """Whether an event may end the mission."""
         return any(
             r.response is Response.ABORT
-            or (
-                r.response in (Response.RETURN, Response.SAFE_AREA)
-                and r.afterwards is Afterwards.END
-            )
+            or (r.response.drives and r.afterwards is Afterwards.END)
             or (r.hold_limit is not None and r.on_limit is Afterwards.END)
             for r in self.mission.reactions
         )
@@ -187,11 +184,3 @@ class Study:
             span=span,
             subject=subject,
         )
-
-
-def listed(names: list[str]) -> str:
-    """Names in quotes: `'A', 'B' and 'C'`, the rest of a long list only counted."""
-    shown = [f"'{name}'" for name in names[:_NAMES]]
-    if len(names) > _NAMES:
-        shown.append(f"{len(names) - _NAMES} more")
-    return shown[0] if len(shown) == 1 else f"{', '.join(shown[:-1])} and {shown[-1]}"

@@ -7,7 +7,7 @@ from argo_compiler.analysis.study import Study
 from argo_compiler.analysis.values import GuardStatus, objects_of
 from argo_compiler.diagnostics import Diagnostic, Severity
 from argo_compiler.graphs import first_ways, way_to
-from argo_compiler.hfsm.conditions import words
+from argo_compiler.hfsm.conditions import all_words, words
 from argo_compiler.il import Action, Condition
 
 _SEARCHES = 10  # objects for which a path that does not measure them is looked up
@@ -19,10 +19,10 @@ def transitions(study: Study) -> Iterator[Diagnostic]:
     measured = {t.object_id for t in study.mission.tasks if t.action is Action.MEASURE}
     paths = _Unmeasured(study)
     for leaf, flow in enumerate(study.flow.leaves):
-        if not flow.conditional or not study.all.reached(leaf):
+        if not flow.conditional or not study.with_failures.reached(leaf):
             continue
         told: set[str] = set()
-        looks = study.all.conditional(study.flow, leaf)
+        looks = study.with_failures.conditional(study.flow, leaf)
         for k, index in enumerate(study.indices(leaf)):
             conditions = flow.conditional[k][0]
             if k >= len(looks) or not looks[k].possible:
@@ -41,7 +41,7 @@ def transitions(study: Study) -> Iterator[Diagnostic]:
 
 def why_never(study: Study, leaf: int, k: int) -> str:
     """Why conditional transition k of a leaf that is reached is never taken."""
-    looks = study.all.conditional(study.flow, leaf)
+    looks = study.with_failures.conditional(study.flow, leaf)
     if k >= len(looks):
         return "a transition before it is always taken"
     taken = looks[k].state
@@ -51,7 +51,7 @@ def why_never(study: Study, leaf: int, k: int) -> str:
             return why
         scale, there = _there(study, condition, taken)
         regions = there & scale.satisfying(condition)
-        taken = study.all.fields.set(taken, condition.object_id, regions)
+        taken = study.with_failures.fields.set(taken, condition.object_id, regions)
     return "its conditions exclude each other"
 
 
@@ -65,8 +65,8 @@ def _why_not(study: Study, condition: Condition, taken: int, before: int) -> str
         return f"{name} shows {scale.words(scale.possible)}, so {words(condition)} never holds"
     _, at_first = _there(study, condition, before)
     if condition.type.compares and not at_first & (scale.missing - 1):
-        looked = study.all.fields.scales[condition.object_id].possible
-        if condition.object_id in study.all.fields.shift and looked:
+        looked = study.with_failures.fields.scales[condition.object_id].possible
+        if condition.object_id in study.with_failures.fields.shift and looked:
             return (
                 f"{name} has no value here: no path measures it before, or only where a "
                 "transition that was looked at before covers all its values"
@@ -80,20 +80,20 @@ def _why_not(study: Study, condition: Condition, taken: int, before: int) -> str
 
 
 def _there(study: Study, condition: Condition, state: int) -> tuple[Scale, int]:
-    fields = study.all.fields
+    fields = study.with_failures.fields
     return fields.scales[condition.object_id], fields.get(state, condition.object_id)
 
 
 def _first_state(study: Study, leaf: int) -> int | None:
     """The values when the first transition of a leaf is looked at."""
-    looks: tuple[GuardStatus, ...] = study.all.looks[leaf]
+    looks: tuple[GuardStatus, ...] = study.with_failures.looks[leaf]
     return looks[0].state if looks else None
 
 
 def _unmeasured(study: Study, leaf: int, object_id: str) -> bool:
     """Whether no path to a leaf measures an object, its own action included."""
     state = _first_state(study, leaf)
-    fields = study.all.fields
+    fields = study.with_failures.fields
     if state is None or object_id not in fields.shift:
         return False
     return not fields.get(state, object_id) & ~fields.scales[object_id].missing
@@ -144,7 +144,7 @@ def _always(study: Study, leaf: int, k: int) -> bool:
 
 def _always_taken(study: Study, leaf: int, k: int, index: int) -> Diagnostic:
     task = study.task(leaf)
-    held = " and ".join(words(c) for c in task.transitions[index].conditions)
+    held = all_words(task.transitions[index].conditions)
     after = len(task.transitions) > 1
     return study.diagnostic(
         "transition-always",

@@ -140,6 +140,19 @@ def told_by_others(flow: Flow) -> frozenset[str]:
     return frozenset(waited | compared - {leaf.measures for leaf in flow.leaves})
 
 
+_Look = tuple[GuardStatus, int, int]
+"""what is known of a transition, where it leads, and the values if it is taken"""
+
+
+@dataclass(frozen=True, slots=True)
+class _Change:
+    """What the end of a measurement does to the values."""
+
+    kept: int
+    """those of all other objects"""
+    added: int
+
+
 class PathSearch:
     """The ways on from each node, and the fixed point in the making."""
 
@@ -150,18 +163,27 @@ class PathSearch:
         self.states: list[int | None] = [None] * flow.size
         self.updates = [0] * flow.size
         # Nodes in the order of the mission's list, so that most are looked at once.
-        self.rank = [
+        rank = [
             *((i, 0) for i in range(len(flow.leaves))),
             *((g.last, len(flow.groups) - k) for k, g in enumerate(flow.groups)),
             *((g.last, 2 * len(flow.groups) - k) for k, g in enumerate(flow.groups)),
             (len(flow.leaves), 0),
         ]
-        self.waiting: list[tuple[tuple[int, int], int]] = []
+        self.order = sorted(range(flow.size), key=rank.__getitem__)
+        self.place = [0] * flow.size
+        """of each node in the order"""
+        for place, node in enumerate(self.order):
+            self.place[node] = place
+        self.waiting: list[int] = []
+        """places of nodes, a heap"""
         self.queued = [False] * flow.size
         self.satisfying: dict[tuple[object, ...], int] = {}
         self.told = sum_bits(self._values(o) for o in told_by_others(flow))
         self.late = _late_readings(flow, self._late_readings)
-
+        self.looks: list[tuple[GuardStatus, ...]] = [()] * len(flow.leaves)
+        self._changes: dict[tuple[str, bool], _Change] = {}
+        self.changes = [*map(self._change, flow.leaves)]
+        """for each leaf, what its end changes"""
         self.plain = [*map(self._only_way, flow.leaves), *([None] * (flow.size - len(flow.leaves)))]
         """for each node, the one that always follows, if it is so simple"""
 
@@ -173,7 +195,7 @@ class PathSearch:
     def run(self) -> Paths:
         self._reach(self.flow.initial, self.fields.unmeasured | self.told)
         while self.waiting:
-            node = heapq.heappop(self.waiting)[1]
+            node = self.order[heapq.heappop(self.waiting)]
             self.queued[node] = False
             state = self.states[node]
             assert state is not None
@@ -181,17 +203,18 @@ class PathSearch:
             if following is not None:
                 self._reach(following, self._after(node, state) | self.told)
                 continue
-            for target, after in self.ways(node, state):
+            looked = self._look(node, state)
+            if looked:
+                self.looks[node] = tuple([look for look, _, _ in looked])
+            for target, after in self._ways(node, state, looked):
                 self._reach(target, after)
-        looks = tuple(
-            ()
-            if state is None
-            else (GuardStatus(True, True, self._after(i, state) | self.told),)
-            if self.plain[i] is not None
-            else tuple(look for look, _, _ in self._look(i, self._after(i, state)))
-            for i, state in enumerate(self.states[: len(self.flow.leaves)])
+        for i in range(len(self.looks)):
+            state = self.states[i]
+            if state is not None and self.plain[i] is not None:
+                self.looks[i] = (GuardStatus(True, True, self._after(i, state) | self.told),)
+        return Paths(
+            self.fields, tuple(self.states), tuple(self.looks), self.failures, tuple(self.late)
         )
-        return Paths(self.fields, tuple(self.states), looks, self.failures, tuple(self.late))
 
     def _reach(self, node: int, state: int) -> None:
         state |= self.late[node]
@@ -205,7 +228,7 @@ class PathSearch:
         self.states[node] = joined
         if not self.queued[node]:
             self.queued[node] = True
-            heapq.heappush(self.waiting, (self.rank[node], node))
+            heapq.heappush(self.waiting, self.place[node])
 
     def _widened(self, known: int, joined: int, everything: bool) -> int:
         if everything:
@@ -218,10 +241,13 @@ class PathSearch:
 
     def ways(self, node: int, state: int) -> Iterator[tuple[int, int]]:
         """Where to go on from a node with some readings, and with which ones then."""
+        return self._ways(node, state, self._look(node, state))
+
+    def _ways(self, node: int, state: int, looked: list[_Look]) -> Iterator[tuple[int, int]]:
         flow = self.flow
         if flow.is_leaf(node):
             leaf = flow.leaves[node]
-            for look, target, taken in self._look(node, self._after(node, state)):
+            for look, target, taken in looked:
                 if look.possible:
                     yield target, taken
             if leaf.failure is not None and (self.failures or self._fails_by_itself(leaf)):
@@ -288,38 +314,57 @@ class PathSearch:
         object_id = leaf.measures
         if object_id is None or object_id not in self.fields.scales:
             return state
+        return self.fields.set(state, object_id, self._without_value(object_id)) | self.told
+
+    def _without_value(self, object_id: str) -> int:
         scale = self.fields.scales[object_id]
         # What is done by hand without a value leaves none; it is no failure, but comes here too.
-        none = scale.without_value if self.failures else scale.failed
-        return self.fields.set(state, object_id, none) | self.told
+        return scale.without_value if self.failures else scale.failed
+
+    def _change(self, leaf: LeafFlow) -> _Change | None:
+        """What the end of a leaf changes, be it without a value."""
+        object_id = leaf.measures
+        if object_id is None or object_id not in self.fields.scales:
+            return None
+        unmeasured = self.failures or self._may_go_on_unmeasured(leaf)
+        key = object_id, unmeasured
+        if key not in self._changes:
+            readings = self.fields.scales[object_id].possible
+            if unmeasured:
+                readings |= self._without_value(object_id)
+            added = self.fields.set(0, object_id, readings)
+            kept = self.fields.set(self.fields.anything, object_id, 0)
+            self._changes[key] = _Change(kept, added | self.told)
+        return self._changes[key]
 
     def _after(self, node: int, state: int) -> int:
         """The values when a leaf has ended."""
-        leaf = self.flow.leaves[node]
-        measured = self._measured(leaf, state)
-        if self.failures or self._may_go_on_unmeasured(leaf):
-            measured |= self._unmeasured(leaf, state)
-        return measured
+        change = self.changes[node]
+        return state if change is None else state & change.kept | change.added
 
     def _may_go_on_unmeasured(self, leaf: LeafFlow) -> bool:
         """Whether a window that is missed counts as the end of the task."""
         return leaf.deadline is not None and leaf.missed is None and leaf.failure is None
 
-    def _look(self, node: int, state: int) -> Iterator[tuple[GuardStatus, int, int]]:
-        """The transitions of a leaf as long as they may be looked at: what is known of each, where
-        it leads, and the values if it is taken."""
+    def _look(self, node: int, state: int) -> list[_Look]:
+        """The transitions of a leaf with some readings as long as they may be looked at; nothing of
+        other nodes."""
+        if not self.flow.is_leaf(node):
+            return []
         leaf = self.flow.leaves[node]
+        looked: list[_Look] = []
         # What was just measured is there and new, tracked or not.
         fresh = None if self.failures or self._may_go_on_unmeasured(leaf) else leaf.measures
         changing = self.told if leaf.wait is None else self.told | self.late[node]
-        state |= changing
+        state = self._after(node, state) | changing
         for conditions, target in leaf.conditional:
             look, taken, rest = self._test(conditions, state, fresh)
-            yield look, target, taken | changing
+            looked.append((look, target, taken | changing))
             if look.certain:
-                return
+                return looked
             state = rest | changing
-        yield GuardStatus(True, True, state), leaf.tail, state
+        looked.append((GuardStatus(True, True, state), leaf.tail, state))
+        return looked
 
     def _test(
         self, conditions: tuple[Condition, ...], state: int, fresh: str | None

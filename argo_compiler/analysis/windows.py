@@ -3,7 +3,7 @@
 import math
 from collections.abc import Iterator
 
-from argo_compiler.analysis.moments import TaskEnd
+from argo_compiler.analysis.bounds import Extent
 from argo_compiler.analysis.quantities import time_words
 from argo_compiler.analysis.study import Study
 from argo_compiler.diagnostics import Diagnostic, Severity
@@ -11,12 +11,13 @@ from argo_compiler.diagnostics import Diagnostic, Severity
 _SOON = 1e-6  # s: sums of floats are not exact
 
 
-def windows(study: Study, moments: tuple[TaskEnd, ...]) -> Iterator[Diagnostic]:
+def windows(study: Study, extent: Extent) -> Iterator[Diagnostic]:
     """Tasks that end too late for their window, at the planned times."""
-    for leaf, moment in enumerate(moments):
-        window = study.task(leaf).window
+    for leaf, flow in enumerate(study.flow.leaves):
+        window = flow.leaf.task.window
         if window is None or window.latest is None or not study.nominal.reached(leaf):
             continue
+        moment = extent.moments[leaf]
         name, latest = study.name(leaf), time_words(window.latest)
         if moment.soonest > window.latest + _SOON:
             soonest = ""

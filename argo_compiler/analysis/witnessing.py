@@ -12,7 +12,7 @@ def make_witnesses(study: Study, kept: Iterable[KeptLoop]) -> Witnesses:
     """What shows that the claims of a study are right, in linear time."""
     return Witnesses(
         nominal=_invariant(study, study.nominal, failures=False),
-        all=_invariant(study, study.all, failures=True),
+        all=_invariant(study, study.with_failures, failures=True),
         traps=(
             *(trap_of(study, nodes) for nodes in study.trap_nodes),
             *(trap_of(study, sorted(loop.nodes), loop.reading) for loop in kept),

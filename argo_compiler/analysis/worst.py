@@ -18,18 +18,17 @@ from argo_compiler.il import Action, Afterwards, EventKind, Mode, Reaction, Resp
 
 _MOST_LEAVES = 2_000
 """of missions that are looked at"""
-_DRIVES = (Response.RETURN, Response.SAFE_AREA)
 
 
 def worst_duration(study: Study) -> Bound | None:
     """A bound of the duration (s) over all runs; None if that was not looked at."""
     if study.travel is None or len(study.flow.leaves) > _MOST_LEAVES:
         return None
-    legs = Legs(study.flow, study.all, study.travel, study.mission)
+    legs = Legs(study.flow, study.with_failures, study.travel, study.mission)
     if legs.blocked or legs.too_many:
         return None
     try:
-        within = longest(study.flow, study.all, legs)
+        within = longest(study.flow, study.with_failures, legs)
     except BoundsTooLargeError:
         return None
     if study.extent is not None and study.extent.duration is not None:
@@ -78,7 +77,7 @@ class _Reactions:
         if reaction.response is Response.ABORT:
             return self.clean_up
         held = 0.0
-        if reaction.until is not None or reaction.response is Response.PAUSE:
+        if reaction.holds:
             held = math.inf if reaction.hold_limit is None else reaction.hold_limit
         if reaction.response is Response.PAUSE:
             ends = reaction.until is None and reaction.on_limit is Afterwards.END
@@ -90,7 +89,7 @@ class _Reactions:
     def _drive(self, reaction: Reaction) -> float:
         """s at most to where a reaction sends the robot, from wherever it is."""
         target = self._target(reaction)
-        others = [self._target(r) for r in self.reactions if r.response in _DRIVES]
+        others = [self._target(r) for r in self.reactions if r.response.drives]
         ways = [self._longest_way(target)]
         for other in others:
             if other != target:
@@ -135,7 +134,7 @@ class _Reactions:
 
 def _may_pause(reaction: Reaction) -> bool:
     """Whether a reaction may leave the mission paused until a person resumes it."""
-    if reaction.response in _DRIVES and reaction.afterwards is not Afterwards.END:
+    if reaction.response.drives and reaction.afterwards is not Afterwards.END:
         return True  # if the drive fails, or as it says
-    held = reaction.until is not None or reaction.response is Response.PAUSE
-    return held and reaction.hold_limit is not None and reaction.on_limit is Afterwards.WAIT
+    pauses = reaction.hold_limit is not None and reaction.on_limit is Afterwards.WAIT
+    return reaction.holds and pauses

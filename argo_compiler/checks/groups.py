@@ -8,14 +8,13 @@ from bisect import bisect_left
 from collections.abc import Iterator
 
 from argo_compiler.checks.diagnostic import diagnostic_about
+from argo_compiler.checks.instant_loops import MIN_TIME_S
 from argo_compiler.diagnostics import Diagnostic, Severity
 from argo_compiler.il import Action, Group, Mission, Stop, Task
 from argo_compiler.il.grouping import GroupNesting, GroupRange, group_ranges, parent_name
 from argo_compiler.il.subjects import Subjects
+from argo_compiler.il.ways import branches, default_target
 from argo_compiler.nearest_name import nearest_name
-
-MIN_HARD_DURATION_S = 1e-3
-"""A group that a time-out enters again has to last: each visit is a step of the machine."""
 
 MIN_PERIOD_S = 1.0
 """Rounds that are late are made up for at once, so not too many may come to be late in a pause."""
@@ -40,8 +39,9 @@ def check_groups(mission: Mission) -> tuple[Diagnostic, ...]:
         *_check_starts(mission, ranges, subjects),
     ]
     if not diagnostics and ranges:
-        diagnostics += _check_endless(mission, subjects)
-        diagnostics += _check_leaving(mission, subjects)
+        layout = GroupNesting.of(mission)
+        diagnostics += _check_endless(mission, layout, subjects)
+        diagnostics += _check_leaving(mission, layout, subjects)
     return (*diagnostics, *_check_unused(mission.groups, subjects))
 
 
@@ -124,14 +124,14 @@ def _check_ends(mission: Mission, subjects: Subjects) -> Iterator[Diagnostic]:
                 "swap its start and end or reorder the tasks",
                 field=".start",
             )
-        if group.stop is Stop.HARD and 0 < group.max_repeat_duration < MIN_HARD_DURATION_S:
+        if group.stop is Stop.HARD and 0 < group.max_repeat_duration < MIN_TIME_S:
             yield _error(
                 subjects.group(i),
                 group,
                 "il.group-duration",
                 f"the time of group '{group.name}' is up after {group.max_repeat_duration:g} s, "
                 "before any action could be carried out",
-                f"allow it at least {MIN_HARD_DURATION_S:g} s, or 0 for no limit",
+                f"allow it at least {MIN_TIME_S:g} s, or 0 for no limit",
                 field=".max_repeat_duration",
             )
         if 0 < group.every < MIN_PERIOD_S:
@@ -219,12 +219,13 @@ def _check_unused(groups: tuple[Group, ...], subjects: Subjects) -> Iterator[Dia
                 yield diagnostic.model_copy(update={"severity": Severity.WARNING})
 
 
-def _check_leaving(mission: Mission, subjects: Subjects) -> Iterator[Diagnostic]:
+def _check_leaving(
+    mission: Mission, layout: GroupNesting, subjects: Subjects
+) -> Iterator[Diagnostic]:
     """Each way that leaves a repeated group before the end of its round (G14).
 
     Endless groups have no other way out, and groups of one round nothing to lose.
     """
-    layout = GroupNesting.of(mission)
     position = {task.name: i for i, task in enumerate(mission.tasks)}
     for i, task in enumerate(mission.tasks):
         if layout.innermost[i] is None:
@@ -257,10 +258,8 @@ def _ways_out(task: Task) -> Iterator[tuple[str | None, str]]:
     """The targets of a task's ways with their fields; None for the unconditional one."""
     for k, transition in enumerate(task.transitions):
         yield f".transitions[{k}].target" if transition.conditions else None, transition.target
-    if task.failure_target is not None:
-        yield ".failure_target", task.failure_target
-    if task.window is not None and task.window.missed_target is not None:
-        yield ".window.missed_target", task.window.missed_target
+    for field, target in branches(task).items():
+        yield f".{field}", target
 
 
 def _endless(group: Group) -> bool:
@@ -271,13 +270,14 @@ def _timed_out(group: Group) -> bool:
     return group.stop is Stop.HARD and group.max_repeat_duration > 0
 
 
-def _check_endless(mission: Mission, subjects: Subjects) -> Iterator[Diagnostic]:
+def _check_endless(
+    mission: Mission, layout: GroupNesting, subjects: Subjects
+) -> Iterator[Diagnostic]:
     """Endless groups that no transition leaves, and no time-out of a group around them.
 
     A transition leaves a group if its target lies outside the group's range. So the lowest and the
     highest target of all members decide; they are gathered from the innermost groups outward.
     """
-    layout = GroupNesting.of(mission)
     lowest, highest = _target_bounds(mission, layout)
     bounded = [False] * len(layout.ranges)
     for i, r in enumerate(layout.ranges):
@@ -317,7 +317,7 @@ def _target_bounds(mission: Mission, layout: GroupNesting) -> tuple[list[int], l
             continue
         targets = [position.get(target, i) for field, target in _ways_out(task) if field]
         if _goes_on(layout, i):
-            default = next((t.target for t in task.transitions if not t.conditions), None)
+            default = default_target(task)
             targets.append(end if default is None else position.get(default, i))
         for target in targets:
             lowest[innermost] = min(lowest[innermost], target)

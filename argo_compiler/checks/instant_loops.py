@@ -9,8 +9,8 @@ from argo_compiler.il import Action, Mission, OnFailure, Task
 from argo_compiler.il.grouping import GroupRange, group_ranges
 from argo_compiler.il.subjects import Subjects
 
-MIN_WAIT_S = 1e-3
-"""A shorter WAIT, or limit of one, takes no time."""
+MIN_TIME_S = 1e-3
+"""What lasts shorter takes no time: the machine might take steps for ever in one moment."""
 
 MOST_ROUNDS = 1000
 """that may follow each other in one moment, those of nested groups multiplied"""
@@ -23,7 +23,7 @@ def check_instant_loops(mission: Mission) -> Iterator[Diagnostic]:
     instant = {
         task.name
         for task in mission.tasks
-        if any(is_instant(task) for is_instant in (_ends_at_once, _fails_at_once, _may_be_missed))
+        if _ends_at_once(task) or _fails_at_once(task) or _may_be_missed(task)
     }
     if not instant:
         return
@@ -52,14 +52,14 @@ def check_instant_loops(mission: Mission) -> Iterator[Diagnostic]:
 
 def _ends_at_once(task: Task) -> bool:
     rule = task.wait
-    if task.action is not Action.WAIT or rule is None:
+    if rule is None or task.action is not Action.WAIT:
         return False
-    return bool(rule.conditions) if rule.duration is None else rule.duration < MIN_WAIT_S
+    return bool(rule.conditions) if rule.duration is None else rule.duration < MIN_TIME_S
 
 
 def _fails_at_once(task: Task) -> bool:
     limit = task.wait.limit if task.wait is not None else None
-    return task.action is Action.WAIT and limit is not None and limit < MIN_WAIT_S
+    return limit is not None and limit < MIN_TIME_S and task.action is Action.WAIT
 
 
 def _may_be_missed(task: Task) -> bool:

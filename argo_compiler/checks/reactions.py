@@ -7,9 +7,6 @@ from argo_compiler.diagnostics import Diagnostic, Severity
 from argo_compiler.il import Afterwards, EventKind, Mission, Reaction, Response
 from argo_compiler.il.subjects import Subjects
 
-_DRIVES = frozenset([Response.RETURN, Response.SAFE_AREA])
-_HOLDS = _DRIVES | {Response.PAUSE}
-
 
 def check_reactions(mission: Mission) -> Iterator[Diagnostic]:
     """All that is wrong or odd about a mission's reactions."""
@@ -35,7 +32,7 @@ def check_reactions(mission: Mission) -> Iterator[Diagnostic]:
             ranked.setdefault(reaction.rank, reaction)
         yield from _check_battery(at, reaction)
         yield from _check_unused(at, reaction)
-        if reaction.response in _HOLDS and reaction.until is not None:
+        if _may_hold(reaction.response) and reaction.until is not None:
             yield from _check_until(at, reaction, first)
         for field, event in (("event", reaction.event), ("until", reaction.until)):
             if event is EventKind.TIME_UP and mission.max_duration is None:
@@ -112,16 +109,16 @@ def _check_battery(at: str, reaction: Reaction) -> Iterator[Diagnostic]:
 
 def _check_unused(at: str, reaction: Reaction) -> Iterator[Diagnostic]:
     response = reaction.response
+    may_hold = _may_hold(response)
     unused = {
-        "pose": reaction.pose is not None and response not in _DRIVES,
+        "pose": reaction.pose is not None and not response.drives,
         "area": reaction.area is not None
         and (response is not Response.RETURN or reaction.pose is None),
-        "hold_limit": reaction.hold_limit is not None
-        and (response not in _HOLDS or (response is not Response.PAUSE and reaction.until is None)),
+        "hold_limit": reaction.hold_limit is not None and not (may_hold and reaction.holds),
         "on_limit": reaction.on_limit is not Afterwards.WAIT and reaction.hold_limit is None,
-        "until": reaction.until is not None and response not in _HOLDS,
+        "until": reaction.until is not None and not may_hold,
         "afterwards": reaction.afterwards is not Afterwards.END
-        and response not in _DRIVES
+        and not response.drives
         # That is what happens after a pause anyway.
         and not (response is Response.PAUSE and reaction.afterwards is Afterwards.RESUME),
     }
@@ -164,3 +161,7 @@ def _check_until(
             Severity.WARNING,
             ".until",
         )
+
+
+def _may_hold(response: Response) -> bool:
+    return response.drives or response is Response.PAUSE

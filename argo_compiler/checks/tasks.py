@@ -9,12 +9,13 @@ from argo_compiler.checks.timing import (
     check_unused_fields,
     check_wait,
     check_window,
-    is_plain,
+    has_timing_or_branch,
 )
 from argo_compiler.diagnostics import Diagnostic, Severity
 from argo_compiler.il import Action, Mission, OnFailure, Task
 from argo_compiler.il.reserved import RESERVED_NAMES
 from argo_compiler.il.subjects import Subjects
+from argo_compiler.il.ways import branches
 from argo_compiler.nearest_name import nearest_name
 
 MANY_RETRIES = 100
@@ -76,7 +77,7 @@ class TaskChecks:
                 if starts > 1:
                     yield self._second_start(self.subjects.task(i), task)
                 yield from check_unused_fields(self.subjects.task(i), task)
-            if not is_plain(task):
+            if has_timing_or_branch(task):
                 yield from self._timing(self.subjects.task(i), task)
             transitions = task.transitions
             if len(transitions) != 1 or transitions[0].conditions:
@@ -103,13 +104,9 @@ class TaskChecks:
         for n, condition in enumerate(task.wait.conditions if task.wait else ()):
             field = f".wait.conditions[{n}]"
             yield from self.conditions.diagnostics(at, task, condition, field)
-        missed = task.window.missed_target if task.window else None
-        for field, target in (
-            (".failure_target", task.failure_target),
-            (".window.missed_target", missed),
-        ):
-            if target is not None and target not in self.targets:
-                yield self._wrong_target(at, task, target, field)
+        for field, target in branches(task).items():
+            if target not in self.targets:
+                yield self._wrong_target(at, task, target, f".{field}")
 
     def _second_start(self, at: str, task: Task) -> Diagnostic:
         return diagnostic_about(

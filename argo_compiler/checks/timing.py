@@ -27,14 +27,14 @@ _USED_BY = {
 _DEFAULTS = {field: getattr(_PLAIN, field) for field in _USED_BY}
 
 
-def is_plain(task: Task) -> bool:
-    """Whether a task says nothing of what this module looks at: most of a large mission do."""
+def has_timing_or_branch(task: Task) -> bool:
+    """Whether a task says something that this module looks at: most of a large mission do not."""
     return (
-        task.wait is None
-        and task.window is None
-        and task.failure_target is None
-        and task.on_failure is not OnFailure.BRANCH
-        and task.reading_limit is None
+        task.wait is not None
+        or task.window is not None
+        or task.failure_target is not None
+        or task.on_failure is OnFailure.BRANCH
+        or task.reading_limit is not None
     )
 
 

@@ -7,8 +7,8 @@ from argo_compiler.checks import check
 from argo_compiler.diagnostics import Diagnostic, Severity
 from argo_compiler.diagnostics.subject import subject_of
 from argo_compiler.editing.refusals import EditConflict, EditInvalid
-from argo_compiler.editing.ways import beginning, branches, default_target
 from argo_compiler.il import Action, Group, Mission, Task, Transition
+from argo_compiler.il.ways import beginning, branches, default_target
 from argo_compiler.model import Model
 
 _SENSELESS = frozenset(

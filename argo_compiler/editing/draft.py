@@ -5,9 +5,10 @@ from dataclasses import dataclass
 from argo_compiler.diagnostics.subject import subject_of
 from argo_compiler.editing.linked import Linked, LinkedList
 from argo_compiler.editing.refusals import EditConflict, conflict, unknown
-from argo_compiler.editing.ways import default_target, defaults, retargeted, with_default
+from argo_compiler.editing.ways import defaults, retargeted, with_default
 from argo_compiler.il import Action, Group, Mission, Task
 from argo_compiler.il.grouping import GroupNesting, GroupRange, group_ranges, parent_name
+from argo_compiler.il.ways import default_target
 
 
 @dataclass(eq=False, slots=True)

@@ -21,9 +21,9 @@ from argo_compiler.editing.refusals import (
     require_kind,
     require_name,
 )
-from argo_compiler.editing.ways import default_target
 from argo_compiler.il import Action, Condition, Group, Mission, Stop
 from argo_compiler.il.grouping import parent_name
+from argo_compiler.il.ways import default_target
 
 
 class GroupFields(TypedDict, total=False):

@@ -9,14 +9,9 @@ from argo_compiler.diagnostics.subject import subject_of
 from argo_compiler.editing.consequences import Consequence, Edited, edited
 from argo_compiler.editing.draft import DraftGroup, DraftTask, MissionDraft
 from argo_compiler.editing.refusals import EditConflict, conflict
-from argo_compiler.editing.ways import (
-    beginning,
-    branches,
-    default_target,
-    defaults,
-    retargeted,
-)
+from argo_compiler.editing.ways import defaults, retargeted
 from argo_compiler.il import Action, Mission, Task, Transition
+from argo_compiler.il.ways import beginning, branches, default_target
 
 _NAMES = 3
 """names that a message lists"""

@@ -17,8 +17,8 @@ from argo_compiler.editing.refusals import (
     require_name,
     unknown,
 )
-from argo_compiler.editing.ways import branches
 from argo_compiler.il import Action, JointState, Mission, OnFailure, Task, TimeWindow, WaitRule
+from argo_compiler.il.ways import branches
 from argo_compiler.model import Pose
 
 

@@ -1,18 +1,13 @@
-"""Where tasks lead: their transitions, what follows a failure, and where a mission begins."""
+"""Where tasks lead, read as a list and changed."""
 
 from collections.abc import Mapping
 
-from argo_compiler.il import Action, Mission, Task, Transition
+from argo_compiler.il import Task, Transition
 
 
 def defaults(task: Task) -> list[str]:
     """The targets of the task's unconditional transitions: one, or none where the mission ends."""
     return [way.target for way in task.transitions if not way.conditions]
-
-
-def default_target(task: Task) -> str | None:
-    """The target of the unconditional transition; None: the mission ends after the task."""
-    return next(iter(defaults(task)), None)
 
 
 def with_default(task: Task, target: str | None) -> Task:
@@ -34,17 +29,6 @@ def with_default(task: Task, target: str | None) -> Task:
     return task.model_copy(update={"transitions": tuple(ways)})
 
 
-def branches(task: Task) -> dict[str, str]:
-    """Where the task leads when it has failed or has missed its window, by the field that says
-    so."""
-    found = {}
-    if task.failure_target is not None:
-        found["failure_target"] = task.failure_target
-    if task.window is not None and task.window.missed_target is not None:
-        found["window.missed_target"] = task.window.missed_target
-    return found
-
-
 def retargeted(task: Task, called: Mapping[str, str]) -> Task:
     """The task with other targets of all its ways; `called` has the new ones by the former."""
     update: dict[str, object] = {}
@@ -59,12 +43,3 @@ def retargeted(task: Task, called: Mapping[str, str]) -> Task:
     if window and (missed := called.get(window.missed_target or "")) is not None:
         update["window"] = window.model_copy(update={"missed_target": missed})
     return task.model_copy(update=update) if update else task
-
-
-def beginning(mission: Mission) -> str | None:
-    """The task that the mission begins with (rule M1); None: it has none but START."""
-    start = next((task for task in mission.tasks if task.action is Action.START), None)
-    target = None if start is None else default_target(start)
-    if target is not None:
-        return target
-    return next((task.name for task in mission.tasks if task.action is not Action.START), None)

@@ -9,7 +9,7 @@ from collections.abc import Iterable, Iterator
 
 from argo_compiler.diagnostics import Diagnostic
 from argo_compiler.export.exporter import refusal, refuse
-from argo_compiler.export.xml import Attributes, XmlWriter, number
+from argo_compiler.export.xml import Attributes, XmlWriter
 from argo_compiler.il import (
     Action,
     Condition,
@@ -24,7 +24,9 @@ from argo_compiler.il import (
 )
 from argo_compiler.il.grouping import GroupNesting, GroupRange
 from argo_compiler.il.reserved import RETURN_TASK
+from argo_compiler.il.ways import default_target, start_task
 from argo_compiler.model import Pose
+from argo_compiler.number_text import number
 
 MAX_MSEC = 2**32 - 1
 
@@ -75,7 +77,7 @@ class _Tree:
     def __init__(self, mission: Mission) -> None:
         self.mission = mission
         self.layout = GroupNesting.of(mission)
-        start = next((t for t in mission.tasks if t.action is Action.START), None)
+        start = start_task(mission)
         self.start = start
         self.position = {task.name: i for i, task in enumerate(mission.tasks, 1)}
         self.end = len(mission.tasks) + 1
@@ -187,8 +189,8 @@ class _Tree:
     def _initially(self) -> str:
         first = 0
         if self.start is not None:
-            targets = [t.target for t in self.start.transitions if not t.conditions]
-            first = self.position[targets[0]] if targets else 0
+            target = default_target(self.start)
+            first = 0 if target is None else self.position[target]
         # An entry keeps the type that it begins with: 0 would never hold 0.5.
         entries = [f"to := {first}", "returning := 0", "outcome := 1", "now := 0.0"]
         entries += (f"{name} := 0.0" for name in _READ)
@@ -296,7 +298,7 @@ class _Tree:
         self._script("; ".join(statements))
 
     def _default(self, task: Task) -> int:
-        target = next((t.target for t in task.transitions if not t.conditions), None)
+        target = default_target(task)
         to = self.end if target is None else self.position[target]
         return 0 if to == self.position[task.name] + 1 else to
 

@@ -1,12 +1,12 @@
 """What drawings of a machine have in common: ids, nesting, and what stands on boxes and arrows."""
 
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterator
 from dataclasses import dataclass, replace
 
 from argo_compiler.hfsm import Composite, Hfsm, Leaf, StateTransition, TransitionKind
-from argo_compiler.hfsm.conditions import words
+from argo_compiler.hfsm.conditions import all_words, awaited
 from argo_compiler.hfsm.model import DONE
-from argo_compiler.il import Afterwards, Condition, Reaction, Response, Stop, Task, WaitRule
+from argo_compiler.il import Afterwards, Reaction, Response, Stop, Task, WaitRule
 
 _RESPONSES = {
     Response.REPORT: "report",
@@ -104,7 +104,7 @@ class Drawing:
 def transition_words(transition: StateTransition, group: Composite | None = None) -> str:
     """Why it is taken, as text; empty where nothing has to be said."""
     if transition.kind is TransitionKind.CONDITIONAL:
-        return _all_words(transition.conditions)
+        return all_words(transition.conditions)
     if transition.kind is TransitionKind.FAILURE:
         return "failed, abort" if transition.target == DONE else "failed"
     if transition.kind is TransitionKind.MISSED:
@@ -123,7 +123,7 @@ def transition_words(transition: StateTransition, group: Composite | None = None
     if group.repeat.every:
         limits.append(f"every {group.repeat.every:g} s")
     if group.repeat.until:
-        limits.append(f"until {_all_words(group.repeat.until)}")
+        limits.append(f"until {all_words(group.repeat.until)}")
     return ", ".join(["repeat", *limits])
 
 
@@ -154,14 +154,8 @@ def task_words(task: Task) -> str:
 def _wait_words(wait: WaitRule) -> str:
     if wait.duration is not None:
         return f"wait {wait.duration:g} s" if wait.duration else "where ways meet"
-    ends = [] if wait.event is None else [wait.event.replace("_", " ")]
-    ends += [_all_words(wait.conditions)] if wait.conditions else []
     limit = "" if wait.limit is None else f", at most {wait.limit:g} s"
-    return f"wait until {' or '.join(ends)}{limit}"
-
-
-def _all_words(conditions: Iterable[Condition]) -> str:
-    return " and ".join(words(condition) for condition in conditions)
+    return f"wait until {awaited(wait)}{limit}"
 
 
 def reaction_words(reaction: Reaction) -> str:
@@ -169,7 +163,7 @@ def reaction_words(reaction: Reaction) -> str:
     parts = [_RESPONSES[reaction.response]]
     if reaction.until is not None:
         parts.append(f"until {reaction.until.replace('_', ' ')}")
-    if reaction.response in (Response.RETURN, Response.SAFE_AREA):
+    if reaction.response.drives:
         parts.append(f"then {_AFTERWARDS[reaction.afterwards]}")
     if reaction.hold_limit is not None:
         parts.append(f"after {reaction.hold_limit:g} s at most {_AFTERWARDS[reaction.on_limit]}")

@@ -21,10 +21,12 @@ from argo_compiler.export.scxml_data import (
     send_time_out,
     task_attributes,
 )
-from argo_compiler.export.xml import Attributes, XmlWriter, number
+from argo_compiler.export.xml import Attributes, XmlWriter
 from argo_compiler.hfsm import Composite, Hfsm, Leaf, Outcome, StateTransition, TransitionKind
 from argo_compiler.hfsm.model import DONE, RETURN, RepeatRule
-from argo_compiler.il import Action, Condition, ConditionType, Mission, Task
+from argo_compiler.il import Condition, ConditionType, Mission, Task
+from argo_compiler.il.ways import start_task
+from argo_compiler.number_text import number
 
 NAMESPACE = "http://www.w3.org/2005/07/scxml"
 
@@ -38,7 +40,7 @@ def to_scxml(mission: Mission, hfsm: Hfsm, timers: bool = False) -> str:
     With `timers`, the engine's own clock sends the time-outs (`<send delay>`). Without, they come
     from outside like all other events, so that any clock can drive the machine.
     """
-    start = next((t for t in mission.tasks if t.action is Action.START), None)
+    start = start_task(mission)
     return _Document(hfsm, start, timers).text()
 
 

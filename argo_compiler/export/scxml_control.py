@@ -19,12 +19,13 @@ from argo_compiler.export.scxml_data import (
     send_time_out,
     task_attributes,
 )
-from argo_compiler.export.xml import Attributes, XmlWriter, number
+from argo_compiler.export.xml import Attributes, XmlWriter
 from argo_compiler.hfsm import Hfsm, Outcome
 from argo_compiler.hfsm.interrupts import ROWS, Effect, Given, InterruptRow, Stage, Trigger
 from argo_compiler.hfsm.model import DONE, ReactionState, RepeatRule
 from argo_compiler.hfsm.standing import fixed, there
 from argo_compiler.il import EventKind, Reaction, Response
+from argo_compiler.number_text import number
 
 OUTCOMES = tuple(Outcome)
 """The final states. `outcome` in the data is the position of one, from 1."""

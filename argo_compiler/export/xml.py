@@ -4,6 +4,8 @@ import re
 from collections.abc import Iterator, Mapping
 from contextlib import contextmanager
 
+from argo_compiler.number_text import number
+
 _NOT_IN_XML = re.compile("[^\t\n\r\u0020-\u007e\u0080-\ud7ff\ue000-\ufffd\U00010000-\U0010ffff]")
 _SPECIAL = {
     "&": "&amp;",
@@ -69,11 +71,6 @@ def escape(text: str) -> str:
 def printable(text: str) -> str:
     """The text with what XML has no way to say (such as the null character) as `\\x00`."""
     return _NOT_IN_XML.sub(lambda match: f"\\x{ord(match[0]):02x}", text)
-
-
-def number(value: float) -> str:
-    """The value as text that is read back as the same value."""
-    return str(int(value)) if value == int(value) and abs(value) < 1e15 else repr(value)
 
 
 def _attributes(attributes: Attributes | None) -> str:

@@ -7,6 +7,7 @@ from argo_compiler.diagnostics import Diagnostic, Severity
 from argo_compiler.files.json_places import JsonPath
 from argo_compiler.il import Action, EventKind, Mission, Mode, OnFailure, Response, Task
 from argo_compiler.il.velocities import of_ways_there
+from argo_compiler.listing import quoted
 
 VERSION = 3
 """of the mission format that is written"""
@@ -25,8 +26,6 @@ _NEW = {
     "reactions": ("hold_limit", "on_limit", "area", "battery_below"),
 }
 """Fields that came with version 3, by list."""
-
-_SHOWN = 6  # names of tasks that a message spells out
 
 
 def migrate(data: dict[str, Any]) -> tuple[dict[str, Any], int]:
@@ -105,7 +104,7 @@ def _changes(mission: Mission) -> Iterator[Diagnostic]:
     ]
     if failing:
         yield _changed(
-            f"where {_listed(failing)} fails, conditions do not see the value of an earlier "
+            f"where {quoted(failing)} fails, conditions do not see the value of an earlier "
             "measurement any more",
             "add a transition with a READING_FAILED condition, or a `failure_target`, for what is "
             "to follow then",
@@ -130,7 +129,7 @@ def _changes(mission: Mission) -> Iterator[Diagnostic]:
         )
     if posed := [task.name for task in mission.tasks if _has_own_pose(task)]:
         yield _changed(
-            f"the pose of {_listed(posed)} was never used, and is left out",
+            f"the pose of {quoted(posed)} was never used, and is left out",
             "give it again if the robot is to measure from there",
             "tasks",
         )
@@ -142,7 +141,7 @@ def _has_own_pose(task: Task) -> bool:
 
 def _velocities(differ: tuple[str, ...]) -> Diagnostic:
     return _changed(
-        f"{_listed(differ)} was driven to at different velocities, by where the robot came from; "
+        f"{quoted(differ)} was driven to at different velocities, by where the robot came from; "
         "it is the slowest of them now",
         "a velocity belongs to the way to a task now, wherever the robot comes from: save the "
         f"mission as version {VERSION}, and set `velocity` there",
@@ -158,9 +157,3 @@ def _changed(message: str, hint: str, subject: str) -> Diagnostic:
         hint=hint,
         subject=subject,
     )
-
-
-def _listed(names: tuple[str, ...] | list[str]) -> str:
-    shown = ", ".join(f"'{name}'" for name in names[:_SHOWN])
-    more = len(names) - _SHOWN
-    return f"{shown} and {more} more" if more > 0 else shown

@@ -1,11 +1,11 @@
 """Readings and conditions: when conditions hold, and how people read them."""
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass
 from typing import NamedTuple
 
 from argo_compiler.hfsm.progress import ReadingKind
-from argo_compiler.il import Condition, ConditionType
+from argo_compiler.il import Condition, ConditionType, WaitRule
 
 
 @dataclass(frozen=True, slots=True)
@@ -95,6 +95,18 @@ def words(condition: Condition) -> str:
     if condition.max_age is not None:
         text += f", at most {condition.max_age:g} s old"
     return text
+
+
+def all_words(conditions: Iterable[Condition]) -> str:
+    """Conditions that are to hold together, as text."""
+    return " and ".join(map(words, conditions))
+
+
+def awaited(rule: WaitRule) -> str:
+    """What ends a WAIT, such as `gas leak or #4 < 2`; empty where only its time does."""
+    ends = [] if rule.event is None else [rule.event.replace("_", " ")]
+    ends += [all_words(rule.conditions)] if rule.conditions else []
+    return " or ".join(ends)
 
 
 def _words_of_state(condition: Condition, name: str) -> str:

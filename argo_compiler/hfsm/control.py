@@ -12,6 +12,7 @@ from argo_compiler.hfsm.tables import ReactionNode, Tables
 from argo_compiler.hfsm.trace import Cause
 from argo_compiler.il import EventKind
 
+_GOING = Stage.GOING  # looked at with each event, and an enumeration's member is found slowly
 _PLAN_ENDS = (Trigger.DONE, Trigger.ENDED)
 
 
@@ -88,7 +89,7 @@ class Control:
         course = self.course
         place = course.place
         while course.outcome is None:
-            going = self.standing.stage is Stage.GOING
+            going = self.standing.stage is _GOING
             if going and place.visit.leaf is None:
                 course.step()
                 self._advance(Trigger.DONE)

@@ -5,7 +5,7 @@ from collections import deque
 from collections.abc import Iterable
 from typing import NamedTuple
 
-from argo_compiler.hfsm.conditions import CheckpointReading, words
+from argo_compiler.hfsm.conditions import CheckpointReading, all_words
 from argo_compiler.hfsm.events import Outcome
 from argo_compiler.hfsm.model import RETURN
 from argo_compiler.hfsm.progress import ByHand, ReadingKind
@@ -114,7 +114,7 @@ class MissionCourse:
             if not wait.guards or not place.hold(wait.guards, self.now):
                 place.find_own_due()
                 return False
-            why = " and ".join(map(words, wait.conditions))
+            why = all_words(wait.conditions)
         self.leave(leaf, why)
         return True
 

@@ -39,15 +39,12 @@ from argo_compiler.hfsm.restoring import (
 from argo_compiler.hfsm.tables import LeafNode, tables
 from argo_compiler.hfsm.trace import Cause, TraceEntry, entry
 from argo_compiler.hfsm.views import View
-from argo_compiler.il import EventKind, Task
+from argo_compiler.il import MAX_TIME_S, EventKind, Task
 
 _ENDS = (ActionSucceeded, ActionFailed, ActionStopped)
 _EVENTS = frozenset(
     [*_ENDS, Tick, Occurred, ReadingGiven, Pause, Resume, TakeOver, GiveBack, Cancel]
 )
-
-MAX_TIME_S = 1e12
-"""The range of the mission's clock: some 30,000 years."""
 
 
 @dataclass(frozen=True, slots=True)

@@ -39,6 +39,7 @@ from argo_compiler.il import (
 )
 from argo_compiler.il.grouping import GroupNesting
 from argo_compiler.il.reserved import RETURN_TASK, reaction_task_name
+from argo_compiler.il.ways import beginning, default_target
 
 
 def lower(mission: Mission, progress: Progress | None = None, source_name: str = "mission") -> Hfsm:
@@ -104,11 +105,7 @@ class _Lowering:
         )
 
     def _initial(self) -> str:
-        tasks = self.mission.tasks
-        start = next((task for task in tasks if task.action is Action.START), None)
-        target = None if start is None else _unconditional_target(start)
-        if target is None:
-            target = next((t.name for t in tasks if t.action is not Action.START), None)
+        target = beginning(self.mission)
         return DONE if target is None else task_id(target)
 
     def _children(self) -> dict[int | None, list[str]]:
@@ -217,7 +214,7 @@ class _Lowering:
 
     def _default(self, inside: int | None, task: Task) -> StateTransition:
         """The unconditional transition of a task, taken by a state that lies in `inside`."""
-        target = _unconditional_target(task)
+        target = default_target(task)
         if target is None:
             return _END
         return StateTransition(
@@ -236,16 +233,9 @@ class _Lowering:
         return MISSION if index is None else self.group_ids[index]
 
 
-def _unconditional_target(task: Task) -> str | None:
-    for transition in task.transitions:
-        if not transition.conditions:
-            return transition.target
-    return None
-
-
 def _reaction_state(reaction: Reaction, mission: Mission) -> ReactionState:
     task = None
-    if reaction.response in (Response.RETURN, Response.SAFE_AREA):
+    if reaction.response.drives:
         returns = reaction.response is Response.RETURN
         task = Task(
             name=reaction_task_name(reaction.event),

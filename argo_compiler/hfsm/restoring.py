@@ -16,7 +16,7 @@ from argo_compiler.hfsm.progress import (
     Waiting,
 )
 from argo_compiler.hfsm.rounds_and_clocks import Configuration, Frame
-from argo_compiler.hfsm.standing import InterruptState, Pending, drives
+from argo_compiler.hfsm.standing import InterruptState, Pending
 from argo_compiler.hfsm.tables import GroupNode, LeafNode, Tables
 from argo_compiler.hfsm.visits import TaskVisit
 from argo_compiler.il import EventKind, Reaction, Response
@@ -38,9 +38,9 @@ def place_of(tables: Tables, progress: Progress, now: float, away: float) -> Con
         leaf,
         place.new_visit(),
         now - progress.since - away,
+        now,
         progress.attempt,
         progress.occurred,
-        look_at=now,
     )
     if progress.paused or progress.reaction:
         place.interrupted_at = now
@@ -79,7 +79,7 @@ def standing_of(tables: Tables, progress: Progress) -> InterruptState:
     )
     stage = Stage.CHOOSING if pending else Stage.GOING
     if active is not None:
-        driving = active.phase is Phase.DRIVING and drives(_reaction(tables, active.event))
+        driving = active.phase is Phase.DRIVING and _reaction(tables, active.event).response.drives
         stage = Stage.DRIVING if driving else Stage.HOLDING
     elif progress.paused:
         stage = Stage.STOPPED

@@ -31,11 +31,11 @@ class Configuration:
         "due",
         "frames",
         "interrupted_at",
+        "interrupted_s",
         "interruptions",
         "own_due",
         "readings",
         "round_of",
-        "stood",
         "timed_out",
         "visit",
         "visits",
@@ -56,7 +56,7 @@ class Configuration:
         """by checkpoint"""
         self.by_hand_s = 0.0
         """s that were done by hand"""
-        self.stood = 0.0
+        self.interrupted_s = 0.0
         """s of interruptions that are over"""
         self.interrupted_at: float | None = None
         """since when the mission has been interrupted (s)"""
@@ -117,7 +117,7 @@ class Configuration:
     def go_on(self, now: float) -> None:
         """The groups' clocks run again; what is due by now is due now."""
         if self.interrupted_at is not None:
-            self.stood += now - self.interrupted_at
+            self.interrupted_s += now - self.interrupted_at
             self.interrupted_at = None
         self.look(now)
         self._find_due(now)
@@ -202,14 +202,14 @@ class Configuration:
             ):
                 return False
             return not group.until or not self.hold(group.until, now)
-        return self.hold(way.guards, now)
+        return not way.guards or self.hold(way.guards, now)
 
     def _enter(
         self, leaf: LeafNode | None, keep: int, domain: GroupNode | None, now: float
     ) -> None:
         """Leaves all below `domain`, which is the last of `keep` groups, and enters the leaf."""
         self.visits += 1
-        self.visit = TaskVisit(leaf, self.visits, now, look_at=now)
+        self.visit = TaskVisit(leaf, self.visits, now, now)
         frames = self.frames
         changed = len(frames) > keep
         if changed:
@@ -259,7 +259,7 @@ class Configuration:
 
     def _ahead(self, group: GroupNode) -> float:
         """How far a group's clock is ahead of time (s), or behind it."""
-        return 0.0 if group.counts_interruptions else self.by_hand_s - self.stood
+        return 0.0 if group.counts_interruptions else self.by_hand_s - self.interrupted_s
 
     def _time_up(self, frame: Frame) -> float:
         """When the duration of a group is over (s), if its clock stood no more."""

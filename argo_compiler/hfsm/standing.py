@@ -82,16 +82,6 @@ def interrupts(reaction: Reaction) -> bool:
     return reaction.response is not Response.REPORT
 
 
-def drives(reaction: Reaction) -> bool:
-    """Whether it drives somewhere."""
-    return reaction.response in (Response.RETURN, Response.SAFE_AREA)
-
-
-def holds(reaction: Reaction) -> bool:
-    """Whether it stands still until something occurs or a person resumes."""
-    return reaction.until is not None or reaction.response is Response.PAUSE
-
-
 def lets_go_on(reaction: Reaction) -> bool:
     """Whether the mission goes on after it."""
     return reaction.response is Response.PAUSE or reaction.afterwards is Afterwards.RESUME
@@ -146,9 +136,9 @@ def fixed(
         case Given.AWAITED:
             return active.until is event
         case Given.DRIVES:
-            return drives(active)
+            return active.response.drives
         case Given.HOLDS:
-            return holds(active)
+            return active.holds
         case Given.FAILS_HARD:
             return active.afterwards is Afterwards.END
         case Given.THEN_RESUME:

@@ -16,12 +16,12 @@ class TaskVisit:
     """tells two visits of a task apart; the drives of reactions are counted as well"""
     since: float
     """s, when it began"""
+    look_at: float = -math.inf
+    """when the conditions of a WAIT are looked at next (s)"""
     attempt: int = 0
     """failures of the action"""
     occurred: bool = False
     """whether the event that a WAIT waits for has occurred"""
-    look_at: float = -math.inf
-    """when the conditions of a WAIT are looked at next (s)"""
     action_due: float = math.inf
     """when the time limit of the running action is over (s)"""
 

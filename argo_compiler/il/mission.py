@@ -15,7 +15,8 @@ from argo_compiler.diagnostics import Span
 from argo_compiler.model import Model, Pose
 
 MAX_TIME_S = 1e12
-"""of each time in a mission: some 30,000 years, as far as a clock in s counts milliseconds"""
+"""of each time in a mission, and of its clock: some 30,000 years, as far as a clock in s counts
+milliseconds"""
 MAX_COUNT = 1_000_000_000
 """of rounds, and of the numbers that rank reactions and tell areas apart"""
 MAX_RETRIES = 1_000_000
@@ -132,6 +133,11 @@ class Response(StrEnum):
     """drive to the reaction's `pose`"""
     ABORT = "abort"
     """end the mission where the robot stands"""
+
+    @property
+    def drives(self) -> bool:
+        """Whether it drives somewhere."""
+        return self in (Response.RETURN, Response.SAFE_AREA)
 
 
 class Afterwards(StrEnum):
@@ -331,6 +337,11 @@ class Reaction(Model):
     """LOW_BATTERY: the share of the battery's charge, 0 to 1, below which the robot raises the
     event in this mission; None: the robot's own level"""
     source: Span | None = None
+
+    @property
+    def holds(self) -> bool:
+        """Whether it stands still until something occurs or a person resumes."""
+        return self.until is not None or self.response is Response.PAUSE
 
     @property
     def rank(self) -> tuple[int, int]:

@@ -8,6 +8,7 @@ from collections.abc import Iterator, Mapping
 
 from argo_compiler.il.grouping import group_ranges
 from argo_compiler.il.mission import Action, Mission, Stop, Task
+from argo_compiler.il.ways import beginning, branches, default_target, start_task
 
 Velocity = float | None
 """m/s; None: the robot's planning speed"""
@@ -20,24 +21,19 @@ def ways(mission: Mission) -> Iterator[tuple[str, str]]:
     """Each way from one task to another, those after a time-out included, by their names; some
     more than once. The first way comes from START, or from `BEGINNING`."""
     tasks = mission.tasks
-    start = next((task for task in tasks if task.action is Action.START), None)
-    first = None if start is None else _unconditional(start)
-    if first is None:
-        first = next((task.name for task in tasks if task.action is not Action.START), None)
-    if first is not None:
+    start = start_task(mission)
+    if (first := beginning(mission)) is not None:
         yield BEGINNING if start is None else start.name, first
     for task in tasks:
         if task.action is not Action.START:
             for transition in task.transitions:
                 yield task.name, transition.target
-        window = task.window
-        for target in (task.failure_target, window.missed_target if window else None):
-            if target is not None:
-                yield task.name, target
+        for target in branches(task).values():
+            yield task.name, target
     onward: dict[str, list[str]] = {task.name: [] for task in tasks}
     for task in tasks:
-        if (target := _unconditional(task)) is not None:
-            onward[task.name].append(target)
+        if (following := default_target(task)) is not None:
+            onward[task.name].append(following)
     for around in group_ranges(mission):  # the outer ones before those that lie in them
         group = around.group
         if group.max_repeat_duration and group.stop is Stop.HARD:
@@ -87,7 +83,3 @@ def _with(task: Task, velocity: Velocity) -> Task:
 
 def _slowest(velocities: set[Velocity]) -> Velocity:
     return min((v for v in velocities if v is not None), default=None)
-
-
-def _unconditional(task: Task) -> str | None:
-    return next((t.target for t in task.transitions if not t.conditions), None)

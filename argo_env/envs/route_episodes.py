@@ -1,7 +1,7 @@
 """What single routes and batches share: the observation space, and which instance an episode has:
 options, a hash of seed and episode, and instances in arrays."""
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
 from dataclasses import dataclass
 from functools import lru_cache
 from typing import Any, overload
@@ -152,12 +152,16 @@ class Episodes:
     def pool(self) -> Pool:
         """All instances that episodes draw from, made when they are asked for."""
         if self._pool is None:
-            made = [self._draw(number) for number in self.numbers]
-            self._pool = _pool(made, self.numbers, isinstance(self.options.instance, tuple))
+            source = self.source
+            # A source of somebody else's may give other instances each time.
+            if type(source) is RandomRoutes:
+                self._pool = _shared_pool(source, self.options, self.numbers)
+            else:
+                self._pool = _make_pool(source, self.options, self.numbers)
         return self._pool
 
     def _draw(self, number: int) -> RouteInstance:
-        return self.source.draw(number, self.options.floors, self.options.faults)
+        return _drawn(self.source, self.options, number)
 
 
 def read_route_options(
@@ -226,8 +230,16 @@ def episode_number(key: Any, episode: Any) -> Any:
     return z ^ (z >> np.uint64(31))
 
 
-def _pool(made: Sequence[RouteInstance], numbers: Sequence[int], each: bool) -> Pool:
+def _drawn(source: RouteSource, options: RouteOptions, number: int) -> RouteInstance:
+    return source.draw(number, options.floors, options.faults)
+
+
+def _make_pool(
+    source: RouteSource, options: RouteOptions, numbers: range | tuple[int, ...]
+) -> Pool:
     """The instances with these numbers in arrays."""
+    made = [_drawn(source, options, number) for number in numbers]
+    each = isinstance(options.instance, tuple)
     changes = [m.hidden.changes if m.hidden else () for m in made]
     stages = 1 + max(map(len, changes))
     since = np.full((len(made), stages - 1), np.inf, np.float32)
@@ -254,6 +266,10 @@ def _pool(made: Sequence[RouteInstance], numbers: Sequence[int], each: bool) -> 
         failing=np.stack([m.hidden.failing if m.hidden else nothing for m in made]),
         since=since,
     )
+
+
+_shared_pool = lru_cache(maxsize=2)(_make_pool)
+"""What takes seconds to make and nobody changes, once for all batches of a process."""
 
 
 def _resting(instance: RouteInstance) -> NDArray[np.float32]:

@@ -4,14 +4,17 @@ import math
 import os
 from functools import lru_cache
 from pathlib import Path
+from typing import TypeVar
 
 import yaml
-from pydantic import Field, ValidationError, model_validator
+from pydantic import BaseModel, Field, ValidationError, model_validator
 
 from argo_compiler.errors import Invalid, NotFound
 from argo_compiler.model import Model
 from argo_env.files import resources
 from argo_env.robot.calibration import Calibration, MotionKind
+
+_Described = TypeVar("_Described", bound=BaseModel)
 
 
 class Footprint(Model):
@@ -172,15 +175,20 @@ def load_robot(name: str = "tracker") -> RobotSpec:
     if not os.path.isfile(path):
         known = sorted(p.stem for p in robot_folder().glob("*.yaml") if "." not in p.stem)
         raise NotFound(f"no robot `{name}`; there are: {', '.join(known)}")
+    spec: RobotSpec = _described(RobotSpec, path, path.read_text(encoding="utf-8"))
+    if not os.path.isfile(calibrated):
+        return spec
+    paces = _described(Calibration, calibrated, calibrated.read_text(encoding="utf-8"))
+    return spec.model_copy(update={"calibration": paces})
+
+
+@lru_cache(maxsize=16)  # each time that a site is opened
+def _described(kind: type[_Described], path: Path, text: str) -> _Described:
+    """What the text of a file describes."""
     try:
-        spec = RobotSpec.model_validate(yaml.safe_load(path.read_text(encoding="utf-8")))
-        if not os.path.isfile(calibrated):
-            return spec
-        path = calibrated
-        paces = Calibration.model_validate(yaml.safe_load(path.read_text(encoding="utf-8")))
+        return kind.model_validate(yaml.safe_load(text))
     except (yaml.YAMLError, ValidationError) as error:
         raise Invalid(f"{path}: {error}") from error
-    return spec.model_copy(update={"calibration": paces})
 
 
 def calibration_file(name: str) -> Path:

@@ -1,10 +1,10 @@
 """The battery in use: what the robot draws from it, and what a dock gives back."""
 
+from argo_compiler.il.docked import at_dock
 from argo_env.drives.battery import Battery, load
 from argo_env.robot.pose import BodyPose
 from argo_env.robot.spec import RobotSpec
 from argo_env.run.log import Entry
-from argo_env.run.verdict import at_dock
 from argo_env.site import Site
 
 

@@ -4,7 +4,7 @@ from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 
 from argo_compiler.hfsm import Cause, TraceEntry
-from argo_compiler.hfsm.conditions import words
+from argo_compiler.hfsm.conditions import awaited
 from argo_compiler.il import Action, Mission, Task
 from argo_env.run.record import WaitRun, WindowKept, WindowRun
 
@@ -74,7 +74,7 @@ def waits_of(mission: Mission, stays: Sequence[Stay], now: float) -> tuple[WaitR
     return tuple(
         WaitRun(
             task=stay.task,
-            what=awaited(tasks[stay.task]),
+            what=_what_is_awaited(tasks[stay.task]),
             start=stay.start,
             end=now if stay.end is None else stay.end,
             ended=stay.end is not None,
@@ -95,16 +95,14 @@ def windows_of(mission: Mission, stays: Sequence[Stay]) -> tuple[WindowRun, ...]
     return tuple(found)
 
 
-def awaited(task: Task) -> str:
+def _what_is_awaited(task: Task) -> str:
     """What a WAIT waits for, in words."""
     rule = task.wait
     assert rule is not None
     if rule.duration is not None:
         return f"{rule.duration:g} s"
-    what = [rule.event.replace("_", " ")] if rule.event else []
-    what += [" and ".join(map(words, rule.conditions))] if rule.conditions else []
     limit = f", {rule.limit:g} s at most" if rule.limit is not None else ""
-    return " or ".join(what) + limit
+    return awaited(rule) + limit
 
 
 def _is_place(task: Task) -> bool:

@@ -1,21 +1,16 @@
 """The verdict: whether the mission is a success, and what is missing if it is not."""
 
-import math
 from collections.abc import Mapping, Sequence
 
 from argo_compiler.hfsm import Cause, Hfsm, Outcome, TraceEntry
 from argo_compiler.il import Mission
+from argo_compiler.il.docked import at_dock
 from argo_compiler.il.reserved import RESERVED_NAMES
 from argo_compiler.model import Pose
-from argo_env.navigation.path import wrap
-from argo_env.robot.pose import BodyPose
 from argo_env.run.headline import AS_PLANNED
 from argo_env.run.log import RunLog
 from argo_env.run.record import DIGITS, Result, TaskRun, WindowKept, WindowRun
 from argo_env.run.stays import Stay
-
-DOCKED_DISTANCE = 0.1  # m
-DOCKED_ANGLE = math.radians(5.0)
 
 _ENDINGS = {
     Outcome.RETURNED: "the mission was given up, and the robot returned to its dock",
@@ -24,17 +19,6 @@ _ENDINGS = {
     Outcome.ABORTED: "the mission was aborted",
     Outcome.CANCELLED: "the mission was cancelled by a person",
 }
-
-
-def is_docked(pose: BodyPose, docks: Mapping[int, Pose], area: int) -> bool:
-    """Whether a robot at `pose` is in the station of that area: within 10 cm and 5 degrees."""
-    return at_dock(pose, docks[area])
-
-
-def at_dock(pose: BodyPose, dock: Pose) -> bool:
-    """Whether a robot at `pose` is in the station of that pose."""
-    away = math.dist((pose.x, pose.y, pose.z), (dock.x, dock.y, dock.z))
-    return away <= DOCKED_DISTANCE and abs(wrap(pose.yaw - dock.yaw)) <= DOCKED_ANGLE
 
 
 def failed_tasks(
@@ -67,7 +51,7 @@ def judge(
     last = log.last
     assert last is not None
     now, limit, area = last.t, mission.max_duration, mission.end_area
-    docked = None if area is None else is_docked(last.body_pose, docks, area)
+    docked = None if area is None else at_dock(last.body_pose, docks[area])
     missing = []
     if outcome is None and not last.ended:
         missing.append(f"the mission is not at its end after {now:.0f} s")

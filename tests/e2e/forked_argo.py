@@ -16,6 +16,7 @@ from collections.abc import Callable
 from importlib import import_module
 from typing import Any
 
+from argo_env.pictures import film, overview
 from argo_env.planning import open_site
 from argo_planner.cli import ArgoCommands, main
 from argo_planner.terminal import stage_display
@@ -23,6 +24,9 @@ from argo_planner.terminal.signals import end_at_once
 
 # On a busy machine anything may take so long that it is shown.
 stage_display.AFTER = float("inf")
+# Most of what a report takes is the picture of the site, and these tests do not look at pictures.
+overview.SIZE, overview._FINER, overview._SHADOW_MAP = (400, 300), 1, 200
+film.MP4_SIZE = film.GIF_SIZE = (128, 80)
 
 
 def serve() -> None:

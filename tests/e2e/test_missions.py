@@ -95,8 +95,18 @@ def test_the_same_seed_gives_the_same_report(argo, first, missions: Path, tmp_pa
     _, folder = first
     script = missions / "mission_1.txt"
     argo("run", script, "--start-area", 1, "--end-area", 2, "--seed", 0, "--report", tmp_path)
-    for name in ("report.json", "report.html", "site.png"):
+    for name in ("report.json", "report.html"):
         assert (tmp_path / name).read_bytes() == (folder / name).read_bytes()
+
+
+@pytest.mark.long
+def test_the_same_seed_gives_the_same_picture(
+    argo_process, first, missions: Path, tmp_path: Path
+) -> None:
+    _, folder = first
+    script = missions / "mission_1.txt"
+    argo_process("run", script, "--start-area", 1, "--end-area", 2, "--report", tmp_path)
+    assert (tmp_path / "site.png").read_bytes() == (folder / "site.png").read_bytes()
 
 
 def test_import_compile_and_run_step_by_step(argo, first, missions: Path, tmp_path: Path) -> None:
@@ -130,7 +140,8 @@ def test_an_abnormal_value_is_flagged_and_no_failure_and_another_seed_gives_othe
 ) -> None:
     _, folder = first
     script, given = missions / "mission_1.txt", ("--value", "8=9.5", "--seed", 1)
-    result = argo("run", script, "--start-area", 2, "--end-area", 2, *given, "--report", tmp_path)
+    way = ("--start-area", 2, "--end-area", 2, "--drive", "route")
+    result = argo("run", script, *way, *given, "--report", tmp_path)
     assert result.returncode == 0
     assert re.search(r"9\.50 bar.*abnormal", result.stdout)
     readings = record_in(tmp_path).readings
@@ -143,7 +154,8 @@ def test_a_mission_over_its_time_is_no_success(argo, missions: Path, tmp_path: P
     text = (missions / "mission_1.txt").read_text(encoding="utf-8").replace("20'", "2'")
     script = tmp_path / "hasty.txt"
     script.write_text(text, encoding="utf-8")
-    result = argo("run", script, "--start-area", 1, "--end-area", 1, "--report", tmp_path)
+    areas = ("--start-area", 1, "--end-area", 1)
+    result = argo("run", script, *areas, "--drive", "route", "--report", tmp_path)
     assert result.returncode == 1
     assert "of at most 120 s" in result.stdout
     assert not record_in(tmp_path).result.within_max_duration

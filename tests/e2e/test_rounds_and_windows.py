@@ -12,7 +12,8 @@ MISSION = SCENARIOS / "missions" / "rounds_and_windows.json"
 
 
 @pytest.fixture(
-    scope="module", params=["route", "kinematic", pytest.param("tracked", marks=pytest.mark.long)]
+    scope="module",
+    params=["route", *(pytest.param(d, marks=pytest.mark.long) for d in ("kinematic", "tracked"))],
 )
 def done(request, argo, tmp_path_factory):
     folder = tmp_path_factory.mktemp(request.param)

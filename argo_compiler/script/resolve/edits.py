@@ -3,11 +3,11 @@
 from collections.abc import Sequence
 
 from argo_compiler.il import Action
+from argo_compiler.listing import listed
 from argo_compiler.script.resolve import making
 from argo_compiler.script.resolve.context import Context
 from argo_compiler.script.resolve.manners import Manners
 from argo_compiler.script.resolve.program import Choice, Do, Node
-from argo_compiler.script.syntax.spelling import alternatives
 from argo_compiler.script.syntax.tree import orders
 from argo_compiler.script.syntax.tree.nouns import Nouns
 from argo_compiler.script.syntax.tree.orders import Side
@@ -134,7 +134,7 @@ class Edits:
                 continue
             if tasks:
                 lines = sorted({s.line for do in tasks[:20] if (s := do.source)})
-                where = alternatives((str(line) for line in lines), "and")
+                where = listed(str(line) for line in lines)
                 message = f"{name} is measured more than once at this point: lines {where}"
                 hint = "say which of them is meant by its step: `step 3`"
                 self.diagnostics.error("ambiguous-edit", message, thing.span, hint)

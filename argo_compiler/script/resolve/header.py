@@ -4,8 +4,8 @@ from dataclasses import dataclass
 
 from argo_compiler.diagnostics import Span
 from argo_compiler.errors import Remedy
+from argo_compiler.listing import listed
 from argo_compiler.script.syntax.source import Diagnostics
-from argo_compiler.script.syntax.spelling import alternatives
 from argo_compiler.script.syntax.tree.places import Coordinates
 from argo_compiler.script.syntax.tree.script import AreaChosen, Areas, Header
 
@@ -76,7 +76,7 @@ def _choice(
     if cell is None:
         return AreaChoice(option, said=option is not None)
     offered, span = sorted(set(cell.areas)), cell.span
-    areas = alternatives(str(number) for number in offered)
+    areas = listed((str(number) for number in offered), "or")
     if option is not None and offered and option not in offered:
         message = f"the {which} in area {option} is not what the script offers"
         diagnostics.error("area-not-offered", message, span, f"choose area {areas}", remedies)

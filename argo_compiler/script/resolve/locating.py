@@ -3,10 +3,10 @@
 from typing import Literal
 
 from argo_compiler.catalog import Area
+from argo_compiler.listing import listed
 from argo_compiler.model import Pose
 from argo_compiler.script.resolve.lookup import Lookup
 from argo_compiler.script.syntax.source import Diagnostics
-from argo_compiler.script.syntax.spelling import alternatives
 from argo_compiler.script.syntax.tree.places import (
     AreaLocation,
     Coordinates,
@@ -67,7 +67,7 @@ class Locator:
         named = dock.area.area if dock.area else option
         flag = f"--{which}-area"
         if named is None:
-            known = alternatives(f"{flag} {area.number}" for area in self.lookup.catalog.areas)
+            known = listed((f"{flag} {area.number}" for area in self.lookup.catalog.areas), "or")
             message = "this does not say which docking station"
             hint = f"add `in starting area 1`, or give {known}"
             self.diagnostics.error("area-choice", message, dock.span, hint)

@@ -7,9 +7,10 @@ from rapidfuzz.distance import OSA
 
 from argo_compiler.catalog import Area, Catalog, CheckpointInfo, CheckpointKind, Floor
 from argo_compiler.diagnostics import Span
+from argo_compiler.listing import listed
 from argo_compiler.model import Pose
 from argo_compiler.script.syntax.source import Diagnostics
-from argo_compiler.script.syntax.spelling import alternatives, nearest
+from argo_compiler.script.syntax.spelling import nearest
 from argo_compiler.script.syntax.tree.nouns import Kind, Quantity
 from argo_compiler.script.syntax.tree.places import FloorName, NamedFloor, PlaceLocation
 
@@ -67,14 +68,14 @@ class Lookup:
             return found[0]
         name = f"{kind or 'checkpoint'} {identifier.upper()}"
         if found:
-            readings = alternatives(f"{c.name} (#{c.id})" for c in found)
+            readings = listed((f"{c.name} (#{c.id})" for c in found), "or")
             message = f"`{name}` can be read as {readings}"
             hint = "name the checkpoint by its number, or by its whole name"
             self.diagnostics.error("ambiguous-checkpoint", message, span, hint)
             return None
         close = nearest(name, (c.name for c in self.catalog.checkpoints))
         message = f"there is no {name} on {self.catalog.site}"
-        hint = f"the nearest names are {alternatives(close, 'and')}"
+        hint = f"the nearest names are {listed(close)}"
         self.diagnostics.error("unknown-checkpoint", message, span, hint if close else None)
         return None
 
@@ -82,9 +83,7 @@ class Lookup:
         found = self.by_number.get(number)
         if found is None:
             close = sorted(self.by_number, key=lambda known: (abs(known - number), known))[:3]
-            hint = (
-                f"the nearest numbers are {alternatives((f'#{n}' for n in sorted(close)), 'and')}"
-            )
+            hint = f"the nearest numbers are {listed(f'#{n}' for n in sorted(close))}"
             message = f"there is no checkpoint #{number} on {self.catalog.site}"
             self.diagnostics.error("unknown-checkpoint", message, span, hint if close else None)
         return found
@@ -92,7 +91,7 @@ class Lookup:
     def area(self, number: int, span: Span | None) -> Area | None:
         found = self.catalog.area(number)
         if found is None:
-            known = alternatives((str(a.number) for a in self.catalog.areas), "and")
+            known = listed(str(a.number) for a in self.catalog.areas)
             message = f"there is no starting area {number} on {self.catalog.site}"
             self.diagnostics.error("unknown-area", message, span, f"the starting areas are {known}")
         return found
@@ -106,7 +105,7 @@ class Lookup:
             return min(floors, key=lambda f: f.z)
         found = next((f for f in floors if f.number == floor.number), None)
         if found is None:
-            known = alternatives((str(f.number) for f in floors), "and")
+            known = listed(str(f.number) for f in floors)
             message = f"there is no floor {floor.number} on {self.catalog.site}"
             hint = f"the floors are {known}, counted from the bottom"
             self.diagnostics.error("unknown-floor", message, floor.span, hint)
@@ -127,7 +126,7 @@ class Lookup:
         message = f"there is no place `{location.name}` on {self.catalog.site}"
         known = [place.name for place in self.catalog.places]
         known += [f"starting area {area.number}" for area in self.catalog.areas]
-        hint = f"the places are {alternatives([*known, 'the docking station'], 'and')}"
+        hint = f"the places are {listed([*known, 'the docking station'])}"
         self.diagnostics.error("unknown-place", message, location.span, hint)
         return None
 

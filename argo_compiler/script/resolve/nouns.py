@@ -2,9 +2,9 @@
 
 from argo_compiler.catalog import CheckpointInfo
 from argo_compiler.diagnostics import Span
+from argo_compiler.listing import listed
 from argo_compiler.script.resolve.lookup import Lookup, agrees
 from argo_compiler.script.syntax.source import Diagnostics
-from argo_compiler.script.syntax.spelling import alternatives
 from argo_compiler.script.syntax.tree.nouns import (
     AllOf,
     Kind,
@@ -174,7 +174,7 @@ class NounResolver:
         readings = [f"{c.name} (#{c.id})" for c in named]
         if numbered is not None and numbered not in named:
             readings.append(f"checkpoint #{label} ({numbered.name})")
-        message = f"`{label}` can be read as {alternatives(readings)}"
+        message = f"`{label}` can be read as {listed(readings, 'or')}"
         if not readings:
             return self.lookup.numbered(label, noun.span)
         hint = f"write `checkpoint {label}` or `{kind} {label}`"
@@ -189,12 +189,12 @@ class NounResolver:
             return None
         found = self.lookup.of_kind(noun.kind, floors)
         if not found:
-            where = f" on floor {alternatives(map(str, floors))}" if floors else ""
+            where = f" on floor {listed(map(str, floors), 'or')}" if floors else ""
             message = f"there is no {noun.kind}{where} on {self.lookup.catalog.site}"
             self.diagnostics.error("unknown-checkpoint", message, noun.span, "name another floor")
             return None
         if noun.count is not None and noun.count != len(found):
-            names = alternatives((f"{c.name} (#{c.id})" for c in found[:6]), "and")
+            names = listed(f"{c.name} (#{c.id})" for c in found[:6])
             message = f"`{self.said(noun.span)}`: there are {len(found)}, {names}"
             self.diagnostics.error("ambiguous-checkpoint", message, noun.span, "name them")
             return None
@@ -213,7 +213,7 @@ class NounResolver:
         found = self._of_kind(AllOf(span=noun.span, kind=noun.kind, floors=noun.floors))
         if found is None or len(found) == 1:
             return found
-        names = alternatives(f"{c.name} (#{c.id})" for c in (last or found)[:6])
+        names = listed((f"{c.name} (#{c.id})" for c in (last or found)[:6]), "or")
         message = f"`{self.said(noun.span)}` can be {names}"
         self.diagnostics.error("ambiguous-checkpoint", message, noun.span, "name the one")
         return None
@@ -233,7 +233,7 @@ class NounResolver:
             return None
         if len(last) == 1 or noun.every:
             return list(last)
-        names = alternatives(f"{c.name} (#{c.id})" for c in last[:6])
+        names = listed((f"{c.name} (#{c.id})" for c in last[:6]), "or")
         message = f"`{self.said(noun.span)}` can be {names}"
         self.diagnostics.error("ambiguous-pronoun", message, noun.span, "name the one")
         return None

@@ -169,7 +169,7 @@ class Planner:
             self.context.spared[str(checkpoint.id)] = order.span
 
     def finish(self) -> None:
-        """Looks whether what is not to be checked is in the plan, and what is not, why it is said."""
+        """Looks whether what is not to be checked is in the plan; what is not, is said."""
         self.leave_unvisited()
         for key, span in self.context.spared.items():
             tasks = list(self.context.measured.get(key, {}).values())

@@ -6,12 +6,12 @@ from dataclasses import replace
 from argo_compiler.catalog import Area
 from argo_compiler.diagnostics import Span
 from argo_compiler.errors import Remedy
+from argo_compiler.listing import listed
 from argo_compiler.model import Pose
 from argo_compiler.script.resolve import making
 from argo_compiler.script.resolve.context import Context
 from argo_compiler.script.resolve.header import AreaChoice, HeaderValues
 from argo_compiler.script.resolve.program import Do, HomeAhead
-from argo_compiler.script.syntax.spelling import alternatives
 from argo_compiler.script.syntax.tree import orders
 from argo_compiler.script.syntax.tree.places import DockLocation
 
@@ -97,7 +97,7 @@ class Starting:
                 self.start_area = area.number
                 self.start = making.start(area.dock, wanted.span)
         elif self.context.whole and not wanted.said:
-            known = alternatives(str(a.number) for a in self.lookup.catalog.areas)
+            known = listed((str(a.number) for a in self.lookup.catalog.areas), "or")
             hint = f"write `Start in starting area 1`, or choose area {known}"
             message = "the script sets no starting point"
             self.diagnostics.error("no-start", message, None, hint, (Remedy.CHOOSE_START,))

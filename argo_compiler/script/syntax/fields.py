@@ -8,12 +8,12 @@ from dataclasses import dataclass, field
 from typing import Any
 
 from argo_compiler.il import Mode, Order
+from argo_compiler.listing import listed
 from argo_compiler.script.syntax.area_cells import AreaCells
 from argo_compiler.script.syntax.asides import Asides
 from argo_compiler.script.syntax.building.figures import seconds
 from argo_compiler.script.syntax.building.part import Part
 from argo_compiler.script.syntax.source import Diagnostics, ScriptText
-from argo_compiler.script.syntax.spelling import alternatives
 from argo_compiler.script.syntax.tree import orders
 from argo_compiler.script.syntax.tree.orders import Sentence
 from argo_compiler.script.syntax.tree.places import Coordinates, Steps
@@ -145,7 +145,7 @@ class ScriptFields:
         found = self.prose.meanings.get((name, _plain(value)))
         if found is None:
             known = {m: said for (n, said), m in reversed(self.prose.meanings.items()) if n == name}
-            choices = alternatives(f"`{known[meaning]}`" for meaning in kind)
+            choices = listed((f"`{known[meaning]}`" for meaning in kind), "or")
             message = f"`{value.content}` is no {name}"
             self.diagnostics.error("field", message, value.span(), f"write {choices}")
         return found

@@ -23,8 +23,8 @@ from dataclasses import dataclass
 from types import MappingProxyType
 
 from argo_compiler.diagnostics import Diagnostic
+from argo_compiler.listing import listed
 from argo_compiler.script.syntax.source import MAX_LINE, Diagnostics, ScriptText, Source
-from argo_compiler.script.syntax.spelling import alternatives
 
 _PLAIN = {
     **dict.fromkeys("\u2018\u2019\u201b\u2032\u00b4`", "'"),
@@ -143,7 +143,7 @@ def _join_cuts(
             clear = False
             diagnostics.error(
                 "ambiguous-cut",
-                f"`{left} {right}` can be read as {alternatives(f'`{r}`' for r in readings)}",
+                f"`{left} {right}` can be read as {listed((f'`{r}`' for r in readings), 'or')}",
                 span,
                 "write it without the tab as it is meant",
             )

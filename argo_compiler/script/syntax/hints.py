@@ -1,8 +1,9 @@
 """What is said about a sentence that makes no sense: at which words, and what may stand there."""
 
+from argo_compiler.listing import listed
 from argo_compiler.script.syntax.grammar import StumbleError
 from argo_compiler.script.syntax.source import Diagnostics, ScriptText
-from argo_compiler.script.syntax.spelling import alternatives, candidates
+from argo_compiler.script.syntax.spelling import candidates
 from argo_compiler.script.syntax.understanding import Understanding
 from argo_compiler.script.syntax.words.joints import VERBS
 from argo_compiler.script.syntax.words.word import Word
@@ -41,12 +42,12 @@ def _hint(
     if at is not None and at.type == "WORD":
         meant = candidates(text.content[at.start : at.end], understanding.known)
         if meant and text.content[at.start : at.end].lower() not in meant:
-            parts.append(f"is {alternatives(f'`{word}`' for word in sorted(meant)[:3])} meant?")
+            parts.append(f"is {listed((f'`{word}`' for word in sorted(meant)[:3]), 'or')} meant?")
     if at is None or (stumble.at < len(found) and found[stumble.at] is at):
         before = tuple(word.type for word in found[: stumble.at])
         follow = _may_follow(before, understanding)
         if follow:
-            parts.append(f"here may stand {alternatives(follow)}")
+            parts.append(f"here may stand {listed(follow, 'or')}")
     samples = understanding.language.prose.samples
     verb = next((w.type for w in found if w.type in samples), "MEASURE")
     parts.append(f"say, `{samples[verb]}`")

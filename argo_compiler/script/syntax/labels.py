@@ -3,8 +3,9 @@
 import re
 from dataclasses import dataclass
 
+from argo_compiler.listing import listed
 from argo_compiler.script.syntax.source import Diagnostics, ScriptText
-from argo_compiler.script.syntax.spelling import alternatives, candidates, nearest
+from argo_compiler.script.syntax.spelling import candidates, nearest
 from argo_compiler.script.syntax.understanding import Understanding
 from argo_compiler.script.syntax.words.joints import VERBS
 from argo_compiler.script.syntax.words.prose import Prose
@@ -75,7 +76,7 @@ class FieldLabels:
         if {"IF", *VERBS} & {*self.understanding.types(said)}:
             return False
         close = nearest(said.content, self.prose.shown_labels, 1)
-        hint = f"the fields are {alternatives((f'`{k}:`' for k in self.prose.shown_labels), 'and')}"
+        hint = f"the fields are {listed(f'`{k}:`' for k in self.prose.shown_labels)}"
         hint = f"is `{close[0]}:` meant? {hint}" if close else hint
         self.diagnostics.error(
             "unknown-label", f"there is no field `{said.content}`", said.span(), hint

@@ -8,8 +8,8 @@ import re
 from collections.abc import Iterator
 from dataclasses import dataclass
 
+from argo_compiler.listing import listed
 from argo_compiler.script.syntax.source import Diagnostics, ScriptText, Source
-from argo_compiler.script.syntax.spelling import alternatives
 from argo_compiler.script.syntax.understanding import Understanding
 from argo_compiler.script.syntax.words.lexicon import expand
 
@@ -84,7 +84,7 @@ class _Rows:
         if strange and (cut != "|" or len(strange) == len(known)):
             return None
         for cell in strange:
-            said = alternatives(f"`{expand(t)[0]}`" for t in self.prose.columns.values())
+            said = listed((f"`{expand(t)[0]}`" for t in self.prose.columns.values()), "or")
             message = f"there is no column `{cell.content}`"
             self.diagnostics.error("unknown-label", message, cell.span(), f"columns are {said}")
         held = {holds for holds, _, _ in known}

@@ -40,11 +40,3 @@ def nearest(text: str, known: Iterable[str], limit: int = 3) -> tuple[str, ...]:
         text, list(known), scorer=fuzz.ratio, processor=str.lower, limit=limit, score_cutoff=60
     )
     return tuple(choice for choice, _, _ in found)
-
-
-def alternatives(choices: Iterable[str], conjunction: str = "or") -> str:
-    """`a`, `b` or `c`, as a sentence has it."""
-    items = list(choices)
-    if len(items) < 2:
-        return "".join(items)
-    return f"{', '.join(items[:-1])} {conjunction} {items[-1]}"

@@ -6,10 +6,11 @@ from collections.abc import Collection
 import numpy as np
 from numpy.typing import NDArray
 
+from argo_compiler.listing import listed
 from argo_env.navigation import Navigator
 from argo_env.navigation.views import find_views, possible_views, sight_target
 from argo_env.planning.checking import unseen_checkpoints
-from argo_env.planning.flaws.flaw import Flaw, Mark, direction, listed, place
+from argo_env.planning.flaws.flaw import Flaw, Mark, direction, place
 from argo_env.planning.flaws.standing import Standing
 from argo_env.site import Site, SiteCheckpoint
 from argo_env.site.shapes import Vector, crossing

@@ -1,12 +1,13 @@
 """What is wrong with a site, and the words for places in it."""
 
 import math
-from collections.abc import Iterable, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
 
+from argo_compiler.listing import listed
 from argo_env.site import Site
 from argo_env.site.shapes import WALKING_ROLES, half_extents
 from argo_env.site.spec import Rect
@@ -42,12 +43,6 @@ def place(x: float, y: float) -> str:
     return f"({x:.2f}, {y:.2f})"
 
 
-def listed(words: Iterable[object]) -> str:
-    """`a, b and c`."""
-    *most, last = [str(word) for word in words]
-    return f"{', '.join(most)} and {last}" if most else last
-
-
 def direction(yaw: float) -> str:
     """Where someone looks who is turned by `yaw` (rad) from the east."""
     return _DIRECTIONS[round(yaw / (math.pi / 4)) % 8]
@@ -76,7 +71,7 @@ def in_the_way(site: Site, low: Sequence[float], high: Sequence[float]) -> str:
     ]
     if len(names) > _NAMED:
         names[_NAMED - 1 :] = [f"{len(names) - _NAMED + 1} more things"]
-    return listed(names) if names else ""
+    return listed(names)
 
 
 def between(site: Site, a: NDArray[np.float64], b: NDArray[np.float64], height: float) -> str:

@@ -6,11 +6,12 @@ from collections.abc import Sequence
 import numpy as np
 from numpy.typing import NDArray
 
+from argo_compiler.listing import listed
 from argo_env.navigation import Navigator
 from argo_env.navigation.lattice import MARGIN
 from argo_env.planning.catalog import APART, patrol_corners
 from argo_env.planning.checking import unserved_floors
-from argo_env.planning.flaws.flaw import ASIDE, Flaw, Mark, away, between, listed, place
+from argo_env.planning.flaws.flaw import ASIDE, Flaw, Mark, away, between, place
 from argo_env.planning.flaws.standing import Standing
 from argo_env.site.spec import LEDGE, FloorSpec, TowerSpec
 from argo_env.site.stairs import mouths

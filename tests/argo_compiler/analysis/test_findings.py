@@ -68,6 +68,12 @@ def test_a_loop_that_may_go_on():
     assert "group 'G' may be repeated without limit" in findings(endless)["unbounded-loop"].message
 
 
+def test_what_follows_a_round_whose_time_is_up_is_looked_at_without_travel_times():
+    loop = [task("Bm1", way("Bm1", "1 < 5"), "End"), "End"]
+    timed = Group(name="G", start="A", end="A", max_repeat_duration=60, stop=Stop.HARD)
+    assert set(findings(mission("A", *loop, groups=(timed,)))) == {"unbounded-loop"}
+
+
 def test_where_the_mission_ends():
     home = Task(name="Home", action=Action.WAYPOINT, pose=DOCK)
     early = task("Am1", way("B", "1 < 5"), "Home")

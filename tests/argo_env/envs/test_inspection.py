@@ -160,7 +160,11 @@ class TestOneLoop:
 
     @pytest.mark.parametrize(
         ("drive", "actions"),
-        [("route", (1, 0, 2, 3)), ("kinematic", (1, 0, 2, 3)), ("tracked", (1, 3))],
+        [
+            ("route", (1, 0, 2, 3)),
+            ("kinematic", (1, 0, 2, 3)),
+            pytest.param("tracked", (1, 3), marks=pytest.mark.long),
+        ],
     )
     def test_its_record_is_that_of_the_mission_that_it_made(self, make, yard_file, drive, actions):
         env = make(scenario=yard_file, drive=drive)

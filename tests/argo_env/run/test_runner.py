@@ -10,6 +10,7 @@ from hypothesis import strategies as st
 import argo_env.run.ending
 from argo_compiler.errors import ArgoError
 from argo_compiler.il import Action, Condition, ConditionType, Group, Mission, Task, Transition
+from argo_compiler.il.docked import at_dock
 from argo_compiler.model import Pose
 from argo_env.navigation import Path
 from argo_env.navigation.path import Motion
@@ -17,7 +18,6 @@ from argo_env.robot.calibration import MotionKind
 from argo_env.robot.pose import BodyPose
 from argo_env.run.record import RunRecord
 from argo_env.run.simulation import SAMPLE_PERIOD
-from argo_env.run.verdict import is_docked
 from tests.yard import simulated
 
 FRONT = Pose(x=8.05, y=-2.05, z=-0.03, yaw=0.0)
@@ -360,11 +360,11 @@ def test_contacts_at_two_times_are_two(navigator):
 
 def test_docked_within_a_tolerance(umad):
     dock = umad.docks[1]
-    assert is_docked(BodyPose(dock.x, dock.y, dock.z, dock.yaw - 2 * math.pi), umad.docks, 1)
-    assert is_docked(BodyPose(dock.x + 0.09, dock.y, dock.z, dock.yaw), umad.docks, 1)
-    assert not is_docked(BodyPose(dock.x + 0.11, dock.y, dock.z, dock.yaw), umad.docks, 1)
-    assert not is_docked(BodyPose(dock.x, dock.y, dock.z, dock.yaw + 0.1), umad.docks, 1)
-    assert not is_docked(BodyPose(dock.x, dock.y, dock.z, dock.yaw), umad.docks, 2)
+    assert at_dock(BodyPose(dock.x, dock.y, dock.z, dock.yaw - 2 * math.pi), umad.docks[1])
+    assert at_dock(BodyPose(dock.x + 0.09, dock.y, dock.z, dock.yaw), umad.docks[1])
+    assert not at_dock(BodyPose(dock.x + 0.11, dock.y, dock.z, dock.yaw), umad.docks[1])
+    assert not at_dock(BodyPose(dock.x, dock.y, dock.z, dock.yaw + 0.1), umad.docks[1])
+    assert not at_dock(BodyPose(dock.x, dock.y, dock.z, dock.yaw), umad.docks[2])
 
 
 @settings(max_examples=3, deadline=None, derandomize=True)

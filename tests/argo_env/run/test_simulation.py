@@ -158,6 +158,7 @@ class TestPausing:
         assert read(self.pause(site, "tracked", int(share * most), 5)) == readings
 
 
+@pytest.mark.long
 def test_eight_threads_give_what_each_gives_alone(site):
     drives = [*3 * ["route", "kinematic"], "route", "tracked"]
     specs = [

@@ -125,11 +125,11 @@ thread = threading.Thread(target=write, daemon=True)
 thread.start()
 from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
-from argo_env.pictures.film import write_film
-from argo_env.pictures.overview import write_overview
+from argo_env.pictures import overview, write_film, write_overview
 from argo_env.planning.opening import open_site
 from tests.argo_env.world import test_threads
 
+overview.SIZE, overview._FINER, overview._SHADOW_MAP = (160, 120), 1, 80
 file = sys.argv[1]
 with ThreadPoolExecutor(4) as pool:  # each drive and the camera
     records = list(pool.map(test_threads.run, [file] * 4, range(4)))

@@ -164,7 +164,7 @@ RULES: dict[str, Make] = {
     "earliest": lambda part: Manner(earliest=_seconds(part)),
     "delay": lambda part: Manner(delay=_seconds(part)),
     "at_most": _at_most,
-    "if_time": lambda part: Manner(optional=True),
+    "if_time": lambda _: Manner(optional=True),
     "priority": _priority,
     "ranked": _ranked,
     "by_importance": lambda part: Manner(by_importance=True),  # noqa: ARG005

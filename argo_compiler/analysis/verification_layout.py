@@ -1,0 +1,57 @@
+"""The places of a mission, and its groups, as a checker of witnesses reads them."""
+
+from argo_compiler.il import Action, Mission, Stop
+
+Place = tuple[str, int]
+"""`task`, `round` or `cut` with a position in the mission's list, or `END`"""
+END: Place = ("end", 0)
+
+
+class GroupLayout:
+    """Which tasks lie in which groups (G1), by position."""
+
+    def __init__(self, mission: Mission) -> None:
+        self.position = {task.name: i for i, task in enumerate(mission.tasks)}
+        self.group_position = {group.name: g for g, group in enumerate(mission.groups)}
+        groups = mission.groups
+        first = [self.position[group.start] for group in groups]
+        self.last = [self.position[group.end] for group in groups]
+        self.parent = [self.group_position.get(g.name.rpartition("/")[0]) for g in groups]
+        self.innermost: list[int | None] = [None] * len(mission.tasks)
+        self.ending: list[int | None] = [None] * len(mission.tasks)
+        """for each task the innermost group that ends with it"""
+        self.hard = [g.max_repeat_duration > 0 and g.stop is Stop.HARD for g in groups]
+        self.timed = [False] * len(groups)
+        self.ending_around: list[int | None] = [None] * len(groups)
+        """for each group the one around it, if that ends with the same task"""
+        depth = [group.name.count("/") for group in groups]
+        opened: dict[int, list[int]] = {}
+        for g in sorted(range(len(groups)), key=lambda g: depth[g]):
+            around = self.parent[g]
+            self.timed[g] = self.hard[g] or (around is not None and self.timed[around])
+            if around is not None and self.last[around] == self.last[g]:
+                self.ending_around[g] = around
+            self.ending[self.last[g]] = g
+            opened.setdefault(first[g], []).append(g)
+        inside: list[int] = []
+        for i in range(len(mission.tasks)):
+            inside += opened.get(i, ())
+            if inside:
+                self.innermost[i] = inside[-1]
+            while inside and self.last[inside[-1]] == i:
+                inside.pop()
+        self.begin = self._begin(mission)
+
+    def place(self, name: str) -> Place:
+        return "task", self.position[name]
+
+    def _begin(self, mission: Mission) -> Place:
+        start = next((t for t in mission.tasks if t.action is Action.START), None)
+        if start is not None:
+            for transition in start.transitions:
+                if not transition.conditions:
+                    return self.place(transition.target)
+        for i, task in enumerate(mission.tasks):
+            if task.action is not Action.START:
+                return "task", i
+        return END

@@ -1,0 +1,170 @@
+"""The readings that a witness says there may be at each place of a mission, as bits.
+
+This shares nothing with the bits of the analysis but the form of its witnesses.
+"""
+
+from bisect import bisect_left
+from collections.abc import Mapping
+from dataclasses import dataclass
+from functools import cached_property
+from itertools import pairwise
+
+from argo_compiler.analysis.verification_layout import END, Place
+from argo_compiler.analysis.witness import KeptReading
+from argo_compiler.il import Condition, ConditionType
+
+Ranges = tuple[float, float, float, float]
+"""of a checkpoint: between what its values lie, and its nominal ones"""
+
+
+@dataclass(frozen=True)
+class ClaimedScale:
+    """The readings of one checkpoint, and where its bits lie among those of all."""
+
+    bounds: tuple[float, ...]
+    shift: int
+    values: int
+    """the bits of the values that it may show"""
+    abnormal: int
+    """and of those that may be called abnormal"""
+
+    @cached_property
+    def missing(self) -> int:
+        return 1 << (2 * len(self.bounds) + 1)
+
+    @cached_property
+    def unreadable(self) -> int:
+        return self.missing << 1
+
+    @cached_property
+    def failed(self) -> int:
+        return self.missing << 2
+
+    @cached_property
+    def width(self) -> int:
+        return 2 * len(self.bounds) + 4
+
+    @cached_property
+    def full(self) -> int:
+        return (1 << self.width) - 1
+
+    def reaching(self, low: float, high: float) -> int:
+        """The values from `low` to `high`, both included, and those of the same regions."""
+        first, last = bisect_left(self.bounds, low), bisect_left(self.bounds, high)
+        first_bit = 2 * first + (low in self.bounds[first : first + 1])
+        last_bit = 2 * last + (high in self.bounds[last : last + 1])
+        return (1 << (last_bit + 1)) - (1 << first_bit)
+
+    def at_most(self, bound: float, inclusive: bool) -> int | None:
+        """The values below a bound; None if it is not one of the bounds."""
+        k = bisect_left(self.bounds, bound)
+        if k == len(self.bounds) or self.bounds[k] != bound:
+            return None
+        return (1 << (2 * k + 1 + inclusive)) - 1
+
+    def satisfying(self, condition: Condition) -> int:
+        """The readings with which a condition may hold, its age apart."""
+        all_values = self.missing - 1
+        match condition.type:
+            case ConditionType.UNREADABLE:
+                return self.unreadable
+            case ConditionType.FAILED:
+                return self.unreadable | self.failed
+            case ConditionType.STALE:
+                return all_values
+            case ConditionType.ABNORMAL:
+                return self.abnormal
+        low, high = condition.param1, condition.param2
+        if low is None:
+            return 0
+        if condition.type is ConditionType.LESS:
+            below = self.at_most(low, condition.inclusive)
+            return all_values if below is None else below
+        above = self.at_most(low, not condition.inclusive)
+        held = all_values if above is None else all_values & ~above
+        if condition.type is ConditionType.WITHIN and high is not None:
+            below = self.at_most(high, condition.inclusive)
+            held &= all_values if below is None else below
+        return held
+
+    def decides(self, condition: Condition) -> bool:
+        """Whether a condition is true of all or none of the values of each bit."""
+        return not condition.type.compares or all(
+            self.at_most(bound, False) is not None for bound in bounds_of(condition)
+        )
+
+
+def bounds_of(condition: Condition) -> list[float]:
+    """What a condition compares values with."""
+    return [bound for bound in (condition.param1, condition.param2) if bound is not None]
+
+
+@dataclass
+class ClaimedStates:
+    """The readings at each place, all checkpoints beside each other in one number."""
+
+    places: dict[Place, int]
+    late: dict[Place, int]
+    """what may still come there from an action that is being cancelled (I3)"""
+    scales: dict[str, ClaimedScale]
+    width: int
+    """bits in all"""
+
+    def add_scale(
+        self, object_id: str, bounds: tuple[float, ...], shift: int, ranges: Mapping[str, Ranges]
+    ) -> bool:
+        """Whether the scale may lie there: above those before."""
+        if object_id in self.scales or shift < self.width:
+            return False
+        if any(not a < b for a, b in pairwise(bounds)):
+            return False
+        scale = ClaimedScale(bounds, shift, 0, 0)
+        values = abnormal = scale.missing - 1
+        if object_id in ranges:
+            low, high, normal_low, normal_high = ranges[object_id]
+            values = scale.reaching(low, high)
+            # A region belongs to the nominal values for sure only if it lies among them.
+            first, last = bisect_left(bounds, normal_low), bisect_left(bounds, normal_high)
+            if normal_low in bounds[first : first + 1] and normal_high in bounds[last : last + 1]:
+                abnormal &= ~scale.reaching(normal_low, normal_high)
+        self.scales[object_id] = ClaimedScale(bounds, shift, values, abnormal)
+        self.width = shift + scale.width
+        return True
+
+    def late_readings(self, object_id: str, failures: bool) -> int:
+        """What may come late: a value, or a success without one."""
+        scale = self.scales[object_id]
+        return (scale.values | (scale.unreadable if failures else 0)) << scale.shift
+
+    def holds(self, place: Place, state: int, late: int) -> bool:
+        known = self.places.get(place)
+        if known is None or late & ~self.late.get(place, 0):
+            return False
+        return not (state | late) & ~known
+
+    def keeps(self, place: Place, state: int, kept: KeptReading | None) -> bool:
+        if place == END or kept is None:
+            return place != END
+        return not self.get(state, kept.object_id) & ~kept.readings
+
+    def get(self, state: int, object_id: str) -> int:
+        scale = self.scales[object_id]
+        return state >> scale.shift & scale.full
+
+    def set(self, state: int, object_id: str, readings: int) -> int:
+        scale = self.scales[object_id]
+        return state & ~(scale.full << scale.shift) | readings << scale.shift
+
+    def with_kept(self, kept: KeptReading, ranges: Mapping[str, Ranges]) -> "ClaimedStates | None":
+        """The same with one checkpoint's readings as they are kept."""
+        states = ClaimedStates({}, dict(self.late), dict(self.scales), self.width)
+        old = states.scales.pop(kept.object_id, None)
+        if not states.add_scale(kept.object_id, kept.bounds, states.width, ranges):
+            return None
+        scale = states.scales[kept.object_id]
+        if not 0 < kept.readings <= scale.full:
+            return None
+        hole = 0 if old is None else old.full << old.shift
+        for place, state in self.places.items():
+            states.places[place] = state & ~hole | kept.readings << scale.shift
+        return states

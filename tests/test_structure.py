@@ -230,7 +230,7 @@ def test_what_goes_wrong_is_of_a_kind(package):
 
 
 SHIPPED = {
-    "argo_compiler.script.syntax.tables",
+    "argo_compiler.script.syntax.grammar.tables",
     "argo_env.files.resources",
     "argo_env.planning.code",
 }

@@ -65,7 +65,7 @@ def _broken(mission: Mission, pairs: Iterable[tuple[str, str]]) -> Iterator[Diag
         said = "comes" if sure else "may come"
         hint = "move one of them, or take the pair out"
         if not precise:
-            hint = "let `argo route` choose the order, or move one of them"
+            hint = "have the order chosen anew, or move one of them"
         yield _diagnostic(
             "order-broken",
             f"'{first}' is to come before '{second}', and '{second}' {said} before it",

@@ -9,11 +9,11 @@ from importlib.resources import files
 from pathlib import Path
 
 from argo_compiler.script.reference import BEGIN, END, as_markdown
-from argo_compiler.script.syntax.tables import save_tables
+from argo_compiler.script.syntax.grammar.tables import save_tables
 from argo_compiler.script.syntax.words.language import Language
 
 if __name__ == "__main__":
-    save_tables(Path(str(files("argo_compiler.script.syntax"))))
+    save_tables(Path(str(files("argo_compiler.script.syntax.grammar"))))
     for argument in sys.argv[1:]:
         page = Path(argument)
         text = page.read_text(encoding="utf-8")

@@ -23,7 +23,7 @@ def as_markdown(lexicons: Sequence[Lexicon]) -> str:
 
 def grammar_text() -> str:
     """The rules of a sentence, as the parser has them, without what only the parser needs."""
-    text = files("argo_compiler.script.syntax").joinpath("sentence.lark").read_text("utf-8")
+    text = files("argo_compiler.script.syntax.grammar").joinpath("sentence.lark").read_text("utf-8")
     rules = text[text.index("\n\n") + 2 :]
     return _ALIAS.sub("", rules).replace("// ---- ", "# ").strip()
 

@@ -23,7 +23,7 @@ from argo_compiler.files.reading import opened
 from argo_compiler.il import Mission
 from argo_compiler.isar import find_definition, from_isar
 from argo_compiler.ros import Received, decode_bag, is_bag_content, read_bag
-from argo_compiler.script.syntax.source import Source as Script
+from argo_compiler.script.syntax.text.source import Source as Script
 from argo_compiler.stages import stage
 from argo_env.planning.opening import OpenedSite
 

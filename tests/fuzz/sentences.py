@@ -8,7 +8,7 @@ from functools import cache
 
 from lark.grammar import NonTerminal, Rule, Symbol
 
-from argo_compiler.script.syntax.grammar import sentence_grammar
+from argo_compiler.script.syntax.grammar.parser import sentence_grammar
 from argo_compiler.script.syntax.words.language import Language
 from argo_compiler.script.syntax.words.lexicon import Lexicon
 from tests.argo_compiler.script.conftest import CATALOG

@@ -126,7 +126,7 @@ IL = {
     "il.order-broken": warning(
         "A task that is to come before another one can come after it. An error in a precise order "
         "where it always does.",
-        "Move one of them, choose the order with `argo route`, or take the pair out of `before`.",
+        "Move one of them, have the order chosen anew, or take the pair out of `before`.",
     ),
     "il.other-site": error(
         "The mission was planned for another site, so its poses and checkpoints mean others here.",

@@ -7,10 +7,10 @@ passed over. A test tries each with each.
 from collections.abc import Iterable, Mapping
 from dataclasses import fields
 
-from argo_compiler.script.syntax.source import Diagnostics
+from argo_compiler.script.syntax.text.source import Diagnostics
 from argo_compiler.script.syntax.tree import orders
 from argo_compiler.script.syntax.tree.manner import Manner
-from argo_compiler.script.syntax.tree.orders import Order, Word
+from argo_compiler.script.syntax.tree.orders import PlainWord, ScriptOrder
 
 ROUND = frozenset(
     {
@@ -31,14 +31,14 @@ _CASE = frozenset(["delay", "condition"])
 _ONCE_MORE = frozenset(["times", "more"])
 _NOTHING: frozenset[str] = frozenset()
 
-_USED: Mapping[type[Order], frozenset[str]] = {
+_USED: Mapping[type[ScriptOrder], frozenset[str]] = {
     orders.Measure: OF_TASKS | ROUND | _CASE | {"pose", "order"},
     orders.Add: OF_TASKS | ROUND | _CASE | {"pose"},
     orders.Go: OF_TASKS | ROUND | _CASE,
     orders.Home: OF_TASKS | ROUND | _CASE,
-    orders.Visit: frozenset(["speed"]),
+    orders.VisitOrder: frozenset(["speed"]),
     orders.Start: OF_TASKS,
-    orders.Wait: OF_TASKS - {"speed"} | _CASE | {"duration", "until", "pose"},
+    orders.WaitOrder: OF_TASKS - {"speed"} | _CASE | {"duration", "until", "pose"},
     orders.Patrol: OF_TASKS - {"reading_limit", "object_id"} | ROUND | _CASE | {"order"},
     orders.Repeat: ROUND | {"time_limit", "order"},
     orders.Follow: ROUND | {"time_limit", "order", "by_importance"},
@@ -47,7 +47,7 @@ _USED: Mapping[type[Order], frozenset[str]] = {
 }
 """of other orders nothing can be said"""
 _NAMED = (
-    *(orders.Measure, orders.Add, orders.Go, orders.Home, orders.Start, orders.Wait),
+    *(orders.Measure, orders.Add, orders.Go, orders.Home, orders.Start, orders.WaitOrder),
     *(orders.Patrol, orders.Repeat, orders.Follow),
 )
 """what a name can be given to"""
@@ -96,9 +96,9 @@ def words_of(names: Iterable[str]) -> str:
     return " and ".join(_WORDS.get(name, f"a {name}") for name in names)
 
 
-def accepts(order: Order, diagnostics: Diagnostics) -> bool:
+def accepts(order: ScriptOrder, diagnostics: Diagnostics) -> bool:
     """Whether an order makes use of all that is said of it; if not, an error says what is left."""
-    meets = isinstance(order, orders.Plain) and order.word is Word.MEET
+    meets = isinstance(order, orders.Plain) and order.word is PlainWord.MEET
     if order.name is not None and not meets and not isinstance(order, _NAMED):
         message = f"the name `{order.name}` stands before what is no task"
         hint = "write it before the order that plans the task, or leave it out"
@@ -106,10 +106,10 @@ def accepts(order: Order, diagnostics: Diagnostics) -> bool:
         return False
     if order.manner is None:
         return True
-    used = _USED[orders.Wait] if meets else _USED.get(type(order), _NOTHING)
-    if isinstance(order, orders.Wait) and {"times", "more"} <= said(order.manner):
+    used = _USED[orders.WaitOrder] if meets else _USED.get(type(order), _NOTHING)
+    if isinstance(order, orders.WaitOrder) and {"times", "more"} <= said(order.manner):
         used |= _ONCE_MORE if order.manner.times == 1 else _NOTHING  # `wait again`
-    if isinstance(order, orders.Wait) and order.where is not None:
+    if isinstance(order, orders.WaitOrder) and order.where is not None:
         used |= {"speed"}  # of the way to the place
     left = [name for name in _said_in_order(order.manner) if name not in used]
     if not left:

@@ -6,7 +6,7 @@ from argo_compiler.diagnostics import Span
 from argo_compiler.il import Action, Group, OnFailure, Stop, Task, TimeWindow, Transition
 from argo_compiler.script.resolve.lowering import Item, Lowered, Point
 from argo_compiler.script.resolve.naming import name_groups, name_tasks
-from argo_compiler.script.syntax.source import Diagnostics
+from argo_compiler.script.syntax.text.source import Diagnostics
 
 
 def assemble(

@@ -10,19 +10,19 @@ from argo_compiler.script.resolve.failing import POLICIES, Failures, is_failure
 from argo_compiler.script.resolve.program import (
     Ahead,
     Alternatives,
-    Block,
     Choice,
     Do,
     Leave,
-    Node,
+    ProgramBlock,
+    ProgramNode,
     Target,
     Way,
     in_branch,
     leads_away,
 )
 from argo_compiler.script.syntax.tree import orders
-from argo_compiler.script.syntax.tree.conditions import Condition, Test, TooLate
-from argo_compiler.script.syntax.tree.orders import Case, Rest, Word
+from argo_compiler.script.syntax.tree.conditions import SaidCondition, Test, TooLate
+from argo_compiler.script.syntax.tree.orders import Case, PlainWord, Rest
 
 if TYPE_CHECKING:  # a case's orders are planned as any others are
     from argo_compiler.script.resolve.planning import Planner
@@ -39,7 +39,7 @@ class Cases:
         self.asked: tuple[CheckpointInfo, ...] = ()
         """what `it` means in a condition, and where that does not hold"""
 
-    def add(self, case: Case, block: Block) -> None:
+    def add(self, case: Case, block: ProgramBlock) -> None:
         """Plans one case. After it, `it` may be what the condition asks of, or what is measured in
         that case only."""
         memory = self.context.memory
@@ -51,7 +51,7 @@ class Cases:
         self._add(case, block)
         memory.last = (*before, *(c for c in memory.last if c not in before))
 
-    def _add(self, case: Case, block: Block) -> None:
+    def _add(self, case: Case, block: ProgramBlock) -> None:
         condition = case.condition
         if condition is None:
             self._otherwise(case, block)
@@ -74,7 +74,7 @@ class Cases:
         else:
             self._values(case, condition, block)
 
-    def _other_case(self, case: Case, block: Block) -> Block | None:
+    def _other_case(self, case: Case, block: ProgramBlock) -> ProgramBlock | None:
         """Where a condition of `otherwise, if ...` stands; None if there is no other one before."""
         before = self.context.choice
         if isinstance(before, Choice) and before.listed and before.otherwise.first is None:
@@ -91,7 +91,7 @@ class Cases:
 
     # ---- values
 
-    def _values(self, case: Case, condition: Condition, block: Block) -> None:
+    def _values(self, case: Case, condition: SaidCondition, block: ProgramBlock) -> None:
         alternatives = self.context.conditions.alternatives(condition)
         do = block.last
         if isinstance(do, Leave) and not self.planner.comes_here(case.span, block):
@@ -118,11 +118,11 @@ class Cases:
         self._branch(case, choice.then)
         self.context.choice = choice
 
-    def _bound(self, node: Node | None) -> bool:
+    def _bound(self, node: ProgramNode | None) -> bool:
         """Whether a node stands in the step that is being planned."""
         return node is not None and node in self.context.step[-1:]
 
-    def _branch(self, case: Case, branch: Block) -> None:
+    def _branch(self, case: Case, branch: ProgramBlock) -> None:
         """Plans what is done in one case only; after the way home the mission is over."""
         context = self.context
         memory = context.memory.last
@@ -137,7 +137,7 @@ class Cases:
             if not accepts(last, self.diagnostics):
                 return
             orders_.pop()
-            ahead = Ahead.GO_ON if last.word is Word.GO_ON else Ahead.END
+            ahead = Ahead.GO_ON if last.word is PlainWord.GO_ON else Ahead.END
             ending = Leave(ahead, last.span)
         home = orders_[-1] if orders_ and isinstance(orders_[-1], orders.Home) else None
         if home is not None and (ending is None or ending.target is Ahead.END):
@@ -154,7 +154,7 @@ class Cases:
             context.memory.last = memory
         context.docked, context.recent, context.step = docked, recent, step
 
-    def _otherwise(self, case: Case, block: Block) -> None:
+    def _otherwise(self, case: Case, block: ProgramBlock) -> None:
         if case.rest is not Rest.OTHERWISE:
             self._rest(case, block)
             return
@@ -196,7 +196,7 @@ class Cases:
         self.diagnostics.error("ambiguous-otherwise", message, case.span, hint)
         return False
 
-    def _rest(self, case: Case, block: Block) -> None:
+    def _rest(self, case: Case, block: ProgramBlock) -> None:
         """The way that a task leads on if none of its conditions holds, wherever that is said."""
         do, target = block.last, self._target(case)
         if isinstance(do, Do) and target is not None:
@@ -211,7 +211,7 @@ class Cases:
         do.ways.remove(way)
         return way.alternatives
 
-    def _to_choice(self, do: Do, way: Way, choice: Choice, block: Block) -> None:
+    def _to_choice(self, do: Do, way: Way, choice: Choice, block: ProgramBlock) -> None:
         """Puts a choice where a way was: its other case has orders of its own."""
         choice.bound = self._bound(do)
         self.context.put([choice], block, do)
@@ -230,8 +230,8 @@ class Cases:
                 return order.step
             case orders.Home():
                 return self.planner.home_ahead(order)
-            case orders.Plain(word=Word.GO_ON):
+            case orders.Plain(word=PlainWord.GO_ON):
                 return Ahead.GO_ON
-            case orders.Plain(word=Word.END) | orders.Plain(word=Word.ABORT):
+            case orders.Plain(word=PlainWord.END) | orders.Plain(word=PlainWord.ABORT):
                 return Ahead.END
         return None

@@ -8,7 +8,7 @@ from argo_compiler.il import Condition, ConditionType
 from argo_compiler.script.resolve import units
 from argo_compiler.script.resolve.nouns import NounResolver
 from argo_compiler.script.resolve.program import Alternatives
-from argo_compiler.script.syntax.source import Diagnostics
+from argo_compiler.script.syntax.text.source import Diagnostics
 from argo_compiler.script.syntax.tree import conditions as said
 from argo_compiler.script.syntax.tree.conditions import (
     Amount,
@@ -17,7 +17,7 @@ from argo_compiler.script.syntax.tree.conditions import (
     Compared,
     InState,
     Relation,
-    State,
+    TaskState,
     Test,
 )
 from argo_compiler.script.syntax.tree.nouns import Pronoun
@@ -31,10 +31,10 @@ _OPPOSITE = {
     Relation.AT_MOST: Relation.GREATER,
 }
 _STATES = {
-    State.ABNORMAL: ConditionType.ABNORMAL,
-    State.UNREADABLE: ConditionType.UNREADABLE,
-    State.FAILED: ConditionType.FAILED,
-    State.STALE: ConditionType.STALE,
+    TaskState.ABNORMAL: ConditionType.ABNORMAL,
+    TaskState.UNREADABLE: ConditionType.UNREADABLE,
+    TaskState.FAILED: ConditionType.FAILED,
+    TaskState.STALE: ConditionType.STALE,
 }
 
 
@@ -45,7 +45,7 @@ class ConditionResolver:
         self.nouns = nouns
         self.diagnostics = diagnostics
 
-    def alternatives(self, condition: said.Condition) -> Alternatives | None:
+    def alternatives(self, condition: said.SaidCondition) -> Alternatives | None:
         """The conditions of each alternative; None if it is not clear what they are."""
         found: list[tuple[Condition, ...]] = []
         for tests in condition.alternatives:
@@ -162,14 +162,14 @@ class ConditionResolver:
         self, predicate: InState, negated: bool, checkpoint: CheckpointInfo
     ) -> "list[_Bound] | None":
         state = predicate.state
-        if negated and state in (State.NORMAL, State.ABNORMAL):
-            state = State.ABNORMAL if state is State.NORMAL else State.NORMAL
+        if negated and state in (TaskState.NORMAL, TaskState.ABNORMAL):
+            state = TaskState.ABNORMAL if state is TaskState.NORMAL else TaskState.NORMAL
         elif negated:
             message = f"`not {state}` can't be asked for"
             hint = "turn it round: `if ..., go on; otherwise ...`"
             self.diagnostics.error("condition", message, predicate.span, hint)
             return None
-        if state is State.NORMAL:
+        if state is TaskState.NORMAL:
             nominal = checkpoint.nominal
             return [(ConditionType.WITHIN, nominal.low, nominal.high, True)]
         return [(_STATES[state], None, None, False)]

@@ -11,17 +11,17 @@ from argo_compiler.script.resolve.locating import Locator
 from argo_compiler.script.resolve.lookup import Lookup
 from argo_compiler.script.resolve.nouns import Memory, NounResolver
 from argo_compiler.script.resolve.program import (
-    Block,
     Choice,
     Do,
     HomeAhead,
-    Node,
+    ProgramBlock,
+    ProgramNode,
     Way,
     all_nodes,
     own_names,
 )
 from argo_compiler.script.resolve.reacting import Reactions
-from argo_compiler.script.syntax.source import Diagnostics
+from argo_compiler.script.syntax.text.source import Diagnostics
 from argo_compiler.script.syntax.tree.places import Steps
 
 
@@ -36,10 +36,10 @@ class Context:
     nouns: NounResolver
     conditions: ConditionResolver
     reactions: Reactions
-    program: Block = field(default_factory=Block)
-    steps: dict[int, list[Node] | None] = field(default_factory=dict)
+    program: ProgramBlock = field(default_factory=ProgramBlock)
+    steps: dict[int, list[ProgramNode] | None] = field(default_factory=dict)
     """the nodes that each step planned; None for a number that more than one step has"""
-    step: list[Node] = field(default_factory=list)
+    step: list[ProgramNode] = field(default_factory=list)
     """those of the step that is being planned"""
     recent: list[Do] = field(default_factory=list)
     """the tasks of the last order"""
@@ -47,7 +47,7 @@ class Context:
     """the condition that `otherwise` belongs to"""
     spared: dict[str, Span] = field(default_factory=dict)
     """the checkpoints that are not to be measured, and where that is said"""
-    before: list[Node] = field(default_factory=list)
+    before: list[ProgramNode] = field(default_factory=list)
     """the nodes of the step before"""
     measured: dict[str, dict[int, Do]] = field(default_factory=dict)
     """the measurements in the program, by checkpoint"""
@@ -76,7 +76,9 @@ class Context:
             self.step = []
             self.steps[number] = None if number in self.steps else self.step
 
-    def put(self, nodes: Iterable[Node], block: Block, anchor: Node | None) -> None:
+    def put(
+        self, nodes: Iterable[ProgramNode], block: ProgramBlock, anchor: ProgramNode | None
+    ) -> None:
         """Puts nodes into a block, behind the anchor; None: before all."""
         self.own_names = None
         for node in nodes:
@@ -116,7 +118,7 @@ class Context:
         """Whether all that was asked for so far is planned: what is not found is not there."""
         return self.memory.known
 
-    def nodes_of(self, steps: Steps, quiet: bool = False) -> list[Node] | None:
+    def nodes_of(self, steps: Steps, quiet: bool = False) -> list[ProgramNode] | None:
         """What steps or named tasks stand for; None if there is nothing, with an error."""
         points = list(steps.points)
         first, last = points[0], points[-1]
@@ -127,7 +129,7 @@ class Context:
                 self.diagnostics.error("step-range", message, steps.span, hint)
                 return None
             points = list(range(first, min(last, first + len(self.steps) + 1) + 1))
-        found: list[Node] = []
+        found: list[ProgramNode] = []
         for point in points:
             nodes = self._of_point(point, steps.span)
             if nodes is None:
@@ -142,7 +144,7 @@ class Context:
             self.own_names = dict(zip(own_names(tasks), tasks, strict=True))
         return self.own_names.get(name)
 
-    def _of_point(self, point: int | str, span: Span) -> list[Node] | None:
+    def _of_point(self, point: int | str, span: Span) -> list[ProgramNode] | None:
         if isinstance(point, str):
             do = self.named.get(point)
             if do is None or not do.listed:
@@ -167,7 +169,7 @@ class Context:
         return [node for node in nodes if node.listed]
 
 
-def _bound_to(do: Do) -> Iterator[Node]:
+def _bound_to(do: Do) -> Iterator[ProgramNode]:
     """The conditions that are looked at after a task, in its own step."""
     node = do.after
     while isinstance(node, Choice) and node.bound:
@@ -175,11 +177,11 @@ def _bound_to(do: Do) -> Iterator[Node]:
         node = node.after
 
 
-def topmost(nodes: Iterable[Node], block: Block) -> list[Node]:
+def topmost(nodes: Iterable[ProgramNode], block: ProgramBlock) -> list[ProgramNode]:
     """The nodes of `block` that hold these, each once, in the block's order of first mention."""
-    found: dict[int, Node] = {}
+    found: dict[int, ProgramNode] = {}
     for node in nodes:
-        at: Node | None = node
+        at: ProgramNode | None = node
         while at is not None and at.block is not block:
             at = at.block.owner if at.block is not None else None
         if at is not None:

@@ -7,7 +7,7 @@ from argo_compiler.listing import listed
 from argo_compiler.script.resolve import making
 from argo_compiler.script.resolve.context import Context
 from argo_compiler.script.resolve.manners import Manners
-from argo_compiler.script.resolve.program import Choice, Do, Node
+from argo_compiler.script.resolve.program import Choice, Do, ProgramNode
 from argo_compiler.script.syntax.tree import orders
 from argo_compiler.script.syntax.tree.nouns import Nouns
 from argo_compiler.script.syntax.tree.orders import Side
@@ -52,7 +52,9 @@ class Edits:
         self.context.recent = tasks
         self.context.remember(checkpoints)
 
-    def _put(self, nodes: Sequence[Node], anchors: Sequence[Node], side: Side) -> None:
+    def _put(
+        self, nodes: Sequence[ProgramNode], anchors: Sequence[ProgramNode], side: Side
+    ) -> None:
         anchor = anchors[0] if side is Side.BEFORE else anchors[-1]
         block = anchor.block
         assert block is not None
@@ -65,7 +67,7 @@ class Edits:
                 before = before.after
         self.context.put(nodes, block, before)
 
-    def _take_out(self, do: Node, edit: Edit) -> bool:
+    def _take_out(self, do: ProgramNode, edit: Edit) -> bool:
         if isinstance(do.after, Choice) or not isinstance(do, Do) or do.failure is not None:
             message = "this task belongs to a condition, so it can't be moved or taken out"
             hint = "change the line that asks for it"
@@ -117,7 +119,7 @@ class Edits:
         self.context.recent = [do]
         self.context.remember([checkpoint])
 
-    def _found(self, thing: Nouns | Steps) -> list[Node] | None:
+    def _found(self, thing: Nouns | Steps) -> list[ProgramNode] | None:
         """The planned tasks that are meant; None if it is not clear which."""
         if isinstance(thing, Steps):
             return self._of_steps(thing)
@@ -125,7 +127,7 @@ class Edits:
         if checkpoints is None:
             self.context.fail()
             return None
-        found: list[Node] = []
+        found: list[ProgramNode] = []
         for checkpoint in checkpoints:
             tasks = list(self.context.measured.get(str(checkpoint.id), {}).values())
             name = f"checkpoint #{checkpoint.id}"
@@ -145,7 +147,7 @@ class Edits:
             return None
         return found
 
-    def _of_steps(self, steps: Steps) -> list[Node] | None:
+    def _of_steps(self, steps: Steps) -> list[ProgramNode] | None:
         planned = [self.context.steps.get(p) for p in steps.points if isinstance(p, int)]
         known = all(isinstance(p, int) for p in steps.points) and all(planned)
         named = all(isinstance(p, str) and p in self.context.named for p in steps.points)

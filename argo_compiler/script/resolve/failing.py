@@ -5,19 +5,19 @@ from typing import TYPE_CHECKING
 
 from argo_compiler.il import OnFailure
 from argo_compiler.script.resolve.context import Context
-from argo_compiler.script.resolve.program import Block
+from argo_compiler.script.resolve.program import ProgramBlock
 from argo_compiler.script.syntax.tree import orders
-from argo_compiler.script.syntax.tree.conditions import Condition, InState, State, Test
+from argo_compiler.script.syntax.tree.conditions import InState, SaidCondition, TaskState, Test
 from argo_compiler.script.syntax.tree.nouns import Pronoun
-from argo_compiler.script.syntax.tree.orders import Case, Order, Word
+from argo_compiler.script.syntax.tree.orders import Case, PlainWord, ScriptOrder
 
 if TYPE_CHECKING:  # a case's orders are planned as any others are
     from argo_compiler.script.resolve.planning import Planner
 
 POLICIES = {
-    Word.ABORT: OnFailure.ABORT,
-    Word.END: OnFailure.ABORT,
-    Word.GO_ON: OnFailure.CONTINUE,
+    PlainWord.ABORT: OnFailure.ABORT,
+    PlainWord.END: OnFailure.ABORT,
+    PlainWord.GO_ON: OnFailure.CONTINUE,
 }
 
 
@@ -25,7 +25,7 @@ class Failures:
     """Plans what follows failures."""
 
     def __init__(
-        self, context: Context, planner: "Planner", branch: Callable[[Case, Block], None]
+        self, context: Context, planner: "Planner", branch: Callable[[Case, ProgramBlock], None]
     ) -> None:
         self.context = context
         self.diagnostics = context.diagnostics
@@ -33,7 +33,7 @@ class Failures:
         self.branch = branch
         """plans what is done in one case only"""
 
-    def failure(self, case: Case, block: Block) -> None:
+    def failure(self, case: Case, block: ProgramBlock) -> None:
         """What is done if the last task fails."""
         recent = self.context.recent
         if not recent:
@@ -41,7 +41,7 @@ class Failures:
             hint = "write it behind the task that it is said of"
             self.diagnostics.error("no-task", message, case.span, hint)
             return
-        rest: list[Order] = []
+        rest: list[ScriptOrder] = []
         for order in case.orders:
             if isinstance(order, orders.Retry):
                 self.planner.order(order, block)
@@ -67,12 +67,12 @@ class Failures:
             self.diagnostics.error("failure", message, case.span, hint)
             return
         do = recent[-1]
-        do.failure = Block(do)
+        do.failure = ProgramBlock(do)
         self.branch(Case(span=case.span, condition=None, orders=tuple(rest)), do.failure)
 
     # ---- windows that are missed
 
-    def too_late(self, case: Case, condition: Condition) -> None:
+    def too_late(self, case: Case, condition: SaidCondition) -> None:
         """What is done if the window of the last task is missed."""
         recent = self.context.recent
         alone = len(condition.alternatives) == len(condition.alternatives[0]) == 1
@@ -87,13 +87,13 @@ class Failures:
             message = "what is done if it is too late is said already"
             self.diagnostics.error("second-route", message, case.span, "leave one of the two out")
             return
-        do.missed = Block(do)
+        do.missed = ProgramBlock(do)
         self.branch(Case(span=case.span, condition=None, orders=case.orders), do.missed)
 
 
-def is_failure(condition: Condition) -> bool:
+def is_failure(condition: SaidCondition) -> bool:
     """Whether it asks only whether the last task has failed."""
     match condition.alternatives:
-        case ((Test(predicate=InState(state=State.FAILED), subject=subject),),):
+        case ((Test(predicate=InState(state=TaskState.FAILED), subject=subject),),):
             return subject is None or all(isinstance(n, Pronoun) for n in subject.nouns)
     return False

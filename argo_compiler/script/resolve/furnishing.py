@@ -6,7 +6,7 @@ from argo_compiler.diagnostics import Span
 from argo_compiler.il import Action, JointState, TimeWindow
 from argo_compiler.script.resolve.locating import Locator
 from argo_compiler.script.resolve.program import Do
-from argo_compiler.script.syntax.source import Diagnostics
+from argo_compiler.script.syntax.text.source import Diagnostics
 from argo_compiler.script.syntax.tree.manner import Joints, Manner
 
 _FRESH = Do("", Action.MEASURE)

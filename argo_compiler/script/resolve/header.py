@@ -5,9 +5,9 @@ from dataclasses import dataclass
 from argo_compiler.diagnostics import Span
 from argo_compiler.errors import Remedy
 from argo_compiler.listing import listed
-from argo_compiler.script.syntax.source import Diagnostics
+from argo_compiler.script.syntax.text.source import Diagnostics
 from argo_compiler.script.syntax.tree.places import Coordinates
-from argo_compiler.script.syntax.tree.script import AreaChosen, Areas, Header
+from argo_compiler.script.syntax.tree.script import AreaChosen, Areas, ScriptHeader
 
 _REMEDIES = {"start": Remedy.CHOOSE_START, "end": Remedy.CHOOSE_END}
 
@@ -35,7 +35,7 @@ class HeaderValues:
 
 
 def header_values(
-    header: Header, diagnostics: Diagnostics, start_area: int | None, end_area: int | None
+    header: ScriptHeader, diagnostics: Diagnostics, start_area: int | None, end_area: int | None
 ) -> HeaderValues:
     """The choices; the options must be among what it offers."""
     if header.areas_open is not None:

@@ -15,11 +15,11 @@ from argo_compiler.script.resolve.lookup import Lookup
 from argo_compiler.script.resolve.lowering import lower_program
 from argo_compiler.script.resolve.ordering import Ordering
 from argo_compiler.script.resolve.planning import Planner
-from argo_compiler.script.resolve.program import Do, Node, all_nodes, depth
+from argo_compiler.script.resolve.program import Do, ProgramNode, all_nodes, depth
 from argo_compiler.script.resolve.starting import Starting
 from argo_compiler.script.resolve.stepping import Stepping
 from argo_compiler.script.syntax.parsing import parse
-from argo_compiler.script.syntax.source import Diagnostics, Source
+from argo_compiler.script.syntax.text.source import Diagnostics, Source
 from argo_compiler.script.syntax.tree.places import Steps
 from argo_compiler.script.syntax.tree.script import Script
 
@@ -87,7 +87,7 @@ def _mission(
         return None
 
     @cache
-    def find(steps: Steps) -> Node | None:
+    def find(steps: Steps) -> ProgramNode | None:
         nodes = context.nodes_of(steps)
         if nodes is not None and not nodes:
             message = (

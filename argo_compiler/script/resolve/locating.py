@@ -6,7 +6,7 @@ from argo_compiler.catalog import Area
 from argo_compiler.listing import listed
 from argo_compiler.model import Pose
 from argo_compiler.script.resolve.lookup import Lookup
-from argo_compiler.script.syntax.source import Diagnostics
+from argo_compiler.script.syntax.text.source import Diagnostics
 from argo_compiler.script.syntax.tree.places import (
     AreaLocation,
     Coordinates,

@@ -9,8 +9,8 @@ from argo_compiler.catalog import Area, Catalog, CheckpointInfo, CheckpointKind,
 from argo_compiler.diagnostics import Span
 from argo_compiler.listing import listed
 from argo_compiler.model import Pose
-from argo_compiler.script.syntax.source import Diagnostics
-from argo_compiler.script.syntax.spelling import nearest
+from argo_compiler.script.syntax.text.source import Diagnostics
+from argo_compiler.script.syntax.text.spelling import nearest
 from argo_compiler.script.syntax.tree.nouns import Kind, Quantity
 from argo_compiler.script.syntax.tree.places import FloorName, NamedFloor, PlaceLocation
 

@@ -11,13 +11,13 @@ from dataclasses import dataclass, field
 from argo_compiler.il import Action, Condition, WaitRule
 from argo_compiler.script.resolve.program import (
     Ahead,
-    Block,
     Choice,
     Do,
     HomeAhead,
     Leave,
-    Node,
-    Round,
+    ProgramBlock,
+    ProgramNode,
+    ProgramRound,
     Target,
     inner_blocks,
 )
@@ -59,7 +59,7 @@ class Item:
 class Range:
     """A round, and the places of its first and last task."""
 
-    round: Round
+    round: ProgramRound
     first: int
     last: int
 
@@ -72,11 +72,13 @@ class Lowered:
     ranges: list[Range]
 
 
-Find = Callable[[Steps], Node | None]
+Find = Callable[[Steps], ProgramNode | None]
 """the first node of a step; None if there is none, with an error"""
 
 
-def lower_program(block: Block, find: Find, home: Callable[[HomeAhead], Do | None]) -> Lowered:
+def lower_program(
+    block: ProgramBlock, find: Find, home: Callable[[HomeAhead], Do | None]
+) -> Lowered:
     """The tasks of a program. `home` is the drive with which the mission ends where a way home
     leads to it; it is put at the end unless it stands there."""
     return _Lowering(find, home).lower(block)
@@ -96,7 +98,7 @@ class _Lowering:
         self.jumped: set[int] = set()
         """the nodes that a way from elsewhere leads to, by identity"""
 
-    def lower(self, block: Block) -> Lowered:
+    def lower(self, block: ProgramBlock) -> Lowered:
         self._note_jumps(block)
         self._block(block, Point(), Point())
         for do in self.apart:
@@ -119,7 +121,7 @@ class _Lowering:
 
     # ---- where ways lead
 
-    def _note_jumps(self, block: Block) -> None:
+    def _note_jumps(self, block: ProgramBlock) -> None:
         stack = [block]
         while stack:
             for node in stack.pop():
@@ -132,7 +134,7 @@ class _Lowering:
                     if found is not None:
                         self.jumped.add(id(found))
 
-    def _point(self, node: Node) -> Point:
+    def _point(self, node: ProgramNode) -> Point:
         return self.points.setdefault(id(node), Point())
 
     def _target(self, target: Target) -> Point:
@@ -156,7 +158,7 @@ class _Lowering:
     # ---- blocks
 
     def _block(
-        self, block: Block, entry: Point, following: Point, before: Item | None = None
+        self, block: ProgramBlock, entry: Point, following: Point, before: Item | None = None
     ) -> None:
         """Lays a block out: `entry` is where it is come to, `following` where it leads. `before`
         is the task from which alone it is come to, if a condition there may decide in it."""
@@ -184,21 +186,23 @@ class _Lowering:
         if block.first is None:
             entry.same = following
 
-    def _onward(self, node: Node, following: Point) -> Point:
+    def _onward(self, node: ProgramNode, following: Point) -> Point:
         """Where a node leads if none of the conditions that belong to it is looked at."""
         after = node.after
         while isinstance(after, Choice) and after.bound:
             after = after.after
         return following if after is None else self._point(after)
 
-    def _node(self, node: Node, entry: Point, behind: Point, before: Item | None) -> Item | None:
+    def _node(
+        self, node: ProgramNode, entry: Point, behind: Point, before: Item | None
+    ) -> Item | None:
         """Lays a node out; the task whose ways a condition behind it may be added to."""
         match node:
             case Do():
                 return self._do(node, entry, behind)
             case Choice():
                 return self._choice(node, entry, behind, before)
-            case Round():
+            case ProgramRound():
                 self._round(node, entry, behind)
             case Leave():
                 entry.same = self._target(node.target)
@@ -252,7 +256,7 @@ class _Lowering:
 
     # ---- rounds
 
-    def _round(self, round_: Round, entry: Point, behind: Point) -> None:
+    def _round(self, round_: ProgramRound, entry: Point, behind: Point) -> None:
         first = len(self.items)
         end = Point()
         index = len(self.ranges)
@@ -263,12 +267,12 @@ class _Lowering:
         self.ranges.insert(index, Range(round_, first, len(self.items) - 1))
 
 
-def _leaves(block: Block) -> bool:
+def _leaves(block: ProgramBlock) -> bool:
     """Whether a way leads elsewhere from the beginning of a block."""
     return isinstance(block.first, Leave) and block.first.target is not Ahead.GO_ON
 
 
-def _closes(body: Block) -> bool:
+def _closes(body: ProgramBlock) -> bool:
     """Whether all ways through a block come to its last task."""
     last = body.last
     if isinstance(last, Do):
@@ -279,14 +283,14 @@ def _closes(body: Block) -> bool:
         )
         left = all(block is None or _leaves(block) for block in (last.failure, last.missed))
         return left and not open_
-    return isinstance(last, Round)
+    return isinstance(last, ProgramRound)
 
 
 def _meeting(choice: Choice) -> Do:
     before = choice.before
-    base = f"after '{before.title}'" if isinstance(before, Round) else "MEET"
+    base = f"after '{before.title}'" if isinstance(before, ProgramRound) else "MEET"
     return Do(base, Action.WAIT, choice.span, wait=MEETING)
 
 
-def _end(round_: Round) -> Do:
+def _end(round_: ProgramRound) -> Do:
     return Do(f"end of '{round_.title}'", Action.WAIT, round_.span, wait=MEETING)

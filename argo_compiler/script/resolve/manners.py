@@ -9,11 +9,11 @@ from argo_compiler.script.resolve import making
 from argo_compiler.script.resolve.accepting import ROUND, said
 from argo_compiler.script.resolve.context import Context
 from argo_compiler.script.resolve.furnishing import Furnishing
-from argo_compiler.script.resolve.program import Choice, Do, Node, Round
+from argo_compiler.script.resolve.program import Choice, Do, ProgramNode, ProgramRound
 from argo_compiler.script.resolve.repeating import limits_of, timed
 from argo_compiler.script.syntax.tree import orders
 from argo_compiler.script.syntax.tree.manner import Manner
-from argo_compiler.script.syntax.tree.orders import Order
+from argo_compiler.script.syntax.tree.orders import ScriptOrder
 
 
 class Manners:
@@ -24,7 +24,7 @@ class Manners:
         self.diagnostics = context.diagnostics
         self.furnishing = Furnishing(context.locator, context.diagnostics)
 
-    def name(self, order: Order, tasks: Sequence[Do]) -> None:
+    def name(self, order: ScriptOrder, tasks: Sequence[Do]) -> None:
         """Gives the task of an order the name that the script gives it."""
         if order.name is None:
             return
@@ -34,7 +34,7 @@ class Manners:
             self.diagnostics.error("one-name", message, order.span, hint)
         tasks[0].name = order.name
 
-    def with_prefix(self, order: Order, prefix: Order) -> Order:
+    def with_prefix(self, order: ScriptOrder, prefix: ScriptOrder) -> ScriptOrder:
         """An order with the manner that stands before it: `three times: check checkpoint 17`."""
         if order.name is None:
             order = replace(order, name=prefix.name)
@@ -57,9 +57,9 @@ class Manners:
 
     # ---- tasks
 
-    def apply(self, order: Order, tasks: Sequence[Do]) -> list[Node]:
+    def apply(self, order: ScriptOrder, tasks: Sequence[Do]) -> list[ProgramNode]:
         """The tasks as nodes, with a wait before them, a round or a choice around them."""
-        if isinstance(order, orders.Wait) and order.manner is not None:
+        if isinstance(order, orders.WaitOrder) and order.manner is not None:
             # What limits a wait ends it, and is no limit of the task.
             order = replace(order, manner=replace(order.manner, time_limit=None))
         if not _is_round(order):
@@ -72,7 +72,7 @@ class Manners:
         round_ = self._round(round_order, tasks)
         return self.around(order, list(tasks) if round_ is None else [round_])
 
-    def _round(self, order: Order, tasks: Sequence[Do]) -> Round | None:
+    def _round(self, order: ScriptOrder, tasks: Sequence[Do]) -> ProgramRound | None:
         manner = order.manner
         if manner is not None and manner.times == 1 and (manner.more or manner.every is not None):
             # `once every ten minutes`, `again every ten minutes`
@@ -81,13 +81,13 @@ class Manners:
         if limits is None:
             return None
         base = " and ".join(do.base for do in tasks)
-        round_ = Round(
+        round_ = ProgramRound(
             f"Repeat {base}".replace("/", "-"), limits, order.span, self.context.new_round()
         )
         self.context.put(tasks, round_.body, None)
         return round_
 
-    def around(self, order: Order, nodes: list[Node]) -> list[Node]:
+    def around(self, order: ScriptOrder, nodes: list[ProgramNode]) -> list[ProgramNode]:
         """The nodes with a wait before them, in the case that is said of them only."""
         manner = order.manner
         if manner is None:
@@ -103,14 +103,14 @@ class Manners:
         self.context.put(nodes, choice.then, None)
         return [choice]
 
-    def furnish(self, order: Order, tasks: Sequence[Do]) -> None:
+    def furnish(self, order: ScriptOrder, tasks: Sequence[Do]) -> None:
         """Applies to each of the tasks what is said of each."""
         if order.manner is not None:
             self.furnishing.furnish(order.manner, order.span, tasks)
 
     # ---- what is said of tasks that are planned already
 
-    def amend(self, order: Order) -> None:
+    def amend(self, order: ScriptOrder) -> None:
         """Applies a sentence or clause of manner to the tasks before it."""
         recent = self.context.recent
         if not recent:
@@ -140,9 +140,9 @@ class Manners:
             do.on_failure = policy
 
 
-def _is_round(order: Order) -> bool:
+def _is_round(order: ScriptOrder) -> bool:
     """Whether what is said of an order makes a round of it."""
-    if isinstance(order, orders.Wait):
+    if isinstance(order, orders.WaitOrder):
         return False  # how long it lasts, and until when, is said of the wait
     if isinstance(order, orders.Measure) and order.keep:
         return True

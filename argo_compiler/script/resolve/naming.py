@@ -5,7 +5,7 @@ from collections.abc import Sequence
 
 from argo_compiler.script.resolve.lowering import Item, Range
 from argo_compiler.script.resolve.program import own_names
-from argo_compiler.script.syntax.source import Diagnostics
+from argo_compiler.script.syntax.text.source import Diagnostics
 
 
 def name_tasks(items: Sequence[Item], diagnostics: Diagnostics) -> list[str]:

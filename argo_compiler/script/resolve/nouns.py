@@ -4,11 +4,11 @@ from argo_compiler.catalog import CheckpointInfo
 from argo_compiler.diagnostics import Span
 from argo_compiler.listing import listed
 from argo_compiler.script.resolve.lookup import Lookup, agrees
-from argo_compiler.script.syntax.source import Diagnostics
+from argo_compiler.script.syntax.text.source import Diagnostics
 from argo_compiler.script.syntax.tree.nouns import (
     AllOf,
     Kind,
-    Named,
+    Labelled,
     Noun,
     Nouns,
     Pronoun,
@@ -60,7 +60,7 @@ class NounResolver:
         kind: Kind | None = None
         plural = False
         for noun in nouns.nouns:
-            if isinstance(noun, Named) and noun.kind is not None:
+            if isinstance(noun, Labelled) and noun.kind is not None:
                 kind, plural = noun.kind, noun.plural
             one = self._noun(noun, kind, plural)
             clear = clear and one is not None
@@ -89,7 +89,7 @@ class NounResolver:
         out: list[CheckpointInfo] = []
         kind: Kind | None = None
         for noun in nouns.but:
-            kind = noun.kind or kind if isinstance(noun, Named) else kind
+            kind = noun.kind or kind if isinstance(noun, Labelled) else kind
             inside = [c for c in found if agrees(c, noun.kind)] if isinstance(noun, TheOne) else []
             one = inside if _is_told(noun, inside) else self._noun(noun, kind, plural=True)
             if one is None:
@@ -104,7 +104,7 @@ class NounResolver:
 
     def _noun(self, noun: Noun, kind: Kind | None, plural: bool) -> Found:
         match noun:
-            case Named():
+            case Labelled():
                 return self._named(noun, kind, plural)
             case AllOf():
                 return self._of_kind(noun)
@@ -115,7 +115,7 @@ class NounResolver:
 
     # ---- by a label
 
-    def _named(self, noun: Named, kind: Kind | None, plural: bool) -> Found:
+    def _named(self, noun: Labelled, kind: Kind | None, plural: bool) -> Found:
         if noun.last is not None:
             return self._range(noun, kind)
         found = self._labelled(noun, noun.label, kind, plural)
@@ -137,7 +137,7 @@ class NounResolver:
                 self.lookup.check_quantity(found, noun.also.quantity, noun.also.span)
         return None if found is None else [found]
 
-    def _range(self, noun: Named, kind: Kind | None) -> Found:
+    def _range(self, noun: Labelled, kind: Kind | None) -> Found:
         first, last = noun.label, noun.last
         if not isinstance(first, int) or not isinstance(last, int):
             message = "a range goes from a number to a number"
@@ -157,7 +157,7 @@ class NounResolver:
         return found
 
     def _labelled(
-        self, noun: Named, label: int | str, kind: Kind | None, plural: bool
+        self, noun: Labelled, label: int | str, kind: Kind | None, plural: bool
     ) -> CheckpointInfo | None:
         if noun.hash or kind in (None, Kind.CHECKPOINT):
             if isinstance(label, int):
@@ -167,7 +167,7 @@ class NounResolver:
             return self._inherited(noun, label, kind)
         return self.lookup.identified(str(label), kind, noun.span)
 
-    def _inherited(self, noun: Named, label: int, kind: Kind | None) -> CheckpointInfo | None:
+    def _inherited(self, noun: Labelled, label: int, kind: Kind | None) -> CheckpointInfo | None:
         """`valve R25 and 5`: a number behind one of a kind may be a name or a number."""
         named = self.lookup.called(str(label), kind)
         numbered = self.lookup.by_number.get(label)

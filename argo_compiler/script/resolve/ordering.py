@@ -9,10 +9,16 @@ from argo_compiler.checks.precedence import check_precedence
 from argo_compiler.diagnostics import Severity, Span
 from argo_compiler.il import Action, Mission, Order
 from argo_compiler.script.resolve.context import Context
-from argo_compiler.script.resolve.program import Block, Do, Node, all_nodes, inner_blocks
-from argo_compiler.script.syntax.tree.facts import Precedence, StepsOrdered
+from argo_compiler.script.resolve.program import (
+    Do,
+    ProgramBlock,
+    ProgramNode,
+    all_nodes,
+    inner_blocks,
+)
+from argo_compiler.script.syntax.tree.facts import ReadBefore, StepsOrdered
 from argo_compiler.script.syntax.tree.places import Steps
-from argo_compiler.script.syntax.tree.script import Header
+from argo_compiler.script.syntax.tree.script import ScriptHeader
 
 _Checkpoints = tuple[CheckpointInfo, ...]
 
@@ -22,10 +28,10 @@ class Ordering:
     """What the script has said of the order so far. Mutable: each sentence may add to it."""
 
     context: Context
-    header: Header
-    free: list[tuple[Span, list[Node]]] = field(default_factory=list)
+    header: ScriptHeader
+    free: list[tuple[Span, list[ProgramNode]]] = field(default_factory=list)
     """what is said to be done in any order; nothing: all"""
-    precise: list[tuple[Span, list[Node]]] = field(default_factory=list)
+    precise: list[tuple[Span, list[ProgramNode]]] = field(default_factory=list)
     """what is said to be done in the order in which it is written"""
     asked: list[tuple[Span, _Checkpoints, _Checkpoints]] = field(default_factory=list)
     steps: list[StepsOrdered] = field(default_factory=list)
@@ -34,7 +40,7 @@ class Ordering:
     pairs: list[tuple[Span, Do | str, Do | str]] = field(default_factory=list)
     """what has to come before what, names if it was left out; known when all is planned"""
 
-    def say(self, order: Order, nodes: Iterable[Node], span: Span) -> None:
+    def say(self, order: Order, nodes: Iterable[ProgramNode], span: Span) -> None:
         """The order of these is said; of nothing: of all."""
         said = self.free if order is Order.ANY else self.precise
         said.append((span, list(nodes)))
@@ -43,13 +49,13 @@ class Ordering:
         """Each task may be left out where not all can be done."""
         self.left_out.append(span)
 
-    def precedence(self, fact: Precedence) -> None:
+    def precedence(self, fact: ReadBefore) -> None:
         """Takes down that checkpoints come before others."""
         first, second = self.context.nouns.all(fact.first), self.context.nouns.all(fact.second)
         if first is not None and second is not None:
             self.asked.append((fact.span, tuple(first), tuple(second)))
 
-    def finish(self, program: Block) -> Order:
+    def finish(self, program: ProgramBlock) -> Order:
         """The order of the mission, when all is planned."""
         order = self._order(program)
         for do in _tasks(program) if self.left_out else ():
@@ -78,7 +84,7 @@ class Ordering:
             self.context.diagnostics.error("not-planned", message, steps.span, hint)
         return list(tasks)
 
-    def _order(self, program: Block) -> Order:
+    def _order(self, program: ProgramBlock) -> Order:
         diagnostics = self.context.diagnostics
         said = self.header.order
         for span, nodes in self.precise:
@@ -150,7 +156,7 @@ class Ordering:
                 self.context.diagnostics.warning("precedence", found.message, span, found.hint)
 
 
-def _tasks(nodes: Iterable[Node]) -> list[Do]:
+def _tasks(nodes: Iterable[ProgramNode]) -> list[Do]:
     """The tasks that nodes are, or have in them."""
     found: list[Do] = []
     for node in nodes:

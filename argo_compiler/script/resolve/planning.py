@@ -15,11 +15,11 @@ from argo_compiler.script.resolve.manners import Manners
 from argo_compiler.script.resolve.ordering import Ordering
 from argo_compiler.script.resolve.program import (
     Ahead,
-    Block,
     Do,
     HomeAhead,
     Leave,
-    Node,
+    ProgramBlock,
+    ProgramNode,
     in_branch,
     leads_away,
 )
@@ -27,7 +27,7 @@ from argo_compiler.script.resolve.repeating import Repeating, timed
 from argo_compiler.script.resolve.starting import Starting
 from argo_compiler.script.syntax.tree import orders
 from argo_compiler.script.syntax.tree.conditions import Occurs
-from argo_compiler.script.syntax.tree.orders import Order, Sentence, Word
+from argo_compiler.script.syntax.tree.orders import PlainWord, ScriptOrder, Sentence
 from argo_compiler.script.syntax.tree.places import DockLocation, FloorName, Location
 
 _WHOLE_PLAN = (
@@ -48,18 +48,18 @@ class Planner:
         self.edits = Edits(context, self.manners)
         self.cases = Cases(context, self)
         self.done = False
-        self.visiting: tuple[orders.Visit, list[CheckpointInfo]] | None = None
+        self.visiting: tuple[orders.VisitOrder, list[CheckpointInfo]] | None = None
         """a drive to a checkpoint, of which it has not been said yet what to do there"""
 
-    def sentence(self, sentence: Sentence, block: Block) -> None:
+    def sentence(self, sentence: Sentence, block: ProgramBlock) -> None:
         """Carries a sentence out."""
         self.carry_out(sentence.orders, block)
         for case in sentence.cases:
             self.cases.add(case, block)
 
-    def carry_out(self, orders_: Sequence[Order], block: Block) -> None:
+    def carry_out(self, orders_: Sequence[ScriptOrder], block: ProgramBlock) -> None:
         """Carries orders out, one after the other, at the end of a block."""
-        prefix: Order | None = None
+        prefix: ScriptOrder | None = None
         for i, order in enumerate(orders_):
             if isinstance(order, orders.Amend) and i + 1 < len(orders_):
                 # `three times: check checkpoint 17`
@@ -77,12 +77,12 @@ class Planner:
                 continue
             self.order(order, block)
 
-    def _given_up(self, order: Order) -> bool:
+    def _given_up(self, order: ScriptOrder) -> bool:
         """`retry twice, then abort`: what is done if it fails all the same."""
         match order:
-            case orders.Plain(word=Word.ABORT, manner=None):
+            case orders.Plain(word=PlainWord.ABORT, manner=None):
                 self.manners.on_failure(OnFailure.ABORT)
-            case orders.Plain(word=Word.END) | orders.Home():
+            case orders.Plain(word=PlainWord.END) | orders.Home():
                 message = "this can be meant for the case that it still fails, or for any case"
                 hint = (
                     "write `if it still fails, ...` for the first, and a sentence of its own for "
@@ -93,7 +93,7 @@ class Planner:
                 return False
         return True
 
-    def order(self, order: Order, block: Block) -> None:
+    def order(self, order: ScriptOrder, block: ProgramBlock) -> None:
         """Carries one order out."""
         if self.done:
             hint = "move `Done!` to the end"
@@ -112,9 +112,9 @@ class Planner:
         match order:
             case orders.Spare():
                 self._spare(order)
-            case orders.Visit():
+            case orders.VisitOrder():
                 self._visit(order)
-            case orders.Wait(where=where) if where is not None:
+            case orders.WaitOrder(where=where) if where is not None:
                 self._wait_at(order, where, block)
             case orders.Amend() | orders.Retry():
                 self._amend(order)
@@ -136,7 +136,7 @@ class Planner:
             case _:
                 self._planned(order, self.tasks(order), block)
 
-    def _visit(self, order: orders.Visit) -> None:
+    def _visit(self, order: orders.VisitOrder) -> None:
         found = self.context.nouns.all(order.what)
         if found is None:
             self.context.fail()
@@ -153,7 +153,9 @@ class Planner:
         hint = f"write `check checkpoint {checkpoint.id}`"
         self.diagnostics.error("visit", message, order.span, hint)
 
-    def _wait_at(self, order: orders.Wait, where: Location | FloorName, block: Block) -> None:
+    def _wait_at(
+        self, order: orders.WaitOrder, where: Location | FloorName, block: ProgramBlock
+    ) -> None:
         """`The robot waits at the front of the site`: it starts there, if nothing is said of how
         long; else it goes there and waits."""
         begins = order.manner is None and self.context.program.first is None
@@ -184,7 +186,7 @@ class Planner:
                 message = f"checkpoint #{key} is not in the plan anyway, so that this has no effect"
                 self.diagnostics.note("no-effect", message, span)
 
-    def _amend(self, order: Order) -> None:
+    def _amend(self, order: ScriptOrder) -> None:
         recent = self.context.recent
         if order.manner is not None and order.manner.order is not None:
             self.ordering.say(order.manner.order, recent, order.span)
@@ -194,7 +196,7 @@ class Planner:
 
     # ---- tasks
 
-    def tasks(self, order: Order) -> list[Do]:
+    def tasks(self, order: ScriptOrder) -> list[Do]:
         """The tasks of an order that plans some."""
         match order:
             case orders.Measure():
@@ -213,15 +215,15 @@ class Planner:
                 return self._go(order.where, order)
             case orders.Home():
                 return self._dock(order.dock, order)
-            case orders.Wait():
+            case orders.WaitOrder():
                 return self._wait(order)
-            case orders.Plain(word=Word.MEET):
+            case orders.Plain(word=PlainWord.MEET):
                 return [making.meeting(order.span)]
         message = "this can't be done here"
         self.diagnostics.error("route", message, order.span, "write it as a step of its own")
         return []
 
-    def _go(self, where: Location | FloorName, order: Order) -> list[Do]:
+    def _go(self, where: Location | FloorName, order: ScriptOrder) -> list[Do]:
         if isinstance(where, FloorName):
             floor = self.context.lookup.floor(where)
             return [] if floor is None else [making.waypoint(floor.patrol[0], order.span)]
@@ -231,14 +233,14 @@ class Planner:
             return []
         return [making.waypoint(pose, order.span)]
 
-    def _dock(self, dock: DockLocation, order: Order) -> list[Do]:
+    def _dock(self, dock: DockLocation, order: ScriptOrder) -> list[Do]:
         area = self.starting.docking_area(dock)
         if area is None:
             self.context.fail()
             return []
         return [making.dock(area.dock, order.span)]
 
-    def _wait(self, order: orders.Wait) -> list[Do]:
+    def _wait(self, order: orders.WaitOrder) -> list[Do]:
         manner = order.manner
         until = manner.until if manner is not None else None
         if order.person:
@@ -279,7 +281,7 @@ class Planner:
                 rule = WaitRule(conditions=conditions[0], limit=limit)
         return [making.wait(rule, order.span)]
 
-    def _planned(self, order: Order, tasks: list[Do], block: Block) -> None:
+    def _planned(self, order: ScriptOrder, tasks: list[Do], block: ProgramBlock) -> None:
         """Puts the tasks of an order into a block, with what is said of them."""
         if not tasks:
             return
@@ -302,11 +304,11 @@ class Planner:
         if tasks[-1].docks and block is context.program:
             context.docked = tasks[-1]
 
-    def _say_order(self, order: Order, nodes: Sequence[Node]) -> None:
+    def _say_order(self, order: ScriptOrder, nodes: Sequence[ProgramNode]) -> None:
         if order.manner is not None and order.manner.order is not None:
             self.ordering.say(order.manner.order, nodes, order.span)
 
-    def _may_go_on(self, order: Order, block: Block) -> bool:
+    def _may_go_on(self, order: ScriptOrder, block: ProgramBlock) -> bool:
         docked = self.context.docked
         if docked is None or not docked.listed or block is not self.context.program:
             return True
@@ -325,9 +327,9 @@ class Planner:
 
     # ---- patrols
 
-    def _patrol(self, order: orders.Patrol, block: Block) -> None:
+    def _patrol(self, order: orders.Patrol, block: ProgramBlock) -> None:
         tasks: list[Do] = []
-        nodes: list[Node] = []
+        nodes: list[ProgramNode] = []
         limited = timed(self.context, order)
         if limited is None:
             return
@@ -350,28 +352,28 @@ class Planner:
 
     # ---- orders of one word
 
-    def _plain(self, order: orders.Plain, block: Block) -> None:
+    def _plain(self, order: orders.Plain, block: ProgramBlock) -> None:
         match order.word:
-            case Word.DONE:
+            case PlainWord.DONE:
                 self.done = True
-            case Word.END:
+            case PlainWord.END:
                 self._leave(Leave(Ahead.END, order.span), block)
-            case Word.GO_ON | Word.REPORT:
+            case PlainWord.GO_ON | PlainWord.REPORT:
                 pass  # every reading is reported, and what comes next is done anyway
-            case Word.MEET:
+            case PlainWord.MEET:
                 self._planned(order, self.tasks(order), block)
             case _:
                 message = f"when is the robot to {order.word}?"
                 hint = "write `if a gas leak is detected, pause`, or `wait 5 minutes`"
                 self.diagnostics.error("stray-clause", message, order.span, hint)
 
-    def _leave(self, leave: Leave, block: Block) -> None:
+    def _leave(self, leave: Leave, block: ProgramBlock) -> None:
         if self.comes_here(leave.span, block):
             self.context.put([leave], block, block.last)
             self.context.step.append(leave)
             self.context.choice = None
 
-    def comes_here(self, span: Span, block: Block) -> bool:
+    def comes_here(self, span: Span, block: ProgramBlock) -> bool:
         """Whether the mission comes to the end of a block, or a step begins there."""
         last = block.last
         step = self.context.step
@@ -394,6 +396,6 @@ class Planner:
         return HomeAhead(pose, order.dock.span)
 
 
-def _several(orders_: Sequence[Order]) -> bool:
+def _several(orders_: Sequence[ScriptOrder]) -> bool:
     """Whether the last two orders both measure: what is said next may be said of both."""
     return len(orders_) > 1 and all(isinstance(order, orders.Measure) for order in orders_[-2:])

@@ -52,27 +52,27 @@ class Way:
 
 
 @dataclass(eq=False, slots=True)
-class Node(Linked):
+class ProgramNode(Linked):
     """A part of a block."""
 
-    block: "Block | None" = field(default=None, init=False, repr=False)
+    block: "ProgramBlock | None" = field(default=None, init=False, repr=False)
 
 
-class Block(LinkedList[Node]):
+class ProgramBlock(LinkedList[ProgramNode]):
     """Nodes that are carried out one after the other."""
 
-    def __init__(self, owner: Node | None = None) -> None:
+    def __init__(self, owner: ProgramNode | None = None) -> None:
         super().__init__()
         self.owner = owner
         """the node that this is a part of"""
 
-    def insert_after(self, anchor: Node | None, item: Node) -> None:
+    def insert_after(self, anchor: ProgramNode | None, item: ProgramNode) -> None:
         super().insert_after(anchor, item)
         item.block = self
 
 
 @dataclass(eq=False, slots=True)
-class Do(Node):
+class Do(ProgramNode):
     """One task to be."""
 
     base: str
@@ -91,9 +91,9 @@ class Do(Node):
     """m/s on all ways that lead on from it"""
     retries: int = 0
     on_failure: OnFailure = OnFailure.CONTINUE
-    failure: Block | None = None
+    failure: ProgramBlock | None = None
     """what is done if it fails, with BRANCH"""
-    missed: Block | None = None
+    missed: ProgramBlock | None = None
     """what is done if its window is missed"""
     joints: JointState | None = None
     shown_in: str | None = None
@@ -106,7 +106,7 @@ class Do(Node):
 
 
 @dataclass(eq=False, slots=True)
-class Choice(Node):
+class Choice(ProgramNode):
     """What is done if a condition holds, and what if it does not."""
 
     alternatives: Alternatives
@@ -114,11 +114,11 @@ class Choice(Node):
     negated: bool = False
     bound: bool = False
     """whether it stands in the step of what it is looked at after"""
-    then: Block = field(init=False)
-    otherwise: Block = field(init=False)
+    then: ProgramBlock = field(init=False)
+    otherwise: ProgramBlock = field(init=False)
 
     def __post_init__(self) -> None:
-        self.then, self.otherwise = Block(self), Block(self)
+        self.then, self.otherwise = ProgramBlock(self), ProgramBlock(self)
 
 
 @dataclass(frozen=True, slots=True)
@@ -136,7 +136,7 @@ class Limits:
 
 
 @dataclass(eq=False, slots=True)
-class Round(Node):
+class ProgramRound(ProgramNode):
     """A block that is repeated."""
 
     base: str
@@ -145,10 +145,10 @@ class Round(Node):
     order: int
     """which one it is of those that the script asks for"""
     name: str | None = None
-    body: Block = field(init=False)
+    body: ProgramBlock = field(init=False)
 
     def __post_init__(self) -> None:
-        self.body = Block(self)
+        self.body = ProgramBlock(self)
 
     @property
     def title(self) -> str:
@@ -156,16 +156,16 @@ class Round(Node):
 
 
 @dataclass(eq=False, slots=True)
-class Leave(Node):
+class Leave(ProgramNode):
     """A way that leads elsewhere than to what follows."""
 
     target: Target
     span: Span
 
 
-def all_nodes(block: Iterable[Node]) -> Iterator[Node]:
+def all_nodes(block: Iterable[ProgramNode]) -> Iterator[ProgramNode]:
     """All nodes of a block and of those in it, in the order of the tasks that they become."""
-    stack: list[Iterator[Node]] = [iter(block)]
+    stack: list[Iterator[ProgramNode]] = [iter(block)]
     while stack:
         node = next(stack[-1], None)
         if node is None:
@@ -175,18 +175,18 @@ def all_nodes(block: Iterable[Node]) -> Iterator[Node]:
         stack.extend(iter(inner) for inner in reversed(inner_blocks(node)))
 
 
-def nodes_from(node: Node) -> Iterator[Node]:
+def nodes_from(node: ProgramNode) -> Iterator[ProgramNode]:
     """A node and all that stand behind it, in the order of the tasks that they become."""
-    at: Node | None = node
+    at: ProgramNode | None = node
     while at is not None:
         yield at
         inner = next((b.first for b in inner_blocks(at) if b.first is not None), None)
         at = _behind(at) if inner is None else inner
 
 
-def _behind(node: Node) -> Node | None:
+def _behind(node: ProgramNode) -> ProgramNode | None:
     """What follows a node and all that lies in it."""
-    at: Node | None = node
+    at: ProgramNode | None = node
     while at is not None and at.after is None:
         owner = at.block.owner if at.block is not None else None
         if owner is None:
@@ -201,7 +201,7 @@ def _behind(node: Node) -> Node | None:
     return None if at is None else at.after
 
 
-def depth(block: Block) -> int:
+def depth(block: ProgramBlock) -> int:
     """How many blocks lie in one another."""
     deepest, waiting = 0, [(block, 1)]
     while waiting:
@@ -211,28 +211,28 @@ def depth(block: Block) -> int:
     return deepest
 
 
-def inner_blocks(node: Node) -> tuple[Block, ...]:
+def inner_blocks(node: ProgramNode) -> tuple[ProgramBlock, ...]:
     """The blocks of a node, in order."""
     match node:
         case Choice():
             return node.then, node.otherwise
-        case Round():
+        case ProgramRound():
             return (node.body,)
         case Do():
             return tuple(b for b in (node.failure, node.missed) if b is not None)
     return ()
 
 
-def in_branch(block: Block) -> bool:
+def in_branch(block: ProgramBlock) -> bool:
     """Whether a block is carried out in one case only."""
     while block.owner is not None:
-        if not isinstance(block.owner, Round) or block.owner.block is None:
-            return not isinstance(block.owner, Round)
+        if not isinstance(block.owner, ProgramRound) or block.owner.block is None:
+            return not isinstance(block.owner, ProgramRound)
         block = block.owner.block
     return False
 
 
-def leads_away(node: Node | None) -> bool:
+def leads_away(node: ProgramNode | None) -> bool:
     """Whether the mission never comes to what stands behind a node."""
     if isinstance(node, Leave):
         return node.target is not Ahead.GO_ON

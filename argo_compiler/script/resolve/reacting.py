@@ -7,18 +7,23 @@ from argo_compiler.il import Afterwards, EventKind, Reaction, Response
 from argo_compiler.model import Pose
 from argo_compiler.script.resolve.accepting import said, words_of
 from argo_compiler.script.resolve.locating import Locator
-from argo_compiler.script.syntax.source import Diagnostics
-from argo_compiler.script.syntax.tree.conditions import Battery, Condition, Occurs, Relation
+from argo_compiler.script.syntax.text.source import Diagnostics
+from argo_compiler.script.syntax.tree.conditions import (
+    BatteryDrops,
+    Occurs,
+    Relation,
+    SaidCondition,
+)
 from argo_compiler.script.syntax.tree.manner import Manner
 from argo_compiler.script.syntax.tree.orders import (
     Amend,
     Case,
     Go,
     Home,
-    Order,
     Plain,
-    Wait,
-    Word,
+    PlainWord,
+    ScriptOrder,
+    WaitOrder,
 )
 from argo_compiler.script.syntax.tree.places import DockLocation, FloorName
 
@@ -112,7 +117,9 @@ class Reactions:
             )
         )
 
-    def _events(self, condition: Condition) -> list[tuple[EventKind, Span, float | None]] | None:
+    def _events(
+        self, condition: SaidCondition
+    ) -> list[tuple[EventKind, Span, float | None]] | None:
         found: list[tuple[EventKind, Span, float | None]] = []
         for tests in condition.alternatives:
             if len(tests) > 1:
@@ -121,7 +128,7 @@ class Reactions:
                 self.diagnostics.error("reaction", message, condition.span, hint)
                 return None
             (test,) = tests
-            if isinstance(test, Battery):
+            if isinstance(test, BatteryDrops):
                 level = self._level(test)
                 if level is None:
                     return None
@@ -140,7 +147,7 @@ class Reactions:
                 found.append((test.event, test.span, None))
         return found
 
-    def _level(self, battery: Battery) -> float | None:
+    def _level(self, battery: BatteryDrops) -> float | None:
         """The share of the charge below which the battery is to be called low."""
         amount = battery.level
         message, hint = "", "write, say, `if the battery drops below 30 %`"
@@ -157,7 +164,7 @@ class Reactions:
             return None
         return amount.value / 100.0
 
-    def _order(self, order: Order, doing: _Reacting) -> _Reacting | None:
+    def _order(self, order: ScriptOrder, doing: _Reacting) -> _Reacting | None:
         """What the reaction does with one order more; None if it can't."""
         if order.manner is not None:
             furnished = self._furnished(order, order.manner, doing)
@@ -167,28 +174,28 @@ class Reactions:
         match order:
             case Amend():
                 return doing
-            case Plain(word=Word.REPORT):
+            case Plain(word=PlainWord.REPORT):
                 return replace(doing, reported=True)
-            case Plain(word=Word.PAUSE):
+            case Plain(word=PlainWord.PAUSE):
                 return replace(doing, response=doing.response or Response.PAUSE)
-            case Plain(word=Word.RECHARGE):
+            case Plain(word=PlainWord.RECHARGE):
                 if doing.until not in (None, EventKind.BATTERY_CHARGED):
                     self._twice(order)
                     return None
                 response = doing.response or Response.PAUSE
                 return replace(doing, until=EventKind.BATTERY_CHARGED, response=response)
-            case Plain(word=Word.GO_ON):
+            case Plain(word=PlainWord.GO_ON):
                 return self._afterwards(order, doing, Afterwards.RESUME)
-            case Plain(word=Word.ABORT) | Plain(word=Word.END) if not doing.drives:
-                ended = order.word is Word.END
+            case Plain(word=PlainWord.ABORT) | Plain(word=PlainWord.END) if not doing.drives:
+                ended = order.word is PlainWord.END
                 aborts = self._responds(doing, Response.ABORT, order)
                 return None if aborts is None else replace(aborts, ended=ended)
-            case Plain(word=Word.END):
+            case Plain(word=PlainWord.END):
                 return self._afterwards(order, doing, Afterwards.END)
-            case Wait(where=where) if where is not None:
+            case WaitOrder(where=where) if where is not None:
                 there = self._goes(Go(span=order.span, where=where), doing)
                 return None if there is None else self._waits(order, there)
-            case Wait():
+            case WaitOrder():
                 return self._waits(order, doing)
             case Home():
                 return self._home(order, order.dock, doing)
@@ -200,7 +207,7 @@ class Reactions:
         return None
 
     def _afterwards(
-        self, order: Order, doing: _Reacting, afterwards: Afterwards
+        self, order: ScriptOrder, doing: _Reacting, afterwards: Afterwards
     ) -> _Reacting | None:
         ended = doing.response is Response.ABORT
         if ended or doing.afterwards not in (None, afterwards):
@@ -208,7 +215,7 @@ class Reactions:
             return None
         return replace(doing, afterwards=afterwards)
 
-    def _twice(self, order: Order) -> None:
+    def _twice(self, order: ScriptOrder) -> None:
         message = "this is not what was said before of the same event"
         self.diagnostics.error("reaction", message, order.span, "leave one of the two out")
 
@@ -229,11 +236,11 @@ class Reactions:
         on_limit = doing.on_limit or doing.afterwards or Afterwards.RESUME
         return replace(doing, on_limit=on_limit)
 
-    def _furnished(self, order: Order, manner: Manner, doing: _Reacting) -> _Reacting | None:
+    def _furnished(self, order: ScriptOrder, manner: Manner, doing: _Reacting) -> _Reacting | None:
         """What is said of how long it holds, for what, and how urgent it is."""
         used = {"priority", "until", "duration", "time_limit", "on_limit"}
         used |= {"pose"} if isinstance(order, Home) else set()
-        used |= {"person"} if isinstance(order, Wait) else set()
+        used |= {"person"} if isinstance(order, WaitOrder) else set()
         left = sorted(said(manner) - used)
         if left or order.name is not None:
             what = words_of(left) if left else "a name"
@@ -261,7 +268,9 @@ class Reactions:
             doing = replace(doing, until=awaited)
         return doing
 
-    def _responds(self, doing: _Reacting, response: Response, order: Order) -> _Reacting | None:
+    def _responds(
+        self, doing: _Reacting, response: Response, order: ScriptOrder
+    ) -> _Reacting | None:
         said = doing.afterwards is not None and response is Response.ABORT
         stops = doing.ended and response is Response.RETURN  # `stop the mission and go home`
         fits = doing.response in (None, Response.PAUSE, response) or stops
@@ -271,7 +280,7 @@ class Reactions:
         self.diagnostics.error("reaction", message, order.span, "leave one of them out")
         return None
 
-    def _waits(self, order: Wait, doing: _Reacting) -> _Reacting | None:
+    def _waits(self, order: WaitOrder, doing: _Reacting) -> _Reacting | None:
         if order.manner is not None and order.manner.person and doing.drives:
             return self._afterwards(order, doing, Afterwards.WAIT)
         if doing.until is not None or (order.manner and order.manner.until):
@@ -282,7 +291,7 @@ class Reactions:
             return self._afterwards(order, doing, Afterwards.WAIT)
         return replace(doing, response=doing.response or Response.PAUSE)
 
-    def _home(self, order: Order, dock: DockLocation, doing: _Reacting) -> _Reacting | None:
+    def _home(self, order: ScriptOrder, dock: DockLocation, doing: _Reacting) -> _Reacting | None:
         pose, number = None, None
         if dock.area is not None:
             area = self.locator.lookup.area(dock.area.area, dock.span)
@@ -303,7 +312,7 @@ class Reactions:
         found = self._responds(doing, Response.SAFE_AREA, order)
         return None if found is None or pose is None else replace(found, pose=pose)
 
-    def _awaited(self, order: Order) -> EventKind | None:
+    def _awaited(self, order: ScriptOrder) -> EventKind | None:
         assert order.manner is not None
         assert order.manner.until is not None
         match order.manner.until.alternatives:

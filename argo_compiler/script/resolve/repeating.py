@@ -6,11 +6,11 @@ from argo_compiler.diagnostics import Span
 from argo_compiler.il import Action, Condition
 from argo_compiler.model import Pose
 from argo_compiler.script.resolve.context import Context, topmost
-from argo_compiler.script.resolve.program import Block, Do, Limits, Round
+from argo_compiler.script.resolve.program import Do, Limits, ProgramBlock, ProgramRound
 from argo_compiler.script.resolve.wrapping import Repetition, Wrapping
 from argo_compiler.script.syntax.tree import orders
 from argo_compiler.script.syntax.tree.manner import Manner
-from argo_compiler.script.syntax.tree.orders import Order
+from argo_compiler.script.syntax.tree.orders import ScriptOrder
 from argo_compiler.script.syntax.tree.places import FloorName, PlaceLocation
 
 _MOST = 1_000_000_000
@@ -66,18 +66,18 @@ class Repeating:
             self.diagnostics.error("one-name", message, order.span, hint)
         return rounds
 
-    def round(self, order: Order, base: str) -> Round | None:
+    def round(self, order: ScriptOrder, base: str) -> ProgramRound | None:
         """An empty round with the limits that are said of an order."""
         timed_order = timed(self.context, order)
         limits = None if timed_order is None else limits_of(self.context, timed_order)
         if limits is None:
             self.context.fail()
             return None
-        return Round(base, limits, order.span, self.context.new_round(), name=order.name)
+        return ProgramRound(base, limits, order.span, self.context.new_round(), name=order.name)
 
     # ---- steps
 
-    def repeat(self, order: orders.Repeat, block: Block) -> None:
+    def repeat(self, order: orders.Repeat, block: ProgramBlock) -> None:
         """Notes that steps are repeated: a round is put here, which they come into later."""
         if order.last:
             self._repeat_last(order, block)
@@ -98,7 +98,7 @@ class Repeating:
         context.recent = []
         context.choice = None
 
-    def _repeat_last(self, order: orders.Repeat, block: Block) -> None:
+    def _repeat_last(self, order: orders.Repeat, block: ProgramBlock) -> None:
         """`Repeat this twice`: the step before, or what was said before in the same step."""
         context = self.context
         nodes = topmost(context.step or context.before, block)
@@ -119,7 +119,7 @@ class Repeating:
         block.insert_after(anchor, round_)
         context.choice = None
 
-    def _is_once_more(self, order: orders.Repeat, block: Block) -> bool:
+    def _is_once_more(self, order: orders.Repeat, block: ProgramBlock) -> bool:
         """Whether steps are done here again, and not in a round where they stand."""
         manner = order.manner
         assert order.steps is not None
@@ -131,7 +131,7 @@ class Repeating:
         nodes = self.context.nodes_of(order.steps) if known else None
         return bool(nodes) and topmost(nodes or (), block)[-1:] != [block.last]
 
-    def _once_more(self, order: orders.Repeat, block: Block) -> None:
+    def _once_more(self, order: orders.Repeat, block: ProgramBlock) -> None:
         """`4. Repeat step 2`: what it does is done here again."""
         assert order.steps is not None
         nodes = self.context.nodes_of(order.steps)
@@ -159,7 +159,7 @@ class Repeating:
         self.pending.clear()
 
 
-def timed(context: Context, order: Order) -> Order | None:
+def timed(context: Context, order: ScriptOrder) -> ScriptOrder | None:
     """The order of a round with the limit of time that is said of all its rounds as how long they
     last; None, with an error, if it is not clear whether each or all are meant."""
     manner = order.manner
@@ -183,7 +183,7 @@ def timed(context: Context, order: Order) -> Order | None:
     return replace(order, manner=replace(manner, duration=manner.time_limit, time_limit=None))
 
 
-def limits_of(context: Context, order: Order) -> Limits | None:
+def limits_of(context: Context, order: ScriptOrder) -> Limits | None:
     """The limits that are said of an order; None, with an error, if nothing ends its rounds."""
     manner = order.manner
     diagnostics = context.diagnostics
@@ -235,7 +235,7 @@ def _endless(context: Context, what: str, span: Span) -> None:
         context.diagnostics.error("endless-repeat", message, span, hint)
 
 
-def _until(context: Context, order: Order) -> tuple[Condition, ...] | None:
+def _until(context: Context, order: ScriptOrder) -> tuple[Condition, ...] | None:
     assert order.manner is not None
     if order.manner.until is None:
         return ()

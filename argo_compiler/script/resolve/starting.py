@@ -112,7 +112,9 @@ class Starting:
             named = dock.area.area
             if option is not None and option != named:
                 message = f"the mission is to end in starting area {option}, not {named}"
-                hint = "leave --end-area (or `End area:`) out, or take the area out of this line"
+                hint = (
+                    "leave out the end area given beside (or `End area:`), or the one in this line"
+                )
                 self.diagnostics.error("area-conflict", message, dock.span, hint)
                 return None
             area = self.lookup.area(named, dock.span)

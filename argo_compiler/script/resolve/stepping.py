@@ -3,29 +3,29 @@
 from collections.abc import Sequence
 from dataclasses import replace
 
-from argo_compiler.il import Order as TaskOrder
+from argo_compiler.il import Order
 from argo_compiler.script.resolve.accepting import accepts, said
 from argo_compiler.script.resolve.context import Context
 from argo_compiler.script.resolve.planning import Planner
-from argo_compiler.script.resolve.program import Block, Do, all_nodes
+from argo_compiler.script.resolve.program import Do, ProgramBlock, all_nodes
 from argo_compiler.script.syntax.tree import facts, orders
 from argo_compiler.script.syntax.tree.facts import Fact
 from argo_compiler.script.syntax.tree.manner import Manner
 from argo_compiler.script.syntax.tree.node import Node
-from argo_compiler.script.syntax.tree.orders import Order, Sentence
+from argo_compiler.script.syntax.tree.orders import ScriptOrder, Sentence
 from argo_compiler.script.syntax.tree.places import AreaLocation, DockLocation
-from argo_compiler.script.syntax.tree.script import Header, Step, Unread
+from argo_compiler.script.syntax.tree.script import ScriptHeader, ScriptStep, Unread
 
 
 class Stepping:
     """Plans steps."""
 
-    def __init__(self, context: Context, planner: Planner, header: Header) -> None:
+    def __init__(self, context: Context, planner: Planner, header: ScriptHeader) -> None:
         self.context = context
         self.planner = planner
         self.header = header
 
-    def all(self, steps: Sequence[Step]) -> None:
+    def all(self, steps: Sequence[ScriptStep]) -> None:
         """Plans all steps of a script."""
         self._check_numbers(steps)
         numbered = any(step.number is not None for step in steps)
@@ -33,7 +33,7 @@ class Stepping:
             self.context.begin_step(step.number if numbered else i)
             self._step(step, self.context.program)
 
-    def _check_numbers(self, steps: Sequence[Step]) -> None:
+    def _check_numbers(self, steps: Sequence[ScriptStep]) -> None:
         """Warns where the steps' numbers are not one after the other: a line may have been lost."""
         expected = 1
         for step in steps:
@@ -45,7 +45,7 @@ class Stepping:
                 self.context.diagnostics.warning("step-number", message, step.span, hint)
             expected = step.number + 1
 
-    def _step(self, step: Step, block: Block) -> None:
+    def _step(self, step: ScriptStep, block: ProgramBlock) -> None:
         sentences = list(step.sentences)
         following = self._taken(sentences) if step.steps else None
         for sentence in sentences:
@@ -86,7 +86,7 @@ class Stepping:
 
     def _without_limit(self, sentence: Sentence) -> Sentence:
         """The sentence without how long the mission may take: `at most 25 minutes in total`."""
-        kept: list[Order] = []
+        kept: list[ScriptOrder] = []
         for order in sentence.orders:
             manner = order.manner
             limit = None if manner is None else manner.mission_time or self._limit(order, manner)
@@ -102,13 +102,13 @@ class Stepping:
                 kept.append(replace(order, manner=None))
         return replace(sentence, orders=tuple(kept))
 
-    def _limit(self, order: Order, manner: Manner) -> float | None:
+    def _limit(self, order: ScriptOrder, manner: Manner) -> float | None:
         """A limit of time that can only be the mission's: of its start, or before all else."""
         first = isinstance(order, orders.Amend) and self.context.program.first is None
         alone = first and said(manner) == {"time_limit"}
         return manner.time_limit if alone or isinstance(order, orders.Start) else None
 
-    def _taken(self, sentences: list[Sentence | Fact | Unread]) -> Order | None:
+    def _taken(self, sentences: list[Sentence | Fact | Unread]) -> ScriptOrder | None:
         """`Do the following twice:`, taken out of the sentences over inner steps."""
         last = sentences[-1] if sentences else None
         if not isinstance(last, Sentence) or last.cases or not last.orders:
@@ -118,7 +118,7 @@ class Stepping:
             order = orders.Follow(span=order.span, name=order.name, manner=order.manner)
         if not isinstance(order, orders.Follow):
             return None
-        found: Order = order
+        found: ScriptOrder = order
         while before and isinstance(before[-1], orders.Amend):
             found = self.planner.manners.with_prefix(found, before.pop())
         sentences[-1:] = [replace(last, orders=tuple(before))] if before else []
@@ -135,14 +135,14 @@ class Stepping:
                 manner = Manner(times=fact.count)
                 order = orders.Repeat(span=fact.span, steps=fact.steps, manner=manner)
                 self.planner.order(order, self.context.program)
-            case facts.Precedence():
+            case facts.ReadBefore():
                 self.planner.ordering.precedence(fact)
             case facts.StepsOrdered():
                 self.planner.ordering.steps.append(fact)
             case facts.LeaveOut():
                 self.planner.ordering.leave_out(fact.span)
             case facts.OrderFree():
-                self.planner.ordering.say(TaskOrder.ANY, (), fact.span)
+                self.planner.ordering.say(Order.ANY, (), fact.span)
 
     def _back(self, fact: facts.BackWithin) -> None:
         dock = fact.where

@@ -9,7 +9,15 @@ from dataclasses import dataclass
 
 from argo_compiler.il import Action
 from argo_compiler.script.resolve.context import Context, topmost
-from argo_compiler.script.resolve.program import Block, Choice, Do, Leave, Node, Round, nodes_from
+from argo_compiler.script.resolve.program import (
+    Choice,
+    Do,
+    Leave,
+    ProgramBlock,
+    ProgramNode,
+    ProgramRound,
+    nodes_from,
+)
 from argo_compiler.script.syntax.tree import orders
 
 
@@ -18,8 +26,8 @@ class Repetition:
     """Steps that are to be repeated."""
 
     order: orders.Repeat
-    round: Round
-    late: Iterable[Node]
+    round: ProgramRound
+    late: Iterable[ProgramNode]
     """the nodes of the step that asks for it; of these, the first `known` were there before"""
     known: int
 
@@ -57,7 +65,7 @@ class Wrapping:
         block.insert_after(anchor, round_)
         self._behind(round_, tail)
 
-    def _behind(self, round_: Round, tail: list[Choice]) -> None:
+    def _behind(self, round_: ProgramRound, tail: list[Choice]) -> None:
         """Conditions behind a round come before a way that leads on from its last task."""
         block = round_.block
         assert block is not None
@@ -73,7 +81,7 @@ class Wrapping:
 
     # ---- what is to be repeated
 
-    def _range(self, repetition: Repetition, behind: Container[int]) -> list[Node]:
+    def _range(self, repetition: Repetition, behind: Container[int]) -> list[ProgramNode]:
         """The neighbouring nodes of one block that are to be repeated."""
         order, round_ = repetition.order, repetition.round
         if order.steps is None:
@@ -101,8 +109,8 @@ class Wrapping:
             return []
         return self._together(order, tops)
 
-    def _all(self, round_: Round) -> list[Node]:
-        found: list[Node] = []
+    def _all(self, round_: ProgramRound) -> list[ProgramNode]:
+        found: list[ProgramNode] = []
         for node in self.context.program:
             if node is round_:
                 break
@@ -110,7 +118,7 @@ class Wrapping:
                 found.append(node)
         return found
 
-    def _together(self, order: orders.Repeat, tops: list[Node]) -> list[Node]:
+    def _together(self, order: orders.Repeat, tops: list[ProgramNode]) -> list[ProgramNode]:
         """From the first to the last of the nodes, in the order of their block."""
         assert order.steps is not None
         ends = {id(node) for node in tops}
@@ -118,7 +126,7 @@ class Wrapping:
         before = first.before
         while before is not None and id(before) in ends:
             first, before = before, before.before
-        found: list[Node] = [first]
+        found: list[ProgramNode] = [first]
         missing = len(ends) - 1
         while missing and found[-1].after is not None:
             found.append(found[-1].after)
@@ -137,27 +145,27 @@ class Wrapping:
         return found
 
 
-def _repeats(node: Node) -> bool:
+def _repeats(node: ProgramNode) -> bool:
     """Whether a node is something that a round can begin or end with."""
-    if isinstance(node, Leave) or (isinstance(node, Round) and node.body.first is None):
+    if isinstance(node, Leave) or (isinstance(node, ProgramRound) and node.body.first is None):
         return False
     return not (isinstance(node, Do) and node.action is Action.START)
 
 
-def _conditions_behind(round_: Round) -> Iterator[Choice]:
+def _conditions_behind(round_: ProgramRound) -> Iterator[Choice]:
     node = round_.after
     while isinstance(node, Choice):
         yield node
         node = node.after
 
 
-def _leads_to(last: Node, round_: Round) -> bool:
+def _leads_to(last: ProgramNode, round_: ProgramRound) -> bool:
     """Whether nothing is done between a node and a repetition behind it."""
-    node: Node | None = last
+    node: ProgramNode | None = last
     while node is not None:
         if node.after is None:
             owner = node.block.owner if node.block is not None else None
-            node = owner if isinstance(owner, Round) else None
+            node = owner if isinstance(owner, ProgramRound) else None
             continue
         node = node.after
         if node is round_:
@@ -167,7 +175,7 @@ def _leads_to(last: Node, round_: Round) -> bool:
     return False
 
 
-def _between(first: Node, last: Node) -> set[int]:
+def _between(first: ProgramNode, last: ProgramNode) -> set[int]:
     """What lies between two nodes, both included; nothing if the last does not follow."""
     found: set[int] = set()
     for node in nodes_from(first):
@@ -177,7 +185,9 @@ def _between(first: Node, last: Node) -> set[int]:
     return set()
 
 
-def _around(nodes: list[Node], known: set[int], program: Block, name: str) -> Block:
+def _around(
+    nodes: list[ProgramNode], known: set[int], program: ProgramBlock, name: str
+) -> ProgramBlock:
     """The innermost block that all nodes lie in; that around a round which they make up, unless
     the name says that it lies in that round: `Alpha/Beta`."""
     chain = _blocks_around(nodes[0])
@@ -190,7 +200,7 @@ def _around(nodes: list[Node], known: set[int], program: Block, name: str) -> Bl
         at = max(at, common[id(block)] if block is not None else len(chain) - 1)
     while at + 1 < len(chain):
         owner = chain[at].owner
-        if not (isinstance(owner, Round) and _covered(owner, known)):
+        if not (isinstance(owner, ProgramRound) and _covered(owner, known)):
             break
         if name.startswith(f"{owner.title}/"):
             break
@@ -199,8 +209,8 @@ def _around(nodes: list[Node], known: set[int], program: Block, name: str) -> Bl
     return chain[at] if chain else program
 
 
-def _blocks_around(node: Node) -> list[Block]:
-    found: list[Block] = []
+def _blocks_around(node: ProgramNode) -> list[ProgramBlock]:
+    found: list[ProgramBlock] = []
     block = node.block
     while block is not None:
         found.append(block)
@@ -208,14 +218,14 @@ def _blocks_around(node: Node) -> list[Block]:
     return found
 
 
-def _covered(node: Node, known: set[int]) -> bool:
+def _covered(node: ProgramNode, known: set[int]) -> bool:
     """Whether a node is one of these, or a round of them."""
     waiting = [node]
     while waiting:
         node = waiting.pop()
         if id(node) in known or not _repeats(node):
             continue
-        if not isinstance(node, Round):
+        if not isinstance(node, ProgramRound):
             return False
         waiting += [inner for inner in node.body if not isinstance(inner, Choice)]
     return True

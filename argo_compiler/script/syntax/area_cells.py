@@ -4,7 +4,7 @@ import re
 from collections.abc import Iterator
 
 from argo_compiler.script.syntax.asides import Asides
-from argo_compiler.script.syntax.source import Diagnostics, ScriptText
+from argo_compiler.script.syntax.text.source import Diagnostics, ScriptText
 from argo_compiler.script.syntax.tree.script import AreaChosen, Areas
 from argo_compiler.script.syntax.understanding import Understanding
 from argo_compiler.script.syntax.words.word import Word

@@ -9,8 +9,8 @@ from collections.abc import Iterator
 from functools import cache
 from itertools import islice, pairwise
 
-from argo_compiler.script.syntax.grammar import StumbleError
-from argo_compiler.script.syntax.source import ScriptText, join
+from argo_compiler.script.syntax.grammar.parser import StumbleError
+from argo_compiler.script.syntax.text.source import ScriptText, join
 from argo_compiler.script.syntax.understanding import Understanding, quotes
 from argo_compiler.script.syntax.words.joints import VERBS
 from argo_compiler.script.syntax.words.prose import Prose, begins, either

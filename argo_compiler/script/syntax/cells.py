@@ -11,7 +11,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 from argo_compiler.script.syntax.labels import FieldLabels
-from argo_compiler.script.syntax.source import ScriptText, join
+from argo_compiler.script.syntax.text.source import ScriptText, join
 from argo_compiler.script.syntax.understanding import Understanding
 
 _MARKED = re.compile(r"\s*(?:[-*+•#]\s|(?:step\s+)?[0-9]{1,6}\s*[.):])", re.IGNORECASE)

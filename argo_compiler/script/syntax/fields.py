@@ -12,12 +12,12 @@ from argo_compiler.listing import listed
 from argo_compiler.script.syntax.area_cells import AreaCells
 from argo_compiler.script.syntax.asides import Asides
 from argo_compiler.script.syntax.building.figures import seconds
-from argo_compiler.script.syntax.building.part import Part
-from argo_compiler.script.syntax.source import Diagnostics, ScriptText
+from argo_compiler.script.syntax.building.part import RulePart
+from argo_compiler.script.syntax.text.source import Diagnostics, ScriptText
 from argo_compiler.script.syntax.tree import orders
 from argo_compiler.script.syntax.tree.orders import Sentence
 from argo_compiler.script.syntax.tree.places import Coordinates, Steps
-from argo_compiler.script.syntax.tree.script import AreaChosen, Header, Text
+from argo_compiler.script.syntax.tree.script import AreaChosen, ScriptHeader, Text
 from argo_compiler.script.syntax.understanding import Understanding
 from argo_compiler.script.syntax.words.joints import VERBS
 from argo_compiler.script.syntax.words.lexer import unquoted
@@ -41,7 +41,7 @@ class ScriptFields:
     understanding: Understanding
     asides: Asides
     diagnostics: Diagnostics
-    header: Header = field(default_factory=Header)
+    header: ScriptHeader = field(default_factory=ScriptHeader)
     first: list[Sentence] = field(default_factory=list)
     last: list[Sentence] = field(default_factory=list)
     """what is to be done at the very end: `Finish: at the front of the site`"""
@@ -169,7 +169,7 @@ class ScriptFields:
             return
         (word,) = lengths
         errors = self.diagnostics.errors
-        part = Part((word,), value, word.start, word.end, self.diagnostics)
+        part = RulePart((word,), value, word.start, word.end, self.diagnostics)
         length = seconds(part, word)
         if self.diagnostics.errors == errors:
             node = Text(span=value.span(), text=value.content)
@@ -191,7 +191,7 @@ class ScriptFields:
             return
         span = value.span()
         if name == "initial_position":
-            order: orders.Order = orders.Start(span=span, where=where)
+            order: orders.ScriptOrder = orders.Start(span=span, where=where)
             self.first.append(Sentence(span=span, orders=(order,), cases=()))
         else:
             order = orders.Go(span=span, where=where)

@@ -1,9 +1,9 @@
 """What is said about a sentence that makes no sense: at which words, and what may stand there."""
 
 from argo_compiler.listing import listed
-from argo_compiler.script.syntax.grammar import StumbleError
-from argo_compiler.script.syntax.source import Diagnostics, ScriptText
-from argo_compiler.script.syntax.spelling import candidates
+from argo_compiler.script.syntax.grammar.parser import StumbleError
+from argo_compiler.script.syntax.text.source import Diagnostics, ScriptText
+from argo_compiler.script.syntax.text.spelling import candidates
 from argo_compiler.script.syntax.understanding import Understanding
 from argo_compiler.script.syntax.words.joints import VERBS
 from argo_compiler.script.syntax.words.word import Word

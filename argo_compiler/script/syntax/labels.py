@@ -4,8 +4,8 @@ import re
 from dataclasses import dataclass
 
 from argo_compiler.listing import listed
-from argo_compiler.script.syntax.source import Diagnostics, ScriptText
-from argo_compiler.script.syntax.spelling import candidates, nearest
+from argo_compiler.script.syntax.text.source import Diagnostics, ScriptText
+from argo_compiler.script.syntax.text.spelling import candidates, nearest
 from argo_compiler.script.syntax.understanding import Understanding
 from argo_compiler.script.syntax.words.joints import VERBS
 from argo_compiler.script.syntax.words.prose import Prose

@@ -9,14 +9,14 @@ from argo_compiler.garbage_collector import collector_held
 from argo_compiler.script.syntax.asides import Asides
 from argo_compiler.script.syntax.cells import Cells
 from argo_compiler.script.syntax.fields import ScriptFields
-from argo_compiler.script.syntax.healing import MOST_ERRORS, heal
 from argo_compiler.script.syntax.labels import FieldLabels
 from argo_compiler.script.syntax.layout import LineItem, LineMark, items_of, lines_of, sentences
 from argo_compiler.script.syntax.rows import tables
 from argo_compiler.script.syntax.sentence_reading import Said, SentenceReader
-from argo_compiler.script.syntax.source import Diagnostics, ScriptText, Source
+from argo_compiler.script.syntax.text.healing import MOST_ERRORS, heal
+from argo_compiler.script.syntax.text.source import Diagnostics, ScriptText, Source
 from argo_compiler.script.syntax.tree.orders import Sentence
-from argo_compiler.script.syntax.tree.script import Script, Step
+from argo_compiler.script.syntax.tree.script import Script, ScriptStep
 from argo_compiler.script.syntax.understanding import Understanding
 from argo_compiler.script.syntax.words.language import Language
 
@@ -142,7 +142,7 @@ class _Parser:
 
     # ---- lines
 
-    def _steps(self, items: Iterable[LineItem]) -> Iterator[Step]:
+    def _steps(self, items: Iterable[LineItem]) -> Iterator[ScriptStep]:
         for item in items:
             if self.stopped:
                 return
@@ -156,7 +156,7 @@ class _Parser:
             if step is not None:
                 yield step
 
-    def _step(self, item: LineItem) -> Step | None:
+    def _step(self, item: LineItem) -> ScriptStep | None:
         text = self._without_letter(item)
         text = self.labels.relabelled(text)
         if self.labels.is_field(text):
@@ -174,10 +174,10 @@ class _Parser:
                 said += self.reader.read(sentence, item)
         return self._of(item, said, list(self._steps(item.items)))
 
-    def _of(self, item: LineItem, said: list[Said], inner: list[Step]) -> Step | None:
+    def _of(self, item: LineItem, said: list[Said], inner: list[ScriptStep]) -> ScriptStep | None:
         if not said and not inner and item.line.number is None:
             return None
-        return Step(
+        return ScriptStep(
             span=item.text.span(),
             number=item.line.number,
             sentences=tuple(said),
@@ -200,5 +200,5 @@ class _Parser:
         return text
 
 
-def _step_of(sentence: Sentence) -> Step:
-    return Step(span=sentence.span, number=None, sentences=(sentence,))
+def _step_of(sentence: Sentence) -> ScriptStep:
+    return ScriptStep(span=sentence.span, number=None, sentences=(sentence,))

@@ -5,7 +5,7 @@ from dataclasses import dataclass
 
 from argo_compiler.il import Order
 from argo_compiler.script.syntax.fields import ScriptFields
-from argo_compiler.script.syntax.source import ScriptText
+from argo_compiler.script.syntax.text.source import ScriptText
 from argo_compiler.script.syntax.tree.script import Text
 from argo_compiler.script.syntax.understanding import Understanding
 from argo_compiler.script.syntax.words.prose import begins

@@ -9,7 +9,7 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 
 from argo_compiler.listing import listed
-from argo_compiler.script.syntax.source import Diagnostics, ScriptText, Source
+from argo_compiler.script.syntax.text.source import Diagnostics, ScriptText, Source
 from argo_compiler.script.syntax.understanding import Understanding
 from argo_compiler.script.syntax.words.lexicon import expand
 

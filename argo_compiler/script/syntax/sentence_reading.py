@@ -4,12 +4,12 @@ from dataclasses import dataclass, field
 
 from argo_compiler.script.syntax.asides import Asides
 from argo_compiler.script.syntax.fields import ScriptFields
-from argo_compiler.script.syntax.grammar import StumbleError
+from argo_compiler.script.syntax.grammar.parser import StumbleError
 from argo_compiler.script.syntax.hints import not_understood
 from argo_compiler.script.syntax.labels import FieldLabels
 from argo_compiler.script.syntax.layout import LineItem, LineMark
 from argo_compiler.script.syntax.preamble import Preamble
-from argo_compiler.script.syntax.source import Diagnostics, ScriptText
+from argo_compiler.script.syntax.text.source import Diagnostics, ScriptText
 from argo_compiler.script.syntax.tree.facts import Fact
 from argo_compiler.script.syntax.tree.orders import Sentence, Start
 from argo_compiler.script.syntax.tree.script import Text, Unread

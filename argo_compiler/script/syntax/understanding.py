@@ -5,9 +5,9 @@ import re
 from itertools import islice, product
 
 from argo_compiler.script.syntax.building.sentences import build
-from argo_compiler.script.syntax.grammar import Branch, StumbleError, sentence_grammar
-from argo_compiler.script.syntax.source import Diagnostics, ScriptText
-from argo_compiler.script.syntax.spelling import candidates
+from argo_compiler.script.syntax.grammar.parser import Branch, StumbleError, sentence_grammar
+from argo_compiler.script.syntax.text.source import Diagnostics, ScriptText
+from argo_compiler.script.syntax.text.spelling import candidates
 from argo_compiler.script.syntax.tree.facts import Fact
 from argo_compiler.script.syntax.tree.orders import Sentence
 from argo_compiler.script.syntax.tree.places import FloorName, Location

@@ -6,8 +6,8 @@ from pathlib import Path
 import pytest
 from lark import Lark
 
-from argo_compiler.script.syntax import tables
-from argo_compiler.script.syntax.grammar import Grammar, StumbleError
+from argo_compiler.script.syntax.grammar import tables
+from argo_compiler.script.syntax.grammar.parser import Grammar, StumbleError
 from argo_compiler.script.syntax.words.language import Language
 from argo_compiler.script.syntax.words.lexer import words
 

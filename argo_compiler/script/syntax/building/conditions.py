@@ -4,19 +4,19 @@ from collections.abc import Iterator, Sequence
 from dataclasses import replace
 
 from argo_compiler.script.syntax.building.figures import Signed, seconds
-from argo_compiler.script.syntax.building.part import Make, Part
+from argo_compiler.script.syntax.building.part import Make, RulePart
 from argo_compiler.script.syntax.tree.conditions import (
     Amount,
     Asked,
-    Battery,
+    BatteryDrops,
     Between,
     Compared,
-    Condition,
     InState,
     Occurs,
     Predicate,
     Relation,
-    State,
+    SaidCondition,
+    TaskState,
     Test,
     TooLate,
 )
@@ -31,19 +31,19 @@ _RELATIONS = {
 }
 
 
-def _compared(part: Part) -> Compared:
+def _compared(part: RulePart) -> Compared:
     word = part.children[0]
     return Compared(span=part.span, relation=_RELATIONS[word.type], bound=part.the(Amount))
 
 
-def _between(part: Part) -> Between:
+def _between(part: RulePart) -> Between:
     low, high = part.every(Amount)
     if not low.unit:
         low = replace(low, unit=high.unit)
     return Between(span=part.span, low=low, high=high, inclusive=part.has("FROM"))
 
 
-def _exactly(part: Part) -> Between:
+def _exactly(part: RulePart) -> Between:
     amount = part.the(Amount)
     message = "a measured value is hardly ever exactly this one"
     hint = "write `between 4.9 and 5.1 bar`, `at least 5 bar` or `at most 5 bar`"
@@ -51,43 +51,43 @@ def _exactly(part: Part) -> Between:
     return Between(span=part.span, low=amount, high=amount, inclusive=True)
 
 
-def _beyond(part: Part) -> Compared:
+def _beyond(part: RulePart) -> Compared:
     """`75 % or more`."""
     relation = Relation.AT_LEAST if part.has("OR_MORE") else Relation.AT_MOST
     return Compared(span=part.span, relation=relation, bound=part.the(Amount))
 
 
-def _predicate(part: Part) -> tuple[Predicate, bool]:
+def _predicate(part: RulePart) -> tuple[Predicate, bool]:
     negated = part.has("NOT")
     state = part.word("STATE")
     stale = part.first(InState)
     if stale is not None:
         found: Predicate = stale
     elif state is not None or part.has("FAILS"):
-        found = InState(span=part.span, state=State(state.value) if state else State.FAILED)
+        found = InState(span=part.span, state=TaskState(state.value) if state else TaskState.FAILED)
     else:
         plain = next((c for c in part.children if isinstance(c, Compared | Between)), None)
         found = plain or _exactly(part)
     return found, negated
 
 
-def _stale(part: Part) -> InState:
-    return InState(span=part.span, state=State.STALE, age=_age(part))
+def _stale(part: RulePart) -> InState:
+    return InState(span=part.span, state=TaskState.STALE, age=_age(part))
 
 
-def _age(part: Part) -> float:
+def _age(part: RulePart) -> float:
     word = part.word("DURATION")
     assert word is not None
     return seconds(part, word)
 
 
-def _detail(part: Part) -> dict[str, object]:
+def _detail(part: RulePart) -> dict[str, object]:
     name = part.word("STRING")
     bound = part.first(Signed)
     return {"id": name.value if name else "", "second": bound.value if bound else None}
 
 
-def _test(part: Part) -> Test:
+def _test(part: RulePart) -> Test:
     predicate, negated = next(c for c in part.children if isinstance(c, tuple))
     age = part.first(float)
     detail = part.first(dict) or {"id": "", "second": None}
@@ -102,15 +102,15 @@ def _test(part: Part) -> Test:
     )
 
 
-def _occurs(part: Part) -> Occurs:
+def _occurs(part: RulePart) -> Occurs:
     word = part.word("EVENT")
     assert word is not None
     return Occurs(span=part.span, event=word.value)
 
 
-def _battery(part: Part) -> Battery:
+def _battery(part: RulePart) -> BatteryDrops:
     compared = part.the(Compared)
-    return Battery(span=part.span, relation=compared.relation, level=compared.bound)
+    return BatteryDrops(span=part.span, relation=compared.relation, level=compared.bound)
 
 
 def _joints(words: Sequence[Word]) -> Iterator[str]:
@@ -122,7 +122,7 @@ def _joints(words: Sequence[Word]) -> Iterator[str]:
     return reversed(found)
 
 
-def _condition(part: Part) -> Condition:
+def _condition(part: RulePart) -> SaidCondition:
     """The alternatives; a test without a subject has that of the test before it."""
     alternatives: list[list[Asked]] = [[]]
     subject: Nouns | None = None
@@ -137,7 +137,7 @@ def _condition(part: Part) -> Condition:
                 child = replace(child, subject=subject)
             subject = child.subject
         alternatives[-1].append(child)
-    return Condition(span=part.span, alternatives=tuple(tuple(a) for a in alternatives))
+    return SaidCondition(span=part.span, alternatives=tuple(tuple(a) for a in alternatives))
 
 
 RULES: dict[str, Make] = {

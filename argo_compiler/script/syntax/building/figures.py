@@ -4,7 +4,7 @@ from dataclasses import dataclass
 from math import isinf, isnan
 
 from argo_compiler.il import MAX_TIME_S
-from argo_compiler.script.syntax.building.part import Make, Part
+from argo_compiler.script.syntax.building.part import Make, RulePart
 from argo_compiler.script.syntax.tree.conditions import Amount
 from argo_compiler.script.syntax.words.lengths import Length
 from argo_compiler.script.syntax.words.numbers import Figure
@@ -21,7 +21,7 @@ class Signed:
     listed: tuple[int, ...] = ()
 
 
-def whole(part: Part, figure: Figure, most: int = _LARGEST) -> int:
+def whole(part: RulePart, figure: Figure, most: int = _LARGEST) -> int:
     """The whole number that a figure is; anything else is an error, and 0."""
     value = figure.whole
     if value is None:
@@ -33,7 +33,7 @@ def whole(part: Part, figure: Figure, most: int = _LARGEST) -> int:
     return value
 
 
-def _complain_of_whole(part: Part, figure: Figure) -> None:
+def _complain_of_whole(part: RulePart, figure: Figure) -> None:
     if figure.other is not None:
         message = f"this number can be read as {figure.value:g} or as {figure.other:g}"
         part.error("ambiguous-number", message, f"write `{figure.other:g}` for the second")
@@ -43,7 +43,7 @@ def _complain_of_whole(part: Part, figure: Figure) -> None:
         part.error("number", f"{figure.value:g} is not a whole number", "write a whole number")
 
 
-def decimal(part: Part, figure: Figure, unit: str = "") -> float:
+def decimal(part: RulePart, figure: Figure, unit: str = "") -> float:
     """The number that a figure is; one that can be read in two ways is an error."""
     behind = f" {unit}" if unit else ""
     if figure.other is not None:
@@ -60,7 +60,7 @@ def decimal(part: Part, figure: Figure, unit: str = "") -> float:
     return figure.value
 
 
-def seconds(part: Part, word: Word) -> float:
+def seconds(part: RulePart, word: Word) -> float:
     """The seconds of a length of time that is more than none."""
     length: Length = word.value
     if isnan(length.seconds):
@@ -80,7 +80,7 @@ def seconds(part: Part, word: Word) -> float:
     return length.seconds
 
 
-def speed(part: Part, word: Word) -> float:
+def speed(part: RulePart, word: Word) -> float:
     """m/s"""
     figure, factor = word.value
     value = decimal(part, figure, "m/s" if factor == 1 else "")
@@ -90,7 +90,7 @@ def speed(part: Part, word: Word) -> float:
     return value if factor == 1 else float(f"{value * factor:.12g}")
 
 
-def single(part: Part) -> float:
+def single(part: RulePart) -> float:
     """The one number that is asked for in coordinates and the like."""
     value = part.the(Signed).value
     if isnan(value):
@@ -99,7 +99,7 @@ def single(part: Part) -> float:
     return value
 
 
-def _signed(part: Part) -> Signed:
+def _signed(part: RulePart) -> Signed:
     word = part.word("NUMBER")
     assert word is not None
     sign = -1 if part.has("MINUS") else 1
@@ -109,7 +109,7 @@ def _signed(part: Part) -> Signed:
     return Signed(sign * word.value.value, word.value.listed)
 
 
-def _amount(part: Part) -> Amount:
+def _amount(part: RulePart) -> Amount:
     sign = -1 if part.has("MINUS") else 1
     if word := part.word("QUANTITY"):
         figure, unit = word.value

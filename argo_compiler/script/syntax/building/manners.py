@@ -7,8 +7,8 @@ from typing import Any
 
 from argo_compiler.il import Afterwards, EventKind, Order
 from argo_compiler.script.syntax.building.figures import Signed, seconds, speed, whole
-from argo_compiler.script.syntax.building.part import Make, Part
-from argo_compiler.script.syntax.tree.conditions import Condition, Occurs
+from argo_compiler.script.syntax.building.part import Make, RulePart
+from argo_compiler.script.syntax.tree.conditions import Occurs, SaidCondition
 from argo_compiler.script.syntax.tree.manner import Joints, Manner
 from argo_compiler.script.syntax.tree.places import Coordinates
 from argo_compiler.script.syntax.words.word import Word
@@ -17,23 +17,23 @@ _OF_JOINTS = {"AT": "positions", "VELOCITIES": "velocities", "EFFORTS": "efforts
 _ON_LIMIT = {"GO_ON": Afterwards.RESUME, "END": Afterwards.END, "WAIT": Afterwards.WAIT}
 
 
-def _seconds(part: Part) -> float:
+def _seconds(part: RulePart) -> float:
     word = part.word("DURATION")
     assert word is not None
     return seconds(part, word)
 
 
-def _times(part: Part) -> Manner:
+def _times(part: RulePart) -> Manner:
     word = part.word("TIMES")
     assert word is not None
     return Manner(times=whole(part, word.value))
 
 
-def _more(part: Part) -> Manner:
+def _more(part: RulePart) -> Manner:
     return Manner(times=whole(part, part.children[0].value), more=True)
 
 
-def _for(part: Part) -> Manner:
+def _for(part: RulePart) -> Manner:
     if part.has("TIMES"):
         return _times(part)
     if event := part.word("EVENT"):
@@ -43,11 +43,11 @@ def _for(part: Part) -> Manner:
     return Manner(duration=_seconds(part))
 
 
-def _until_event(part: Part, event: EventKind) -> Condition:
-    return Condition(span=part.span, alternatives=((Occurs(span=part.span, event=event),),))
+def _until_event(part: RulePart, event: EventKind) -> SaidCondition:
+    return SaidCondition(span=part.span, alternatives=((Occurs(span=part.span, event=event),),))
 
 
-def _between_times(part: Part) -> Manner:
+def _between_times(part: RulePart) -> Manner:
     first, last = (word for word in part.every(Word) if word.type in ("NUMBER", "DURATION"))
     latest = seconds(part, last)
     earliest = (
@@ -58,7 +58,7 @@ def _between_times(part: Part) -> Manner:
     return Manner(earliest=earliest, latest=latest)
 
 
-def _at_most(part: Part) -> Manner:
+def _at_most(part: RulePart) -> Manner:
     if word := part.word("MOST_TIMES"):
         return Manner(at_most=whole(part, word.value))
     word = part.word("MOST_TIME", "DURATION")
@@ -67,21 +67,21 @@ def _at_most(part: Part) -> Manner:
     return Manner(mission_time=limit) if part.has("TOTAL") else Manner(time_limit=limit)
 
 
-def _priority(part: Part) -> Manner:
+def _priority(part: RulePart) -> Manner:
     word = part.word("NUMBER")
     assert word is not None
     sign = -1 if part.has("MINUS") else 1
     return Manner(priority=sign * whole(part, word.value))
 
 
-def _ranked(part: Part) -> Manner:
+def _ranked(part: RulePart) -> Manner:
     word = part.children[0]
     message = f"`{part.said}` is taken as priority {word.value}, of high 3, medium 2 and low 1"
     part.diagnostics.note("priority-taken", message, part.span)
     return Manner(rank=word.value)
 
 
-def _flag(part: Part) -> Manner:
+def _flag(part: RulePart) -> Manner:
     match part.children[0].type:
         case "FINISHING":
             return Manner(finishing=True)
@@ -105,20 +105,20 @@ def _flag(part: Part) -> Manner:
             return Manner()
 
 
-def _speed(part: Part) -> Manner:
+def _speed(part: RulePart) -> Manner:
     word = part.word("SPEED")
     assert word is not None
     value = speed(part, word)
     return Manner(leaving=value) if part.has("LEAVING") else Manner(speed=value)
 
 
-def _string(part: Part) -> str:
+def _string(part: RulePart) -> str:
     word = part.word("STRING")
     assert word is not None
     return str(word.value)
 
 
-def _joints(part: Part) -> Manner:
+def _joints(part: RulePart) -> Manner:
     names = tuple(str(word.value) for word in part.every(Word) if word.type == "STRING")
     given: dict[str, tuple[float, ...]] = {}
     for word, values in pairwise(part.children):
@@ -127,15 +127,15 @@ def _joints(part: Part) -> Manner:
     return Manner(joints=Joints(names=names, **given))
 
 
-def _values(part: Part) -> tuple[float, ...]:
+def _values(part: RulePart) -> tuple[float, ...]:
     return tuple(signed.value for signed in part.every(Signed))
 
 
-def _on_limit(part: Part) -> Manner:
+def _on_limit(part: RulePart) -> Manner:
     return Manner(on_limit=next(_ON_LIMIT[w.type] for w in part.children if w.type in _ON_LIMIT))
 
 
-def combined(part: Part, manners: Iterable[Manner]) -> Manner | None:
+def combined(part: RulePart, manners: Iterable[Manner]) -> Manner | None:
     """All of them in one; what is said twice is an error."""
     values: dict[str, Any] = {}
     for manner in manners:
@@ -157,7 +157,7 @@ RULES: dict[str, Make] = {
     "more": _more,
     "every": lambda part: Manner(every=_seconds(part)),
     "for_": _for,
-    "until": lambda part: Manner(until=part.the(Condition)),
+    "until": lambda part: Manner(until=part.the(SaidCondition)),
     "within": lambda part: Manner(latest=_seconds(part)),
     "between_times": _between_times,
     "latest": lambda part: Manner(latest=_seconds(part)),
@@ -168,8 +168,8 @@ RULES: dict[str, Make] = {
     "priority": _priority,
     "ranked": _ranked,
     "by_importance": lambda part: Manner(by_importance=True),  # noqa: ARG005
-    "only_if": lambda part: Manner(condition=part.the(Condition)),
-    "unless": lambda part: Manner(condition=replace(part.the(Condition), negated=True)),
+    "only_if": lambda part: Manner(condition=part.the(SaidCondition)),
+    "unless": lambda part: Manner(condition=replace(part.the(SaidCondition), negated=True)),
     "flag": _flag,
     "standing": lambda part: Manner(pose=part.the(Coordinates)),
     "shown": lambda part: Manner(shown_in=_string(part)),

@@ -3,11 +3,11 @@
 from dataclasses import replace
 
 from argo_compiler.script.syntax.building.figures import whole
-from argo_compiler.script.syntax.building.part import Make, Part
+from argo_compiler.script.syntax.building.part import Make, RulePart
 from argo_compiler.script.syntax.tree.nouns import (
     AllOf,
     Kind,
-    Named,
+    Labelled,
     Noun,
     Nouns,
     Pronoun,
@@ -22,7 +22,7 @@ Label = tuple[int | str, tuple[int, ...]]
 """a number or an identifier, and the numbers that it may be a list of"""
 
 
-def _label(part: Part) -> Label:
+def _label(part: RulePart) -> Label:
     (word,) = part.children
     if word.type != "NUMBER":
         return word.value, ()
@@ -32,7 +32,7 @@ def _label(part: Part) -> Label:
     return whole(part, figure), ()
 
 
-def _upto(part: Part) -> Label:
+def _upto(part: RulePart) -> Label:
     label: Label = next(c for c in part.children if isinstance(c, tuple))
     return label
 
@@ -48,12 +48,12 @@ def _quantity(word: Word | None) -> Quantity | None:
     return None if word is None else Quantity(word.value)
 
 
-def named(part: Part) -> list[Noun]:
+def named(part: RulePart) -> list[Noun]:
     """The checkpoint; several where a number is a list without blanks: `1,4`."""
     kind, plural = _kind(part.word("KIND"))
     (label, listed), *upto = part.every(tuple)
     return [
-        Named(
+        Labelled(
             span=part.span,
             label=one,
             kind=kind,
@@ -65,35 +65,35 @@ def named(part: Part) -> list[Noun]:
     ]
 
 
-def _of(part: Part) -> list[Noun]:
+def _of(part: RulePart) -> list[Noun]:
     word, nouns = part.children
     quantity = Quantity(word.value)
     nouns = nouns if isinstance(nouns, list) else [nouns]
     return [replace(noun, quantity=quantity) for noun in nouns]
 
 
-def _aka(part: Part) -> list[Noun]:
+def _aka(part: RulePart) -> list[Noun]:
     (first, *_), (second, *_) = part.every(list)
     return [replace(first, also=second, span=part.span)]
 
 
-def _floors(part: Part) -> tuple[FloorName, ...]:
+def _floors(part: RulePart) -> tuple[FloorName, ...]:
     return tuple(floor for found in part.every(tuple) for floor in found)
 
 
-def _all(part: Part) -> AllOf:
+def _all(part: RulePart) -> AllOf:
     kind, _ = _kind(part.word("KIND"))
     number = part.word("NUMBER")
     count = 2 if part.has("BOTH") else whole(part, number.value) if number else None
     return AllOf(span=part.span, kind=kind or Kind.CHECKPOINT, floors=_floors(part), count=count)
 
 
-def _the_one(part: Part) -> TheOne:
+def _the_one(part: RulePart) -> TheOne:
     kind, plural = _kind(part.word("KIND"))
     return TheOne(span=part.span, kind=kind or Kind.CHECKPOINT, floors=_floors(part), plural=plural)
 
 
-def _pronoun(part: Part) -> Pronoun:
+def _pronoun(part: RulePart) -> Pronoun:
     value = part.word("VALUE")
     them = part.word("THEM", "BOTH")
     return Pronoun(
@@ -104,7 +104,7 @@ def _pronoun(part: Part) -> Pronoun:
     )
 
 
-def _nouns(part: Part) -> Nouns:
+def _nouns(part: RulePart) -> Nouns:
     nouns: list[Noun] = []
     but: list[Noun] = []
     either = excluded = False

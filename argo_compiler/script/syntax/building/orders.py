@@ -5,11 +5,11 @@ from dataclasses import replace
 from argo_compiler.script.syntax.building.figures import whole
 from argo_compiler.script.syntax.building.manners import combined
 from argo_compiler.script.syntax.building.nouns import named
-from argo_compiler.script.syntax.building.part import Make, Part
+from argo_compiler.script.syntax.building.part import Make, RulePart
 from argo_compiler.script.syntax.tree import orders
 from argo_compiler.script.syntax.tree.manner import Manner
 from argo_compiler.script.syntax.tree.nouns import Nouns, Pronoun
-from argo_compiler.script.syntax.tree.orders import Order, Side
+from argo_compiler.script.syntax.tree.orders import ScriptOrder, Side
 from argo_compiler.script.syntax.tree.places import (
     AreaLocation,
     Coordinates,
@@ -22,23 +22,23 @@ from argo_compiler.script.syntax.tree.places import (
 from argo_compiler.script.syntax.words.word import Word
 
 _WORDS = {
-    "PAUSE": orders.Word.PAUSE,
-    "END": orders.Word.END,
-    "ABORT": orders.Word.ABORT,
-    "GO_ON": orders.Word.GO_ON,
-    "RECHARGE": orders.Word.RECHARGE,
-    "REPORT": orders.Word.REPORT,
-    "DONE": orders.Word.DONE,
-    "MEET": orders.Word.MEET,
+    "PAUSE": orders.PlainWord.PAUSE,
+    "END": orders.PlainWord.END,
+    "ABORT": orders.PlainWord.ABORT,
+    "GO_ON": orders.PlainWord.GO_ON,
+    "RECHARGE": orders.PlainWord.RECHARGE,
+    "REPORT": orders.PlainWord.REPORT,
+    "DONE": orders.PlainWord.DONE,
+    "MEET": orders.PlainWord.MEET,
 }
 
 
-def _manner(part: Part) -> Manner | None:
+def _manner(part: RulePart) -> Manner | None:
     return combined(part, part.every(Manner))
 
 
-def _order(part: Part) -> Order:
-    found = part.the(Order)
+def _order(part: RulePart) -> ScriptOrder:
+    found = part.the(ScriptOrder)
     name = part.word("STRING")
     if name is None:
         return found
@@ -48,7 +48,7 @@ def _order(part: Part) -> Order:
     return replace(found, name=name.value)
 
 
-def _measure(part: Part) -> Order:
+def _measure(part: RulePart) -> ScriptOrder:
     return orders.Measure(
         span=part.span,
         manner=_manner(part),
@@ -58,11 +58,11 @@ def _measure(part: Part) -> Order:
     )
 
 
-def _go(part: Part) -> Order:
+def _go(part: RulePart) -> ScriptOrder:
     return _towards(part, where(part))
 
 
-def where(part: Part) -> Location | FloorName:
+def where(part: RulePart) -> Location | FloorName:
     """The place that a rule names."""
     for child in part.children:
         if isinstance(child, tuple):
@@ -77,13 +77,13 @@ def where(part: Part) -> Location | FloorName:
     raise AssertionError("the grammar lets the place be left out")
 
 
-def _towards(part: Part, where: Location | FloorName) -> Order:
+def _towards(part: RulePart, where: Location | FloorName) -> ScriptOrder:
     if isinstance(where, DockLocation):
         return orders.Home(span=part.span, manner=_manner(part), dock=where)
     return orders.Go(span=part.span, manner=_manner(part), where=where)
 
 
-def _home(part: Part) -> Order:
+def _home(part: RulePart) -> ScriptOrder:
     """`Go home`, `return to the docking station`, `dock in starting area 1`."""
     named = any(not isinstance(child, Word | Manner) for child in part.children)
     place = where(part) if named else DockLocation(span=part.span)
@@ -92,7 +92,7 @@ def _home(part: Part) -> Order:
     return _towards(part, place)
 
 
-def _start(part: Part) -> Order:
+def _start(part: RulePart) -> ScriptOrder:
     place = where(part)
     if isinstance(place, FloorName):
         hint = "name a starting area or a place: `start in starting area 1`"
@@ -102,12 +102,12 @@ def _start(part: Part) -> Order:
     return orders.Start(span=part.span, manner=_manner(part), where=place, ends_there=ends)
 
 
-def _start_here(part: Part) -> Order:
+def _start_here(part: RulePart) -> ScriptOrder:
     where = part.first(Coordinates)
     return orders.Start(span=part.span, manner=_manner(part), where=where, here=True)
 
 
-def _patrol(part: Part) -> Order:
+def _patrol(part: RulePart) -> ScriptOrder:
     places = next(c for c in part.children if isinstance(c, list))
     said = part.every(Manner)
     if rounds := part.word("NUMBER"):
@@ -115,12 +115,12 @@ def _patrol(part: Part) -> Order:
     return orders.Patrol(span=part.span, manner=combined(part, said), places=tuple(places))
 
 
-def _word(part: Part) -> Order:
+def _word(part: RulePart) -> ScriptOrder:
     word = _WORDS[part.children[0].type]
     return orders.Plain(span=part.span, manner=_manner(part), word=word)
 
 
-def _repeat(part: Part) -> Order:
+def _repeat(part: RulePart) -> ScriptOrder:
     return orders.Repeat(
         span=part.span,
         manner=_manner(part),
@@ -129,23 +129,23 @@ def _repeat(part: Part) -> Order:
     )
 
 
-def _wait(part: Part) -> Order:
+def _wait(part: RulePart) -> ScriptOrder:
     here = all(isinstance(c, Word | Manner) for c in part.children)
     place = None if here else where(part)
     manner = _manner(part)
     person = manner is not None and manner.person
-    return orders.Wait(span=part.span, manner=manner, where=place, person=person)
+    return orders.WaitOrder(span=part.span, manner=manner, where=place, person=person)
 
 
-def _things(part: Part) -> list[Nouns | Steps]:
+def _things(part: RulePart) -> list[Nouns | Steps]:
     return [c for c in part.children if isinstance(c, Nouns | Steps)]
 
 
-def _side(part: Part) -> Side:
+def _side(part: RulePart) -> Side:
     return Side.BEFORE if part.has("BEFORE") else Side.AFTER
 
 
-def _add(part: Part) -> Order:
+def _add(part: RulePart) -> ScriptOrder:
     what, anchor = _things(part)
     if isinstance(part.children[0], Side):  # `after step 2, insert checkpoint 20`
         what, anchor = anchor, what
@@ -155,29 +155,29 @@ def _add(part: Part) -> Order:
     )
 
 
-def _delete(part: Part) -> Order:
+def _delete(part: RulePart) -> ScriptOrder:
     return orders.Delete(span=part.span, what=_things(part)[0])
 
 
-def _target(part: Part) -> Nouns:
+def _target(part: RulePart) -> Nouns:
     (noun,) = named(part)
     return Nouns(span=part.span, nouns=(noun,))
 
 
-def _visit(part: Part) -> Order:
-    return orders.Visit(span=part.span, manner=_manner(part), what=part.the(Nouns))
+def _visit(part: RulePart) -> ScriptOrder:
+    return orders.VisitOrder(span=part.span, manner=_manner(part), what=part.the(Nouns))
 
 
-def _spare(part: Part) -> Order:
+def _spare(part: RulePart) -> ScriptOrder:
     return orders.Spare(span=part.span, what=part.the(Nouns))
 
 
-def _move(part: Part) -> Order:
+def _move(part: RulePart) -> ScriptOrder:
     what, anchor = _things(part)
     return orders.Move(span=part.span, what=what, side=part.the(Side), anchor=anchor)
 
 
-def _replace(part: Part) -> Order:
+def _replace(part: RulePart) -> ScriptOrder:
     what, by = _things(part)
     assert isinstance(by, Nouns)
     return orders.Replace(span=part.span, what=what, by=by)

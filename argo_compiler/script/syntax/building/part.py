@@ -5,14 +5,14 @@ from dataclasses import dataclass
 from typing import Any, TypeVar
 
 from argo_compiler.diagnostics import Span
-from argo_compiler.script.syntax.source import Diagnostics, ScriptText
+from argo_compiler.script.syntax.text.source import Diagnostics, ScriptText
 from argo_compiler.script.syntax.words.word import Word
 
 T = TypeVar("T")
 
 
 @dataclass(frozen=True, slots=True)
-class Part:
+class RulePart:
     """What the parts of a rule were made to, and where the rule's words stand."""
 
     children: tuple[Any, ...]
@@ -57,5 +57,5 @@ class Part:
         self.diagnostics.error(code, message, self.span, hint)
 
 
-Make = Callable[[Part], Any]
+Make = Callable[[RulePart], Any]
 """makes the node of a rule"""

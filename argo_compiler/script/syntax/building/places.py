@@ -3,7 +3,7 @@
 from math import isnan, radians
 
 from argo_compiler.script.syntax.building.figures import Signed, single, whole
-from argo_compiler.script.syntax.building.part import Make, Part
+from argo_compiler.script.syntax.building.part import Make, RulePart
 from argo_compiler.script.syntax.tree.places import (
     AreaLocation,
     Coordinates,
@@ -17,23 +17,23 @@ from argo_compiler.script.syntax.tree.places import (
 from argo_compiler.script.syntax.words.word import Word
 
 
-def _area(part: Part) -> AreaLocation:
+def _area(part: RulePart) -> AreaLocation:
     word = part.word("NUMBER")
     assert word is not None
     return AreaLocation(span=part.span, area=whole(part, word.value))
 
 
-def _dock(part: Part) -> DockLocation:
+def _dock(part: RulePart) -> DockLocation:
     return DockLocation(span=part.span, area=part.first(AreaLocation))
 
 
-def _place(part: Part) -> PlaceLocation:
+def _place(part: RulePart) -> PlaceLocation:
     word = part.word("PLACE", "STRING")
     name = str(word.value) if word else " ".join(part.said.split())
     return PlaceLocation(span=part.span, name=name)
 
 
-def _floors(part: Part) -> tuple[FloorName, ...]:
+def _floors(part: RulePart) -> tuple[FloorName, ...]:
     found: list[FloorName] = []
     for word in part.every(Word):
         number: int | NamedFloor | None = None
@@ -53,16 +53,16 @@ def _floors(part: Part) -> tuple[FloorName, ...]:
     return tuple(found)
 
 
-def _plural(part: Part) -> bool:
+def _plural(part: RulePart) -> bool:
     word = part.word("FLOOR")
     return word is not None and bool(word.value)
 
 
-def _on_floors(part: Part) -> tuple[FloorName, ...]:
+def _on_floors(part: RulePart) -> tuple[FloorName, ...]:
     return tuple(floor for found in part.every(tuple) for floor in found)
 
 
-def _coordinates(part: Part) -> Coordinates:
+def _coordinates(part: RulePart) -> Coordinates:
     values = [s.value for s in part.every(Signed)]
     (only, *more) = part.every(Signed)
     if only.listed and not more:
@@ -80,11 +80,11 @@ def _coordinates(part: Part) -> Coordinates:
     )
 
 
-def _height(part: Part) -> dict[str, float]:
+def _height(part: RulePart) -> dict[str, float]:
     return {"z": single(part)}
 
 
-def _heading(part: Part) -> dict[str, float]:
+def _heading(part: RulePart) -> dict[str, float]:
     if word := part.word("QUANTITY"):
         figure, unit = word.value
         if unit != "deg":
@@ -95,12 +95,12 @@ def _heading(part: Part) -> dict[str, float]:
     return {"yaw": value if part.has("RAD") else radians(value)}
 
 
-def _location(part: Part) -> Location | tuple[FloorName, ...]:
+def _location(part: RulePart) -> Location | tuple[FloorName, ...]:
     found: Location | tuple[FloorName, ...] = part.children[-1]
     return found
 
 
-def _steps(part: Part) -> Steps:
+def _steps(part: RulePart) -> Steps:
     points: list[int | str] = []
     for word in part.every(Word):
         if word.type == "NUMBER":
@@ -110,7 +110,7 @@ def _steps(part: Part) -> Steps:
     return Steps(span=part.span, points=tuple(points), through=part.has("TO", "UPTO", "DASH"))
 
 
-def _places(part: Part) -> list[Location | FloorName]:
+def _places(part: RulePart) -> list[Location | FloorName]:
     found: list[Location | FloorName] = []
     for child in part.children:
         if not isinstance(child, Word):

@@ -11,18 +11,18 @@ from argo_compiler.script.syntax.building import (
     orders,
     places,
 )
-from argo_compiler.script.syntax.building.part import Make, Part
-from argo_compiler.script.syntax.grammar import Branch
-from argo_compiler.script.syntax.source import Diagnostics, ScriptText
+from argo_compiler.script.syntax.building.part import Make, RulePart
+from argo_compiler.script.syntax.grammar.parser import Branch
+from argo_compiler.script.syntax.text.source import Diagnostics, ScriptText
 from argo_compiler.script.syntax.tree import facts
-from argo_compiler.script.syntax.tree.conditions import Condition
-from argo_compiler.script.syntax.tree.nouns import Named, Nouns
-from argo_compiler.script.syntax.tree.orders import Case, Measure, Order, Rest, Sentence, Side
+from argo_compiler.script.syntax.tree.conditions import SaidCondition
+from argo_compiler.script.syntax.tree.nouns import Labelled, Nouns
+from argo_compiler.script.syntax.tree.orders import Case, Measure, Rest, ScriptOrder, Sentence, Side
 from argo_compiler.script.syntax.tree.places import Steps
 from argo_compiler.script.syntax.words.word import Word
 
 
-def _case(part: Part) -> Case:
+def _case(part: RulePart) -> Case:
     """`If ..., A and B`; what comes behind a semicolon may be meant for this case, or for any."""
     orders = _joined(part)
     rest = Rest.OTHERWISE
@@ -30,7 +30,7 @@ def _case(part: Part) -> Case:
         rest = Rest.ALL_OTHERS
     elif part.has("LAST_ROUND"):
         rest = Rest.LAST_ROUND
-    condition = part.first(Condition)
+    condition = part.first(SaidCondition)
     if condition is not None and part.the(Word).value == "unless":
         condition = replace(condition, negated=True)
     for order in orders[1:]:
@@ -47,20 +47,20 @@ def _case(part: Part) -> Case:
     )
 
 
-def _sentence(part: Part) -> Sentence | facts.Fact:
+def _sentence(part: RulePart) -> Sentence | facts.Fact:
     said = part.every(facts.Fact)
     if said and isinstance(part.children[0], facts.Fact):
         return said[0]
     return Sentence(span=part.span, orders=_joined(part), cases=part.every(Case), facts=said)
 
 
-def _joined(part: Part) -> tuple[Order, ...]:
+def _joined(part: RulePart) -> tuple[ScriptOrder, ...]:
     """The orders with what stood between them. A checkpoint that is only named, and what is to be
     read there, are one: `Checkpoint #8: read the value on pressure gauge 5`."""
-    found: list[Order] = []
+    found: list[ScriptOrder] = []
     joint = ""
     for child in part.children:
-        if isinstance(child, Order):
+        if isinstance(child, ScriptOrder):
             last = found[-1] if found else None
             if (
                 isinstance(last, Measure)
@@ -81,40 +81,40 @@ def _same(first: Measure, second: Measure, joint: str) -> bool:
 
 def _both(first: Measure, second: Measure) -> Measure:
     (noun,), (also,) = first.what.nouns, second.what.nouns
-    if not isinstance(noun, Named) or not isinstance(also, Named):
+    if not isinstance(noun, Labelled) or not isinstance(also, Labelled):
         return first
     nouns = replace(first.what, nouns=(replace(noun, also=also),))
     return replace(first, what=nouns, manner=second.manner or first.manner)
 
 
-def _max_duration(part: Part) -> facts.Fact:
+def _max_duration(part: RulePart) -> facts.Fact:
     word = part.word("DURATION", "MOST_TIME")
     assert word is not None
     return facts.MaxDuration(span=part.span, seconds=figures.seconds(part, word))
 
 
-def _back_within(part: Part) -> facts.Fact:
+def _back_within(part: RulePart) -> facts.Fact:
     word = part.word("DURATION")
     assert word is not None
     where = next(c for c in part.children if not isinstance(c, Word))
     return facts.BackWithin(span=part.span, where=where, seconds=figures.seconds(part, word))
 
 
-def _precedence(part: Part) -> facts.Fact:
+def _precedence(part: RulePart) -> facts.Fact:
     first, second = part.every(Nouns)
     if part.the(Side) is Side.AFTER:
         first, second = second, first
-    return facts.Precedence(span=part.span, first=first, second=second)
+    return facts.ReadBefore(span=part.span, first=first, second=second)
 
 
-def _steps_ordered(part: Part) -> facts.Fact:
+def _steps_ordered(part: RulePart) -> facts.Fact:
     first, second = part.every(Steps)
     if part.the(Side) is Side.AFTER:
         first, second = second, first
     return facts.StepsOrdered(span=part.span, first=first, second=second)
 
 
-def _rounds_driven(part: Part) -> facts.Fact:
+def _rounds_driven(part: RulePart) -> facts.Fact:
     word = part.word("TIMES")
     assert word is not None
     count = figures.whole(part, word.value)
@@ -150,4 +150,4 @@ def build(branch: Branch, words: list[Word], text: ScriptText, diagnostics: Diag
     )
     start = words[first].start if first < len(words) else len(text.content)
     end = words[behind - 1].end if behind > first else start
-    return _RULES[rule](Part(children, text, start, end, diagnostics))
+    return _RULES[rule](RulePart(children, text, start, end, diagnostics))

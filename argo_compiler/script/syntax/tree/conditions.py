@@ -17,7 +17,7 @@ class Relation(StrEnum):
     AT_MOST = "at most"
 
 
-class State(StrEnum):
+class TaskState(StrEnum):
     """What a reading may be."""
 
     NORMAL = "normal"
@@ -56,7 +56,7 @@ class Between(Node):
 class InState(Node):
     """`abnormal`, `unreadable`, `older than 60 s`."""
 
-    state: State
+    state: TaskState
     age: float | None = None
     """s, of STALE"""
 
@@ -87,7 +87,7 @@ class Occurs(Node):
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class Battery(Node):
+class BatteryDrops(Node):
     """`the battery drops below 30 %`."""
 
     relation: Relation
@@ -99,11 +99,11 @@ class TooLate(Node):
     """`it is too late`: the window of the task before is over."""
 
 
-Asked = Test | Occurs | Battery | TooLate
+Asked = Test | Occurs | BatteryDrops | TooLate
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class Condition(Node):
+class SaidCondition(Node):
     """Alternatives, of each of which all must hold: `and` binds more tightly than `or`."""
 
     alternatives: tuple[tuple[Asked, ...], ...]

@@ -28,7 +28,7 @@ class BackWithin(Fact):
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class Precedence(Fact):
+class ReadBefore(Fact):
     """`Checkpoint 7 has to be read before checkpoint 18`."""
 
     first: Nouns

@@ -3,7 +3,7 @@
 from dataclasses import dataclass
 
 from argo_compiler.il import Afterwards, Order
-from argo_compiler.script.syntax.tree.conditions import Condition
+from argo_compiler.script.syntax.tree.conditions import SaidCondition
 from argo_compiler.script.syntax.tree.places import Coordinates
 
 
@@ -54,7 +54,7 @@ class Manner:
     """s from the beginning of a round to that of the next"""
     duration: float | None = None
     """s"""
-    until: Condition | None = None
+    until: SaidCondition | None = None
     finishing: bool | None = None
     """whether the round is completed when the time is up"""
     count_interruptions: bool = False
@@ -62,7 +62,7 @@ class Manner:
     in_circles: bool = False
     order: Order | None = None
     """whether the tasks may change places"""
-    condition: Condition | None = None
+    condition: SaidCondition | None = None
     """`check #8 if it is above 5`"""
     joints: Joints | None = None
     shown_in: str | None = None

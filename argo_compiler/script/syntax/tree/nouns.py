@@ -28,7 +28,7 @@ class Quantity(StrEnum):
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class Named(Node):
+class Labelled(Node):
     """`valve R25`, `#8`, `pressure gauges 5 to 7`: by a number or an identifier."""
 
     label: int | str
@@ -41,7 +41,7 @@ class Named(Node):
     last: int | str | None = None
     """of a range"""
     quantity: Quantity | None = None
-    also: "Named | None" = None
+    also: "Labelled | None" = None
     """the same by its other name: `pressure gauge 5 (checkpoint #8)`"""
 
 
@@ -78,7 +78,7 @@ class Pronoun(Node):
     quantity: Quantity | None = None
 
 
-Noun = Named | AllOf | TheOne | Pronoun
+Noun = Labelled | AllOf | TheOne | Pronoun
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

@@ -5,7 +5,7 @@ from enum import StrEnum
 from typing import Self
 
 from argo_compiler.il import EventKind
-from argo_compiler.script.syntax.tree.conditions import Condition
+from argo_compiler.script.syntax.tree.conditions import SaidCondition
 from argo_compiler.script.syntax.tree.facts import Fact
 from argo_compiler.script.syntax.tree.manner import Manner
 from argo_compiler.script.syntax.tree.node import Node
@@ -14,7 +14,7 @@ from argo_compiler.script.syntax.tree.places import DockLocation, FloorName, Loc
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class Order(Node):
+class ScriptOrder(Node):
     """Something to do."""
 
     name: str | None = None
@@ -29,7 +29,7 @@ class Order(Node):
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class Measure(Order):
+class Measure(ScriptOrder):
     """`Check the checkpoint #14`."""
 
     what: Nouns
@@ -40,28 +40,28 @@ class Measure(Order):
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class Visit(Order):
+class VisitOrder(ScriptOrder):
     """`Drive to checkpoint 5 at 0.3 m/s`: on the way to what is measured there."""
 
     what: Nouns
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class Go(Order):
+class Go(ScriptOrder):
     """`Go to the front of the site`."""
 
     where: Location | FloorName
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class Home(Order):
+class Home(ScriptOrder):
     """`Return to the docking station`, `go home`."""
 
     dock: DockLocation
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class Start(Order):
+class Start(ScriptOrder):
     """`Set a starting point in front of the site`; with `here` it stays where the line stands."""
 
     where: Location | None
@@ -71,14 +71,14 @@ class Start(Order):
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class Patrol(Order):
+class Patrol(ScriptOrder):
     """`Patrol the first floor in circles for 10 minutes`."""
 
     places: tuple[FloorName | Location, ...]
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class Wait(Order):
+class WaitOrder(ScriptOrder):
     """`Wait 90 s`, `wait until #1 is below 3`, `wait for the all-clear`."""
 
     event: EventKind | None = None
@@ -88,7 +88,7 @@ class Wait(Order):
     """None: where it is"""
 
 
-class Word(StrEnum):
+class PlainWord(StrEnum):
     """Orders of one word."""
 
     PAUSE = "pause"
@@ -102,36 +102,36 @@ class Word(StrEnum):
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class Plain(Order):
+class Plain(ScriptOrder):
     """An order that needs nothing else."""
 
-    word: Word
+    word: PlainWord
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class Amend(Order):
+class Amend(ScriptOrder):
     """Manner by itself: of what stands before it, or behind it after a colon."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class Follow(Order):
+class Follow(ScriptOrder):
     """`Do the following twice:`, of the steps within this one."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class Retry(Order):
+class Retry(ScriptOrder):
     """`retry twice`."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class Jump(Order):
+class Jump(ScriptOrder):
     """`go to step 5`."""
 
     step: Steps
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class Repeat(Order):
+class Repeat(ScriptOrder):
     """`Repeat steps 2 to 4 three times`."""
 
     steps: Steps | None
@@ -148,7 +148,7 @@ class Side(StrEnum):
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class Add(Order):
+class Add(ScriptOrder):
     """`Add checkpoint #2 after checkpoint #14`."""
 
     what: Nouns
@@ -157,21 +157,21 @@ class Add(Order):
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class Delete(Order):
+class Delete(ScriptOrder):
     """`Delete the measuring of checkpoint #2`."""
 
     what: Nouns | Steps
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class Spare(Order):
+class Spare(ScriptOrder):
     """`Don't check checkpoint 19`."""
 
     what: Nouns
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class Move(Order):
+class Move(ScriptOrder):
     """`Move checkpoint #4 before checkpoint #1`."""
 
     what: Nouns | Steps
@@ -180,7 +180,7 @@ class Move(Order):
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class Replace(Order):
+class Replace(ScriptOrder):
     """`Replace checkpoint #1 by checkpoint #2`."""
 
     what: Nouns | Steps
@@ -202,8 +202,8 @@ class Rest(StrEnum):
 class Case(Node):
     """`If ..., A and B`; without a condition: `otherwise A and B`."""
 
-    condition: Condition | None
-    orders: tuple[Order, ...]
+    condition: SaidCondition | None
+    orders: tuple[ScriptOrder, ...]
     rest: Rest = Rest.OTHERWISE
     chained: bool = False
     """`otherwise, if ...`; `otherwise` without a condition as well"""
@@ -213,7 +213,7 @@ class Case(Node):
 class Sentence(Node):
     """Orders, then cases in the order in which they are said."""
 
-    orders: tuple[Order, ...] = ()
+    orders: tuple[ScriptOrder, ...] = ()
     cases: tuple[Case, ...] = ()
     facts: tuple[Fact, ...] = ()
     """what is said of the mission beside: `but checkpoint 9 before checkpoint 14`"""

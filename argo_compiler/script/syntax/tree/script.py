@@ -39,17 +39,17 @@ class Unread(Node):
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class Step(Node):
+class ScriptStep(Node):
     """A numbered line, a bullet or a paragraph, with those that lie within it."""
 
     number: int | None
     """as printed"""
     sentences: tuple[Sentence | Fact | Unread, ...]
-    steps: "tuple[Step, ...]" = ()
+    steps: "tuple[ScriptStep, ...]" = ()
 
 
 @dataclass(kw_only=True)
-class Header:
+class ScriptHeader:
     """What is said of the mission as a whole. None: nothing is."""
 
     title: Text | None = None
@@ -80,8 +80,8 @@ class Script:
 
     source_name: str
     source_text: str
-    header: Header = field(default_factory=Header)
-    steps: tuple[Step, ...] = ()
+    header: ScriptHeader = field(default_factory=ScriptHeader)
+    steps: tuple[ScriptStep, ...] = ()
     remarks: tuple[Text, ...] = ()
     """what asks for nothing"""
     diagnostics: tuple[Diagnostic, ...] = ()

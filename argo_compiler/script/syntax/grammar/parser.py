@@ -7,7 +7,7 @@ from functools import cache
 from lark import Lark, Token, Tree
 from lark.exceptions import UnexpectedToken
 
-from argo_compiler.script.syntax.tables import load_parser
+from argo_compiler.script.syntax.grammar.tables import load_parser
 
 Branch = tuple[str, tuple["Branch | int", ...], int, int]
 """a rule, its parts, and which words it covers, from the first to behind the last; a part is a

@@ -24,7 +24,7 @@ from types import MappingProxyType
 
 from argo_compiler.diagnostics import Diagnostic
 from argo_compiler.listing import listed
-from argo_compiler.script.syntax.source import MAX_LINE, Diagnostics, ScriptText, Source
+from argo_compiler.script.syntax.text.source import MAX_LINE, Diagnostics, ScriptText, Source
 
 _PLAIN = {
     **dict.fromkeys("\u2018\u2019\u201b\u2032\u00b4`", "'"),

@@ -1,0 +1,1 @@
+"""The grammar of sentences, its parser and the parser's saved tables."""

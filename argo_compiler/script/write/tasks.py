@@ -44,7 +44,8 @@ def _wait(rule: WaitRule) -> str:
     until += [conditions(rule.conditions)] if rule.conditions else []
     if not until:
         raise UnwritableError("it does not say what it waits for: `wait`")
-    said = f"wait until {' or '.join(until)}"
+    joint = ", or " if len(rule.conditions) > 1 else " or "
+    said = f"wait until {joint.join(until)}"
     return said if rule.limit is None else f"{said},\nfor at most {duration(rule.limit)}"
 
 

@@ -45,6 +45,21 @@ def bounds(mission: Mission, name: str) -> list[list[tuple[str | None, Condition
         ),
         ("Check #1. Go to the docking station in starting area 2 and wait.", "wait", ["how long"]),
         ("Check #1. If it is above 5 and below 3, check #4.", "condition", ["no value"]),
+        (
+            "Check #1, #2 and #4. If #1 is above 4 and #2 is below 50 or #4 is above 2, check #8.",
+            "ambiguous-and-or",
+            ["#2 is below 50, or #4 is above 2`", "#1 is above 4, and #2 is below 50 or"],
+        ),
+        (
+            "Check #1 and #4. If #1 is above 4 or below 2 and #4 is above 2, check #8.",
+            "ambiguous-and-or",
+            ["below 2, and #4 is above 2`", "above 4, or below 2"],
+        ),
+        (
+            "Check #1, #2 and #4. If #1 and #2 or #4 are abnormal, check #8.",
+            "ambiguous-and-or",
+            ["#1 and #2, or #4", "#1, and #2 or #4"],
+        ),
     ],
 )
 def test_what_is_asked_about(text: str, code: str, readings: list[str], catalog: Catalog) -> None:
@@ -66,6 +81,25 @@ def test_what_is_asked_about(text: str, code: str, readings: list[str], catalog:
 )
 def test_lists(text: str, checkpoints: list[str], catalog: Catalog) -> None:
     assert measured(read(text, catalog)) == checkpoints
+
+
+@pytest.mark.parametrize(
+    ("condition", "alternatives"),
+    [
+        ("#1 is above 4 and #2 is below 50, or #4 is abnormal", [["1", "2"], ["4"]]),
+        ("#1 is above 4, and #2 is below 50 or #4 is abnormal", [["1", "2"], ["1", "4"]]),
+        ("either #1 is above 4 or #2 is below 50, and #4 is abnormal", [["1", "4"], ["2", "4"]]),
+        ("#1 is above 4, #2 is below 50, or #4 is abnormal", [["1"], ["2"], ["4"]]),
+        ("#1 is above 4, #2 is below 50, and #4 is abnormal", [["1", "2", "4"]]),
+        ("#1 is above 4 and below 7 or #4 is abnormal", [["1", "1"], ["4"]]),
+    ],
+)
+def test_what_a_comma_parts(
+    condition: str, alternatives: list[list[str]], catalog: Catalog
+) -> None:
+    mission = read(f"Check #1, #2 and #4. If {condition}, check #8.", catalog)
+    found = [[number for number, _, _ in way] for way in bounds(mission, "MEASURE 4")]
+    assert [way for way in found if way] == alternatives
 
 
 def test_a_decimal_comma(catalog: Catalog) -> None:

@@ -1,8 +1,8 @@
 """Makes conditions."""
 
-from collections.abc import Iterator, Sequence
 from dataclasses import replace
 
+from argo_compiler.script.syntax.building.alternatives import alternatives, is_named
 from argo_compiler.script.syntax.building.figures import Signed, seconds
 from argo_compiler.script.syntax.building.part import Make, RulePart
 from argo_compiler.script.syntax.tree.conditions import (
@@ -113,31 +113,19 @@ def _battery(part: RulePart) -> BatteryDrops:
     return BatteryDrops(span=part.span, relation=compared.relation, level=compared.bound)
 
 
-def _joints(words: Sequence[Word]) -> Iterator[str]:
-    """What joins the tests; a comma alone is as the joint behind it: `A, B or C`."""
-    found: list[str] = []
-    for word in reversed(words):
-        said = "or" if word.type.startswith("OR_") else "and"
-        found.append(found[-1] if found and word.value == "," else said)
-    return reversed(found)
-
-
 def _condition(part: RulePart) -> SaidCondition:
     """The alternatives; a test without a subject has that of the test before it."""
-    alternatives: list[list[Asked]] = [[]]
+    tests: list[Asked] = []
     subject: Nouns | None = None
-    joints = _joints(part.every(Word))
-    for child in part.children:
-        if isinstance(child, Word):
-            if next(joints) == "or":
-                alternatives.append([])
-            continue
-        if isinstance(child, Test):
-            if child.subject is None and subject is not None:
-                child = replace(child, subject=subject)
-            subject = child.subject
-        alternatives[-1].append(child)
-    return SaidCondition(span=part.span, alternatives=tuple(tuple(a) for a in alternatives))
+    said = [child for child in part.children if not isinstance(child, Word)]
+    for test in said:
+        if isinstance(test, Test):
+            if test.subject is None and subject is not None:
+                test = replace(test, subject=subject)
+            subject = test.subject
+        tests.append(test)
+    found = alternatives(part, tests, [is_named(test) for test in said])
+    return SaidCondition(span=part.span, alternatives=found)
 
 
 RULES: dict[str, Make] = {

@@ -2,6 +2,7 @@
 
 from dataclasses import replace
 
+from argo_compiler.script.syntax.building.alternatives import require_one_joint
 from argo_compiler.script.syntax.building.figures import whole
 from argo_compiler.script.syntax.building.part import Make, RulePart
 from argo_compiler.script.syntax.tree.nouns import (
@@ -105,6 +106,7 @@ def _pronoun(part: RulePart) -> Pronoun:
 
 
 def _nouns(part: RulePart) -> Nouns:
+    require_one_joint(part)
     nouns: list[Noun] = []
     but: list[Noun] = []
     either = excluded = False

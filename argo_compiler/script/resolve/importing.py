@@ -102,9 +102,11 @@ def _mission(
         hint = "repeat the steps more often in one of them"
         diagnostics.error("deep-rounds", message, None, hint)
         return None
-    tasks, groups, names = assemble(
-        lower_program(context.program, find, starting.home), diagnostics
-    )
+    lowered = lower_program(context.program, find, starting.home)
+    for leave in lowered.circling:
+        hint = "name a step that measures, drives or waits"
+        diagnostics.error("empty-step", "this only leads back to itself", leave.span, hint)
+    tasks, groups, names = assemble(lowered, diagnostics)
     if diagnostics.errors:
         return None
     said = script.header

@@ -34,6 +34,14 @@ class Point:
     same: "Point | None" = None
     """it is this one"""
 
+    def circles(self) -> bool:
+        """Whether it leads to itself, and to no task."""
+        point, seen = self, set()
+        while point.same is not None and id(point) not in seen:
+            seen.add(id(point))
+            point = point.same
+        return point.same is not None
+
     def reached(self) -> "Item | None":
         """The task that is come to here."""
         point = self
@@ -70,6 +78,8 @@ class Lowered:
 
     items: list[Item]
     ranges: list[Range]
+    circling: list[Leave]
+    """those that only lead to themselves"""
 
 
 Find = Callable[[Steps], ProgramNode | None]
@@ -93,6 +103,7 @@ class _Lowering:
         self.points: dict[int, Point] = {}
         self.homes: dict[int, Point] = {}
         self.apart: list[Do] = []
+        self.left: list[tuple[Leave, Point]] = []
         self.onward = Point()
         """where `go on` leads: behind all conditions of a step"""
         self.jumped: set[int] = set()
@@ -101,11 +112,14 @@ class _Lowering:
     def lower(self, block: ProgramBlock) -> Lowered:
         self._note_jumps(block)
         self._block(block, Point(), Point())
+        circling = [leave for leave, point in self.left if point.circles()]
+        if circling:
+            return Lowered([], [], circling)
         for do in self.apart:
             item = Item(do)
             self._place(item, self.homes[id(do)])
         self._end()
-        return Lowered(self.items, self.ranges)
+        return Lowered(self.items, self.ranges, [])
 
     def _end(self) -> None:
         """A way with a condition leads to a task: where the mission ends, to one that does nothing,
@@ -206,6 +220,7 @@ class _Lowering:
                 self._round(node, entry, behind)
             case Leave():
                 entry.same = self._target(node.target)
+                self.left.append((node, entry))
         return None
 
     def _place(self, item: Item, entry: Point) -> None:

@@ -9,6 +9,7 @@ from argo_compiler.garbage_collector import collector_held
 from argo_compiler.script.syntax.asides import Asides
 from argo_compiler.script.syntax.cells import Cells
 from argo_compiler.script.syntax.fields import ScriptFields
+from argo_compiler.script.syntax.kind_lists import KindLists
 from argo_compiler.script.syntax.labels import FieldLabels
 from argo_compiler.script.syntax.layout import LineItem, LineMark, items_of, lines_of, sentences
 from argo_compiler.script.syntax.rows import tables
@@ -106,7 +107,7 @@ class _Parser:
         self.diagnostics.extend(healed.diagnostics)
         texts = Cells(self.labels, self.understanding).joined(healed.lines)
         items = items_of(lines_of(texts), self.is_complete, self.stands_alone, language.words)
-        steps = list(self._steps(items))
+        steps = list(self._steps(KindLists(self.understanding, self.reader.note).told(items)))
         first = [_step_of(sentence) for sentence in self.fields.first]
         last = [_step_of(sentence) for sentence in self.fields.last]
         return Script(

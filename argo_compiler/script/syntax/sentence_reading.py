@@ -52,6 +52,9 @@ class SentenceReader:
         stands_over = item.line.heading or text.content.endswith(":")
         if stands_over and self.preamble.introduces(text):
             return []
+        if item.line.heading and {*self.understanding.types(text)} == {"KIND"}:
+            self.note(text, "a heading")  # `Pressure gauges` over steps
+            return []
         if not self.ordered and self.preamble.whole_mission(text):
             return []
         reading = self.understanding.read(text)

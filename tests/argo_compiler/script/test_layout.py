@@ -197,3 +197,30 @@ def test_hints_tell_what_fits(catalog: Catalog) -> None:
     (slip,) = findings(f"{START}Check chekpont 4 quirkily", catalog)
     assert slip.hint is not None
     assert "`checkpoint`" in slip.hint
+
+
+@pytest.mark.parametrize(
+    ("text", "expected"),
+    [
+        ("Check these pressure gauges:\n- 1\n- 3", ["1", "6"]),
+        ("Check the pressure gauges:\n1. 1\n2. 3", ["1", "6"]),
+        ("Pressure gauges\n- 1\n- 3", ["1", "6"]),
+        ("2. Pressure gauges:\n   a) 1\n   b) 3\n3. Check #2", ["1", "6", "2"]),
+        ("The following valves:\n- R12\n- R25", ["5", "4"]),
+        ("Check the following checkpoints:\n- pressure gauge 1\n- #4", ["1", "4"]),
+        ("Prüfe diese Ventile:\n- R12\n- R25\nFahre dann zurück", ["5", "4"]),
+        ("Checkpoints\n1. Check #1\n2. Check #4", ["1", "4"]),
+        ("Gauges:\n- Check #1", ["1"]),
+    ],
+)
+def test_what_stands_over_a_list(text: str, expected: list[str], catalog: Catalog) -> None:
+    assert measured(START + text, catalog) == expected
+
+
+def test_all_of_them_or_those_below(catalog: Catalog) -> None:
+    assert errors("Check all valves:\n- R12", catalog) == [(2, "R12")]
+
+
+def test_a_step_that_only_leads_to_itself_is_an_error(catalog: Catalog) -> None:
+    text = "Start in starting area 1\nGo to step 1\nCheck #1"
+    assert errors(text, catalog) == [(2, "step 1")]

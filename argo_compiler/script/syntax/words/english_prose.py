@@ -86,6 +86,7 @@ PROSE = Prose(
         "changes|change|tasks|task|steps|plan|round|tour|part|section|mission|orders|instructions|"
         "programme|program|inspection|schedule|route|list|addition|additions|update|updates|todo"
     ),
+    listing="{the} following|these|those",
     preposition=(
         "of|at|in|on|for|to|from|with|by|after|before|during|and|or|near|around|over|under|through|"
         "between|per|about|without|within|along|behind|beside|next|is|are|was|were|it's|that's|"

@@ -109,6 +109,7 @@ PROSE = replace(
         "aufträge|anweisungen|ablauf",
         _ENGLISH.section,
     ),
+    listing=_both("{die} folgende{n}|diese|die", _ENGLISH.listing),
     remark=_both(
         "hinweis|hinweise|anmerkung|anmerkungen|bemerkung|bemerkungen|kommentar|notiz|notizen|"
         "achtung|hintergrund|grund|übrigens|bitte beachten|zur information|info",

@@ -33,6 +33,8 @@ class Prose:
     """how clauses begin that ask for nothing"""
     section: str
     """words of headings that may stand before a sentence: `Changes of 14 May: ...`"""
+    listing: str
+    """words that say that a list follows: `check these valves:`"""
     preposition: str
     """words behind which a title may have an article"""
     determiner: str

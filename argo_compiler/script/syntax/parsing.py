@@ -2,7 +2,7 @@
 
 import re
 from collections.abc import Collection, Iterable, Iterator
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
 from argo_compiler.diagnostics import DiagnosticError
 from argo_compiler.garbage_collector import collector_held
@@ -12,12 +12,13 @@ from argo_compiler.script.syntax.fields import ScriptFields
 from argo_compiler.script.syntax.kind_lists import KindLists
 from argo_compiler.script.syntax.labels import FieldLabels
 from argo_compiler.script.syntax.layout import LineItem, LineMark, items_of, lines_of, sentences
+from argo_compiler.script.syntax.repeats import Repeats
 from argo_compiler.script.syntax.rows import tables
 from argo_compiler.script.syntax.sentence_reading import Said, SentenceReader
 from argo_compiler.script.syntax.text.healing import MOST_ERRORS, heal
 from argo_compiler.script.syntax.text.source import Diagnostics, ScriptText, Source
 from argo_compiler.script.syntax.tree.orders import Sentence
-from argo_compiler.script.syntax.tree.script import Script, ScriptStep
+from argo_compiler.script.syntax.tree.script import Script, ScriptStep, Unread
 from argo_compiler.script.syntax.understanding import Understanding
 from argo_compiler.script.syntax.words.language import Language
 
@@ -98,6 +99,7 @@ class _Parser:
     """whether a letter has come to its end"""
     stopped: bool = False
     """whether there are too many errors"""
+    repeats: Repeats = field(default_factory=Repeats)
 
     def script(self) -> Script:
         source = self.diagnostics.source
@@ -158,6 +160,10 @@ class _Parser:
                 yield step
 
     def _step(self, item: LineItem) -> ScriptStep | None:
+        known = self._known(item)
+        if known is not None:
+            return self._of(item, known, list(self._steps(item.items)))
+        before = len(self.diagnostics.entries)
         text = self._without_letter(item)
         text = self.labels.relabelled(text)
         if self.labels.is_field(text):
@@ -165,7 +171,8 @@ class _Parser:
             text = self.fields.read(text)
         said: list[Said] = []
         remark = False
-        for sentence in sentences(text):
+        parts = sentences(text)
+        for sentence in parts:
             # What stands behind a remark is one as well, unless it makes sense.
             after = remark and not self.understanding.fits(sentence)
             remark = after or self.asides.is_remark(sentence.content)
@@ -173,7 +180,22 @@ class _Parser:
                 self.reader.note(sentence, "a remark")
             else:
                 said += self.reader.read(sentence, item)
+        if len(said) == len(parts) and len(self.diagnostics.entries) == before:
+            self._keep(item, text, said)
         return self._of(item, said, list(self._steps(item.items)))
+
+    def _is_plain(self, item: LineItem) -> bool:
+        """Whether what an item says follows from its text alone."""
+        over = item.line.heading or item.text.content.endswith(":")
+        return self.reader.ordered and not self.closed and not over
+
+    def _known(self, item: LineItem) -> list[Said] | None:
+        return self.repeats.said(item.text) if self._is_plain(item) else None
+
+    def _keep(self, item: LineItem, text: ScriptText, said: list[Said]) -> None:
+        whole = text is item.text and not self.labels.is_field(text)
+        if whole and self._is_plain(item) and not any(isinstance(s, Unread) for s in said):
+            self.repeats.keep(text, said)
 
     def _of(self, item: LineItem, said: list[Said], inner: list[ScriptStep]) -> ScriptStep | None:
         if not said and not inner and item.line.number is None:

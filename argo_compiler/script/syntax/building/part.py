@@ -11,9 +11,10 @@ from argo_compiler.script.syntax.words.word import Word
 T = TypeVar("T")
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(slots=True)
 class RulePart:
-    """What the parts of a rule were made to, and where the rule's words stand."""
+    """What the parts of a rule were made to, and where the rule's words stand. Not frozen, for
+    there are very many, and they are made faster so; nothing changes one."""
 
     children: tuple[Any, ...]
     """nodes, and the words that the grammar has by themselves"""
@@ -42,10 +43,13 @@ class RulePart:
         return self.word(*types) is not None
 
     def every(self, type_: type[T]) -> tuple[T, ...]:
-        return tuple(child for child in self.children if isinstance(child, type_))
+        return tuple([child for child in self.children if isinstance(child, type_)])
 
     def first(self, type_: type[T]) -> T | None:
-        return next((child for child in self.children if isinstance(child, type_)), None)
+        for child in self.children:
+            if isinstance(child, type_):
+                return child
+        return None
 
     def the(self, type_: type[T]) -> T:
         """The one child of the type, which the grammar asks for."""

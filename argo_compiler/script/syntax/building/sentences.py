@@ -144,10 +144,10 @@ _RULES: dict[str, Make] = {
 def build(branch: Branch, words: list[Word], text: ScriptText, diagnostics: Diagnostics) -> Any:
     """The node of a branch of a sentence's tree."""
     rule, parts, first, behind = branch
-    children = tuple(
+    children = [
         words[part] if isinstance(part, int) else build(part, words, text, diagnostics)
         for part in parts
-    )
+    ]
     start = words[first].start if first < len(words) else len(text.content)
     end = words[behind - 1].end if behind > first else start
-    return _RULES[rule](RulePart(children, text, start, end, diagnostics))
+    return _RULES[rule](RulePart(tuple(children), text, start, end, diagnostics))

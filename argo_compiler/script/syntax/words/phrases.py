@@ -12,7 +12,7 @@ _BEHIND = frozenset(["JOINT", "FILLER", "IF", "UNLESS", "UNTIL", "ELSE", "IF_TIM
 _STOPS = frozenset(VERBS) - {"DOCK"} | {"IF", "UNLESS", "ELSE", "BACK"}
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(slots=True)
 class Found:
     """A phrase: its entry, how many pieces it takes at its place, and which others behind it."""
 
@@ -23,20 +23,26 @@ class Found:
 
 def longest(said: Sequence[str], at: int, lexicon: Lexicon) -> Found | None:
     """The longest phrase from piece `at` on; of a parted one its end decides."""
-    node: PhraseStart = lexicon.root
-    best: Found | None = None
-    for k in range(at, len(said)):
+    node = lexicon.root.next.get(said[at])
+    if node is None:
+        return None
+    entry, behind, parted = node.entry, at + 1, None
+    if node.parted:
+        parted = _parted(said, at, at + 1, node, lexicon)
+    for k in range(at + 1, len(said)):
         step = node.next.get(said[k])
         if step is None:
-            if node is lexicon.root or said[k] not in lexicon.passed_over:
+            if said[k] not in lexicon.passed_over:
                 break
             continue
         node = step
         if node.entry is not None:
-            best = Found(node.entry, k - at + 1)
+            entry, behind, parted = node.entry, k + 1, None
         if node.parted:
-            best = _parted(said, at, k + 1, node, lexicon) or best
-    return best
+            parted = _parted(said, at, k + 1, node, lexicon) or parted
+    if parted is not None:
+        return parted
+    return None if entry is None else Found(entry, behind - at)
 
 
 def _parted(

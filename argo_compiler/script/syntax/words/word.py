@@ -4,9 +4,10 @@ from dataclasses import dataclass
 from typing import Any
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(slots=True)
 class Word:
-    """A word, a phrase, a number or a sign, with its kind and what it means."""
+    """A word, a phrase, a number or a sign, with its kind and what it means. Not frozen, for there
+    are very many, and they are made faster so; nothing changes one."""
 
     type: str
     """the terminal of the grammar"""

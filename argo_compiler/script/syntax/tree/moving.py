@@ -1,0 +1,64 @@
+"""A node of a text that stands at another place as well."""
+
+from collections.abc import Callable
+from dataclasses import fields
+from functools import cache
+from typing import Any
+
+from argo_compiler.diagnostics import Span
+from argo_compiler.script.syntax.tree.manner import Manner
+from argo_compiler.script.syntax.tree.node import Node
+
+Move = Callable[[int, int], Any]
+"""the part so many lines and columns further on"""
+_Fill = Callable[[object, object], None]
+
+
+def mover(part: object) -> Move | None:
+    """What makes the same part for another place; None if it says nothing of its place."""
+    match part:
+        case Span(line=line, column=column, length=length):
+            return lambda lines, columns: Span(
+                line=line + lines, column=column + columns, length=length
+            )
+        case tuple():
+            moves = [mover(one) for one in part]
+            if not any(moves):
+                return None
+            pairs = list(zip(part, moves, strict=True))
+            return lambda lines, columns: tuple(
+                [one if move is None else move(lines, columns) for one, move in pairs]
+            )
+        case Node() | Manner():
+            return _mover_of_node(part)
+    return None
+
+
+def _mover_of_node(part: Node | Manner) -> Move:
+    type_: Any = type(part)
+    same: list[tuple[_Fill, object]] = []
+    moving: list[tuple[_Fill, Move]] = []
+    for name, fill in _slots(type_):
+        value = getattr(part, name)
+        move = mover(value)
+        if move is None:
+            same.append((fill, value))
+        else:
+            moving.append((fill, move))
+
+    def moved(lines: int, columns: int) -> object:
+        new = object.__new__(type_)
+        for fill, value in same:
+            fill(new, value)
+        for fill, move in moving:
+            fill(new, move(lines, columns))
+        return new
+
+    return moved
+
+
+@cache
+def _slots(type_: type[Any]) -> list[tuple[str, _Fill]]:
+    """The fields of a node, and how each is filled: through its slot, which is several times as
+    fast as making a node."""
+    return [(field.name, getattr(type_, field.name).__set__) for field in fields(type_)]

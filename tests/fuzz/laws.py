@@ -99,9 +99,7 @@ def unused(words: list[Said], outcome: Outcome, sayer: Sayer, rng: random.Random
     """The words that make no difference."""
     found: list[Breach] = []
     for i, word in enumerate(words):
-        others = EXCHANGED.get(word.type) or (
-            sayer.phrases[word.type] if word.type in PHRASES else ()
-        )
+        others = EXCHANGED.get(word.type) or (sayer.others(word) if word.type in PHRASES else ())
         others = [other for other in others if other != word.text]
         if not others:
             continue

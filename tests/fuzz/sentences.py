@@ -9,6 +9,7 @@ from functools import cache
 from lark.grammar import NonTerminal, Rule, Symbol
 
 from argo_compiler.script.syntax.grammar.parser import sentence_grammar
+from argo_compiler.script.syntax.tree.nouns import Kind
 from argo_compiler.script.syntax.words.language import Language
 from argo_compiler.script.syntax.words.lexicon import Lexicon
 from tests.argo_compiler.script.conftest import CATALOG
@@ -83,6 +84,15 @@ class Sayer:
         listed = self.phrases.get(type_) or self.phrases.get(_SENSES.get(type_, ""))
         return self.rng.choice(listed) if listed else type_.lower()
 
+    def others(self, word: Said) -> list[str]:
+        """Phrases for the same terminal that mean something else."""
+        meanings = {
+            value: phrases
+            for (type_, value), phrases in self.lexicon.phrases.items()
+            if type_ == word.type and not (type_ == "KIND" and value[0] in _ANY_KIND)
+        }
+        return [p for said in meanings.values() if word.text not in said for p in said]
+
     def _derived(self, start: str) -> list[str]:
         found: list[str] = []
         stack: list[tuple[Symbol, int]] = [(NonTerminal(start), 0)]
@@ -100,6 +110,8 @@ class Sayer:
         return found
 
 
+_ANY_KIND = (Kind.CHECKPOINT, Kind.GAUGE)
+"""these are said of checkpoints of several kinds"""
 _SENSES = {"IF_ONLY": "IF"}
 """terminals that the lexer makes of others by what stands beside them"""
 

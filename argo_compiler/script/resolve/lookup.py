@@ -88,6 +88,26 @@ class Lookup:
             self.diagnostics.error("unknown-checkpoint", message, span, hint if close else None)
         return found
 
+    def numbered_of_kind(self, number: int, kind: Kind, span: Span) -> CheckpointInfo | None:
+        """The checkpoint that `valve #5` means: by its number, or the valve that is called so."""
+        numbered = self.by_number.get(number)
+        readings = {c.id: c for c in self.called(str(number), kind)}
+        if numbered is not None and agrees(numbered, kind):
+            readings[numbered.id] = numbered
+        if len(readings) == 1:
+            return next(iter(readings.values()))
+        if not readings and numbered is not None:
+            message = f"checkpoint #{number} is {numbered.name}, and there is no {kind} {number}"
+            self.diagnostics.error("checkpoint-mismatch", message, span, "name the one")
+        elif not readings:
+            return self.numbered(number, span)
+        else:
+            said = listed((f"{c.name} (#{c.id})" for c in readings.values()), "or")
+            message = f"`{kind} #{number}` can be read as {said}"
+            hint = f"write `checkpoint {number}` or `{kind} {number}`"
+            self.diagnostics.error("ambiguous-checkpoint", message, span, hint)
+        return None
+
     def area(self, number: int, span: Span | None) -> Area | None:
         found = self.catalog.area(number)
         if found is None:

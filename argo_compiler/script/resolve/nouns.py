@@ -100,7 +100,11 @@ class NounResolver:
                     hint = "is another one meant?"
                     self.diagnostics.warning("needless-exception", message, noun.span, hint)
             out += one
-        return [checkpoint for checkpoint in found if checkpoint not in out]
+        left = [checkpoint for checkpoint in found if checkpoint not in out]
+        if not left:
+            message = f"`{self.said(nouns.span)}` leaves no checkpoint"
+            self.diagnostics.error("no-checkpoint", message, nouns.span, "name those that are left")
+        return left or None
 
     def _noun(self, noun: Noun, kind: Kind | None, plural: bool) -> Found:
         match noun:
@@ -160,9 +164,12 @@ class NounResolver:
         self, noun: Labelled, label: int | str, kind: Kind | None, plural: bool
     ) -> CheckpointInfo | None:
         if noun.hash or kind in (None, Kind.CHECKPOINT):
+            numbered = kind not in (None, Kind.CHECKPOINT) and (noun.kind or plural)
+            if isinstance(label, int) and kind is not None and numbered:
+                return self.lookup.numbered_of_kind(label, kind, noun.span)
             if isinstance(label, int):
                 return self.lookup.numbered(label, noun.span)
-            return self.lookup.identified(label, None, noun.span)
+            return self.lookup.identified(label, noun.kind, noun.span)
         if noun.kind is None and not plural and isinstance(label, int):
             return self._inherited(noun, label, kind)
         return self.lookup.identified(str(label), kind, noun.span)

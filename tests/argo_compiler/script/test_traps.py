@@ -55,6 +55,10 @@ def bounds(mission: Mission, name: str) -> list[list[tuple[str | None, Condition
             "ambiguous-and-or",
             ["below 2, and #4 is above 2`", "above 4, or below 2"],
         ),
+        ("Check valve #1.", "checkpoint-mismatch", ["checkpoint #1 is pressure gauge 1"]),
+        ("Check pressure gauge #8.", "ambiguous-checkpoint", ["gauge 8 (#18)", "gauge 5 (#8)"]),
+        ("Check level gauge no. R31.", "unknown-checkpoint", ["no liquid level gauge R31"]),
+        ("Check checkpoints 1 and 4 except 1 and 4.", "no-checkpoint", ["leaves no checkpoint"]),
         (
             "Check #1, #2 and #4. If #1 and #2 or #4 are abnormal, check #8.",
             "ambiguous-and-or",
@@ -77,6 +81,7 @@ def test_what_is_asked_about(text: str, code: str, readings: list[str], catalog:
         ("Check pressure gauges 1, 5 and 8.", ["1", "8", "18"]),
         ("1. Check checkpoint 1, 2. Check checkpoint 4", ["1", "4"]),
         ("Check all valves on the third floor except R31.", ["11"]),
+        ("Check valve no. 4 and pressure gauge number 5.", ["4", "8"]),
     ],
 )
 def test_lists(text: str, checkpoints: list[str], catalog: Catalog) -> None:

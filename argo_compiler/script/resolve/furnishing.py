@@ -81,7 +81,14 @@ class Furnishing:
         self.diagnostics.error("repeated-limit", message, span, "leave one of the two out")
 
     def _window(self, do: Do, manner: Manner, span: Span) -> None:
-        if manner.earliest is None and manner.latest is None and not manner.soft_window:
+        if manner.earliest is None and manner.latest is None:
+            if manner.soft_window and do.window is None:
+                message = "this does not say by when, or whether the task may be left out"
+                hint = "write `preferably not later than 10 minutes after the start`, or `if there "
+                hint += "is time`"
+                self.diagnostics.error("ambiguous-manner", message, span, hint)
+            elif manner.soft_window and do.window is not None:
+                do.window = do.window.model_copy(update={"hard": False})
             return
         before = do.window if do.window is not None else TimeWindow()
         earliest, latest = manner.earliest, manner.latest

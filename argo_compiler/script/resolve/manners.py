@@ -96,7 +96,12 @@ class Manners:
             nodes.insert(0, making.wait(WaitRule(duration=manner.delay), order.span))
         if manner.condition is None:
             return nodes
+        memory = self.context.memory
+        measured = memory.last
+        if isinstance(order, orders.Measure):
+            memory.last = memory.before  # it is looked at before this order measures
         found = self.context.conditions.alternatives(manner.condition)
+        memory.last = measured
         if found is None:
             return nodes
         choice = Choice(found, order.span, negated=manner.condition.negated)

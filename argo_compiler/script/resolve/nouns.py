@@ -45,7 +45,7 @@ class NounResolver:
 
     def all(self, nouns: Nouns) -> Found:
         """The checkpoints of a list, in its order, each as often as it is named."""
-        if nouns.either and len(nouns.nouns) > 1:
+        if nouns.either:
             said = self.said(nouns.span)
             message = f"`{said}` leaves open which of them, or whether both"
             hint = "write `and` for all of them, or name the one that is meant"

@@ -45,6 +45,9 @@ def bounds(mission: Mission, name: str) -> list[list[tuple[str | None, Condition
         ),
         ("Check #1. Go to the docking station in starting area 2 and wait.", "wait", ["how long"]),
         ("Check #1. If it is above 5 and below 3, check #4.", "condition", ["no value"]),
+        ("Check #1 and #4. Check one of them.", "ambiguous-or", ["which of them"]),
+        ("Check #4 if it is above 4.", "which-checkpoint", ["nothing has been measured"]),
+        ("Check #1, if possible.", "ambiguous-manner", ["by when", "left out"]),
         (
             "Check #1, #2 and #4. If #1 is above 4 and #2 is below 50 or #4 is above 2, check #8.",
             "ambiguous-and-or",
@@ -208,3 +211,26 @@ def test_otherwise_is_not_of_a_failure(catalog: Catalog) -> None:
     text = "Check #1. If #1 is above 5, check #2. If it fails, check #3; otherwise check #4."
     with pytest.raises(DiagnosticError, match="of what"):
         read(text, catalog)
+
+
+def test_one_of_them(catalog: Catalog) -> None:
+    mission = read("Check #1 and #4. If one of them is abnormal, check #8.", catalog)
+    abnormal = ConditionType.ABNORMAL
+    assert bounds(mission, "MEASURE 4")[:2] == [[("1", abnormal, None)], [("4", abnormal, None)]]
+    mission = read("Check #1 and #4. If one of them fails, abort the mission.", catalog)
+    assert [t.on_failure for t in mission.tasks if t.object_id] == [OnFailure.ABORT] * 2
+
+
+@pytest.mark.parametrize("then", ["if it is above 4", "only if it is above 4"])
+def test_what_is_asked_before_a_measurement_is_of_the_one_before(
+    then: str, catalog: Catalog
+) -> None:
+    mission = read(f"Check #1. Check #4 {then}.", catalog)
+    assert bounds(mission, "MEASURE 1")[0] == [("1", ConditionType.GREATER, 4)]
+
+
+@pytest.mark.parametrize("when", ["If there is a failure", "In case of failure", "If it has failed"])
+def test_a_failure_is_that_of_the_task(when: str, catalog: Catalog) -> None:
+    mission = read(f"Check #1. {when}, return to the docking station.", catalog)
+    assert mission.reactions == ()
+    assert mission.tasks[1].on_failure is OnFailure.RETURN

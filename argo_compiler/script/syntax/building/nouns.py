@@ -100,6 +100,7 @@ def _pronoun(part: RulePart) -> Pronoun:
     return Pronoun(
         span=part.span,
         every=them is not None,
+        either=them is not None and them.value == "either",
         or_one=them is not None and them.value == "or one",
         quantity=_quantity(value),
     )
@@ -115,6 +116,7 @@ def _nouns(part: RulePart) -> Nouns:
             excluded = excluded or child.type == "EXCEPT"
             either = either or child.type.startswith("OR_")
         else:
+            either = either or (isinstance(child, Pronoun) and child.either)
             (but if excluded else nouns).extend(child if isinstance(child, list) else [child])
     return Nouns(span=part.span, nouns=tuple(nouns), but=tuple(but), either=either)
 

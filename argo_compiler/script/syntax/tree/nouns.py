@@ -73,6 +73,8 @@ class Pronoun(Node):
     """What was measured last: `it`, `the value`; or all that was: `both`, `them`."""
 
     every: bool = False
+    either: bool = False
+    """`one of them`"""
     or_one: bool = False
     """as `sie` in German, which may be one of them as well"""
     quantity: Quantity | None = None

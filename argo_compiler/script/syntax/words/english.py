@@ -236,6 +236,10 @@ NOUNS: Phrases = {
     ("IT", None): "it|that one|this one",
     ("BOTH", None): "both [of them/of these/of those/]",
     ("THEM", None): "them|they|these|those|[all/each] of [them/these/those]|these two",
+    ("THEM", "either"): (
+        "[at least/] one of [them/these/those]|any of [them/these/those]|any one of them|"
+        "either [of them/of these/of those/one]"
+    ),
     ("THIS", None): "this|that",
     (
         "OF",
@@ -368,7 +372,7 @@ CONDITIONS: Phrases = {
         "[gives/delivers/shows/has] no [reading/value]|does not give a [reading/value]"
     ),
     ("FAILS", None): (
-        "fail{s} {again}|{has} failed {again}|still fails|"
+        "fail{s} {again}|{it} {has} failed {again}|failure|still fails|"
         "{still} [does not/doesn't/did not/didn't] [work/work out/succeed/go through]|goes wrong|"
         "went wrong|[is/was] [not successful/unsuccessful/not possible/impossible]|"
         "isn't [successful/possible]|has still failed|keeps failing|"
@@ -436,8 +440,8 @@ CONDITIONS: Phrases = {
         "emergency-stop|e-stop{ button}|estop"
     ),
     ("EVENT", EventKind.DYSFUNCTION): (
-        "{technical} [dysfunction/malfunction/fault/defect/failure/error] [of the robot/in the "
-        "robot/on the robot/]|"
+        "{technical} [dysfunction/malfunction/fault/defect/error] [of the robot/in the "
+        "robot/on the robot/]|technical failure|failure of the robot|"
         "robot [dysfunction/malfunction/fault/defect/failure/error/breakdown]|"
         "robot has a [malfunction/fault/defect/problem/error]|"
         "[robot/it] [malfunctions/breaks down]|robot is [defective/faulty/broken]|"

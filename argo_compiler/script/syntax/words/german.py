@@ -246,6 +246,10 @@ NOUNS: Phrases = {
         "es|ihn|sie … liegt|sie … ist|sie … steigt|sie … fällt|sie … sinkt|er … liegt|er … ist|"
         "er … steigt|er … fällt|er … sinkt"
     ),
+    ("THEM", "either"): (
+        "[einer/eine/eines/eins] [davon/von ihnen/von beiden/von diesen]|"
+        "mindestens [einer/eine/eines/eins] [davon/von ihnen/von beiden]"
+    ),
     ("BOTH", None): "beide{n}|sie beide|alle beide",
     ("THEM", None): ("sie … liegen|sie … sind|sie … steigen|sie … fallen|sie … sinken"),
     (

@@ -1,5 +1,6 @@
 """What is done if something is so: after a value, after a failure, after an event."""
 
+from dataclasses import replace
 from typing import TYPE_CHECKING
 
 from argo_compiler.catalog import CheckpointInfo
@@ -53,6 +54,7 @@ class Cases:
 
     def _add(self, case: Case, block: ProgramBlock) -> None:
         condition = case.condition
+        case = replace(case, orders=tuple(map(self.planner.skipping, case.orders)))
         if condition is None:
             self._otherwise(case, block)
         elif any(isinstance(t, TooLate) for tests in condition.alternatives for t in tests):

@@ -1,7 +1,7 @@
 """What all parts of the planning share: the program, and what the script has said so far."""
 
 from collections.abc import Iterable, Iterator
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 
 from argo_compiler.catalog import CheckpointInfo
 from argo_compiler.diagnostics import Span
@@ -41,6 +41,8 @@ class Context:
     """the nodes that each step planned; None for a number that more than one step has"""
     step: list[ProgramNode] = field(default_factory=list)
     """those of the step that is being planned"""
+    number: int | None = None
+    """that step's, where what is said next ends it"""
     recent: list[Do] = field(default_factory=list)
     """the tasks of the last order"""
     choice: Choice | Way | None = None
@@ -75,6 +77,16 @@ class Context:
             self.before = self.step or self.before
             self.step = []
             self.steps[number] = None if number in self.steps else self.step
+
+    def counted(self, steps: Steps) -> Steps:
+        """Steps that are counted from the one that is being planned, by their numbers."""
+        if self.number is None:
+            message = "it is not clear which one the next step is"
+            hint = "number the steps, and name it: `step 4`"
+            self.diagnostics.error("step-range", message, steps.span, hint)
+            return replace(steps, ahead=False)
+        points = tuple(self.number + n for n in steps.points if isinstance(n, int))
+        return replace(steps, points=points, ahead=False)
 
     def put(
         self, nodes: Iterable[ProgramNode], block: ProgramBlock, anchor: ProgramNode | None

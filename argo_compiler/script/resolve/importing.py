@@ -95,6 +95,13 @@ def _mission(
             )
             hint = "name a step that measures or drives"
             diagnostics.error("empty-step", message, steps.span, hint)
+        if nodes and steps.behind:
+            last = nodes[-1]
+            if last.after is None and last.block is not context.program:
+                message = "the last step of a repetition or of a case can't be skipped so"
+                hint = "say the opposite condition before that step: `if ..., check checkpoint 4`"
+                diagnostics.error("step-range", message, steps.span, hint)
+            return last.after
         return nodes[0] if nodes else None
 
     if depth(context.program) > _DEEPEST:

@@ -1,5 +1,8 @@
 """Which checkpoints a noun phrase means; what can be read in two ways is asked about."""
 
+from collections.abc import Sequence
+from dataclasses import replace
+
 from argo_compiler.catalog import CheckpointInfo
 from argo_compiler.diagnostics import Span
 from argo_compiler.listing import listed
@@ -14,6 +17,7 @@ from argo_compiler.script.syntax.tree.nouns import (
     Pronoun,
     TheOne,
 )
+from argo_compiler.script.syntax.tree.places import FloorName
 
 Found = list[CheckpointInfo] | None
 """None: it is not clear which, and an error says so"""
@@ -52,6 +56,21 @@ class NounResolver:
             self.diagnostics.error("ambiguous-or", message, nouns.span, hint)
             return None
         return self.each(nouns)
+
+    def on(self, floors: Sequence[FloorName], nouns: Nouns) -> Nouns:
+        """The phrase, of what is on these floors; a floor that it names itself has to be one."""
+        placed: list[Noun] = []
+        for noun in nouns.nouns:
+            if isinstance(noun, Pronoun) or noun.floors:
+                own = () if isinstance(noun, Pronoun) else noun.floors
+                if not own or not {f.number for f in own} <= {f.number for f in floors}:
+                    message = f"`{self.said(noun.span)}` is said to be on another floor as well"
+                    hint = "leave one of the two floors out"
+                    self.diagnostics.error("ambiguous-floor", message, noun.span, hint)
+                placed.append(noun)
+            else:
+                placed.append(replace(noun, floors=tuple(floors)))
+        return replace(nouns, nouns=tuple(placed))
 
     def each(self, nouns: Nouns) -> Found:
         """As `all`, for lists joined by `or` as well."""
@@ -135,6 +154,8 @@ class NounResolver:
                 hint = "correct the number or the name"
                 self.diagnostics.error("checkpoint-mismatch", message, noun.also.span, hint)
                 return None
+        if found is not None and not self._lies_there(found, noun):
+            return None
         if found is not None:
             self.lookup.check_quantity(found, noun.quantity, noun.span)
             if noun.also is not None:
@@ -155,10 +176,27 @@ class NounResolver:
         found: list[CheckpointInfo] = []
         for number in range(first, last + 1):
             one = self._labelled(noun, number, kind, True)
-            if one is None:
+            if one is None or not self._lies_there(one, noun):
                 return None
             found.append(one)
         return found
+
+    def _lies_there(self, found: CheckpointInfo, noun: Labelled) -> bool:
+        """Whether a checkpoint is on the floor that is said."""
+        floors = self._floors(noun.floors)
+        if floors is None or (floors and found.floor not in floors):
+            if floors:
+                where = f"on floor {found.floor}, not on floor {listed(map(str, floors), 'or')}"
+                message = f"{found.name} (#{found.id}) is {where}"
+                hint = "correct the floor or the name"
+                self.diagnostics.error("checkpoint-mismatch", message, noun.span, hint)
+            return False
+        return True
+
+    def _floors(self, named: Sequence[FloorName]) -> list[int] | None:
+        """The numbers of floors; None if there is one that is not there."""
+        found = [floor.number for f in named if (floor := self.lookup.floor(f)) is not None]
+        return None if len(found) < len(named) else found
 
     def _labelled(
         self, noun: Labelled, label: int | str, kind: Kind | None, plural: bool
@@ -191,8 +229,8 @@ class NounResolver:
     # ---- by kind, floor and what came before
 
     def _of_kind(self, noun: AllOf) -> Found:
-        floors = [floor.number for f in noun.floors if (floor := self.lookup.floor(f)) is not None]
-        if len(floors) < len(noun.floors):
+        floors = self._floors(noun.floors)
+        if floors is None:
             return None
         found = self.lookup.of_kind(noun.kind, floors)
         if not found:

@@ -2,7 +2,7 @@
 
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field
-from itertools import pairwise
+from itertools import groupby, pairwise
 
 from argo_compiler.catalog import CheckpointInfo
 from argo_compiler.checks.precedence import check_precedence
@@ -99,19 +99,21 @@ class Ordering:
         span = self.free[0][0]
         if said is Order.PRECISE:
             self._contradiction(span)
-        free = {id(do) for _, nodes in self.free for do in _tasks(nodes)}
-        others = [do for do in _tasks(program) if _may_move(do) and id(do) not in free]
-        fixed = others[0] if others else None
-        if all(nodes for _, nodes in self.free) and fixed is not None:
-            line = f" of line {fixed.source.line}" if fixed.source is not None else ""
-            message = (
-                f"only some tasks are to be done in any order here, not `{fixed.base}`{line}: the "
-                "order of a mission is free as a whole, or not at all"
-            )
-            hint = "write `The order is free.` if that is so of all, and what has to come before "
-            hint += "what: `Checkpoint 7 has to be read before checkpoint 18`"
-            diagnostics.error("partly-free", message, span, hint)
-        return Order.ANY
+        free = {id(do): k for k, (_, nodes) in enumerate(self.free) for do in _tasks(nodes)}
+        tasks = [do for do in _tasks(program) if _may_move(do)]
+        fixed = next((do for do in tasks if id(do) not in free), None)
+        if not all(nodes for _, nodes in self.free) or (fixed is None and len(self.free) == 1):
+            return Order.ANY
+        if all(isinstance(node, Do) and _is_plain(node) for node in program):
+            # `#4 and #8 in any order, then #1`: what is not said so keeps its place.
+            groups = [list(g) for _, g in groupby(tasks, lambda do: free.get(id(do), id(do)))]
+            for before, after in pairwise(groups):
+                self.pairs += [(span, a, b) for a in before for b in after]
+            return Order.ANY
+        message = "only some tasks are to be done in any order here: they keep the one as written"
+        hint = "write `The order is free.` if that is so of all"
+        diagnostics.warning("partly-free", message, span, hint)
+        return Order.PRECISE
 
     def _contradiction(self, span: Span) -> None:
         message = "the script says elsewhere that the order is another one"
@@ -165,6 +167,11 @@ def _tasks(nodes: Iterable[ProgramNode]) -> list[Do]:
         for block in inner_blocks(node):
             found += [do for do in all_nodes(block) if isinstance(do, Do)]
     return found
+
+
+def _is_plain(do: Do) -> bool:
+    """Whether a task may stand among others whose order is free in part."""
+    return not do.ways and (_may_move(do) or do.docks or do.action is Action.START)
 
 
 def _may_move(do: Do) -> bool:

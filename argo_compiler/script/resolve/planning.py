@@ -1,7 +1,8 @@
 """Carries out the orders of a script: each adds to the program, or changes it."""
 
 from collections.abc import Sequence
-from dataclasses import replace
+from dataclasses import fields, replace
+from typing import Any
 
 from argo_compiler.catalog import CheckpointInfo
 from argo_compiler.diagnostics import Span
@@ -27,8 +28,9 @@ from argo_compiler.script.resolve.repeating import Repeating, timed
 from argo_compiler.script.resolve.starting import Starting
 from argo_compiler.script.syntax.tree import orders
 from argo_compiler.script.syntax.tree.conditions import Occurs
+from argo_compiler.script.syntax.tree.manner import Manner
 from argo_compiler.script.syntax.tree.orders import PlainWord, ScriptOrder, Sentence
-from argo_compiler.script.syntax.tree.places import DockLocation, FloorName, Location
+from argo_compiler.script.syntax.tree.places import DockLocation, FloorName, Location, Steps
 
 _WHOLE_PLAN = (
     orders.Repeat | orders.Add | orders.Delete | orders.Move | orders.Replace | orders.Start
@@ -60,6 +62,7 @@ class Planner:
     def carry_out(self, orders_: Sequence[ScriptOrder], block: ProgramBlock) -> None:
         """Carries orders out, one after the other, at the end of a block."""
         prefix: ScriptOrder | None = None
+        floors: Manner | None = None
         for i, order in enumerate(orders_):
             if isinstance(order, orders.Amend) and i + 1 < len(orders_):
                 # `three times: check checkpoint 17`
@@ -68,14 +71,41 @@ class Planner:
             if i and isinstance(orders_[i - 1], orders.Retry) and self._given_up(order):
                 continue
             if prefix is not None:
+                floors = prefix.manner and Manner(floors=prefix.manner.floors)
                 order = self.manners.with_prefix(order, prefix)
                 prefix = None
+            elif floors is not None and floors.floors and isinstance(order, orders.Measure):
+                # `on the second floor, check the valve, then read the gauge`
+                order = self.manners.with_prefix(order, replace(order, name=None, manner=floors))
             if isinstance(order, orders.Retry) and _several(orders_[:i]):
                 message = "this can be meant for the last of these only, or for each of them"
                 hint = "write `check checkpoints 1 and 4, retry twice` for each, or two sentences"
                 self.diagnostics.error("ambiguous-manner", message, order.span, hint)
                 continue
-            self.order(order, block)
+            self.order(self._counted(order), block)
+
+    def _counted(self, order: ScriptOrder) -> ScriptOrder:
+        """The order with the number of `the next step`."""
+        for field in fields(order):
+            steps = getattr(order, field.name)
+            if isinstance(steps, Steps) and steps.ahead:
+                given: dict[str, Any] = {field.name: self.context.counted(steps)}
+                return replace(order, **given)
+        return order
+
+    def skipping(self, order: ScriptOrder) -> ScriptOrder:
+        """`Skip the next step`, in one case only: it goes on behind it."""
+        if not isinstance(order, orders.Delete) or not isinstance(order.what, Steps):
+            return order
+        ahead = order.what.ahead
+        steps = self.context.counted(order.what) if ahead else order.what
+        following = (self.context.number or 0) + 1
+        listed = steps.through or steps.points == (
+            *range(following, following + len(steps.points)),
+        )
+        if not ahead and (steps.points[0] != following or not listed or not self.context.number):
+            return order
+        return orders.Jump(span=order.span, step=replace(steps, behind=True))
 
     def _given_up(self, order: ScriptOrder) -> bool:
         """`retry twice, then abort`: what is done if it fails all the same."""
@@ -200,7 +230,10 @@ class Planner:
         """The tasks of an order that plans some."""
         match order:
             case orders.Measure():
-                found = self.context.nouns.all(order.what)
+                nouns, what = self.context.nouns, order.what
+                if order.manner is not None and order.manner.floors:
+                    what = nouns.on(order.manner.floors, what)
+                found = nouns.all(what)
                 if found is None:
                     self.context.fail()
                     return []

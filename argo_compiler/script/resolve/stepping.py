@@ -30,8 +30,9 @@ class Stepping:
         self._check_numbers(steps)
         numbered = any(step.number is not None for step in steps)
         for i, step in enumerate(steps, start=1):
-            self.context.begin_step(step.number if numbered else i)
-            self._step(step, self.context.program)
+            number = step.number if numbered else i
+            self.context.begin_step(number)
+            self._step(step, self.context.program, number)
 
     def _check_numbers(self, steps: Sequence[ScriptStep]) -> None:
         """Warns where the steps' numbers are not one after the other: a line may have been lost."""
@@ -45,10 +46,12 @@ class Stepping:
                 self.context.diagnostics.warning("step-number", message, step.span, hint)
             expected = step.number + 1
 
-    def _step(self, step: ScriptStep, block: ProgramBlock) -> None:
+    def _step(self, step: ScriptStep, block: ProgramBlock, number: int | None = None) -> None:
         sentences = list(step.sentences)
         following = self._taken(sentences) if step.steps else None
-        for sentence in sentences:
+        for i, sentence in enumerate(sentences, start=1):
+            ends = i == len(sentences) and not step.steps
+            self.context.number = number if ends else None
             errors = self.context.diagnostics.errors
             if isinstance(sentence, Unread):
                 self.context.fail()

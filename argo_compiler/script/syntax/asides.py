@@ -14,6 +14,7 @@ from argo_compiler.script.syntax.text.source import ScriptText, join
 from argo_compiler.script.syntax.understanding import Understanding, quotes
 from argo_compiler.script.syntax.words.joints import VERBS
 from argo_compiler.script.syntax.words.prose import Prose, begins, either
+from argo_compiler.script.syntax.words.word import Word
 
 _ASKING = frozenset(
     [
@@ -53,11 +54,14 @@ _ASKING = frozenset(
 )
 """words of these types are in no title"""
 _NAMED = frozenset(["KIND", "HASH", "STEP", "AREA", "DOCK", "FLOOR"])
+_SAYING = _NAMED | {*VERBS, *_ASKING, "PLACE", "FLOOR_NAME", "EVENT", "IT", "THEM", "ALL"}
 _LABELS = frozenset(["NUMBER", "IDENT", "STRING", "HASH"])
 _HEADING = frozenset(["WORD", "NUMBER", "ORDINAL", "FLOOR", "FLOOR_NAME", "TIME_WORD", "STEP"])
 _MOST_REASONS = 3
 """in a sentence"""
 _LONGEST_TITLE = 14
+"""words"""
+_LONGEST_OCCASION = 10
 """words"""
 _TOKEN = re.compile(r"[\w'-]+|[^\w\s]")
 _BRACKETS = re.compile(r"\s*\([^()]*\)")
@@ -127,8 +131,10 @@ class Asides:
 
     # ---- titles
 
-    def asks(self, text: ScriptText) -> bool:
-        """Whether a text that makes no sense may ask for something."""
+    def asks(self, text: ScriptText, counted: bool = False) -> bool:
+        """Whether a text that makes no sense may ask for something; in a title runs and tests may
+        be counted: `Team 4, run 2`."""
+        nouns = _words(self.prose.counted) if counted else frozenset()
         found = self.understanding.words(text)
         types = [word.type for word in found]
         if _ASKING & {*types}:
@@ -136,6 +142,9 @@ class Asides:
         for i, type_ in enumerate(types):
             after = types[i + 1] if i + 1 < len(types) else ""
             said = text.content[found[i].end :].split()[:1]
+            named = type_ != "MEASURE" or types[i - 1] == "WORD"  # not `Plan, test 12`
+            if i > 0 and after == "NUMBER" and named and _said(text, found[i]) in nouns:
+                continue
             if type_ in VERBS and (
                 (i == 0 and after and said != ["of"]) or after in _NAMED | _LABELS | {"ALL", "IT"}
             ):
@@ -160,7 +169,7 @@ class Asides:
 
     def is_title(self, text: ScriptText) -> bool:
         """Whether a line may be the title of a script, or the heading of a part of it."""
-        return len(text.content.split()) <= _LONGEST_TITLE and not self.asks(text)
+        return len(text.content.split()) <= _LONGEST_TITLE and not self.asks(text, counted=True)
 
     def is_explicit_title(self, text: ScriptText) -> bool:
         """Whether a title says itself that it is one: `Mission Protocol #2`."""
@@ -185,8 +194,11 @@ class Asides:
             if not self.asks(aside) and not self.names(aside):
                 yield text[: dash.start()].strip(), [aside]
         colon = content.find(": ")
-        if colon > 0 and self._is_section(text[:colon]):
+        if colon > 0 and (self._is_section(text[:colon]) or self.is_small_talk(text[:colon])):
             yield text[colon + 1 :].strip(), [text[: colon + 1]]
+        occasion = begins(self.prose.occasion).match(content)
+        if occasion is not None:
+            yield from self._behind(text, occasion.end())
         reason = begins(self.prose.reason)
         cuts = (cut for cut in _CUT.finditer(content) if reason.match(content, cut.end()))
         for cut in islice(cuts, _MOST_REASONS):
@@ -196,6 +208,19 @@ class Asides:
                 aside = text[cut.end() : behind].strip()
                 if not self.asks(aside[len(aside.content.split()[0]) :]):
                     yield join([text[: cut.start()], text[behind:]]), [aside]
+
+    def _behind(
+        self, text: ScriptText, start: int
+    ) -> Iterator[tuple[ScriptText, list[ScriptText]]]:
+        """The text without what it is for, or when: `For the demo on Friday, ...`."""
+        for token in islice(_TOKEN.finditer(text.content, start), 1, _LONGEST_OCCASION):
+            aside = text[: token.start()].strip()
+            types = {*self.understanding.types(aside)}
+            rest = text[token.start() :].strip()
+            if "WORD" in self.understanding.types(rest):
+                continue
+            if "WORD" in types and not types & _SAYING and not self.asks(aside):
+                yield rest, [aside]
 
     def _is_section(self, text: ScriptText) -> bool:
         """Whether a text is the heading of what follows in the same line."""
@@ -226,6 +251,10 @@ class Asides:
             quoted = quotes(text.content) if quoted is None else quoted
             if not any(a < found.start() < b for a, b in quoted):
                 yield text[found.start() : found.end()]
+
+
+def _said(text: ScriptText, word: Word) -> str:
+    return text.content[word.start : word.end].lower()
 
 
 @cache

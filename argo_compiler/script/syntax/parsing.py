@@ -210,13 +210,17 @@ class _Parser:
     def _without_letter(self, item: LineItem) -> ScriptText:
         """The text of an item without what makes a letter of it."""
         text = item.text
+        signed = self.closed and item.line.mark in (LineMark.NONE, LineMark.LETTER)  # `T. Kunz`
+        if signed and self.asides.is_signature(text):
+            self.reader.note(text, "the end of a letter")
+            return text[:0]
         if item.line.mark is not LineMark.NONE:
             return text
         greeting = self.asides.greeting(text)
         if greeting:
             self.reader.note(text[:greeting].strip(), "a greeting")
             return text[greeting:].strip()
-        if self.asides.closing(text) or (self.closed and self.asides.is_signature(text)):
+        if self.asides.closing(text):
             self.closed = True
             self.reader.note(text, "the end of a letter")
             return text[:0]

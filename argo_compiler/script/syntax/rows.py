@@ -9,6 +9,7 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 
 from argo_compiler.listing import listed
+from argo_compiler.script.syntax.asides import Asides
 from argo_compiler.script.syntax.text.source import Diagnostics, ScriptText, Source
 from argo_compiler.script.syntax.understanding import Understanding
 from argo_compiler.script.syntax.words.lexicon import expand
@@ -72,6 +73,7 @@ class _Rows:
     def __init__(self, understanding: Understanding, diagnostics: Diagnostics) -> None:
         self.understanding = understanding
         self.prose = understanding.language.prose
+        self.asides = Asides(understanding)
         self.diagnostics = diagnostics
 
     def headings(self, text: ScriptText, cut: str) -> list[_Heading] | None:
@@ -104,10 +106,10 @@ class _Rows:
             if cell.content:
                 before = cells.get(heading.holds)
                 cells[heading.holds] = cell if before is None else _joined([before, " ", cell])
+        if "remark" in cells and not self.asides.asks(cells["remark"]):
+            self._note(cells.pop("remark"))
         if "nothing" in cells:
-            aside = cells["nothing"]
-            message = f"`{aside.content}` is taken for a remark and has no effect"
-            self.diagnostics.note("no-effect", message, aside.span())
+            self._note(cells["nothing"])
         number = cells.get("number")
         mark: list[str | ScriptText] = ["- "]
         if number is not None and _FIRST_NUMBER.fullmatch(number.content.strip(" .)#")):
@@ -115,6 +117,10 @@ class _Rows:
         wholes = [_joined([*mark, *parts], text) for parts in self._readings(cells)]
         fitting = (w for w in wholes if self.understanding.fits(w[len("".join(map(str, mark))) :]))
         return next(fitting, wholes[0])
+
+    def _note(self, aside: ScriptText) -> None:
+        message = f"`{aside.content}` is taken for a remark and has no effect"
+        self.diagnostics.note("no-effect", message, aside.span())
 
     def _readings(self, cells: dict[str, ScriptText]) -> Iterator[list[str | ScriptText]]:
         """The sentences that the cells may stand for, the most likely first."""
@@ -146,6 +152,8 @@ class _Rows:
                 yield from (" ", cell)
         if (cell := cells.get("speed")) is not None:
             yield from (f" {self.prose.say['speed']} ", cell)
+        if (cell := cells.get("remark")) is not None:
+            yield from (" ", cell)
 
 
 def _cells(text: ScriptText, cut: str) -> Iterator[tuple[int, ScriptText]]:

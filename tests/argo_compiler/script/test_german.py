@@ -55,6 +55,30 @@ PAIRS = [
         "Alle Manometer im 1. und 2. Stock ablesen.",
         "Check all pressure gauges on the first and second floor.",
     ),
+    ("Prüfe Ventil R12 im zweiten Stock.", "Check valve R12 on the second floor."),
+    (
+        "Im zweiten Stock alle Kontrollpunkte in dieser Reihenfolge prüfen, außer Ventil R12.",
+        "Check all checkpoints on the second floor in this order, except valve R12.",
+    ),
+    (
+        "Im zweiten Stock wird das Ventil geprüft.",
+        "On the second floor, check the valve.",
+    ),
+    (
+        "Mit höchstens 0,3 m/s zu Ventil R9 fahren und es prüfen.",
+        "Go to valve R9 at no more than 0.3 m/s and check it.",
+    ),
+    (
+        "1. Prüfe Kontrollpunkt 2.\n2. Wenn er über 60 % liegt, überspringe den nächsten Schritt.\n"
+        "3. Prüfe Kontrollpunkt 3.\n4. Prüfe Kontrollpunkt 4.",
+        "1. Check checkpoint 2.\n2. If it is above 60 %, skip the next step.\n"
+        "3. Check checkpoint 3.\n4. Check checkpoint 4.",
+    ),
+    (
+        "Für die Vorführung am Freitag prüfe bitte Kontrollpunkt 3.",
+        "For the demo on Friday please check checkpoint 3.",
+    ),
+    ("Wie besprochen: prüfe Kontrollpunkt 3.", "As discussed: check checkpoint 3."),
     ("Prüfe jedes Ventil im obersten Stock.", "Check each valve on the top floor."),
     ("Prüfe Kontrollpunkt 3 zweimal.", "Check checkpoint 3 twice."),
     ("Prüfe zweimal Kontrollpunkt 3.", "Check checkpoint 3 twice."),

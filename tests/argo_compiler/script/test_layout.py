@@ -90,6 +90,15 @@ def test_what_a_table_says_of_its_steps(catalog: Catalog) -> None:
     assert (first.optional, second.optional) == (False, True)
 
 
+def test_a_remark_in_a_table_may_say_something(catalog: Catalog) -> None:
+    table = "Pos\tCP\tTag\tRemark\n1\t4\tvalve R25\ttwice\n2\t8\t\tonly if #4 is above 5 degrees"
+    mission = import_script(f"{START}\n{table}", catalog).mission
+    first = mission.task("MEASURE 4")
+    assert first is not None
+    assert mission.groups[0].max_repeat_count == 2
+    assert errors(f"{START}\n{table} and Joe is there", catalog) == [(5, "Joe")]
+
+
 def test_a_column_that_there_is_not(catalog: Catalog) -> None:
     text = f"{START}\n| Checkpoint | Colour |\n| #4 | red |"
     assert errors(text, catalog) == [(3, "Colour")]
@@ -120,9 +129,23 @@ Ines Miller
     ]
 
 
+def test_an_initial_is_part_of_a_signature(catalog: Catalog) -> None:
+    text = f"{START}Check checkpoint 4.\n\nKind regards\nT. Miller"
+    assert notes(text, catalog) == ["Kind regards", "Miller"]
+
+
+def test_what_a_sentence_is_for_is_a_note(catalog: Catalog) -> None:
+    text = f"{START}For our visitors in Graz, check checkpoint 4."
+    assert notes(text, catalog) == ["For our visitors in Graz"]
+    for order in ("For the visitors wait foo", "For the valve with the leak", "For 5 minutes foo"):
+        assert errors(f"{START}{order}, check checkpoint 4.", catalog)
+
+
 def test_titles_and_headings_are_notes(catalog: Catalog) -> None:
     text = f"Weekly tour, unit A\n\n{START}Safety rules:\n- check #4"
     assert notes(text, catalog) == ["Weekly tour, unit A", "Safety rules:"]
+    for title in ("Team Salamander, run 2", "Behaviour test 12"):
+        assert notes(f"{title}\n\n{START}- check #4", catalog) == [title]
     assert import_script(text, catalog).mission.designation == "Weekly tour, unit A"
 
 

@@ -36,9 +36,23 @@ class TestOrder:
             mission = read(catalog, f"Check checkpoints 4 and 8{said}.").mission
             assert (mission.order, mission.before) == (Order.PRECISE, ())
 
-    def test_it_is_free_as_a_whole_or_not_at_all(self, catalog):
-        lines = ["Check checkpoint 1.", "Check checkpoints 4 and 8 in any order."]
-        assert refused(catalog, *lines) == {("partly-free", 3)}
+    def test_only_of_some(self, catalog):
+        """What is not free keeps its place among the others."""
+        lines = ["Check checkpoint 1.", "Check checkpoints 4 and 8 in any order.", "Check #2."]
+        mission = read(catalog, *lines).mission
+        assert mission.order is Order.ANY
+        assert mission.before == (
+            ("MEASURE 1", "MEASURE 4"),
+            ("MEASURE 1", "MEASURE 8"),
+            ("MEASURE 4", "MEASURE 2"),
+            ("MEASURE 8", "MEASURE 2"),
+        )
+
+    def test_only_of_some_where_a_condition_stands(self, catalog):
+        lines = ["Check #1. If it is above 5, check #7.", "Check #4 and #8 in any order."]
+        found = read(catalog, *lines)
+        assert found.mission.order is Order.PRECISE
+        assert [d.code for d in found.diagnostics] == ["script.partly-free"]
 
     def test_what_keeps_its_order_among_what_is_free(self, catalog):
         lines = ["The order is free.", "Check checkpoint 1.", "Check #4, #8 and #2 in this order."]

@@ -44,6 +44,18 @@ def bounds(mission: Mission, name: str) -> list[list[tuple[str | None, Condition
             ["anywhere"],
         ),
         ("Check #1. Go to the docking station in starting area 2 and wait.", "wait", ["how long"]),
+        (
+            "Check valve R40 on the third floor.",
+            "checkpoint-mismatch",
+            ["on floor 5", "not on floor 3"],
+        ),
+        (
+            "On the second floor, check all valves on the third floor.",
+            "ambiguous-floor",
+            ["all valves on the third floor"],
+        ),
+        ("Check #1. If it is above 5, skip the next step. Check #4.", "step-range", ["next step"]),
+        ("Check #1. Return to the dock in area 1 (area 2).", "several-places", ["two places"]),
         ("Check #1. If it is above 5 and below 3, check #4.", "condition", ["no value"]),
         ("Check #1 and #4. Check one of them.", "ambiguous-or", ["which of them"]),
         ("Check #4 if it is above 4.", "which-checkpoint", ["nothing has been measured"]),
@@ -85,6 +97,12 @@ def test_what_is_asked_about(text: str, code: str, readings: list[str], catalog:
         ("1. Check checkpoint 1, 2. Check checkpoint 4", ["1", "4"]),
         ("Check all valves on the third floor except R31.", ["11"]),
         ("Check valve no. 4 and pressure gauge number 5.", ["4", "8"]),
+        ("Check all valves on the third floor in any order, except R31.", ["11"]),
+        ("Check valve R12 on the second floor.", ["5"]),
+        ("On the second floor, check the valve and then the liquid level gauge.", ["5", "7"]),
+        ("On the second floor, check the valve, then read the liquid level gauge.", ["5", "7"]),
+        ("On the second floor: valve R12", ["5"]),
+        ("Go to the second floor to valve R12 and check it.", ["5"]),
     ],
 )
 def test_lists(text: str, checkpoints: list[str], catalog: Catalog) -> None:
@@ -108,6 +126,26 @@ def test_what_a_comma_parts(
     mission = read(f"Check #1, #2 and #4. If {condition}, check #8.", catalog)
     found = [[number for number, _, _ in way] for way in bounds(mission, "MEASURE 4")]
     assert [way for way in found if way] == alternatives
+
+
+@pytest.mark.parametrize(
+    ("skipped", "way"),
+    [("skip the next step", "3"), ("skip step 4", "3"), ("leave out steps 4 and 5", "8")],
+)
+def test_a_step_that_is_skipped(skipped: str, way: str, catalog: Catalog) -> None:
+    """Only where the condition holds; it goes on behind the step."""
+    lines = f"2. Check #1\n3. If it is above 5, {skipped}\n4. Check #2\n5. Check #3\n6. Check #8"
+    first = import_script(f"1. Start in area 1\n{lines}", catalog).mission.task("MEASURE 1")
+    assert first is not None
+    assert [w.target for w in first.transitions] == [f"MEASURE {way}", "MEASURE 2"]
+
+
+def test_the_dock_in_brackets(catalog: Catalog) -> None:
+    assert read("Check #1. Return to the dock (area 2).", catalog).end_area == 2
+
+
+def test_a_speed_is_the_highest_on_its_way(catalog: Catalog) -> None:
+    assert read("Check #4 at no more than 0.3 m/s.", catalog).tasks[-1].velocity == 0.3
 
 
 def test_a_decimal_comma(catalog: Catalog) -> None:

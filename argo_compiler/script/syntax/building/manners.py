@@ -171,6 +171,7 @@ RULES: dict[str, Make] = {
     "only_if": lambda part: Manner(condition=part.the(SaidCondition)),
     "unless": lambda part: Manner(condition=replace(part.the(SaidCondition), negated=True)),
     "flag": _flag,
+    "floored": lambda part: Manner(floors=part.the(tuple)),
     "standing": lambda part: Manner(pose=part.the(Coordinates)),
     "shown": lambda part: Manner(shown_in=_string(part)),
     "about": lambda part: Manner(object_id=_string(part)),

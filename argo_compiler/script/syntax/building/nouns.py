@@ -52,7 +52,8 @@ def _quantity(word: Word | None) -> Quantity | None:
 def named(part: RulePart) -> list[Noun]:
     """The checkpoint; several where a number is a list without blanks: `1,4`."""
     kind, plural = _kind(part.word("KIND"))
-    (label, listed), *upto = part.every(tuple)
+    tuples = part.every(tuple)
+    (label, listed), *upto = (t for t in tuples if not isinstance(t[0], FloorName))
     return [
         Labelled(
             span=part.span,
@@ -61,6 +62,7 @@ def named(part: RulePart) -> list[Noun]:
             plural=plural,
             hash=part.has("HASH"),
             last=upto[0][0] if upto else None,
+            floors=next((t for t in tuples if isinstance(t[0], FloorName)), ()),
         )
         for one in listed or (label,)
     ]
@@ -121,7 +123,15 @@ def _nouns(part: RulePart) -> Nouns:
     return Nouns(span=part.span, nouns=tuple(nouns), but=tuple(but), either=either)
 
 
+def _but(part: RulePart) -> Nouns:
+    """`except valve R40`, behind how the others are measured."""
+    return Nouns(
+        span=part.span, nouns=(), but=tuple(n for found in part.every(list) for n in found)
+    )
+
+
 RULES: dict[str, Make] = {
+    "but": _but,
     "label": _label,
     "upto": _upto,
     "named": named,

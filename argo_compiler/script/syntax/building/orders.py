@@ -8,7 +8,7 @@ from argo_compiler.script.syntax.building.nouns import named
 from argo_compiler.script.syntax.building.part import Make, RulePart
 from argo_compiler.script.syntax.tree import orders
 from argo_compiler.script.syntax.tree.manner import Manner
-from argo_compiler.script.syntax.tree.nouns import Nouns, Pronoun
+from argo_compiler.script.syntax.tree.nouns import Labelled, Nouns, Pronoun
 from argo_compiler.script.syntax.tree.orders import ScriptOrder, Side
 from argo_compiler.script.syntax.tree.places import (
     AreaLocation,
@@ -49,10 +49,13 @@ def _order(part: RulePart) -> ScriptOrder:
 
 
 def _measure(part: RulePart) -> ScriptOrder:
+    what, *but = part.every(Nouns)
+    if but:
+        what = replace(what, but=(*what.but, *but[0].but))
     return orders.Measure(
         span=part.span,
         manner=_manner(part),
-        what=part.the(Nouns),
+        what=what,
         bare=not part.has("MEASURE", "KEEP_MEASURING", "BE_MEASURED", "ADD"),
         keep=part.has("KEEP_MEASURING"),
     )
@@ -63,7 +66,15 @@ def _go(part: RulePart) -> ScriptOrder:
 
 
 def where(part: RulePart) -> Location | FloorName:
-    """The place that a rule names."""
+    """The place that a rule names; the area of a docking station may stand in brackets."""
+    found = part.first(DockLocation)
+    inside = part.every(AreaLocation)[-1:] if part.has("LPAR") else ()
+    if inside:
+        if found is None or found.area is not None:
+            hint = "leave one of the two out"
+            part.error("several-places", "this names two places", hint)
+            return inside[0]
+        return replace(found, area=inside[0])
     for child in part.children:
         if isinstance(child, tuple):
             floor: FloorName = child[0]
@@ -165,7 +176,13 @@ def _target(part: RulePart) -> Nouns:
 
 
 def _visit(part: RulePart) -> ScriptOrder:
-    return orders.VisitOrder(span=part.span, manner=_manner(part), what=part.the(Nouns))
+    """`Go to the second floor to valve R12`."""
+    what = part.the(Nouns)
+    if floors := part.first(tuple):
+        (target,) = what.nouns
+        assert isinstance(target, Labelled)
+        what = replace(what, nouns=(replace(target, floors=floors),))
+    return orders.VisitOrder(span=part.span, manner=_manner(part), what=what)
 
 
 def _spare(part: RulePart) -> ScriptOrder:

@@ -107,6 +107,8 @@ def _steps(part: RulePart) -> Steps:
             points.append(whole(part, word.value))
         elif word.type == "STRING":
             points.append(word.value)
+    if part.has("NEXT_STEP"):
+        return Steps(span=part.span, points=(1,), ahead=True)
     return Steps(span=part.span, points=tuple(points), through=part.has("TO", "UPTO", "DASH"))
 
 

@@ -4,7 +4,7 @@ from dataclasses import dataclass
 
 from argo_compiler.il import Afterwards, Order
 from argo_compiler.script.syntax.tree.conditions import SaidCondition
-from argo_compiler.script.syntax.tree.places import Coordinates
+from argo_compiler.script.syntax.tree.places import Coordinates, FloorName
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -60,6 +60,8 @@ class Manner:
     count_interruptions: bool = False
     endless: bool = False
     in_circles: bool = False
+    floors: tuple[FloorName, ...] = ()
+    """where all that is measured is: `on the second floor, check the valve`"""
     order: Order | None = None
     """whether the tasks may change places"""
     condition: SaidCondition | None = None

@@ -40,6 +40,8 @@ class Labelled(Node):
     """`#8`, `no. 8`: a checkpoint's number, whatever kind it is"""
     last: int | str | None = None
     """of a range"""
+    floors: tuple[FloorName, ...] = ()
+    """where it is said to be"""
     quantity: Quantity | None = None
     also: "Labelled | None" = None
     """the same by its other name: `pressure gauge 5 (checkpoint #8)`"""

@@ -66,3 +66,7 @@ class Steps(Node):
     points: tuple[int | str, ...]
     through: bool = False
     """two points: from the first to the second; else each of them"""
+    ahead: bool = False
+    """whether they are counted from the step that says so: `the next step`"""
+    behind: bool = False
+    """what stands behind them is meant"""

@@ -215,6 +215,7 @@ NOUNS: Phrases = {
     ("KIND", (Kind.GAUGE, True)): "gauges|gages",
     ("HASH", None): "#|no .|nr .|number|no|nr|numbers|nos .|nos|with the number",
     ("STEP", None): "step{s}|task{s}|item{s}|point{s}|stage{s}|line{s}|instruction{s}",
+    ("NEXT_STEP", None): "[next/following] [step/point/item/task/one/instruction]",
     ("FLOOR", False): "floor|deck|storey|story",
     ("FLOOR", True): "floors|decks|storeys|stories",
     (

@@ -53,13 +53,14 @@ PROSE = Prose(
     ),
     columns={
         "number": "no|nr|number|step|#|item|pos",
-        "checkpoint": "checkpoint|check point|checkpoint number|checkpoint no|id|point",
-        "object": "reading|object|name|gauge|instrument|what|device|valve",
+        "checkpoint": "checkpoint|check point|checkpoint number|checkpoint no|id|point|cp|cp no",
+        "object": "reading|object|name|gauge|instrument|what|device|valve|tag|equipment",
         "action": "action|task|order|activity|to do|instruction",
         "priority": "priority|importance|prio",
         "optional": "optional",
         "speed": "speed",
-        "nothing": "remark|remarks|comment|comments|note|notes|floor|deck|location|done|ok|result",
+        "remark": "remark|remarks|comment|comments|note|notes|condition|conditions|how",
+        "nothing": "floor|deck|location|done|ok|result",
     },
     ranks={"3": "high|very important|important", "2": "medium|normal|middle|mid", "1": "low"},
     yes="yes|y|x|true|optional",
@@ -82,11 +83,13 @@ PROSE = Prose(
         "that is it"
     ),
     reason="because|which|who|since it|since the|as it|so that|in order to|for the",
+    occasion="for|during|as part of|on the occasion of|in preparation for|with regard to",
     section=(
         "changes|change|tasks|task|steps|plan|round|tour|part|section|mission|orders|instructions|"
         "programme|program|inspection|schedule|route|list|addition|additions|update|updates|todo"
     ),
     listing="{the} following|these|those",
+    counted="run|test|round|tour|patrol|drive|survey|measurement",
     preposition=(
         "of|at|in|on|for|to|from|with|by|after|before|during|and|or|near|around|over|under|through|"
         "between|per|about|without|within|along|behind|beside|next|is|are|was|were|it's|that's|"

@@ -219,6 +219,7 @@ NOUNS: Phrases = {
     ("KIND", (Kind.GAUGE, True)): "messgeräte{n}|anzeigen|messinstrumente{n}|messuhren",
     ("HASH", None): "#|nr .|nr|nummer|nummern|no .|no",
     ("STEP", None): "schritt{s}|schritte{n}|schrittes|aufgabe{n}",
+    ("NEXT_STEP", None): "[nächsten/nächste/nächster/folgenden/folgende] [schritt/punkt/aufgabe]",
     ("FLOOR", False): "stock{s}|stockes|stockwerk{s}|etage|geschoss{es}|ebene|deck{s}",
     ("FLOOR", True): "stockwerke{n}|etagen|geschosse{n}|ebenen|stöcke",
     ("FLOOR_NAME", "bottom"): (

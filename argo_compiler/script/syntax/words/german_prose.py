@@ -81,10 +81,8 @@ PROSE = replace(
             "priority": "priorität|wichtigkeit",
             "optional": "wahlweise",
             "speed": "geschwindigkeit",
-            "nothing": (
-                "bemerkung|bemerkungen|kommentar|anmerkung|hinweis|stock|stockwerk|etage|ort|"
-                "erledigt|ergebnis"
-            ),
+            "remark": "bemerkung|bemerkungen|kommentar|anmerkung|hinweis|bedingung",
+            "nothing": "stock|stockwerk|etage|ort|erledigt|ergebnis",
         }.items()
     },
     ranks={
@@ -104,6 +102,7 @@ PROSE = replace(
         "mfg|schönes wochenende|schönen tag noch|schönen feierabend",
         _ENGLISH.closing,
     ),
+    occasion=_both("für|während|anlässlich|im rahmen", _ENGLISH.occasion),
     section=_both(
         "änderungen|änderung|aufgaben|aufgabe|schritte|plan|runde|rundgang|abschnitt|teil|mission|"
         "aufträge|anweisungen|ablauf",
@@ -123,6 +122,7 @@ PROSE = replace(
         _ENGLISH.small_talk,
     ),
     reason=_both("weil|denn|da der|da die|da das|da es|damit|um", _ENGLISH.reason),
+    counted=_both("patrouille|messung|prüfung|fahrt", _ENGLISH.counted),
     preposition=_both(
         "von|vom|an|am|in|im|auf|für|zu|zum|zur|aus|mit|bei|beim|durch|nach|vor|während|und|oder|"
         "nahe|um|über|unter|zwischen|pro|ohne|innerhalb|entlang|hinter|neben|ist|sind|war|waren|"

@@ -208,8 +208,9 @@ def _add(word: Word, after: Word | None, found: list[Word]) -> None:
         longer = before.value.seconds + before.value.unit / 2
         del found[found.index(before) :]
         word = Word("DURATION", Length(longer), before.start, word.end)
-    elif word.type == "SPEED" and last is not None and last.type in ("AT", "BY"):
-        found.pop()
+    elif word.type == "SPEED":
+        while found and found[-1].type in ("AT", "BY", "AT_MOST"):
+            found.pop()  # the speed on a way is the highest one there
     elif word.type == "MORE_WORD" and last is not None and last.type == "TIMES":
         found[-1] = Word("MORE", last.value, last.start, word.end)  # `twice more`
         return
@@ -225,7 +226,8 @@ def _add(word: Word, after: Word | None, found: list[Word]) -> None:
         found.pop()
         word = Word("SPARE", None, last.start, word.end)  # `don't check checkpoint 19`
     elif word.type in VERBS and last is not None and last.type == "IT" and _begins(found):
-        found.pop()  # `it reads checkpoint 4`
+        if word.type != "MEASURE" or (after is not None and after.type != "JOINT"):
+            found.pop()  # `it reads checkpoint 4`, but `es prüfen`
     elif word.type == "IF" and last is not None and last.type != "JOINT":
         word = replace(word, type="IF_ONLY")
     elif word.type == "UNLESS" and (last is None or last.value in (";", ".")):

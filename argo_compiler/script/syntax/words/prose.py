@@ -31,10 +31,14 @@ class Prose:
     """how sentences begin that ask for nothing"""
     reason: str
     """how clauses begin that ask for nothing"""
+    occasion: str
+    """how a sentence begins that says what it is for, or when"""
     section: str
     """words of headings that may stand before a sentence: `Changes of 14 May: ...`"""
     listing: str
     """words that say that a list follows: `check these valves:`"""
+    counted: str
+    """verbs that may be nouns as well, which titles number"""
     preposition: str
     """words behind which a title may have an article"""
     determiner: str

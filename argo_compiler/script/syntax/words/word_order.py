@@ -17,6 +17,7 @@ _ASKED = frozenset(["STATE", "OCCURS", "FAILS", "EVENT", "IS"])
 _OPENING = frozenset(["IF", "IF_ONLY", "UNLESS", "UNTIL"])
 _PREDICATES = _RELATIONS | {"NOT", "STATE", "FAILS", "NUMBER", "QUANTITY", "MINUS"}
 _NAMED = frozenset(["KIND", "HASH", "IDENT", "STRING", "ALL", "NUMBER", "THIS", "EVERY"])
+_FLOORS = ("FLOOR", "FLOOR_NAME")
 _SPOTS = frozenset(["AREA", "DOCK", "PLACE", "FLOOR", "FLOOR_NAME", "ORDINAL", "STRING", "WORD"])
 
 
@@ -46,6 +47,8 @@ def _told(words: list[Word], i: int) -> list[Word]:
             after in ("VALUE", "SHOWN", "BATTERY") and _then(words, i + 2) in _RELATIONS
         ):
             return [replace(word, type="IF")]
+        case "BE_MEASURED" if last in ("", "JOINT", *_FLOORS) and after in _NAMED:
+            return [replace(word, type="MEASURE")]  # `danach wird Ventil R12 geprüft`
         case "MEASURE" if after == "NOT":
             return [replace(word, type="SPARE")]
         case "NOT" if last == "MEASURE":

@@ -4,7 +4,9 @@ import re
 from collections.abc import Callable, Iterable, Iterator
 from dataclasses import dataclass
 
-from argo_compiler.script.syntax.layout import LineItem, LineMark, sentences
+from argo_compiler.script.syntax.layout import LineItem
+from argo_compiler.script.syntax.lines import LineMark
+from argo_compiler.script.syntax.sentence_ends import sentences
 from argo_compiler.script.syntax.text.source import ScriptText, join
 from argo_compiler.script.syntax.understanding import Understanding
 from argo_compiler.script.syntax.words.prose import either

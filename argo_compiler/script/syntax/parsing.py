@@ -11,9 +11,12 @@ from argo_compiler.script.syntax.cells import Cells
 from argo_compiler.script.syntax.fields import ScriptFields
 from argo_compiler.script.syntax.kind_lists import KindLists
 from argo_compiler.script.syntax.labels import FieldLabels
-from argo_compiler.script.syntax.layout import LineItem, LineMark, items_of, lines_of, sentences
+from argo_compiler.script.syntax.layout import LineItem, items_of
+from argo_compiler.script.syntax.line_sense import LineSense
+from argo_compiler.script.syntax.lines import LineMark, lines_of
 from argo_compiler.script.syntax.repeats import Repeats
 from argo_compiler.script.syntax.rows import tables
+from argo_compiler.script.syntax.sentence_ends import sentences
 from argo_compiler.script.syntax.sentence_reading import Said, SentenceReader
 from argo_compiler.script.syntax.text.healing import MOST_ERRORS, heal
 from argo_compiler.script.syntax.text.source import Diagnostics, ScriptText, Source
@@ -25,8 +28,6 @@ from argo_compiler.script.syntax.words.language import Language
 MAX_LINES = 120_000
 """of a script; one with more is refused unread"""
 
-_LONGEST_MENDED = 300
-"""characters of a sentence that is mended to see whether it goes on"""
 _EDITS = ("ADD", "DELETE", "REPLACE", "MOVE")
 
 
@@ -108,7 +109,8 @@ class _Parser:
         healed = heal(source, _vocabulary(self.understanding, source.text), rows)
         self.diagnostics.extend(healed.diagnostics)
         texts = Cells(self.labels, self.understanding).joined(healed.lines)
-        items = items_of(lines_of(texts), self.is_complete, self.stands_alone, language.words)
+        sense = LineSense(self.understanding, self.asides, self.labels)
+        items = items_of(lines_of(texts), sense, language.words)
         steps = list(self._steps(KindLists(self.understanding, self.reader.note).told(items)))
         first = [_step_of(sentence) for sentence in self.fields.first]
         last = [_step_of(sentence) for sentence in self.fields.last]
@@ -119,28 +121,6 @@ class _Parser:
             steps=(*first, *steps, *last),
             remarks=tuple(self.reader.remarks),
             diagnostics=self.diagnostics.by_place(),
-        )
-
-    def stands_alone(self, text: ScriptText) -> bool:
-        """Whether a line never goes on with the one above it."""
-        content = text.content
-        asides = self.asides
-        numbered = content[-1:].isdigit() and asides.is_explicit_title(text)
-        alone = numbered or asides.is_remark(content) or asides.opens(content)
-        return alone or self.labels.is_field(text)
-
-    def is_complete(self, text: ScriptText) -> bool:
-        """Whether a text makes sense by itself."""
-        if self.labels.is_field(text):
-            return True
-        return all(self._fits(sentence) for sentence in sentences(text))
-
-    def _fits(self, sentence: ScriptText) -> bool:
-        understanding = self.understanding
-        return understanding.fits(sentence) or (
-            len(sentence.content) <= _LONGEST_MENDED
-            and "WORD" in understanding.types(sentence)
-            and understanding.respelled(sentence, quiet=True) is not None
         )
 
     # ---- lines

@@ -7,7 +7,8 @@ from argo_compiler.script.syntax.fields import ScriptFields
 from argo_compiler.script.syntax.grammar.parser import StumbleError
 from argo_compiler.script.syntax.hints import not_understood
 from argo_compiler.script.syntax.labels import FieldLabels
-from argo_compiler.script.syntax.layout import LineItem, LineMark
+from argo_compiler.script.syntax.layout import LineItem
+from argo_compiler.script.syntax.lines import LineMark
 from argo_compiler.script.syntax.preamble import Preamble
 from argo_compiler.script.syntax.text.source import Diagnostics, ScriptText
 from argo_compiler.script.syntax.tree.facts import Fact

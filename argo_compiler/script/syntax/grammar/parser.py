@@ -60,6 +60,14 @@ class Grammar:
             raise StumbleError(at) from None
         return _branch(tree)
 
+    def begins(self, words: tuple[str, ...]) -> bool:
+        """Whether a sentence may begin with words of these types."""
+        try:
+            self.tree(words)
+        except StumbleError as stumble:
+            return stumble.at == len(words)
+        return True
+
     def accepted(self, words: tuple[str, ...]) -> frozenset[str]:
         """The types of words with which a sentence that begins with these may go on."""
         parser = self.parser.parse_interactive("", "sentence")

@@ -1,0 +1,115 @@
+"""The lines of a script, and the numbers, letters and bullets that they begin with."""
+
+import re
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+from enum import StrEnum
+
+from argo_compiler.script.syntax.text.source import ScriptText
+from argo_compiler.script.syntax.understanding import quotes
+
+
+class LineMark(StrEnum):
+    """What a line begins with."""
+
+    NUMBER = "number"
+    LETTER = "letter"
+    BULLET = "bullet"
+    NONE = "none"
+
+
+@dataclass(slots=True)
+class ScriptLine:
+    """A line without its mark."""
+
+    text: ScriptText
+    indent: int
+    mark: LineMark = LineMark.NONE
+    number: int | None = None
+    first: bool = False
+    """whether it is the first line of a paragraph"""
+    marked: ScriptText | None = None
+    """the line with its mark, if that is a number"""
+    heading: bool = False
+    """whether it stands over others, if it says nothing by itself: marked so, or before a mark"""
+
+    @property
+    def unmarked(self) -> ScriptText:
+        """The text, if what looks like a mark is none."""
+        return self.marked or self.text
+
+
+_NUMBER = re.compile(
+    r"\(?(?:(?:step|schritt)\s+)?([0-9]{1,6})\s*(?:[.)](?![0-9])|:(?![0-9])|\s-\s+(?=[^\W\d_]))\s*",
+    re.IGNORECASE,
+)
+_SUB_NUMBER = re.compile(r"[0-9]{1,4}\.[0-9]{1,4}[.)]?\s+(?=[A-Z])")
+_STEP = re.compile(r"(?:step|schritt)\s+([0-9]{1,6})\b[.:)]?\s*", re.IGNORECASE)
+_LETTER = re.compile(r"\(?([a-z]|[ivx]{1,4})[.)]\s+", re.IGNORECASE)
+_BULLET = re.compile(r"[-*+•–‣◦]\s+(?:\[[ xX]?\]\s+)?|#+\s+")
+_RULE = re.compile(r"([-=_~*])\1{2,}")
+_RUN_IN = re.compile(r"(?:^|[,;.!])\s+([0-9]{1,3})[.)]\s+(?=[^\W\d_])")
+
+
+def lines_of(texts: Sequence[ScriptText]) -> Iterator[ScriptLine]:
+    """The lines that say anything, with their marks."""
+    first = True
+    above: ScriptLine | None = None
+    for text in texts:
+        stripped = text.strip()
+        rule = stripped.content[:3] and _RULE.fullmatch(stripped.content)
+        if rule and above is not None:
+            above.heading = above.heading or (not first and above.mark is LineMark.NONE)
+        if not stripped.content or rule:
+            first = True
+            continue
+        indent = len(text.content) - len(text.content.lstrip())
+        for line in _split(_marked(stripped, indent)):
+            line.first = first
+            first = False
+            if above is not None:
+                if line.mark is not LineMark.NONE and above.mark is LineMark.NONE:
+                    above.heading = True
+                yield above
+            above = line
+    if above is not None:
+        yield above
+
+
+def _marked(text: ScriptText, indent: int) -> ScriptLine:
+    if bullet := _BULLET.match(text.content):
+        inner = _marked(text[bullet.end() :].strip(), indent)
+        mark = inner.mark if inner.number else LineMark.BULLET
+        return ScriptLine(
+            inner.text, indent, mark, inner.number, heading=text.content.startswith("#")
+        )
+    if number := _NUMBER.match(text.content) or _STEP.match(text.content):
+        rest = text[number.end() :].strip()
+        return ScriptLine(rest, indent, LineMark.NUMBER, int(number[1]), marked=text)
+    if letter := _LETTER.match(text.content) or _SUB_NUMBER.match(text.content):
+        return ScriptLine(text[letter.end() :].strip(), indent, LineMark.LETTER)
+    return ScriptLine(text, indent)
+
+
+def _split(line: ScriptLine) -> Iterator[ScriptLine]:
+    """The steps of a line that has more than one: `1. ..., 2. ..., 3. ...`."""
+    expected = (line.number or 0) + 1
+    start = 0
+    quoted = quotes(line.text.content)
+    for found in _RUN_IN.finditer(line.text.content):
+        if any(a < found.start() < b for a, b in quoted):
+            continue
+        if line.number is None or int(found[1]) != expected:
+            continue
+        before = line.text.content[: found.start()]
+        if before.count("(") > before.count(")"):
+            continue  # `(1, 2, 5) heading 90 degrees` in step 4
+        yield ScriptLine(
+            line.text[start : found.start()].strip(), line.indent, line.mark, expected - 1
+        )
+        start = found.end()
+        expected += 1
+    if start == 0:
+        yield line
+    else:
+        yield ScriptLine(line.text[start:].strip(), line.indent, line.mark, expected - 1)

@@ -1,0 +1,56 @@
+"""Where the sentences of a text end: not behind `approx.`, in `Nr. R25` or in `2. Stock`."""
+
+import re
+
+from argo_compiler.script.syntax.text.source import ScriptText
+from argo_compiler.script.syntax.understanding import quotes
+
+_SENTENCE_END = re.compile(
+    r"(?:[.!?…]+|;(?=\s*(?:if|otherwise|else|when|wenn|falls|sonst)\b))(?=\s|$)", re.I
+)
+_ABBREVIATION = re.compile(r"\b(?:no|nr|approx|ca|max|min|e\.g|i\.e|z\.b)\.$", re.IGNORECASE)
+_LABELLED = re.compile(r"\b(?:no|nr)\.$", re.IGNORECASE)
+_LABEL = re.compile(r"\s*[A-Za-z]?-?[0-9]")
+_ORDINAL = re.compile(r"(?<![\w.,])[0-9]{1,2}\.$")
+_ORDINAL_OF = re.compile(
+    r"(?:\s*(?:,|und|oder|bis)\s*[0-9]{1,2}\.)*\s+(?:stock|etage|geschoss|ebene|deck)", re.I
+)
+"""`im 1. und 2. Stock`"""
+_NEXT_SIGN = re.compile(r"\s*(\S)")
+
+
+def sentences(text: ScriptText) -> list[ScriptText]:
+    """The sentences of a text, without their full stops."""
+    found = (text[start:end].strip() for start, end in sentence_bounds(text.content))
+    return [sentence for sentence in found if sentence.content]
+
+
+def sentence_bounds(content: str) -> list[tuple[int, int]]:
+    """Where the sentences of a text begin and end; at least one."""
+    found: list[tuple[int, int]] = []
+    start = k = 0
+    quoted = quotes(content)
+    for end in _SENTENCE_END.finditer(content):
+        while k < len(quoted) and quoted[k][1] <= end.start():
+            k += 1
+        if k < len(quoted) and quoted[k][0] < end.start():
+            continue
+        behind = _NEXT_SIGN.match(content, end.end())
+        more = behind is not None and not behind[1].isupper()
+        if more and _ABBREVIATION.search(content, max(0, end.start() - 8), end.start() + 1):
+            continue
+        if _goes_on_behind(content, end.start() + 1):
+            continue
+        found.append((start, end.start()))
+        start = end.end()
+    if content[start:].strip() or not found:
+        found.append((start, len(content)))
+    return found
+
+
+def _goes_on_behind(content: str, stop: int) -> bool:
+    """Whether a full stop belongs to `Nr. R25` or `2. Stock`."""
+    if _LABELLED.search(content, max(0, stop - 5), stop) and _LABEL.match(content, stop):
+        return True
+    ordinal = _ORDINAL.search(content, max(0, stop - 4), stop)
+    return ordinal is not None and _ORDINAL_OF.match(content, stop) is not None

@@ -97,30 +97,23 @@ def words_of(names: Iterable[str]) -> str:
     return " and ".join(_WORDS.get(name, f"a {name}") for name in names)
 
 
-def accepts(order: ScriptOrder, diagnostics: Diagnostics) -> bool:
-    """Whether an order makes use of all that is said of it; if not, an error says what is left."""
+def require_used(order: ScriptOrder, diagnostics: Diagnostics) -> None:
+    """That an order makes use of all that is said of it. Raises RefusedError if not."""
     meets = isinstance(order, orders.Plain) and order.word is PlainWord.MEET
     if order.name is not None and not meets and not isinstance(order, _NAMED):
         message = f"the name `{order.name}` stands before what is no task"
         hint = "write it before the order that plans the task, or leave it out"
-        diagnostics.error("stray-clause", message, order.span, hint)
-        return False
+        diagnostics.refuse("stray-clause", message, order.span, hint)
     if order.manner is None:
-        return True
+        return
     used = _USED[orders.WaitOrder] if meets else _USED.get(type(order), _NOTHING)
-    if isinstance(order, orders.WaitOrder) and {"times", "more"} <= said(order.manner):
-        used |= _ONCE_MORE if order.manner.times == 1 else _NOTHING  # `wait again`
+    given = said(order.manner)
+    if isinstance(order, orders.WaitOrder) and given >= _ONCE_MORE and order.manner.times == 1:
+        used |= _ONCE_MORE  # `wait again`
     if isinstance(order, orders.WaitOrder) and order.where is not None:
         used |= {"speed"}  # of the way to the place
-    left = [name for name in _said_in_order(order.manner) if name not in used]
-    if not left:
-        return True
-    message = f"this can't be said here: {words_of(left)}"
-    hint = "write it behind what is to be done so, or leave it out"
-    diagnostics.error("stray-clause", message, order.span, hint)
-    return False
-
-
-def _said_in_order(manner: Manner) -> list[str]:
-    found = said(manner)
-    return [field.name for field in fields(manner) if field.name in found]
+    left = [field.name for field in fields(Manner) if field.name in given - used]
+    if left:
+        message = f"this can't be said here: {words_of(left)}"
+        hint = "write it behind what is to be done so, or leave it out"
+        diagnostics.refuse("stray-clause", message, order.span, hint)

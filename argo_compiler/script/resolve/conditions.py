@@ -6,10 +6,10 @@ from itertools import product
 from argo_compiler.catalog import CheckpointInfo
 from argo_compiler.il import Condition, ConditionType
 from argo_compiler.script.resolve import units
+from argo_compiler.script.resolve.lookup import told
 from argo_compiler.script.resolve.nouns import NounResolver
 from argo_compiler.script.resolve.program import Alternatives
 from argo_compiler.script.syntax.text.source import Diagnostics
-from argo_compiler.script.syntax.tree import conditions as said
 from argo_compiler.script.syntax.tree.conditions import (
     Amount,
     Asked,
@@ -17,10 +17,11 @@ from argo_compiler.script.syntax.tree.conditions import (
     Compared,
     InState,
     Relation,
+    SaidCondition,
     TaskState,
     Test,
 )
-from argo_compiler.script.syntax.tree.nouns import Pronoun
+from argo_compiler.script.syntax.tree.nouns import Nouns, Pronoun
 
 _MOST = 64
 """alternatives of one condition"""
@@ -29,6 +30,12 @@ _OPPOSITE = {
     Relation.LESS: Relation.AT_LEAST,
     Relation.AT_LEAST: Relation.LESS,
     Relation.AT_MOST: Relation.GREATER,
+}
+_TYPES = {
+    Relation.GREATER: (ConditionType.GREATER, False),
+    Relation.LESS: (ConditionType.LESS, False),
+    Relation.AT_LEAST: (ConditionType.GREATER, True),
+    Relation.AT_MOST: (ConditionType.LESS, True),
 }
 _STATES = {
     TaskState.ABNORMAL: ConditionType.ABNORMAL,
@@ -39,58 +46,39 @@ _STATES = {
 
 
 class ConditionResolver:
-    """Looks up what conditions ask for."""
+    """Looks up what conditions ask for. Raises RefusedError where it is not clear what."""
 
     def __init__(self, nouns: NounResolver, diagnostics: Diagnostics) -> None:
         self.nouns = nouns
         self.diagnostics = diagnostics
 
-    def alternatives(self, condition: said.SaidCondition) -> Alternatives | None:
-        """The conditions of each alternative; None if it is not clear what they are."""
+    def alternatives(self, condition: SaidCondition) -> Alternatives:
+        """The conditions of each alternative."""
         found: list[tuple[Condition, ...]] = []
         for tests in condition.alternatives:
-            each: list[list[tuple[Condition, ...]]] = []
-            for test in tests:
-                if not isinstance(test, Test):
-                    message = "values and events can't be asked for in one condition"
-                    hint = "write a sentence for each"
-                    self.diagnostics.error("condition", message, test.span, hint)
-                    return None
-                ways = self._test(test)
-                if ways is None:
-                    return None
-                each.append(ways)
+            each = [self._test(test) for test in tests]
             combined = [sum(parts, ()) for parts in product(*each)]
-            if all(self._empty(conditions, tests) for conditions in combined):
-                return None
+            combined = [held for held in combined if not contradict(held)]
+            if not combined:
+                said = self.diagnostics.source.said(tests[0].span, tests[-1].span)
+                span, hint = tests[-1].span, "is `or` meant?"
+                self.diagnostics.refuse("condition", f"no value is `{said}`", span, hint)
             found += combined
             if len(found) > _MOST:
                 message = f"this condition has more than {_MOST} alternatives"
                 hint = "divide it into several sentences"
-                self.diagnostics.error("condition", message, condition.span, hint)
-                return None
+                self.diagnostics.refuse("condition", message, condition.span, hint)
         return tuple(found)
 
-    def _empty(self, conditions: tuple[Condition, ...], tests: Sequence[Asked]) -> bool:
-        """Whether no value satisfies all the bounds for one checkpoint: then an error says so."""
-        if not contradict(conditions):
-            return False
-        said = self.nouns.said(tests[0].span, tests[-1].span)
-        message = f"no value is `{said}`"
-        self.diagnostics.error("condition", message, tests[-1].span, "is `or` meant?")
-        return True
-
-    def _test(self, test: Test) -> list[tuple[Condition, ...]] | None:
+    def _test(self, test: Asked) -> list[tuple[Condition, ...]]:
         """Alternatives for one test; of several checkpoints all, or one with `or`."""
+        if not isinstance(test, Test):
+            message = "values and events can't be asked for in one condition"
+            self.diagnostics.refuse("condition", message, test.span, "write a sentence for each")
         checkpoints = self._subjects(test)
-        if checkpoints is None:
-            return None
         for checkpoint in checkpoints:
             self._note_unmeasured(checkpoint, test)
-        each = [self._of(test, checkpoint) for checkpoint in checkpoints]
-        ways = [way for way in each if way is not None]
-        if len(ways) < len(each):
-            return None
+        ways = self.diagnostics.each(lambda one: self._of(test, one), checkpoints)
         if test.subject is not None and test.subject.either:
             return [one for way in ways for one in way]
         return [sum(parts, ()) for parts in product(*ways)]
@@ -102,47 +90,18 @@ class ConditionResolver:
         hint = f"write `Check checkpoint {checkpoint.id}` before it"
         self.diagnostics.warning("not-measured", message, test.span, hint)
 
-    def _subjects(self, test: Test) -> Sequence[CheckpointInfo] | None:
-        subject = test.subject
-        it = subject is None or (
-            len(subject.nouns) == 1
-            and isinstance(subject.nouns[0], Pronoun)
-            and not subject.nouns[0].every
-        )
-        if subject is not None and not it:
-            return self.nouns.each(subject)
-        measured = self.nouns.memory.last
-        fitting = [c for c in measured if self._fits(test, c)]
-        if len(fitting) == 1 < len(measured):
-            return fitting
-        return self.nouns.last(test.span) if subject is None else self.nouns.each(subject)
+    def _subjects(self, test: Test) -> Sequence[CheckpointInfo]:
+        """Which checkpoints are asked for; `it` is the only one whose unit is that of the value."""
+        match test.subject:
+            case None | Nouns(nouns=(Pronoun(every=False),)):
+                measured = self.nouns.memory.last
+                fitting = [c for c in measured if _fits(test, c)]
+                if len(fitting) == 1 < len(measured):
+                    return fitting
+        return self.nouns.last(test.span) if test.subject is None else self.nouns.each(test.subject)
 
-    def _fits(self, test: Test, checkpoint: CheckpointInfo) -> bool:
-        """Whether the units that are said are those of values that a checkpoint has."""
-        match test.predicate:
-            case Compared(bound=bound):
-                amounts = [bound]
-            case Between(low=low, high=high):
-                amounts = [low, high]
-            case _:
-                return True
-        return all(
-            not amount.unit
-            or units.converted(amount.value, amount.unit, checkpoint.unit) is not None
-            for amount in amounts
-        )
-
-    def _of(self, test: Test, checkpoint: CheckpointInfo) -> list[tuple[Condition, ...]] | None:
+    def _of(self, test: Test, checkpoint: CheckpointInfo) -> list[tuple[Condition, ...]]:
         """Alternatives for one checkpoint."""
-        predicate = test.predicate
-        if isinstance(predicate, InState):
-            bounds = self._state(predicate, test.negated, checkpoint)
-        elif isinstance(predicate, Between):
-            bounds = self._between(predicate, test, checkpoint)
-        else:
-            bounds = self._compared(predicate, test, checkpoint)
-        if bounds is None:
-            return None
         return [
             (
                 Condition(
@@ -155,65 +114,72 @@ class ConditionResolver:
                     max_age=test.max_age,
                 ),
             )
-            for kind, low, high, inclusive in bounds
+            for kind, low, high, inclusive in self._bounds(test, checkpoint)
         ]
 
-    def _state(
-        self, predicate: InState, negated: bool, checkpoint: CheckpointInfo
-    ) -> "list[_Bound] | None":
-        state = predicate.state
-        if negated and state in (TaskState.NORMAL, TaskState.ABNORMAL):
+    def _bounds(self, test: Test, checkpoint: CheckpointInfo) -> "list[_Bound]":
+        match test.predicate:
+            case InState(state=state):
+                return [self._state(state, test, checkpoint)]
+            case Between() as between:
+                return self._between(between, test, checkpoint)
+            case Compared() as compared:
+                relation = _OPPOSITE[compared.relation] if test.negated else compared.relation
+                bound = self._bound(compared.bound, checkpoint)
+                kind, inclusive = _TYPES[relation]
+                return [(kind, bound, None, inclusive)]
+
+    def _state(self, state: TaskState, test: Test, checkpoint: CheckpointInfo) -> "_Bound":
+        if test.negated and state in (TaskState.NORMAL, TaskState.ABNORMAL):
             state = TaskState.ABNORMAL if state is TaskState.NORMAL else TaskState.NORMAL
-        elif negated:
+        elif test.negated:
             message = f"`not {state}` can't be asked for"
             hint = "turn it round: `if ..., go on; otherwise ...`"
-            self.diagnostics.error("condition", message, predicate.span, hint)
-            return None
+            self.diagnostics.refuse("condition", message, test.predicate.span, hint)
         if state is TaskState.NORMAL:
-            nominal = checkpoint.nominal
-            return [(ConditionType.WITHIN, nominal.low, nominal.high, True)]
-        return [(_STATES[state], None, None, False)]
-
-    def _compared(
-        self, predicate: Compared, test: Test, checkpoint: CheckpointInfo
-    ) -> "list[_Bound] | None":
-        bound = self._bound(predicate.bound, checkpoint)
-        if bound is None:
-            return None
-        relation = _OPPOSITE[predicate.relation] if test.negated else predicate.relation
-        greater = relation in (Relation.GREATER, Relation.AT_LEAST)
-        inclusive = relation in (Relation.AT_LEAST, Relation.AT_MOST)
-        kind = ConditionType.GREATER if greater else ConditionType.LESS
-        return [(kind, bound, None, inclusive)]
+            return ConditionType.WITHIN, checkpoint.nominal.low, checkpoint.nominal.high, True
+        return _STATES[state], None, None, False
 
     def _between(
         self, predicate: Between, test: Test, checkpoint: CheckpointInfo
-    ) -> "list[_Bound] | None":
-        low, high = (self._bound(b, checkpoint) for b in (predicate.low, predicate.high))
-        if low is None or high is None:
-            return None
+    ) -> "list[_Bound]":
+        amounts = (predicate.low, predicate.high)
+        low, high = self.diagnostics.each(lambda one: self._bound(one, checkpoint), amounts)
         if low > high or (low == high and not predicate.inclusive):
             message = "no value lies between these"
-            self.diagnostics.error("condition", message, test.span, "write the lower one first")
-            return None
-        if test.negated:
-            inclusive = not predicate.inclusive
-            return [
-                (ConditionType.LESS, low, None, inclusive),
-                (ConditionType.GREATER, high, None, inclusive),
-            ]
-        return [(ConditionType.WITHIN, low, high, predicate.inclusive)]
+            self.diagnostics.refuse("condition", message, test.span, "write the lower one first")
+        if not test.negated:
+            return [(ConditionType.WITHIN, low, high, predicate.inclusive)]
+        outside = ((ConditionType.LESS, low), (ConditionType.GREATER, high))
+        return [(kind, bound, None, not predicate.inclusive) for kind, bound in outside]
 
-    def _bound(self, amount: Amount, checkpoint: CheckpointInfo) -> float | None:
+    def _bound(self, amount: Amount, checkpoint: CheckpointInfo) -> float:
         """The amount in the checkpoint's unit."""
-        if not amount.unit:
-            return amount.value
-        value = units.converted(amount.value, amount.unit, checkpoint.unit)
+        value = _in_unit_of(checkpoint, amount)
         if value is None:
-            message = f"{checkpoint.name} (#{checkpoint.id}) is measured in {checkpoint.unit}"
+            message = f"{told(checkpoint)} is measured in {checkpoint.unit}"
             hint = f"write the value in {checkpoint.unit}, not in {amount.unit}"
-            self.diagnostics.error("unit", message, amount.span, hint)
+            self.diagnostics.refuse("unit", message, amount.span, hint)
         return value
+
+
+def _in_unit_of(checkpoint: CheckpointInfo, amount: Amount) -> float | None:
+    """The amount in the checkpoint's unit; None if it has a unit that does not fit."""
+    if not amount.unit:
+        return amount.value
+    return units.converted(amount.value, amount.unit, checkpoint.unit)
+
+
+def _fits(test: Test, checkpoint: CheckpointInfo) -> bool:
+    """Whether the units that are said are those of values that a checkpoint has."""
+    match test.predicate:
+        case Compared(bound=bound):
+            amounts = [bound]
+        case Between(low=low, high=high):
+            amounts = [low, high]
+        case InState():
+            return True
+    return all(_in_unit_of(checkpoint, amount) is not None for amount in amounts)
 
 
 def contradict(conditions: Sequence[Condition]) -> bool:

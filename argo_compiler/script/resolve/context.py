@@ -1,7 +1,7 @@
 """What all parts of the planning share: the program, and what the script has said so far."""
 
 from collections.abc import Iterable, Iterator
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, field
 
 from argo_compiler.catalog import CheckpointInfo
 from argo_compiler.diagnostics import Span
@@ -18,6 +18,7 @@ from argo_compiler.script.resolve.program import (
     ProgramNode,
     Way,
     all_nodes,
+    leads_away,
     own_names,
 )
 from argo_compiler.script.resolve.reacting import Reactions
@@ -78,16 +79,6 @@ class Context:
             self.step = []
             self.steps[number] = None if number in self.steps else self.step
 
-    def counted(self, steps: Steps) -> Steps:
-        """Steps that are counted from the one that is being planned, by their numbers."""
-        if self.number is None:
-            message = "it is not clear which one the next step is"
-            hint = "number the steps, and name it: `step 4`"
-            self.diagnostics.error("step-range", message, steps.span, hint)
-            return replace(steps, ahead=False)
-        points = tuple(self.number + n for n in steps.points if isinstance(n, int))
-        return replace(steps, points=points, ahead=False)
-
     def put(
         self, nodes: Iterable[ProgramNode], block: ProgramBlock, anchor: ProgramNode | None
     ) -> None:
@@ -112,15 +103,6 @@ class Context:
         if do.object_id is not None:
             self.measured.get(do.object_id, {}).pop(id(do), None)
 
-    def remember(self, checkpoints: Iterable[CheckpointInfo]) -> None:
-        """What pronouns mean from now on."""
-        self.memory.measured(tuple(checkpoints))
-
-    def new_round(self) -> int:
-        """The place of a new round among those that the script asks for."""
-        self.rounds += 1
-        return self.rounds
-
     def fail(self) -> None:
         """Something that was ordered is not in the program: what misses it has no error."""
         self.memory.known = False
@@ -130,24 +112,31 @@ class Context:
         """Whether all that was asked for so far is planned: what is not found is not there."""
         return self.memory.known
 
-    def nodes_of(self, steps: Steps, quiet: bool = False) -> list[ProgramNode] | None:
-        """What steps or named tasks stand for; None if there is nothing, with an error."""
+    def come_here(self, span: Span, block: ProgramBlock) -> None:
+        """That the mission comes to the end of a block, or a step begins there. Raises RefusedError
+        if not."""
+        last = block.last
+        begins = block is self.program and (not self.step or last is not self.step[-1])
+        if leads_away(last) and not begins:
+            message = "the mission never comes here: what stands before this leads elsewhere"
+            hint = "write it before the words that lead elsewhere, or as a step of its own"
+            self.diagnostics.refuse("second-route", message, span, hint)
+
+    def measurements(self, checkpoint: CheckpointInfo) -> list[Do]:
+        """The tasks in the program that measure a checkpoint."""
+        return list(self.measured.get(str(checkpoint.id), {}).values())
+
+    def nodes_of(self, steps: Steps) -> list[ProgramNode]:
+        """What steps or named tasks stand for. Raises RefusedError if there are none."""
         points = list(steps.points)
         first, last = points[0], points[-1]
         if steps.through and isinstance(first, int) and isinstance(last, int):
-            if first > last and not quiet:
+            if first > last:
                 message = "the first of these steps comes after the last one"
                 hint = "write the earlier one first"
-                self.diagnostics.error("step-range", message, steps.span, hint)
-                return None
+                self.diagnostics.refuse("step-range", message, steps.span, hint)
             points = list(range(first, min(last, first + len(self.steps) + 1) + 1))
-        found: list[ProgramNode] = []
-        for point in points:
-            nodes = self._of_point(point, steps.span)
-            if nodes is None:
-                return None
-            found += nodes
-        return found
+        return [node for point in points for node in self._of_point(point, steps.span)]
 
     def _by_own_name(self, name: str) -> Do | None:
         """A task by the name that it has where the script gives none: `MEASURE 4 (2)`."""
@@ -156,28 +145,25 @@ class Context:
             self.own_names = dict(zip(own_names(tasks), tasks, strict=True))
         return self.own_names.get(name)
 
-    def _of_point(self, point: int | str, span: Span) -> list[ProgramNode] | None:
+    def _of_point(self, point: int | str, span: Span) -> list[ProgramNode]:
         if isinstance(point, str):
             do = self.named.get(point)
             if do is None or not do.listed:
                 do = self._by_own_name(point)
-            if do is not None:
-                return [do, *_bound_to(do)]
-            message = f"there is no task `{point}`"
-            self.diagnostics.error("unknown-step", message, span, "name a task or a step")
-            return None
+            if do is None:
+                message = f"there is no task `{point}`"
+                self.diagnostics.refuse("unknown-step", message, span, "name a task or a step")
+            return [do, *_bound_to(do)]
         if point not in self.steps:
             known = sorted(self.steps, key=lambda n: (abs(n - point), n))[:3]
             near = ", ".join(str(number) for number in sorted(known))
             hint = f"the nearest steps are {near}" if known else None
-            self.diagnostics.error("unknown-step", f"there is no step {point}", span, hint)
-            return None
+            self.diagnostics.refuse("unknown-step", f"there is no step {point}", span, hint)
         nodes = self.steps[point]
         if nodes is None:
             message = f"more than one step has the number {point}"
             hint = "number the steps anew, or name the task"
-            self.diagnostics.error("ambiguous-step", message, span, hint)
-            return None
+            self.diagnostics.refuse("ambiguous-step", message, span, hint)
         return [node for node in nodes if node.listed]
 
 

@@ -1,13 +1,17 @@
 """Changes of the plan: what is added, taken out, moved or replaced."""
 
 from collections.abc import Sequence
+from typing import NoReturn
 
+from argo_compiler.catalog import CheckpointInfo
+from argo_compiler.diagnostics import Span
 from argo_compiler.il import Action
 from argo_compiler.listing import listed
 from argo_compiler.script.resolve import making
 from argo_compiler.script.resolve.context import Context
 from argo_compiler.script.resolve.manners import Manners
 from argo_compiler.script.resolve.program import Choice, Do, ProgramNode
+from argo_compiler.script.syntax.text.source import RefusedError
 from argo_compiler.script.syntax.tree import orders
 from argo_compiler.script.syntax.tree.nouns import Nouns
 from argo_compiler.script.syntax.tree.orders import Side
@@ -17,7 +21,7 @@ Edit = orders.Add | orders.Delete | orders.Move | orders.Replace
 
 
 class Edits:
-    """Carries changes out, in the order of the script."""
+    """Carries changes out, in the order of the script. Raises RefusedError where it can't."""
 
     def __init__(self, context: Context, manners: Manners) -> None:
         self.context = context
@@ -31,7 +35,7 @@ class Edits:
             case orders.Add():
                 self._add(edit)
             case orders.Delete():
-                for do in self._found(edit.what) or ():
+                for do in self._found(edit.what):
                     self._take_out(do, edit)
             case orders.Move():
                 self._move(edit)
@@ -41,121 +45,104 @@ class Edits:
     def _add(self, edit: orders.Add) -> None:
         checkpoints = self.context.nouns.all(edit.what)
         anchors = self._found(edit.anchor)
-        if checkpoints is None or anchors is None:
-            self.context.fail()
-            return
         tasks = [making.measurement(c.id, edit.span) for c in checkpoints]
         self.manners.name(edit, tasks)
         nodes = self.manners.apply(edit, tasks)
         self._put(nodes, anchors, edit.side)
         self.context.step += nodes
         self.context.recent = tasks
-        self.context.remember(checkpoints)
+        self.context.memory.measured(checkpoints)
 
     def _put(
         self, nodes: Sequence[ProgramNode], anchors: Sequence[ProgramNode], side: Side
     ) -> None:
-        anchor = anchors[0] if side is Side.BEFORE else anchors[-1]
+        anchor: ProgramNode | None = anchors[0] if side is Side.BEFORE else anchors[-1]
+        assert anchor is not None
         block = anchor.block
         assert block is not None
         if side is Side.BEFORE:
-            before = anchor.before
+            anchor = anchor.before
         else:
-            before = anchor
             # What a condition behind it leads to belongs to it.
-            while isinstance(before.after, Choice):
-                before = before.after
-        self.context.put(nodes, block, before)
+            while isinstance(anchor.after, Choice):
+                anchor = anchor.after
+        self.context.put(nodes, block, anchor)
 
-    def _take_out(self, do: ProgramNode, edit: Edit) -> bool:
-        if isinstance(do.after, Choice) or not isinstance(do, Do) or do.failure is not None:
+    def _take_out(self, do: ProgramNode, edit: Edit) -> None:
+        block = do.block
+        assert block is not None
+        bound = isinstance(do.after, Choice) or isinstance(block.owner, Choice)
+        if bound or not isinstance(do, Do) or do.failure is not None:
             message = "this task belongs to a condition, so it can't be moved or taken out"
             hint = "change the line that asks for it"
-            self.diagnostics.error("bound-task", message, edit.span, hint)
-            return False
-        if do.block is not self.context.program and do.block is not None:
-            owner = do.block.owner
-            if isinstance(owner, Choice):
-                message = "this task belongs to a condition, so it can't be moved or taken out"
-                hint = "change the line that asks for it"
-                self.diagnostics.error("bound-task", message, edit.span, hint)
-                return False
-        assert do.block is not None
-        do.block.remove(do)
+            self.diagnostics.refuse("bound-task", message, edit.span, hint)
+        block.remove(do)
         self.context.forget(do)
-        return True
 
     def _move(self, edit: orders.Move) -> None:
-        nodes = self._found(edit.what)
-        anchors = self._found(edit.anchor)
-        if not nodes or anchors is None:
-            return
+        nodes, anchors = self.diagnostics.each(self._found, (edit.what, edit.anchor))
         if any(node is anchor for node in nodes for anchor in anchors):
             message = "this is to stand before or after itself"
-            self.diagnostics.error("self-move", message, edit.span, "name another place")
-            return
-        if all(self._take_out(node, edit) for node in nodes):
-            self._put(nodes, anchors, edit.side)
+            self.diagnostics.refuse("self-move", message, edit.span, "name another place")
+        for node in nodes:
+            self._take_out(node, edit)
+        self._put(nodes, anchors, edit.side)
 
     def _replace(self, edit: orders.Replace) -> None:
         checkpoint = self.context.nouns.one(edit.by)
         nodes = self._found(edit.what)
-        if checkpoint is None or nodes is None:
-            self.context.fail()
-            return
         do = nodes[0]
-        single = len(nodes) == 1 and isinstance(do, Do) and do.action is Action.MEASURE
-        if not single or isinstance(do.after, Choice):
+        single = len(nodes) == 1 and not isinstance(do.after, Choice)
+        if not single or not isinstance(do, Do) or do.action is not Action.MEASURE:
             message = "only a single measurement can be replaced"
             hint = "delete what is there, and add the other behind it"
-            self.diagnostics.error("bound-task", message, edit.span, hint)
-            return
-        assert isinstance(do, Do)
+            self.diagnostics.refuse("bound-task", message, edit.span, hint)
         self.context.forget(do)
         new = making.measurement(checkpoint.id, edit.span)
         do.base, do.object_id, do.source = new.base, new.object_id, new.source
         self.context.note(do)
         self.context.step.append(do)
         self.context.recent = [do]
-        self.context.remember([checkpoint])
+        self.context.memory.measured([checkpoint])
 
-    def _found(self, thing: Nouns | Steps) -> list[ProgramNode] | None:
-        """The planned tasks that are meant; None if it is not clear which."""
+    def _found(self, thing: Nouns | Steps) -> list[ProgramNode]:
+        """The planned tasks that are meant."""
         if isinstance(thing, Steps):
             return self._of_steps(thing)
-        checkpoints = self.context.nouns.all(thing)
-        if checkpoints is None:
-            self.context.fail()
-            return None
-        found: list[ProgramNode] = []
-        for checkpoint in checkpoints:
-            tasks = list(self.context.measured.get(str(checkpoint.id), {}).values())
-            name = f"checkpoint #{checkpoint.id}"
-            if len(tasks) == 1:
-                found += tasks
-                continue
-            if tasks:
-                lines = sorted({s.line for do in tasks[:20] if (s := do.source)})
-                where = listed(str(line) for line in lines)
-                message = f"{name} is measured more than once at this point: lines {where}"
-                hint = "say which of them is meant by its step: `step 3`"
-                self.diagnostics.error("ambiguous-edit", message, thing.span, hint)
-            elif self.context.whole:
-                hint = f"ask for it before this line: `Check the {name}`"
-                message = f"{name} is not in the plan at this point"
-                self.diagnostics.error("not-planned", message, thing.span, hint)
-            return None
-        return found
+        return [
+            self._measured(checkpoint, thing.span) for checkpoint in self.context.nouns.all(thing)
+        ]
 
-    def _of_steps(self, steps: Steps) -> list[ProgramNode] | None:
+    def _measured(self, checkpoint: CheckpointInfo, span: Span) -> Do:
+        """The only measurement of a checkpoint."""
+        tasks = self.context.measurements(checkpoint)
+        name = f"checkpoint #{checkpoint.id}"
+        if len(tasks) == 1:
+            return tasks[0]
+        if tasks:
+            lines = sorted({s.line for do in tasks[:20] if (s := do.source)})
+            where = listed(str(line) for line in lines)
+            message = f"{name} is measured more than once at this point: lines {where}"
+            hint = "say which of them is meant by its step: `step 3`"
+            self.diagnostics.refuse("ambiguous-edit", message, span, hint)
+        self._not_planned(
+            f"{name} is not in the plan at this point",
+            span,
+            f"ask for it before this line: `Check the {name}`",
+        )
+
+    def _of_steps(self, steps: Steps) -> list[ProgramNode]:
         planned = [self.context.steps.get(p) for p in steps.points if isinstance(p, int)]
         known = all(isinstance(p, int) for p in steps.points) and all(planned)
         named = all(isinstance(p, str) and p in self.context.named for p in steps.points)
         nodes = self.context.nodes_of(steps) if known or named else []
-        if nodes:
-            return nodes
-        if self.context.whole:
+        if not nodes:
             message = "no task of this step is in the plan at this point"
             hint = "name a step above this line that measures or drives"
-            self.diagnostics.error("not-planned", message, steps.span, hint)
-        return None
+            self._not_planned(message, steps.span, hint)
+        return nodes
+
+    def _not_planned(self, message: str, span: Span, hint: str) -> NoReturn:
+        if not self.context.whole:
+            raise RefusedError  # it may be what was not understood
+        self.diagnostics.refuse("not-planned", message, span, hint)

@@ -1,20 +1,22 @@
 """What is done if a task fails, or comes too late."""
 
-from collections.abc import Callable
+from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
 from argo_compiler.il import OnFailure
+from argo_compiler.script.resolve.branching import CaseBranches
 from argo_compiler.script.resolve.context import Context
 from argo_compiler.script.resolve.program import ProgramBlock
 from argo_compiler.script.syntax.tree import orders
 from argo_compiler.script.syntax.tree.conditions import InState, SaidCondition, TaskState, Test
 from argo_compiler.script.syntax.tree.nouns import Pronoun
 from argo_compiler.script.syntax.tree.orders import Case, PlainWord, ScriptOrder
+from argo_compiler.script.syntax.tree.places import DockLocation
 
 if TYPE_CHECKING:  # a case's orders are planned as any others are
     from argo_compiler.script.resolve.planning import Planner
 
-POLICIES = {
+_POLICIES = {
     PlainWord.ABORT: OnFailure.ABORT,
     PlainWord.END: OnFailure.ABORT,
     PlainWord.GO_ON: OnFailure.CONTINUE,
@@ -22,16 +24,13 @@ POLICIES = {
 
 
 class Failures:
-    """Plans what follows failures."""
+    """Plans what follows failures. Raises RefusedError where that is not clear."""
 
-    def __init__(
-        self, context: Context, planner: "Planner", branch: Callable[[Case, ProgramBlock], None]
-    ) -> None:
+    def __init__(self, context: Context, planner: "Planner", branches: CaseBranches) -> None:
         self.context = context
         self.diagnostics = context.diagnostics
         self.planner = planner
-        self.branch = branch
-        """plans what is done in one case only"""
+        self.branches = branches
 
     def failure(self, case: Case, block: ProgramBlock) -> None:
         """What is done if the last task fails."""
@@ -39,38 +38,26 @@ class Failures:
         if not recent:
             message = "there is no task before this that could fail"
             hint = "write it behind the task that it is said of"
-            self.diagnostics.error("no-task", message, case.span, hint)
-            return
-        rest: list[ScriptOrder] = []
+            self.diagnostics.refuse("no-task", message, case.span, hint)
         for order in case.orders:
             if isinstance(order, orders.Retry):
                 self.planner.order(order, block)
-            else:
-                rest.append(order)
+        rest = [order for order in case.orders if not isinstance(order, orders.Retry)]
         if not rest:
             return
         if any(do.failure or do.on_failure is not OnFailure.CONTINUE for do in recent):
             message = "what is done if it fails is said already"
-            self.diagnostics.error("second-route", message, case.span, "leave one of the two out")
+            self.diagnostics.refuse("second-route", message, case.span, "leave one of the two out")
+        if (policy := _policy(rest)) is not None:
+            self.planner.manners.on_failure(policy)
             return
-        if len(rest) == 1 and rest[0].manner is None and rest[0].name is None:
-            match rest[0]:
-                case orders.Plain(word=word) if word in POLICIES:
-                    self.planner.manners.on_failure(POLICIES[word])
-                    return
-                case orders.Home(dock=dock) if dock.area is None:
-                    self.planner.manners.on_failure(OnFailure.RETURN)
-                    return
         if len(recent) > 1:
             message = "several tasks are meant here, and each would need orders of its own"
             hint = "write one sentence for each of them"
-            self.diagnostics.error("failure", message, case.span, hint)
-            return
+            self.diagnostics.refuse("failure", message, case.span, hint)
         do = recent[-1]
         do.failure = ProgramBlock(do)
-        self.branch(Case(span=case.span, condition=None, orders=tuple(rest)), do.failure)
-
-    # ---- windows that are missed
+        self.branches.plan(rest, do.failure)
 
     def too_late(self, case: Case, condition: SaidCondition) -> None:
         """What is done if the window of the last task is missed."""
@@ -80,15 +67,23 @@ class Failures:
             message = "this has to follow one task that is to be done by a certain time"
             hint = "write `Check checkpoint #1 not later than 10 minutes after the start. If it is "
             hint += "too late, go to step 5.`"
-            self.diagnostics.error("too-late", message, case.span, hint)
-            return
+            self.diagnostics.refuse("too-late", message, case.span, hint)
         (do,) = recent
         if do.missed is not None:
             message = "what is done if it is too late is said already"
-            self.diagnostics.error("second-route", message, case.span, "leave one of the two out")
-            return
+            self.diagnostics.refuse("second-route", message, case.span, "leave one of the two out")
         do.missed = ProgramBlock(do)
-        self.branch(Case(span=case.span, condition=None, orders=case.orders), do.missed)
+        self.branches.plan(case.orders, do.missed)
+
+
+def _policy(said: Sequence[ScriptOrder]) -> OnFailure | None:
+    """What a mission does by itself in a failure, if that is all that is ordered."""
+    match said:
+        case [orders.Plain(word=word, manner=None, name=None)]:
+            return _POLICIES.get(word)
+        case [orders.Home(dock=DockLocation(area=None), manner=None, name=None)]:
+            return OnFailure.RETURN
+    return None
 
 
 def is_failure(condition: SaidCondition) -> bool:

@@ -28,8 +28,7 @@ class Furnishing:
         if manner.priority is not None and not 1 <= manner.priority <= _MOST_PRIORITY:
             message = f"{manner.priority} is no priority of a task"
             hint = f"write a number from 1 to {_MOST_PRIORITY}"
-            self.diagnostics.error("number", message, span, hint)
-            return
+            self.diagnostics.refuse("number", message, span, hint)
         if manner.rank is not None and manner.priority not in (None, manner.rank):
             message = "the priority is said twice"
             self.diagnostics.error("repeated-limit", message, span, "leave one of them out")
@@ -59,8 +58,7 @@ class Furnishing:
         if len(tasks) < 2 or manner.priority is not None or manner.rank is not None:
             message = "this is said of several tasks, of which each is less important than the last"
             hint = "write `Check checkpoints 3, 7 and 12, the most important first`"
-            self.diagnostics.error("stray-clause", message, span, hint)
-            return
+            self.diagnostics.refuse("stray-clause", message, span, hint)
         names = ", ".join(f"`{do.base}` {len(tasks) - i}" for i, do in enumerate(tasks[:_SHOWN]))
         more = ", and so on" if len(tasks) > _SHOWN else ""
         message = f"taken as these priorities: {names}{more}"

@@ -1,5 +1,6 @@
 """Syntax tree to mission, and the whole way from text to mission in one call."""
 
+from contextlib import suppress
 from functools import cache
 
 from argo_compiler.catalog import Catalog
@@ -19,7 +20,7 @@ from argo_compiler.script.resolve.program import Do, ProgramNode, all_nodes, dep
 from argo_compiler.script.resolve.starting import Starting
 from argo_compiler.script.resolve.stepping import Stepping
 from argo_compiler.script.syntax.parsing import parse
-from argo_compiler.script.syntax.text.source import Diagnostics, Source
+from argo_compiler.script.syntax.text.source import Diagnostics, RefusedError, Source
 from argo_compiler.script.syntax.tree.places import Steps
 from argo_compiler.script.syntax.tree.script import Script
 
@@ -40,9 +41,10 @@ def resolve(
     """The mission that the script asks for on the catalogue's site."""
     source = Source(script.source_text, script.source_name)
     diagnostics = Diagnostics(source, list(script.diagnostics))
-    mission = _mission(script, Lookup(catalog, diagnostics), diagnostics, start_area, end_area)
-    if mission is None:
-        raise DiagnosticError(script.source_name, diagnostics.by_place())
+    try:
+        mission = _mission(script, Lookup(catalog, diagnostics), diagnostics, start_area, end_area)
+    except RefusedError:
+        raise DiagnosticError(script.source_name, diagnostics.by_place()) from None
     return Resolved(mission=mission, diagnostics=diagnostics.by_place())
 
 
@@ -67,7 +69,7 @@ def _mission(
     diagnostics: Diagnostics,
     start_area: int | None,
     end_area: int | None,
-) -> Mission | None:
+) -> Mission:
     header = header_values(script.header, diagnostics, start_area, end_area)
     locator = Locator(lookup, diagnostics, header.start.area, header.end.area)
     context = Context.of(lookup, diagnostics, locator)
@@ -80,42 +82,42 @@ def _mission(
     stepping = Stepping(context, planner, script.header)
     stepping.all(script.steps)
     planner.finish()
-    starting.finish()
+    with suppress(RefusedError):
+        starting.finish()
     planner.repeating.finish()
     order = ordering.finish(context.program)
-    if diagnostics.errors:
-        return None
+    _require_no_error(diagnostics)
 
     @cache
     def find(steps: Steps) -> ProgramNode | None:
-        nodes = context.nodes_of(steps)
-        if nodes is not None and not nodes:
-            message = (
-                f"step {steps.points[0]} leaves nothing to do at which the mission could go on"
-            )
+        with suppress(RefusedError):
+            nodes = context.nodes_of(steps)
+            if nodes and steps.behind:
+                last = nodes[-1]
+                if last.after is None and last.block is not context.program:
+                    message = "the last step of a repetition or of a case can't be skipped so"
+                    hint = "say the opposite condition before that step: `if ..., check "
+                    hint += "checkpoint 4`"
+                    diagnostics.refuse("step-range", message, steps.span, hint)
+                return last.after
+            if nodes:
+                return nodes[0]
+            said = f"step {steps.points[0]}"
+            message = f"{said} leaves nothing to do at which the mission could go on"
             hint = "name a step that measures or drives"
             diagnostics.error("empty-step", message, steps.span, hint)
-        if nodes and steps.behind:
-            last = nodes[-1]
-            if last.after is None and last.block is not context.program:
-                message = "the last step of a repetition or of a case can't be skipped so"
-                hint = "say the opposite condition before that step: `if ..., check checkpoint 4`"
-                diagnostics.error("step-range", message, steps.span, hint)
-            return last.after
-        return nodes[0] if nodes else None
+        return None
 
     if depth(context.program) > _DEEPEST:
         message = f"more than {_DEEPEST} repetitions or conditions lie in one another"
         hint = "repeat the steps more often in one of them"
-        diagnostics.error("deep-rounds", message, None, hint)
-        return None
+        diagnostics.refuse("deep-rounds", message, None, hint)
     lowered = lower_program(context.program, find, starting.home)
     for leave in lowered.circling:
         hint = "name a step that measures, drives or waits"
         diagnostics.error("empty-step", "this only leads back to itself", leave.span, hint)
     tasks, groups, names = assemble(lowered, diagnostics)
-    if diagnostics.errors:
-        return None
+    _require_no_error(diagnostics)
     said = script.header
     text = said.designation or said.title
     mission = Mission(
@@ -138,7 +140,13 @@ def _mission(
         before=ordering.named(names),
     )
     ordering.check(mission)
-    return None if diagnostics.errors else mission
+    _require_no_error(diagnostics)
+    return mission
+
+
+def _require_no_error(diagnostics: Diagnostics) -> None:
+    if diagnostics.errors:
+        raise RefusedError
 
 
 def _current(said: Steps | None, context: Context, names: dict[int, str]) -> str | None:
@@ -148,11 +156,11 @@ def _current(said: Steps | None, context: Context, names: dict[int, str]) -> str
     (point,) = said.points
     if isinstance(point, str):
         return point
-    nodes = context.nodes_of(said) or []
+    nodes = context.nodes_of(said)
     tasks = [node for node in all_nodes(nodes) if isinstance(node, Do)]
     if not tasks and nodes:
         message = f"step {point} leaves nothing to do"
-        context.diagnostics.error("empty-step", message, said.span, "name another step")
+        context.diagnostics.refuse("empty-step", message, said.span, "name another step")
     return names[id(tasks[0])] if tasks else None
 
 

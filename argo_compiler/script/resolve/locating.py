@@ -29,7 +29,7 @@ class Locator:
 
     def locate(
         self, location: Location, which: Literal["start", "end"]
-    ) -> tuple[Pose | None, Area | None]:
+    ) -> tuple[Pose, Area | None]:
         """The pose of the location, and its starting area if it lies in one."""
         match location:
             case Coordinates():
@@ -40,29 +40,25 @@ class Locator:
                 area = self.lookup.area(location.area, location.span)
             case DockLocation():
                 area = self._docking_area(location, which)
-        return (area.dock, area) if area else (None, None)
+        return area.dock, area
 
-    def point(self, point: Coordinates) -> Pose | None:
+    def point(self, point: Coordinates) -> Pose:
         """The pose of a point in the site's frame; its height must be said."""
         z = point.z
         if point.floor is not None:
             floor = self.lookup.floor(point.floor)
-            if floor is None:
-                return None
             if z is not None and z != floor.z:
                 message = f"floor {floor.number} lies at z = {floor.z:g} m, not at {z:g} m"
                 hint = "leave the height or the floor out"
-                self.diagnostics.error("height", message, point.span, hint)
-                return None
+                self.diagnostics.refuse("height", message, point.span, hint)
             z = floor.z
         if z is None:
             message = "these coordinates have no height"
             hint = "write a third number or a floor: `(12.5, 3, 2.5)`, `(12.5, 3) on floor 2`"
-            self.diagnostics.error("height", message, point.span, hint)
-            return None
+            self.diagnostics.refuse("height", message, point.span, hint)
         return Pose(x=point.x, y=point.y, z=z, yaw=point.yaw)
 
-    def _docking_area(self, dock: DockLocation, which: Literal["start", "end"]) -> Area | None:
+    def _docking_area(self, dock: DockLocation, which: Literal["start", "end"]) -> Area:
         option = self.start_area if which == "start" else self.end_area
         named = dock.area.area if dock.area else option
         flag = f"--{which}-area"
@@ -70,11 +66,9 @@ class Locator:
             known = listed((f"{flag} {area.number}" for area in self.lookup.catalog.areas), "or")
             message = "this does not say which docking station"
             hint = f"add `in starting area 1`, or give {known}"
-            self.diagnostics.error("area-choice", message, dock.span, hint)
-            return None
+            self.diagnostics.refuse("area-choice", message, dock.span, hint)
         if which == "end" and option is not None and option != named:
             message = f"the mission is to end in starting area {option}, not {named}"
             hint = f"leave {flag} (or `End area:`) out, or take the area out of this line"
-            self.diagnostics.error("area-conflict", message, dock.span, hint)
-            return None
+            self.diagnostics.refuse("area-conflict", message, dock.span, hint)
         return self.lookup.area(named, dock.span)

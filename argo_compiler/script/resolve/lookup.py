@@ -1,7 +1,7 @@
 """Finds what a script names in the site's catalogue."""
 
 from collections import defaultdict
-from collections.abc import Collection
+from collections.abc import Collection, Iterable
 
 from rapidfuzz.distance import OSA
 
@@ -61,77 +61,57 @@ class Lookup:
         found = self._by_identifier.get(identifier.lower(), [])
         return [c for c in found if kind is None or agrees(c, kind)]
 
-    def identified(self, identifier: str, kind: Kind | None, span: Span) -> CheckpointInfo | None:
+    def identified(self, identifier: str, kind: Kind | None, span: Span) -> CheckpointInfo:
         """The checkpoint of a kind with this identifier."""
         found = self.called(identifier, kind)
         if len(found) == 1:
             return found[0]
         name = f"{kind or 'checkpoint'} {identifier.upper()}"
         if found:
-            readings = listed((f"{c.name} (#{c.id})" for c in found), "or")
-            message = f"`{name}` can be read as {readings}"
+            message = f"`{name}` can be read as {listed(map(told, found), 'or')}"
             hint = "name the checkpoint by its number, or by its whole name"
-            self.diagnostics.error("ambiguous-checkpoint", message, span, hint)
-            return None
+            self.diagnostics.refuse("ambiguous-checkpoint", message, span, hint)
         close = nearest(name, (c.name for c in self.catalog.checkpoints))
         message = f"there is no {name} on {self.catalog.site}"
         hint = f"the nearest names are {listed(close)}"
-        self.diagnostics.error("unknown-checkpoint", message, span, hint if close else None)
-        return None
+        self.diagnostics.refuse("unknown-checkpoint", message, span, hint if close else None)
 
-    def numbered(self, number: int, span: Span) -> CheckpointInfo | None:
-        found = self.by_number.get(number)
-        if found is None:
-            close = sorted(self.by_number, key=lambda known: (abs(known - number), known))[:3]
-            hint = f"the nearest numbers are {listed(f'#{n}' for n in sorted(close))}"
-            message = f"there is no checkpoint #{number} on {self.catalog.site}"
-            self.diagnostics.error("unknown-checkpoint", message, span, hint if close else None)
-        return found
+    def numbered(self, number: int, span: Span) -> CheckpointInfo:
+        if number in self.by_number:
+            return self.by_number[number]
+        close = sorted(self.by_number, key=lambda known: (abs(known - number), known))[:3]
+        hint = f"the nearest numbers are {listed(f'#{n}' for n in sorted(close))}"
+        message = f"there is no checkpoint #{number} on {self.catalog.site}"
+        self.diagnostics.refuse("unknown-checkpoint", message, span, hint if close else None)
 
-    def numbered_of_kind(self, number: int, kind: Kind, span: Span) -> CheckpointInfo | None:
-        """The checkpoint that `valve #5` means: by its number, or the valve that is called so."""
-        numbered = self.by_number.get(number)
-        readings = {c.id: c for c in self.called(str(number), kind)}
-        if numbered is not None and agrees(numbered, kind):
-            readings[numbered.id] = numbered
-        if len(readings) == 1:
-            return next(iter(readings.values()))
-        if not readings and numbered is not None:
-            message = f"checkpoint #{number} is {numbered.name}, and there is no {kind} {number}"
-            self.diagnostics.error("checkpoint-mismatch", message, span, "name the one")
-        elif not readings:
-            return self.numbered(number, span)
-        else:
-            said = listed((f"{c.name} (#{c.id})" for c in readings.values()), "or")
-            message = f"`{kind} #{number}` can be read as {said}"
-            hint = f"write `checkpoint {number}` or `{kind} {number}`"
-            self.diagnostics.error("ambiguous-checkpoint", message, span, hint)
-        return None
-
-    def area(self, number: int, span: Span | None) -> Area | None:
+    def area(self, number: int, span: Span | None) -> Area:
         found = self.catalog.area(number)
-        if found is None:
-            known = listed(str(a.number) for a in self.catalog.areas)
-            message = f"there is no starting area {number} on {self.catalog.site}"
-            self.diagnostics.error("unknown-area", message, span, f"the starting areas are {known}")
-        return found
+        if found is not None:
+            return found
+        message = f"there is no starting area {number} on {self.catalog.site}"
+        hint = f"the starting areas are {listed(str(a.number) for a in self.catalog.areas)}"
+        self.diagnostics.refuse("unknown-area", message, span, hint)
 
-    def floor(self, floor: FloorName) -> Floor | None:
+    def floor(self, floor: FloorName) -> Floor:
         """The floor of this number, or the highest or lowest one."""
         floors = self.catalog.floors
         if floor.number is NamedFloor.TOP and floors:
             return max(floors, key=lambda f: f.z)
         if floor.number is NamedFloor.BOTTOM and floors:
             return min(floors, key=lambda f: f.z)
-        found = next((f for f in floors if f.number == floor.number), None)
-        if found is None:
-            known = listed(str(f.number) for f in floors)
-            message = f"there is no floor {floor.number} on {self.catalog.site}"
-            hint = f"the floors are {known}, counted from the bottom"
-            self.diagnostics.error("unknown-floor", message, floor.span, hint)
-        return found
+        for found in floors:
+            if found.number == floor.number:
+                return found
+        message = f"there is no floor {floor.number} on {self.catalog.site}"
+        known = listed(str(f.number) for f in floors)
+        hint = f"the floors are {known}, counted from the bottom"
+        self.diagnostics.refuse("unknown-floor", message, floor.span, hint)
 
-    def place(self, location: PlaceLocation) -> Pose | None:
+    def numbers(self, floors: Iterable[FloorName]) -> list[int]:
+        """The numbers of floors."""
+        return [floor.number for floor in self.diagnostics.each(self.floor, floors)]
+
+    def place(self, location: PlaceLocation) -> Pose:
         """The pose of the named place; small words and the site's own name make no difference."""
         said = self._place_key(location.name)
         places = {self._place_key(place.name): place for place in self.catalog.places}
@@ -147,11 +127,15 @@ class Lookup:
         known = [place.name for place in self.catalog.places]
         known += [f"starting area {area.number}" for area in self.catalog.areas]
         hint = f"the places are {listed([*known, 'the docking station'])}"
-        self.diagnostics.error("unknown-place", message, location.span, hint)
-        return None
+        self.diagnostics.refuse("unknown-place", message, location.span, hint)
 
     def _place_key(self, name: str) -> str:
         return " ".join(word for word in name.lower().split() if word not in self._unsaid)
+
+
+def told(checkpoint: CheckpointInfo) -> str:
+    """`pressure gauge 1 (#4)`"""
+    return f"{checkpoint.name} (#{checkpoint.id})"
 
 
 def agrees(checkpoint: CheckpointInfo, kind: Kind) -> bool:

@@ -86,16 +86,14 @@ Find = Callable[[Steps], ProgramNode | None]
 """the first node of a step; None if there is none, with an error"""
 
 
-def lower_program(
-    block: ProgramBlock, find: Find, home: Callable[[HomeAhead], Do | None]
-) -> Lowered:
+def lower_program(block: ProgramBlock, find: Find, home: Callable[[HomeAhead], Do]) -> Lowered:
     """The tasks of a program. `home` is the drive with which the mission ends where a way home
     leads to it; it is put at the end unless it stands there."""
     return _Lowering(find, home).lower(block)
 
 
 class _Lowering:
-    def __init__(self, find: Find, home: Callable[[HomeAhead], Do | None]) -> None:
+    def __init__(self, find: Find, home: Callable[[HomeAhead], Do]) -> None:
         self.find = find
         self.home = home
         self.items: list[Item] = []
@@ -158,8 +156,6 @@ class _Lowering:
             return Point()
         if isinstance(target, HomeAhead):
             do = self.home(target)
-            if do is None:
-                return Point()
             if do.block is not None:
                 return self._point(do)
             if id(do) not in self.homes:

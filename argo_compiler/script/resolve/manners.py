@@ -9,8 +9,9 @@ from argo_compiler.script.resolve import making
 from argo_compiler.script.resolve.accepting import ROUND, said
 from argo_compiler.script.resolve.context import Context
 from argo_compiler.script.resolve.furnishing import Furnishing
-from argo_compiler.script.resolve.program import Choice, Do, ProgramNode, ProgramRound
-from argo_compiler.script.resolve.repeating import limits_of, timed
+from argo_compiler.script.resolve.limiting import make_round, timed
+from argo_compiler.script.resolve.program import Choice, Do, ProgramNode
+from argo_compiler.script.syntax.text.source import RefusedError
 from argo_compiler.script.syntax.tree import orders
 from argo_compiler.script.syntax.tree.manner import Manner
 from argo_compiler.script.syntax.tree.orders import ScriptOrder
@@ -65,45 +66,30 @@ class Manners:
         if not _is_round(order):
             self.furnish(order, tasks)
             return self.around(order, list(tasks))
-        round_order = timed(self.context, order)
-        if round_order is None:
-            return list(tasks)
+        round_order = timed(order, self.diagnostics)
         self.furnish(round_order, tasks)
-        round_ = self._round(round_order, tasks)
-        return self.around(order, list(tasks) if round_ is None else [round_])
-
-    def _round(self, order: ScriptOrder, tasks: Sequence[Do]) -> ProgramRound | None:
-        manner = order.manner
+        manner = round_order.manner
         if manner is not None and manner.times == 1 and (manner.more or manner.every is not None):
             # `once every ten minutes`, `again every ten minutes`
-            order = replace(order, manner=replace(manner, times=None, more=False))
-        limits = limits_of(self.context, order)
-        if limits is None:
-            return None
-        base = " and ".join(do.base for do in tasks)
-        round_ = ProgramRound(
-            f"Repeat {base}".replace("/", "-"), limits, order.span, self.context.new_round()
-        )
+            round_order = replace(round_order, manner=replace(manner, times=None, more=False))
+        base = f"Repeat {' and '.join(do.base for do in tasks)}"
+        round_ = make_round(round_order, base, self.context)
         self.context.put(tasks, round_.body, None)
-        return round_
+        return self.around(order, [round_])
 
-    def around(self, order: ScriptOrder, nodes: list[ProgramNode]) -> list[ProgramNode]:
+    def around(self, order: ScriptOrder, nodes: Sequence[ProgramNode]) -> list[ProgramNode]:
         """The nodes with a wait before them, in the case that is said of them only."""
-        manner = order.manner
-        if manner is None:
-            return nodes
+        manner = order.manner or Manner()
         if manner.delay is not None:
-            nodes.insert(0, making.wait(WaitRule(duration=manner.delay), order.span))
+            nodes = [making.wait(WaitRule(duration=manner.delay), order.span), *nodes]
         if manner.condition is None:
-            return nodes
+            return list(nodes)
         memory = self.context.memory
         measured = memory.last
         if isinstance(order, orders.Measure):
             memory.last = memory.before  # it is looked at before this order measures
         found = self.context.conditions.alternatives(manner.condition)
         memory.last = measured
-        if found is None:
-            return nodes
         choice = Choice(found, order.span, negated=manner.condition.negated)
         self.context.put(nodes, choice.then, None)
         return [choice]
@@ -119,18 +105,18 @@ class Manners:
         """Applies a sentence or clause of manner to the tasks before it."""
         recent = self.context.recent
         if not recent:
-            if self.context.whole:
-                message = "there is no task before this that it could belong to"
-                hint = "write it behind the task that it is said of"
-                self.diagnostics.error("no-task", message, order.span, hint)
-            return
+            if not self.context.whole:
+                raise RefusedError
+            message = "there is no task before this that it could belong to"
+            hint = "write it behind the task that it is said of"
+            self.diagnostics.refuse("no-task", message, order.span, hint)
         if isinstance(order, orders.Retry):
             self._retry(order, recent)
         else:
             self.furnish(order, recent)
 
     def _retry(self, order: orders.Retry, recent: Sequence[Do]) -> None:
-        manner = order.manner if order.manner is not None else Manner()
+        manner = order.manner or Manner()
         counts = [n for n in (manner.times, manner.at_most) if n is not None]
         retries = counts[0] if counts else 1
         if len(counts) > 1 or any(do.retries not in (0, retries) for do in recent):

@@ -1,13 +1,15 @@
 """Which checkpoints a noun phrase means; what can be read in two ways is asked about."""
 
-from collections.abc import Sequence
+from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import replace
+from typing import NoReturn
 
 from argo_compiler.catalog import CheckpointInfo
 from argo_compiler.diagnostics import Span
 from argo_compiler.listing import listed
-from argo_compiler.script.resolve.lookup import Lookup, agrees
-from argo_compiler.script.syntax.text.source import Diagnostics
+from argo_compiler.script.resolve.labels import LabelResolver
+from argo_compiler.script.resolve.lookup import Lookup, agrees, told
+from argo_compiler.script.syntax.text.source import Diagnostics, RefusedError
 from argo_compiler.script.syntax.tree.nouns import (
     AllOf,
     Kind,
@@ -19,8 +21,8 @@ from argo_compiler.script.syntax.tree.nouns import (
 )
 from argo_compiler.script.syntax.tree.places import FloorName
 
-Found = list[CheckpointInfo] | None
-"""None: it is not clear which, and an error says so"""
+_SHOWN = 6
+"""checkpoints that a message names"""
 
 
 class Memory:
@@ -33,102 +35,91 @@ class Memory:
         self.known = True
         """whether all that was ordered so far is understood"""
 
-    def measured(self, checkpoints: tuple[CheckpointInfo, ...]) -> None:
-        if checkpoints:
-            self.before, self.last = self.last, checkpoints
-            self.measured_ids.update(c.id for c in checkpoints)
+    def measured(self, checkpoints: Iterable[CheckpointInfo]) -> None:
+        if found := tuple(checkpoints):
+            self.before, self.last = self.last, found
+            self.measured_ids.update(c.id for c in found)
 
 
 class NounResolver:
-    """Looks noun phrases up."""
+    """Looks noun phrases up. All raise RefusedError where it is not clear what is meant."""
 
     def __init__(self, lookup: Lookup, diagnostics: Diagnostics, memory: Memory) -> None:
         self.lookup = lookup
+        self.labels = LabelResolver(lookup, diagnostics)
         self.diagnostics = diagnostics
         self.memory = memory
 
-    def all(self, nouns: Nouns) -> Found:
+    def all(self, nouns: Nouns) -> list[CheckpointInfo]:
         """The checkpoints of a list, in its order, each as often as it is named."""
         if nouns.either:
-            said = self.said(nouns.span)
+            said = self.diagnostics.source.said(nouns.span)
             message = f"`{said}` leaves open which of them, or whether both"
             hint = "write `and` for all of them, or name the one that is meant"
-            self.diagnostics.error("ambiguous-or", message, nouns.span, hint)
-            return None
+            self.diagnostics.refuse("ambiguous-or", message, nouns.span, hint)
         return self.each(nouns)
 
     def on(self, floors: Sequence[FloorName], nouns: Nouns) -> Nouns:
         """The phrase, of what is on these floors; a floor that it names itself has to be one."""
         placed: list[Noun] = []
         for noun in nouns.nouns:
-            if isinstance(noun, Pronoun) or noun.floors:
-                own = () if isinstance(noun, Pronoun) else noun.floors
-                if not own or not {f.number for f in own} <= {f.number for f in floors}:
-                    message = f"`{self.said(noun.span)}` is said to be on another floor as well"
-                    hint = "leave one of the two floors out"
-                    self.diagnostics.error("ambiguous-floor", message, noun.span, hint)
-                placed.append(noun)
-            else:
+            own = () if isinstance(noun, Pronoun) else noun.floors
+            if not isinstance(noun, Pronoun) and not own:
                 placed.append(replace(noun, floors=tuple(floors)))
+                continue
+            if not own or not {f.number for f in own} <= {f.number for f in floors}:
+                said = self.diagnostics.source.said(noun.span)
+                message = f"`{said}` is said to be on another floor as well"
+                hint = "leave one of the two floors out"
+                self.diagnostics.refuse("ambiguous-floor", message, noun.span, hint)
+            placed.append(noun)
         return replace(nouns, nouns=tuple(placed))
 
-    def each(self, nouns: Nouns) -> Found:
+    def each(self, nouns: Nouns) -> list[CheckpointInfo]:
         """As `all`, for lists joined by `or` as well."""
-        found: list[CheckpointInfo] = []
-        clear = True
-        kind: Kind | None = None
-        plural = False
-        for noun in nouns.nouns:
-            if isinstance(noun, Labelled) and noun.kind is not None:
-                kind, plural = noun.kind, noun.plural
-            one = self._noun(noun, kind, plural)
-            clear = clear and one is not None
-            found += one or []
-        if nouns.but:
-            return self._without(found, nouns) if clear else None
-        return found if clear else None
+        parts = self.diagnostics.each(lambda one: self._noun(*one), _inheriting(nouns.nouns))
+        found = [checkpoint for part in parts for checkpoint in part]
+        out: list[CheckpointInfo] = []
+        for noun, kind, _ in _inheriting(nouns.but):
+            for checkpoint in self._left_out(noun, kind, found):
+                if checkpoint not in found:
+                    message = f"{told(checkpoint)} is none of these anyway"
+                    hint = "is another one meant?"
+                    self.diagnostics.warning("needless-exception", message, noun.span, hint)
+                out.append(checkpoint)
+        left = [checkpoint for checkpoint in found if checkpoint not in out]
+        if not left:
+            message = f"`{self.diagnostics.source.said(nouns.span)}` leaves no checkpoint"
+            hint = "name those that are left"
+            self.diagnostics.refuse("no-checkpoint", message, nouns.span, hint)
+        return left
 
-    def one(self, nouns: Nouns) -> CheckpointInfo | None:
+    def one(self, nouns: Nouns) -> CheckpointInfo:
         """The only checkpoint of a phrase."""
         found = self.each(nouns)
-        if found is None:
-            return None
-        if len(found) == 1:
-            return found[0]
-        message = "this has to be one checkpoint"
-        self.diagnostics.error("one-checkpoint", message, nouns.span, "name one of them")
-        return None
+        if len(found) != 1:
+            message = "this has to be one checkpoint"
+            self.diagnostics.refuse("one-checkpoint", message, nouns.span, "name one of them")
+        return found[0]
 
-    def last(self, span: Span) -> Found:
+    def last(self, span: Span) -> list[CheckpointInfo]:
         """What was measured last, where a condition names nothing."""
         return self._pronoun(Pronoun(span=span))
 
-    def _without(self, found: list[CheckpointInfo], nouns: Nouns) -> Found:
-        """What is left of them; `the valve` is one of theirs."""
-        out: list[CheckpointInfo] = []
-        kind: Kind | None = None
-        for noun in nouns.but:
-            kind = noun.kind or kind if isinstance(noun, Labelled) else kind
-            inside = [c for c in found if agrees(c, noun.kind)] if isinstance(noun, TheOne) else []
-            one = inside if _is_told(noun, inside) else self._noun(noun, kind, plural=True)
-            if one is None:
-                return None
-            for checkpoint in one:
-                if checkpoint not in found:
-                    message = f"{checkpoint.name} (#{checkpoint.id}) is none of these anyway"
-                    hint = "is another one meant?"
-                    self.diagnostics.warning("needless-exception", message, noun.span, hint)
-            out += one
-        left = [checkpoint for checkpoint in found if checkpoint not in out]
-        if not left:
-            message = f"`{self.said(nouns.span)}` leaves no checkpoint"
-            self.diagnostics.error("no-checkpoint", message, nouns.span, "name those that are left")
-        return left or None
+    def _left_out(
+        self, noun: Noun, kind: Kind | None, found: list[CheckpointInfo]
+    ) -> list[CheckpointInfo]:
+        """What an exception means; `the valve` is one of those that were named before."""
+        if isinstance(noun, TheOne) and not noun.floors:
+            inside = [c for c in found if agrees(c, noun.kind)]
+            if len(inside) == 1 or (inside and noun.plural):
+                return inside
+        return self._noun(noun, kind, plural=True)
 
-    def _noun(self, noun: Noun, kind: Kind | None, plural: bool) -> Found:
+    def _noun(self, noun: Noun, kind: Kind | None, plural: bool) -> list[CheckpointInfo]:
         match noun:
             case Labelled():
-                return self._named(noun, kind, plural)
+                return self.labels.named(noun, kind, plural)
             case AllOf():
                 return self._of_kind(noun)
             case TheOne():
@@ -136,168 +127,67 @@ class NounResolver:
             case Pronoun():
                 return self._pronoun(noun)
 
-    # ---- by a label
-
-    def _named(self, noun: Labelled, kind: Kind | None, plural: bool) -> Found:
-        if noun.last is not None:
-            return self._range(noun, kind)
-        found = self._labelled(noun, noun.label, kind, plural)
-        if found is not None and noun.also is not None:
-            other = self._labelled(noun.also, noun.also.label, noun.also.kind, False)
-            if other is None:
-                return None
-            if other is not found:
-                message = (
-                    f"checkpoint #{found.id} is {found.name}, and {other.name} is "
-                    f"checkpoint #{other.id}"
-                )
-                hint = "correct the number or the name"
-                self.diagnostics.error("checkpoint-mismatch", message, noun.also.span, hint)
-                return None
-        if found is not None and not self._lies_there(found, noun):
-            return None
-        if found is not None:
-            self.lookup.check_quantity(found, noun.quantity, noun.span)
-            if noun.also is not None:
-                self.lookup.check_quantity(found, noun.also.quantity, noun.also.span)
-        return None if found is None else [found]
-
-    def _range(self, noun: Labelled, kind: Kind | None) -> Found:
-        first, last = noun.label, noun.last
-        if not isinstance(first, int) or not isinstance(last, int):
-            message = "a range goes from a number to a number"
-            self.diagnostics.error("range", message, noun.span, "name each of them")
-            return None
-        if first > last:
-            message = "this range of checkpoints is empty"
-            hint = "write the lower number first"
-            self.diagnostics.error("empty-range", message, noun.span, hint)
-            return None
-        found: list[CheckpointInfo] = []
-        for number in range(first, last + 1):
-            one = self._labelled(noun, number, kind, True)
-            if one is None or not self._lies_there(one, noun):
-                return None
-            found.append(one)
-        return found
-
-    def _lies_there(self, found: CheckpointInfo, noun: Labelled) -> bool:
-        """Whether a checkpoint is on the floor that is said."""
-        floors = self._floors(noun.floors)
-        if floors is None or (floors and found.floor not in floors):
-            if floors:
-                where = f"on floor {found.floor}, not on floor {listed(map(str, floors), 'or')}"
-                message = f"{found.name} (#{found.id}) is {where}"
-                hint = "correct the floor or the name"
-                self.diagnostics.error("checkpoint-mismatch", message, noun.span, hint)
-            return False
-        return True
-
-    def _floors(self, named: Sequence[FloorName]) -> list[int] | None:
-        """The numbers of floors; None if there is one that is not there."""
-        found = [floor.number for f in named if (floor := self.lookup.floor(f)) is not None]
-        return None if len(found) < len(named) else found
-
-    def _labelled(
-        self, noun: Labelled, label: int | str, kind: Kind | None, plural: bool
-    ) -> CheckpointInfo | None:
-        if noun.hash or kind in (None, Kind.CHECKPOINT):
-            numbered = kind not in (None, Kind.CHECKPOINT) and (noun.kind or plural)
-            if isinstance(label, int) and kind is not None and numbered:
-                return self.lookup.numbered_of_kind(label, kind, noun.span)
-            if isinstance(label, int):
-                return self.lookup.numbered(label, noun.span)
-            return self.lookup.identified(label, noun.kind, noun.span)
-        if noun.kind is None and not plural and isinstance(label, int):
-            return self._inherited(noun, label, kind)
-        return self.lookup.identified(str(label), kind, noun.span)
-
-    def _inherited(self, noun: Labelled, label: int, kind: Kind | None) -> CheckpointInfo | None:
-        """`valve R25 and 5`: a number behind one of a kind may be a name or a number."""
-        named = self.lookup.called(str(label), kind)
-        numbered = self.lookup.by_number.get(label)
-        readings = [f"{c.name} (#{c.id})" for c in named]
-        if numbered is not None and numbered not in named:
-            readings.append(f"checkpoint #{label} ({numbered.name})")
-        message = f"`{label}` can be read as {listed(readings, 'or')}"
-        if not readings:
-            return self.lookup.numbered(label, noun.span)
-        hint = f"write `checkpoint {label}` or `{kind} {label}`"
-        self.diagnostics.error("ambiguous-checkpoint", message, noun.span, hint)
-        return None
-
     # ---- by kind, floor and what came before
 
-    def _of_kind(self, noun: AllOf) -> Found:
-        floors = self._floors(noun.floors)
-        if floors is None:
-            return None
+    def _of_kind(self, noun: AllOf) -> list[CheckpointInfo]:
+        floors = self.lookup.numbers(noun.floors)
         found = self.lookup.of_kind(noun.kind, floors)
         if not found:
             where = f" on floor {listed(map(str, floors), 'or')}" if floors else ""
             message = f"there is no {noun.kind}{where} on {self.lookup.catalog.site}"
-            self.diagnostics.error("unknown-checkpoint", message, noun.span, "name another floor")
-            return None
+            self.diagnostics.refuse("unknown-checkpoint", message, noun.span, "name another floor")
         if noun.count is not None and noun.count != len(found):
-            names = listed(f"{c.name} (#{c.id})" for c in found[:6])
-            message = f"`{self.said(noun.span)}`: there are {len(found)}, {names}"
-            self.diagnostics.error("ambiguous-checkpoint", message, noun.span, "name them")
-            return None
+            said = self.diagnostics.source.said(noun.span)
+            message = f"`{said}`: there are {len(found)}, {listed(map(told, found[:_SHOWN]))}"
+            self.diagnostics.refuse("ambiguous-checkpoint", message, noun.span, "name them")
         return found
 
-    def _the_one(self, noun: TheOne) -> Found:
+    def _the_one(self, noun: TheOne) -> list[CheckpointInfo]:
+        everything = AllOf(span=noun.span, kind=noun.kind, floors=noun.floors)
         last = [c for c in self.memory.last if agrees(c, noun.kind)]
-        if noun.plural:
-            everything = AllOf(span=noun.span, kind=noun.kind, floors=noun.floors)
-            return last if len(last) > 1 and not noun.floors else self._of_kind(everything)
-        if not noun.floors and len(last) == 1:
+        if not noun.floors and (len(last) > 1 if noun.plural else len(last) == 1):
             return last
-        if not noun.floors and not last:
+        if not noun.plural and not noun.floors and not last:
             self._nothing_before(noun.span)
-            return None
-        found = self._of_kind(AllOf(span=noun.span, kind=noun.kind, floors=noun.floors))
-        if found is None or len(found) == 1:
+        found = self._of_kind(everything)
+        if noun.plural or len(found) == 1:
             return found
-        names = listed((f"{c.name} (#{c.id})" for c in (last or found)[:6]), "or")
-        message = f"`{self.said(noun.span)}` can be {names}"
-        self.diagnostics.error("ambiguous-checkpoint", message, noun.span, "name the one")
-        return None
+        self._ambiguous("ambiguous-checkpoint", noun, last or found)
 
-    def _pronoun(self, noun: Pronoun) -> Found:
+    def _pronoun(self, noun: Pronoun) -> list[CheckpointInfo]:
         last = self.memory.last
         if not last:
             self._nothing_before(noun.span)
-            return None
         if noun.every and len(last) == len(self.memory.before) == 1:
             both = [*self.memory.before, *last]
             if not noun.or_one:
                 return both
-            one, two = (f"{c.name} (#{c.id})" for c in both)
-            message = f"`{self.said(noun.span)}` can be {two}, or both {one} and {two}"
-            self.diagnostics.error("ambiguous-pronoun", message, noun.span, "name them")
-            return None
+            one, two = map(told, both)
+            said = self.diagnostics.source.said(noun.span)
+            message = f"`{said}` can be {two}, or both {one} and {two}"
+            self.diagnostics.refuse("ambiguous-pronoun", message, noun.span, "name them")
         if len(last) == 1 or noun.every:
             return list(last)
-        names = listed((f"{c.name} (#{c.id})" for c in last[:6]), "or")
-        message = f"`{self.said(noun.span)}` can be {names}"
-        self.diagnostics.error("ambiguous-pronoun", message, noun.span, "name the one")
-        return None
+        self._ambiguous("ambiguous-pronoun", noun, last)
 
-    def _nothing_before(self, span: Span) -> None:
-        if self.memory.known:
-            message = "nothing has been measured before this, so it does not say which checkpoint"
-            hint = "name it: `checkpoint #1`"
-            self.diagnostics.error("which-checkpoint", message, span, hint)
+    def _ambiguous(self, code: str, noun: Noun, found: Sequence[CheckpointInfo]) -> NoReturn:
+        said = self.diagnostics.source.said(noun.span)
+        message = f"`{said}` can be {listed(map(told, found[:_SHOWN]), 'or')}"
+        self.diagnostics.refuse(code, message, noun.span, "name the one")
 
-    def said(self, first: Span, last: Span | None = None) -> str:
-        """The words of the script from the beginning of one span to the end of the other."""
-        line = self.diagnostics.source.lines[first.line - 1]
-        end = last if last is not None and last.line == first.line else first
-        return line[first.column - 1 : end.column - 1 + end.length]
+    def _nothing_before(self, span: Span) -> NoReturn:
+        if not self.memory.known:
+            raise RefusedError
+        message = "nothing has been measured before this, so it does not say which checkpoint"
+        hint = "name it: `checkpoint #1`"
+        self.diagnostics.refuse("which-checkpoint", message, span, hint)
 
 
-def _is_told(noun: Noun, inside: list[CheckpointInfo]) -> bool:
-    """Whether a phrase without a name tells which of these are meant."""
-    if not isinstance(noun, TheOne) or noun.floors:
-        return False
-    return bool(inside) if noun.plural else len(inside) == 1
+def _inheriting(nouns: Iterable[Noun]) -> Iterator[tuple[Noun, Kind | None, bool]]:
+    """Each with the kind that it has from those before it, and whether that is in the plural."""
+    kind: Kind | None = None
+    plural = False
+    for noun in nouns:
+        if isinstance(noun, Labelled) and noun.kind is not None:
+            kind, plural = noun.kind, noun.plural
+        yield noun, kind, plural

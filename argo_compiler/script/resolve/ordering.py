@@ -1,8 +1,10 @@
 """Whether the order of the tasks is free, and what has to come before what."""
 
 from collections.abc import Iterable, Mapping
+from contextlib import suppress
 from dataclasses import dataclass, field
-from itertools import groupby, pairwise
+from functools import partial
+from itertools import groupby, pairwise, product
 
 from argo_compiler.catalog import CheckpointInfo
 from argo_compiler.checks.precedence import check_precedence
@@ -16,6 +18,7 @@ from argo_compiler.script.resolve.program import (
     all_nodes,
     inner_blocks,
 )
+from argo_compiler.script.syntax.text.source import RefusedError
 from argo_compiler.script.syntax.tree.facts import ReadBefore, StepsOrdered
 from argo_compiler.script.syntax.tree.places import Steps
 from argo_compiler.script.syntax.tree.script import ScriptHeader
@@ -51,37 +54,39 @@ class Ordering:
 
     def precedence(self, fact: ReadBefore) -> None:
         """Takes down that checkpoints come before others."""
-        first, second = self.context.nouns.all(fact.first), self.context.nouns.all(fact.second)
-        if first is not None and second is not None:
-            self.asked.append((fact.span, tuple(first), tuple(second)))
+        first, second = self.context.diagnostics.each(
+            self.context.nouns.all, (fact.first, fact.second)
+        )
+        self.asked.append((fact.span, tuple(first), tuple(second)))
 
     def finish(self, program: ProgramBlock) -> Order:
         """The order of the mission, when all is planned."""
-        order = self._order(program)
+        order, diagnostics = self._order(program), self.context.diagnostics
         for do in _tasks(program) if self.left_out else ():
             do.optional = do.optional or _may_move(do)
         if order is Order.ANY:
             for span, nodes in self.precise:
                 self.pairs += [(span, a, b) for a, b in pairwise(_tasks(nodes))]
         for span, first, second in self.asked:
-            for one in first:
-                for other in second:
-                    self._pair(span, one, other)
+            for one, other in product(first, second):
+                with suppress(RefusedError):
+                    a, b = diagnostics.each(partial(self._planned, span), (one, other))
+                    self.pairs.append((span, a, b))
         for fact in self.steps:
-            first_of, second_of = self._of_steps(fact.first), self._of_steps(fact.second)
-            self.pairs += [(fact.span, a, b) for a in first_of for b in second_of]
+            with suppress(RefusedError):
+                before, after = diagnostics.each(self._of_steps, (fact.first, fact.second))
+                self.pairs += [(fact.span, a, b) for a, b in product(before, after)]
         return order
 
     def _of_steps(self, steps: Steps) -> list[Do | str]:
         """The tasks of steps; those that were left out, by their names."""
         if set(steps.points) <= set(self.header.left_out):
             return [str(point) for point in steps.points]
-        nodes = self.context.nodes_of(steps)
-        tasks = _tasks(nodes or ())
-        if nodes is not None and not tasks:
+        tasks = _tasks(self.context.nodes_of(steps))
+        if not tasks:
             hint = "name a step that measures or drives"
             message = "no task of this step is in the plan"
-            self.context.diagnostics.error("not-planned", message, steps.span, hint)
+            self.context.diagnostics.refuse("not-planned", message, steps.span, hint)
         return list(tasks)
 
     def _order(self, program: ProgramBlock) -> Order:
@@ -108,7 +113,7 @@ class Ordering:
             # `#4 and #8 in any order, then #1`: what is not said so keeps its place.
             groups = [list(g) for _, g in groupby(tasks, lambda do: free.get(id(do), id(do)))]
             for before, after in pairwise(groups):
-                self.pairs += [(span, a, b) for a in before for b in after]
+                self.pairs += [(span, a, b) for a, b in product(before, after)]
             return Order.ANY
         message = "only some tasks are to be done in any order here: they keep the one as written"
         hint = "write `The order is free.` if that is so of all"
@@ -120,23 +125,21 @@ class Ordering:
         hint = "leave one of the two out"
         self.context.diagnostics.error("repeated-field", message, span, hint)
 
-    def _pair(self, span: Span, first: CheckpointInfo, second: CheckpointInfo) -> None:
+    def _planned(self, span: Span, checkpoint: CheckpointInfo) -> Do:
+        """The only measurement of a checkpoint."""
         context = self.context
-        found: list[Do] = []
-        for checkpoint in (first, second):
-            planned = list(context.measured.get(str(checkpoint.id), {}).values())
-            name = f"checkpoint #{checkpoint.id}"
-            if len(planned) == 1:
-                found += planned
-            elif planned:
-                message = f"{name} is measured more than once, so it is not clear what comes first"
-                hint = "leave this out, or write the order in which they are measured"
-                context.diagnostics.error("ambiguous-edit", message, span, hint)
-            elif context.whole:
-                hint = f"ask for it: `Check the {name}`"
-                context.diagnostics.error("not-planned", f"{name} is not in the plan", span, hint)
-        if len(found) == 2:
-            self.pairs.append((span, found[0], found[1]))
+        planned = context.measurements(checkpoint)
+        name = f"checkpoint #{checkpoint.id}"
+        if len(planned) == 1:
+            return planned[0]
+        if planned:
+            message = f"{name} is measured more than once, so it is not clear what comes first"
+            hint = "leave this out, or write the order in which they are measured"
+            context.diagnostics.refuse("ambiguous-edit", message, span, hint)
+        if not context.whole:
+            raise RefusedError
+        hint = f"ask for it: `Check the {name}`"
+        context.diagnostics.refuse("not-planned", f"{name} is not in the plan", span, hint)
 
     def named(self, names: Mapping[int, str]) -> tuple[tuple[str, str], ...]:
         """The pairs by the names of their tasks."""

@@ -2,6 +2,7 @@
 
 import math
 from dataclasses import replace
+from typing import NoReturn
 
 from argo_compiler.catalog import Area
 from argo_compiler.diagnostics import Span
@@ -35,31 +36,27 @@ class Starting:
 
     # ---- the start
 
-    def set(self, order: orders.Start) -> list[Do]:
-        """The start that a script sets."""
+    def set(self, order: orders.Start) -> Do:
+        """The start that a script sets. Raises RefusedError if there is another one."""
         if self.start_at is not None:
             message = f"the starting point is already set in line {self.start_at.line}"
             hint = "leave one of the two out"
-            self.diagnostics.error("second-start", message, order.span, hint)
-            return []
+            self.diagnostics.refuse("second-start", message, order.span, hint)
         self.start_at = order.span
         pose, area = None, None
         if order.where is not None:
             pose, area = self.context.locator.locate(order.where, "start")
-            if pose is None:
-                return []
         wanted = self.header.start
         other = area is None or area.number != wanted.area
         if wanted.area is not None and not wanted.as_planned and other:
             self._conflict(order.span)
-            return []
         self.start_area = area.number if area else None
-        if order.ends_there and not self._ends_in(area, order.span):
-            return []
+        if order.ends_there:
+            self._end_in(area, order.span)
         self.start = making.start(pose, order.span)
-        return [self.start]
+        return self.start
 
-    def _ends_in(self, area: Area | None, span: Span) -> bool:
+    def _end_in(self, area: Area | None, span: Span) -> None:
         """Lets the mission end where it starts."""
         end = self.header.end
         if area is None or (end.area is not None and end.area != area.number):
@@ -67,12 +64,10 @@ class Starting:
             if area is not None:
                 message = f"the mission is to end in starting area {end.area}, not {area.number}"
             hint = "say in another sentence where it ends"
-            self.diagnostics.error("area-conflict", message, span, hint)
-            return False
+            self.diagnostics.refuse("area-conflict", message, span, hint)
         self.header = replace(self.header, end=AreaChoice(area.number, span, said=True))
-        return True
 
-    def _conflict(self, span: Span) -> None:
+    def _conflict(self, span: Span) -> NoReturn:
         wanted = self.header.start
         message = f"the starting area {wanted.area} contradicts the script's starting point"
         hint = "choose none, or take the starting point out of the script"
@@ -81,7 +76,7 @@ class Starting:
             remedies = ()
             message = f"line {wanted.span.line} says that it starts in area {wanted.area}"
             hint = "leave one of the two out, or add `as planned` to the header line"
-        self.diagnostics.error("area-conflict", message, span, hint, remedies)
+        self.diagnostics.refuse("area-conflict", message, span, hint, remedies)
 
     def begin(self) -> None:
         """Where the mission starts if only the header says it; known before the orders are."""
@@ -93,56 +88,47 @@ class Starting:
         wanted = self.header.start
         if wanted.area is not None and not wanted.as_planned:
             area = self.lookup.area(wanted.area, wanted.span)
-            if area:
-                self.start_area = area.number
-                self.start = making.start(area.dock, wanted.span)
+            self.start_area = area.number
+            self.start = making.start(area.dock, wanted.span)
         elif self.context.whole and not wanted.said:
             known = listed((str(a.number) for a in self.lookup.catalog.areas), "or")
             hint = f"write `Start in starting area 1`, or choose area {known}"
             message = "the script sets no starting point"
-            self.diagnostics.error("no-start", message, None, hint, (Remedy.CHOOSE_START,))
+            self.diagnostics.refuse("no-start", message, None, hint, (Remedy.CHOOSE_START,))
 
     # ---- the end
 
-    def docking_area(self, dock: DockLocation) -> Area | None:
+    def docking_area(self, dock: DockLocation) -> Area:
         """The area into whose dock the mission drives at its end: the one that is named, else that
         of the header's end, else that of the start, else the nearest to it, with a warning."""
         option = None if self.header.end.as_planned else self.header.end.area
+        number = self.start_area if option is None else option
         if dock.area is not None:
-            named = dock.area.area
-            if option is not None and option != named:
-                message = f"the mission is to end in starting area {option}, not {named}"
-                hint = (
-                    "leave out the end area given beside (or `End area:`), or the one in this line"
-                )
-                self.diagnostics.error("area-conflict", message, dock.span, hint)
-                return None
-            area = self.lookup.area(named, dock.span)
-        else:
-            number = option if option is not None else self.start_area
-            area = self.lookup.area(number, dock.span) if number is not None else None
-            if area is None and number is None:
-                area = self._nearest(dock.span)
-        if area is not None:
-            self.end_area = area.number
+            number = dock.area.area
+            if option not in (None, number):
+                message = f"the mission is to end in starting area {option}, not {number}"
+                hint = "leave out the end area given beside (or `End area:`), or the one in this "
+                hint += "line"
+                self.diagnostics.refuse("area-conflict", message, dock.span, hint)
+        area = self._nearest(dock.span) if number is None else self.lookup.area(number, dock.span)
+        self.end_area = area.number
         return area
 
-    def _nearest(self, span: Span) -> Area | None:
+    def _nearest(self, span: Span) -> Area:
         """The dock nearest to the start, which is assumed."""
         areas = self.lookup.catalog.areas
         if not areas:
             message = "there is no docking station on this site"
-            self.diagnostics.error("area-choice", message, span, "name a place to go to")
-            return None
+            self.diagnostics.refuse("area-choice", message, span, "name a place to go to")
         at = self.start.pose if self.start is not None else None
         area = min(areas, key=lambda a: 0.0 if at is None else _distance(at, a.dock))
         if self.assumed is None:
             self.assumed = area
             where = "nearest to where it starts" if at is not None else "first of the site"
             message = (
-                f"this does not say which docking station; that of starting area {area.number} is "
-                f"taken, the {where}"
+                f"this does not say which docking station; that of starting area {area.number} "
             )
+            message += f"is taken, the {where}"
             hint = f"write `the docking station in starting area {area.number}`"
             self.diagnostics.warning("dock-assumed", message, span, hint)
         return area
@@ -153,8 +139,7 @@ class Starting:
         if context.program.first is None and context.whole:
             hint = "give it steps such as `Check the checkpoint #14`"
             message = "the script has nothing to do"
-            self.diagnostics.error("nothing-to-do", message, None, hint)
-            return
+            self.diagnostics.refuse("nothing-to-do", message, None, hint)
         if self.start_at is None:
             self._start_unsaid()
         if self.start is not None and not self.start.listed:
@@ -166,11 +151,9 @@ class Starting:
             self.end_area = end.area
         elif end.area is not None and (context.docked is None or not context.docked.listed):
             area = self.lookup.area(end.area, end.span)
-            if area:
-                self.end_area = area.number
-                docked = making.dock(area.dock, end.span)
-                context.put([docked], context.program, context.program.last)
-                context.docked = docked
+            self.end_area = area.number
+            context.docked = making.dock(area.dock, end.span)
+            context.put([context.docked], context.program, context.program.last)
         self._find_dock()
 
     def _find_dock(self) -> None:
@@ -184,14 +167,11 @@ class Starting:
                 self.dock = area.dock
                 return
 
-    def home(self, ahead: HomeAhead) -> Do | None:
+    def home(self, ahead: HomeAhead) -> Do:
         """The drive with which the mission ends where a way leads home."""
         pose = ahead.dock or self.dock
         if pose is None:
-            area = self._nearest(ahead.span)
-            if area is None:
-                return None
-            pose = self.dock = area.dock
+            pose = self.dock = self._nearest(ahead.span).dock
         last = self.context.program.last
         if isinstance(last, Do) and last.docks and not last.ways and last.pose == pose:
             return last

@@ -1,13 +1,16 @@
 """Goes through the steps of a script, with those that lie within others."""
 
 from collections.abc import Sequence
+from contextlib import suppress
 from dataclasses import replace
 
 from argo_compiler.il import Order
-from argo_compiler.script.resolve.accepting import accepts, said
+from argo_compiler.script.resolve.accepting import require_used, said
 from argo_compiler.script.resolve.context import Context
+from argo_compiler.script.resolve.limiting import make_round
 from argo_compiler.script.resolve.planning import Planner
 from argo_compiler.script.resolve.program import Do, ProgramBlock, all_nodes
+from argo_compiler.script.syntax.text.source import RefusedError
 from argo_compiler.script.syntax.tree import facts, orders
 from argo_compiler.script.syntax.tree.facts import Fact
 from argo_compiler.script.syntax.tree.manner import Manner
@@ -53,39 +56,46 @@ class Stepping:
             ends = i == len(sentences) and not step.steps
             self.context.number = number if ends else None
             errors = self.context.diagnostics.errors
-            if isinstance(sentence, Unread):
-                self.context.fail()
-            elif isinstance(sentence, Fact):
-                self._fact(sentence)
-            else:
+            if isinstance(sentence, Sentence):
                 self.planner.sentence(self._without_limit(sentence), block)
                 for fact in sentence.facts:
                     self._fact(fact)
-            if self.context.diagnostics.errors > errors:
+            elif not isinstance(sentence, Unread):
+                self._fact(sentence)
+            if isinstance(sentence, Unread) or self.context.diagnostics.errors > errors:
                 self.context.fail()
-        inner, free = block, None
-        if following is not None and following.manner is not None:
-            if not accepts(following, self.context.diagnostics):
-                return
-            if said(following.manner) <= {"order", "by_importance"}:
-                free = {id(node) for node in all_nodes(block)}
-            else:
-                round_ = self.planner.repeating.round(following, "Repeat")
-                if round_ is None:
-                    return
-                self.context.put([round_], block, block.last)
-                self.context.step.append(round_)
-                inner = round_.body
-        for one in step.steps:
-            self._step(one, inner)
-        if following is not None and following.manner is not None:
-            known = free or set()
-            tasks = [n for n in all_nodes(inner) if isinstance(n, Do) and id(n) not in known]
-            if following.manner.order is not None:
-                self.planner.ordering.say(following.manner.order, tasks, following.span)
-            if following.manner.by_importance:
-                of_each = Manner(by_importance=True)
-                self.planner.manners.furnishing.furnish(of_each, following.span, tasks)
+        if following is None or following.manner is None:
+            for one in step.steps:
+                self._step(one, block)
+            return
+        with suppress(RefusedError):
+            self._follow(following, following.manner, step.steps, block)
+
+    def _follow(
+        self,
+        order: ScriptOrder,
+        manner: Manner,
+        steps: Sequence[ScriptStep],
+        block: ProgramBlock,
+    ) -> None:
+        """Plans the steps within one that says how they are done."""
+        require_used(order, self.context.diagnostics)
+        known: set[int] = set()
+        if said(manner) <= {"order", "by_importance"}:
+            known = {id(node) for node in all_nodes(block)}
+        else:
+            round_ = make_round(order, "Repeat", self.context, order.name)
+            self.context.put([round_], block, block.last)
+            self.context.step.append(round_)
+            block = round_.body
+        for one in steps:
+            self._step(one, block)
+        tasks = [n for n in all_nodes(block) if isinstance(n, Do) and id(n) not in known]
+        if manner.order is not None:
+            self.planner.ordering.say(manner.order, tasks, order.span)
+        if manner.by_importance:
+            of_each = Manner(by_importance=True)
+            self.planner.manners.furnishing.furnish(of_each, order.span, tasks)
 
     def _without_limit(self, sentence: Sentence) -> Sentence:
         """The sentence without how long the mission may take: `at most 25 minutes in total`."""
@@ -139,7 +149,8 @@ class Stepping:
                 order = orders.Repeat(span=fact.span, steps=fact.steps, manner=manner)
                 self.planner.order(order, self.context.program)
             case facts.ReadBefore():
-                self.planner.ordering.precedence(fact)
+                with suppress(RefusedError):
+                    self.planner.ordering.precedence(fact)
             case facts.StepsOrdered():
                 self.planner.ordering.steps.append(fact)
             case facts.LeaveOut():

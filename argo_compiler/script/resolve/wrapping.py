@@ -51,8 +51,7 @@ class Wrapping:
         if tail and (not follows or round_ in found):
             message = "a condition behind a repetition is looked at after its last round"
             hint = "write the repetition behind the steps that it repeats"
-            self.diagnostics.error("not-planned", message, order.span, hint)
-            return
+            self.diagnostics.refuse("not-planned", message, order.span, hint)
         for node in (round_, *tail):
             assert node.block is not None
             node.block.remove(node)
@@ -87,16 +86,13 @@ class Wrapping:
         if order.steps is None:
             return self._all(round_)
         nodes = self.context.nodes_of(order.steps)
-        if nodes is None:
-            return []
         later = {id(n) for n in list(repetition.late)[repetition.known :]}
         nodes = [n for n in nodes if id(n) not in later and id(n) not in behind and _repeats(n)]
         if not nodes:
             said = " to ".join(str(p) for p in order.steps.points)
             message = f"step {said} leaves nothing to do that could be repeated"
             hint = "name a step that measures or drives"
-            self.diagnostics.error("empty-step", message, order.steps.span, hint)
-            return []
+            self.diagnostics.refuse("empty-step", message, order.steps.span, hint)
         known = {id(node) for node in nodes}
         if order.steps.through and not all(isinstance(p, int) for p in order.steps.points):
             known |= _between(nodes[0], nodes[-1])
@@ -105,8 +101,7 @@ class Wrapping:
         if any(not _covered(top, known) for top in tops):
             message = "these steps and those of another repetition have only some in common"
             hint = "let one lie in the other as a whole, or separate them"
-            self.diagnostics.error("overlap", message, order.span, hint)
-            return []
+            self.diagnostics.refuse("overlap", message, order.span, hint)
         return self._together(order, tops)
 
     def _all(self, round_: ProgramRound) -> list[ProgramNode]:
@@ -134,14 +129,12 @@ class Wrapping:
         if missing:
             message = "the first of these steps comes after the last one"
             hint = "write the earlier one first"
-            self.diagnostics.error("step-range", message, order.span, hint)
-            return []
+            self.diagnostics.refuse("step-range", message, order.span, hint)
         listed = len(order.steps.points) > 1 and not order.steps.through
         if listed and any(_repeats(node) and id(node) not in ends for node in found):
             message = "these steps are not next to each other"
             hint = "repeat steps that follow each other"
-            self.diagnostics.error("step-range", message, order.span, hint)
-            return []
+            self.diagnostics.refuse("step-range", message, order.span, hint)
         return found
 
 

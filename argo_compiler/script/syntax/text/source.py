@@ -2,9 +2,10 @@
 
 import re
 from bisect import bisect_right
-from collections.abc import Iterable, Sequence
+from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass, field
 from functools import cached_property
+from typing import NoReturn, TypeVar
 
 from argo_compiler.diagnostics import MAX_EXCERPT, Diagnostic, Severity, Span
 from argo_compiler.errors import Remedy
@@ -16,6 +17,12 @@ _BEGINNING = 80
 _MOST_KEPT = 500
 """errors; further ones are counted, but not kept"""
 _LINE_END = re.compile(r"\r\n|\r|\n")
+_Item = TypeVar("_Item")
+_Found = TypeVar("_Found")
+
+
+class RefusedError(Exception):
+    """Something that a script asks for is given up; an error among the diagnostics says why."""
 
 
 @dataclass(frozen=True)
@@ -47,6 +54,11 @@ class Source:
     @cached_property
     def _starts(self) -> list[int]:
         return [start for start, _ in self._bounds]
+
+    def said(self, first: Span, last: Span | None = None) -> str:
+        """The words from the beginning of one span to the end of the other in the same line."""
+        end = last if last is not None and last.line == first.line else first
+        return self.lines[first.line - 1][first.column - 1 : end.column - 1 + end.length]
 
     def line_text(self, number: int) -> "ScriptText":
         """Line `number`, counted from 1, without its end."""
@@ -134,6 +146,31 @@ class Diagnostics:
         remedies: tuple[Remedy, ...] = (),
     ) -> None:
         self._add(Severity.ERROR, code, message, span, hint, remedies)
+
+    def refuse(
+        self,
+        code: str,
+        message: str,
+        span: Span | None,
+        hint: str | None = None,
+        remedies: tuple[Remedy, ...] = (),
+    ) -> NoReturn:
+        """Adds an error, and gives up what it is about. Raises RefusedError."""
+        self.error(code, message, span, hint, remedies)
+        raise RefusedError
+
+    def each(self, find: Callable[[_Item], _Found], items: Iterable[_Item]) -> list[_Found]:
+        """What is found for each; if something is refused, only after all have been looked at."""
+        found: list[_Found] = []
+        refused = False
+        for item in items:
+            try:
+                found.append(find(item))
+            except RefusedError:
+                refused = True
+        if refused:
+            raise RefusedError
+        return found
 
     def warning(self, code: str, message: str, span: Span | None, hint: str | None = None) -> None:
         self._add(Severity.WARNING, code, message, span, hint, ())

@@ -1,0 +1,42 @@
+"""From `wait until ...` to what a task waits for."""
+
+from dataclasses import replace
+
+from argo_compiler.il import EventKind, WaitRule
+from argo_compiler.script.resolve.context import Context
+from argo_compiler.script.syntax.tree.conditions import Occurs
+from argo_compiler.script.syntax.tree.manner import Manner
+from argo_compiler.script.syntax.tree.orders import WaitOrder
+
+
+def wait_rule(order: WaitOrder, context: Context) -> WaitRule:
+    """How long it waits, or for what. Raises RefusedError if that is not clear."""
+    diagnostics = context.diagnostics
+    manner = order.manner or Manner()
+    until, duration, limit = manner.until, manner.duration, manner.time_limit
+    if order.person:
+        message = "a mission does not wait for a person"
+        hint = "let somebody pause it there, or write how long: `wait 5 minutes`"
+        diagnostics.refuse("wait", message, order.span, hint)
+    if until is None:
+        if duration is None:
+            message = "this does not say how long, or for what"
+            hint = "write `wait 90 s`, `wait until #1 is below 3` or `wait for the all-clear`"
+            diagnostics.refuse("wait", message, order.span, hint)
+        if limit is not None:
+            message = "a wait that lasts for a time has no other limit"
+            diagnostics.refuse("wait", message, order.span, "leave one of them out")
+        return WaitRule(duration=duration)
+    if limit is not None and duration is not None:
+        message = "how long it waits at most is said twice"
+        diagnostics.refuse("repeated-limit", message, order.span, "leave one of them out")
+    limit = duration if limit is None else limit
+    event: EventKind | None = None
+    match until.alternatives:
+        case ((Occurs(event=EventKind() as awaited),), *others) if len(others) < 2:
+            event, until = awaited, replace(until, alternatives=tuple(others))
+    conditions = context.conditions.alternatives(until)
+    if len(conditions) > 1:
+        message = "a wait ends by conditions that all hold, not by one of several"
+        diagnostics.refuse("wait", message, until.span, "join them by `and`")
+    return WaitRule(event=event, conditions=conditions[0] if conditions else (), limit=limit)

@@ -7,6 +7,7 @@ from argo_compiler.script.syntax.asides import Asides
 from argo_compiler.script.syntax.text.source import Diagnostics, ScriptText
 from argo_compiler.script.syntax.tree.script import AreaChosen, Areas
 from argo_compiler.script.syntax.understanding import Understanding
+from argo_compiler.script.syntax.words.lexicon import expand
 from argo_compiler.script.syntax.words.word import Word
 
 _TOKEN = re.compile(r"[\w'-]+")
@@ -66,7 +67,7 @@ class AreaCells:
         return bool(types & {"NOT", "IF", "IF_ONLY", "UNLESS", "EXCEPT", "AREA", "NUMBER", "ELSE"})
 
     def _refuse_strays(self, value: ScriptText, end: int, covered: list[tuple[int, int]]) -> None:
-        around = frozenset(self.prose.around_areas.split("|"))
+        around = frozenset(expand(self.prose.around_areas))
         for token in _TOKEN.finditer(value.content, 0, end):
             said = token[0].lower()
             if any(a <= token.start() < b for a, b in covered):
@@ -95,7 +96,7 @@ class AreaCells:
     def chosen(self, value: ScriptText) -> AreaChosen | None:
         """`1`, `none`, `1, as planned`."""
         said, comma, behind = value.content.partition(",")
-        planned = ("as planned", behind.strip().lower()) in self.prose.meanings
+        planned = ("as_planned", behind.strip().lower()) in self.prose.meanings
         number = re.fullmatch(
             r"(?:(?:(?:starting )?area|startbereich)\s+)?([0-9]{1,4})", said.strip().lower()
         )

@@ -13,6 +13,7 @@ from argo_compiler.script.syntax.grammar.parser import StumbleError
 from argo_compiler.script.syntax.text.source import ScriptText, join
 from argo_compiler.script.syntax.understanding import Understanding, quotes
 from argo_compiler.script.syntax.words.joints import VERBS
+from argo_compiler.script.syntax.words.lexicon import expand
 from argo_compiler.script.syntax.words.prose import Prose, begins, either
 from argo_compiler.script.syntax.words.word import Word
 
@@ -264,4 +265,4 @@ def _labelled(labels: str) -> re.Pattern[str]:
 
 @cache
 def _words(phrases: str) -> frozenset[str]:
-    return frozenset(phrases.split("|"))
+    return frozenset(expand(phrases))

@@ -9,6 +9,14 @@ from argo_compiler.script.syntax.words.joints import VERBS
 from argo_compiler.script.syntax.words.word import Word
 
 _MOST = 8
+_UNTOLD = frozenset(
+    [
+        *("STRING", "LPAR_CALLED", "LPAR_BOUND", "SECOND_BOUND", "JOINTS", "STANDING", "SHOWN_IN"),
+        *("ABOUT", "LEAVING", "JOINT", "X", "Y", "Z", "RAD", "MODE", "VALUE", "FINISHING"),
+        *("STOPPING", "INCLUDED", "EXCLUDED", "ENDLESS", "IN_CIRCLES"),
+    ]
+)
+"""terminals that need not be named, as they are rare"""
 
 
 def not_understood(
@@ -63,6 +71,6 @@ def _may_follow(before: tuple[str, ...], understanding: Understanding) -> list[s
     prose, lexicon = understanding.language.prose, understanding.language.lexicon
     shown = {type_: said for type_, said in prose.kinds.items() if type_ in accepted}
     for (type_, _), phrases in lexicon.phrases.items():
-        if type_ in accepted and type_ not in prose.untold:
+        if type_ in accepted and type_ not in _UNTOLD:
             shown.setdefault(type_, f"`{phrases[0]}`")
     return list(dict.fromkeys(shown.values()))[:_MOST]

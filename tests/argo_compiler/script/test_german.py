@@ -8,7 +8,6 @@ from argo_compiler.catalog import Catalog
 from argo_compiler.diagnostics import DiagnosticError
 from argo_compiler.il import EventKind
 from argo_compiler.script import import_script
-from argo_compiler.script.syntax.words import english, english_prose, german, german_prose
 
 PAIRS = [
     ("Prüfe Kontrollpunkt 3.", "Check checkpoint 3."),
@@ -495,21 +494,6 @@ def test_german_means_what_english_means(
     said = meaning_of(script(german_text, "Starte in Startbereich 1."))
     assert said == meaning_of(script(english_text, "Start in starting area 1."))
 
-
-def entries(module: object) -> set[object]:
-    return {entry for part in module.PARTS for entry in part}  # type: ignore[attr-defined]
-
-
-def test_both_languages_have_words_for_the_same() -> None:
-    assert entries(german) == entries(english)
-
-
-def test_both_languages_have_the_same_labels_and_columns() -> None:
-    assert german_prose.PROSE.labels.keys() == english_prose.PROSE.labels.keys()
-    assert german_prose.PROSE.values.keys() == english_prose.PROSE.values.keys()
-    assert german_prose.PROSE.columns.keys() == english_prose.PROSE.columns.keys()
-    assert german_prose.PROSE.ranks.keys() == english_prose.PROSE.ranks.keys()
-    assert german_prose.PROSE.samples.keys() == english_prose.PROSE.samples.keys()
 
 
 # ---- which language

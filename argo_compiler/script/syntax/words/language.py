@@ -6,7 +6,7 @@ from dataclasses import dataclass
 from functools import lru_cache
 from itertools import islice
 
-from argo_compiler.script.syntax.words import english, english_prose, german, german_prose
+from argo_compiler.script.syntax.words import loading
 from argo_compiler.script.syntax.words.lexicon import Lexicon, folded
 from argo_compiler.script.syntax.words.prose import Prose
 
@@ -34,21 +34,15 @@ class Language:
         one, two = _lexicons(names)
         said = [folded(word.group().lower()) for word in islice(_WORD.finditer(text), _MOST)]
         score = sum((word in two.words) - (word in one.words) for word in said)
-        return cls(two, german_prose.PROSE) if score > 0 else cls(one, english_prose.PROSE)
+        if score > 0:
+            return cls(two, loading.prose("german", besides="english"))
+        return cls(one, loading.prose("english"))
 
 
 @lru_cache(maxsize=8)
 def _lexicons(places: tuple[str, ...]) -> tuple[Lexicon, Lexicon]:
-    one = Lexicon("English", english.PARTS, "the", "a an straight directly then please also")
-    two = Lexicon(
-        "German",
-        (*german.PARTS, german.OWN),
-        "der die das den dem des am im zum zur beim vom ins",
-        "ein eine einen einem einer eines bitte dann direkt gleich auch the",
-        verbs_first=False,
-        plural_article="die",
-        plural_ending="n",
-    )
+    loading.compare("english", "german")
+    one, two = loading.lexicon("english"), loading.lexicon("german")
     for place in places:
         pieces = [word for word in place.lower().split() if word not in ("the", "a", "an")]
         for lexicon in (one, two):

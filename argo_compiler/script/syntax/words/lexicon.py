@@ -32,12 +32,11 @@ class Lexicon:
     def __init__(
         self,
         name: str,
-        parts: Iterable[Phrases],
-        definite: str = "",
-        passed_over: str = "",
-        verbs_first: bool = True,
-        plural_article: str = "",
-        plural_ending: str = "s",
+        definite: str,
+        passed_over: str,
+        verbs_first: bool,
+        plural_article: str,
+        plural_ending: str,
     ) -> None:
         self.name = name
         self.definite = frozenset(definite.split())
@@ -54,9 +53,6 @@ class Lexicon:
         self.words: set[str] = set()
         self.numerals: dict[str, float] = {}
         self.phrases: dict[Entry, list[str]] = {}
-        for part in parts:
-            for entry, text in part.items():
-                self.add(entry, expand(text))
 
     def add(self, entry: Entry, phrases: Iterable[str]) -> None:
         """Adds phrases, in lower case; one that is there already must not mean anything else."""
@@ -97,6 +93,9 @@ def expand(text: str) -> list[str]:
     """The phrases that `text` lists: `check{s}` is two, `a|b` are two, `[a/b] c` are two."""
     found: list[str] = []
     for phrase in text.split("|"):
+        if "[" not in phrase and "{" not in phrase:
+            found.append(" ".join(phrase.split()))
+            continue
         # Literal text, what may be there, and what is one of several, one after the other.
         parts = _GROUP.split(phrase)
         choices = [

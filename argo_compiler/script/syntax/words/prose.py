@@ -55,8 +55,6 @@ class Prose:
     """a sentence for each verb"""
     kinds: Mapping[str, str]
     """what a terminal stands for that has no phrases"""
-    untold: frozenset[str]
-    """terminals that hints need not name"""
 
     @cached_property
     def label(self) -> re.Pattern[str]:

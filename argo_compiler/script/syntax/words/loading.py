@@ -1,0 +1,184 @@
+"""Reads the words of a language from its file, such as `english.toml`."""
+
+import re
+import tomllib
+from collections.abc import Callable, Iterator, Mapping
+from dataclasses import fields
+from functools import cache
+from importlib.resources import files
+from typing import Any
+
+from argo_compiler.il import EventKind, Mode, Order
+from argo_compiler.listing import listed
+from argo_compiler.script.syntax.tree.nouns import Kind
+from argo_compiler.script.syntax.words.lexicon import Entry, Lexicon, expand
+from argo_compiler.script.syntax.words.numbers import Figure
+from argo_compiler.script.syntax.words.prose import Prose
+
+Table = Mapping[str, Any]
+"""of a file"""
+_COUNTS = {"one": False, "several": True, "any": None}
+"""how many a noun stands for; `any` of nouns that look the same"""
+_SECONDS = {
+    **{"day": 86400.0, "hour": 3600.0, "minute": 60.0, "second": 1.0},
+    **{"three_quarter_hour": 2700.0, "half_hour": 1800.0, "quarter_hour": 900.0},
+}
+_METRES_PER_SECOND = {"m/s": 1.0, "cm/s": 0.01, "km/h": 1 / 3.6}
+_MEANINGS: dict[str, Callable[..., Any]] = {
+    "KIND": lambda kind, count: (Kind(kind.replace("_", " ")), _COUNTS[count]),
+    "FLOOR": _COUNTS.__getitem__,
+    "EVENT": lambda name: None if name == "obstacle" else EventKind(name),
+    "MODE": Mode,
+    "THEM": {"all": None, "either": "either"}.__getitem__,
+    "UNIT_S": _SECONDS.__getitem__,
+    "RATE": _METRES_PER_SECOND.__getitem__,
+    **dict.fromkeys(["ORDINAL", "RANKED"], int),
+    **dict.fromkeys(["TIMES", "MORE"], lambda n: Figure(float(n))),
+    "NUMBER_WORD": float,
+    **dict.fromkeys(["FLOOR_NAME", "OF", "VALUE", "SHOWN", "STATE", "UNIT"], str),
+    **dict.fromkeys(["OR_MORE", "OR_LESS", "JOINT"], str),
+}
+"""what the key behind a terminal stands for; other terminals have none"""
+_FIELD_VALUES: dict[str, Callable[[str], Any]] = {"mode": Mode, "order": Order}
+_SAID_BY_ARGO = frozenset(["say", "samples"])
+_NO_WORDS = frozenset(["language", "patterns", "numbers", "prose"])
+_GOES_ON = re.compile(r"/\s*\n\s*")
+_MADE = re.compile(r"\s*(\w+)(?: (\w+))?: (.+)")
+
+
+def lexicon(language: str) -> Lexicon:
+    """The lexicon of a language, without the places of a site."""
+    table = _table(language)
+    found = Lexicon(**table["language"])
+    for entry, text in _entries(language):
+        found.add(entry, _phrases(text, table.get("patterns", {})))
+    return found
+
+
+@cache
+def prose(language: str, besides: str | None = None) -> Prose:
+    """What stands around sentences in a language; labels of `besides` are mixed with its own."""
+    said = _table(language)["prose"]
+    if besides is not None:
+        said = _mixed(said, _table(besides)["prose"], language)
+    known = {field.name for field in fields(Prose)}
+    if odd := known ^ said.keys():
+        raise ValueError(f"{language}.toml: `prose` must, or must not, have {listed(sorted(odd))}")
+    return Prose(**{**said, "values": dict(_field_values(said["values"]))})
+
+
+def compare(one: str, two: str) -> None:
+    """Raises if one of two languages has no words for what the other one has words for."""
+    first, second = (
+        {entry for entry, _ in _entries(language, own=False)} for language in (one, two)
+    )
+    for language, missing in ((two, first - second), (one, second - first)):
+        if missing:
+            terminal, value = min(missing, key=str)
+            said = terminal if value is None else f"{terminal} ({value})"
+            raise ValueError(f"{language}.toml: there are no words for `{said}`")
+
+
+@cache
+def _table(language: str) -> dict[str, Any]:
+    name = f"{language}.toml"
+    text = files(__package__).joinpath(name).read_text(encoding="utf-8")
+    try:
+        table = tomllib.loads(text)
+    except tomllib.TOMLDecodeError as error:
+        raise ValueError(f"{name}: {error}") from error
+    return {key: _in_bars(value) for key, value in table.items()}
+
+
+def _in_bars(value: Any) -> Any:
+    """A table whose phrases are separated by bars only."""
+    if isinstance(value, dict):
+        return {key: _in_bars(inner) for key, inner in value.items()}
+    if not isinstance(value, str) or "\n" not in value:
+        return value
+    return "|".join(line.strip(" |") for line in _GOES_ON.sub("/", value).strip().split("\n"))
+
+
+def _entries(language: str, own: bool = True) -> Iterator[tuple[Entry, str]]:
+    """All entries with their phrases, or only those that other languages have as well."""
+    table = _table(language)
+    numbers = _numbers(**table["numbers"])
+    for name, group in table.items():
+        if name in _NO_WORDS or (name == "own" and not own):
+            continue
+        for keys, text in _flat(group):
+            entry = _entry(keys, language)
+            numbers.pop(entry, None)
+            yield entry, text
+    yield from numbers.items()
+
+
+def _flat(table: Table) -> Iterator[tuple[tuple[str, ...], str]]:
+    """The phrases of a table, with the keys that lead to them."""
+    for key, value in table.items():
+        if isinstance(value, str):
+            yield (key,), value
+        else:
+            yield from (((key, *keys), text) for keys, text in _flat(value))
+
+
+def _entry(keys: tuple[str, ...], language: str) -> Entry:
+    terminal, *said = keys
+    meaning = _MEANINGS.get(terminal)
+    try:
+        if meaning is None and not said:
+            return terminal, None
+        if meaning is not None and said:
+            return terminal, meaning(*said)
+    except (KeyError, TypeError, ValueError):
+        pass
+    raise ValueError(f"{language}.toml: `{'.'.join(keys)}` is nothing that can be meant")
+
+
+def _phrases(text: str, patterns: Table) -> Iterator[str]:
+    """The phrases of an entry; `weak: prüf` is made from the pattern `weak`."""
+    for phrase in text.split("|"):
+        made = _MADE.fullmatch(phrase) if ":" in phrase else None
+        if made is None:
+            yield from expand(phrase)
+            continue
+        pattern = patterns[made[1]].replace("~", made[2] or "")
+        for word in made[3].split():
+            yield from expand(pattern.replace("*", word))
+
+
+def _numbers(units: str, teens: str, tens: str, half: str, joined: str) -> dict[Entry, str]:
+    """The numbers of one word up to 99, and those of 1 to 19 with a half."""
+    ones, ten = expand(units), list(enumerate(expand(tens), start=2))
+    low = list(enumerate(ones + expand(teens), start=1))
+    said = {float(n): word for n, word in low}
+    said |= {n + 0.5: half.replace("{number}", word) for n, word in low}
+    said |= {10.0 * n: word for n, word in ten}
+    for n, word in ten:
+        for k, unit in enumerate(ones, start=1):
+            said[10.0 * n + k] = joined.replace("{ten}", word).replace("{unit}", unit)
+    return {("NUMBER_WORD", n): word for n, word in said.items()}
+
+
+def _field_values(table: Table) -> Iterator[tuple[Entry, str]]:
+    for keys, text in _flat(table):
+        name, meaning = keys if len(keys) > 1 else (keys[0], None)
+        yield (name, None if meaning is None else _FIELD_VALUES[name](meaning)), text
+
+
+def _mixed(own: Table, other: Table, language: str) -> dict[str, Any]:
+    """What is said in two languages; what Argo says itself, in its own only."""
+    found = dict(other)
+    for name, value in own.items():
+        there = other.get(name)
+        if isinstance(value, str) and there is not None:
+            found[name] = f"{value}|{there}"
+        elif name in _SAID_BY_ARGO or there is None:
+            found[name] = value
+        else:
+            found[name] = _mixed(value, there, language)
+        if isinstance(there, dict) and (odd := there.keys() ^ value.keys()):
+            raise ValueError(
+                f"{language}.toml: `prose.{name}` must, or must not, have {listed(sorted(odd))}"
+            )
+    return found

@@ -57,13 +57,17 @@ class Lexicon:
     def add(self, entry: Entry, phrases: Iterable[str]) -> None:
         """Adds phrases, in lower case; one that is there already must not mean anything else."""
         for phrase in phrases:
-            head, _, end = phrase.partition(" … ")
+            said = folded(phrase)
+            head, _, end = said.partition(" … ")
             node = self.root
             for k, piece in enumerate(head.split()):
-                if k and piece in _ARTICLES & self.passed_over:
+                if k and piece in _ARTICLES and piece in self.passed_over:
                     continue  # wherever it stands within a phrase
-                node = node.next.setdefault(folded(piece), PhraseStart())
-            last = tuple(folded(piece) for piece in end.split())
+                following = node.next.get(piece)
+                if following is None:
+                    following = node.next[piece] = PhraseStart()
+                node = following
+            last = tuple(end.split())
             there = node.parted.get(last) if end else node.entry
             if there not in (None, entry):
                 raise ValueError(f"{self.name}: `{phrase}` is {there} and {entry}")
@@ -71,11 +75,14 @@ class Lexicon:
                 node.parted[last] = entry
             else:
                 node.entry = entry
-            pieces = [piece for piece in phrase.split() if piece[0].isalpha()]
-            self.words.update(pieces, map(folded, pieces))
+            self.words.update(_words(phrase), () if said is phrase else _words(said))
             self.phrases.setdefault(entry, []).append(phrase)
-            if entry[0] == "NUMBER_WORD" and len(pieces) == 1:
-                self.numerals[folded(phrase)] = entry[1]
+            if entry[0] == "NUMBER_WORD" and " " not in said:
+                self.numerals[said] = entry[1]
+
+
+def _words(phrase: str) -> list[str]:
+    return [piece for piece in phrase.split() if piece[0].isalpha()]
 
 
 _FOLDED = str.maketrans({"ä": "ae", "ö": "oe", "ü": "ue", "ß": "ss"})

@@ -3,10 +3,10 @@
 import re
 import tomllib
 from collections.abc import Callable, Iterator, Mapping
-from dataclasses import fields
 from functools import cache
 from importlib.resources import files
-from typing import Any
+from inspect import signature
+from typing import Any, TypeVar
 
 from argo_compiler.il import EventKind, Mode, Order
 from argo_compiler.listing import listed
@@ -15,6 +15,7 @@ from argo_compiler.script.syntax.words.lexicon import Entry, Lexicon, expand
 from argo_compiler.script.syntax.words.numbers import Figure
 from argo_compiler.script.syntax.words.prose import Prose
 
+_Made = TypeVar("_Made")
 Table = Mapping[str, Any]
 """of a file"""
 _COUNTS = {"one": False, "several": True, "any": None}
@@ -48,23 +49,24 @@ _MADE = re.compile(r"\s*(\w+)(?: (\w+))?: (.+)")
 
 def lexicon(language: str) -> Lexicon:
     """The lexicon of a language, without the places of a site."""
-    table = _table(language)
-    found = Lexicon(**table["language"])
+    table = table_of(language)
+    found = _made(Lexicon, table["language"], f"{language}.toml: `language`")
+    patterns = table.get("patterns", {})
     for entry, text in _entries(language):
-        found.add(entry, _phrases(text, table.get("patterns", {})))
+        if wrong := _wrong(text):
+            raise ValueError(f"{language}.toml: {wrong} in the words for `{entry[0]}`")
+        found.add(entry, _phrases(text, patterns))
     return found
 
 
 @cache
 def prose(language: str, besides: str | None = None) -> Prose:
     """What stands around sentences in a language; labels of `besides` are mixed with its own."""
-    said = _table(language)["prose"]
+    said = table_of(language)["prose"]
     if besides is not None:
-        said = _mixed(said, _table(besides)["prose"], language)
-    known = {field.name for field in fields(Prose)}
-    if odd := known ^ said.keys():
-        raise ValueError(f"{language}.toml: `prose` must, or must not, have {listed(sorted(odd))}")
-    return Prose(**{**said, "values": dict(_field_values(said["values"]))})
+        said = _mixed(said, table_of(besides)["prose"], language)
+    values = dict(_field_values(said["values"]))
+    return _made(Prose, {**said, "values": values}, f"{language}.toml: `prose`")
 
 
 def compare(one: str, two: str) -> None:
@@ -80,7 +82,8 @@ def compare(one: str, two: str) -> None:
 
 
 @cache
-def _table(language: str) -> dict[str, Any]:
+def table_of(language: str) -> dict[str, Any]:
+    """All that the file of a language has; its phrases are separated by bars only."""
     name = f"{language}.toml"
     text = files(__package__).joinpath(name).read_text(encoding="utf-8")
     try:
@@ -101,8 +104,8 @@ def _in_bars(value: Any) -> Any:
 
 def _entries(language: str, own: bool = True) -> Iterator[tuple[Entry, str]]:
     """All entries with their phrases, or only those that other languages have as well."""
-    table = _table(language)
-    numbers = _numbers(**table["numbers"])
+    table = table_of(language)
+    numbers = _made(_numbers, table["numbers"], f"{language}.toml: `numbers`")
     for name, group in table.items():
         if name in _NO_WORDS or (name == "own" and not own):
             continue
@@ -135,6 +138,25 @@ def _entry(keys: tuple[str, ...], language: str) -> Entry:
     raise ValueError(f"{language}.toml: `{'.'.join(keys)}` is nothing that can be meant")
 
 
+def _made(make: Callable[..., _Made], table: Table, name: str) -> _Made:
+    """What is made of a table that has all that it needs, and nothing else."""
+    needed = signature(make).parameters.keys()
+    if missing := needed - table.keys():
+        raise ValueError(f"{name} lacks {listed(sorted(missing))}")
+    if odd := table.keys() - needed:
+        raise ValueError(f"{name} must not have {listed(sorted(odd))}")
+    return make(**table)
+
+
+def _wrong(text: str) -> str:
+    """What is wrong with the phrases of an entry; nothing if they are right."""
+    if text.count("[") != text.count("]") or text.count("{") != text.count("}"):
+        return "a bracket is open"
+    if not all(phrase.strip() for phrase in text.split("|")):
+        return "a phrase is empty"
+    return "" if text == text.lower() else "there are capital letters"
+
+
 def _phrases(text: str, patterns: Table) -> Iterator[str]:
     """The phrases of an entry; `weak: prüf` is made from the pattern `weak`."""
     for phrase in text.split("|"):
@@ -142,6 +164,8 @@ def _phrases(text: str, patterns: Table) -> Iterator[str]:
         if made is None:
             yield from expand(phrase)
             continue
+        if made[1] not in patterns:
+            raise ValueError(f"there is no pattern `{made[1]}` for `{phrase.strip()}`")
         pattern = patterns[made[1]].replace("~", made[2] or "")
         for word in made[3].split():
             yield from expand(pattern.replace("*", word))
@@ -178,7 +202,5 @@ def _mixed(own: Table, other: Table, language: str) -> dict[str, Any]:
         else:
             found[name] = _mixed(value, there, language)
         if isinstance(there, dict) and (odd := there.keys() ^ value.keys()):
-            raise ValueError(
-                f"{language}.toml: `prose.{name}` must, or must not, have {listed(sorted(odd))}"
-            )
+            raise ValueError(f"{language}.toml: `{name}.{min(odd)}` is in one language only")
     return found

@@ -7,57 +7,19 @@ for something is never taken for such.
 import re
 from collections.abc import Iterator
 from functools import cache
-from itertools import islice, pairwise
+from itertools import islice
 
+from argo_compiler.script.syntax.asking import ASKING, NAMED, Asking, phrases_of
 from argo_compiler.script.syntax.grammar.parser import StumbleError
 from argo_compiler.script.syntax.text.source import ScriptText, join
 from argo_compiler.script.syntax.understanding import Understanding, quotes
 from argo_compiler.script.syntax.words.joints import VERBS
-from argo_compiler.script.syntax.words.lexicon import expand
 from argo_compiler.script.syntax.words.prose import Prose, begins, either
-from argo_compiler.script.syntax.words.word import Word
 
-_ASKING = frozenset(
-    [
-        "IF",
-        "IF_ONLY",
-        "UNLESS",
-        "ELSE",
-        "NOT",
-        "EXCEPT",
-        "UNTIL",
-        "EVERY",
-        "DURATION",
-        "SPEED",
-        "QUANTITY",
-        "TIMES",
-        "AT_MOST",
-        "MOST_TIME",
-        "MOST_TIMES",
-        "AT_LEAST",
-        "WITHIN",
-        "LATEST",
-        "EARLIEST",
-        "IF_TIME",
-        "ANY_ORDER",
-        "THIS_ORDER",
-        "RETRY",
-        "GREATER",
-        "LESS",
-        "BETWEEN",
-        "CANNOT",
-        "MAX_DURATION",
-        "BACK_IN",
-        "BE_MEASURED",
-        "FAILS",
-        "OCCURS",
-    ]
-)
-"""words of these types are in no title"""
-_NAMED = frozenset(["KIND", "HASH", "STEP", "AREA", "DOCK", "FLOOR"])
-_SAYING = _NAMED | {*VERBS, *_ASKING, "PLACE", "FLOOR_NAME", "EVENT", "IT", "THEM", "ALL"}
-_LABELS = frozenset(["NUMBER", "IDENT", "STRING", "HASH"])
+_SAYING = NAMED | {*VERBS, *ASKING, "PLACE", "FLOOR_NAME", "EVENT", "IT", "THEM", "ALL"}
 _HEADING = frozenset(["WORD", "NUMBER", "ORDINAL", "FLOOR", "FLOOR_NAME", "TIME_WORD", "STEP"])
+_FURTHER = frozenset(["TIME_WORD", "ORDINAL", "COLON", "ALL", "BOTH", "EVERYTHING", "BEFORE"])
+"""words of these types are in no reason"""
 _MOST_REASONS = 3
 """in a sentence"""
 _LONGEST_TITLE = 14
@@ -77,6 +39,7 @@ class Asides:
 
     def __init__(self, understanding: Understanding) -> None:
         self.understanding = understanding
+        self.asking = Asking(understanding)
         self.prose: Prose = understanding.language.prose
         idle = understanding.language.lexicon.phrases.get(("IDLE", None), [])
         said = either("|".join(idle)) if idle else "(?!)"
@@ -87,6 +50,11 @@ class Asides:
     def is_remark(self, content: str) -> bool:
         """Whether a text is labelled as a remark: `Note: ...`, `(Hint: ...)`."""
         return _labelled(self.prose.remark).match(content) is not None
+
+    def remark(self, text: ScriptText) -> ScriptText:
+        """What is said behind the label of a remark."""
+        label = _labelled(self.prose.remark).match(text.content)
+        return text if label is None else text[label.end() :].strip()
 
     def opens(self, content: str) -> bool:
         """Whether a line begins as the first or last one of a letter does."""
@@ -112,65 +80,28 @@ class Asides:
             end = start + comma.end()
         types = self.understanding.types(text[start:end])
         short = len(text.content[start:end].split()) <= 6
-        return end if short and not _ASKING & {*types} and not {*types} & {*VERBS, "KIND"} else 0
+        asks = {*types} & {*ASKING, *VERBS, "KIND"} or self.asking.names(text[start:end])
+        return end if short and not asks else 0
 
     def is_small_talk(self, text: ScriptText) -> bool:
         """Whether a sentence is one of those that letters are made of, and no more."""
         found = begins(self.prose.small_talk).match(text.content)
-        if found is None or self.names(text):
+        if found is None or self.asking.names(text):
             return False
-        return not self.asks(text[found.end() :].strip())
-
-    def names(self, text: ScriptText) -> bool:
-        """Whether a text names a checkpoint, a starting area or a step."""
-        types = self.understanding.types(text)
-        return any(a in _NAMED and b in _LABELS for a, b in pairwise(types))
+        return not self.asking.asks(text[found.end() :].strip())
 
     def is_signature(self, text: ScriptText) -> bool:
         """Whether a line behind the end of a letter is a name, an address or the like."""
-        return not self.asks(text) and len(text.content.split()) <= 8
+        named = self.asking.names(text) or "KIND" in self.understanding.types(text)
+        return not named and not self.asking.asks(text) and len(text.content.split()) <= 8
 
     # ---- titles
 
-    def asks(self, text: ScriptText, counted: bool = False) -> bool:
-        """Whether a text that makes no sense may ask for something; in a title runs and tests may
-        be counted: `Team 4, run 2`."""
-        nouns = _words(self.prose.counted) if counted else frozenset()
-        found = self.understanding.words(text)
-        types = [word.type for word in found]
-        if _ASKING & {*types}:
-            return True
-        for i, type_ in enumerate(types):
-            after = types[i + 1] if i + 1 < len(types) else ""
-            said = text.content[found[i].end :].split()[:1]
-            named = type_ != "MEASURE" or types[i - 1] == "WORD"  # not `Plan, test 12`
-            if i > 0 and after == "NUMBER" and named and _said(text, found[i]) in nouns:
-                continue
-            if type_ in VERBS and (
-                (i == 0 and after and said != ["of"]) or after in _NAMED | _LABELS | {"ALL", "IT"}
-            ):
-                return True
-        if len(types) > 1 and types[0] == "WORD" and types[1] in _NAMED and len(types) > 2:
-            numbered = types[1] == "HASH" and text.content[found[1].start] != "#"
-            return types[2] in _LABELS and not numbered  # `Protocol no. 4` is a title
-        return self._has_object(text.content)
-
-    def _has_object(self, content: str) -> bool:
-        """Whether an article stands where that of a verb's object does: `send an SMS`."""
-        tokens = [token.lower() for token in _TOKEN.findall(content)]
-        article, before = _words(self.prose.determiner), _words(self.prose.preposition)
-        return any(
-            token in article
-            and after[0].isalpha()
-            and last[0].isalpha()
-            and last not in before
-            and last not in article
-            for last, token, after in zip(tokens, tokens[1:], tokens[2:], strict=False)
-        )
-
     def is_title(self, text: ScriptText) -> bool:
         """Whether a line may be the title of a script, or the heading of a part of it."""
-        return len(text.content.split()) <= _LONGEST_TITLE and not self.asks(text, counted=True)
+        return len(text.content.split()) <= _LONGEST_TITLE and not self.asking.asks(
+            text, counted=True
+        )
 
     def is_explicit_title(self, text: ScriptText) -> bool:
         """Whether a title says itself that it is one: `Mission Protocol #2`."""
@@ -192,7 +123,7 @@ class Asides:
             yield outer, brackets
         for dash in _DASH.finditer(content):
             aside = text[dash.end() :].strip()
-            if not self.asks(aside) and not self.names(aside):
+            if not self.asking.adds(aside):
                 yield text[: dash.start()].strip(), [aside]
         colon = content.find(": ")
         if colon > 0 and (self._is_section(text[:colon]) or self.is_small_talk(text[:colon])):
@@ -207,7 +138,8 @@ class Asides:
             end = comma if comma > 0 else len(content)
             for behind in (len(content), end):
                 aside = text[cut.end() : behind].strip()
-                if not self.asks(aside[len(aside.content.split()[0]) :]):
+                said = aside[len(aside.content.split()[0]) :]
+                if not self.asking.asks(said) and not _FURTHER & {*self.understanding.types(said)}:
                     yield join([text[: cut.start()], text[behind:]]), [aside]
 
     def _behind(
@@ -220,14 +152,14 @@ class Asides:
             rest = text[token.start() :].strip()
             if "WORD" in self.understanding.types(rest):
                 continue
-            if "WORD" in types and not types & _SAYING and not self.asks(aside):
+            if "WORD" in types and not types & _SAYING and not self.asking.asks(aside):
                 yield rest, [aside]
 
     def _is_section(self, text: ScriptText) -> bool:
         """Whether a text is the heading of what follows in the same line."""
         words = {*text.content.lower().split()}
-        return bool(words & _words(self.prose.section)) and not (
-            {*self.understanding.types(text)} - _HEADING or self.asks(text)
+        return bool(words & phrases_of(self.prose.section)) and not (
+            {*self.understanding.types(text)} - _HEADING or self.asking.asks(text)
         )
 
     def _without_brackets(self, text: ScriptText) -> tuple[ScriptText, list[ScriptText]]:
@@ -236,8 +168,7 @@ class Asides:
         start = 0
         for found in _BRACKETS.finditer(text.content):
             inner = text[found.start() : found.end()].strip()
-            asks = self.asks(inner[1:-1]) or self.names(inner)
-            if asks or _FIGURES.search(inner.content):
+            if self.asking.adds(inner[1:-1]) or _FIGURES.search(inner.content):
                 continue
             kept.append(text[start : found.start()])
             cut.append(inner)
@@ -254,15 +185,6 @@ class Asides:
                 yield text[found.start() : found.end()]
 
 
-def _said(text: ScriptText, word: Word) -> str:
-    return text.content[word.start : word.end].lower()
-
-
 @cache
 def _labelled(labels: str) -> re.Pattern[str]:
     return re.compile(rf"[_(*]*(?:{either(labels)})\s*:", re.IGNORECASE)
-
-
-@cache
-def _words(phrases: str) -> frozenset[str]:
-    return frozenset(expand(phrases))

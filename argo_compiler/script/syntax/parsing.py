@@ -157,7 +157,7 @@ class _Parser:
             after = remark and not self.understanding.fits(sentence)
             remark = after or self.asides.is_remark(sentence.content)
             if remark:
-                self.reader.note(sentence, "a remark")
+                self.reader.remark(sentence)
             else:
                 said += self.reader.read(sentence, item)
         if len(said) == len(parts) and len(self.diagnostics.entries) == before:

@@ -9,7 +9,7 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 
 from argo_compiler.listing import listed
-from argo_compiler.script.syntax.asides import Asides
+from argo_compiler.script.syntax.asking import Asking
 from argo_compiler.script.syntax.text.source import Diagnostics, ScriptText, Source
 from argo_compiler.script.syntax.understanding import Understanding
 from argo_compiler.script.syntax.words.lexicon import expand
@@ -73,7 +73,7 @@ class _Rows:
     def __init__(self, understanding: Understanding, diagnostics: Diagnostics) -> None:
         self.understanding = understanding
         self.prose = understanding.language.prose
-        self.asides = Asides(understanding)
+        self.asking = Asking(understanding)
         self.diagnostics = diagnostics
 
     def headings(self, text: ScriptText, cut: str) -> list[_Heading] | None:
@@ -106,7 +106,7 @@ class _Rows:
             if cell.content:
                 before = cells.get(heading.holds)
                 cells[heading.holds] = cell if before is None else _joined([before, " ", cell])
-        if "remark" in cells and not self.asides.asks(cells["remark"]):
+        if "remark" in cells and not self._asks(cells["remark"]):
             self._note(cells.pop("remark"))
         if "nothing" in cells:
             self._note(cells["nothing"])
@@ -117,6 +117,9 @@ class _Rows:
         wholes = [_joined([*mark, *parts], text) for parts in self._readings(cells)]
         fitting = (w for w in wholes if self.understanding.fits(w[len("".join(map(str, mark))) :]))
         return next(fitting, wholes[0])
+
+    def _asks(self, remark: ScriptText) -> bool:
+        return self.asking.asks(remark) or self.asking.bids(remark)
 
     def _note(self, aside: ScriptText) -> None:
         message = f"`{aside.content}` is taken for a remark and has no effect"

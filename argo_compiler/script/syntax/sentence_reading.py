@@ -12,7 +12,7 @@ from argo_compiler.script.syntax.lines import LineMark
 from argo_compiler.script.syntax.preamble import Preamble
 from argo_compiler.script.syntax.text.source import Diagnostics, ScriptText
 from argo_compiler.script.syntax.tree.facts import Fact
-from argo_compiler.script.syntax.tree.orders import Sentence, Start
+from argo_compiler.script.syntax.tree.orders import Amend, Sentence, Start
 from argo_compiler.script.syntax.tree.script import Text, Unread
 from argo_compiler.script.syntax.understanding import Reading, Understanding
 
@@ -43,6 +43,16 @@ class SentenceReader:
         message = f"`{said}` is taken for {what} and has no effect"
         self.diagnostics.note("no-effect", message, text.span())
         self.remarks.append(Text(span=text.span(), text=text.content))
+
+    def remark(self, text: ScriptText) -> None:
+        """Says that a remark has no effect; a warning, where it tells what is to be done."""
+        if self.asides.asking.bids(self.asides.remark(text)):
+            message = f"`{text.content}` is taken for a remark: what it asks for is not planned"
+            hint = "write it as a step if it is to be done"
+            self.diagnostics.warning("remark", message, text.span(), hint)
+            self.remarks.append(Text(span=text.span(), text=text.content))
+        else:
+            self.note(text, "a remark")
 
     def read(self, text: ScriptText, item: LineItem) -> list[Said]:
         """What a sentence says; nothing where it has no effect."""
@@ -79,7 +89,12 @@ class SentenceReader:
             message = f"nothing stands behind `{joint.content}`"
             hint = "say what follows, or leave it out"
             self.diagnostics.error("unfinished", message, joint.span(), hint)
-        return [self._node(text, reading)]
+        node = self._node(text, reading)
+        if text.content.endswith(":") and not item.items and _is_amend(node):
+            message = "this stands over other lines, and says only how they are done"
+            hint = "say it in each of them, or write them as sub-steps of this line"
+            self.diagnostics.error("stray-clause", message, text.span(), hint)
+        return [node]
 
     def _node(self, text: ScriptText, reading: Reading) -> Said:
         self.begun = True
@@ -161,3 +176,10 @@ class SentenceReader:
         return line.heading or (
             whole and line.number is None and (bool(item.items) or text.content.endswith(":"))
         )
+
+
+def _is_amend(node: Said) -> bool:
+    """Whether a sentence says only how something is done."""
+    if not isinstance(node, Sentence) or node.cases or not node.orders:
+        return False
+    return all(isinstance(order, Amend) for order in node.orders)

@@ -13,6 +13,7 @@ from argo_compiler.script.syntax.tree.orders import Sentence
 from argo_compiler.script.syntax.tree.places import FloorName, Location
 from argo_compiler.script.syntax.words.language import Language
 from argo_compiler.script.syntax.words.lexer import words
+from argo_compiler.script.syntax.words.lexicon import folded
 from argo_compiler.script.syntax.words.word import Word
 
 Reading = tuple[Branch, list[Word]]
@@ -104,6 +105,8 @@ class Understanding:
         for word in self.words(text):
             if word.type == "WORD" and str(word.value) not in self.known:
                 meant = candidates(text.content[word.start : word.end], self.known)
+                if any(folded(other) in self.language.lexicon.numerals for other in meant):
+                    return None  # a number is never guessed
                 if meant:
                     slips.append((word, meant))
         if not 0 < len(slips) <= _MOST_SLIPS:

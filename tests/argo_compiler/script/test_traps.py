@@ -267,7 +267,9 @@ def test_what_is_asked_before_a_measurement_is_of_the_one_before(
     assert bounds(mission, "MEASURE 1")[0] == [("1", ConditionType.GREATER, 4)]
 
 
-@pytest.mark.parametrize("when", ["If there is a failure", "In case of failure", "If it has failed"])
+@pytest.mark.parametrize(
+    "when", ["If there is a failure", "In case of failure", "If it has failed"]
+)
 def test_a_failure_is_that_of_the_task(when: str, catalog: Catalog) -> None:
     mission = read(f"Check #1. {when}, return to the docking station.", catalog)
     assert mission.reactions == ()

@@ -1,0 +1,90 @@
+"""What asks for something where nothing is expected to: in titles, brackets, notes, signatures. It
+is read, asked about or warned of, never dropped."""
+
+import pytest
+
+from argo_compiler.catalog import Catalog
+from argo_compiler.diagnostics import DiagnosticError, Severity
+from argo_compiler.script import import_script
+
+START = "Start in starting area 1. Check #1"
+
+
+def measured(text: str, catalog: Catalog) -> list[str]:
+    tasks = import_script(text, catalog).mission.tasks
+    return [task.object_id for task in tasks if task.object_id is not None]
+
+
+@pytest.mark.parametrize(
+    "text",
+    [
+        f"No valves today\n{START}.",
+        f"Please be careful and stay on floor 1\n{START}.",
+        f"Quick round, go home\n{START}.",
+        f"Hi all, no gauges today,\n{START}.",
+        f"{START} (and 4).",
+        f"{START} (report it).",
+        f"{START} (before the valve).",
+        f"{START} - then home",
+        f"{START} for the second time.",
+        f"{START}.\nRegards\nPaul\nP.S. valve R25 too",
+        f"{START}.\nSee you at starting area 2",
+        f"{START}.\nHave a nice day, robot, and go home",
+        f"{START}.\n| checkpoint | remark |\n| 4 | only if it is safe |",
+        f"{START}.\n| checkpoint | remark |\n| 4 | skip |",
+        f"{START}.\nIn any order:\n- #4\n- #5",
+        f"{START}.\nOptional:\n- #4\n- #5",
+        f"{START}.\nIf there is time:\n- #4\n- #5",
+    ],
+)
+def test_it_is_asked_about(text: str, catalog: Catalog) -> None:
+    with pytest.raises(DiagnosticError):
+        import_script(text, catalog)
+
+
+@pytest.mark.parametrize(
+    ("text", "checkpoints"),
+    [
+        (f"Check checkpoint 5 first\n{START}.", ["5", "1"]),
+        (f"Hi Sam, check valve R25!\n{START}.", ["4", "1"]),
+        (f"{START}.\nRegards\nPaul\n\nand valve R25", ["1", "4"]),
+    ],
+)
+def test_it_is_read(text: str, checkpoints: list[str], catalog: Catalog) -> None:
+    assert measured(text, catalog) == checkpoints
+
+
+@pytest.mark.parametrize(
+    "remark",
+    [
+        "Note: check checkpoint 5",
+        "Hint: go home afterwards.",
+        "Note: leave out checkpoint 1.",
+        "NB: the robot must not be faster than 0.3 m/s",
+    ],
+)
+def test_a_remark_that_asks_for_something_is_a_warning(remark: str, catalog: Catalog) -> None:
+    found = import_script(f"{START}.\n{remark}", catalog).diagnostics
+    assert [d.code for d in found if d.severity is Severity.WARNING] == ["script.remark"]
+
+
+@pytest.mark.parametrize(
+    "text",
+    [
+        f"Wear gloves\n{START}.",
+        f"Round of the first floor\n{START}.",
+        f"{START} (after lunch).",
+        f"{START}, because valve R25 was repaired.",
+        f"{START}.\nNote: checkpoint 5 is broken",
+        f"{START}.\nRegards\nPaul\nShift B",
+    ],
+)
+def test_what_asks_for_nothing_is_a_note(text: str, catalog: Catalog) -> None:
+    resolved = import_script(text, catalog)
+    assert {d.severity for d in resolved.diagnostics} == {Severity.NOTE}
+    assert measured(text, catalog) == ["1"]
+
+
+def test_a_number_is_never_put_right(catalog: Catalog) -> None:
+    with pytest.raises(DiagnosticError, match="seven"):
+        import_script(f"{START}.\nCheck checkpoint sevn", catalog)

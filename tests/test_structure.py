@@ -146,6 +146,17 @@ def test_each_public_class_has_a_name_of_its_own():
     assert not {name: modules for name, modules in homes.items() if len(modules) > 1}
 
 
+def test_no_class_of_the_script_language_is_long():
+    long = {
+        f"{module}.{node.name}": node.end_lineno - node.lineno + 1
+        for module, tree in TREES.items()
+        if module.startswith("argo_compiler.script.")
+        for node in ast.walk(tree)
+        if isinstance(node, ast.ClassDef) and node.end_lineno - node.lineno >= 200
+    }
+    assert not long
+
+
 def is_script(module):
     """Whether a module is there to be run, and not to be imported."""
     return module.endswith(".__main__") or any(

@@ -19,6 +19,7 @@ from argo_compiler.script.resolve.program import (
     Way,
     in_branch,
 )
+from argo_compiler.script.resolve.reaching import require_reached
 from argo_compiler.script.syntax.text.source import RefusedError
 from argo_compiler.script.syntax.tree.conditions import SaidCondition, Test, TooLate
 from argo_compiler.script.syntax.tree.orders import Case, Rest
@@ -98,7 +99,7 @@ class Cases:
         alternatives = self.context.conditions.alternatives(condition)
         do = block.last
         if isinstance(do, Leave):
-            self.context.come_here(case.span, block)
+            require_reached(case.span, block, self.context)
         if isinstance(do, Do) and any(way.otherwise for way in do.ways):
             message = "this is never looked at: `otherwise` before it leads elsewhere"
             hint = "write this condition before the `otherwise`"

@@ -18,7 +18,6 @@ from argo_compiler.script.resolve.program import (
     ProgramNode,
     Way,
     all_nodes,
-    leads_away,
     own_names,
 )
 from argo_compiler.script.resolve.reacting import Reactions
@@ -111,16 +110,6 @@ class Context:
     def whole(self) -> bool:
         """Whether all that was asked for so far is planned: what is not found is not there."""
         return self.memory.known
-
-    def come_here(self, span: Span, block: ProgramBlock) -> None:
-        """That the mission comes to the end of a block, or a step begins there. Raises RefusedError
-        if not."""
-        last = block.last
-        begins = block is self.program and (not self.step or last is not self.step[-1])
-        if leads_away(last) and not begins:
-            message = "the mission never comes here: what stands before this leads elsewhere"
-            hint = "write it before the words that lead elsewhere, or as a step of its own"
-            self.diagnostics.refuse("second-route", message, span, hint)
 
     def measurements(self, checkpoint: CheckpointInfo) -> list[Do]:
         """The tasks in the program that measure a checkpoint."""

@@ -20,7 +20,9 @@ from argo_compiler.script.resolve.program import (
     ProgramNode,
     in_branch,
 )
+from argo_compiler.script.resolve.reaching import is_back, require_reached
 from argo_compiler.script.resolve.repeating import Repeating
+from argo_compiler.script.resolve.sparing import check_spared
 from argo_compiler.script.resolve.starting import Starting
 from argo_compiler.script.resolve.tasks import TaskMaker
 from argo_compiler.script.syntax.text.source import RefusedError
@@ -134,8 +136,8 @@ class Planner:
             case orders.Add() | orders.Delete() | orders.Move() | orders.Replace():
                 self.edits.carry_out(order)
             case orders.Patrol():
-                self._is_back(order, block)
-                context.come_here(order.span, block)
+                is_back(order, block, self.context)
+                require_reached(order.span, block, context)
                 rounds, stops = patrol_rounds(order, context, self.manners)
                 self._put(order, self.manners.around(order, rounds), stops, block)
             case orders.Plain(word=word) if word is not PlainWord.MEET:
@@ -167,8 +169,8 @@ class Planner:
         if isinstance(order, orders.Start) and not order.here:
             self.manners.name(order, tasks)
             self.manners.furnish(order, tasks)
-        elif not self._is_back(order, block):
-            self.context.come_here(order.span, block)
+        elif not is_back(order, block, self.context):
+            require_reached(order.span, block, self.context)
             self.manners.name(order, tasks)
             self._put(order, self.manners.apply(order, tasks), tasks, block)
             if tasks[-1].docks and block is self.context.program:
@@ -192,23 +194,6 @@ class Planner:
         if order.manner is not None and order.manner.order is not None:
             self.ordering.say(order.manner.order, nodes, order.span)
 
-    def _is_back(self, order: ScriptOrder, block: ProgramBlock) -> bool:
-        """Whether the robot is in its docking station, and is only told so again."""
-        docked = self.context.docked
-        if docked is None or not docked.listed or block is not self.context.program:
-            return False
-        if docked.ways or isinstance(order, orders.Plain):
-            return False
-        if isinstance(order, orders.Home):
-            if order.dock.area is None:
-                return True
-            self.context.program.remove(docked)  # `go home and dock in area 2`
-            return False
-        line = docked.source.line if docked.source else 0
-        message = f"the robot is back in its docking station since line {line}"
-        hint = "move the return to the end, or say how it goes on: `then go to step 3`"
-        self.diagnostics.refuse("after-docking", message, order.span, hint)
-
     # ---- orders of one word
 
     def _plain(self, order: orders.Plain, block: ProgramBlock) -> None:
@@ -225,26 +210,15 @@ class Planner:
                 self.diagnostics.refuse("stray-clause", message, order.span, hint)
 
     def _leave(self, leave: Leave, block: ProgramBlock) -> None:
-        self.context.come_here(leave.span, block)
+        require_reached(leave.span, block, self.context)
         self.context.put([leave], block, block.last)
         self.context.step.append(leave)
         self.context.choice = None
 
     def finish(self) -> None:
-        """Looks whether what is not to be checked is in the plan; what is not, is said."""
+        """Looks whether all that was begun has been said to its end."""
         self.making.leave_unvisited()
-        for key, span in self.context.spared.items():
-            tasks = self.context.measured.get(key)
-            lines = sorted({s.line for do in (tasks or {}).values() if (s := do.source)})
-            if tasks:
-                message = "it is asked for"
-                if lines:
-                    message = f"line {lines[0]} asks for checkpoint #{key}"
-                hint = "leave one of the two out, or write `except` in the line that asks for it"
-                self.diagnostics.error("spared", message, span, hint)
-            else:
-                message = f"checkpoint #{key} is not in the plan anyway, so that this has no effect"
-                self.diagnostics.note("no-effect", message, span)
+        check_spared(self.context)
 
 
 def _several(orders_: Sequence[ScriptOrder]) -> bool:

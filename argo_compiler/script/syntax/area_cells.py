@@ -72,7 +72,7 @@ class AreaCells:
             said = token[0].lower()
             if any(a <= token.start() < b for a, b in covered):
                 continue
-            joins = said in ("or", "oder")
+            joins = said in self.understanding.joints("or")
             if said not in around and not (joins and any(a > token.start() for a, _ in covered)):
                 span = value.span(token.start(), token.end())
                 message = f"can't understand `{token[0]}` here"

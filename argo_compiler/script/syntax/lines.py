@@ -4,9 +4,11 @@ import re
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from enum import StrEnum
+from functools import cache
 
 from argo_compiler.script.syntax.text.source import ScriptText
 from argo_compiler.script.syntax.understanding import quotes
+from argo_compiler.script.syntax.words.loading import everywhere
 
 
 class LineMark(StrEnum):
@@ -39,16 +41,25 @@ class ScriptLine:
         return self.marked or self.text
 
 
-_NUMBER = re.compile(
-    r"\(?(?:(?:step|schritt)\s+)?([0-9]{1,6})\s*(?:[.)](?![0-9])|:(?![0-9])|\s-\s+(?=[^\W\d_]))\s*",
-    re.IGNORECASE,
-)
 _SUB_NUMBER = re.compile(r"[0-9]{1,4}\.[0-9]{1,4}[.)]?\s+(?=[A-Z])")
-_STEP = re.compile(r"(?:step|schritt)\s+([0-9]{1,6})\b[.:)]?\s*", re.IGNORECASE)
 _LETTER = re.compile(r"\(?([a-z]|[ivx]{1,4})[.)]\s+", re.IGNORECASE)
 _BULLET = re.compile(r"[-*+•–‣◦]\s+(?:\[[ xX]?\]\s+)?|#+\s+")
 _RULE = re.compile(r"([-=_~*])\1{2,}")
 _RUN_IN = re.compile(r"(?:^|[,;.!])\s+([0-9]{1,3})[.)]\s+(?=[^\W\d_])")
+
+
+@cache
+def _number() -> re.Pattern[str]:
+    return re.compile(
+        rf"\(?(?:(?:{everywhere('step')})\s+)?([0-9]{{1,6}})"
+        r"\s*(?:[.)](?![0-9])|:(?![0-9])|\s-\s+(?=[^\W\d_]))\s*",
+        re.IGNORECASE,
+    )
+
+
+@cache
+def _step() -> re.Pattern[str]:
+    return re.compile(rf"(?:{everywhere('step')})\s+([0-9]{{1,6}})\b[.:)]?\s*", re.IGNORECASE)
 
 
 def lines_of(texts: Sequence[ScriptText]) -> Iterator[ScriptLine]:
@@ -83,7 +94,7 @@ def _marked(text: ScriptText, indent: int) -> ScriptLine:
         return ScriptLine(
             inner.text, indent, mark, inner.number, heading=text.content.startswith("#")
         )
-    if number := _NUMBER.match(text.content) or _STEP.match(text.content):
+    if number := _number().match(text.content) or _step().match(text.content):
         rest = text[number.end() :].strip()
         return ScriptLine(rest, indent, LineMark.NUMBER, int(number[1]), marked=text)
     if letter := _LETTER.match(text.content) or _SUB_NUMBER.match(text.content):

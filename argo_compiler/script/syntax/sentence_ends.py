@@ -1,21 +1,14 @@
 """Where the sentences of a text end: not behind `approx.`, in `Nr. R25` or in `2. Stock`."""
 
 import re
+from functools import cache
 
 from argo_compiler.script.syntax.text.source import ScriptText
 from argo_compiler.script.syntax.understanding import quotes
+from argo_compiler.script.syntax.words.loading import everywhere
 
-_SENTENCE_END = re.compile(
-    r"(?:[.!?…]+|;(?=\s*(?:if|otherwise|else|when|wenn|falls|sonst)\b))(?=\s|$)", re.I
-)
-_ABBREVIATION = re.compile(r"\b(?:no|nr|approx|ca|max|min|e\.g|i\.e|z\.b)\.$", re.IGNORECASE)
-_LABELLED = re.compile(r"\b(?:no|nr)\.$", re.IGNORECASE)
 _LABEL = re.compile(r"\s*[A-Za-z]?-?[0-9]")
 _ORDINAL = re.compile(r"(?<![\w.,])[0-9]{1,2}\.$")
-_ORDINAL_OF = re.compile(
-    r"(?:\s*(?:,|und|oder|bis)\s*[0-9]{1,2}\.)*\s+(?:stock|etage|geschoss|ebene|deck)", re.I
-)
-"""`im 1. und 2. Stock`"""
 _NEXT_SIGN = re.compile(r"\s*(\S)")
 
 
@@ -30,14 +23,16 @@ def sentence_bounds(content: str) -> list[tuple[int, int]]:
     found: list[tuple[int, int]] = []
     start = k = 0
     quoted = quotes(content)
-    for end in _SENTENCE_END.finditer(content):
+    for end in _sentence_end().finditer(content):
         while k < len(quoted) and quoted[k][1] <= end.start():
             k += 1
         if k < len(quoted) and quoted[k][0] < end.start():
             continue
         behind = _NEXT_SIGN.match(content, end.end())
         more = behind is not None and not behind[1].isupper()
-        if more and _ABBREVIATION.search(content, max(0, end.start() - 8), end.start() + 1):
+        if more and _ended("abbreviation").search(
+            content, max(0, end.start() - 8), end.start() + 1
+        ):
             continue
         if _goes_on_behind(content, end.start() + 1):
             continue
@@ -50,7 +45,26 @@ def sentence_bounds(content: str) -> list[tuple[int, int]]:
 
 def _goes_on_behind(content: str, stop: int) -> bool:
     """Whether a full stop belongs to `Nr. R25` or `2. Stock`."""
-    if _LABELLED.search(content, max(0, stop - 5), stop) and _LABEL.match(content, stop):
+    if _ended("number").search(content, max(0, stop - 5), stop) and _LABEL.match(content, stop):
         return True
     ordinal = _ORDINAL.search(content, max(0, stop - 4), stop)
-    return ordinal is not None and _ORDINAL_OF.match(content, stop) is not None
+    return ordinal is not None and _ordinal_of().match(content, stop) is not None
+
+
+@cache
+def _sentence_end() -> re.Pattern[str]:
+    begins = everywhere("new_sentence")
+    return re.compile(rf"(?:[.!?…]+|;(?=\s*(?:{begins})\b))(?=\s|$)", re.IGNORECASE)
+
+
+@cache
+def _ended(kind: str) -> re.Pattern[str]:
+    """A word that has a full stop itself, at the end of a text."""
+    return re.compile(rf"\b(?:{everywhere(kind)})\.$", re.IGNORECASE)
+
+
+@cache
+def _ordinal_of() -> re.Pattern[str]:
+    """What stands behind an ordinal: `im 1. und 2. Stock`."""
+    between, behind = everywhere("between_ordinals"), everywhere("behind_ordinals")
+    return re.compile(rf"(?:\s*(?:,|{between})\s*[0-9]{{1,2}}\.)*\s+(?:{behind})", re.IGNORECASE)

@@ -9,11 +9,13 @@ from argo_compiler.script.syntax.grammar.parser import Branch, StumbleError, sen
 from argo_compiler.script.syntax.text.source import Diagnostics, ScriptText
 from argo_compiler.script.syntax.text.spelling import candidates
 from argo_compiler.script.syntax.tree.facts import Fact
+from argo_compiler.script.syntax.tree.nouns import Kind
 from argo_compiler.script.syntax.tree.orders import Sentence
 from argo_compiler.script.syntax.tree.places import FloorName, Location
 from argo_compiler.script.syntax.words.language import Language
 from argo_compiler.script.syntax.words.lexer import words
-from argo_compiler.script.syntax.words.lexicon import folded
+from argo_compiler.script.syntax.words.lexicon import Entry, folded
+from argo_compiler.script.syntax.words.prose import either
 from argo_compiler.script.syntax.words.word import Word
 
 Reading = tuple[Branch, list[Word]]
@@ -23,8 +25,6 @@ _MOST_TRIED = 32
 """ways to put the misspelt words of a sentence right"""
 _MIXED = re.compile(r"(?<![\w.,'-])(?=[lIiOo|]*[0-9])(?=[0-9]*[lIiOo|])([0-9lIiOo|]+)(?![\w|]|-\w)")
 _DIGITS = str.maketrans("lIi|Oo", "111100")
-_NAMED = re.compile(r"(?:valve|ventil|gauge|manometer)s?\s+$", re.IGNORECASE)
-"""behind these a letter may be one"""
 
 
 class Understanding:
@@ -37,13 +37,28 @@ class Understanding:
         """words of the site's names, in lower case"""
         self.diagnostics = diagnostics
         self.grammar = sentence_grammar()
-        joints = [phrase for word in ("and", "or") for phrase in self._phrases("JOINT", word)]
-        self._joint = re.compile(
-            rf"(?<!\w)(?:{'|'.join(map(re.escape, joints))})\s*$", re.IGNORECASE
-        )
+        joints = either("|".join([*self.joints("and"), *self.joints("or")]))
+        self._joint = re.compile(rf"(?<!\w)(?:{joints})\s*$", re.IGNORECASE)
 
-    def _phrases(self, type_: str, value: str) -> list[str]:
-        return self.language.lexicon.phrases.get((type_, value), [])
+    def joints(self, meaning: str) -> list[str]:
+        """The words that mean `and`, or `or`."""
+        return [said for phrases in self._both() for said in phrases["JOINT", meaning]]
+
+    def _both(self) -> list[dict[Entry, list[str]]]:
+        """The phrases of this language and of the other one."""
+        one = self.language.lexicon
+        return [one.phrases, *([] if one.other is None else [one.other.phrases])]
+
+    def _identified(self) -> re.Pattern[str]:
+        """What has an identifier, such as valves, at the end of a text."""
+        kinds = [
+            phrase
+            for phrases in self._both()
+            for (type_, value), said in phrases.items()
+            if type_ == "KIND" and value[0] is not Kind.CHECKPOINT
+            for phrase in said
+        ]
+        return re.compile(rf"(?<!\w)(?:{either('|'.join(kinds))})\s+$", re.IGNORECASE)
 
     def words(self, text: ScriptText) -> list[Word]:
         return words(text.content, self.language.lexicon)
@@ -132,9 +147,10 @@ class Understanding:
         if not _MIXED.search(text.content):
             return text
         quoted = quotes(text.content)
+        identified = self._identified()
         for found in reversed(list(_MIXED.finditer(text.content))):
             start, end = found.span()
-            named = found[0].lower() in self.names or _NAMED.search(text.content[:start])
+            named = found[0].lower() in self.names or identified.search(text.content[:start])
             if named or any(a < start < b for a, b in quoted):
                 continue
             meant = found[0].translate(_DIGITS)

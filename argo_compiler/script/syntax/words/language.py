@@ -44,7 +44,7 @@ def _lexicons(places: tuple[str, ...]) -> tuple[Lexicon, Lexicon]:
     loading.compare("english", "german")
     one, two = loading.lexicon("english"), loading.lexicon("german")
     for place in places:
-        pieces = [word for word in place.lower().split() if word not in ("the", "a", "an")]
+        pieces = [word for word in place.lower().split() if word not in one.articles]
         for lexicon in (one, two):
             lexicon.add(("PLACE", place), [" ".join(pieces)])
     one.other, two.other = two, one

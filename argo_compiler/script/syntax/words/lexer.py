@@ -174,8 +174,9 @@ def _plain(
 def _compound(said: str, lexicon: Lexicon) -> tuple[str, object]:
     """`zweihundertfünf` and `dreimal`; any other word is one that is not known."""
     head = folded(said)
-    times = head.endswith("mal")
-    parts = split_number(head.removesuffix("mal"), lexicon.numerals)
+    ending = lexicon.times_ending
+    times = ending != "" and head.endswith(ending)
+    parts = split_number(head.removesuffix(ending), lexicon.numerals)
     if parts and len(said) <= _LONGEST:
         number, n = compose(parts)
         if n == len(parts):

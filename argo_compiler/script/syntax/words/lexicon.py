@@ -13,9 +13,6 @@ Phrases = Mapping[Entry, str]
 and `b c`"""
 
 
-_ARTICLES = frozenset(["the", "a", "an"])
-
-
 @dataclass(slots=True)
 class PhraseStart:
     """The words with which phrases begin, and what may follow."""
@@ -32,19 +29,27 @@ class Lexicon:
     def __init__(
         self,
         name: str,
+        articles: str,
         definite: str,
         passed_over: str,
         verbs_first: bool,
         plural_article: str,
         plural_ending: str,
+        particles: str,
+        times_ending: str,
     ) -> None:
         self.name = name
+        self.articles = frozenset(articles.split())
+        """what is passed over within a phrase wherever it stands"""
         self.definite = frozenset(definite.split())
         """articles, and words that have one in them, which say that it is one that is known"""
         self.passed_over = frozenset(passed_over.split()) | self.definite
         """words that may stand within a phrase"""
         self.plural_article = plural_article
         self.plural_ending = plural_ending
+        self.particles = frozenset(particles.split())
+        """what ends a parted verb only where its clause ends"""
+        self.times_ending = times_ending
         self.verbs_first = verbs_first
         """whether a verb stands before all that it is said of, as the grammar has it"""
         self.other: Lexicon | None = None
@@ -61,8 +66,8 @@ class Lexicon:
             head, _, end = said.partition(" … ")
             node = self.root
             for k, piece in enumerate(head.split()):
-                if k and piece in _ARTICLES and piece in self.passed_over:
-                    continue  # wherever it stands within a phrase
+                if k and piece in self.articles:
+                    continue
                 following = node.next.get(piece)
                 if following is None:
                     following = node.next[piece] = PhraseStart()

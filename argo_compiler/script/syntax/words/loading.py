@@ -13,9 +13,10 @@ from argo_compiler.listing import listed
 from argo_compiler.script.syntax.tree.nouns import Kind
 from argo_compiler.script.syntax.words.lexicon import Entry, Lexicon, expand
 from argo_compiler.script.syntax.words.numbers import Figure
-from argo_compiler.script.syntax.words.prose import Prose
+from argo_compiler.script.syntax.words.prose import Prose, either
 
 _Made = TypeVar("_Made")
+LANGUAGES = ("english", "german")
 Table = Mapping[str, Any]
 """of a file"""
 _COUNTS = {"one": False, "several": True, "any": None}
@@ -42,7 +43,7 @@ _MEANINGS: dict[str, Callable[..., Any]] = {
 """what the key behind a terminal stands for; other terminals have none"""
 _FIELD_VALUES: dict[str, Callable[[str], Any]] = {"mode": Mode, "order": Order}
 _SAID_BY_ARGO = frozenset(["say", "samples"])
-_NO_WORDS = frozenset(["language", "patterns", "numbers", "prose"])
+_NO_WORDS = frozenset(["language", "layout", "patterns", "numbers", "prose"])
 _GOES_ON = re.compile(r"/\s*\n\s*")
 _MADE = re.compile(r"\s*(\w+)(?: (\w+))?: (.+)")
 
@@ -67,6 +68,13 @@ def prose(language: str, besides: str | None = None) -> Prose:
         said = _mixed(said, table_of(besides)["prose"], language)
     values = dict(_field_values(said["values"]))
     return _made(Prose, {**said, "values": values}, f"{language}.toml: `prose`")
+
+
+@cache
+def everywhere(name: str) -> str:
+    """A pattern of the words that `layout` has for `name` in any language."""
+    said = (table_of(language)["layout"][name] for language in LANGUAGES)
+    return either("|".join(words for words in said if words))
 
 
 def compare(one: str, two: str) -> None:

@@ -6,8 +6,6 @@ from dataclasses import dataclass
 from argo_compiler.script.syntax.words.joints import VERBS
 from argo_compiler.script.syntax.words.lexicon import Entry, Lexicon, PhraseStart
 
-_PREPOSITIONS = frozenset(["ab", "an", "auf", "aus", "durch", "ein"])
-"""what ends a parted verb only where its clause ends"""
 _BEHIND = frozenset(["JOINT", "FILLER", "IF", "UNLESS", "UNTIL", "ELSE", "IF_TIME", "IF_ONLY"])
 _STOPS = frozenset(VERBS) - {"DOCK"} | {"IF", "UNLESS", "ELSE", "BACK"}
 
@@ -61,7 +59,7 @@ def _parted(
 
 def _may_end(said: Sequence[str], end: int, last: tuple[str, ...], lexicon: Lexicon) -> bool:
     """Whether a clause may end before piece `end`, if the word before it could mean otherwise."""
-    if end >= len(said) or last[-1] not in _PREPOSITIONS:
+    if end >= len(said) or last[-1] not in lexicon.particles:
         return True
     after = said[end]
     if after in lexicon.passed_over:

@@ -42,9 +42,14 @@ class ScriptLine:
 
 
 _SUB_NUMBER = re.compile(r"[0-9]{1,4}\.[0-9]{1,4}[.)]?\s+(?=[A-Z])")
+_BRACKETED = re.compile(r"\[([0-9]{1,6})\]\s+")
 _LETTER = re.compile(r"\(?([a-z]|[ivx]{1,4})[.)]\s+", re.IGNORECASE)
-_BULLET = re.compile(r"[-*+•–‣◦]\s+(?:\[[ xX]?\]\s+)?|#+\s+")
-_RULE = re.compile(r"([-=_~*])\1{2,}")
+_BULLET = re.compile(
+    r"(?:[-*+o]\s+|-(?=[^\W\d_])|[•–‣◦·▪▫●○■□☐☑✓✔→➔►▶]\s*)(?:\[[ xX]?\]\s+)?|#+\s+"
+)
+_RULE = re.compile(r"([-=_~*'])\1{2,}|\+[-=+]+\+")
+_MAIL = re.compile(r"\s*(?:>\s?)+")
+"""before the lines of a letter that is quoted in another one"""
 _RUN_IN = re.compile(r"(?:^|[,;.!])\s+([0-9]{1,3})[.)]\s+(?=[^\W\d_])")
 
 
@@ -52,7 +57,7 @@ _RUN_IN = re.compile(r"(?:^|[,;.!])\s+([0-9]{1,3})[.)]\s+(?=[^\W\d_])")
 def _number() -> re.Pattern[str]:
     return re.compile(
         rf"\(?(?:(?:{everywhere('step')})\s+)?([0-9]{{1,6}})"
-        r"\s*(?:[.)](?![0-9])|:(?![0-9])|\s-\s+(?=[^\W\d_]))\s*",
+        r"\s*(?:\.?\)(?![0-9])|\.(?![0-9])|:(?![0-9])|\s-\s+(?=[^\W\d_]))\s*",
         re.IGNORECASE,
     )
 
@@ -66,7 +71,7 @@ def lines_of(texts: Sequence[ScriptText]) -> Iterator[ScriptLine]:
     """The lines that say anything, with their marks."""
     first = True
     above: ScriptLine | None = None
-    for text in texts:
+    for text in _unquoted(texts):
         stripped = text.strip()
         rule = stripped.content[:3] and _RULE.fullmatch(stripped.content)
         if rule and above is not None:
@@ -74,7 +79,7 @@ def lines_of(texts: Sequence[ScriptText]) -> Iterator[ScriptLine]:
         if not stripped.content or rule:
             first = True
             continue
-        indent = len(text.content) - len(text.content.lstrip())
+        indent = len(text.content) - len(text.content.lstrip(" \t"))
         for line in _split(_marked(stripped, indent)):
             line.first = first
             first = False
@@ -87,6 +92,15 @@ def lines_of(texts: Sequence[ScriptText]) -> Iterator[ScriptLine]:
         yield above
 
 
+def _unquoted(texts: Sequence[ScriptText]) -> Iterator[ScriptText]:
+    """The lines of a letter without its marks. A single line with one is taken as it is: in it the
+    sign may say that a value is greater."""
+    marks = [_MAIL.match(text.content) for text in texts]
+    for i, (text, mark) in enumerate(zip(texts, marks, strict=True)):
+        beside = any(marks[k : k + 1] != [None] for k in (i - 1, i + 1) if 0 <= k < len(marks))
+        yield text[mark.end() :] if mark is not None and beside else text
+
+
 def _marked(text: ScriptText, indent: int) -> ScriptLine:
     if bullet := _BULLET.match(text.content):
         inner = _marked(text[bullet.end() :].strip(), indent)
@@ -94,7 +108,8 @@ def _marked(text: ScriptText, indent: int) -> ScriptLine:
         return ScriptLine(
             inner.text, indent, mark, inner.number, heading=text.content.startswith("#")
         )
-    if number := _number().match(text.content) or _step().match(text.content):
+    patterns = (_number(), _step(), _BRACKETED)
+    if number := next(filter(None, (p.match(text.content) for p in patterns)), None):
         rest = text[number.end() :].strip()
         return ScriptLine(rest, indent, LineMark.NUMBER, int(number[1]), marked=text)
     if letter := _LETTER.match(text.content) or _SUB_NUMBER.match(text.content):

@@ -1,7 +1,7 @@
 """Tables: a heading for each column, then a step in each row.
 
-Columns are cut by bars, by tabs, or by blanks under the headings. A row becomes the sentence that
-says the same: `3. checkpoint #2 (liquid level gauge 1) with priority 3`.
+Columns are cut by bars, tabs, semicolons or commas, or by blanks under the headings. A row becomes
+the sentence that says the same: `3. checkpoint #2 (liquid level gauge 1) with priority 3`.
 """
 
 import re
@@ -11,13 +11,14 @@ from dataclasses import dataclass
 from argo_compiler.listing import listed
 from argo_compiler.script.syntax.asking import Asking
 from argo_compiler.script.syntax.text.source import Diagnostics, ScriptText, Source
-from argo_compiler.script.syntax.understanding import Understanding
+from argo_compiler.script.syntax.understanding import Understanding, quotes
 from argo_compiler.script.syntax.words.lexicon import expand
 
 _RULE = re.compile(r"[\s|:=+-]*-[\s|:=+-]*")
-_BLANKS = re.compile(r"\s{2,}")
 _FIRST_NUMBER = re.compile(r"[0-9]{1,6}")
 _MOST_COLUMNS = 12
+_CUTS = ("|", "\t", ";", "  ", ",")
+_PATTERNS = {cut: re.compile(r"\s{2,}" if cut == "  " else re.escape(cut)) for cut in _CUTS}
 
 
 @dataclass(frozen=True)
@@ -33,19 +34,19 @@ def tables(
 ) -> dict[int, ScriptText]:
     """What the lines of tables become, by their numbers."""
     found: dict[int, ScriptText] = {}
-    if "|" not in source.text and "\t" not in source.text and "  " not in source.text:
+    if not any(cut in source.text for cut in _CUTS):
         return found
     rows = _Rows(understanding, diagnostics)
     headings: list[_Heading] | None = None
     cut = ""
     for number, line in enumerate(source.lines, start=1):
-        at = _cut_of(line)
-        if headings is not None and (not line.strip() or (at != cut and at != "")):
+        if headings is not None and not (cut in line or _RULE.fullmatch(line)):
             headings = None
         if headings is None:
-            if at:
+            cut = _cut_of(line)
+            if cut:
                 text = source.line_text(number)
-                headings, cut = rows.headings(text, at), at
+                headings = rows.headings(text, cut)
                 if headings is not None:
                     found[number] = text[:0]
         elif _RULE.fullmatch(line):
@@ -56,15 +57,13 @@ def tables(
 
 
 def _cut_of(line: str) -> str:
-    """What cuts the columns of a line: bars, tabs or blanks; nothing where there are none."""
+    """What cuts the columns of a line; nothing where there are none."""
     if len(line) > 2000:
         return ""
     inner = line.strip()
     if "|" in inner.strip("|") or (inner.startswith("|") and inner.endswith("|")):
         return "|"
-    if "\t" in inner:
-        return "\t"
-    return "  " if "  " in inner else ""
+    return next((cut for cut in _CUTS if cut in inner and cut != "|"), "")
 
 
 class _Rows:
@@ -80,7 +79,7 @@ class _Rows:
         """The columns, if a line has the headings of a table."""
         cells = list(_cells(text, cut))
         known = [(self.prose.column(cell.content), at, cell) for at, cell in cells if cell.content]
-        if not known or len(known) > _MOST_COLUMNS:
+        if not (2 if cut in ";," else 1) <= len(known) <= _MOST_COLUMNS:
             return None
         strange = [cell for holds, _, cell in known if holds is None]
         if strange and (cut != "|" or len(strange) == len(known)):
@@ -98,7 +97,7 @@ class _Rows:
     def sentence(self, text: ScriptText, headings: list[_Heading], cut: str) -> ScriptText:
         """The sentence of a row."""
         cells: dict[str, ScriptText] = {}
-        for i, (at, cell) in enumerate(_cells(text, cut)):
+        for i, (at, cell) in enumerate(_cells(text, cut, len(headings))):
             under = [h for h in headings if h.start <= at + 1]
             heading = (
                 headings[min(i, len(headings) - 1)] if cut != "  " else (under or headings)[-1]
@@ -114,6 +113,8 @@ class _Rows:
         mark: list[str | ScriptText] = ["- "]
         if number is not None and _FIRST_NUMBER.fullmatch(number.content.strip(" .)#")):
             mark = [number.content.strip(" .)#"), ". "]
+        elif number is not None:
+            self._note(number)
         wholes = [_joined([*mark, *parts], text) for parts in self._readings(cells)]
         fitting = (w for w in wholes if self.understanding.fits(w[len("".join(map(str, mark))) :]))
         return next(fitting, wholes[0])
@@ -159,21 +160,29 @@ class _Rows:
             yield from (" ", cell)
 
 
-def _cells(text: ScriptText, cut: str) -> Iterator[tuple[int, ScriptText]]:
-    """The cells of a line, with the column at which each begins."""
+def _cells(
+    text: ScriptText, cut: str, most: int = _MOST_COLUMNS + 1
+) -> Iterator[tuple[int, ScriptText]]:
+    """The cells of a line, with the column at which each begins. What signs of a sentence cut has
+    at most so many cells, and what stands in quotation marks is one."""
     content = text.content
     start, end = 0, len(content)
     if cut == "|":
         start = content.find("|") + 1 if content.lstrip().startswith("|") else 0
         end = content.rfind("|") if content.rstrip().endswith("|") else end
-    pattern = _BLANKS if cut == "  " else re.compile(re.escape(cut))
+    places = [found.span() for found in _PATTERNS[cut].finditer(content, start, end)]
+    if cut in ";,":
+        within = quotes(content)
+        places = [(a, b) for a, b in places if not any(x < a < y for x, y in within)][: most - 1]
     at = start
-    for found in [*pattern.finditer(content, start, end), None]:
-        stop = end if found is None else found.start()
+    for stop, behind in [*places, (end, end)]:
         cell = text[at:stop]
         if cut != "  " or cell.content.strip():
-            yield at + len(cell.content) - len(cell.content.lstrip()), cell.strip()
-        at = stop if found is None else found.end()
+            left = at + len(cell.content) - len(cell.content.lstrip())
+            cell = cell.strip()
+            whole = cut in ";," and quotes(cell.content) == [(0, len(cell.content))]
+            yield left, cell[1:-1].strip() if whole else cell
+        at = behind
 
 
 def _as(said: str, cell: ScriptText) -> ScriptText:

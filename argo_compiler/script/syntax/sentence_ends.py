@@ -65,6 +65,8 @@ def _ended(kind: str) -> re.Pattern[str]:
 
 @cache
 def _ordinal_of() -> re.Pattern[str]:
-    """What stands behind an ordinal: `im 1. und 2. Stock`."""
+    """What stands behind an ordinal, where no line cuts it: `im 1. und 2. Stock`."""
     between, behind = everywhere("between_ordinals"), everywhere("behind_ordinals")
-    return re.compile(rf"(?:\s*(?:,|{between})\s*[0-9]{{1,2}}\.)*\s+(?:{behind})", re.IGNORECASE)
+    more = rf"(?:\s*(?:,|{between})\s*[0-9]{{1,2}}\.)"
+    cut = rf"\s*(?:,|{between})$"
+    return re.compile(rf"{more}*(?:\s+(?:{behind})|{cut})|{more}+$", re.IGNORECASE)

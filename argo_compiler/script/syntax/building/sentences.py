@@ -69,9 +69,22 @@ def _joined(part: RulePart) -> tuple[ScriptOrder, ...]:
             ):
                 found[-1] = _both(last, child)
             else:
+                if last is not None and _may_be_step(part, last, joint):
+                    message = "this number may be a checkpoint's or that of a step"
+                    hint = "write `check checkpoint 4` for the first, `4. ...` for the second"
+                    part.diagnostics.error("ambiguous-number", message, last.span, hint)
                 found.append(child.joined(joint) if joint else child)
         joint = str(child.value) if isinstance(child, Word) and child.type == "NEXT" else ""
     return tuple(found)
+
+
+def _may_be_step(part: RulePart, order: ScriptOrder, joint: str) -> bool:
+    """Whether an order is a bare number that stands as a step's does: `2; ...`, `No. 2: ...`."""
+    if not isinstance(order, Measure) or not order.bare or joint not in (";", ":"):
+        return False
+    noun = order.what.nouns[0]
+    numbered = isinstance(noun, Labelled) and noun.kind is None and isinstance(noun.label, int)
+    return numbered and len(order.what.nouns) == 1 and part.said[0] != "#"
 
 
 def _same(first: Measure, second: Measure, joint: str) -> bool:

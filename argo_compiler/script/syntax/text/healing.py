@@ -30,13 +30,14 @@ _PLAIN = {
     **dict.fromkeys("\u2018\u2019\u201b\u2032\u00b4`", "'"),
     **dict.fromkeys("\u201c\u201d\u201e\u201f\u2033\u00ab\u00bb", '"'),
     **dict.fromkeys("\u2010\u2011\u2012\u2013\u2014\u2015\u2212", "-"),
-    **dict.fromkeys("\u200b\u200c\u200d\u2060\u00ad\ufeff", ""),
+    **dict.fromkeys("\x0c\u200b\u200c\u200d\u2060\u00ad\ufeff", ""),
     "\u2026": ".",
     "\ufb01": "fi",
     "\ufb02": "fl",
 }
-_NOISE = re.compile(r"[^ -)+-_a-~]|^\s*[-#+]|\s$")
+_NOISE = re.compile(r"[^ -)+-^a-~]|^\s*[-#+]|\s$")
 """only where this is found there may be anything to heal; most lines need no closer look"""
+_EMPHASIS = re.compile(r"(?<!\w)(_{1,2}|`)(?=[^\s_`])([^_`]*\w[^_`]*)(?<!\s)\1(?!\w)")
 _STEP = re.compile(r"\s*[0-9]+[.)]")
 _TABS = re.compile(r"\t+")
 _WORD = re.compile(r"[\w'-]*")
@@ -101,6 +102,9 @@ def heal(
 
 def _plain(line: ScriptText) -> ScriptText:
     """The line in plain signs, without emphasis, list mark and trailing blanks."""
+    if '"' not in line.content:
+        for found in reversed(list(_EMPHASIS.finditer(line.content))):
+            line = line.without(found.end(2), found.end()).without(*found.span(1))
     content = line.content
     if not content.isascii() or "*" in content or "`" in content:
         mark = len(content) - len(content.lstrip())

@@ -99,6 +99,11 @@ class ScriptText:
         content = self.content[:start] + word + self.content[end:]
         return ScriptText(content, [*self.offsets[:start], *new, *self.offsets[end:]], self.source)
 
+    def without(self, start: int, end: int) -> "ScriptText":
+        """The text without the characters `start` to `end`."""
+        offsets = [*self.offsets[:start], *self.offsets[end:]]
+        return ScriptText(self.content[:start] + self.content[end:], offsets, self.source)
+
     def span(self, start: int = 0, end: int | None = None) -> Span:
         """Where the characters `start` to `end` stand; if there are none, the end of the text."""
         offsets = self.offsets

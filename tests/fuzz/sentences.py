@@ -20,6 +20,7 @@ _SIGNS = {
     "NEXT": (", then ", " and ", ", ", "; "),
     "COLON": (": ",),
     "LPAR": ("(",),
+    "LPAR_HOW": ("(",),
     "RPAR": (")",),
     "LSQB": ("[",),
     "RSQB": ("]",),

@@ -84,7 +84,11 @@ class Wrapping:
         """The neighbouring nodes of one block that are to be repeated."""
         order, round_ = repetition.order, repetition.round
         if order.steps is None:
-            return self._all(round_)
+            if not (found := self._all(round_)):
+                message = "nothing is planned before this that could be repeated"
+                hint = "write it behind what is to be repeated, or `do the following twice:`"
+                self.diagnostics.refuse("empty-step", message, order.span, hint)
+            return found
         nodes = self.context.nodes_of(order.steps)
         later = {id(n) for n in list(repetition.late)[repetition.known :]}
         nodes = [n for n in nodes if id(n) not in later and id(n) not in behind and _repeats(n)]

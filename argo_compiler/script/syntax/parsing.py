@@ -158,7 +158,10 @@ class _Parser:
             remark = after or self.asides.is_remark(sentence.content)
             if remark:
                 self.reader.remark(sentence)
-            else:
+                continue
+            if self.labels.is_field(sentence):
+                sentence = self.fields.read(sentence)
+            if sentence.content:
                 said += self.reader.read(sentence, item)
         if len(said) == len(parts) and len(self.diagnostics.entries) == before:
             self._keep(item, text, said)

@@ -495,7 +495,6 @@ def test_german_means_what_english_means(
     assert said == meaning_of(script(english_text, "Start in starting area 1."))
 
 
-
 # ---- which language
 
 

@@ -5,6 +5,7 @@ import pytest
 
 from argo_compiler.catalog import Catalog
 from argo_compiler.diagnostics import DiagnosticError, Severity
+from argo_compiler.il import EventKind, Order
 from argo_compiler.script import import_script
 
 START = "Start in starting area 1. Check #1"
@@ -88,3 +89,41 @@ def test_what_asks_for_nothing_is_a_note(text: str, catalog: Catalog) -> None:
 def test_a_number_is_never_put_right(catalog: Catalog) -> None:
     with pytest.raises(DiagnosticError, match="seven"):
         import_script(f"{START}.\nCheck checkpoint sevn", catalog)
+
+
+@pytest.mark.parametrize(
+    ("text", "checkpoints"),
+    [
+        (f"{START} (twice). Should checkpoint 1 be above 5, check #8.", ["1", "8"]),
+        ("area 2 start\nvalve r31 and valve r7", ["10", "11"]),
+        ("Can you check valve R25? Start in starting area 1.", ["4"]),
+        (f"Can you run a short check for me after lunch? {START}.", ["1"]),
+        ("Hello,\nplease plan checkpoints 13 and 15, start in starting area 1.", ["13", "15"]),
+        ("The lower levels. Start: area 1. End: area 1. Check #1.", ["1"]),
+    ],
+)
+def test_orders_as_people_say_them(text: str, checkpoints: list[str], catalog: Catalog) -> None:
+    assert measured(text, catalog) == checkpoints
+
+
+def test_an_inverted_condition_is_a_reaction(catalog: Catalog) -> None:
+    text = f"{START}. Should the platform alarm sound, the robot goes home. Check #4."
+    mission = import_script(text, catalog).mission
+    assert [reaction.event for reaction in mission.reactions] == [EventKind.PLATFORM_ALARM]
+
+
+def test_several_fields_stand_behind_a_sentence(catalog: Catalog) -> None:
+    text = "Start and end in starting area 2. Order: any. Maximum duration: 15 min.\nCheck #1"
+    mission = import_script(text, catalog).mission
+    assert (mission.end_area, mission.order, mission.max_duration) == (2, Order.ANY, 900.0)
+
+
+def test_what_stands_in_brackets_is_said_of_the_task(catalog: Catalog) -> None:
+    mission = import_script(f"{START} (priority 3). Check #4 (at 0.2 m/s).", catalog).mission
+    first, second = (task for task in mission.tasks if task.object_id is not None)
+    assert (first.priority, second.velocity) == (3, 0.2)
+
+
+def test_nothing_is_repeated_before_anything_is_planned(catalog: Catalog) -> None:
+    with pytest.raises(DiagnosticError, match="nothing is planned before this"):
+        import_script(f"Repeat everything twice. {START}.", catalog)

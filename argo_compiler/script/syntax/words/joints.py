@@ -4,6 +4,8 @@ The parser looks one word ahead. Whether `, and` goes on with a list of checkpoi
 condition or with another order is known there only because the joint's type says so.
 """
 
+from dataclasses import replace
+
 from argo_compiler.script.syntax.words.word import Word
 
 VERBS = (
@@ -29,6 +31,10 @@ _TESTS = [
     "FAILS",
 ]
 _PLACES = ["FLOOR", "FLOOR_NAME", "ORDINAL", "AREA", "PLACE"]
+_IN_BRACKETS = frozenset(
+    [*("KIND", "HASH", "NUMBER", "IDENT", "STRING", "MINUS", "AREA", "IN", "AT", "ON", "TO")]
+)
+"""what may begin the other name of a checkpoint, or coordinates"""
 _JOINED = {
     **dict.fromkeys(VERBS, "DO"),
     **dict.fromkeys(_NOUNS, "NOUN"),
@@ -50,6 +56,8 @@ def joined(words: list[Word]) -> list[Word]:
         if word.type == "JOINT":
             joints.append(word)
             continue
+        if word.type == "LPAR" and i + 1 < len(words) and words[i + 1].type not in _IN_BRACKETS:
+            word = replace(word, type="LPAR_HOW")
         name = _is_name(words, i)
         if joints:
             said = " ".join(joint.value for joint in joints)

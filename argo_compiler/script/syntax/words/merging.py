@@ -13,12 +13,18 @@ from argo_compiler.script.syntax.words.word import Word
 
 _BEYOND = {"OR_MORE": "GREATER", "OR_LESS": "LESS"}
 _RELATIONS = frozenset(["GREATER", "LESS", "AT_LEAST", "AT_MOST", "BETWEEN", "EXACTLY"])
+_ASKED_OF = frozenset(
+    ["EVENT", "BATTERY", "KIND", "HASH", "OF", "IT", "VALUE", "THIS", "THEM", "TOO_LATE"]
+)
+"""what begins the subject of a condition"""
 _UNITS = ("UNIT_S", "A_UNIT")
 _LIMITS = {"TIMES": "MOST_TIMES", "DURATION": "MOST_TIME"}
 
 
 def merged(words: list[Word]) -> list[Word]:
     """The words, those that belong together in one; words of two senses told apart."""
+    if any(word.type in ("SHOULD", "IS") for word in words):
+        words = _inverted(words)
     if any(word.type == "NUMBER_WORD" for word in words):
         words = _numbers(words)
     if any(word.type == "MORE_WORD" for word in words):
@@ -46,6 +52,19 @@ def merged(words: list[Word]) -> list[Word]:
         i += 1
         _add(word, after, found)
     return _last_if(_limited(found))
+
+
+def _inverted(words: list[Word]) -> list[Word]:
+    """`Should the alarm sound, ...` is a condition; `should` says nothing elsewhere."""
+    found: list[Word] = []
+    for i, word in enumerate(words):
+        asks = i + 1 < len(words) and words[i + 1].type in _ASKED_OF
+        begins = not found or found[-1].type in ("JOINT", "ELSE")
+        if asks and (not found if word.type == "IS" else begins and word.type == "SHOULD"):
+            found.append(replace(word, type="IF", value=None))
+        elif word.type != "SHOULD":
+            found.append(word)
+    return found
 
 
 def _last_if(words: list[Word]) -> list[Word]:

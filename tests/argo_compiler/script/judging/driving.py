@@ -15,11 +15,12 @@ from argo_compiler.hfsm import (
     CancelAction,
     Executor,
     Occurred,
+    Resume,
     StartAction,
     Tick,
     lower,
 )
-from argo_compiler.il import Action, EventKind, Mission, Task
+from argo_compiler.il import Action, EventKind, Mission, Mode, Task
 from argo_compiler.model import Pose
 
 MAX_STEPS = 1000  # actions of one trace; a plan that takes more does not end
@@ -65,6 +66,7 @@ class Drive:
         self._events = sorted(trace.get("events", ()), key=lambda event: event[0])
         self._fails = dict(trace.get("fails", {}))
         self._read: Counter[str] = Counter()
+        self._supervised = mission.mode is Mode.SUPERVISORY
         self._executor = Executor(lower(mission))
         self._now = 0.0
         self._running: tuple[Task, Step] | None = None
@@ -74,6 +76,8 @@ class Drive:
     def run(self) -> list[Step]:
         """What the robot did, to the end of the mission or until nothing happens any more."""
         self._obey(self._executor.start(0.0))
+        if self._supervised:
+            self._obey(self._executor.handle(Resume(), 0.0))  # the operator lets it begin
         turns = 0
         while not self._executor.finished:
             turns += 1

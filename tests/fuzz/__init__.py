@@ -10,6 +10,7 @@ import traceback
 from collections import Counter
 from collections.abc import Sequence
 from dataclasses import dataclass
+from functools import cache
 from pathlib import Path
 
 from argo_compiler.errors import ArgoError
@@ -67,11 +68,16 @@ class Failure:
     """or the law, and the sentence that breaks it"""
 
 
-def fuzz(runs: range, seed: int) -> tuple[Counter[str], list[Failure]]:
-    """What became of the inputs with these numbers."""
+@cache
+def _makers() -> tuple[Restructurer, Mutator, Mutator, Mutator]:
     texts = scripts()
     files = missions(texts)
-    makers = (Restructurer(files), Mutator(texts), Mutator(files), Composer(texts))
+    return Restructurer(files), Mutator(texts), Mutator(files), Composer(texts)
+
+
+def fuzz(runs: range, seed: int) -> tuple[Counter[str], list[Failure]]:
+    """What became of the inputs with these numbers."""
+    makers = _makers()
     outcomes: Counter[str] = Counter()
     failures = []
     seconds = SECONDS if signal.getsignal(signal.SIGALRM) is _hung else 0

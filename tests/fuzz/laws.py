@@ -20,7 +20,7 @@ from tests.fuzz.sentences import Said, Sayer, text_of
 FRAME = """\
 Mission Protocol #1
 1. Start in starting area 1.
-2. Check checkpoints 1 to 20.
+2. Check checkpoints 1 to 8.
 3. {}.
 4. Check checkpoint 3.
 5. Go home.
@@ -99,8 +99,8 @@ def unused(words: list[Said], outcome: Outcome, sayer: Sayer, rng: random.Random
     """The words that make no difference."""
     found: list[Breach] = []
     for i, word in enumerate(words):
-        others = EXCHANGED.get(word.type) or (sayer.others(word) if word.type in PHRASES else ())
-        others = [other for other in others if other != word.text]
+        others = [other for other in EXCHANGED.get(word.type, ()) if other != word.text]
+        others = others or (sayer.others(word) if word.type in PHRASES else [])
         if not others:
             continue
         tried = rng.sample(others, min(3, len(others)))

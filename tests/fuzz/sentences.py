@@ -59,18 +59,32 @@ class Sayer:
         self.rules: dict[str, list[Rule]] = defaultdict(list)
         for rule in sentence_grammar().parser.rules:
             self.rules[rule.origin.name].append(rule)
-        self.depths = _depths(self.rules)
+        depths = _depths(self.rules)
+        self.shortest: dict[str, list[Rule]] = {}
+        """by name, the rules with the shortest way out"""
+        for name, rules in self.rules.items():
+            least = min(depths[id(rule)] for rule in rules)
+            self.shortest[name] = [rule for rule in rules if depths[id(rule)] == least]
         self.phrases: dict[str, list[str]] = defaultdict(list)
-        for (type_, _), phrases in lexicon.phrases.items():
+        self.meanings: dict[Said, object] = {}
+        """of phrases: what each is, in one number or several"""
+        for (type_, value), phrases in lexicon.phrases.items():
             self.phrases[type_] += phrases
+            meaning = value[0] if isinstance(value, tuple) else value
+            self.meanings.update((Said(type_, phrase), meaning) for phrase in phrases)
 
     def sentence(self, start: str = "sentence") -> list[Said]:
         """The words of a sentence, mostly a short one: a long one has a mistake somewhere."""
         longest = self.rng.choice((8, 12, 20, 40))
-        types = self._derived(start)
-        while len(types) > longest:
-            types = self._derived(start)
+        types = None
+        while types is None:
+            types = self._derived(start, longest)
         return [Said(type_, self.word(type_)) for type_ in types]
+
+    def others(self, word: Said) -> list[str]:
+        """The phrases of the same terminal that mean something else."""
+        same = (*_ANY_KIND, self.meanings.get(word))
+        return [p for p in self.phrases[word.type] if self.meanings[Said(word.type, p)] not in same]
 
     def word(self, type_: str) -> str:
         """A phrase for a terminal."""
@@ -85,28 +99,20 @@ class Sayer:
         listed = self.phrases.get(type_) or self.phrases.get(_SENSES.get(type_, ""))
         return self.rng.choice(listed) if listed else type_.lower()
 
-    def others(self, word: Said) -> list[str]:
-        """Phrases for the same terminal that mean something else."""
-        meanings = {
-            value: phrases
-            for (type_, value), phrases in self.lexicon.phrases.items()
-            if type_ == word.type and not (type_ == "KIND" and value[0] in _ANY_KIND)
-        }
-        return [p for said in meanings.values() if word.text not in said for p in said]
-
-    def _derived(self, start: str) -> list[str]:
+    def _derived(self, start: str, longest: int) -> list[str] | None:
+        """The terminals of a sentence; None if there are more than that."""
         found: list[str] = []
         stack: list[tuple[Symbol, int]] = [(NonTerminal(start), 0)]
+        random = self.rng.random
         while stack:
             symbol, depth = stack.pop()
             if symbol.is_term:
                 found.append(symbol.name)
+                if len(found) > longest:
+                    return None
                 continue
-            rules = self.rules[symbol.name]
-            if depth >= _DEEPEST:
-                least = min(self.depths[id(rule)] for rule in rules)
-                rules = [rule for rule in rules if self.depths[id(rule)] == least]
-            rule = self.rng.choice(rules)
+            rules = (self.shortest if depth >= _DEEPEST else self.rules)[symbol.name]
+            rule = rules[int(random() * len(rules))]
             stack += [(part, depth + 1) for part in reversed(rule.expansion)]
         return found
 

@@ -14,6 +14,7 @@ from argo_compiler.script.syntax.grammar.parser import StumbleError
 from argo_compiler.script.syntax.text.source import ScriptText, join
 from argo_compiler.script.syntax.understanding import Understanding, quotes
 from argo_compiler.script.syntax.words.joints import VERBS
+from argo_compiler.script.syntax.words.lexicon import Lexicon
 from argo_compiler.script.syntax.words.prose import Prose, begins, either
 
 _SAYING = NAMED | {*VERBS, *ASKING, "PLACE", "FLOOR_NAME", "EVENT", "IT", "THEM", "ALL"}
@@ -41,9 +42,7 @@ class Asides:
         self.understanding = understanding
         self.asking = Asking(understanding)
         self.prose: Prose = understanding.language.prose
-        idle = understanding.language.lexicon.phrases.get(("IDLE", None), [])
-        said = either("|".join(idle)) if idle else "(?!)"
-        self._idle = re.compile(rf"(?<![\w-])(?:{said})(?![\w-])", re.IGNORECASE)
+        self._idle = _idle(understanding.language.lexicon)
 
     # ---- whole lines
 
@@ -183,6 +182,13 @@ class Asides:
             quoted = quotes(text.content) if quoted is None else quoted
             if not any(a < found.start() < b for a, b in quoted):
                 yield text[found.start() : found.end()]
+
+
+@cache
+def _idle(lexicon: Lexicon) -> re.Pattern[str]:
+    idle = lexicon.phrases.get(("IDLE", None), [])
+    said = either("|".join(idle)) if idle else "(?!)"
+    return re.compile(rf"(?<![\w-])(?:{said})(?![\w-])", re.IGNORECASE)
 
 
 @cache

@@ -3,6 +3,7 @@
 import re
 from collections.abc import Callable, Iterable, Iterator
 from dataclasses import dataclass
+from functools import cache
 
 from argo_compiler.script.syntax.layout import LineItem
 from argo_compiler.script.syntax.lines import LineMark
@@ -14,6 +15,8 @@ from argo_compiler.script.syntax.words.prose import either
 _HEADS = ((), ("MEASURE",), ("ALL",), ("MEASURE", "ALL"))
 """what may stand before the kind in the sentence over a list"""
 _LABELS = frozenset(["NUMBER", "IDENT", "HASH"])
+_ENDS = frozenset("0123456789.!?…")
+"""signs, none of which ends the sentence over a list; most lines end with one of them"""
 _LONGEST_HEAD = 80
 """characters"""
 
@@ -84,6 +87,8 @@ class KindLists:
         item.items = [*first.items, *others]
 
     def _head(self, text: ScriptText) -> _Head | None:
+        if text.content[-1:] in _ENDS:
+            return None
         last = sentences(text)[-1:]
         if not last or not text.content.endswith(last[0].content):
             return None
@@ -91,8 +96,7 @@ class KindLists:
         if not content or len(content) > _LONGEST_HEAD or content[-1].isdigit():
             return None
         said = last[0][: len(content)]
-        listing = re.compile(rf"\b(?:{either(self.understanding.language.prose.listing)})\b", re.I)
-        if found := listing.search(content):
+        if found := _listing(self.understanding.language.prose.listing).search(content):
             parts = said[: found.start()].strip(), said[found.end() :].strip()
             said = join([part for part in parts if part.content] or [said])
         types = self.understanding.types(said)
@@ -101,3 +105,8 @@ class KindLists:
 
     def _is_label(self, text: ScriptText) -> bool:
         return {*self.understanding.types(text)[:1]} <= _LABELS
+
+
+@cache
+def _listing(phrases: str) -> re.Pattern[str]:
+    return re.compile(rf"\b(?:{either(phrases)})\b", re.IGNORECASE)

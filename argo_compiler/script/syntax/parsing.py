@@ -2,7 +2,8 @@
 
 import re
 from collections.abc import Collection, Iterable, Iterator
-from dataclasses import dataclass, field
+from dataclasses import dataclass
+from functools import lru_cache
 
 from argo_compiler.diagnostics import DiagnosticError
 from argo_compiler.garbage_collector import collector_held
@@ -14,7 +15,7 @@ from argo_compiler.script.syntax.labels import FieldLabels
 from argo_compiler.script.syntax.layout import LineItem, items_of
 from argo_compiler.script.syntax.line_sense import LineSense
 from argo_compiler.script.syntax.lines import LineMark, lines_of
-from argo_compiler.script.syntax.repeats import Repeats
+from argo_compiler.script.syntax.repeats import Repeats, repeats
 from argo_compiler.script.syntax.rows import tables
 from argo_compiler.script.syntax.sentence_ends import sentences
 from argo_compiler.script.syntax.sentence_reading import Said, SentenceReader
@@ -24,6 +25,7 @@ from argo_compiler.script.syntax.tree.orders import Sentence
 from argo_compiler.script.syntax.tree.script import Script, ScriptStep, Unread
 from argo_compiler.script.syntax.understanding import Understanding
 from argo_compiler.script.syntax.words.language import Language
+from argo_compiler.script.syntax.words.lexicon import Lexicon
 
 MAX_LINES = 120_000
 """of a script; one with more is refused unread"""
@@ -53,7 +55,8 @@ def parse(
     labels = FieldLabels(understanding, diagnostics)
     fields = ScriptFields(understanding, asides, diagnostics)
     reader = SentenceReader(understanding, asides, fields, labels, diagnostics)
-    return _Parser(understanding, asides, fields, labels, diagnostics, reader).script()
+    known = repeats(language.lexicon, words)
+    return _Parser(understanding, asides, fields, labels, diagnostics, reader, known).script()
 
 
 def _require_size(source: Source) -> None:
@@ -74,16 +77,22 @@ def _vocabulary(understanding: Understanding, text: str) -> frozenset[str]:
     them, unless the script has them elsewhere: `a⇥d` is `and` rather than `add`."""
     if "\t" not in text:
         return frozenset()
-    phrases = understanding.language.lexicon.phrases
-    edits = (said for kind in _EDITS for said in phrases.get((kind, None), ()))
-    unsaid = {word for said in edits for word in said.split()}
-    unsaid -= set(re.findall(r"[\w'-]+", text.lower()))
-    for alike in phrases.values():
-        # `check points` and `checkpoints` are one: no cut between them leaves a doubt.
-        parts = (said.split() for said in alike)
-        unsaid.update(p[1] for p in parts if len(p) == 2 and "".join(p) in alike)
-    known: frozenset[str] = understanding.known | understanding.language.prose.words
+    language = understanding.language
+    edits, halves = _unsaid(language.lexicon)
+    unsaid = (edits - set(re.findall(r"[\w'-]+", text.lower()))) | halves
+    known: frozenset[str] = understanding.known | language.prose.words
     return understanding.names | (known - unsaid)
+
+
+@lru_cache(maxsize=8)
+def _unsaid(lexicon: Lexicon) -> tuple[frozenset[str], frozenset[str]]:
+    """The words of edits, and the second halves of words that are written as one as well:
+    `check points` and `checkpoints` are one, so that no cut between them leaves a doubt."""
+    phrases = lexicon.phrases
+    edits = (said for kind in _EDITS for said in phrases.get((kind, None), ()))
+    pairs = ((said.split(), alike) for alike in phrases.values() for said in alike)
+    halves = (p[1] for p, alike in pairs if len(p) == 2 and "".join(p) in alike)
+    return frozenset(word for said in edits for word in said.split()), frozenset(halves)
 
 
 @dataclass
@@ -96,11 +105,11 @@ class _Parser:
     labels: FieldLabels
     diagnostics: Diagnostics
     reader: SentenceReader
+    repeats: Repeats
     closed: bool = False
     """whether a letter has come to its end"""
     stopped: bool = False
     """whether there are too many errors"""
-    repeats: Repeats = field(default_factory=Repeats)
 
     def script(self) -> Script:
         source = self.diagnostics.source

@@ -2,6 +2,7 @@
 one reading makes sense."""
 
 import re
+from functools import cache
 from itertools import islice, product
 
 from argo_compiler.script.syntax.building.sentences import build
@@ -14,7 +15,7 @@ from argo_compiler.script.syntax.tree.orders import Sentence
 from argo_compiler.script.syntax.tree.places import FloorName, Location
 from argo_compiler.script.syntax.words.language import Language
 from argo_compiler.script.syntax.words.lexer import words
-from argo_compiler.script.syntax.words.lexicon import Entry, folded
+from argo_compiler.script.syntax.words.lexicon import Entry, Lexicon, folded
 from argo_compiler.script.syntax.words.prose import either
 from argo_compiler.script.syntax.words.word import Word
 
@@ -32,33 +33,16 @@ class Understanding:
 
     def __init__(self, language: Language, names: frozenset[str], diagnostics: Diagnostics) -> None:
         self.language = language
-        self.known = frozenset(language.words)
+        self.known = language.words
         self.names = names
         """words of the site's names, in lower case"""
         self.diagnostics = diagnostics
         self.grammar = sentence_grammar()
-        joints = either("|".join([*self.joints("and"), *self.joints("or")]))
-        self._joint = re.compile(rf"(?<!\w)(?:{joints})\s*$", re.IGNORECASE)
+        self._joint = _joint_at_end(language.lexicon)
 
     def joints(self, meaning: str) -> list[str]:
         """The words that mean `and`, or `or`."""
-        return [said for phrases in self._both() for said in phrases["JOINT", meaning]]
-
-    def _both(self) -> list[dict[Entry, list[str]]]:
-        """The phrases of this language and of the other one."""
-        one = self.language.lexicon
-        return [one.phrases, *([] if one.other is None else [one.other.phrases])]
-
-    def _identified(self) -> re.Pattern[str]:
-        """What has an identifier, such as valves, at the end of a text."""
-        kinds = [
-            phrase
-            for phrases in self._both()
-            for (type_, value), said in phrases.items()
-            if type_ == "KIND" and value[0] is not Kind.CHECKPOINT
-            for phrase in said
-        ]
-        return re.compile(rf"(?<!\w)(?:{either('|'.join(kinds))})\s+$", re.IGNORECASE)
+        return _joints(self.language.lexicon, meaning)
 
     def words(self, text: ScriptText) -> list[Word]:
         return words(text.content, self.language.lexicon)
@@ -147,7 +131,7 @@ class Understanding:
         if not _MIXED.search(text.content):
             return text
         quoted = quotes(text.content)
-        identified = self._identified()
+        identified = _identified(self.language.lexicon)
         for found in reversed(list(_MIXED.finditer(text.content))):
             start, end = found.span()
             named = found[0].lower() in self.names or identified.search(text.content[:start])
@@ -163,6 +147,34 @@ class Understanding:
         if said.lower() != meant:
             message = f"read `{said}` as `{meant}`"
             self.diagnostics.warning("respelled", message, text.span(start, end))
+
+
+def _both(one: Lexicon) -> list[dict[Entry, list[str]]]:
+    """The phrases of a language and of the other one."""
+    return [one.phrases, *([] if one.other is None else [one.other.phrases])]
+
+
+def _joints(lexicon: Lexicon, meaning: str) -> list[str]:
+    return [said for phrases in _both(lexicon) for said in phrases["JOINT", meaning]]
+
+
+@cache
+def _joint_at_end(lexicon: Lexicon) -> re.Pattern[str]:
+    joints = either("|".join([*_joints(lexicon, "and"), *_joints(lexicon, "or")]))
+    return re.compile(rf"(?<!\w)(?:{joints})\s*$", re.IGNORECASE)
+
+
+@cache
+def _identified(lexicon: Lexicon) -> re.Pattern[str]:
+    """What has an identifier, such as valves, at the end of a text."""
+    kinds = [
+        phrase
+        for phrases in _both(lexicon)
+        for (type_, value), said in phrases.items()
+        if type_ == "KIND" and value[0] is not Kind.CHECKPOINT
+        for phrase in said
+    ]
+    return re.compile(rf"(?<!\w)(?:{either('|'.join(kinds))})\s+$", re.IGNORECASE)
 
 
 def _all_known(found: list[Word]) -> bool:

@@ -3,7 +3,7 @@
 import re
 from collections.abc import Iterable
 from dataclasses import dataclass
-from functools import lru_cache
+from functools import cached_property, lru_cache
 from itertools import islice
 
 from argo_compiler.script.syntax.words import loading
@@ -23,9 +23,9 @@ class Language:
     prose: Prose
     """what stands around its sentences"""
 
-    @property
-    def words(self) -> set[str]:
-        return self.lexicon.words
+    @cached_property
+    def words(self) -> frozenset[str]:
+        return frozenset(self.lexicon.words)
 
     @classmethod
     def of(cls, text: str, places: Iterable[str]) -> "Language":
@@ -33,10 +33,13 @@ class Language:
         names = tuple(sorted(places))
         one, two = _lexicons(names)
         said = [folded(word.group().lower()) for word in islice(_WORD.finditer(text), _MOST)]
-        score = sum((word in two.words) - (word in one.words) for word in said)
-        if score > 0:
-            return cls(two, loading.prose("german", besides="english"))
-        return cls(one, loading.prose("english"))
+        score = sum([(word in two.words) - (word in one.words) for word in said])
+        return _language(two, "german", "english") if score > 0 else _language(one, "english")
+
+
+@lru_cache(maxsize=16)
+def _language(lexicon: Lexicon, name: str, besides: str | None = None) -> Language:
+    return Language(lexicon, loading.prose(name, besides=besides))
 
 
 @lru_cache(maxsize=8)

@@ -39,7 +39,7 @@ _UNSAID = frozenset(["FILLER", "IDLE"])
 
 
 # A sentence is looked at several times: what it is, whether it makes sense, what it says.
-@lru_cache(maxsize=256)
+@lru_cache(maxsize=2048)
 def words(text: str, lexicon: Lexicon) -> list[Word]:
     """The words of `text`, with the joints between them told apart by what they join; in another
     language where far more of them are known in that one."""

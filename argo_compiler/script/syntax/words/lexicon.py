@@ -3,6 +3,7 @@
 import re
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field
+from functools import lru_cache
 from itertools import product
 from typing import Any
 
@@ -101,7 +102,8 @@ def folded(piece: str) -> str:
 _GROUP = re.compile(r"\{(.*?)\}|\[(.*?)\]")
 
 
-def expand(text: str) -> list[str]:
+@lru_cache(maxsize=4096)
+def expand(text: str) -> tuple[str, ...]:
     """The phrases that `text` lists: `check{s}` is two, `a|b` are two, `[a/b] c` are two."""
     found: list[str] = []
     for phrase in text.split("|"):
@@ -116,4 +118,4 @@ def expand(text: str) -> list[str]:
             if part is not None
         ]
         found += dict.fromkeys(" ".join("".join(form).split()) for form in product(*choices))
-    return found
+    return tuple(found)

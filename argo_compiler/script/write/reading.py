@@ -21,12 +21,13 @@ _ASSUMING = frozenset(
         "script.dock-assumed",
         "script.end-at-dock",
         "script.healed",
+        "script.priority-taken",
         "script.quantity",
         "script.respelled",
         "script.unclear-cut",
     ]
 )
-"""warnings of what was taken though the script does not say it so"""
+"""findings of what was taken though the script does not say it so"""
 
 
 class PartSaid(StrEnum):
@@ -101,7 +102,9 @@ def read_back(
         text="",
         entries=tuple(entries),
         assumed=tuple(message for messages in by_line.values() for message in messages),
-        no_effect=tuple(d for d in found if d.severity is Severity.NOTE),
+        no_effect=tuple(
+            d for d in found if d.severity is Severity.NOTE and d not in assuming
+        ),
         warnings=tuple(d for d in found if d.severity is Severity.WARNING and d not in assuming),
     )
     text = "\n".join([*lines, *_last_marks(reading)]) + "\n"

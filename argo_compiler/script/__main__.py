@@ -10,7 +10,7 @@ from pathlib import Path
 
 from argo_compiler.script.reference import BEGIN, END, as_markdown
 from argo_compiler.script.syntax.grammar.tables import save_tables
-from argo_compiler.script.syntax.words.language import Language
+from argo_compiler.script.syntax.words.loading import LANGUAGES
 
 if __name__ == "__main__":
     save_tables(Path(str(files("argo_compiler.script.syntax.grammar"))))
@@ -18,7 +18,5 @@ if __name__ == "__main__":
         page = Path(argument)
         text = page.read_text(encoding="utf-8")
         before, after = text.partition(BEGIN)[0], text.partition(END)[2]
-        english = Language.of("check", ()).lexicon
-        assert english.other is not None
-        said = as_markdown([english, english.other])
+        said = as_markdown(LANGUAGES)
         page.write_text(f"{before}{BEGIN}\n{said}\n{END}{after}", encoding="utf-8")

@@ -1,24 +1,43 @@
-"""What can be said in a script, read off the grammar and the lexicons, for `docs/script.md`."""
+"""What can be said in a script, read off the grammar and the words, for `docs/script.md`."""
 
 import re
-from collections import defaultdict
 from collections.abc import Sequence
 from importlib.resources import files
 
-from argo_compiler.script.syntax.words.lexicon import Lexicon
+from argo_compiler.script.syntax.words.loading import shown_words
 
 BEGIN = "<!-- what can be said: made by `python -m argo_compiler.script docs/script.md` -->"
 END = "<!-- end of what can be said -->"
 
 _ALIAS = re.compile(r"\s+->\s+\w+$", re.MULTILINE)
-_WITHOUT_MEANING = ("FILLER", "IDLE")
-_IN_FIGURES = ("NUMBER_WORD",)
-"""terminals with a phrase for every number"""
+_TITLES = {
+    "verbs": "Words for orders",
+    "nouns": "Words for checkpoints, places and steps",
+    "conditions": "Words for conditions and events",
+    "manners": "Words for how, when and how often",
+    "figures": "Words for numbers, times and units",
+    "joints": "Words that join",
+    "nothing": "Words that add nothing",
+    "own": "Words that only one language needs",
+}
+"""of the groups of words, by their names in a language's file"""
 
 
-def as_markdown(lexicons: Sequence[Lexicon]) -> str:
-    """The grammar of a sentence, and the words of each language for its terminals."""
-    return f"```text\n{grammar_text()}\n```\n\n{words_table(lexicons)}"
+def as_markdown(languages: Sequence[str]) -> str:
+    """How sentences are put together, and the words of each language."""
+    parts = [_folded("How sentences are put together", f"```text\n{grammar_text()}\n```")]
+    words = [shown_words(language) for language in languages]
+    for group, title in _TITLES.items():
+        rows = [
+            f"| | {' | '.join(language.capitalize() for language in languages)} |",
+            f"|---|{'---|' * len(languages)}",
+        ]
+        said = [found.get(group, {}) for found in words]
+        for name in dict.fromkeys(name for found in said for name in found):
+            cells = [found.get(name, "").replace("|", "\\|") for found in said]
+            rows.append(f"| {name} | {' | '.join(cells)} |")
+        parts.append(_folded(title, "\n".join(rows)))
+    return "\n\n".join(parts)
 
 
 def grammar_text() -> str:
@@ -28,25 +47,6 @@ def grammar_text() -> str:
     return _ALIAS.sub("", rules).replace("// ---- ", "# ").strip()
 
 
-def words_table(lexicons: Sequence[Lexicon]) -> str:
-    """A row for each terminal, with the phrases that stand for it in each language."""
-    phrases = [_by_terminal(lexicon) for lexicon in lexicons]
-    terminals = list(dict.fromkeys(name for found in phrases for name in found))
-    rows = [
-        f"| | {' | '.join(lexicon.name for lexicon in lexicons)} |",
-        f"|---|{'---|' * len(lexicons)}",
-    ]
-    for terminal in terminals:
-        cells = [", ".join(found.get(terminal, ())).replace("|", "\\|") for found in phrases]
-        rows.append(f"| `{terminal}` | {' | '.join(cells)} |")
-    return "\n".join(rows)
-
-
-def _by_terminal(lexicon: Lexicon) -> dict[str, list[str]]:
-    found: dict[str, list[str]] = defaultdict(list)
-    for (terminal, _), said in lexicon.phrases.items():
-        if terminal in _IN_FIGURES:
-            continue
-        name = "no effect" if terminal in _WITHOUT_MEANING else terminal
-        found[name] += said
-    return found
+def _folded(title: str, text: str) -> str:
+    """A part of the page that opens when it is asked for."""
+    return f"<details><summary>{title}</summary>\n\n{text}\n\n</details>"

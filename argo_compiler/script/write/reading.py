@@ -102,9 +102,7 @@ def read_back(
         text="",
         entries=tuple(entries),
         assumed=tuple(message for messages in by_line.values() for message in messages),
-        no_effect=tuple(
-            d for d in found if d.severity is Severity.NOTE and d not in assuming
-        ),
+        no_effect=tuple(d for d in found if d.severity is Severity.NOTE and d not in assuming),
         warnings=tuple(d for d in found if d.severity is Severity.WARNING and d not in assuming),
     )
     text = "\n".join([*lines, *_last_marks(reading)]) + "\n"

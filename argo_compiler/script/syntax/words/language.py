@@ -44,8 +44,8 @@ def _language(lexicon: Lexicon, name: str, besides: str | None = None) -> Langua
 
 @lru_cache(maxsize=8)
 def _lexicons(places: tuple[str, ...]) -> tuple[Lexicon, Lexicon]:
-    loading.compare("english", "german")
-    one, two = loading.lexicon("english"), loading.lexicon("german")
+    loading.compare(*loading.LANGUAGES)
+    one, two = map(loading.lexicon, loading.LANGUAGES)
     for place in places:
         pieces = [word for word in place.lower().split() if word not in one.articles]
         for lexicon in (one, two):

@@ -77,6 +77,35 @@ def everywhere(name: str) -> str:
     return either("|".join(words for words in said if words))
 
 
+def shown_words(language: str) -> dict[str, dict[str, str]]:
+    """The phrases as the file has them, by group and by what they stand for; of a pattern its
+    first form."""
+    table = table_of(language)
+    patterns = table.get("patterns", {})
+    return {
+        name: {
+            " ".join([f"`{keys[0]}`", *(key.replace("_", " ") for key in keys[1:])]): _shown(
+                text, patterns
+            )
+            for keys, text in _flat(group)
+        }
+        for name, group in table.items()
+        if name not in _NO_WORDS
+    }
+
+
+def _shown(text: str, patterns: Table) -> str:
+    shown: list[str] = []
+    for phrase in map(str.strip, text.split("|")):
+        made = _MADE.fullmatch(phrase) if ":" in phrase else None
+        if made is None:
+            shown.append(phrase)
+        else:
+            first = patterns[made[1]].split("|")[0].strip().replace("~", made[2] or "")
+            shown += [first.replace("*", word) for word in made[3].split()]
+    return ", ".join(shown)
+
+
 def compare(one: str, two: str) -> None:
     """Raises if one of two languages has no words for what the other one has words for."""
     first, second = (

@@ -8,7 +8,7 @@ tree can leave tasks out, but can't go back other than by a group's rounds.
 from collections.abc import Iterable, Iterator
 
 from argo_compiler.diagnostics import Diagnostic
-from argo_compiler.export.exporter import refusal, refuse
+from argo_compiler.export.exporter import level_refusals, refusal, refuse
 from argo_compiler.export.xml import Attributes, XmlWriter
 from argo_compiler.il import (
     Action,
@@ -105,6 +105,7 @@ class _Tree:
         return self.xml.text()
 
     def _refusals(self) -> Iterator[Diagnostic]:
+        yield from level_refusals(self.mission.reactions)
         for reaction in self.mission.reactions:
             if reaction.response is not Response.REPORT:
                 yield refusal(

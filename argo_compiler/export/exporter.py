@@ -1,11 +1,11 @@
 """What an exporter is, and how it refuses what its target can't say."""
 
-from collections.abc import Callable, Iterable, Mapping
+from collections.abc import Callable, Iterable, Iterator, Mapping
 from dataclasses import dataclass
 
 from argo_compiler.diagnostics import Diagnostic, DiagnosticError, Severity, Span
 from argo_compiler.hfsm import Hfsm
-from argo_compiler.il import Mission
+from argo_compiler.il import Mission, Reaction, Response
 
 Exported = str | bytes | Mapping[str, bytes]
 """The text or the bytes of one file, or the files of a folder by their path in it."""
@@ -30,6 +30,20 @@ def refusal(
     return Diagnostic(
         code=f"export.{code}", severity=Severity.ERROR, message=message, span=span, hint=hint
     )
+
+
+def level_refusals(reactions: Iterable[Reaction]) -> Iterator[Diagnostic]:
+    """Refuses reactions that only report a level of the battery: nothing else tells the robot which
+    level that is."""
+    for reaction in reactions:
+        if reaction.response is Response.REPORT and reaction.battery_below is not None:
+            yield refusal(
+                "reaction",
+                f"the reaction to '{reaction.event}' reports a level of the battery, which can't "
+                "be said here",
+                "leave the reaction out, and let the robot report its battery",
+                reaction.source,
+            )
 
 
 def refuse(diagnostics: Iterable[Diagnostic]) -> None:

@@ -11,7 +11,7 @@ from collections.abc import Iterable, Iterator, Mapping
 from importlib.resources import files
 
 from argo_compiler.diagnostics import Diagnostic
-from argo_compiler.export.exporter import refusal, refuse
+from argo_compiler.export.exporter import level_refusals, refusal, refuse
 from argo_compiler.export.xml import XmlWriter
 from argo_compiler.hfsm import Composite, Hfsm, Leaf, StateTransition, TransitionKind
 from argo_compiler.hfsm.model import DONE, MISSION, RETURN
@@ -44,6 +44,7 @@ def to_flexbe(mission: Mission, hfsm: Hfsm) -> Mapping[str, bytes]:
 
 
 def _refusals(hfsm: Hfsm) -> Iterator[Diagnostic]:
+    yield from level_refusals(state.reaction for state in hfsm.reactions)
     for state in hfsm.reactions:
         if state.reaction.response is not Response.REPORT:
             yield refusal(

@@ -283,3 +283,13 @@ def test_refusals_name_what_they_are_about(form):
         for code, message in written(form, after)[1]:
             assert code.startswith("export."), field
             assert any(name in message for name in names), field
+
+
+@pytest.mark.parametrize("form", ["btcpp", "flexbe", "mermaid", "dot", "ros"])
+def test_a_level_that_is_only_reported_is_carried_or_refused(form):
+    levels = [
+        LOW.model_copy(update={"response": Response.REPORT, "battery_below": n}) for n in (0.3, 0.4)
+    ]
+    one, other = (written(form, mission().model_copy(update={"reactions": (r,)})) for r in levels)
+    assert one[0] is None or one[0] != other[0]
+    assert one[0] is not None or "'low_battery'" in one[1][0][1]

@@ -103,7 +103,7 @@ WRONG = {
     "import photo.jpg -o n.json": "photo.jpg: is no text",
     "run notes.rtf": "notes.rtf: error: is no plain text but a document (RTF)",
     "check latin1.txt": "latin1.txt: error: is not UTF-8 (byte 3, line 1)",
-    "run letter.txt": "letter.txt:1:1: error: can't understand `Dear`",
+    "run letter.txt": "letter.txt:2:16: error: `gauge 1` can be read as",
     "run mission.bag": "mission.bag: error: is no bag",
     "run folder": "folder: error: is a directory",
     # results as scripts

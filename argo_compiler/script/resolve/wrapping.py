@@ -90,7 +90,8 @@ class Wrapping:
                 self.diagnostics.refuse("empty-step", message, order.span, hint)
             return found
         nodes = self.context.nodes_of(order.steps)
-        later = {id(n) for n in list(repetition.late)[repetition.known :]}
+        noted = [id(node) for node in repetition.late]
+        later = {*noted[repetition.known :]} - {*noted[: repetition.known]}
         nodes = [n for n in nodes if id(n) not in later and id(n) not in behind and _repeats(n)]
         if not nodes:
             said = " to ".join(str(p) for p in order.steps.points)

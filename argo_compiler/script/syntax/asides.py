@@ -108,14 +108,24 @@ class Asides:
 
     # ---- parts of sentences
 
-    def without(self, text: ScriptText) -> tuple[ScriptText, list[ScriptText]] | None:
+    def without(
+        self, text: ScriptText, first: bool = False
+    ) -> tuple[ScriptText, list[ScriptText]] | None:
         """The text without what asks for nothing, if it makes sense then, and what that is."""
-        for rest, aside in self._cut(text):
+        for rest, aside in self._cut(text, first):
             if not isinstance(self.understanding.read(rest), StumbleError):
                 return rest, aside
         return None
 
-    def _cut(self, text: ScriptText) -> Iterator[tuple[ScriptText, list[ScriptText]]]:
+    def _is_order(self, text: ScriptText, first: bool) -> bool:
+        """Whether what stands behind a heading in its line says what to do; on the first line it
+        has to have a verb, as `Mission: 1` and `Protocol: all valves` are titles."""
+        types = {*self.understanding.types(text)}
+        return bool(types & {*VERBS, "IF", "UNLESS"}) or (
+            not first and (self.names(text) or {"ALL", "KIND"} <= types)
+        )
+
+    def _cut(self, text: ScriptText, first: bool) -> Iterator[tuple[ScriptText, list[ScriptText]]]:
         content = text.content
         outer, brackets = self._without_brackets(text)
         if brackets:
@@ -125,8 +135,13 @@ class Asides:
             if not self.asking.adds(aside):
                 yield text[: dash.start()].strip(), [aside]
         colon = content.find(": ")
-        if colon > 0 and (self._is_section(text[:colon]) or self.is_small_talk(text[:colon])):
-            yield text[colon + 1 :].strip(), [text[: colon + 1]]
+        behind_colon = text[colon + 1 :].strip()
+        heading = colon > 0 and (
+            self.is_small_talk(text[:colon])
+            or (self._is_section(text[:colon]) and self._is_order(behind_colon, first))
+        )
+        if heading:
+            yield behind_colon, [text[: colon + 1]]
         occasion = begins(self.prose.occasion).match(content)
         if occasion is not None:
             yield from self._behind(text, occasion.end())

@@ -45,6 +45,8 @@ class ScriptFields:
     first: list[Sentence] = field(default_factory=list)
     last: list[Sentence] = field(default_factory=list)
     """what is to be done at the very end: `Finish: at the front of the site`"""
+    lists: bool = False
+    """whether `Checkpoints:` stands above"""
     _said: dict[str, tuple[Any, ScriptText]] = field(default_factory=dict)
     """what the fields say, and where"""
 
@@ -60,6 +62,7 @@ class ScriptFields:
             assert name is not None
             value = text[label.end() :].strip()
             if name == "steps":
+                self.lists = True
                 return value
             end = _end(self.prose, name, value.content)
             rest = value[end:].strip()

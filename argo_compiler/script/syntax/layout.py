@@ -43,6 +43,8 @@ class LineItem:
         return self
 
 
+_NAMED_STEP = re.compile(r'"(?:[^"\\]|\\.)*"\s*:')
+"""`"Alpha": check ...`"""
 _LONGEST_SENTENCE = 2000
 """characters; no line goes on with a longer one"""
 _LONGEST_STRANGE = 300
@@ -110,7 +112,8 @@ def _goes_on(item: LineItem, line: ScriptLine, sense: LineSense) -> bool:
     if line.mark is not LineMark.NONE or sense.stands_alone(line.text):
         return False
     last, below = item.last, line.text
-    if sense.is_unfinished(last) or (last.content.endswith('"') and below.content[0] == '"'):
+    quoted = last.content.endswith('"') and below.content[0] == '"'
+    if sense.is_unfinished(last) or (quoted and not _NAMED_STEP.match(below.content)):
         return True
     if sense.stands_alone(item.text) or len(last.content) > _LONGEST_SENTENCE:
         return False

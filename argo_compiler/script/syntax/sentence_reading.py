@@ -60,6 +60,11 @@ class SentenceReader:
         if not self.understanding.types(text):
             self.note(text, "a remark")
             return []
+        if self._is_stray(text, item):
+            message = f"`{text.content}` may be checkpoint {text.content}, or nothing at all"
+            hint = f"write `check checkpoint {text.content}`, or leave it out"
+            self.diagnostics.error("not-understood", message, text.span(), hint)
+            return [Unread(span=text.span())]
         stands_over = item.line.heading or text.content.endswith(":")
         if stands_over and self.preamble.introduces(text):
             return []
@@ -76,7 +81,7 @@ class SentenceReader:
                 if stands_over and self.preamble.introduces(text):
                     return []
         if isinstance(reading, StumbleError):
-            cut = self.asides.without(text)
+            cut = self.asides.without(text, first=not self.begun)
             if cut is not None:
                 text, asides = cut
                 for aside in asides:
@@ -95,6 +100,11 @@ class SentenceReader:
             hint = "say it in each of them, or write them as sub-steps of this line"
             self.diagnostics.error("stray-clause", message, text.span(), hint)
         return [node]
+
+    def _is_stray(self, text: ScriptText, item: LineItem) -> bool:
+        """Whether a line is a number alone, as a page's is, and no list says of what."""
+        alone = item.line.mark is LineMark.NONE and text.content == item.text.content
+        return alone and not self.fields.lists and self.understanding.types(text) == ("NUMBER",)
 
     def _node(self, text: ScriptText, reading: Reading) -> Said:
         self.begun = True

@@ -274,3 +274,30 @@ def test_a_failure_is_that_of_the_task(when: str, catalog: Catalog) -> None:
     mission = read(f"Check #1. {when}, return to the docking station.", catalog)
     assert mission.reactions == ()
     assert mission.tasks[1].on_failure is OnFailure.RETURN
+
+
+@pytest.mark.parametrize(
+    "title", ["Mission Protocol: one", "Mission: 1", "Round: 4", "Protocol: all valves"]
+)
+def test_a_title_is_no_measurement(title: str, catalog: Catalog) -> None:
+    steps = "1. Start in starting area 1.\n2. Check checkpoint #8."
+    found = import_script(f"{title}\n{steps}", catalog).mission
+    assert [task.object_id for task in found.tasks if task.object_id] == ["8"]
+
+
+@pytest.mark.parametrize("line", ["4", "four", "  4"])
+def test_a_number_alone_is_asked_about(line: str, catalog: Catalog) -> None:
+    with pytest.raises(DiagnosticError, match="or nothing at all"):
+        read(f"Daily round\n\nCheck checkpoint 1.\n\n{line}\n\nCheck checkpoint 8.", catalog)
+
+
+def test_a_name_at_the_beginning_of_a_line_is_no_part_of_one_above(catalog: Catalog) -> None:
+    text = '1. "A": check #1\n"B": add checkpoint #2 after step "A"\n"C": add #8 after step "B"'
+    assert [task.name for task in read(text, catalog).tasks[1:]] == ["A", "B", "C"]
+
+
+def test_what_was_replaced_can_be_repeated(catalog: Catalog) -> None:
+    text = '1. "A": check #1.\nRepeat step "A" twice.\nReplace step "A" by checkpoint #2.'
+    mission = read(text, catalog)
+    assert [task.object_id for task in mission.tasks[1:]] == ["2"]
+    assert mission.groups[0].max_repeat_count == 2

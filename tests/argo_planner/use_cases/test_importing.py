@@ -76,7 +76,7 @@ def test_a_bag_may_lie_on_this_machine(site, tmp_path):
         (Upload("a.txt", b""), "invalid", "a.txt is empty"),
         (Upload("a.txt", b"Mission\0"), "invalid", "a.txt: is no text but a binary file"),
         (Upload("a.txt", "Öl".encode("cp1252")), "invalid", "a.txt: is not UTF-8"),
-        (Upload("a.txt", b"Dear robot"), "invalid", "script.unrecognised"),
+        (Upload("a.txt", b"Dear robot"), "invalid", "script.nothing-to-do"),
         (Upload("a.json", b"{"), "invalid", "a.json:1:2: error"),
         (Upload("a.json", b" \n"), "invalid", "a.json: error: is empty"),
         (Upload("a.json", b"\xff"), "invalid", "file.not-text"),

@@ -10,7 +10,7 @@ from argo_compiler.listing import listed
 from argo_compiler.script.resolve import making
 from argo_compiler.script.resolve.context import Context
 from argo_compiler.script.resolve.manners import Manners
-from argo_compiler.script.resolve.program import Choice, Do, ProgramNode
+from argo_compiler.script.resolve.program import Choice, Do, Leave, ProgramNode, ProgramRound
 from argo_compiler.script.syntax.text.source import RefusedError
 from argo_compiler.script.syntax.tree import orders
 from argo_compiler.script.syntax.tree.nouns import Nouns
@@ -56,37 +56,36 @@ class Edits:
     def _put(
         self, nodes: Sequence[ProgramNode], anchors: Sequence[ProgramNode], side: Side
     ) -> None:
-        anchor: ProgramNode | None = anchors[0] if side is Side.BEFORE else anchors[-1]
-        assert anchor is not None
-        block = anchor.block
-        assert block is not None
-        if side is Side.BEFORE:
-            anchor = anchor.before
-        else:
-            # What a condition behind it leads to belongs to it.
-            while isinstance(anchor.after, Choice):
-                anchor = anchor.after
-        self.context.put(nodes, block, anchor)
+        anchor = _outside(anchors[0] if side is Side.BEFORE else anchors[-1], side)
+        assert anchor.block is not None
+        before = anchor.before if side is Side.BEFORE else anchor
+        self.context.put(nodes, anchor.block, before)
 
-    def _take_out(self, do: ProgramNode, edit: Edit) -> None:
-        block = do.block
-        assert block is not None
-        bound = isinstance(do.after, Choice) or isinstance(block.owner, Choice)
+    def _take_out(self, do: ProgramNode, edit: Edit) -> list[ProgramNode]:
+        """Takes a task out of the program, with where it leads."""
+        whole = _emptied(do)
+        assert whole.block is not None
+        bound = isinstance(do.after, Choice) or isinstance(whole.after, Choice)
+        bound = bound or isinstance(whole.block.owner, Choice)
         if bound or not isinstance(do, Do) or do.failure is not None:
             message = "this task belongs to a condition, so it can't be moved or taken out"
             hint = "change the line that asks for it"
             self.diagnostics.refuse("bound-task", message, edit.span, hint)
-        block.remove(do)
+        taken: list[ProgramNode] = [do]
+        if isinstance(do.after, Leave):
+            taken.append(do.after)
+        for node in [*taken, whole] if whole is not do else taken:
+            assert node.block is not None
+            node.block.remove(node)
         self.context.forget(do)
+        return taken
 
     def _move(self, edit: orders.Move) -> None:
         nodes, anchors = self.diagnostics.each(self._found, (edit.what, edit.anchor))
         if any(node is anchor for node in nodes for anchor in anchors):
             message = "this is to stand before or after itself"
             self.diagnostics.refuse("self-move", message, edit.span, "name another place")
-        for node in nodes:
-            self._take_out(node, edit)
-        self._put(nodes, anchors, edit.side)
+        self._put([n for node in nodes for n in self._take_out(node, edit)], anchors, edit.side)
 
     def _replace(self, edit: orders.Replace) -> None:
         checkpoint = self.context.nouns.one(edit.by)
@@ -146,3 +145,29 @@ class Edits:
         if not self.context.whole:
             raise RefusedError  # it may be what was not understood
         self.diagnostics.refuse("not-planned", message, span, hint)
+
+
+def _outside(node: ProgramNode, side: Side) -> ProgramNode:
+    """The node; or the round that begins with it, or ends, as what is put before or behind that is
+    none of the round. Behind a node is what is looked at after it, and where it leads."""
+    while True:
+        while side is Side.AFTER and isinstance(node.after, Choice | Leave):
+            node = node.after
+        block = node.block
+        owner = None if block is None else block.owner
+        inner = node.before if side is Side.BEFORE else node.after
+        if inner is not None or not isinstance(owner, ProgramRound):
+            return node
+        node = owner
+
+
+def _emptied(node: ProgramNode) -> ProgramNode:
+    """The node; or the round that has nothing to do without it."""
+    while node.block is not None and node.block.first is node:
+        owner, behind = node.block.owner, node.after
+        if behind is not None and not (isinstance(behind, Leave) and behind.after is None):
+            break
+        if not isinstance(owner, ProgramRound):
+            break
+        node = owner
+    return node

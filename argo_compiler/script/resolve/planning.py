@@ -134,6 +134,7 @@ class Planner:
             case orders.Jump():
                 self._leave(Leave(order.step, order.span), block)
             case orders.Add() | orders.Delete() | orders.Move() | orders.Replace():
+                self.repeating.fill_known()
                 self.edits.carry_out(order)
             case orders.Patrol():
                 is_back(order, block, self.context)

@@ -1,5 +1,6 @@
 """Steps that are repeated."""
 
+from collections.abc import Iterable
 from contextlib import suppress
 from dataclasses import replace
 
@@ -84,10 +85,25 @@ class Repeating:
         self.context.step += again
         self.context.recent = again
 
+    def fill_known(self) -> None:
+        """Fills the rounds whose steps are all planned: a change of the plan that follows is one
+        of the rounds as well."""
+        waiting = [r for r in self.pending if not self._is_planned(r.order.steps)]
+        known = [r for r in self.pending if self._is_planned(r.order.steps)]
+        self.pending = waiting
+        self._fill(known)
+
+    def _is_planned(self, steps: Steps | None) -> bool:
+        named, numbered = self.context.named, self.context.steps
+        return steps is None or all(p in named or p in numbered for p in steps.points)
+
     def finish(self) -> None:
         """Fills the rounds with what is to be repeated, in the order in which it was asked for."""
+        self._fill(self.pending)
+        self.pending.clear()
+
+    def _fill(self, repetitions: Iterable[Repetition]) -> None:
         wrapping = Wrapping(self.context)
-        for repetition in self.pending:
+        for repetition in repetitions:
             with suppress(RefusedError):  # what is wrong with the others is said as well
                 wrapping.wrap(repetition)
-        self.pending.clear()

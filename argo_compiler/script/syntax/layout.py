@@ -112,8 +112,9 @@ def _goes_on(item: LineItem, line: ScriptLine, sense: LineSense) -> bool:
     if line.mark is not LineMark.NONE or sense.stands_alone(line.text):
         return False
     last, below = item.last, line.text
-    quoted = last.content.endswith('"') and below.content[0] == '"'
-    if sense.is_unfinished(last) or (quoted and not _NAMED_STEP.match(below.content)):
+    if _NAMED_STEP.match(below.content) and sense.is_complete(last):
+        return False
+    if sense.is_unfinished(last) or (last.content.endswith('"') and below.content[0] == '"'):
         return True
     if sense.stands_alone(item.text) or len(last.content) > _LONGEST_SENTENCE:
         return False

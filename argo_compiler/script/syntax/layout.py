@@ -43,7 +43,9 @@ class LineItem:
         return self
 
 
-_NAMED_STEP = re.compile(r'"(?:[^"\\]|\\.)*"\s*:')
+_TEXT = r'"(?:[^"\\]|\\.)*"\s*'
+_TEXTS = re.compile(f"(?:{_TEXT})+")
+_NAMED_STEP = re.compile(f"{_TEXT}:")
 """`"Alpha": check ...`"""
 _LONGEST_SENTENCE = 2000
 """characters; no line goes on with a longer one"""
@@ -112,7 +114,7 @@ def _goes_on(item: LineItem, line: ScriptLine, sense: LineSense) -> bool:
     if line.mark is not LineMark.NONE or sense.stands_alone(line.text):
         return False
     last, below = item.last, line.text
-    if _NAMED_STEP.match(below.content) and sense.is_complete(last):
+    if _NAMED_STEP.match(below.content) and not _TEXTS.fullmatch(last.content):
         return False
     if sense.is_unfinished(last) or (last.content.endswith('"') and below.content[0] == '"'):
         return True

@@ -3,7 +3,7 @@
 from dataclasses import replace
 
 from argo_compiler.script.syntax.building.alternatives import alternatives, is_named
-from argo_compiler.script.syntax.building.figures import Signed, seconds
+from argo_compiler.script.syntax.building.figures import Signed, duration
 from argo_compiler.script.syntax.building.part import Make, RulePart
 from argo_compiler.script.syntax.tree.conditions import (
     Amount,
@@ -23,17 +23,10 @@ from argo_compiler.script.syntax.tree.conditions import (
 from argo_compiler.script.syntax.tree.nouns import Nouns
 from argo_compiler.script.syntax.words.word import Word
 
-_RELATIONS = {
-    "GREATER": Relation.GREATER,
-    "LESS": Relation.LESS,
-    "AT_LEAST": Relation.AT_LEAST,
-    "AT_MOST": Relation.AT_MOST,
-}
-
 
 def _compared(part: RulePart) -> Compared:
-    word = part.children[0]
-    return Compared(span=part.span, relation=_RELATIONS[word.type], bound=part.the(Amount))
+    relation = Relation[part.children[0].type]
+    return Compared(span=part.span, relation=relation, bound=part.the(Amount))
 
 
 def _between(part: RulePart) -> Between:
@@ -72,13 +65,7 @@ def _predicate(part: RulePart) -> tuple[Predicate, bool]:
 
 
 def _stale(part: RulePart) -> InState:
-    return InState(span=part.span, state=TaskState.STALE, age=_age(part))
-
-
-def _age(part: RulePart) -> float:
-    word = part.word("DURATION")
-    assert word is not None
-    return seconds(part, word)
+    return InState(span=part.span, state=TaskState.STALE, age=duration(part))
 
 
 def _detail(part: RulePart) -> dict[str, object]:
@@ -103,9 +90,7 @@ def _test(part: RulePart) -> Test:
 
 
 def _occurs(part: RulePart) -> Occurs:
-    word = part.word("EVENT")
-    assert word is not None
-    return Occurs(span=part.span, event=word.value)
+    return Occurs(span=part.span, event=part.the_word("EVENT").value)
 
 
 def _battery(part: RulePart) -> BatteryDrops:
@@ -134,7 +119,7 @@ RULES: dict[str, Make] = {
     "exactly": _exactly,
     "beyond": _beyond,
     "predicate": _predicate,
-    "age": _age,
+    "age": duration,
     "stale": _stale,
     "too_late": lambda part: TooLate(span=part.span),
     "detail": _detail,

@@ -80,6 +80,11 @@ def seconds(part: RulePart, word: Word) -> float:
     return length.seconds
 
 
+def duration(part: RulePart) -> float:
+    """The seconds of the one duration in a rule."""
+    return seconds(part, part.the_word("DURATION"))
+
+
 def speed(part: RulePart, word: Word) -> float:
     """m/s"""
     figure, factor = word.value
@@ -100,8 +105,7 @@ def single(part: RulePart) -> float:
 
 
 def _signed(part: RulePart) -> Signed:
-    word = part.word("NUMBER")
-    assert word is not None
+    word = part.the_word("NUMBER")
     sign = -1 if part.has("MINUS") else 1
     if isinf(word.value.value):
         part.error("number", f"{part.said} is too large a number", "write a smaller one")
@@ -114,8 +118,7 @@ def _amount(part: RulePart) -> Amount:
     if word := part.word("QUANTITY"):
         figure, unit = word.value
         return Amount(span=part.span, value=sign * decimal(part, figure, unit), unit=unit)
-    word = part.word("NUMBER")
-    assert word is not None
+    word = part.the_word("NUMBER")
     return Amount(span=part.span, value=sign * decimal(part, word.value))
 
 

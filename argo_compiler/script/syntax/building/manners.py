@@ -5,8 +5,8 @@ from dataclasses import fields, replace
 from itertools import pairwise
 from typing import Any
 
-from argo_compiler.il import Afterwards, EventKind, Order
-from argo_compiler.script.syntax.building.figures import Signed, seconds, speed, whole
+from argo_compiler.il import Afterwards, Order
+from argo_compiler.script.syntax.building.figures import Signed, duration, seconds, speed, whole
 from argo_compiler.script.syntax.building.part import Make, RulePart
 from argo_compiler.script.syntax.tree.conditions import Occurs, SaidCondition
 from argo_compiler.script.syntax.tree.manner import Joints, Manner
@@ -14,19 +14,23 @@ from argo_compiler.script.syntax.tree.places import Coordinates
 from argo_compiler.script.syntax.words.word import Word
 
 _OF_JOINTS = {"AT": "positions", "VELOCITIES": "velocities", "EFFORTS": "efforts"}
+_FLAGS: dict[str, dict[str, Any]] = {
+    "FINISHING": {"finishing": True},
+    "STOPPING": {"finishing": False},
+    "ENDLESS": {"endless": True},
+    "IN_CIRCLES": {"in_circles": True},
+    "ANY_ORDER": {"order": Order.ANY},
+    "THIS_ORDER": {"order": Order.PRECISE},
+    "PREFERABLY": {"soft_window": True},
+    "ANY_TIME": {"earliest": 0.0},
+    "INCLUDED": {"count_interruptions": True},
+    "EXCLUDED": {},
+}
 _ON_LIMIT = {"GO_ON": Afterwards.RESUME, "END": Afterwards.END, "WAIT": Afterwards.WAIT}
 
 
-def _seconds(part: RulePart) -> float:
-    word = part.word("DURATION")
-    assert word is not None
-    return seconds(part, word)
-
-
 def _times(part: RulePart) -> Manner:
-    word = part.word("TIMES")
-    assert word is not None
-    return Manner(times=whole(part, word.value))
+    return Manner(times=whole(part, part.the_word("TIMES").value))
 
 
 def _more(part: RulePart) -> Manner:
@@ -37,14 +41,11 @@ def _for(part: RulePart) -> Manner:
     if part.has("TIMES"):
         return _times(part)
     if event := part.word("EVENT"):
-        return Manner(until=_until_event(part, event.value))
+        occurs = Occurs(span=part.span, event=event.value)
+        return Manner(until=SaidCondition(span=part.span, alternatives=((occurs,),)))
     if part.has("PERSON"):
         return Manner(person=True)
-    return Manner(duration=_seconds(part))
-
-
-def _until_event(part: RulePart, event: EventKind) -> SaidCondition:
-    return SaidCondition(span=part.span, alternatives=((Occurs(span=part.span, event=event),),))
+    return Manner(duration=duration(part))
 
 
 def _between_times(part: RulePart) -> Manner:
@@ -61,15 +62,13 @@ def _between_times(part: RulePart) -> Manner:
 def _at_most(part: RulePart) -> Manner:
     if word := part.word("MOST_TIMES"):
         return Manner(at_most=whole(part, word.value))
-    word = part.word("MOST_TIME", "DURATION")
-    assert word is not None
+    word = part.the_word("MOST_TIME", "DURATION")
     limit = seconds(part, word)
     return Manner(mission_time=limit) if part.has("TOTAL") else Manner(time_limit=limit)
 
 
 def _priority(part: RulePart) -> Manner:
-    word = part.word("NUMBER")
-    assert word is not None
+    word = part.the_word("NUMBER")
     sign = -1 if part.has("MINUS") else 1
     return Manner(priority=sign * whole(part, word.value))
 
@@ -81,41 +80,10 @@ def _ranked(part: RulePart) -> Manner:
     return Manner(rank=word.value)
 
 
-def _flag(part: RulePart) -> Manner:
-    match part.children[0].type:
-        case "FINISHING":
-            return Manner(finishing=True)
-        case "STOPPING":
-            return Manner(finishing=False)
-        case "ENDLESS":
-            return Manner(endless=True)
-        case "IN_CIRCLES":
-            return Manner(in_circles=True)
-        case "ANY_ORDER":
-            return Manner(order=Order.ANY)
-        case "THIS_ORDER":
-            return Manner(order=Order.PRECISE)
-        case "PREFERABLY":
-            return Manner(soft_window=True)
-        case "ANY_TIME":
-            return Manner(earliest=0.0)
-        case "INCLUDED":
-            return Manner(count_interruptions=True)
-        case _:
-            return Manner()
-
-
 def _speed(part: RulePart) -> Manner:
-    word = part.word("SPEED")
-    assert word is not None
+    word = part.the_word("SPEED")
     value = speed(part, word)
     return Manner(leaving=value) if part.has("LEAVING") else Manner(speed=value)
-
-
-def _string(part: RulePart) -> str:
-    word = part.word("STRING")
-    assert word is not None
-    return str(word.value)
 
 
 def _joints(part: RulePart) -> Manner:
@@ -155,14 +123,14 @@ RULES: dict[str, Make] = {
     "leaving": _speed,
     "times": _times,
     "more": _more,
-    "every": lambda part: Manner(every=_seconds(part)),
+    "every": lambda part: Manner(every=duration(part)),
     "for_": _for,
     "until": lambda part: Manner(until=part.the(SaidCondition)),
-    "within": lambda part: Manner(latest=_seconds(part)),
+    "within": lambda part: Manner(latest=duration(part)),
     "between_times": _between_times,
-    "latest": lambda part: Manner(latest=_seconds(part)),
-    "earliest": lambda part: Manner(earliest=_seconds(part)),
-    "delay": lambda part: Manner(delay=_seconds(part)),
+    "latest": lambda part: Manner(latest=duration(part)),
+    "earliest": lambda part: Manner(earliest=duration(part)),
+    "delay": lambda part: Manner(delay=duration(part)),
     "at_most": _at_most,
     "if_time": lambda _: Manner(optional=True),
     "priority": _priority,
@@ -170,13 +138,13 @@ RULES: dict[str, Make] = {
     "by_importance": lambda part: Manner(by_importance=True),  # noqa: ARG005
     "only_if": lambda part: Manner(condition=part.the(SaidCondition)),
     "unless": lambda part: Manner(condition=replace(part.the(SaidCondition), negated=True)),
-    "flag": _flag,
+    "flag": lambda part: Manner(**_FLAGS[part.children[0].type]),
     "floored": lambda part: Manner(floors=part.the(tuple)),
     "standing": lambda part: Manner(pose=part.the(Coordinates)),
-    "shown": lambda part: Manner(shown_in=_string(part)),
-    "about": lambda part: Manner(object_id=_string(part)),
+    "shown": lambda part: Manner(shown_in=part.the_word("STRING").value),
+    "about": lambda part: Manner(object_id=part.the_word("STRING").value),
     "joints": _joints,
     "values": _values,
-    "reading": lambda part: Manner(reading_limit=_seconds(part)),
+    "reading": lambda part: Manner(reading_limit=duration(part)),
     "on_limit": _on_limit,
 }

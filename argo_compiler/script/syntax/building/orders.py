@@ -21,17 +21,6 @@ from argo_compiler.script.syntax.tree.places import (
 )
 from argo_compiler.script.syntax.words.word import Word
 
-_WORDS = {
-    "PAUSE": orders.PlainWord.PAUSE,
-    "END": orders.PlainWord.END,
-    "ABORT": orders.PlainWord.ABORT,
-    "GO_ON": orders.PlainWord.GO_ON,
-    "RECHARGE": orders.PlainWord.RECHARGE,
-    "REPORT": orders.PlainWord.REPORT,
-    "DONE": orders.PlainWord.DONE,
-    "MEET": orders.PlainWord.MEET,
-}
-
 
 def _manner(part: RulePart) -> Manner | None:
     return combined(part, part.every(Manner))
@@ -127,7 +116,7 @@ def _patrol(part: RulePart) -> ScriptOrder:
 
 
 def _word(part: RulePart) -> ScriptOrder:
-    word = _WORDS[part.children[0].type]
+    word = orders.PlainWord[part.children[0].type]
     return orders.Plain(span=part.span, manner=_manner(part), word=word)
 
 
@@ -166,10 +155,6 @@ def _add(part: RulePart) -> ScriptOrder:
     )
 
 
-def _delete(part: RulePart) -> ScriptOrder:
-    return orders.Delete(span=part.span, what=_things(part)[0])
-
-
 def _target(part: RulePart) -> Nouns:
     (noun,) = named(part)
     return Nouns(span=part.span, nouns=(noun,))
@@ -183,10 +168,6 @@ def _visit(part: RulePart) -> ScriptOrder:
         assert isinstance(target, Labelled)
         what = replace(what, nouns=(replace(target, floors=floors),))
     return orders.VisitOrder(span=part.span, manner=_manner(part), what=what)
-
-
-def _spare(part: RulePart) -> ScriptOrder:
-    return orders.Spare(span=part.span, what=part.the(Nouns))
 
 
 def _move(part: RulePart) -> ScriptOrder:
@@ -216,14 +197,14 @@ RULES: dict[str, Make] = {
     "wait": _wait,
     "target": _target,
     "visit": _visit,
-    "spare": _spare,
+    "spare": lambda part: orders.Spare(span=part.span, what=part.the(Nouns)),
     "word": _word,
     "retry": lambda part: orders.Retry(span=part.span, manner=_manner(part)),
     "repeat": _repeat,
     "follow": lambda part: orders.Follow(span=part.span, manner=_manner(part)),
     "amend": lambda part: orders.Amend(span=part.span, manner=_manner(part)),
     "add": _add,
-    "delete": _delete,
+    "delete": lambda part: orders.Delete(span=part.span, what=_things(part)[0]),
     "move": _move,
     "replace": _replace,
     "side": _side,

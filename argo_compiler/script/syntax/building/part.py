@@ -39,6 +39,12 @@ class RulePart:
                 return child
         return None
 
+    def the_word(self, *types: str) -> Word:
+        """The word of one of the types, which the grammar asks for."""
+        found = self.word(*types)
+        assert found is not None, f"the grammar lets {types} be left out"
+        return found
+
     def has(self, *types: str) -> bool:
         return self.word(*types) is not None
 

@@ -18,8 +18,7 @@ from argo_compiler.script.syntax.words.word import Word
 
 
 def _area(part: RulePart) -> AreaLocation:
-    word = part.word("NUMBER")
-    assert word is not None
+    word = part.the_word("NUMBER")
     return AreaLocation(span=part.span, area=whole(part, word.value))
 
 

@@ -5,6 +5,7 @@ from typing import Any
 
 from argo_compiler.script.syntax.building import (
     conditions,
+    facts,
     figures,
     manners,
     nouns,
@@ -14,11 +15,10 @@ from argo_compiler.script.syntax.building import (
 from argo_compiler.script.syntax.building.part import Make, RulePart
 from argo_compiler.script.syntax.grammar.parser import Branch
 from argo_compiler.script.syntax.text.source import Diagnostics, ScriptText
-from argo_compiler.script.syntax.tree import facts
 from argo_compiler.script.syntax.tree.conditions import SaidCondition
-from argo_compiler.script.syntax.tree.nouns import Labelled, Nouns
-from argo_compiler.script.syntax.tree.orders import Case, Measure, Rest, ScriptOrder, Sentence, Side
-from argo_compiler.script.syntax.tree.places import Steps
+from argo_compiler.script.syntax.tree.facts import Fact
+from argo_compiler.script.syntax.tree.nouns import Labelled
+from argo_compiler.script.syntax.tree.orders import Case, Measure, Rest, ScriptOrder, Sentence
 from argo_compiler.script.syntax.words.word import Word
 
 
@@ -47,9 +47,9 @@ def _case(part: RulePart) -> Case:
     )
 
 
-def _sentence(part: RulePart) -> Sentence | facts.Fact:
-    said = part.every(facts.Fact)
-    if said and isinstance(part.children[0], facts.Fact):
+def _sentence(part: RulePart) -> Sentence | Fact:
+    said = part.every(Fact)
+    if said and isinstance(part.children[0], Fact):
         return said[0]
     return Sentence(span=part.span, orders=_joined(part), cases=part.every(Case), facts=said)
 
@@ -100,40 +100,6 @@ def _both(first: Measure, second: Measure) -> Measure:
     return replace(first, what=nouns, manner=second.manner or first.manner)
 
 
-def _max_duration(part: RulePart) -> facts.Fact:
-    word = part.word("DURATION", "MOST_TIME")
-    assert word is not None
-    return facts.MaxDuration(span=part.span, seconds=figures.seconds(part, word))
-
-
-def _back_within(part: RulePart) -> facts.Fact:
-    word = part.word("DURATION")
-    assert word is not None
-    where = next(c for c in part.children if not isinstance(c, Word))
-    return facts.BackWithin(span=part.span, where=where, seconds=figures.seconds(part, word))
-
-
-def _precedence(part: RulePart) -> facts.Fact:
-    first, second = part.every(Nouns)
-    if part.the(Side) is Side.AFTER:
-        first, second = second, first
-    return facts.ReadBefore(span=part.span, first=first, second=second)
-
-
-def _steps_ordered(part: RulePart) -> facts.Fact:
-    first, second = part.every(Steps)
-    if part.the(Side) is Side.AFTER:
-        first, second = second, first
-    return facts.StepsOrdered(span=part.span, first=first, second=second)
-
-
-def _rounds_driven(part: RulePart) -> facts.Fact:
-    word = part.word("TIMES")
-    assert word is not None
-    count = figures.whole(part, word.value)
-    return facts.RoundsDriven(span=part.span, steps=part.the(Steps), count=count)
-
-
 _RULES: dict[str, Make] = {
     **figures.RULES,
     **nouns.RULES,
@@ -141,16 +107,10 @@ _RULES: dict[str, Make] = {
     **conditions.RULES,
     **manners.RULES,
     **orders.RULES,
+    **facts.RULES,
     "case": _case,
     "otherwise": _case,
     "sentence": _sentence,
-    "max_duration": _max_duration,
-    "back_within": _back_within,
-    "precedence": _precedence,
-    "steps_ordered": _steps_ordered,
-    "rounds_driven": _rounds_driven,
-    "order_free": lambda part: facts.OrderFree(span=part.span),
-    "leave_out": lambda part: facts.LeaveOut(span=part.span),
 }
 
 

@@ -31,7 +31,8 @@ def _closest(word: str, known: frozenset[str]) -> tuple[str, ...]:
         limit=None,
     )
     distances = {other: OSA.distance(word, other) for other, _, _ in alike}
-    return tuple(w for w, distance in distances.items() if distance == min(distances.values()))
+    least = min(distances.values(), default=0)
+    return tuple(sorted(other for other, distance in distances.items() if distance == least))
 
 
 def nearest(text: str, known: Iterable[str], limit: int = 3) -> tuple[str, ...]:

@@ -122,7 +122,7 @@ class Asides:
         has to have a verb, as `Mission: 1` and `Protocol: all valves` are titles."""
         types = {*self.understanding.types(text)}
         return bool(types & {*VERBS, "IF", "UNLESS"}) or (
-            not first and (self.names(text) or {"ALL", "KIND"} <= types)
+            not first and (self.asking.names(text) or {"ALL", "KIND"} <= types)
         )
 
     def _cut(self, text: ScriptText, first: bool) -> Iterator[tuple[ScriptText, list[ScriptText]]]:

@@ -34,7 +34,7 @@ format: .venv/test.stamp ## put the style right where that can be done by itself
 
 generated: .venv/test.stamp ## write anew what is made from the code: JSON Schemas, table of codes, parser tables
 	$(BIN)/python -m argo_compiler.schemas
-	$(BIN)/python -m argo_compiler.script
+	$(BIN)/python -m argo_compiler.script docs/script.md
 	$(BIN)/python -m argo_compiler.diagnostics docs/diagnostics.md
 
 help: ## say what can be made

@@ -1,6 +1,7 @@
 """`argo explain`: what was understood, said back so that reading it gives the same mission."""
 
 import json
+import re
 from pathlib import Path
 
 import pytest
@@ -103,3 +104,10 @@ def test_errors_are_those_of_the_import(folder: Path) -> None:
     (folder / "s.txt").write_text("1. Fly to the moon.\n", encoding="utf-8")
     result = CliRunner().invoke(app, ["explain", "s.txt", "--site", "yard.yaml"])
     assert isinstance(result.exception, DiagnosticError)
+
+
+def test_what_the_readme_shows():
+    root = Path(__file__).parents[2]
+    (said,) = re.findall(r"```explained\n(.*?)```", (root / "README.md").read_text("utf-8"), re.S)
+    script = root / "scenarios" / "umad" / "missions" / "protocol_3.txt"
+    assert CliRunner().invoke(app, ["explain", str(script)]).stdout == said

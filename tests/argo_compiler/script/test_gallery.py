@@ -129,8 +129,7 @@ def test_there_is_a_gallery() -> None:
 
 def test_the_example_is_said_back_as_the_page_has_it() -> None:
     page = PAGE.read_text(encoding="utf-8")
-    script, said = (
-        re.findall(rf"```{box}\n(.*?)```", page, re.S) for box in ("script", "explained")
-    )
-    result = import_script(script[0], site())
+    (script,) = re.findall(r"```script\n(.*?)```", page, re.DOTALL)
+    said = re.findall(r"```explained\n(.*?)```", page, re.DOTALL)
+    result = import_script(script, site())
     assert [read_back(result.mission, site(), result.diagnostics).text] == said

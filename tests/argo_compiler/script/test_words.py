@@ -6,6 +6,8 @@ from pathlib import Path
 
 import pytest
 
+from argo_compiler.catalog import Catalog
+from argo_compiler.script import import_script
 from argo_compiler.script.syntax.words import loading
 
 FOLDER = Path(loading.__file__).parent
@@ -95,3 +97,10 @@ def test_a_line_that_ends_with_a_stroke_goes_on_in_the_next(
     changed("KEEP_ORDER = 'keep | always do'", "KEEP_ORDER = '''\nkeep\n[see/\n  feel] it\n'''")
     phrases = loading.lexicon("other").phrases["KEEP_ORDER", None]
     assert phrases == ["keep", "see it", "feel it"]
+
+
+def test_a_place_may_be_named_as_a_phrase_is(catalog: Catalog) -> None:
+    place = catalog.places[0].model_copy(update={"name": "Control room"})
+    named = catalog.model_copy(update={"places": (*catalog.places, place)})
+    text = "Start in starting area 1. Go to the control room."
+    assert place.pose in [task.pose for task in import_script(text, named).mission.tasks]

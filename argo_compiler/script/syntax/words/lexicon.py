@@ -61,7 +61,8 @@ class Lexicon:
         self.phrases: dict[Entry, list[str]] = {}
 
     def add(self, entry: Entry, phrases: Iterable[str]) -> None:
-        """Adds phrases, in lower case; one that is there already must not mean anything else."""
+        """Adds phrases, in lower case; one that is there already must not mean anything else,
+        unless a place of the site has that name."""
         for phrase in phrases:
             said = folded(phrase)
             head, _, end = said.partition(" … ")
@@ -75,7 +76,8 @@ class Lexicon:
                 node = following
             last = tuple(end.split())
             there = node.parted.get(last) if end else node.entry
-            if there not in (None, entry):
+            named = entry[0] == "PLACE" and there is not None and there[0] != "PLACE"
+            if there not in (None, entry) and not named:
                 raise ValueError(f"{self.name}: `{phrase}` is {there} and {entry}")
             if end:
                 node.parted[last] = entry

@@ -2,7 +2,6 @@
 
 from collections.abc import Sequence
 
-from argo_compiler.diagnostics import Span
 from argo_compiler.il import Action, Group, OnFailure, Stop, Task, TimeWindow, Transition
 from argo_compiler.script.resolve.lowering import Item, Lowered, Point
 from argo_compiler.script.resolve.naming import name_groups, name_tasks
@@ -96,7 +95,7 @@ def _transitions(
             if decided:
                 message = "the mission can go on in one way only where no condition holds"
                 hint = "leave one of the two out, or give it a condition"
-                diagnostics.error("second-route", message, _source(item), hint)
+                diagnostics.error("second-route", message, item.do.source, hint)
             decided = True
         if target is not None:
             found.append(Transition(target=target, conditions=conditions))
@@ -104,10 +103,6 @@ def _transitions(
     if following is not None:
         found.append(Transition(target=following))
     return tuple(found)
-
-
-def _source(item: Item) -> Span | None:
-    return item.do.source
 
 
 def _speeds(lowered: Lowered, names: Sequence[str], diagnostics: Diagnostics) -> list[float | None]:

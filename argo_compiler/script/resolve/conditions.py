@@ -6,6 +6,7 @@ from itertools import product
 from argo_compiler.catalog import CheckpointInfo
 from argo_compiler.il import Condition, ConditionType
 from argo_compiler.script.resolve import units
+from argo_compiler.script.resolve.excluding import contradict
 from argo_compiler.script.resolve.lookup import told
 from argo_compiler.script.resolve.nouns import NounResolver
 from argo_compiler.script.resolve.program import Alternatives
@@ -180,20 +181,6 @@ def _fits(test: Test, checkpoint: CheckpointInfo) -> bool:
         case InState():
             return True
     return all(_in_unit_of(checkpoint, amount) is not None for amount in amounts)
-
-
-def contradict(conditions: Sequence[Condition]) -> bool:
-    """Whether no value satisfies all the bounds for one of the checkpoints."""
-    for condition in conditions:
-        others = [c for c in conditions if c.object_id == condition.object_id]
-        low = [c for c in others if c.type in (ConditionType.GREATER, ConditionType.WITHIN)]
-        high = [c for c in others if c.type is ConditionType.LESS]
-        for one, other in product(low, high):
-            a, b = one.param1, other.param1
-            both = one.inclusive and other.inclusive
-            if a is not None and b is not None and (a > b or (a == b and not both)):
-                return True
-    return False
 
 
 _Bound = tuple[ConditionType, float | None, float | None, bool]

@@ -1,5 +1,6 @@
 """Conditions of which no two can hold at the same time."""
 
+from collections.abc import Iterable
 from itertools import combinations, pairwise
 from math import inf
 
@@ -32,6 +33,11 @@ def put_together(last: Choice) -> bool:
 def exclude(one: Alternatives, other: Alternatives) -> bool:
     """Whether no values satisfy an alternative of the one and an alternative of the other."""
     return all(any(_apart(a, b) for a in each for b in also) for each in one for also in other)
+
+
+def contradict(conditions: Iterable[Condition]) -> bool:
+    """Whether no value satisfies all the bounds for one of the checkpoints."""
+    return any(_apart(a, b) for a, b in combinations(conditions, 2))
 
 
 def _apart(a: Condition, b: Condition) -> bool:

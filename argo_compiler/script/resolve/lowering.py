@@ -177,20 +177,16 @@ class _Lowering:
         for node in block:
             known = isinstance(block.owner, Choice) or (isinstance(node, Choice) and node.bound)
             self.onward = onward = onward if known else self._onward(node, following)
+            behind = following if node.after is None else self._point(node.after)
             if isinstance(node, Do) and node.action is Action.START:
                 # The mission passes over it: what leads to it leads to what follows.
-                behind = (
-                    self.points.setdefault(id(node.after), Point()) if node.after else following
-                )
                 before = self._do(node, self._point(node), behind)
                 point.same = behind
-                point = behind
-                continue
-            own = self.points.setdefault(id(node), point)
-            if own is not point:
-                point.same = own
-            behind = self.points.setdefault(id(node.after), Point()) if node.after else following
-            before = self._node(node, own, behind, before)
+            else:
+                own = self.points.setdefault(id(node), point)
+                if own is not point:
+                    point.same = own
+                before = self._node(node, own, behind, before)
             point = behind
         self.onward = around
         if block.first is None:

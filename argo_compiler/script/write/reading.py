@@ -19,7 +19,6 @@ from argo_compiler.script.write.text import INDENT, number, wrapped
 _ASSUMING = frozenset(
     [
         "script.dock-assumed",
-        "script.end-at-dock",
         "script.healed",
         "script.priority-taken",
         "script.quantity",

@@ -84,9 +84,8 @@ class Answering:
                 return self._home(order, answer)
             case orders.Go():
                 return self._goes(order, answer)
-        message = "a reaction can't do this"
         hint = "it can report, pause, return, drive to a place, recharge, wait, resume or abort"
-        self.diagnostics.refuse("reaction", message, order.span, hint)
+        self.diagnostics.refuse("reaction", "a reaction can't do this", order.span, hint)
 
     def _furnished(self, order: ScriptOrder, answer: Answer) -> Answer:
         """What is said of how long it holds, for what, and how urgent it is."""
@@ -114,9 +113,8 @@ class Answering:
         match condition.alternatives:
             case ((Occurs(event=EventKind() as event),),):
                 return event
-        message = "a reaction waits for one event"
         hint = "write, say, `until the all clear`"
-        self.diagnostics.refuse("reaction", message, condition.span, hint)
+        self.diagnostics.refuse("reaction", "a reaction waits for one event", condition.span, hint)
 
     def _until(self, event: EventKind, answer: Answer, span: Span) -> Answer:
         if answer.until not in (None, event):

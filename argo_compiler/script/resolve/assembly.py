@@ -172,8 +172,7 @@ def _leave_at(
         said, speeds[i] = speeds[i], value
         if said is not None and said != value:
             message = f"two speeds for one way: {value:g} and {said:g} m/s"
-            hint = "leave one of them out"
-            diagnostics.error("two-speeds", message, items[j].do.source, hint)
+            diagnostics.error("two-speeds", message, items[j].do.source, "leave one of them out")
         if others and items[i].do.velocity is None:
             elsewhere = ", ".join(f"'{names[o]}'" for o in others[:3])
             message = (

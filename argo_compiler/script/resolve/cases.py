@@ -67,9 +67,8 @@ class Cases:
         values = any(isinstance(test, Test) for test in asked)
         late = any(isinstance(test, TooLate) for test in asked)
         if values and not late and not case.orders:
-            message = "this does not say what to do"
             hint = "add, say, `go to step 5` or `return to the docking station`"
-            self.diagnostics.refuse("unfinished", message, case.span, hint)
+            self.diagnostics.refuse("unfinished", "this does not say what to do", case.span, hint)
         if late or not values or is_failure(condition):
             self.context.choice = None
         if late:

@@ -61,8 +61,7 @@ class Furnishing:
             self.diagnostics.refuse("stray-clause", message, span, hint)
         names = ", ".join(f"`{do.base}` {len(tasks) - i}" for i, do in enumerate(tasks[:_SHOWN]))
         more = ", and so on" if len(tasks) > _SHOWN else ""
-        message = f"taken as these priorities: {names}{more}"
-        self.diagnostics.note("priority-taken", message, span)
+        self.diagnostics.note("priority-taken", f"taken as these priorities: {names}{more}", span)
         for i, do in enumerate(tasks):
             self._set(do, "priority", len(tasks) - i, span)
 

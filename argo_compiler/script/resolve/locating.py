@@ -53,9 +53,8 @@ class Locator:
                 self.diagnostics.refuse("height", message, point.span, hint)
             z = floor.z
         if z is None:
-            message = "these coordinates have no height"
             hint = "write a third number or a floor: `(12.5, 3, 2.5)`, `(12.5, 3) on floor 2`"
-            self.diagnostics.refuse("height", message, point.span, hint)
+            self.diagnostics.refuse("height", "these coordinates have no height", point.span, hint)
         return Pose(x=point.x, y=point.y, z=z, yaw=point.yaw)
 
     def _docking_area(self, dock: DockLocation, which: Literal["start", "end"]) -> Area:

@@ -45,8 +45,7 @@ class Lookup:
         usual = _QUANTITIES[checkpoint.kind]
         if quantity not in (None, Quantity.VALUE, *usual):
             message = f"a {checkpoint.kind} has no {quantity}; its {usual[0]} will be read"
-            hint = f"write `the {usual[0]}`"
-            self.diagnostics.warning("quantity", message, span, hint)
+            self.diagnostics.warning("quantity", message, span, f"write `the {usual[0]}`")
 
     def of_kind(self, kind: Kind, floors: Collection[int]) -> list[CheckpointInfo]:
         """All checkpoints of a kind, on these floors or, without any, on all."""

@@ -179,8 +179,7 @@ class NounResolver:
         if not self.memory.known:
             raise RefusedError
         message = "nothing has been measured before this, so it does not say which checkpoint"
-        hint = "name it: `checkpoint #1`"
-        self.diagnostics.refuse("which-checkpoint", message, span, hint)
+        self.diagnostics.refuse("which-checkpoint", message, span, "name it: `checkpoint #1`")
 
 
 def _inheriting(nouns: Iterable[Noun]) -> Iterator[tuple[Noun, Kind | None, bool]]:

@@ -122,8 +122,7 @@ class Ordering:
 
     def _contradiction(self, span: Span) -> None:
         message = "the script says elsewhere that the order is another one"
-        hint = "leave one of the two out"
-        self.context.diagnostics.error("repeated-field", message, span, hint)
+        self.context.diagnostics.error("repeated-field", message, span, "leave one of the two out")
 
     def _planned(self, span: Span, checkpoint: CheckpointInfo) -> Do:
         """The only measurement of a checkpoint."""

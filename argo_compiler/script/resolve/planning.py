@@ -114,8 +114,7 @@ class Planner:
         require_used(order, self.diagnostics)
         if isinstance(order, _WHOLE_PLAN) and in_branch(block):
             message = "this changes the plan, so it can't be done in one case only"
-            hint = "write it as a step of its own"
-            self.diagnostics.refuse("route", message, order.span, hint)
+            self.diagnostics.refuse("route", message, order.span, "write it as a step of its own")
         if not isinstance(order, orders.Measure):
             self.making.leave_unvisited()
         match order:

@@ -43,9 +43,8 @@ class Reactions:
         elif response is None and answer.reported:
             response = Response.REPORT
         if response is None:
-            message = "this does not say what to do"
             hint = "add, say, `report it` or `pause`"
-            self.diagnostics.refuse("unfinished", message, case.span, hint)
+            self.diagnostics.refuse("unfinished", "this does not say what to do", case.span, hint)
         for event, span, level in triggers:
             before = self.lines.get(event)
             if before is not None:
@@ -73,8 +72,7 @@ class Reactions:
     def _triggers(self, condition: SaidCondition) -> list[_Trigger]:
         if any(len(tests) > 1 for tests in condition.alternatives):
             message = "a reaction follows one event, not several at the same time"
-            hint = "join them by `or`"
-            self.diagnostics.refuse("reaction", message, condition.span, hint)
+            self.diagnostics.refuse("reaction", message, condition.span, "join them by `or`")
         return [self._trigger(test) for (test,) in condition.alternatives]
 
     def _trigger(self, test: Asked) -> _Trigger:

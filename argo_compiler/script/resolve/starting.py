@@ -40,8 +40,7 @@ class Starting:
         """The start that a script sets. Raises RefusedError if there is another one."""
         if self.start_at is not None:
             message = f"the starting point is already set in line {self.start_at.line}"
-            hint = "leave one of the two out"
-            self.diagnostics.refuse("second-start", message, order.span, hint)
+            self.diagnostics.refuse("second-start", message, order.span, "leave one of the two out")
         self.start_at = order.span
         pose, area = None, None
         if order.where is not None:
@@ -138,8 +137,7 @@ class Starting:
         context = self.context
         if context.program.first is None and context.whole:
             hint = "give it steps such as `Check the checkpoint #14`"
-            message = "the script has nothing to do"
-            self.diagnostics.refuse("nothing-to-do", message, None, hint)
+            self.diagnostics.refuse("nothing-to-do", "the script has nothing to do", None, hint)
         if self.start_at is None:
             self._start_unsaid()
         if self.start is not None and not self.start.listed:

@@ -15,14 +15,12 @@ def wait_rule(order: WaitOrder, context: Context) -> WaitRule:
     manner = order.manner or Manner()
     until, duration, limit = manner.until, manner.duration, manner.time_limit
     if order.person:
-        message = "a mission does not wait for a person"
         hint = "let somebody pause it there, or write how long: `wait 5 minutes`"
-        diagnostics.refuse("wait", message, order.span, hint)
+        diagnostics.refuse("wait", "a mission does not wait for a person", order.span, hint)
     if until is None:
         if duration is None:
-            message = "this does not say how long, or for what"
             hint = "write `wait 90 s`, `wait until #1 is below 3` or `wait for the all-clear`"
-            diagnostics.refuse("wait", message, order.span, hint)
+            diagnostics.refuse("wait", "this does not say how long, or for what", order.span, hint)
         if limit is not None:
             message = "a wait that lasts for a time has no other limit"
             diagnostics.refuse("wait", message, order.span, "leave one of them out")

@@ -6,6 +6,7 @@ one that is looked at after its last round.
 
 from collections.abc import Container, Iterable, Iterator
 from dataclasses import dataclass
+from itertools import takewhile
 
 from argo_compiler.il import Action
 from argo_compiler.script.resolve.context import Context, topmost
@@ -110,22 +111,20 @@ class Wrapping:
         return self._together(order, tops)
 
     def _all(self, round_: ProgramRound) -> list[ProgramNode]:
-        found: list[ProgramNode] = []
-        for node in self.context.program:
-            if node is round_:
-                break
-            if not (isinstance(node, Do) and (node.action is Action.START or node.docks)):
-                found.append(node)
-        return found
+        before = takewhile(lambda node: node is not round_, self.context.program)
+        return [
+            node
+            for node in before
+            if not (isinstance(node, Do) and (node.docks or node.action is Action.START))
+        ]
 
     def _together(self, order: orders.Repeat, tops: list[ProgramNode]) -> list[ProgramNode]:
         """From the first to the last of the nodes, in the order of their block."""
         assert order.steps is not None
         ends = {id(node) for node in tops}
         first = tops[0]
-        before = first.before
-        while before is not None and id(before) in ends:
-            first, before = before, before.before
+        while first.before is not None and id(first.before) in ends:
+            first = first.before
         found: list[ProgramNode] = [first]
         missing = len(ends) - 1
         while missing and found[-1].after is not None:

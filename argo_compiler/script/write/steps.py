@@ -155,12 +155,15 @@ class _Writer:
         """Where the mission starts; `here` keeps it where it stands, and what is said of it."""
         number = self.mission.start_area
         area = None if number is None else self.catalog.area(number)
-        plain = Task(name=task.name, action=Action.START, pose=task.pose, source=task.source)
         following = self.following[i]
-        ways_on = tuple(t.target for t in task.transitions if not t.conditions)
-        plain = plain.model_copy(update={"transitions": task.transitions})
-        alone = i == 0 < len(self.tasks) - 1 and task == plain and ways_on == (following,)
-        if alone and len(task.transitions) == 1:
+        plain = Task(
+            name=task.name,
+            action=Action.START,
+            pose=task.pose,
+            transitions=() if following is None else (Transition(target=following),),
+            source=task.source,
+        )
+        if i == 0 < len(self.tasks) - 1 and task == plain and following is not None:
             if area is not None and task.pose == area.dock:
                 self.result.start_area = number
                 return f"set the starting point in starting area {number}"

@@ -1,6 +1,7 @@
 """The saved tables of the parser are those of the grammar, and parse as new ones do."""
 
 import re
+from functools import partial
 from pathlib import Path
 
 import pytest
@@ -28,6 +29,20 @@ def test_saved_tables_parse_as_new_ones(monkeypatch: pytest.MonkeyPatch) -> None
         if isinstance(outcome(saved, types), tuple):
             half = types[: len(types) // 2]
             assert saved.accepted(half) == new.accepted(half)
+
+
+def test_one_word_of_lookahead_decides(
+    monkeypatch: pytest.MonkeyPatch, caplog: pytest.LogCaptureFixture
+) -> None:
+    """But for `floor 1 and 2`, where what follows `and` is taken for another floor."""
+    monkeypatch.setattr(tables, "Lark", partial(Lark, debug=True))
+    caplog.set_level("DEBUG", logger="lark")
+    tables.make_parser()
+    conflicts = [found.message for found in caplog.records if "conflict" in found.message]
+    assert conflicts
+    assert all("AND_NUMBER" in conflict for conflict in conflicts)
+    places = [found.message for found in caplog.records if found.message.startswith(" * ")]
+    assert all(place.startswith(" * <floors : FLOOR NUMBER") for place in places)
 
 
 def sentences() -> list[tuple[str, ...]]:

@@ -172,3 +172,17 @@ def test_which_one_of_several_is_not_dropped(catalog: Catalog) -> None:
     assert "second" in messages("Check the second valve.", catalog)
     first = imported("Check checkpoint 13 first, then checkpoint 4.", catalog)
     assert [task.object_id for task in first.tasks[1:]] == ["13", "4"]
+
+
+@pytest.mark.parametrize(
+    "bounds",
+    ["above 5 and between 1 and 2", "below 1 and above 2", "at most 1 and between 2 and 3"],
+)
+def test_bounds_that_no_value_keeps_to_are_asked_about(bounds: str, catalog: Catalog) -> None:
+    assert "no value is" in messages(f"Check #1. If it is {bounds}, check #4.", catalog)
+
+
+def test_of_what_is_not_between_two_bounds_the_other_side_is_left(catalog: Catalog) -> None:
+    mission = imported("Check #1. If it is not between 1 and 2 and above 1.5, check #4.", catalog)
+    ways = [t.conditions for task in mission.tasks for t in task.transitions if t.conditions]
+    assert [[c.param1 for c in way] for way in ways] == [[2.0, 1.5]]

@@ -32,7 +32,7 @@ _ONCE_MORE = frozenset(["times", "more"])
 _NOTHING: frozenset[str] = frozenset()
 
 _USED: Mapping[type[ScriptOrder], frozenset[str]] = {
-    orders.Measure: OF_TASKS | ROUND | _CASE | {"pose", "order", "floors"},
+    orders.Measure: OF_TASKS | ROUND | _CASE | {"pose", "order", "backwards", "floors"},
     orders.Add: OF_TASKS | ROUND | _CASE | {"pose"},
     orders.Go: OF_TASKS | ROUND | _CASE,
     orders.Home: OF_TASKS | ROUND | _CASE,
@@ -76,6 +76,7 @@ _WORDS = {
     "object_id": "an object",
     "pose": "where it stands",
     "order": "an order",
+    "backwards": "that it is done backwards",
     "floors": "floors",
     "rank": "a priority",
     "by_importance": "that some are more important than others",

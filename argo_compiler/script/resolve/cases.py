@@ -58,7 +58,8 @@ class Cases:
         condition = case.condition
         case = replace(case, orders=tuple(skipping(o, self.context) for o in case.orders))
         if condition is None:
-            if case.rest is Rest.OTHERWISE:
+            chosen = case.rest is Rest.ALL_OTHERS and isinstance(self.context.choice, Choice)
+            if case.rest is Rest.OTHERWISE or chosen:
                 self._otherwise(case, block)
             else:
                 self._rest(case, block)

@@ -50,6 +50,8 @@ class TaskMaker:
             what = nouns.on(order.manner.floors, what)
         found = nouns.all(what)
         self.context.memory.measured(found)
+        if order.manner is not None and order.manner.backwards:
+            found.reverse()
         tasks = [making.measurement(c.id, order.span) for c in found]
         if self.visiting is not None and self.visiting[1] == found[:1]:
             self.manners.furnish(self.visiting[0], tasks[:1])

@@ -110,14 +110,15 @@ class Understanding:
                     slips.append((word, meant))
         if not 0 < len(slips) <= _MOST_SLIPS:
             return None
-        found: dict[str, tuple[ScriptText, tuple[str, ...]]] = {}
+        found: dict[tuple[tuple[str, str], ...], tuple[ScriptText, tuple[str, ...]]] = {}
         for chosen in islice(product(*(meant for _, meant in slips)), _MOST_TRIED):
             fixed = text
             for (word, _), meant_word in zip(reversed(slips), reversed(chosen), strict=True):
                 fixed = fixed.replace(word.start, word.end, meant_word)
             reading = self.read(fixed)
             if not isinstance(reading, StumbleError) and _all_known(reading[1]):
-                said = " ".join(word.removesuffix("s") for word in chosen)
+                # `guages` are `gauges` or `gages`, which are the same
+                said = tuple((word.type, str(word.value)) for word in reading[1])
                 found.setdefault(said, (fixed, chosen))
         if len(found) != 1:
             return None

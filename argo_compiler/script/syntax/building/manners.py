@@ -21,6 +21,7 @@ _FLAGS: dict[str, dict[str, Any]] = {
     "IN_CIRCLES": {"in_circles": True},
     "ANY_ORDER": {"order": Order.ANY},
     "THIS_ORDER": {"order": Order.PRECISE},
+    "REVERSED": {"backwards": True},
     "PREFERABLY": {"soft_window": True},
     "ANY_TIME": {"earliest": 0.0},
     "INCLUDED": {"count_interruptions": True},

@@ -18,8 +18,11 @@ from argo_compiler.script.syntax.words.word import Word
 
 
 def _area(part: RulePart) -> AreaLocation:
-    word = part.the_word("NUMBER")
-    return AreaLocation(span=part.span, area=whole(part, word.value))
+    """`starting area 1`, `starting area 1, not 2`."""
+    area, *others = (whole(part, w.value) for w in part.every(Word) if w.type == "NUMBER")
+    if area in others:
+        part.error("several-places", "this area is said and excluded", "leave one of the two out")
+    return AreaLocation(span=part.span, area=area)
 
 
 def _dock(part: RulePart) -> DockLocation:

@@ -62,6 +62,8 @@ class Manner:
     in_circles: bool = False
     floors: tuple[FloorName, ...] = ()
     """where all that is measured is: `on the second floor, check the valve`"""
+    backwards: bool = False
+    """whether what is measured is measured from the last to the first"""
     order: Order | None = None
     """whether the tasks may change places"""
     condition: SaidCondition | None = None

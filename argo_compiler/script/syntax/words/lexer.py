@@ -10,6 +10,7 @@ from argo_compiler.script.syntax.words.joints import joined
 from argo_compiler.script.syntax.words.lengths import read_clock, read_glued
 from argo_compiler.script.syntax.words.lexicon import Lexicon, folded
 from argo_compiler.script.syntax.words.merging import merged
+from argo_compiler.script.syntax.words.negation import negated
 from argo_compiler.script.syntax.words.numbers import Figure, compose, read_figure, split_number
 from argo_compiler.script.syntax.words.phrases import longest
 from argo_compiler.script.syntax.words.word import Word
@@ -56,7 +57,7 @@ def _unknown(words: list[Word]) -> int:
 
 
 def _in(text: str, lexicon: Lexicon) -> list[Word]:
-    found = merged(_looked_up(text, lexicon))
+    found = negated(merged(_looked_up(text, lexicon)))
     return joined(_goals(found if lexicon.verbs_first else arranged(found)))
 
 

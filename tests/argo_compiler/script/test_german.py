@@ -479,6 +479,34 @@ PAIRS = [
         "Prüfe Kontrollpunkt 3. Falls das fehlschlägt, versuche es bis zu dreimal.",
         "Check checkpoint 3. If this fails, try again up to three times.",
     ),
+    (
+        "Prüfe Manometer 4 und dann Manometer 6. Wenn weder Manometer 4 noch Manometer 6 auffällig "
+        "ist, prüfe Ventil R12.",
+        "Check #9 and then #13. If neither #9 nor #13 is abnormal, check valve R12.",
+    ),
+    (
+        "Prüfe Manometer 4 und dann Manometer 6. Wenn keiner von beiden über 5 bar liegt, prüfe "
+        "Ventil R12.",
+        "Check #9 and then #13. If neither of them is above 5 bar, check valve R12.",
+    ),
+    (
+        "Prüfe Manometer 4. Wenn der Wert außerhalb von 3,5 bis 4,5 bar liegt, prüfe Ventil R12.",
+        "Check #9. If the value is outside 3.5 to 4.5 bar, check valve R12.",
+    ),
+    (
+        "Prüfe Füllstandsanzeige 2. Wenn der Wert außerhalb des Nennbereichs liegt, prüfe Ventil "
+        "R12. Manometer 3 ablesen, und zwar in jedem Fall.",
+        "Check #7. If the value is abnormal, check valve R12. Read pressure gauge 3.",
+    ),
+    (
+        "Prüfe die Checkpoints 5 bis 8 in dieser Reihenfolge. Danach prüfe dieselben noch einmal "
+        "in umgekehrter Reihenfolge.",
+        "Check #5 to #8 in this order. Check #8, #7, #6 and #5.",
+    ),
+    (
+        "!Der Roboter steht am Anfang in der Dockingstation von Startbereich 2. Prüfe Ventil R12.",
+        "!The robot starts docked in starting area 2. Check valve R12.",
+    ),
 ]
 """in German and in English; `!` stands before a script that says itself where it starts"""
 

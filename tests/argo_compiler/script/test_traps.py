@@ -1,5 +1,7 @@
 """Sentences that are easily misread: each is read as it is meant, or asked about."""
 
+from collections.abc import Callable
+
 import pytest
 
 from argo_compiler.catalog import Catalog
@@ -301,3 +303,84 @@ def test_what_was_replaced_can_be_repeated(catalog: Catalog) -> None:
     mission = read(text, catalog)
     assert [task.object_id for task in mission.tasks[1:]] == ["2"]
     assert mission.groups[0].max_repeat_count == 2
+
+
+    ("said", "plainly"),
+    [
+        (
+            "Check #1 and #3. If neither of the two is above 5 bar, check #4.",
+            "Check #1 and #3. If #1 is at most 5 bar and #3 is at most 5 bar, check #4.",
+        ),
+        (
+            "Check #1 and #3. If neither #1 nor #3 is outside its nominal range, check #4.",
+            "Check #1 and #3. If #1 is normal and #3 is normal, check #4.",
+        ),
+        (
+            "Check #1. If none of them is abnormal, check #4.",
+            "Check #1. If it is normal, check #4.",
+        ),
+        (
+            "Check #1. If it is outside the range from 3 to 4.5 bar, check #4.",
+            "Check #1. If it is below 3 bar or above 4.5 bar, check #4.",
+        ),
+        (
+            "Check #1. If it is not outside of 3 to 4.5 bar, check #4.",
+            "Check #1. If it is from 3 to 4.5 bar, check #4.",
+        ),
+        (
+            "Check #5, #6 and #7 in this order. Then check the same ones again in reverse order.",
+            "Check #5, #6 and #7 in this order. Check #7, #6 and #5.",
+        ),
+        (
+            "Check #1. If it is above 5, check #4. In all other cases: check #5 instead.",
+            "Check #1. If it is above 5, check #4. Otherwise check #5.",
+        ),
+        (
+            "Check #4. When a gas leak is detected, stop where you are and wait until an operator "
+            "lets you go on.",
+            "Check #4. When a gas leak is detected, pause.",
+        ),
+        (
+            "Check #4. Go back to the docking station of starting area 1, not 2.",
+            "Check #4. Go back to the docking station in starting area 1.",
+        ),
+        ("Check #4. In any case, check #6.", "Check #4. Check #6."),
+        (
+            "Check #4; this has to be done not later than 4 minutes after the start.",
+            "Check #4 not later than 4 minutes after the start.",
+        ),
+        (
+            "Check #4 and #5. Once all of this is over, go straight home.",
+            "Check #4 and #5. Go home.",
+        ),
+    ],
+)
+def test_in_other_words(said: str, plainly: str, meaning_of: Callable[[str], object]) -> None:
+    start = "Start in starting area 1.\n"
+    assert meaning_of(start + said) == meaning_of(start + plainly)
+
+
+def test_steps_repeated_once_are_done_twice(catalog: Catalog) -> None:
+    text = "2. Check #8.\n3. Check #7.\n4. Repeat steps 2 and 3 once.\n5. Check #12."
+    assert [group.max_repeat_count for group in read(text, catalog).groups] == [2]
+
+
+@pytest.mark.parametrize(
+    "text",
+    [
+        "Check #4. If it is above 5, check #6 and, in any case, #7.",
+        "Check #4. Go to the docking station of starting area 1, not 1.",
+        "Check #4. Repeat step 2 in reverse order.",
+    ],
+)
+def test_what_can_not_be_meant(text: str, catalog: Catalog) -> None:
+    with pytest.raises(DiagnosticError):
+        read(text, catalog)
+
+
+def test_a_slip_with_several_spellings_of_one_word(catalog: Catalog) -> None:
+    found = import_script("Start in starting area 1.\nCheck presure guage 3.", catalog)
+    assert measured(found.mission) == ["6"]
+    assert [d.code for d in found.diagnostics if d.severity is Severity.WARNING] == [
+        "script.respelled"
+    ] * 2

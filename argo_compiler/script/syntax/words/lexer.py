@@ -57,8 +57,8 @@ def _unknown(words: list[Word]) -> int:
 
 
 def _in(text: str, lexicon: Lexicon) -> list[Word]:
-    found = negated(merged(_looked_up(text, lexicon)))
-    return joined(_goals(found if lexicon.verbs_first else arranged(found)))
+    found = merged(_looked_up(text, lexicon))
+    return joined(_goals(negated(found if lexicon.verbs_first else arranged(found))))
 
 
 def _goals(words: list[Word]) -> list[Word]:

@@ -11,7 +11,9 @@ from argo_compiler.script.syntax.words.joints import VERBS
 from argo_compiler.script.syntax.words.word import Word
 
 _MOVED = frozenset(VERBS) - {"DOCK", "DONE", "MEET"} | {"BACK"}
-_RELATIONS = frozenset(["GREATER", "LESS", "AT_LEAST", "AT_MOST", "BETWEEN", "FROM", "OLDER"])
+_RELATIONS = frozenset(
+    ["GREATER", "LESS", "AT_LEAST", "AT_MOST", "BETWEEN", "FROM", "OLDER", "OUTSIDE"]
+)
 _AMOUNTS = frozenset(["NUMBER", "QUANTITY", "DURATION"])
 _ASKED = frozenset(["STATE", "OCCURS", "FAILS", "EVENT", "IS"])
 _OPENING = frozenset(["IF", "IF_ONLY", "UNLESS", "UNTIL"])

@@ -305,6 +305,7 @@ def test_what_was_replaced_can_be_repeated(catalog: Catalog) -> None:
     assert mission.groups[0].max_repeat_count == 2
 
 
+@pytest.mark.parametrize(
     ("said", "plainly"),
     [
         (

@@ -2,6 +2,7 @@
 
     python benchmarks/compile.py
     python benchmarks/compile.py --sizes 1000 10000 --repeats 5
+    python benchmarks/compile.py --sizes 10000 100000 --beside ../other-checkout
 
 The script is made for each number of tasks, always the same one. Of its steps
 
@@ -19,6 +20,9 @@ for nothing), the median of the repeats, after the grammars have been loaded, wh
 Growth is the time for a task over that at the size before: 1 is linear. The memory is the most that
 Python objects took at once, in a run of its own.
 
+With another checkout beside, only the import is measured, from text to mission: of the same script,
+in turn with this checkout and with the other one, each time in a process of its own.
+
 For scale, the same number of flat states, each with one transition to the next, is declared in
 python-statemachine where it is installed. That reads no script, checks nothing and nests nothing:
 it is the least that building a machine of this size takes there.
@@ -27,12 +31,17 @@ it is the least that building a machine of this size takes there.
 import argparse
 import gc
 import importlib.util
+import os
 import random
 import statistics
+import subprocess
+import sys
+import tempfile
 import time
 import tracemalloc
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from itertools import pairwise
+from pathlib import Path
 from typing import Any
 
 from argo_compiler.catalog import (
@@ -46,9 +55,10 @@ from argo_compiler.catalog import (
 )
 from argo_compiler.hfsm import Executor, lower
 from argo_compiler.model import Pose
-from argo_compiler.script import parse
+from argo_compiler.script import import_script, parse
 from argo_compiler.script.resolve.importing import resolve
 
+ROOT = Path(__file__).parents[1]
 SIZES = (1_000, 10_000, 30_000, 100_000)
 PEER_LIMIT = 1_000
 """states; more take python-statemachine minutes"""
@@ -199,12 +209,55 @@ def flat_statemachine(states: int) -> float:
     return time.process_time() - began
 
 
+def import_once(path: Path) -> float:
+    """Seconds that the script at `path` takes to become a mission."""
+    catalog = make_catalog()
+    import_script(make_script(200, catalog), catalog)
+    gc.collect()
+    began = time.process_time()
+    import_script(path.read_text(), catalog)
+    return time.process_time() - began
+
+
+def compare(sizes: Sequence[int], repeats: int, other: Path) -> None:
+    """Prints how long imports take here and in another checkout, in turn."""
+    print(f"{'tasks':>7} {'here':>8} {'there':>8} {'ratio':>6}   seconds, medians")
+    before = 0.0
+    with tempfile.TemporaryDirectory() as folder:
+        for size in sizes:
+            path = Path(folder) / "script.txt"
+            path.write_text(make_script(size, make_catalog()))
+            turns = [(_elsewhere(ROOT, path), _elsewhere(other, path)) for _ in range(repeats)]
+            here, there = (statistics.median(seconds) for seconds in zip(*turns, strict=True))
+            ratio = statistics.median(one / two for one, two in turns)
+            growth = f"   {here / before:.1f} times the size before" if before else ""
+            print(f"{size:>7} {here:>8.3f} {there:>8.3f} {ratio:>6.2f}{growth}", flush=True)
+            before = here
+
+
+def _elsewhere(checkout: Path, path: Path) -> float:
+    """As `import_once`, by the compiler of a checkout."""
+    command = [sys.executable, __file__, "--once", str(path)]
+    where = {**os.environ, "PYTHONPATH": str(checkout.resolve())}
+    return float(subprocess.run(command, env=where, check=True, stdout=subprocess.PIPE).stdout)
+
+
 def main() -> None:
     """Prints the tables."""
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("--sizes", type=int, nargs="+", default=SIZES, help="numbers of tasks")
     parser.add_argument("--repeats", type=int, default=3, help="of which the median is shown")
+    parser.add_argument("--beside", type=Path, metavar="CHECKOUT", help="to compare imports with")
+    parser.add_argument("--once", type=Path, help=argparse.SUPPRESS)
     arguments = parser.parse_args()
+    if arguments.once is not None:
+        print(import_once(arguments.once))
+        return
+    if arguments.beside is not None:
+        compare(arguments.sizes, arguments.repeats, arguments.beside)
+        return
+    from argo_compiler.script.syntax.repeats import repeats
+
     catalog = make_catalog()
     began = time.process_time()
     stages(make_script(200, catalog), catalog)
@@ -213,7 +266,10 @@ def main() -> None:
     before: dict[str, float] = {}
     for size in arguments.sizes:
         text = make_script(size, catalog)
-        runs = [stages(text, catalog) for _ in range(arguments.repeats)]
+        runs = []
+        for _ in range(arguments.repeats):
+            repeats.cache_clear()  # lines that the compiler has read before
+            runs.append(stages(text, catalog))
         for stage in runs[0]:
             median = statistics.median(run[stage] for run in runs)
             each = median / size * 1e6

@@ -250,6 +250,22 @@ SCRIPTS: dict[str, Callable[[], str]] = {
         "Maximum duration: 9999999999999999999 h\n"
         "1. Check checkpoint #1, retry 99999999999 times.\n"
     ),
+    "steps of several sentences in German": lambda: _lines(
+        "Prüfe Manometer 5. Wenn der Wert über 4,5 bar liegt, prüfe Checkpoint 8, sonst weiter."
+    ),
+    "edits": lambda: _lines("Add checkpoint #2 after checkpoint #1."),
+    "ranges": lambda: _lines("Check checkpoints 1 to 20 and 3 to 9."),
+    "reactions": lambda: _lines("If a gas leak is detected, return to the docking station."),
+    "repetitions": lambda: _lines("Repeat steps 1 to 3 2 times."),
+    "a table": lambda: "| Step | Checkpoint | Priority |\n" + "| 1 | #4 | high |\n" * (SIZE // 17),
+    "bullets within bullets": lambda: "".join(
+        f"{' ' * (k % 60)}- Check #{k % 20}\n" for k in range(SIZE // 48)
+    ),
+    "wrapped lines": lambda: "1. Start in starting area 1.\n" + "check #1 and\n" * (SIZE // 13),
+    "figures": lambda: "12 345 6.7\n" * (SIZE // 11),
+    "commas": lambda: ",,, , ,\n" * (SIZE // 8),
+    "a word of a megabyte": lambda: "a" * SIZE,
+    "quoted lines": lambda: '"Check" ("#1")\n' * (SIZE // 15),
     "tabs": lambda: "Mission Protocol #1\n1. Check" + "\t" * SIZE + "checkpoint #1",
 }
 

@@ -118,7 +118,7 @@ def _goes_on(item: LineItem, line: ScriptLine, sense: LineSense) -> bool:
         return False
     if sense.is_unfinished(last) or (last.content.endswith('"') and below.content[0] == '"'):
         return True
-    if sense.stands_alone(item.text) or len(last.content) > _LONGEST_SENTENCE:
+    if sense.stands_alone(last) or len(last.content) > _LONGEST_SENTENCE:
         return False
     whole = sense.is_complete(last)
     both = join([last, below])
@@ -130,7 +130,7 @@ def _goes_on(item: LineItem, line: ScriptLine, sense: LineSense) -> bool:
         return True
     if whole and sense.opens_sentence(rest):
         return False
-    if sense.is_complete(both[:end]) or (end == len(both.content) and sense.may_go_on(both)):
+    if sense.is_complete(both[:end]) or sense.is_beginning(both[:end], end < len(both.content)):
         return True
     if sense.is_complete(rest) or len(last.content) > _LONGEST_STRANGE:
         return False

@@ -1,8 +1,10 @@
 """Whether the lines of a script make sense: by themselves, or with the line below."""
 
+import re
 from dataclasses import dataclass
 
 from argo_compiler.script.syntax.asides import Asides
+from argo_compiler.script.syntax.grammar.parser import StumbleError
 from argo_compiler.script.syntax.labels import FieldLabels
 from argo_compiler.script.syntax.sentence_ends import sentences
 from argo_compiler.script.syntax.text.source import ScriptText
@@ -10,6 +12,7 @@ from argo_compiler.script.syntax.understanding import Understanding
 from argo_compiler.script.syntax.words.joints import VERBS
 
 _OPENERS = frozenset([*VERBS, "IF", "UNLESS", "ELSE"]) - {"DOCK", "FROM"}
+_WORD = re.compile(r"\w+")
 _LONGEST_MENDED = 300
 """characters of a sentence that is mended to see whether it makes sense"""
 
@@ -37,9 +40,15 @@ class LineSense:
         return all(self._fits(sentence) for sentence in sentences(text))
 
     def is_unfinished(self, text: ScriptText) -> bool:
-        """Whether a text plainly goes on: after a comma or `and`."""
-        ends = text.content.endswith((",", '":'))
-        return ends or self.understanding.unfinished(text) is not None
+        """Whether a text plainly goes on: after a comma, `and` or `, then`."""
+        if text.content.endswith((",", '":')) or self.understanding.unfinished(text) is not None:
+            return True
+        found = self.understanding.words(text)
+        behind = text[found[-1].end :] if found else text[:0]
+        return "," in behind.content or any(
+            self.understanding.unfinished(behind[: word.end()]) is not None
+            for word in _WORD.finditer(behind.content)
+        )
 
     def opens_sentence(self, text: ScriptText) -> bool:
         """Whether a text begins as a sentence of its own does."""
@@ -61,8 +70,10 @@ class LineSense:
         ended = text.content.endswith(":") or self.asides.is_small_talk(text)
         return beginning and not ended
 
-    def may_go_on(self, text: ScriptText) -> bool:
-        """Whether a text is how a sentence begins, though it is none yet."""
+    def is_beginning(self, text: ScriptText, ended: bool) -> bool:
+        """Whether a text is how a sentence begins; the whole of one where it has ended."""
+        if ended:
+            return not isinstance(self.understanding.read(text), StumbleError)
         types = self.understanding.types(text)
         return "WORD" not in types and self.understanding.grammar.begins(types)
 

@@ -139,3 +139,19 @@ def test_a_step_may_be_wrapped(width: int, steps: Steps) -> None:
 def test_a_sign_before_a_single_line_is_no_letters() -> None:
     text = "1. Start in starting area 1.\n2. Check #1. If it is\n> 5, check #4.\n3. Go home."
     assert mission(text) == mission(re.sub(r"\n>", " >", text))
+
+
+@pytest.mark.parametrize(
+    ("line", "cut"),
+    [
+        ("If the connection is lost, wait until it is restored, then go on.", "then"),
+        ("On a gas leak wait for the all-clear and then go on.", "then"),
+        ("If there is time, check checkpoint 14 as well.", "checkpoint"),
+        ("Maximum duration: 4 min. When the time is up, drive to the dock in area 2.", "dock"),
+    ],
+)
+def test_what_a_line_cuts_is_kept(line: str, cut: str) -> None:
+    script = "{}\n\n1. Start in starting area 1.\n2. Check #1.\n3. Go home."
+    whole = mission(script.format(line))
+    assert whole is not None
+    assert mission(script.format(line.replace(f" {cut} ", f" {cut}\n"))) == whole

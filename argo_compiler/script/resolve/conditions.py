@@ -85,7 +85,7 @@ class ConditionResolver:
         return [sum(parts, ()) for parts in product(*ways)]
 
     def _note_unmeasured(self, checkpoint: CheckpointInfo, test: Test) -> None:
-        if checkpoint.id in self.nouns.memory.measured_ids or not self.nouns.memory.known:
+        if checkpoint.id in self.nouns.memory.so_far or not self.nouns.memory.known:
             return
         message = f"checkpoint {checkpoint.id} ({checkpoint.name}) is not measured before this"
         hint = f"write `Check checkpoint {checkpoint.id}` before it"

@@ -49,6 +49,8 @@ class Context:
     """the condition that `otherwise` belongs to"""
     spared: dict[str, Span] = field(default_factory=dict)
     """the checkpoints that are not to be measured, and where that is said"""
+    once: dict[str, Span] = field(default_factory=dict)
+    """the checkpoints that are measured because another one is before or after them"""
     before: list[ProgramNode] = field(default_factory=list)
     """the nodes of the step before"""
     measured: dict[str, dict[int, Do]] = field(default_factory=dict)

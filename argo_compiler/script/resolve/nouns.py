@@ -31,14 +31,15 @@ class Memory:
     def __init__(self) -> None:
         self.last: tuple[CheckpointInfo, ...] = ()
         self.before: tuple[CheckpointInfo, ...] = ()
-        self.measured_ids: set[int] = set()
+        self.so_far: dict[int, CheckpointInfo] = {}
+        """all that was measured, by number"""
         self.known = True
         """whether all that was ordered so far is understood"""
 
     def measured(self, checkpoints: Iterable[CheckpointInfo]) -> None:
         if found := tuple(checkpoints):
             self.before, self.last = self.last, found
-            self.measured_ids.update(c.id for c in found)
+            self.so_far.update((c.id, c) for c in found)
 
 
 class NounResolver:
@@ -144,7 +145,9 @@ class NounResolver:
 
     def _the_one(self, noun: TheOne) -> list[CheckpointInfo]:
         everything = AllOf(span=noun.span, kind=noun.kind, floors=noun.floors)
-        last = [c for c in self.memory.last if agrees(c, noun.kind)]
+        measured = self.memory.last, self.memory.so_far.values()
+        alike = ([c for c in found if agrees(c, noun.kind)] for found in measured)
+        last = next(filter(None, alike), [])
         if not noun.floors and (len(last) > 1 if noun.plural else len(last) == 1):
             return last
         if not noun.plural and not noun.floors and not last:

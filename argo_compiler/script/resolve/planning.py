@@ -5,6 +5,7 @@ from dataclasses import replace
 
 from argo_compiler.il import OnFailure
 from argo_compiler.script.resolve.accepting import require_used, said
+from argo_compiler.script.resolve.beside import measured_beside, require_once
 from argo_compiler.script.resolve.cases import Cases
 from argo_compiler.script.resolve.context import Context
 from argo_compiler.script.resolve.counting import counted
@@ -123,6 +124,9 @@ class Planner:
                     context.spared[str(checkpoint.id)] = order.span
             case orders.VisitOrder():
                 self.making.visit(order)
+            case orders.Beside():
+                for measure in measured_beside(order, context):
+                    self.order(measure, block)
             case orders.WaitOrder(where=where) if where is not None:
                 self._wait_at(order, where, block)
             case orders.Amend() | orders.Retry():
@@ -218,6 +222,7 @@ class Planner:
     def finish(self) -> None:
         """Looks whether all that was begun has been said to its end."""
         self.making.leave_unvisited()
+        require_once(self.context)
         check_spared(self.context)
 
 

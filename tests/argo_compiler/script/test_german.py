@@ -54,6 +54,18 @@ PAIRS = [
         "Alle Manometer im 1. und 2. Stock ablesen.",
         "Check all pressure gauges on the first and second floor.",
     ),
+    (
+        "Danach geht es in den zweiten Stock zu Ventil R12, das ebenfalls geprüft wird.",
+        "Then go to the second floor to valve R12, which is checked as well.",
+    ),
+    (
+        "Prüfe Kontrollpunkt 1. Bei mehr als 5 bar prüfe Kontrollpunkt 4.",
+        "Check checkpoint 1. At more than 5 bar, check checkpoint 4.",
+    ),
+    (
+        "Prüfe Kontrollpunkt 1. Auf jeden Fall prüft er dann Kontrollpunkt 4.",
+        "Check checkpoint 1. In any case it checks checkpoint 4.",
+    ),
     ("Prüfe Ventil R12 im zweiten Stock.", "Check valve R12 on the second floor."),
     (
         "Im zweiten Stock alle Kontrollpunkte in dieser Reihenfolge prüfen, außer Ventil R12.",

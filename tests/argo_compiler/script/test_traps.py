@@ -58,6 +58,12 @@ def bounds(mission: Mission, name: str) -> list[list[tuple[str | None, Condition
         ),
         ("Check #1. If it is above 5, skip the next step. Check #4.", "step-range", ["next step"]),
         ("Check #1. Return to the dock in area 1 (area 2).", "several-places", ["two places"]),
+        ("Check #5. Before you read #5, check #7.", "ambiguous-edit", ["before this already"]),
+        (
+            "Before you read #5, check #7. Check #5.",
+            "ambiguous-edit",
+            ["measured here, too", "only there"],
+        ),
         ("Check #1. If it is above 5 and below 3, check #4.", "condition", ["no value"]),
         ("Check #1 and #4. Check one of them.", "ambiguous-or", ["which of them"]),
         ("Check #4 if it is above 4.", "which-checkpoint", ["nothing has been measured"]),
@@ -104,6 +110,14 @@ def test_what_is_asked_about(text: str, code: str, readings: list[str], catalog:
         ("On the second floor, check the valve and then the liquid level gauge.", ["5", "7"]),
         ("On the second floor, check the valve, then read the liquid level gauge.", ["5", "7"]),
         ("On the second floor: valve R12", ["5"]),
+        ("Before you read liquid level gauge 2, check valve R12.", ["5", "7"]),
+        ("After you have read liquid level gauge 2, check valve R12.", ["7", "5"]),
+        ("Check #7. After you have read it, check valve R12.", ["7", "5"]),
+        ("Check #7 and #5. In any case it also has to check #8.", ["7", "5", "8"]),
+        ("First it reads pressure gauge 1, then it goes up and looks at valve R12.", ["1", "5"]),
+        ("Go to the second floor to valve R12, which is to be checked.", ["5"]),
+        ("Check #4. When all of this is done, read #5.", ["4", "5"]),
+        ("It must to control the valve R31, after this the valve R7.", ["10", "11"]),
         ("Go to the second floor to valve R12 and check it.", ["5"]),
     ],
 )
@@ -128,6 +142,28 @@ def test_what_a_comma_parts(
     mission = read(f"Check #1, #2 and #4. If {condition}, check #8.", catalog)
     found = [[number for number, _, _ in way] for way in bounds(mission, "MEASURE 4")]
     assert [way for way in found if way] == alternatives
+
+
+@pytest.mark.parametrize(
+    "condition",
+    [
+        "Anything above 5 bar needs a look at #4.",
+        "Above 5 bar, check #4.",
+        "At more than 5 bar check #4.",
+        "If p > 5 bar: check #4",
+        "In case when it shows more than 5 bar, check #4.",
+        "Only if pressure gauge 1 was above 5 bar does it also have to check #4.",
+        "If it stands at more than 5 bar, check #4.",
+    ],
+)
+def test_ways_to_say_a_condition(condition: str, catalog: Catalog) -> None:
+    found = bounds(read(f"Check #1. {condition}", catalog), "MEASURE 1")
+    assert found[0] == [("1", ConditionType.GREATER, 5.0)]
+
+
+def test_the_only_one_of_its_kind_so_far(catalog: Catalog) -> None:
+    mission = read("Check #5 and #7. Check #1. If the valve is above 3 degrees, check #8.", catalog)
+    assert bounds(mission, "MEASURE 1")[0] == [("5", ConditionType.GREATER, 3.0)]
 
 
 @pytest.mark.parametrize(

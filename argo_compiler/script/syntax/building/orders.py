@@ -171,6 +171,8 @@ def _visit(part: RulePart) -> ScriptOrder:
         (target,) = what.nouns
         assert isinstance(target, Labelled)
         what = replace(what, nouns=(replace(target, floors=floors),))
+    if part.has("BE_MEASURED"):  # `go to valve R12, which is to be checked`
+        return orders.Measure(span=part.span, manner=_manner(part), what=what)
     return orders.VisitOrder(span=part.span, manner=_manner(part), what=what)
 
 
@@ -201,6 +203,12 @@ RULES: dict[str, Make] = {
     "wait": _wait,
     "target": _target,
     "visit": _visit,
+    "beside": lambda part: orders.Beside(
+        span=part.span,
+        order=part.the(orders.Measure),
+        side=part.the(Side),
+        anchor=part.the(Nouns),
+    ),
     "spare": lambda part: orders.Spare(span=part.span, what=part.the(Nouns)),
     "word": _word,
     "retry": lambda part: orders.Retry(span=part.span, manner=_manner(part)),

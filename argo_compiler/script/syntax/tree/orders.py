@@ -157,6 +157,15 @@ class Add(ScriptOrder):
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
+class Beside(ScriptOrder):
+    """`Before you read liquid level gauge 2, check valve R12`: both, in this order."""
+
+    order: Measure
+    side: Side
+    anchor: Nouns
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
 class Delete(ScriptOrder):
     """`Delete the measuring of checkpoint #2`."""
 

@@ -17,6 +17,7 @@ _ASKED_OF = frozenset(
     ["EVENT", "BATTERY", "KIND", "HASH", "OF", "IT", "VALUE", "THIS", "THEM", "TOO_LATE"]
 )
 """what begins the subject of a condition"""
+_VALUES = _RELATIONS | {"QUANTITY"}
 _UNITS = ("UNIT_S", "A_UNIT")
 _LIMITS = {"TIMES": "MOST_TIMES", "DURATION": "MOST_TIME"}
 
@@ -51,7 +52,26 @@ def merged(words: list[Word]) -> list[Word]:
             word = Word("DURATION", Length(word.value, word.value), word.start, word.end)
         i += 1
         _add(word, after, found)
-    return _last_if(_limited(found))
+    return _last_if(_limited(_of_values(found)))
+
+
+def _of_values(words: list[Word]) -> list[Word]:
+    """`Above 60 psi, check ...` is a condition; `the valve stands at more than 3 degrees` says what
+    it shows."""
+    types = [word.type for word in words]
+    first = types[:1] == ["AT"]
+    if (
+        types[first : first + 1]
+        and types[first] in _RELATIONS
+        and "QUANTITY" in types[first + 1 : 3]
+    ):
+        opening = Word("IF", None, words[first].start, words[first].start)
+        words = [opening, *words[first:]]
+    for i in range(len(words) - 3, -1, -1):
+        start, at, relation = words[i : i + 3]
+        if (start.type, at.type) == ("START", "AT") and relation.type in _VALUES:
+            words = [*words[:i], replace(start, type="IS", value=None), *words[i + 2 :]]
+    return words
 
 
 def _inverted(words: list[Word]) -> list[Word]:
@@ -107,11 +127,16 @@ def _limited(words: list[Word]) -> list[Word]:
 def _tells_order(words: list[Word], i: int) -> bool:
     """Whether an ordinal says only what comes when, and not which floor or gauge is meant:
     `first check ...`, `checkpoint 13 first, then ...`."""
-    if words[i].value == 1 and i + 1 < len(words) and words[i + 1].type in VERBS:
+    next_ = words[i + 1 : i + 3]
+    if words[i].value == 1 and any(word.type in VERBS for word in next_[: 1 + _is_it(next_)]):
         return True
     after = next((w for w in words[i + 1 :] if w.type not in ("JOINT", "ORDINAL")), None)
     listed = i + 1 < len(words) and words[i + 1].type in ("JOINT", "ORDINAL")
     return after is None or (after.type != "FLOOR" and listed)
+
+
+def _is_it(words: list[Word]) -> bool:
+    return words[:1] != [] and words[0].type == "IT"
 
 
 def _numbers(words: list[Word]) -> list[Word]:
@@ -261,7 +286,7 @@ def _add(word: Word, after: Word | None, found: list[Word]) -> None:
 
 def _begins(found: list[Word]) -> bool:
     """Whether the last word begins a sentence or what is joined to one."""
-    return len(found) < 2 or found[-2].type == "JOINT"
+    return len(found) < 2 or found[-2].type in ("JOINT", "IN_ANY_CASE", "BEFORE", "AFTER")
 
 
 def _hours_and(hours: Word, minutes: Word, after: Word | None) -> bool:

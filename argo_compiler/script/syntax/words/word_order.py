@@ -186,7 +186,7 @@ def _head(found: list[Word], clause: int, moved: bool, first: bool) -> int | Non
     """Where the clause begins whose verb comes next; None if that is not clear."""
     start = clause
     for i in range(clause, len(found)):
-        if found[i].type == "ELSE":
+        if found[i].type in ("ELSE", "IN_ANY_CASE"):
             start = i + 1
     named = _then(found, start) == "STRING" and _then(found, start + 1) == "JOINT"
     if named and found[start + 1].value == ":":

@@ -13,6 +13,8 @@ from argo_compiler.script.syntax.words.joints import VERBS
 
 _OPENERS = frozenset([*VERBS, "IF", "UNLESS", "ELSE"]) - {"DOCK", "FROM"}
 _WORD = re.compile(r"\w+")
+_END = 80
+"""characters at the end of a text that tell whether it goes on"""
 _LONGEST_MENDED = 300
 """characters of a sentence that is mended to see whether it makes sense"""
 
@@ -41,6 +43,7 @@ class LineSense:
 
     def is_unfinished(self, text: ScriptText) -> bool:
         """Whether a text plainly goes on: after a comma, `and` or `, then`."""
+        text = text[-_END:]
         if text.content.endswith((",", '":')) or self.understanding.unfinished(text) is not None:
             return True
         found = self.understanding.words(text)

@@ -397,11 +397,6 @@ def test_in_other_words(said: str, plainly: str, meaning_of: Callable[[str], obj
     assert meaning_of(start + said) == meaning_of(start + plainly)
 
 
-def test_steps_repeated_once_are_done_twice(catalog: Catalog) -> None:
-    text = "2. Check #8.\n3. Check #7.\n4. Repeat steps 2 and 3 once.\n5. Check #12."
-    assert [group.max_repeat_count for group in read(text, catalog).groups] == [2]
-
-
 @pytest.mark.parametrize(
     "text",
     [

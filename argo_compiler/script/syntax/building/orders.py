@@ -121,13 +121,9 @@ def _word(part: RulePart) -> ScriptOrder:
 
 
 def _repeat(part: RulePart) -> ScriptOrder:
-    """`Repeat steps 2 and 3 once` asks for them once more: one round in all would be none."""
-    manner = _manner(part)
-    if manner is not None and manner.times == 1:
-        manner = replace(manner, more=True)
     return orders.Repeat(
         span=part.span,
-        manner=manner,
+        manner=_manner(part),
         steps=part.first(Steps),
         last=part.first(Pronoun) is not None,
     )

@@ -70,6 +70,10 @@ class Cases:
         if values and not late and not case.orders:
             hint = "add, say, `go to step 5` or `return to the docking station`"
             self.diagnostics.refuse("unfinished", "this does not say what to do", case.span, hint)
+        if condition.negated and (late or not values):
+            message = "`unless` is said of values, not of events or of what comes too late"
+            hint = "say what is to be done if it is so"
+            self.diagnostics.refuse("condition", message, condition.span, hint)
         if late or not values or is_failure(condition):
             self.context.choice = None
         if late:

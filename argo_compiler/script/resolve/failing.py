@@ -89,6 +89,7 @@ def _policy(said: Sequence[ScriptOrder]) -> OnFailure | None:
 def is_failure(condition: SaidCondition) -> bool:
     """Whether it asks only whether the last task has failed."""
     match condition.alternatives:
-        case ((Test(predicate=InState(state=TaskState.FAILED), subject=subject),),):
-            return subject is None or all(isinstance(n, Pronoun) for n in subject.nouns)
+        case ((Test(predicate=InState(state=TaskState.FAILED), negated=False) as test,),):
+            of_it = test.subject is None or all(isinstance(n, Pronoun) for n in test.subject.nouns)
+            return of_it and not condition.negated
     return False

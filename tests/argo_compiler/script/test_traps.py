@@ -67,6 +67,10 @@ def bounds(mission: Mission, name: str) -> list[list[tuple[str | None, Condition
         ("Check #1. If it is above 5 and below 3, check #4.", "condition", ["no value"]),
         ("Check #1 and #4. Check one of them.", "ambiguous-or", ["which of them"]),
         ("Check #4 if it is above 4.", "which-checkpoint", ["nothing has been measured"]),
+        ("Check #1. Unless a gas leak is detected, go home.", "condition", ["unless"]),
+        ("Check #1. Unless the battery is below 30 %, go home.", "condition", ["unless"]),
+        ("Check #1 within 10 min. Unless it is too late, check #4.", "condition", ["unless"]),
+        ("Check #1. If it does not fail, check #4.", "condition", ["not failed"]),
         ("Check #1, if possible.", "ambiguous-manner", ["by when", "left out"]),
         (
             "Check #1, #2 and #4. If #1 is above 4 and #2 is below 50 or #4 is above 2, check #8.",
@@ -416,3 +420,12 @@ def test_a_slip_with_several_spellings_of_one_word(catalog: Catalog) -> None:
     assert [d.code for d in found.diagnostics if d.severity is Severity.WARNING] == [
         "script.respelled"
     ] * 2
+
+
+def test_unless_it_fails(catalog: Catalog) -> None:
+    task = read("Check #1. Unless it fails, check #4. Then check #8.", catalog).task("MEASURE 1")
+    assert task is not None
+    assert task.failure_target is None
+    (failed, otherwise) = task.transitions
+    assert [c.type for c in failed.conditions] == [ConditionType.FAILED]
+    assert (failed.target, otherwise.target) == ("MEASURE 8", "MEASURE 4")

@@ -17,6 +17,8 @@ from argo_compiler.script.syntax.words.lexicon import expand
 _RULE = re.compile(r"[\s|:=+-]*-[\s|:=+-]*")
 _FIRST_NUMBER = re.compile(r"[0-9]{1,6}")
 _MOST_COLUMNS = 12
+_MOST_ROWS = 10_000
+"""of all tables of a script"""
 _CUTS = ("|", "\t", ";", "  ", ",")
 _PATTERNS = {cut: re.compile(r"\s{2,}" if cut == "  " else re.escape(cut)) for cut in _CUTS}
 
@@ -49,6 +51,11 @@ def tables(
                 headings = rows.headings(text, cut)
                 if headings is not None:
                     found[number] = text[:0]
+        elif len(found) > _MOST_ROWS:
+            message = f"tables have more than {_MOST_ROWS} rows; the rest is not read"
+            span = source.line_text(number).span()
+            diagnostics.error("too-long", message, span, "divide the mission")
+            break
         elif _RULE.fullmatch(line):
             found[number] = source.line_text(number)[:0]
         else:

@@ -25,7 +25,7 @@ class Answer:
     response: Response | None = None
     reported: bool = False
     ended: bool = False
-    """by words that may be followed by the way home: `stop the mission and ...`"""
+    """by words that may be followed by the way home: `break off and ...`"""
     pose: Pose | None = None
     area: int | None = None
     until: EventKind | None = None
@@ -73,7 +73,7 @@ class Answering:
                 return self._afterwards(order, answer, Afterwards.RESUME)
             case orders.Plain(word=PlainWord.ABORT | PlainWord.END) if not answer.drives:
                 aborted = self._responds(answer, Response.ABORT, order)
-                return replace(aborted, ended=order.word is PlainWord.END)
+                return replace(aborted, ended=True)
             case orders.Plain(word=PlainWord.END):
                 return self._afterwards(order, answer, Afterwards.END)
             case orders.WaitOrder(where=where):
@@ -137,6 +137,8 @@ class Answering:
     def _waits(self, order: orders.WaitOrder, answer: Answer) -> Answer:
         person = order.manner is not None and order.manner.person
         held = answer.until is not None or answer.hold_limit is not None
+        if order.stays and answer.response is Response.RETURN and not (person or held):
+            return self._afterwards(order, answer, Afterwards.END)  # it stays in its dock
         if answer.drives and (person or not held):
             return self._afterwards(order, answer, Afterwards.WAIT)
         return answer.pausing

@@ -36,6 +36,8 @@ class Lookup:
         for checkpoint in catalog.checkpoints:
             name = checkpoint.name.lower()
             self._by_identifier[name.removeprefix(checkpoint.kind).strip()].append(checkpoint)
+        self._lowest: dict[int | NamedFloor, Span] = {}
+        """where the ground floor is named, and where the first one is"""
         self._unsaid = _UNSAID_IN_PLACES | set(catalog.site.lower().split())
 
     def check_quantity(
@@ -94,9 +96,10 @@ class Lookup:
     def floor(self, floor: FloorName) -> Floor:
         """The floor of this number, or the highest or lowest one."""
         floors = self.catalog.floors
+        self._require_one_count(floor)
         if floor.number is NamedFloor.TOP and floors:
             return max(floors, key=lambda f: f.z)
-        if floor.number is NamedFloor.BOTTOM and floors:
+        if isinstance(floor.number, NamedFloor) and floors:
             return min(floors, key=lambda f: f.z)
         for found in floors:
             if found.number == floor.number:
@@ -105,6 +108,18 @@ class Lookup:
         known = listed(str(f.number) for f in floors)
         hint = f"the floors are {known}, counted from the bottom"
         self.diagnostics.refuse("unknown-floor", message, floor.span, hint)
+
+    def _require_one_count(self, floor: FloorName) -> None:
+        """That the first floor is not told from the ground floor: many count from above that."""
+        if floor.number not in (1, NamedFloor.GROUND):
+            return
+        self._lowest.setdefault(floor.number, floor.span)
+        if len(self._lowest) > 1:
+            message = "this script names the ground floor and the first floor: the first may be "
+            message += "the same one, or the one above it"
+            hint = "floors are counted from 1 at the bottom (German `Stock` as well): write "
+            hint += "`floor 2` for the one above the ground floor"
+            self.diagnostics.refuse("ambiguous-floor", message, floor.span, hint)
 
     def numbers(self, floors: Iterable[FloorName]) -> list[int]:
         """The numbers of floors."""

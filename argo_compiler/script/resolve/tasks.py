@@ -8,6 +8,7 @@ from argo_compiler.script.resolve.program import Do
 from argo_compiler.script.resolve.starting import Starting
 from argo_compiler.script.resolve.waiting import wait_rule
 from argo_compiler.script.syntax.tree import orders
+from argo_compiler.script.syntax.tree.nouns import AllOf
 from argo_compiler.script.syntax.tree.orders import PlainWord, ScriptOrder
 from argo_compiler.script.syntax.tree.places import FloorName
 
@@ -46,6 +47,7 @@ class TaskMaker:
 
     def _measurements(self, order: orders.Measure) -> list[Do]:
         nouns, what = self.context.nouns, order.what
+        self._require_known(order)
         if order.manner is not None and order.manner.floors:
             what = nouns.on(order.manner.floors, what)
         found = nouns.all(what)
@@ -58,6 +60,15 @@ class TaskMaker:
             self.visiting = None
         self.leave_unvisited()
         return tasks
+
+    def _require_known(self, order: orders.Measure) -> None:
+        """That `everything again` is not said where only a part was measured before."""
+        again = order.manner is not None and order.manner.more
+        whole = any(isinstance(n, AllOf) and n.whole and not n.floors for n in order.what.nouns)
+        if again and whole and self.context.measured:
+            message = "this can mean all that was done so far, or all checkpoints of the site"
+            hint = "write `repeat everything`, or `check all checkpoints`"
+            self.context.diagnostics.refuse("ambiguous-all", message, order.span, hint)
 
     def visit(self, order: orders.VisitOrder) -> None:
         """Drives to a checkpoint; what to do there is said next."""

@@ -25,6 +25,8 @@ from argo_compiler.script.syntax.words.prose import Prose
 from argo_compiler.script.syntax.words.word import Word
 
 _STOP = re.compile(r"[.!](?=\s|$)")
+_INITIAL = re.compile(r"\b(?:[A-Z]|Dr|Mr|Mrs|Ms)\.")
+"""in a name: `J. Smith`"""
 _QUOTED = re.compile(r'"(?:[^"\\]|\\.)*"(?:[\s,]*"(?:[^"\\]|\\.)*")*')
 _PROSE = frozenset(
     ["designation", "anomaly_specification", "real_time_reporting", "after_mission_report", "site"]
@@ -245,6 +247,8 @@ def _end(prose: Prose, name: str, content: str) -> int:
         for m in prose.label.finditer(content)
         if content[: m.start()].rstrip()[-1:] in (",", ";", ".")
     ]
+    if name == "nothing":
+        content = _INITIAL.sub(lambda found: "x" * len(found[0]), content)
     if name not in _PROSE and (stop := _STOP.search(content)):
         ends.append(stop.end())
     return min((e for e in ends if e > 0), default=len(content))

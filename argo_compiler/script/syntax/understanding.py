@@ -20,6 +20,8 @@ from argo_compiler.script.syntax.words.prose import either
 from argo_compiler.script.syntax.words.word import Word
 
 Reading = tuple[Branch, list[Word]]
+_AREA = ("AREA", "NUMBER")
+"""where a mission starts, or the end of a line before"""
 _MOST_SLIPS = 8
 """misspelt words in a sentence; one with more is none of the language's"""
 _MOST_TRIED = 32
@@ -65,7 +67,7 @@ class Understanding:
             return text.content != ""  # words that mean nothing
         if any(word.type == "WORD" for word in found) or self.unfinished(text) is not None:
             return False
-        if text.content.endswith(","):
+        if text.content.endswith(",") or tuple(w.type for w in found) == _AREA:
             return False
         try:
             tree = self.grammar.tree(tuple(word.type for word in found))

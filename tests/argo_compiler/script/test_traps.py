@@ -6,7 +6,7 @@ import pytest
 
 from argo_compiler.catalog import Catalog
 from argo_compiler.diagnostics import DiagnosticError, Severity
-from argo_compiler.il import ConditionType, EventKind, Mission, OnFailure, Response
+from argo_compiler.il import Afterwards, ConditionType, EventKind, Mission, OnFailure, Response
 from argo_compiler.script import import_script
 
 
@@ -28,6 +28,14 @@ def bounds(mission: Mission, name: str) -> list[list[tuple[str | None, Condition
     ("text", "code", "readings"),
     [
         ("Check checkpoint 1 or 4.", "ambiguous-or", ["which of them", "both"]),
+        ("Check #1. Check the whole round again.", "ambiguous-all", ["so far", "of the site"]),
+        ("Check #1. Check everything once more.", "ambiguous-all", ["so far", "of the site"]),
+        ("Check #1. Read the whole list a second time.", "ambiguous-all", ["so far"]),
+        (
+            "Check all valves on the ground floor and all gauges on the first floor.",
+            "ambiguous-floor",
+            ["the same one", "the one above it"],
+        ),
         ("Check valve R25 and 5.", "ambiguous-checkpoint", ["valve R12"]),
         ("Maximum duration: 1.200 s\nCheck #1.", "ambiguous-duration", ["1.2 s", "1200 s"]),
         (
@@ -429,3 +437,57 @@ def test_unless_it_fails(catalog: Catalog) -> None:
     (failed, otherwise) = task.transitions
     assert [c.type for c in failed.conditions] == [ConditionType.FAILED]
     assert (failed.target, otherwise.target) == ("MEASURE 8", "MEASURE 4")
+
+
+@pytest.mark.parametrize(
+    ("text", "response", "afterwards"),
+    [
+        ("return to the docking station and stay there", Response.RETURN, Afterwards.END),
+        ("return to the docking station and wait there", Response.RETURN, Afterwards.WAIT),
+        ("the robot breaks off and goes back to its dock", Response.RETURN, Afterwards.END),
+        ("abort the mission and go home", Response.RETURN, Afterwards.END),
+        ("bring it back to its dock", Response.RETURN, Afterwards.END),
+        ("break off", Response.ABORT, Afterwards.END),
+    ],
+)
+@pytest.mark.parametrize("label", ["", "General: ", "Safety rule: "])
+def test_what_is_done_in_an_event_is_one_thing(
+    label: str, text: str, response: Response, afterwards: Afterwards, catalog: Catalog
+) -> None:
+    (reaction,) = read(f"{label}If a gas leak is detected, {text}.\n\nCheck #4.", catalog).reactions
+    assert (reaction.response, reaction.afterwards) == (response, afterwards)
+
+
+@pytest.mark.parametrize(
+    "start",
+    [
+        "Starting area 2",
+        "Starting area 2.",
+        "strating area 2",
+        "The robot sits in starting area 2.",
+        "From: J. Smith, shift C\nThe robot is sitting in starting area 2.",
+        "Startbereich 2",
+    ],
+)
+def test_a_starting_area_by_itself_is_the_start(start: str, catalog: Catalog) -> None:
+    check = "Prüfe Kontrollpunkt 4" if start.startswith("Startb") else "Check checkpoint 4"
+    mission = import_script(f"{start}\n- {check}\n", catalog).mission
+    assert mission.tasks[0].pose == catalog.areas[1].dock
+    assert measured(mission) == ["4"]
+
+
+@pytest.mark.parametrize(
+    ("text", "code"),
+    [
+        ("Prüfe Kontrollpunkt 1. Prüfe die ganze Runde noch einmal.", "ambiguous-all"),
+        ("Lies Kontrollpunkt 1 ab. Prüfe dann alles nochmals.", "ambiguous-all"),
+        ("Ventil R25 im Erdgeschoss prüfen, alle Manometer im ersten Stock prüfen.", "ambiguous-"),
+        ("Prüfe alle Ventile im 1. Stock und alle Manometer im EG.", "ambiguous-floor"),
+    ],
+)
+def test_german_that_may_mean_two_things_is_asked_about(
+    text: str, code: str, catalog: Catalog
+) -> None:
+    with pytest.raises(DiagnosticError) as error:
+        import_script(f"Start in Startbereich 1.\n{text}", catalog)
+    assert any(code in d.code for d in error.value.diagnostics if d.severity is Severity.ERROR)

@@ -88,7 +88,13 @@ def _all(part: RulePart) -> AllOf:
     kind, _ = _kind(part.word("KIND"))
     number = part.word("NUMBER")
     count = 2 if part.has("BOTH") else whole(part, number.value) if number else None
-    return AllOf(span=part.span, kind=kind or Kind.CHECKPOINT, floors=_floors(part), count=count)
+    return AllOf(
+        span=part.span,
+        kind=kind or Kind.CHECKPOINT,
+        floors=_floors(part),
+        count=count,
+        whole=part.has("EVERYTHING"),
+    )
 
 
 def _the_one(part: RulePart) -> TheOne:

@@ -134,7 +134,9 @@ def _wait(part: RulePart) -> ScriptOrder:
     place = None if here else where(part)
     manner = _manner(part)
     person = manner is not None and manner.person
-    return orders.WaitOrder(span=part.span, manner=manner, where=place, person=person)
+    verb = part.word("WAIT")
+    stays = verb is not None and verb.value == "stay"
+    return orders.WaitOrder(span=part.span, manner=manner, where=place, person=person, stays=stays)
 
 
 def _things(part: RulePart) -> list[Nouns | Steps]:

@@ -56,6 +56,8 @@ class AllOf(Node):
     """none: the whole site"""
     count: int | None = None
     """how many there are, if that is said: `both valves`"""
+    whole: bool = False
+    """`everything`, `the whole round`: of no kind"""
     quantity: Quantity | None = None
 
 

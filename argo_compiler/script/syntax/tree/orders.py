@@ -86,6 +86,8 @@ class WaitOrder(ScriptOrder):
     """for the operator"""
     where: Location | FloorName | None = None
     """None: where it is"""
+    stays: bool = False
+    """`stay there`: in its dock it waits for nothing"""
 
 
 class PlainWord(StrEnum):

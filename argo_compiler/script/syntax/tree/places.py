@@ -11,6 +11,7 @@ class NamedFloor(StrEnum):
 
     TOP = "top"
     BOTTOM = "bottom"
+    GROUND = "ground"
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

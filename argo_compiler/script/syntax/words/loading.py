@@ -37,7 +37,9 @@ _MEANINGS: dict[str, Callable[..., Any]] = {
     **dict.fromkeys(["ORDINAL", "RANKED"], int),
     **dict.fromkeys(["TIMES", "MORE"], lambda n: Figure(float(n))),
     "NUMBER_WORD": float,
-    **dict.fromkeys(["FLOOR_NAME", "OF", "VALUE", "SHOWN", "STATE", "UNIT", "NEITHER"], str),
+    **dict.fromkeys(
+        ["FLOOR_NAME", "OF", "WAIT", "VALUE", "SHOWN", "STATE", "UNIT", "NEITHER"], str
+    ),
     **dict.fromkeys(["OR_MORE", "OR_LESS", "JOINT"], str),
 }
 """what the key behind a terminal stands for; other terminals have none"""

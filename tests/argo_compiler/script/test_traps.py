@@ -491,3 +491,17 @@ def test_german_that_may_mean_two_things_is_asked_about(
     with pytest.raises(DiagnosticError) as error:
         import_script(f"Start in Startbereich 1.\n{text}", catalog)
     assert any(code in d.code for d in error.value.diagnostics if d.severity is Severity.ERROR)
+
+
+@pytest.mark.parametrize(
+    "still",
+    [
+        "it still cannot be read",
+        "it still can't be read",
+        "it cannot still be read",
+        "it still fails",
+    ],
+)
+def test_what_still_cannot_be_read_has_failed(still: str, catalog: Catalog) -> None:
+    said = f"Check #4. If it cannot be read, try again twice. If {still}, go home."
+    assert read(said, catalog) == read(said.replace(still, "it fails again"), catalog)

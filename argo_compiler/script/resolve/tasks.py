@@ -62,12 +62,11 @@ class TaskMaker:
         return tasks
 
     def _require_known(self, order: orders.Measure) -> None:
-        """That `everything again` is not said where only a part was measured before."""
-        again = order.manner is not None and order.manner.more
+        """That `the whole list` is not said where something was measured before."""
         whole = any(isinstance(n, AllOf) and n.whole and not n.floors for n in order.what.nouns)
-        if again and whole and self.context.measured:
+        if whole and not order.what.but and self.context.measured:
             message = "this can mean all that was done so far, or all checkpoints of the site"
-            hint = "write `repeat everything`, or `check all checkpoints`"
+            hint = "write `repeat everything once more`, or `check all checkpoints`"
             self.context.diagnostics.refuse("ambiguous-all", message, order.span, hint)
 
     def visit(self, order: orders.VisitOrder) -> None:

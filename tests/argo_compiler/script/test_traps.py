@@ -29,6 +29,8 @@ def bounds(mission: Mission, name: str) -> list[list[tuple[str | None, Condition
     [
         ("Check checkpoint 1 or 4.", "ambiguous-or", ["which of them", "both"]),
         ("Check #1. Check the whole round again.", "ambiguous-all", ["so far", "of the site"]),
+        ("Check #1. Check the whole list.", "ambiguous-all", ["so far", "of the site"]),
+        ("Check #1 and #4. Check everything twice.", "ambiguous-all", ["so far", "of the site"]),
         ("Check #1. Check everything once more.", "ambiguous-all", ["so far", "of the site"]),
         ("Check #1. Read the whole list a second time.", "ambiguous-all", ["so far"]),
         (

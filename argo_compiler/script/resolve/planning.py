@@ -9,6 +9,7 @@ from argo_compiler.script.resolve.beside import measured_beside, require_once
 from argo_compiler.script.resolve.cases import Cases
 from argo_compiler.script.resolve.context import Context
 from argo_compiler.script.resolve.counting import counted
+from argo_compiler.script.resolve.demanding import demanded_of
 from argo_compiler.script.resolve.edits import Edits
 from argo_compiler.script.resolve.manners import Manners
 from argo_compiler.script.resolve.ordering import Ordering
@@ -169,6 +170,9 @@ class Planner:
 
     def _planned(self, order: ScriptOrder, block: ProgramBlock) -> None:
         """Puts the tasks of an order into a block, with what is said of them."""
+        if isinstance(order, orders.Measure) and (demanded := demanded_of(order, self.context)):
+            self.manners.furnish(order, demanded)
+            return
         tasks = self.making.tasks(order)
         if isinstance(order, orders.Start) and not order.here:
             self.manners.name(order, tasks)

@@ -3,11 +3,12 @@
 from collections.abc import Iterable
 from contextlib import suppress
 from dataclasses import replace
+from itertools import islice
 
 from argo_compiler.il import Action
 from argo_compiler.script.resolve.context import Context, topmost
 from argo_compiler.script.resolve.limiting import make_round
-from argo_compiler.script.resolve.program import Do, ProgramBlock
+from argo_compiler.script.resolve.program import Do, ProgramBlock, ProgramNode
 from argo_compiler.script.resolve.wrapping import Repetition, Wrapping
 from argo_compiler.script.syntax.text.source import RefusedError
 from argo_compiler.script.syntax.tree import orders
@@ -45,8 +46,12 @@ class Repeating:
     def _repeat_last(self, order: orders.Repeat, block: ProgramBlock) -> None:
         """`Repeat this twice`: the step before, or what was said before in the same step."""
         context = self.context
+        if not context.step and self._follows_several():
+            message = "this can be the step before, or all steps so far"
+            hint = "name the steps: `repeat step 3 twice`, `repeat steps 1 to 3 twice`"
+            self.diagnostics.refuse("step-range", message, order.span, hint)
         nodes = topmost(context.step or context.before, block)
-        starts = any(isinstance(n, Do) and n.action is Action.START for n in nodes)
+        starts = any(map(_is_start, nodes))
         one = not context.step or len(nodes) == 1 or all(n in context.recent for n in nodes)
         if not nodes or starts or not one or nodes[-1] is not block.last:
             message = "it is not clear what is to be repeated"
@@ -58,6 +63,12 @@ class Repeating:
             block.remove(node)
             round_.body.append(node)
         block.insert_after(anchor, round_)
+
+    def _follows_several(self) -> bool:
+        """Whether more than one step has done anything so far but start."""
+        steps = (step for step in self.context.steps.values() if step)
+        done = (step for step in steps if not all(map(_is_start, step)))
+        return len([*islice(done, 2)]) > 1
 
     def _is_once_more(self, order: orders.Repeat, steps: Steps, block: ProgramBlock) -> bool:
         """Whether steps are done here again, and not in a round where they stand."""
@@ -107,3 +118,7 @@ class Repeating:
         for repetition in repetitions:
             with suppress(RefusedError):  # what is wrong with the others is said as well
                 wrapping.wrap(repetition)
+
+
+def _is_start(node: ProgramNode) -> bool:
+    return isinstance(node, Do) and node.action is Action.START

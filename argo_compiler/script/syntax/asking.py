@@ -53,10 +53,11 @@ class Asking:
             return True
         if ("HASH", "KIND") in pairwise(types):
             return True  # `no valves today`
-        if len(types) > 1 and types[0] == "WORD" and types[1] in NAMED and len(types) > 2:
+        numbered = types[1:3] != ("STEP", "IDENT")  # `Work instruction WI-31` is a title
+        if len(types) > 2 and types[0] == "WORD" and types[1] in NAMED and numbered:
             found = self.understanding.words(text)
-            numbered = types[1] == "HASH" and text.content[found[1].start] != "#"
-            return types[2] in LABELS and not numbered  # `Protocol no. 4` is a title
+            counted = types[1] == "HASH" and text.content[found[1].start] != "#"
+            return types[2] in LABELS and not counted  # `Protocol no. 4` is a title
         return self._has_object(text.content)
 
     def orders(self, text: ScriptText, counted: bool = False) -> bool:

@@ -166,7 +166,7 @@ class _Parser:
             after = remark and not self.understanding.fits(sentence)
             remark = after or self.asides.is_remark(sentence.content)
             if remark:
-                self.reader.remark(sentence)
+                said += self.reader.remark(sentence)
                 continue
             if self.labels.is_field(sentence):
                 sentence = self.fields.read(sentence)

@@ -12,7 +12,9 @@ from argo_compiler.script.syntax.words.prose import begins
 
 _WHOLE = re.compile(r"(?:(?:ANY_ORDER|THIS_ORDER|(?:MOST_TIME|WITHIN DURATION)(?: TOTAL)?) )+")
 _JOINTS = frozenset(["NEXT", "JOINT", "AND_NOUN", "AND_AMOUNT", "AND_TEST", "AND_NUMBER"])
-_INTRODUCTION = re.compile(r"(?:WORD )?(?:TO )?(?:MEASURE )?(?:ALL )?KIND (?:ANY|THIS)_ORDER ")
+_INTRODUCTION = re.compile(
+    r"(?:WORD )?(?:TO )?(?:MEASURE )?(?:ALL |THEM )?KIND (?:ANY|THIS)_ORDER "
+)
 
 
 @dataclass(frozen=True)

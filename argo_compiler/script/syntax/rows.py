@@ -145,6 +145,7 @@ class _Rows:
         if point is not None and object_ is not None:
             yield [*verb, *named, " (", object_, ")", *behind]
             yield [*verb, *named, ": ", object_, *behind]
+            yield [*verb, f"{self.prose.say['of']} ", *named, " (", object_, ")", *behind]
         elif object_ is not None:
             yield [*verb, object_, *behind]
         else:

@@ -7,7 +7,7 @@ from argo_compiler.script.syntax.text.source import ScriptText
 from argo_compiler.script.syntax.understanding import quotes
 from argo_compiler.script.syntax.words.loading import everywhere
 
-_LABEL = re.compile(r"\s*[A-Za-z]?-?[0-9]")
+_LABEL = re.compile(r"\s*(?:[A-Za-z]?-?[0-9]|[A-Z](?!\w))")
 _ORDINAL = re.compile(r"(?<![\w.,])[0-9]{1,2}\.$")
 _NEXT_SIGN = re.compile(r"\s*(\S)")
 

@@ -15,6 +15,7 @@ from argo_compiler.script.syntax.tree.facts import Fact
 from argo_compiler.script.syntax.tree.orders import Amend, Sentence, Start
 from argo_compiler.script.syntax.tree.script import Text, Unread
 from argo_compiler.script.syntax.understanding import Reading, Understanding
+from argo_compiler.script.syntax.words.joints import VERBS
 
 Said = Sentence | Fact | Unread
 
@@ -44,15 +45,23 @@ class SentenceReader:
         self.diagnostics.note("no-effect", message, text.span())
         self.remarks.append(Text(span=text.span(), text=text.content))
 
-    def remark(self, text: ScriptText) -> None:
-        """Says that a remark has no effect; a warning, where it tells what is to be done."""
-        if self.asides.asking.bids(self.asides.remark(text)):
+    def remark(self, text: ScriptText) -> list[Said]:
+        """Says that a remark has no effect; a warning, where it tells what is to be done. What it
+        says of the order is kept: `Note: valve R40 has to be checked before valve R12.`"""
+        inner = self.asides.remark(text)
+        types = {*self.understanding.types(inner)}
+        if types & {"BEFORE", "AFTER"} and not types & {"IF", "UNLESS", *VERBS}:
+            reading = self.understanding.read(inner)
+            if not isinstance(reading, StumbleError):
+                return [self._node(inner, reading)]
+        if self.asides.asking.bids(inner):
             message = f"`{text.content}` is taken for a remark: what it asks for is not planned"
             hint = "write it as a step if it is to be done"
             self.diagnostics.warning("remark", message, text.span(), hint)
             self.remarks.append(Text(span=text.span(), text=text.content))
         else:
             self.note(text, "a remark")
+        return []
 
     def read(self, text: ScriptText, item: LineItem) -> list[Said]:
         """What a sentence says; nothing where it has no effect."""

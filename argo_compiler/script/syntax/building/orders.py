@@ -47,6 +47,7 @@ def _measure(part: RulePart) -> ScriptOrder:
         what=what,
         bare=not part.has("MEASURE", "KEEP_MEASURING", "BE_MEASURED", "ADD"),
         keep=part.has("KEEP_MEASURING"),
+        passive=part.has("BE_MEASURED"),
     )
 
 

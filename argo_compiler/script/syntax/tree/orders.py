@@ -37,6 +37,8 @@ class Measure(ScriptOrder):
     """only named, as in a list"""
     keep: bool = False
     """`keep reading`"""
+    passive: bool = False
+    """`valve R25 has to be read`"""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

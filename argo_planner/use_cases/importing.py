@@ -26,6 +26,7 @@ from argo_compiler.ros import Received, decode_bag, is_bag_content, read_bag
 from argo_compiler.script.syntax.text.source import Source as Script
 from argo_compiler.stages import stage
 from argo_env.planning.opening import OpenedSite
+from argo_env.planning.speeds_to_drive_at import too_fast
 
 _log = logging.getLogger(__name__)
 
@@ -171,7 +172,9 @@ def import_mission(
     areas make no sense.
     """
     loaded = load(upload, site.catalog, start_area, end_area)
-    found = by_place((*loaded.diagnostics, *loaded.placed(check(loaded.mission, site.catalog))))
+    found = check(loaded.mission, site.catalog)
+    found += tuple(too_fast(loaded.mission, site.navigator.robot))
+    found = by_place((*loaded.diagnostics, *loaded.placed(found)))
     if has_errors(found):
         raise DiagnosticError(upload.name, found)
     return ImportedMission(loaded.mission, upload.name, loaded.diagnostics, found)

@@ -507,3 +507,45 @@ def test_german_that_may_mean_two_things_is_asked_about(
 def test_what_still_cannot_be_read_has_failed(still: str, catalog: Catalog) -> None:
     said = f"Check #4. If it cannot be read, try again twice. If {still}, go home."
     assert read(said, catalog) == read(said.replace(still, "it fails again"), catalog)
+
+
+@pytest.mark.parametrize(
+    "condition",
+    [
+        "If one is abnormal",
+        "If any one is abnormal",
+        "If either of the two is abnormal",
+        "Should one of the two be abnormal",
+        "Wenn eins auffällig ist",
+        "Wenn einer der beiden auffällig ist",
+    ],
+)
+def test_one_is_one_of_them_and_not_checkpoint_1(condition: str, catalog: Catalog) -> None:
+    check = "prüfe" if condition.startswith("Wenn") else "check"
+    mission = read(f"{check.title()} #4, #5. {condition}, {check} #8.", catalog)
+    abnormal = ConditionType.ABNORMAL
+    assert bounds(mission, "MEASURE 5")[:2] == [[("4", abnormal, None)], [("5", abnormal, None)]]
+
+
+@pytest.mark.parametrize(
+    ("text", "alike"),
+    [
+        ("Check #1. On failure, check #4.", "Check #1. If it fails, check #4."),
+        ("Check #1, then optionally check #4.", "Check #1. Check #4 if there is time."),
+        ("Check #1. Finish in starting area 2.", "Check #1. End in starting area 2."),
+        (
+            "Patrol the first floor and stop with it after 5 minutes.",
+            "Patrol the first floor for 5 minutes.",
+        ),
+        (
+            "Check #1. If it is not readable, check #4.",
+            "Check #1. Should it not be readable, check #4.",
+        ),
+    ],
+)
+def test_two_ways_to_say_the_same(text: str, alike: str, catalog: Catalog) -> None:
+    assert tasks(read(text, catalog)) == tasks(read(alike, catalog))
+
+
+def tasks(mission: Mission) -> list[object]:
+    return [task.model_copy(update={"source": None}) for task in mission.tasks]

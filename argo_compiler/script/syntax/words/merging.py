@@ -18,6 +18,11 @@ _ASKED_OF = frozenset(
 )
 """what begins the subject of a condition"""
 _VALUES = _RELATIONS | {"QUANTITY"}
+_ASKING = frozenset(["IF", "IF_ONLY", "UNLESS", "UNTIL"])
+_SAID = _RELATIONS | {"IS", "NOT", "STATE", "FAILS"}
+"""what begins that which a condition says of its subject"""
+_EARLY = frozenset(["MEASURE", "GO", "PATROL"])
+"""verbs, behind which `optionally` may stand"""
 _UNITS = ("UNIT_S", "A_UNIT")
 _LIMITS = {"TIMES": "MOST_TIMES", "DURATION": "MOST_TIME"}
 
@@ -147,12 +152,20 @@ def _numbers(words: list[Word]) -> list[Word]:
             [w.value if w.type == "NUMBER_WORD" else None for w in words[i : i + 12]]
         )
         if n:
-            found.append(Word("NUMBER", Figure(float(value)), words[i].start, words[i + n - 1].end))
+            number = Word("NUMBER", Figure(float(value)), words[i].start, words[i + n - 1].end)
             i += n
+            found.append(_one_of_them(number, found, words[i : i + 1]))
         else:
             found.append(words[i])
             i += 1
     return found
+
+
+def _one_of_them(number: Word, found: list[Word], after: list[Word]) -> Word:
+    """`If one is abnormal` asks about one of them, and not about checkpoint 1."""
+    asked = found and found[-1].type in _ASKING and after and after[0].type in _SAID
+    one = asked and number.value.value == 1
+    return replace(number, type="THEM", value="either") if one else number
 
 
 def _joined_bounds(words: list[Word]) -> list[Word]:
@@ -279,8 +292,11 @@ def _add(word: Word, after: Word | None, found: list[Word]) -> None:
     elif word.type == "AREA" and last is not None and last.type == "START" and len(found) > 1:
         if found[-2].type in ("IN", "AT", "FROM", "TO", "ON"):
             found.pop()  # `in start area 1`
-    elif word.type in ("ON", "IN") and after is not None and after.type == "EVENT":
+    elif word.type in ("ON", "IN") and after is not None and after.type in ("EVENT", "FAILS"):
         word = replace(word, type="IF")
+    elif word.type in _EARLY and last is not None and last.type == "IF_TIME" and _begins(found):
+        found[-1:] = [word, last]  # `optionally check checkpoint 4`
+        return
     found.append(word)
 
 

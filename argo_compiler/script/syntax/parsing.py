@@ -1,8 +1,8 @@
 """Script text to syntax tree."""
 
 import re
-from collections.abc import Collection, Iterable, Iterator
-from dataclasses import dataclass
+from collections.abc import Collection, Iterable, Iterator, Mapping
+from dataclasses import dataclass, replace
 from functools import lru_cache
 
 from argo_compiler.diagnostics import DiagnosticError
@@ -26,6 +26,7 @@ from argo_compiler.script.syntax.tree.script import Script, ScriptStep, Unread
 from argo_compiler.script.syntax.understanding import Understanding
 from argo_compiler.script.syntax.words.language import Language
 from argo_compiler.script.syntax.words.lexicon import Lexicon
+from argo_compiler.script.syntax.words.unknown import UnknownError, UnknownFigure
 
 MAX_LINES = 120_000
 """of a script; one with more is refused unread"""
@@ -149,9 +150,12 @@ class _Parser:
                 yield step
 
     def _step(self, item: LineItem) -> ScriptStep | None:
-        known = self._known(item)
-        if known is not None:
-            return self._of(item, known, list(self._steps(item.items)))
+        known = self.repeats.said(item.text) if self._is_plain(item) else None
+        said = self._said(item) if known is None else known
+        return self._of(item, said, list(self._steps(item.items)))
+
+    def _said(self, item: LineItem) -> list[Said]:
+        """What an item says; kept, if it says so wherever it stands."""
         before = len(self.diagnostics.entries)
         text = self._without_letter(item)
         text = self.labels.relabelled(text)
@@ -172,22 +176,35 @@ class _Parser:
                 sentence = self.fields.read(sentence)
             if sentence.content:
                 said += self.reader.read(sentence, item)
-        if len(said) == len(parts) and len(self.diagnostics.entries) == before:
-            self._keep(item, text, said)
-        return self._of(item, said, list(self._steps(item.items)))
+        whole = text is item.text and not self.labels.is_field(text)
+        whole = whole and len(said) == len(parts) and len(self.diagnostics.entries) == before
+        plain = whole and not self.understanding.unknown and self._is_plain(item)
+        if plain and not any(isinstance(s, Unread) for s in said):
+            self.repeats.keep(text, said, lambda text, unknown: self._again(item, text, unknown))
+        return said
+
+    def _again(
+        self, item: LineItem, text: ScriptText, unknown: Mapping[int, UnknownFigure]
+    ) -> list[Said] | None:
+        """What a plain item says with another text, in which some figures are not known; None if
+        that hangs on them."""
+        before, errors = len(self.diagnostics.entries), self.diagnostics.errors
+        self.understanding.unknown = unknown
+        try:
+            said = self._said(replace(item, text=text))
+        except UnknownError:
+            return None
+        finally:
+            self.understanding.unknown = {}
+            found = self.diagnostics.entries[before:]
+            del self.diagnostics.entries[before:]
+            self.diagnostics.errors = errors
+        return None if found else said
 
     def _is_plain(self, item: LineItem) -> bool:
         """Whether what an item says follows from its text alone."""
         over = item.line.heading or item.text.content.endswith(":")
         return self.reader.ordered and not self.closed and not over
-
-    def _known(self, item: LineItem) -> list[Said] | None:
-        return self.repeats.said(item.text) if self._is_plain(item) else None
-
-    def _keep(self, item: LineItem, text: ScriptText, said: list[Said]) -> None:
-        whole = text is item.text and not self.labels.is_field(text)
-        if whole and self._is_plain(item) and not any(isinstance(s, Unread) for s in said):
-            self.repeats.keep(text, said)
 
     def _of(self, item: LineItem, said: list[Said], inner: list[ScriptStep]) -> ScriptStep | None:
         if not said and not inner and item.line.number is None:

@@ -1,16 +1,27 @@
-"""Texts that a script, or the next one, has again: they are read once."""
+"""Texts that a script, or the next one, has again, if only with other figures: they are read once.
 
+For a text whose figures are others the sentence is read once more with numbers that are not known.
+Where that succeeds, nothing but the figures themselves can differ in what such texts say.
+"""
+
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
 from functools import lru_cache
 
 from argo_compiler.diagnostics import Span
 from argo_compiler.script.syntax.sentence_reading import Said
+from argo_compiler.script.syntax.shapes import Shape, figure_places, with_other_figures
 from argo_compiler.script.syntax.text.source import ScriptText
 from argo_compiler.script.syntax.tree.moving import Move, mover
 from argo_compiler.script.syntax.words.lexicon import Lexicon
+from argo_compiler.script.syntax.words.unknown import UnknownFigure, unknown_figure
 
 _MOST = 8192
-"""texts that are kept; then all are forgotten"""
+"""texts that are kept, and shapes; then all are forgotten"""
+
+ReadAgain = Callable[[ScriptText, Mapping[int, UnknownFigure]], list[Said] | None]
+"""reads a text, in which the figures at these places of the source are not known; None if what it
+says hangs on them"""
 
 
 @dataclass(slots=True)
@@ -22,6 +33,12 @@ class _Text:
     moves: list[Move] = field(default_factory=list)
     """how it is said at another place; made when the text is met again, for most never are"""
 
+    def at(self, here: Span, figures: tuple[str, ...]) -> list[Said]:
+        """What it says at another place and with other figures."""
+        self.moves = self.moves or [move for move in map(mover, self.said) if move is not None]
+        lines, columns = here.line - self.span.line, here.column - self.span.column
+        return [move(lines, columns, figures) for move in self.moves]
+
 
 @dataclass
 class Repeats:
@@ -30,24 +47,61 @@ class Repeats:
     lexicon: Lexicon
     names: frozenset[str]
     _known: dict[str, _Text] = field(default_factory=dict)
+    _shapes: dict[str, _Text | None] = field(default_factory=dict)
+    """None: hangs on its figures"""
+    _met: set[str] = field(default_factory=set)
+    """shapes that were met once"""
 
-    def keep(self, text: ScriptText, said: list[Said]) -> None:
+    def keep(self, text: ScriptText, said: list[Said], read: ReadAgain) -> None:
         """Keeps what a text says. Only of one as it was written: in no other do the places of its
         parts follow from where it begins."""
-        if isinstance(text.offsets, range):
-            if len(self._known) >= _MOST:
-                self._known.clear()
-            self._known[text.content] = _Text(said, text.span())
+        if not isinstance(text.offsets, range):
+            return
+        if len(self._known) >= _MOST:
+            self._known.clear()
+            self._shapes.clear()
+            self._met.clear()
+        self._known[text.content] = _Text(said, text.span())
+        shape = Shape.of(text.content)
+        if not shape.figures or shape.key in self._shapes or self._have(shape.figures):
+            return
+        if shape.key in self._met:
+            self._shapes[shape.key] = _of_shape(text, shape, said, read)
+        self._met.add(shape.key)
 
     def said(self, text: ScriptText) -> list[Said] | None:
         """What a text says; None if it is not known."""
-        known = self._known.get(text.content)
-        if known is None or not isinstance(text.offsets, range):
+        if not isinstance(text.offsets, range):
             return None
-        known.moves = known.moves or [move for move in map(mover, known.said) if move is not None]
-        here = text.span()
-        lines, columns = here.line - known.span.line, here.column - known.span.column
-        return [move(lines, columns) for move in known.moves]
+        known = self._known.get(text.content)
+        if known is not None:
+            return known.at(text.span(), ())
+        shape = Shape.of(text.content)
+        known = self._shapes.get(shape.key)
+        if known is None or self._have(shape.figures):
+            return None
+        return known.at(text.span(), shape.figures)
+
+    def _have(self, figures: tuple[str, ...]) -> bool:
+        """Whether one of the figures is a word of the language or of a name."""
+        words = self.lexicon.words
+        return any(figure in words or figure in self.names for figure in figures)
+
+
+def _of_shape(text: ScriptText, shape: Shape, said: list[Said], read: ReadAgain) -> _Text | None:
+    """What all texts of a shape say; None if that hangs on their figures, or on their digits."""
+    unknown = {
+        text.offsets[start]: unknown_figure(figure, place)
+        for place, (start, figure) in enumerate(
+            zip(figure_places(text.content), shape.figures, strict=True)
+        )
+    }
+    other = ScriptText(with_other_figures(text.content), text.offsets, text.source)
+    found = read(other, unknown)
+    if found is None:
+        return None
+    kept = _Text(found, text.span())
+    return kept if kept.at(text.span(), shape.figures) == said else None
 
 
 repeats = lru_cache(maxsize=8)(Repeats)

@@ -2,6 +2,7 @@
 one reading makes sense."""
 
 import re
+from collections.abc import Mapping
 from functools import cache
 from itertools import islice, product
 
@@ -14,9 +15,10 @@ from argo_compiler.script.syntax.tree.nouns import Kind
 from argo_compiler.script.syntax.tree.orders import Sentence
 from argo_compiler.script.syntax.tree.places import FloorName, Location
 from argo_compiler.script.syntax.words.language import Language
-from argo_compiler.script.syntax.words.lexer import words
+from argo_compiler.script.syntax.words.lexer import words, words_of
 from argo_compiler.script.syntax.words.lexicon import Entry, Lexicon, folded
 from argo_compiler.script.syntax.words.prose import either
+from argo_compiler.script.syntax.words.unknown import UnknownFigure
 from argo_compiler.script.syntax.words.word import Word
 
 Reading = tuple[Branch, list[Word]]
@@ -39,6 +41,8 @@ class Understanding:
         self.names = names
         """words of the site's names, in lower case"""
         self.diagnostics = diagnostics
+        self.unknown: Mapping[int, UnknownFigure] = {}
+        """by their places in the source, figures that are to be taken for unknown"""
         self.grammar = sentence_grammar()
         self._joint = _joint_at_end(language.lexicon)
 
@@ -47,6 +51,10 @@ class Understanding:
         return _joints(self.language.lexicon, meaning)
 
     def words(self, text: ScriptText) -> list[Word]:
+        if self.unknown:
+            places = {offset: i for i, offset in enumerate(text.offsets)}
+            unknown = {places[o]: f for o, f in self.unknown.items() if o in places}
+            return words_of(text.content, self.language.lexicon, unknown)
         return words(text.content, self.language.lexicon)
 
     def types(self, text: ScriptText) -> tuple[str, ...]:

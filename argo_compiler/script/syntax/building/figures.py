@@ -1,7 +1,7 @@
 """Numbers, amounts and lengths of time: what can be read in two ways is asked about."""
 
 from dataclasses import dataclass
-from math import isinf, isnan
+from math import inf, isinf, isnan
 
 from argo_compiler.il import MAX_TIME_S
 from argo_compiler.script.syntax.building.part import Make, RulePart
@@ -45,6 +45,8 @@ def _complain_of_whole(part: RulePart, figure: Figure) -> None:
 
 def decimal(part: RulePart, figure: Figure, unit: str = "") -> float:
     """The number that a figure is; one that can be read in two ways is an error."""
+    if figure.other is None and -inf < figure.value < inf:
+        return figure.value
     behind = f" {unit}" if unit else ""
     if figure.other is not None:
         first, second = f"{figure.value:g}{behind}", f"{figure.other:g}{behind}"
@@ -63,6 +65,8 @@ def decimal(part: RulePart, figure: Figure, unit: str = "") -> float:
 def seconds(part: RulePart, word: Word) -> float:
     """The seconds of a length of time that is more than none."""
     length: Length = word.value
+    if length.other is None and 0 < length.seconds <= MAX_TIME_S:
+        return length.seconds
     if isnan(length.seconds):
         part.error("number", f"`{part.said}` has several numbers, not one", "write one number")
         return 1.0
@@ -98,7 +102,7 @@ def speed(part: RulePart, word: Word) -> float:
 def single(part: RulePart) -> float:
     """The one number that is asked for in coordinates and the like."""
     value = part.the(Signed).value
-    if isnan(value):
+    if not -inf < value < inf:
         part.error("number", f"`{part.said}` has several numbers, not one", "write one number")
         return 0.0
     return value
@@ -107,7 +111,7 @@ def single(part: RulePart) -> float:
 def _signed(part: RulePart) -> Signed:
     word = part.the_word("NUMBER")
     sign = -1 if part.has("MINUS") else 1
-    if isinf(word.value.value):
+    if word.value.value == inf:
         part.error("number", f"{part.said} is too large a number", "write a smaller one")
         return Signed(0.0)
     return Signed(sign * word.value.value, word.value.listed)

@@ -1,6 +1,7 @@
 """Makes noun phrases."""
 
 from dataclasses import replace
+from typing import NamedTuple
 
 from argo_compiler.script.syntax.building.alternatives import require_one_joint
 from argo_compiler.script.syntax.building.figures import whole
@@ -19,23 +20,26 @@ from argo_compiler.script.syntax.tree.places import FloorName
 from argo_compiler.script.syntax.words.numbers import Figure
 from argo_compiler.script.syntax.words.word import Word
 
-Label = tuple[int | str, tuple[int, ...]]
-"""a number or an identifier, and the numbers that it may be a list of"""
+
+class Label(NamedTuple):
+    """A number or an identifier, and the numbers that it may be a list of."""
+
+    first: int | str
+    listed: tuple[int, ...] = ()
 
 
 def _label(part: RulePart) -> Label:
     (word,) = part.children
     if word.type != "NUMBER":
-        return word.value, ()
+        return Label(word.value)
     figure: Figure = word.value
     if figure.listed:
-        return figure.listed[0], figure.listed
-    return whole(part, figure), ()
+        return Label(figure.listed[0], figure.listed)
+    return Label(whole(part, figure))
 
 
 def _upto(part: RulePart) -> Label:
-    label: Label = next(c for c in part.children if isinstance(c, tuple))
-    return label
+    return part.the(Label)
 
 
 def _kind(word: Word | None) -> tuple[Kind | None, bool]:
@@ -52,8 +56,7 @@ def _quantity(word: Word | None) -> Quantity | None:
 def named(part: RulePart) -> list[Noun]:
     """The checkpoint; several where a number is a list without blanks: `1,4`."""
     kind, plural = _kind(part.word("KIND"))
-    tuples = part.every(tuple)
-    (label, listed), *upto = (t for t in tuples if not isinstance(t[0], FloorName))
+    (label, listed), *upto = part.every(Label)
     return [
         Labelled(
             span=part.span,
@@ -61,8 +64,8 @@ def named(part: RulePart) -> list[Noun]:
             kind=kind,
             plural=plural,
             hash=part.has("HASH"),
-            last=upto[0][0] if upto else None,
-            floors=next((t for t in tuples if isinstance(t[0], FloorName)), ()),
+            last=upto[0].first if upto else None,
+            floors=next((t for t in part.every(tuple) if not isinstance(t, Label)), ()),
         )
         for one in listed or (label,)
     ]

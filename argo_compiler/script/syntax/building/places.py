@@ -1,6 +1,6 @@
 """Makes places, floors and steps."""
 
-from math import isnan, radians
+from math import inf, pi
 
 from argo_compiler.script.syntax.building.figures import Signed, single, whole
 from argo_compiler.script.syntax.building.part import Make, RulePart
@@ -15,6 +15,8 @@ from argo_compiler.script.syntax.tree.places import (
     Steps,
 )
 from argo_compiler.script.syntax.words.word import Word
+
+_RADIANS = pi / 180
 
 
 def _area(part: RulePart) -> AreaLocation:
@@ -69,7 +71,7 @@ def _coordinates(part: RulePart) -> Coordinates:
     (only, *more) = part.every(Signed)
     if only.listed and not more:
         values = [float(n) for n in only.listed]
-    if len(values) not in (2, 3) or any(map(isnan, values)):
+    if len(values) not in (2, 3) or not all(-inf < value < inf for value in values):
         part.error("coordinates", "coordinates are two or three numbers", "write `(12.5, 3, 2.5)`")
         values = [0.0, 0.0]
     x, y, *z = values
@@ -92,9 +94,9 @@ def _heading(part: RulePart) -> dict[str, float]:
         if unit != "deg":
             hint = "write `heading 90 degrees` or `heading 1.5 rad`"
             part.error("unit", f"a heading is no number of {unit}", hint)
-        return {"yaw": (-1 if part.has("MINUS") else 1) * radians(figure.value)}
+        return {"yaw": (-1 if part.has("MINUS") else 1) * figure.value * _RADIANS}
     value = single(part)
-    return {"yaw": value if part.has("RAD") else radians(value)}
+    return {"yaw": value if part.has("RAD") else value * _RADIANS}
 
 
 def _location(part: RulePart) -> Location | tuple[FloorName, ...]:

@@ -1,6 +1,6 @@
-"""A node of a text that stands at another place as well."""
+"""A node of a text that stands at another place as well, or says the same of other figures."""
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import fields
 from functools import cache
 from typing import Any
@@ -8,17 +8,22 @@ from typing import Any
 from argo_compiler.diagnostics import Span
 from argo_compiler.script.syntax.tree.manner import Manner
 from argo_compiler.script.syntax.tree.node import Node
+from argo_compiler.script.syntax.words.unknown import Fill, Unknown, UnknownText
 
-Move = Callable[[int, int], Any]
-"""the part so many lines and columns further on"""
+Move = Callable[[int, int, Sequence[str]], Any]
+"""the part so many lines and columns further on, with these figures for those that are unknown"""
 _Fill = Callable[[object, object], None]
 
 
 def mover(part: object) -> Move | None:
-    """What makes the same part for another place; None if it says nothing of its place."""
+    """What makes the same part for another place; None if it says nothing of its place, nor of
+    a figure that is not known."""
+    if type(part) in (Unknown, UnknownText):
+        fill: Fill = part.fill  # type: ignore[attr-defined]
+        return lambda _lines, _columns, figures: fill(figures)
     match part:
         case Span(line=line, column=column, length=length):
-            return lambda lines, columns: Span(
+            return lambda lines, columns, _: Span(
                 line=line + lines, column=column + columns, length=length
             )
         case tuple():
@@ -26,8 +31,8 @@ def mover(part: object) -> Move | None:
             if not any(moves):
                 return None
             pairs = list(zip(part, moves, strict=True))
-            return lambda lines, columns: tuple(
-                [one if move is None else move(lines, columns) for one, move in pairs]
+            return lambda lines, columns, figures: tuple(
+                [one if move is None else move(lines, columns, figures) for one, move in pairs]
             )
         case Node() | Manner():
             return _mover_of_node(part)
@@ -46,12 +51,12 @@ def _mover_of_node(part: Node | Manner) -> Move:
         else:
             moving.append((fill, move))
 
-    def moved(lines: int, columns: int) -> object:
+    def moved(lines: int, columns: int, figures: Sequence[str]) -> object:
         new = object.__new__(type_)
         for fill, value in same:
             fill(new, value)
         for fill, move in moving:
-            fill(new, move(lines, columns))
+            fill(new, move(lines, columns, figures))
         return new
 
     return moved

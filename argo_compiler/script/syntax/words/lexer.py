@@ -2,6 +2,7 @@
 
 import json
 import re
+from collections.abc import Mapping
 from dataclasses import replace
 from functools import lru_cache
 from typing import Any
@@ -13,6 +14,7 @@ from argo_compiler.script.syntax.words.merging import merged
 from argo_compiler.script.syntax.words.negation import negated
 from argo_compiler.script.syntax.words.numbers import Figure, compose, read_figure, split_number
 from argo_compiler.script.syntax.words.phrases import longest
+from argo_compiler.script.syntax.words.unknown import UnknownError, UnknownFigure, unknown_text
 from argo_compiler.script.syntax.words.word import Word
 from argo_compiler.script.syntax.words.word_order import arranged
 
@@ -52,12 +54,43 @@ def words(text: str, lexicon: Lexicon) -> list[Word]:
     return other if 2 * _unknown(other) < unknown else found
 
 
+def _with_unknown(word: Word, text: str, left: dict[int, UnknownFigure]) -> Word:
+    """The word with an unknown figure, or a name with some in it, if they are left."""
+    value: object = None
+    if word.type == "NUMBER":
+        value = left.pop(word.start, None)
+    elif word.type == "STRING":
+        within = [at for at in left if word.start < at < word.end]
+        plain = unquoted(text[word.start : word.end]) == text[word.start + 1 : word.end - 1]
+        if within and plain:
+            value = unknown_text(word.value, [(at - word.start - 1, left.pop(at)) for at in within])
+    return word if value is None else Word(word.type, value, word.start, word.end)
+
+
 def _unknown(words: list[Word]) -> int:
     return sum(word.type == "WORD" for word in words)
 
 
-def _in(text: str, lexicon: Lexicon) -> list[Word]:
-    found = merged(_looked_up(text, lexicon))
+def words_of(text: str, lexicon: Lexicon, unknown: Mapping[int, UnknownFigure]) -> list[Word]:
+    """As `words`; the figures that begin at these places are not known. Raises UnknownError if one
+    of them is no number by itself."""
+    found = _in(text, lexicon, unknown)
+    if lexicon.other is None or not _unknown(found):
+        return found
+    other = _in(text, lexicon.other, unknown)
+    return other if 2 * _unknown(other) < _unknown(found) else found
+
+
+def _in(
+    text: str, lexicon: Lexicon, unknown: Mapping[int, UnknownFigure] | None = None
+) -> list[Word]:
+    found = _looked_up(text, lexicon)
+    if unknown:
+        left = dict(unknown)
+        found = [_with_unknown(word, text, left) for word in found]
+        if left:
+            raise UnknownError
+    found = merged(found)
     return joined(_goals(negated(found if lexicon.verbs_first else arranged(found))))
 
 

@@ -63,7 +63,7 @@ class Repeats:
             self._met.clear()
         self._known[text.content] = _Text(said, text.span())
         shape = Shape.of(text.content)
-        if not shape.figures or shape.key in self._shapes or self._have(shape.figures):
+        if not shape.figures or shape.key in self._shapes or self._in_phrases(shape.figures):
             return
         if shape.key in self._met:
             self._shapes[shape.key] = _of_shape(text, shape, said, read)
@@ -78,14 +78,14 @@ class Repeats:
             return known.at(text.span(), ())
         shape = Shape.of(text.content)
         known = self._shapes.get(shape.key)
-        if known is None or self._have(shape.figures):
+        if known is None or self._in_phrases(shape.figures):
             return None
         return known.at(text.span(), shape.figures)
 
-    def _have(self, figures: tuple[str, ...]) -> bool:
-        """Whether one of the figures is a word of the language or of a name."""
-        words = self.lexicon.words
-        return any(figure in words or figure in self.names for figure in figures)
+    def _in_phrases(self, figures: tuple[str, ...]) -> bool:
+        """Whether one of the figures is in a phrase of the language, such as a place's name."""
+        said = self.lexicon.figures
+        return bool(said) and not said.isdisjoint(figures)
 
 
 def _of_shape(text: ScriptText, shape: Shape, said: list[Said], read: ReadAgain) -> _Text | None:

@@ -1,11 +1,17 @@
-"""A line that stands again in a script says the same at its new place."""
+"""A line that stands again in a script says the same at its new place, and one that differs in its
+figures only says what it would say by itself."""
 
+import random
+import re
 from itertools import chain
 
 import pytest
 
 from argo_compiler.script import import_script, parse
+from argo_compiler.script.syntax.repeats import repeats
+from argo_compiler.script.syntax.tree.script import Script
 from tests.argo_compiler.script.conftest import CATALOG
+from tests.fuzz.sentences import sayer, text_of
 
 PLACES = [place.name for place in CATALOG.places]
 LINES = [
@@ -39,3 +45,69 @@ def test_an_error_in_what_is_said_twice_is_said_at_both_places() -> None:
     script = parse("1. Start in starting area 1.\n2. Check #1.\n3. Go to #x.\n4. Go to #x.", PLACES)
     lines = [d.span.line for d in script.diagnostics if d.span is not None]
     assert {3, 4} <= set(lines)
+
+
+FIGURED = [
+    *LINES,
+    'Go to (12.50, 3.25, 0) heading 270 degrees at 0.4 m/s, then "look 27": check #27.',
+    "Patrol floor 2 in circles for 25 minutes and 30 seconds, at most 12 times.",
+    "Check #12; if it is above 75.5 bar, skip to step 27.",
+    "Check checkpoint #23. If the value is between 20 and 35, go to step 2; otherwise go on.",
+    "Measure checkpoint #5, retry 3 times, with priority 2.",
+    "Wait 2 h 15, then check checkpoints 2 to 7, but not checkpoint 4.",
+    "Check the 2 valves on floor 3.",
+    "If the battery drops below 25 %, return to the docking station.",
+]
+
+
+def _others(line: str, draw: random.Random) -> str:
+    """The line with other figures, each with as many digits."""
+    return re.sub("[0-9]", lambda digit: draw.choice(f"{digit[0]}23456789"), line)
+
+
+def _alone(lines: list[str]) -> Script:
+    """The script of the last of the lines, none of the others known."""
+    fill = ["Check checkpoint #9.".ljust(len(line)) for line in lines[:-1]]
+    repeats.cache_clear()
+    return _script([*fill, lines[-1]])
+
+
+def _script(lines: list[str]) -> Script:
+    text = "\n".join(f"{100 + k}. {line}" for k, line in enumerate(lines))
+    return parse(f"Start in starting area 1.\n\n{text}\n", PLACES)
+
+
+def _is_same_with_other_figures(line: str, draw: random.Random) -> None:
+    lines = [line, *(_others(line, draw) for _ in range(4))]
+    repeats.cache_clear()
+    found, alone = _script(lines), _alone(lines)
+    assert found.steps[-1] == alone.steps[-1], lines
+    last = len(lines) + 2
+    here = [d for d in found.diagnostics if d.span is not None and d.span.line == last]
+    assert here == [d for d in alone.diagnostics if d.span is not None and d.span.line == last]
+
+
+@pytest.mark.parametrize("line", FIGURED)
+def test_a_line_says_the_same_of_other_figures(line: str) -> None:
+    draw = random.Random(line)
+    for _ in range(10):
+        _is_same_with_other_figures(line, draw)
+
+
+def test_made_sentences_say_the_same_of_other_figures() -> None:
+    draw = random.Random(7)
+    makes = sayer(draw)
+    lines = (f"{text_of(makes.sentence())}." for _ in range(400))
+    for line in lines:
+        if any(sign.isdigit() for sign in line) and "\n" not in line:
+            _is_same_with_other_figures(line, draw)
+
+
+def test_a_number_in_the_name_of_a_place_is_no_figure() -> None:
+    lines = ["Go to dock 3.", "Go to dock 5.", "Go to dock 6.", "Go to dock 7."]
+    text = "\n".join(["Check #1.", *(f"{k}. {line}" for k, line in enumerate(lines, 2))])
+    repeats.cache_clear()
+    last = parse(text, [*PLACES, "dock 7"]).steps[-1]
+    repeats.cache_clear()
+    head = "\n".join(["Check #1.", *(f"{k}. Check checkpoint #1." for k in range(2, 5))])
+    assert last == parse(f"{head}\n5. Go to dock 7.", [*PLACES, "dock 7"]).steps[-1]

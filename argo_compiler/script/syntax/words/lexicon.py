@@ -24,6 +24,9 @@ class PhraseStart:
     """by what ends it behind other words: `kehre … zurück`"""
 
 
+_FIGURE = re.compile(r"(?<!\w)[0-9]+(?:\.[0-9]+)?(?!\w)")
+
+
 class Lexicon:
     """All phrases of a language, found by their first words, the longest first."""
 
@@ -57,6 +60,8 @@ class Lexicon:
         """of another language, in which a sentence may be as well"""
         self.root = PhraseStart()
         self.words: set[str] = set()
+        self.figures: set[str] = set()
+        """numbers in phrases, as in the name of a place"""
         self.numerals: dict[str, float] = {}
         self.phrases: dict[Entry, list[str]] = {}
 
@@ -83,6 +88,7 @@ class Lexicon:
                 node.parted[last] = entry
             else:
                 node.entry = entry
+            self.figures.update(_FIGURE.findall(said))
             self.words.update(_words(phrase), () if said is phrase else _words(said))
             self.phrases.setdefault(entry, []).append(phrase)
             if entry[0] == "NUMBER_WORD" and " " not in said:

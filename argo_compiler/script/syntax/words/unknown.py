@@ -66,13 +66,13 @@ class Unknown:
     def __ge__(self, other: float) -> bool:
         return not self < other
 
-    @property
+    @property  # type: ignore[misc]
     def __class__(self) -> Any:
         """Not even its type is told: `isinstance` asks for this."""
         raise UnknownError
 
     __hash__: Any = _refuse
-    __str__ = __repr__ = __format__ = __bool__ = __getattr__ = _refuse  # type: ignore[assignment]
+    __str__ = __repr__ = __format__ = __bool__ = __getattr__ = _refuse
     __int__ = __float__ = __index__ = __neg__ = __abs__ = __round__ = _refuse
     __add__ = __radd__ = __sub__ = __rsub__ = __truediv__ = __rtruediv__ = _refuse
 
@@ -99,7 +99,7 @@ class UnknownText:
     """A name with figures in it that are not known, and more than these. It can be handed on."""
 
     __slots__ = ("fill",)
-    __class__ = Unknown.__class__  # type: ignore[assignment]
+    __class__ = Unknown.__class__
 
     def __init__(self, fill: Fill) -> None:
         self.fill = fill

@@ -9,10 +9,10 @@ from dataclasses import dataclass, field
 from functools import lru_cache
 
 from argo_compiler.diagnostics import Span
+from argo_compiler.script.syntax.moving import Move, mover
 from argo_compiler.script.syntax.sentence_reading import Said
 from argo_compiler.script.syntax.shapes import Shape, figure_places, with_other_figures
 from argo_compiler.script.syntax.text.source import ScriptText
-from argo_compiler.script.syntax.tree.moving import Move, mover
 from argo_compiler.script.syntax.words.lexicon import Lexicon
 from argo_compiler.script.syntax.words.unknown import UnknownFigure, unknown_figure
 

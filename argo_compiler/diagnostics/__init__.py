@@ -14,6 +14,7 @@ from argo_compiler.diagnostics.diagnostic import (
     by_place,
     count,
     has_errors,
+    span_at,
     summary,
     with_excerpts,
 )
@@ -31,6 +32,7 @@ __all__ = [
     "by_place",
     "count",
     "has_errors",
+    "span_at",
     "summary",
     "to_json",
     "to_sarif",

@@ -86,11 +86,12 @@ _WORDS = {
 }
 
 
+_FIELDS = [(field.name, field.default) for field in fields(Manner)]
+
+
 def said(manner: Manner) -> frozenset[str]:
     """The fields that say something."""
-    return frozenset(
-        field.name for field in fields(manner) if getattr(manner, field.name) != field.default
-    )
+    return frozenset(name for name, default in _FIELDS if getattr(manner, name) != default)
 
 
 def words_of(names: Iterable[str]) -> str:
@@ -113,7 +114,7 @@ def require_used(order: ScriptOrder, diagnostics: Diagnostics) -> None:
         used |= _ONCE_MORE  # `wait again`
     if isinstance(order, orders.WaitOrder) and order.where is not None:
         used |= {"speed"}  # of the way to the place
-    left = [field.name for field in fields(Manner) if field.name in given - used]
+    left = [name for name, _ in _FIELDS if name in given - used] if given - used else []
     if left:
         message = f"this can't be said here: {words_of(left)}"
         hint = "write it behind what is to be done so, or leave it out"

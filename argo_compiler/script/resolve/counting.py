@@ -1,6 +1,7 @@
 """Steps that are counted from the one that is being planned: `the next step`."""
 
 from dataclasses import fields, replace
+from functools import cache
 from typing import Any
 
 from argo_compiler.script.resolve.context import Context
@@ -11,12 +12,17 @@ from argo_compiler.script.syntax.tree.places import Steps
 
 def counted(order: ScriptOrder, context: Context) -> ScriptOrder:
     """The order with the numbers of the steps that it means."""
-    for field in fields(order):
-        steps = getattr(order, field.name)
-        if isinstance(steps, Steps) and steps.ahead:
-            given: dict[str, Any] = {field.name: _numbered(steps, context)}
+    for name in _fields(type(order)):
+        steps = getattr(order, name)
+        if type(steps) is Steps and steps.ahead:
+            given: dict[str, Any] = {name: _numbered(steps, context)}
             return replace(order, **given)
     return order
+
+
+@cache
+def _fields(type_: type[Any]) -> tuple[str, ...]:
+    return tuple(field.name for field in fields(type_))
 
 
 def skipping(order: ScriptOrder, context: Context) -> ScriptOrder:

@@ -34,7 +34,7 @@ from argo_compiler.script.syntax.tree.orders import PlainWord, ScriptOrder, Sent
 from argo_compiler.script.syntax.tree.places import FloorName, Location
 
 _WHOLE_PLAN = (
-    orders.Repeat | orders.Add | orders.Delete | orders.Move | orders.Replace | orders.Start
+    *(orders.Repeat, orders.Add, orders.Delete, orders.Move, orders.Replace, orders.Start),
 )
 
 

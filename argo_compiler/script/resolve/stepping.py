@@ -99,6 +99,8 @@ class Stepping:
 
     def _without_limit(self, sentence: Sentence) -> Sentence:
         """The sentence without how long the mission may take: `at most 25 minutes in total`."""
+        if all(order.manner is None for order in sentence.orders):
+            return sentence
         kept: list[ScriptOrder] = []
         for order in sentence.orders:
             manner = order.manner

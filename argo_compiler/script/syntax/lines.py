@@ -48,6 +48,7 @@ _BULLET = re.compile(
     r"(?:[-*+o]\s+|-(?=[^\W\d_])|[•–‣◦·▪▫●○■□☐☑✓✔→➔►▶]\s*)(?:\[[ xX]?\]\s+)?|#+\s+"
 )
 _RULE = re.compile(r"([-=_~*'])\1{2,}|\+[-=+]+\+")
+_RULE_SIGNS = ("-", "=", "_", "~", "*", "'", "+")
 _MAIL = re.compile(r"\s*(?:>\s?)+")
 """before the lines of a letter that is quoted in another one"""
 _RUN_IN = re.compile(r"(?:^|[,;.!])\s+([0-9]{1,3})[.)]\s+(?=[^\W\d_])")
@@ -73,7 +74,7 @@ def lines_of(texts: Sequence[ScriptText]) -> Iterator[ScriptLine]:
     above: ScriptLine | None = None
     for text in _unquoted(texts):
         stripped = text.strip()
-        rule = stripped.content[:3] and _RULE.fullmatch(stripped.content)
+        rule = stripped.content[:1] in _RULE_SIGNS and _RULE.fullmatch(stripped.content)
         if rule and above is not None:
             above.heading = above.heading or (not first and above.mark is LineMark.NONE)
         if not stripped.content or rule:
@@ -95,6 +96,9 @@ def lines_of(texts: Sequence[ScriptText]) -> Iterator[ScriptLine]:
 def _unquoted(texts: Sequence[ScriptText]) -> Iterator[ScriptText]:
     """The lines of a letter without its marks. A single line with one is taken as it is: in it the
     sign may say that a value is greater."""
+    if not any(">" in text.content for text in texts):
+        yield from texts
+        return
     marks = [_MAIL.match(text.content) for text in texts]
     for i, (text, mark) in enumerate(zip(texts, marks, strict=True)):
         beside = any(marks[k : k + 1] != [None] for k in (i - 1, i + 1) if 0 <= k < len(marks))
@@ -119,13 +123,16 @@ def _marked(text: ScriptText, indent: int) -> ScriptLine:
 
 def _split(line: ScriptLine) -> Iterator[ScriptLine]:
     """The steps of a line that has more than one: `1. ..., 2. ..., 3. ...`."""
-    expected = (line.number or 0) + 1
+    if line.number is None or _RUN_IN.search(line.text.content) is None:
+        yield line
+        return
+    expected = line.number + 1
     start = 0
     quoted = quotes(line.text.content)
     for found in _RUN_IN.finditer(line.text.content):
         if any(a < found.start() < b for a, b in quoted):
             continue
-        if line.number is None or int(found[1]) != expected:
+        if int(found[1]) != expected:
             continue
         before = line.text.content[: found.start()]
         if before.count("(") > before.count(")"):

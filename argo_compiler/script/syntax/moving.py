@@ -5,7 +5,7 @@ from dataclasses import fields
 from functools import cache
 from typing import Any
 
-from argo_compiler.diagnostics import Span
+from argo_compiler.diagnostics import Span, span_at
 from argo_compiler.script.syntax.tree.manner import Manner
 from argo_compiler.script.syntax.tree.node import Node
 from argo_compiler.script.syntax.words.unknown import Fill, Unknown, UnknownText
@@ -23,9 +23,7 @@ def mover(part: object) -> Move | None:
         return lambda _lines, _columns, figures: fill(figures)
     match part:
         case Span(line=line, column=column, length=length):
-            return lambda lines, columns, _: Span(
-                line=line + lines, column=column + columns, length=length
-            )
+            return lambda lines, columns, _: span_at(line + lines, column + columns, length)
         case tuple():
             moves = [mover(one) for one in part]
             if not any(moves):

@@ -84,6 +84,9 @@ class _Rows:
 
     def headings(self, text: ScriptText, cut: str) -> list[_Heading] | None:
         """The columns, if a line has the headings of a table."""
+        first = _PATTERNS[cut].split(text.content.strip(), 1)[0].strip('" \t')
+        if cut != "|" and first and self.prose.column(first) is None:
+            return None
         cells = list(_cells(text, cut))
         known = [(self.prose.column(cell.content), at, cell) for at, cell in cells if cell.content]
         if not (2 if cut in ";," else 1) <= len(known) <= _MOST_COLUMNS:

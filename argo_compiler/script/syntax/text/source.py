@@ -7,7 +7,7 @@ from dataclasses import dataclass, field
 from functools import cached_property
 from typing import NoReturn, TypeVar
 
-from argo_compiler.diagnostics import MAX_EXCERPT, Diagnostic, Severity, Span
+from argo_compiler.diagnostics import MAX_EXCERPT, Diagnostic, Severity, Span, span_at
 from argo_compiler.errors import Remedy
 
 MAX_LINE = 2000
@@ -70,7 +70,7 @@ class Source:
         line = bisect_right(self._starts, start) or 1
         line_start, line_end = self._bounds[line - 1]
         length = (end if end < line_end else line_end) - start
-        return Span(line=line, column=start - line_start + 1, length=length if length > 1 else 1)
+        return span_at(line, start - line_start + 1, length if length > 1 else 1)
 
 
 @dataclass(frozen=True)

@@ -92,8 +92,12 @@ class Prose:
 
     def column(self, heading: str) -> str | None:
         """What a table's column with this heading holds."""
-        said = " ".join(heading.lower().strip(" .:*_").split())
-        return next((n for n, text in self.columns.items() if said in expand(text)), None)
+        return self._columns.get(" ".join(heading.lower().strip(" .:*_").split()))
+
+    @cached_property
+    def _columns(self) -> dict[str, str]:
+        columns = reversed(self.columns.items())  # of two alike the first counts
+        return {said: name for name, text in columns for said in expand(text)}
 
     def rank(self, said: str) -> str | None:
         """The priority that a word such as `high` stands for."""

@@ -12,7 +12,8 @@ from argo_compiler.script.syntax.tree.places import Steps
 
 def counted(order: ScriptOrder, context: Context) -> ScriptOrder:
     """The order with the numbers of the steps that it means."""
-    for name in _fields(type(order)):
+    kind: Any = type(order)
+    for name in _fields(kind):
         steps = getattr(order, name)
         if type(steps) is Steps and steps.ahead:
             given: dict[str, Any] = {name: _numbered(steps, context)}

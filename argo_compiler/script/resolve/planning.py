@@ -36,6 +36,8 @@ from argo_compiler.script.syntax.tree.places import FloorName, Location
 _WHOLE_PLAN = (
     *(orders.Repeat, orders.Add, orders.Delete, orders.Move, orders.Replace, orders.Start),
 )
+_PLANNED = (orders.Measure, orders.Go, orders.Home, orders.Start)
+"""most orders: they only plan tasks"""
 
 
 class Planner:
@@ -119,6 +121,9 @@ class Planner:
             self.diagnostics.refuse("route", message, order.span, "write it as a step of its own")
         if not isinstance(order, orders.Measure):
             self.making.leave_unvisited()
+        if type(order) in _PLANNED:
+            self._planned(order, block)
+            return
         match order:
             case orders.Spare():
                 for checkpoint in context.nouns.all(order.what):

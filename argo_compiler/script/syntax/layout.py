@@ -82,7 +82,8 @@ def items_of(
 
 def _append(item: LineItem, below: ScriptText, words: Collection[str]) -> None:
     """Lets an item go on with a line; a word that a hyphen divides becomes whole."""
-    last = item.last
+    # Of a longer sentence only the end is looked at; without a limit the time would be quadratic.
+    last = item.last[-2 * _LONGEST_SENTENCE :]
     left, right = _LAST_HALF.search(last.content), _FIRST_HALF.match(below.content)
     if left is not None and right is not None and (left[1] + right[0]).lower() in words:
         cut = item.parts.pop() if item.parts else None

@@ -96,7 +96,7 @@ class Prose:
 
     @cached_property
     def _columns(self) -> dict[str, str]:
-        columns = reversed(self.columns.items())  # of two alike the first counts
+        columns = reversed(list(self.columns.items()))  # of two alike the first counts
         return {said: name for name, text in columns for said in expand(text)}
 
     def rank(self, said: str) -> str | None:

@@ -49,6 +49,8 @@ _NAMED_STEP = re.compile(f"{_TEXT}:")
 """`"Alpha": check ...`"""
 _LONGEST_SENTENCE = 2000
 """characters; no line goes on with a longer one"""
+_END = 80
+"""characters at the end of a longer one that are looked at"""
 _LONGEST_STRANGE = 300
 """characters; lines that make no sense are put together up to here"""
 _DEEPEST = 20
@@ -83,8 +85,9 @@ def items_of(
 def _append(item: LineItem, below: ScriptText, words: Collection[str]) -> None:
     """Lets an item go on with a line; a word that a hyphen divides becomes whole."""
     # Of a longer sentence only the end is looked at; without a limit the time would be quadratic.
-    last = item.last[-2 * _LONGEST_SENTENCE :]
-    left, right = _LAST_HALF.search(last.content), _FIRST_HALF.match(below.content)
+    last = item.last[-_LONGEST_SENTENCE - _END :]
+    left = _LAST_HALF.search(last.content) if last.content.endswith("-") else None
+    right = _FIRST_HALF.match(below.content)
     if left is not None and right is not None and (left[1] + right[0]).lower() in words:
         cut = item.parts.pop() if item.parts else None
         whole = _without_hyphen(cut or item.text, below)

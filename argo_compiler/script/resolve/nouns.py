@@ -161,6 +161,8 @@ class NounResolver:
         last = self.memory.last
         if not last:
             self._nothing_before(noun.span)
+        if noun.count is not None:
+            return self._counted(noun, noun.count)
         if noun.every and len(last) == len(self.memory.before) == 1:
             both = [*self.memory.before, *last]
             if not noun.or_one:
@@ -172,6 +174,15 @@ class NounResolver:
         if len(last) == 1 or noun.every:
             return list(last)
         self._ambiguous("ambiguous-pronoun", noun, last)
+
+    def _counted(self, noun: Pronoun, count: int) -> list[CheckpointInfo]:
+        """`The same four`: as many were measured last, one or two of them at a time or in all."""
+        memory = self.memory
+        for found in (memory.last, (*memory.before, *memory.last), (*memory.so_far.values(),)):
+            alike = all(noun.kind is None or agrees(c, noun.kind) for c in found)
+            if len({c.id for c in found}) == len(found) == count and alike and not noun.either:
+                return list(found)
+        self._ambiguous("ambiguous-pronoun", noun, list(memory.so_far.values()))
 
     def _ambiguous(self, code: str, noun: Noun, found: Sequence[CheckpointInfo]) -> NoReturn:
         said = self.diagnostics.source.said(noun.span)

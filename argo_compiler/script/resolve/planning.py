@@ -115,6 +115,8 @@ class Planner:
         if self.done:
             hint = "move `Done!` to the end"
             self.diagnostics.refuse("after-done", "this comes after `Done!`", order.span, hint)
+        if isinstance(order, orders.Amend) and self.repeating.limited(order, block):
+            return
         require_used(order, self.diagnostics)
         if isinstance(order, _WHOLE_PLAN) and in_branch(block):
             message = "this changes the plan, so it can't be done in one case only"

@@ -6,9 +6,10 @@ from dataclasses import replace
 from itertools import islice
 
 from argo_compiler.il import Action
+from argo_compiler.script.resolve.accepting import said
 from argo_compiler.script.resolve.context import Context, topmost
 from argo_compiler.script.resolve.limiting import make_round
-from argo_compiler.script.resolve.program import Do, ProgramBlock, ProgramNode
+from argo_compiler.script.resolve.program import Do, ProgramBlock, ProgramNode, ProgramRound
 from argo_compiler.script.resolve.wrapping import Repetition, Wrapping
 from argo_compiler.script.syntax.text.source import RefusedError
 from argo_compiler.script.syntax.tree import orders
@@ -69,6 +70,22 @@ class Repeating:
         steps = (step for step in self.context.steps.values() if step)
         done = (step for step in steps if not all(map(_is_start, step)))
         return len([*islice(done, 2)]) > 1
+
+    def limited(self, order: orders.Amend, block: ProgramBlock) -> bool:
+        """`Stop with it after 5 minutes`: says of the round before how long it lasts. False: that
+        is not what it says, or of none."""
+        manner, round_ = order.manner, block.last
+        if manner is None or not isinstance(round_, ProgramRound) or manner.duration is None:
+            return False
+        if said(manner) - {"duration", "finishing"}:
+            return False
+        if round_.limits.duration:
+            message = "how long is said twice"
+            hint = "leave one of them out"
+            self.diagnostics.refuse("repeated-limit", message, order.span, hint)
+        soft = bool(manner.finishing)
+        round_.limits = replace(round_.limits, duration=manner.duration, soft=soft)
+        return True
 
     def _is_once_more(self, order: orders.Repeat, steps: Steps, block: ProgramBlock) -> bool:
         """Whether steps are done here again, and not in a round where they stand."""

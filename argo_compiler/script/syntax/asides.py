@@ -47,8 +47,9 @@ class Asides:
     # ---- whole lines
 
     def is_remark(self, content: str) -> bool:
-        """Whether a text is labelled as a remark: `Note: ...`, `(Hint: ...)`."""
-        return _labelled(self.prose.remark).match(content) is not None
+        """Whether a text is labelled as a remark, `Note: ...`, `(Hint: ...)`, or as a page."""
+        labelled = _labelled(self.prose.remark).match(content)
+        return labelled is not None or _page(self.prose.page).fullmatch(content) is not None
 
     def remark(self, text: ScriptText) -> ScriptText:
         """What is said behind the label of a remark."""
@@ -98,9 +99,10 @@ class Asides:
 
     def is_title(self, text: ScriptText) -> bool:
         """Whether a line may be the title of a script, or the heading of a part of it."""
-        return len(text.content.split()) <= _LONGEST_TITLE and not self.asking.asks(
-            text, counted=True
-        )
+        words = text.content.lower().rstrip(":").split()
+        if text.content.endswith(":") and {*words} <= phrases_of(self.prose.around_reactions):
+            return True  # `To be obeyed all the time:`
+        return len(words) <= _LONGEST_TITLE and not self.asking.asks(text, counted=True)
 
     def is_explicit_title(self, text: ScriptText) -> bool:
         """Whether a title says itself that it is one: `Mission Protocol #2`."""
@@ -209,3 +211,10 @@ def _idle(lexicon: Lexicon) -> re.Pattern[str]:
 @cache
 def _labelled(labels: str) -> re.Pattern[str]:
     return re.compile(rf"[_(*]*(?:{either(labels)})\s*:", re.IGNORECASE)
+
+
+@cache
+def _page(words: str) -> re.Pattern[str]:
+    """`page 2 of 3`."""
+    of = r"\s*(?:/|[a-z]+)\s*[0-9]+"
+    return re.compile(rf"\W*(?:{either(words)})\s*[0-9]+(?:{of})?\W*", re.IGNORECASE)

@@ -28,6 +28,8 @@ NAMED = frozenset(["KIND", "HASH", "STEP", "AREA", "DOCK", "FLOOR"])
 LABELS = frozenset(["NUMBER", "IDENT", "STRING", "HASH"])
 _WHOLE = frozenset(["HOME", "END", "ABORT", "GO_ON", "RECHARGE", "PAUSE", "PARK"])
 """verbs that need nothing else"""
+_PLACES = frozenset(["AREA", "DOCK", "PLACE", "FLOOR", "FLOOR_NAME", "LPAR", "X"])
+"""where one may come from; `from` is no order beside anything else"""
 _SINGLE = frozenset((verb,) for verb in VERBS)
 _JOINTS = ("JOINT", "NEXT", "AND_", "OR_", "COLON")
 _TOKEN = re.compile(r"[\w'-]+|[^\w\s]")
@@ -66,7 +68,7 @@ class Asking:
         found = self.understanding.words(text)
         types = [word.type for word in found]
         for i, type_ in enumerate(types):
-            if type_ not in VERBS:
+            if type_ not in VERBS or (type_ == "FROM" and not _PLACES & {*types}):
                 continue
             after = types[i + 1] if i + 1 < len(types) else ""
             named = type_ != "MEASURE" or types[i - 1] == "WORD"  # not `Plan, test 12`

@@ -108,12 +108,15 @@ def _the_one(part: RulePart) -> TheOne:
 def _pronoun(part: RulePart) -> Pronoun:
     value = part.word("VALUE")
     them = part.word("THEM", "BOTH")
+    number = part.word("NUMBER")
     return Pronoun(
         span=part.span,
         every=them is not None,
         either=them is not None and them.value == "either",
         or_one=them is not None and them.value == "or one",
         quantity=_quantity(value),
+        count=whole(part, number.value) if number else None,
+        kind=_kind(part.word("KIND"))[0],
     )
 
 

@@ -49,9 +49,10 @@ def _case(part: RulePart) -> Case:
 
 def _sentence(part: RulePart) -> Sentence | Fact:
     said = part.every(Fact)
-    if said and isinstance(part.children[0], Fact):
+    orders = _joined(part)
+    if said and not orders:
         return said[0]
-    return Sentence(span=part.span, orders=_joined(part), cases=part.every(Case), facts=said)
+    return Sentence(span=part.span, orders=orders, cases=part.every(Case), facts=said)
 
 
 def _joined(part: RulePart) -> tuple[ScriptOrder, ...]:

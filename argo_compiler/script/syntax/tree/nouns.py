@@ -82,6 +82,9 @@ class Pronoun(Node):
     or_one: bool = False
     """as `sie` in German, which may be one of them as well"""
     quantity: Quantity | None = None
+    count: int | None = None
+    """how many they are, if that is said: `the same four`"""
+    kind: Kind | None = None
 
 
 Noun = Labelled | AllOf | TheOne | Pronoun

@@ -24,6 +24,9 @@ _SAID = _RELATIONS | {"IS", "NOT", "STATE", "FAILS"}
 _EARLY = frozenset(["MEASURE", "GO", "PATROL"])
 """verbs, behind which `optionally` may stand"""
 _UNITS = ("UNIT_S", "A_UNIT")
+_AMOUNTS = _RELATIONS | {"NUMBER", "QUANTITY"}
+_OPENING = frozenset(["JOINT", "IN_ANY_CASE", "BEFORE", "AFTER", "ELSE", "IN_ALL_OTHERS"])
+"""what a sentence or a clause may begin behind"""
 _LIMITS = {"TIMES": "MOST_TIMES", "DURATION": "MOST_TIME"}
 
 
@@ -277,8 +280,8 @@ def _add(word: Word, after: Word | None, found: list[Word]) -> None:
             word = Word("MORE", found[-1].value, found.pop().start, word.end)
     elif word.type == "MEASURE" and after is not None and after.type in _RELATIONS:
         word = replace(word, type="IS", value=None)
-    elif word.type in ("NUMBER", "QUANTITY") and [w.type for w in found[-2:]] == ["IS", "AT"]:
-        found.pop()  # `is at 5 bar`
+    elif word.type in _AMOUNTS and [w.type for w in found[-2:]] == ["IS", "AT"]:
+        found.pop()  # `is at 5 bar`, `is at more than 5 bar`
     elif word.type == "MEASURE" and last is not None and last.type == "NOT":
         found.pop()
         word = Word("SPARE", None, last.start, word.end)  # `don't check checkpoint 19`
@@ -302,7 +305,7 @@ def _add(word: Word, after: Word | None, found: list[Word]) -> None:
 
 def _begins(found: list[Word]) -> bool:
     """Whether the last word begins a sentence or what is joined to one."""
-    return len(found) < 2 or found[-2].type in ("JOINT", "IN_ANY_CASE", "BEFORE", "AFTER")
+    return len(found) < 2 or found[-2].type in _OPENING
 
 
 def _hours_and(hours: Word, minutes: Word, after: Word | None) -> bool:

@@ -43,6 +43,10 @@ class Prose:
     """words behind which a title may have an article"""
     determiner: str
     """words that begin the object of a verb"""
+    page: str
+    """words before the number of a page"""
+    around_reactions: str
+    """words of a heading that says no more than that what follows always holds"""
     explicit_title: str
     left_open: str
     """how a sentence begins that leaves the starting areas to the preparation"""
@@ -71,7 +75,7 @@ class Prose:
     @cached_property
     def words(self) -> frozenset[str]:
         """All words that stand around sentences."""
-        others = (self.around_areas, self.preposition, self.determiner, self.sheet)
+        others = (self.around_areas, self.page, self.preposition, self.determiner, self.sheet)
         said = (word for text in others for phrase in expand(text) for word in phrase.split())
         return self.label_words.union(said)
 

@@ -10,7 +10,7 @@ from dataclasses import replace
 from argo_compiler.script.syntax.words.joints import VERBS
 from argo_compiler.script.syntax.words.word import Word
 
-_MOVED = frozenset(VERBS) - {"DOCK", "DONE", "MEET"} | {"BACK"}
+_MOVED = frozenset(VERBS) - {"DOCK", "DONE", "MEET", "FROM"} | {"BACK"}
 _RELATIONS = frozenset(
     ["GREATER", "LESS", "AT_LEAST", "AT_MOST", "BETWEEN", "FROM", "OLDER", "OUTSIDE"]
 )

@@ -64,6 +64,7 @@ class Cases:
             else:
                 self._rest(case, block)
             return
+        condition = self.failures.turned(condition)
         asked = [test for tests in condition.alternatives for test in tests]
         values = any(isinstance(test, Test) for test in asked)
         late = any(isinstance(test, TooLate) for test in asked)
@@ -82,6 +83,7 @@ class Cases:
             self.context.reactions.add(case)
         elif is_failure(condition):
             self.failures.failure(case, block)
+            self.context.choice = self.context.recent[-1]
         else:
             self._values(case, condition, self._other_case(case, block) if case.chained else block)
 
@@ -101,6 +103,10 @@ class Cases:
 
     def _values(self, case: Case, condition: SaidCondition, block: ProgramBlock) -> None:
         alternatives = self.context.conditions.alternatives(condition)
+        if condition is not case.condition and sum(map(len, alternatives)) != 1:
+            message = "this can be asked of one checkpoint only"
+            hint = "turn it round: `if ..., go on; otherwise ...`"
+            self.diagnostics.refuse("condition", message, condition.span, hint)
         do = block.last
         if isinstance(do, Leave):
             require_reached(case.span, block, self.context)
@@ -150,7 +156,7 @@ class Cases:
             choice = self._to_choice(do, before, case, block)
             self.branches.plan(case.orders, choice.otherwise)
             self.context.choice = choice
-        else:
+        elif not isinstance(before, Do) or not self.failures.otherwise(before, case, block):
             self._otherwise_of_what(case)
 
     def _otherwise_of_what(self, case: Case) -> NoReturn:

@@ -45,8 +45,8 @@ class Context:
     """that step's, where what is said next ends it"""
     recent: list[Do] = field(default_factory=list)
     """the tasks of the last order"""
-    choice: Choice | Way | None = None
-    """the condition that `otherwise` belongs to"""
+    choice: Choice | Way | Do | None = None
+    """the condition, or the task whose failure, `otherwise` belongs to"""
     spared: dict[str, Span] = field(default_factory=dict)
     """the checkpoints that are not to be measured, and where that is said"""
     once: dict[str, Span] = field(default_factory=dict)

@@ -1,12 +1,13 @@
 """What is done if a task fails, or comes too late."""
 
 from collections.abc import Sequence
+from dataclasses import replace
 from typing import TYPE_CHECKING
 
-from argo_compiler.il import OnFailure
+from argo_compiler.il import Action, OnFailure
 from argo_compiler.script.resolve.branching import CaseBranches
 from argo_compiler.script.resolve.context import Context
-from argo_compiler.script.resolve.program import ProgramBlock
+from argo_compiler.script.resolve.program import Do, ProgramBlock, leads_away
 from argo_compiler.script.syntax.tree import orders
 from argo_compiler.script.syntax.tree.conditions import InState, SaidCondition, TaskState, Test
 from argo_compiler.script.syntax.tree.nouns import Pronoun
@@ -21,6 +22,8 @@ _POLICIES = {
     PlainWord.END: OnFailure.ABORT,
     PlainWord.GO_ON: OnFailure.CONTINUE,
 }
+_EXCEPTIONS = (TaskState.FAILED, TaskState.UNREADABLE, TaskState.STALE)
+"""states that can't be asked for turned round"""
 
 
 class Failures:
@@ -59,6 +62,31 @@ class Failures:
         do.failure = ProgramBlock(do)
         self.branches.plan(rest, do.failure)
 
+    def otherwise(self, do: Do, case: Case, block: ProgramBlock) -> bool:
+        """Plans what is done if a task does not fail; False if a failure leads on to the same."""
+        left = do.failure is not None and leads_away(do.failure.last)
+        if block.last is not do or not (left or do.on_failure is not OnFailure.CONTINUE):
+            return False
+        self.planner.carry_out(case.orders, block)
+        return True
+
+    def turned(self, condition: SaidCondition) -> SaidCondition:
+        """`If it does not fail` as `unless it fails`."""
+        match condition.alternatives:
+            case ((Test(predicate=InState(state=state)) as test,),) if state in _EXCEPTIONS:
+                pass
+            case _:
+                return condition
+        negated = condition.negated is not test.negated
+        asked = replace(test, negated=False)
+        found = replace(condition, alternatives=((asked,),), negated=negated)
+        measured = {do.action for do in self.context.recent} <= {Action.MEASURE}
+        if negated and not measured and state is TaskState.FAILED and _is_of_it(test):
+            message = "`it` can be what is done last, or what is measured last"
+            hint = "name the checkpoint: `if checkpoint #1 has not failed, ...`"
+            self.diagnostics.refuse("ambiguous-pronoun", message, test.span, hint)
+        return found if test.negated else condition
+
     def too_late(self, case: Case, condition: SaidCondition) -> None:
         """What is done if the window of the last task is missed."""
         recent = self.context.recent
@@ -90,6 +118,9 @@ def is_failure(condition: SaidCondition) -> bool:
     """Whether it asks only whether the last task has failed."""
     match condition.alternatives:
         case ((Test(predicate=InState(state=TaskState.FAILED), negated=False) as test,),):
-            of_it = test.subject is None or all(isinstance(n, Pronoun) for n in test.subject.nouns)
-            return of_it and not condition.negated
+            return _is_of_it(test) and not condition.negated
     return False
+
+
+def _is_of_it(test: Test) -> bool:
+    return test.subject is None or all(isinstance(n, Pronoun) for n in test.subject.nouns)

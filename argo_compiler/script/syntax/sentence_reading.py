@@ -34,6 +34,8 @@ class SentenceReader:
     """whether anything is to be done by now but to start"""
     begun: bool = False
     """whether anything but a title has been read"""
+    listed: str = ""
+    """`Pressure gauges`, if that is what was read last"""
 
     def __post_init__(self) -> None:
         self.preamble = Preamble(self.understanding, self.fields)
@@ -70,10 +72,9 @@ class SentenceReader:
             self.note(text, "a remark")
             return []
         if self._is_stray(text, item):
-            message = f"`{text.content}` may be checkpoint {text.content}, or nothing at all"
-            hint = f"write `check checkpoint {text.content}`, or leave it out"
-            self.diagnostics.error("not-understood", message, text.span(), hint)
+            self._ask_of_stray(text)
             return [Unread(span=text.span())]
+        self.listed = self._kind_listed(text)
         stands_over = item.line.heading or text.content.endswith(":")
         if stands_over and self.preamble.introduces(text):
             return []
@@ -114,6 +115,24 @@ class SentenceReader:
         """Whether a line is a number alone, as a page's is, and no list says of what."""
         alone = item.line.mark is LineMark.NONE and text.content == item.text.content
         return alone and not self.fields.lists and self.understanding.types(text) == ("NUMBER",)
+
+    def _ask_of_stray(self, text: ScriptText) -> None:
+        number = text.content
+        message, hint = (
+            f"`{number}` may be checkpoint {number}",
+            f"write `check checkpoint {number}`",
+        )
+        if self.listed:
+            message += f", one more of the `{self.listed}` above it"
+            hint += f", or `{self.listed}:` over the list"
+        message, hint = f"{message}, or nothing at all", f"{hint}, or leave it out"
+        self.diagnostics.error("not-understood", message, text.span(), hint)
+
+    def _kind_listed(self, text: ScriptText) -> str:
+        """The words for the kind where a text is a checkpoint's kind, or that with its number."""
+        types = self.understanding.types(text)
+        listed = types[:1] == ("KIND",) and {*types[1:]} <= {"NUMBER", "HASH", "IDENT"}
+        return text.content.rstrip("0123456789#: ") if listed else ""
 
     def _node(self, text: ScriptText, reading: Reading) -> Said:
         self.begun = True

@@ -80,7 +80,6 @@ def bounds(mission: Mission, name: str) -> list[list[tuple[str | None, Condition
         ("Check #1. Unless a gas leak is detected, go home.", "condition", ["unless"]),
         ("Check #1. Unless the battery is below 30 %, go home.", "condition", ["unless"]),
         ("Check #1 within 10 min. Unless it is too late, check #4.", "condition", ["unless"]),
-        ("Check #1. If it does not fail, check #4.", "condition", ["not failed"]),
         ("Check #1, if possible.", "ambiguous-manner", ["by when", "left out"]),
         (
             "Check #1, #2 and #4. If #1 is above 4 and #2 is below 50 or #4 is above 2, check #8.",
@@ -343,6 +342,12 @@ def test_a_number_alone_is_asked_about(line: str, catalog: Catalog) -> None:
         read(f"Daily round\n\nCheck checkpoint 1.\n\n{line}\n\nCheck checkpoint 8.", catalog)
 
 
+@pytest.mark.parametrize("kind", ["Pressure gauges", "Manometer"])
+def test_a_number_below_a_kind_may_be_one_of_it(kind: str, catalog: Catalog) -> None:
+    with pytest.raises(DiagnosticError, match=f"checkpoint 3, one more of the `{kind}` above"):
+        read(f"{kind}\n1\n3", catalog)
+
+
 def test_a_name_at_the_beginning_of_a_line_is_no_part_of_one_above(catalog: Catalog) -> None:
     text = '1. "A": check #1\n"B": add checkpoint #2 after step "A"\n"C": add #8 after step "B"'
     assert [task.name for task in read(text, catalog).tasks[1:]] == ["A", "B", "C"]
@@ -517,11 +522,12 @@ def test_what_still_cannot_be_read_has_failed(still: str, catalog: Catalog) -> N
         "If either of the two is abnormal",
         "Should one of the two be abnormal",
         "Wenn eins auffällig ist",
+        "Ist eins auffällig",
         "Wenn einer der beiden auffällig ist",
     ],
 )
 def test_one_is_one_of_them_and_not_checkpoint_1(condition: str, catalog: Catalog) -> None:
-    check = "prüfe" if condition.startswith("Wenn") else "check"
+    check = "prüfe" if "auffällig" in condition else "check"
     mission = read(f"{check.title()} #4, #5. {condition}, {check} #8.", catalog)
     abnormal = ConditionType.ABNORMAL
     assert bounds(mission, "MEASURE 5")[:2] == [[("4", abnormal, None)], [("5", abnormal, None)]]
@@ -531,6 +537,27 @@ def test_one_is_one_of_them_and_not_checkpoint_1(condition: str, catalog: Catalo
     ("text", "alike"),
     [
         ("Check #1. On failure, check #4.", "Check #1. If it fails, check #4."),
+        (
+            "Check #1. If the robot can't read it, check #4.",
+            "Check #1. If it fails, check #4.",
+        ),
+        ("Check #1. If it has not failed, check #4.", "Check #1. Unless it fails, check #4."),
+        ("Check #1. If it does not fail, check #4.", "Check #1. Unless it fails, check #4."),
+        (
+            "Prüfe #1. Wenn es nicht fehlschlägt, prüfe #4.",
+            "Check #1. Unless it fails, check #4.",
+        ),
+        (
+            "Check #1. If it is not unreadable, check #4.",
+            "Check #1. Unless it is unreadable, check #4.",
+        ),
+        (
+            "1. Check #1. If it fails, go to step 2, otherwise check #4.\n2. Check #8.",
+            "1. Check #1. If it fails, go to step 3.\n2. Check #4.\n3. Check #8.",
+        ),
+        ("Check both #1 and #4.", "Check #1 and #4."),
+        ("Check both checkpoints 1 and 4.", "Check #1 and #4."),
+        ("Prüfe sowohl #1 als auch #4.", "Check #1 and #4."),
         ("Check #1, then optionally check #4.", "Check #1. Check #4 if there is time."),
         ("Check #1. Finish in starting area 2.", "Check #1. End in starting area 2."),
         (
@@ -545,6 +572,39 @@ def test_one_is_one_of_them_and_not_checkpoint_1(condition: str, catalog: Catalo
 )
 def test_two_ways_to_say_the_same(text: str, alike: str, catalog: Catalog) -> None:
     assert tasks(read(text, catalog)) == tasks(read(alike, catalog))
+
+
+@pytest.mark.parametrize(
+    "failure",
+    [
+        "On failure of the robot, go home.",
+        "If the robot fails, go home.",
+        "If the robot has failed, go home.",
+        "On robot failure, go home.",
+        "Bei Ausfall des Roboters fahr nach Hause.",
+        "Wenn der Roboter ausfällt, fahr nach Hause.",
+        "Wenn der Roboter fehlschlägt, fahr nach Hause.",
+    ],
+)
+def test_a_failure_of_the_robot_is_none_of_a_measurement(failure: str, catalog: Catalog) -> None:
+    measure = "Prüfe #1." if "Roboter" in failure else "Check #1."
+    mission = read(f"{measure} {failure}", catalog)
+    assert {task.on_failure for task in mission.tasks} == {OnFailure.CONTINUE}
+    assert [r.event for r in mission.reactions] == [EventKind.DYSFUNCTION]
+
+
+@pytest.mark.parametrize(
+    ("text", "code"),
+    [
+        ("Check #1. Go to starting area 2. If it does not fail, check #4.", "ambiguous-pronoun"),
+        ("Check #1. Go to starting area 2. Unless it fails, check #4.", "ambiguous-pronoun"),
+        ("Check #1 and #4. If they have not failed, check #8.", "condition"),
+    ],
+)
+def test_what_has_not_failed_has_to_be_clear(text: str, code: str, catalog: Catalog) -> None:
+    with pytest.raises(DiagnosticError) as error:
+        read(text, catalog)
+    assert [d.code for d in error.value.diagnostics] == [f"script.{code}"]
 
 
 def tasks(mission: Mission) -> list[object]:

@@ -52,6 +52,9 @@ def merged(words: list[Word]) -> list[Word]:
         elif word.type == "ORDINAL" and _tells_order(words, i):
             i += 1
             continue  # `checkpoint 13 first, then ...`
+        elif word.type == "BOTH" and _names_two(words[i + 1 : i + 8]):
+            i += 1
+            continue  # `both #1 and #4`
         elif word.type == "UNIT_S" and after is not None and after.type == "NUMBER":
             length = _length(after.value, word.value)  # `not before minute 10`
             word = Word("DURATION", length, word.start, after.end)
@@ -143,6 +146,13 @@ def _tells_order(words: list[Word], i: int) -> bool:
     return after is None or (after.type != "FLOOR" and listed)
 
 
+def _names_two(words: list[Word]) -> bool:
+    """`checkpoint 1 and checkpoint 4`"""
+    named = [word for word in words if word.type not in ("KIND", "HASH")][:3]
+    joined = len(named) == 3 and (named[1].type, named[1].value) == ("JOINT", "and")
+    return joined and {named[0].type, named[2].type} <= {"NUMBER", "IDENT", "STRING"}
+
+
 def _is_it(words: list[Word]) -> bool:
     return words[:1] != [] and words[0].type == "IT"
 
@@ -166,9 +176,14 @@ def _numbers(words: list[Word]) -> list[Word]:
 
 def _one_of_them(number: Word, found: list[Word], after: list[Word]) -> Word:
     """`If one is abnormal` asks about one of them, and not about checkpoint 1."""
-    asked = found and found[-1].type in _ASKING and after and after[0].type in _SAID
-    one = asked and number.value.value == 1
+    asked = found and (found[-1].type in _ASKING or _begins_question(found))
+    one = asked and after and after[0].type in _SAID and number.value.value == 1
     return replace(number, type="THEM", value="either") if one else number
+
+
+def _begins_question(found: list[Word]) -> bool:
+    """`Ist eins auffällig, ...`"""
+    return found[-1].type == "IS" and _begins(found)
 
 
 def _joined_bounds(words: list[Word]) -> list[Word]:

@@ -19,6 +19,7 @@ _ASKED = frozenset(["STATE", "OCCURS", "FAILS", "EVENT", "IS"])
 _OPENING = frozenset(["IF", "IF_ONLY", "UNLESS", "UNTIL"])
 _PREDICATES = _RELATIONS | {"NOT", "STATE", "FAILS", "NUMBER", "QUANTITY", "MINUS"}
 _NAMED = frozenset(["KIND", "HASH", "IDENT", "STRING", "ALL", "NUMBER", "THIS", "EVERY"])
+_LABELS = frozenset(["NUMBER", "IDENT", "HASH"])
 _FLOORS = ("FLOOR", "FLOOR_NAME")
 _SPOTS = frozenset(["AREA", "DOCK", "PLACE", "FLOOR", "FLOOR_NAME", "ORDINAL", "STRING", "WORD"])
 
@@ -88,11 +89,7 @@ def _told(words: list[Word], i: int) -> list[Word]:
             return []
         case "ON_FAILURE":
             return [replace(word, type="IF"), replace(word, type="FAILS")]
-        case "THEM" | "BOTH" if after == "KIND" and _then(words, i + 2) in (
-            "NUMBER",
-            "IDENT",
-            "HASH",
-        ):
+        case "THEM" if after == "KIND" and _then(words, i + 2) in _LABELS:
             return []
         case "THEY":
             return [replace(word, type="THEM", value="or one")]

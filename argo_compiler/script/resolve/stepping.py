@@ -10,7 +10,7 @@ from argo_compiler.script.resolve.context import Context
 from argo_compiler.script.resolve.limiting import make_round
 from argo_compiler.script.resolve.planning import Planner
 from argo_compiler.script.resolve.program import Do, ProgramBlock, all_nodes
-from argo_compiler.script.syntax.text.source import RefusedError
+from argo_compiler.script.syntax.text.source import MOST_KEPT, RefusedError
 from argo_compiler.script.syntax.tree import facts, orders
 from argo_compiler.script.syntax.tree.facts import Fact
 from argo_compiler.script.syntax.tree.manner import Manner
@@ -33,6 +33,8 @@ class Stepping:
         self._check_numbers(steps)
         numbered = any(step.number is not None for step in steps)
         for i, step in enumerate(steps, start=1):
+            if self.context.diagnostics.errors > MOST_KEPT:
+                return  # further errors would not be kept
             number = step.number if numbered else i
             self.context.begin_step(number)
             self._step(step, self.context.program, number)

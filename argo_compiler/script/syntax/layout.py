@@ -24,7 +24,9 @@ class LineItem:
     parts: list[ScriptText] = field(default_factory=list)
     """the lines of the text, while they are gathered"""
     tail: ScriptText | None = None
-    """the last sentence of the parts"""
+    """the last sentence of the parts; of a long one its end"""
+    long: bool = False
+    """whether the last sentence is so long that only its end tells whether it goes on"""
 
     @property
     def last(self) -> ScriptText:
@@ -49,8 +51,9 @@ _NAMED_STEP = re.compile(f"{_TEXT}:")
 """`"Alpha": check ...`"""
 _LONGEST_SENTENCE = 2000
 """characters; no line goes on with a longer one"""
-_END = 80
+_END = 200
 """characters at the end of a longer one that are looked at"""
+_MOST_KNOWN = 1024
 _LONGEST_STRANGE = 300
 """characters; lines that make no sense are put together up to here"""
 _DEEPEST = 20
@@ -84,8 +87,7 @@ def items_of(
 
 def _append(item: LineItem, below: ScriptText, words: Collection[str]) -> None:
     """Lets an item go on with a line; a word that a hyphen divides becomes whole."""
-    # Of a longer sentence only the end is looked at; without a limit the time would be quadratic.
-    last = item.last[-_LONGEST_SENTENCE - _END :]
+    last = item.last
     left = _LAST_HALF.search(last.content) if last.content.endswith("-") else None
     right = _FIRST_HALF.match(below.content)
     if left is not None and right is not None and (left[1] + right[0]).lower() in words:
@@ -95,10 +97,15 @@ def _append(item: LineItem, below: ScriptText, words: Collection[str]) -> None:
             item.text = whole
         else:
             item.parts.append(whole)
-        item.tail = _last_sentence(_without_hyphen(last, below))
+        both = _without_hyphen(last, below)
     else:
         item.parts.append(below)
-        item.tail = _last_sentence(join([last, below]))
+        both = join([last, below])
+    item.tail = _last_sentence(both)
+    same = len(item.tail.content) == len(both.content)
+    item.long = (item.long and same) or len(item.tail.content) > _LONGEST_SENTENCE
+    if item.long:  # else the time would be quadratic
+        item.tail = item.tail[-_END:]
 
 
 def _without_hyphen(above: ScriptText, below: ScriptText) -> ScriptText:
@@ -115,14 +122,29 @@ def _goes_on(item: LineItem, line: ScriptLine, sense: LineSense) -> bool:
     """Whether an item goes on with a line."""
     if line.mark is LineMark.NUMBER:
         return _ends_in_number(item, line, sense) and not sense.stands_alone(item.text)
-    if line.mark is not LineMark.NONE or sense.stands_alone(line.text):
+    if line.mark is not LineMark.NONE:
         return False
+    indented = line.indent > item.line.indent
+    key = (item.last.content, line.text.content, item.line.mark, item.long, indented)
+    known = sense.one.get(key)
+    if known is None:
+        if len(sense.one) >= _MOST_KNOWN:
+            sense.one.clear()
+        known = sense.one[key] = _are_one(item, line, sense)
+    return known
+
+
+def _are_one(item: LineItem, line: ScriptLine, sense: LineSense) -> bool:
+    """Whether an item goes on with a line that has no mark. It hangs on nothing but the texts, the
+    item's mark, and whether the line stands further to the right."""
     last, below = item.last, line.text
+    if sense.stands_alone(below):
+        return False
     if _NAMED_STEP.match(below.content) and not _TEXTS.fullmatch(last.content):
         return False
     if sense.is_unfinished(last) or (last.content.endswith('"') and below.content[0] == '"'):
         return True
-    if sense.stands_alone(last) or len(last.content) > _LONGEST_SENTENCE:
+    if item.long or sense.stands_alone(last) or len(last.content) > _LONGEST_SENTENCE:
         return False
     whole = sense.is_complete(last)
     both = join([last, below])
@@ -146,6 +168,8 @@ def _ends_in_number(item: LineItem, line: ScriptLine, sense: LineSense) -> bool:
     """Whether what looks like a step's number ends the sentence above: `Check checkpoint` and
     below it `4.`"""
     follows = item.line.number is not None and line.number == item.line.number + 1
+    if item.long:
+        return False
     if line.text.content and (follows or sense.is_complete(line.text)):
         return False
     both = join([item.last, line.unmarked])

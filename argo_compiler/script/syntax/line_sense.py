@@ -1,7 +1,7 @@
 """Whether the lines of a script make sense: by themselves, or with the line below."""
 
 import re
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
 from argo_compiler.script.syntax.asides import Asides
 from argo_compiler.script.syntax.grammar.parser import StumbleError
@@ -26,6 +26,8 @@ class LineSense:
     understanding: Understanding
     asides: Asides
     labels: FieldLabels
+    one: dict[tuple[object, ...], bool] = field(default_factory=dict)
+    """whether two lines, one below the other, are one text; many are alike"""
 
     def stands_alone(self, text: ScriptText) -> bool:
         """Whether a line never goes on with the one above it."""

@@ -18,6 +18,8 @@ from argo_compiler.script.syntax.understanding import Reading, Understanding
 from argo_compiler.script.syntax.words.joints import VERBS
 
 Said = Sentence | Fact | Unread
+MAX_SENTENCE = 10_000
+"""characters in a sentence of many lines; a longer one is refused unread"""
 
 
 @dataclass
@@ -67,6 +69,11 @@ class SentenceReader:
 
     def read(self, text: ScriptText, item: LineItem) -> list[Said]:
         """What a sentence says; nothing where it has no effect."""
+        if len(text.content) > MAX_SENTENCE:
+            length = len(text.content)
+            message = f"the sentence has {length} characters; at most {MAX_SENTENCE} are read"
+            self.diagnostics.error("too-long", message, text.span(), "write several sentences")
+            return [Unread(span=text.span())]
         text = self.understanding.figures(text)
         if not self.understanding.types(text):
             self.note(text, "a remark")

@@ -5,7 +5,7 @@ import pytest
 from argo_compiler.catalog import Catalog
 from argo_compiler.diagnostics import Diagnostic, DiagnosticError, Severity
 from argo_compiler.il import Order
-from argo_compiler.script import Resolved, import_script
+from argo_compiler.script import Resolved, import_script, parse
 
 START = "Start in starting area 1\n"
 
@@ -247,3 +247,10 @@ def test_all_of_them_or_those_below(catalog: Catalog) -> None:
 def test_a_step_that_only_leads_to_itself_is_an_error(catalog: Catalog) -> None:
     text = "Start in starting area 1\nGo to step 1\nCheck #1"
     assert errors(text, catalog) == [(2, "step 1")]
+
+
+def test_a_sentence_of_very_many_lines_is_refused_with_its_length() -> None:
+    text = "1. Start in starting area 1.\n2. Check #2.\n" + "check #1 and\n" * 1000 + "check #4.\n"
+    errors = [d for d in parse(text).diagnostics if d.severity == "error"]
+    assert [(d.code, d.span.line) for d in errors if d.span] == [("script.too-long", 3)]
+    assert "13008 characters; at most 10000" in errors[0].message

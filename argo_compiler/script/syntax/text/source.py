@@ -14,7 +14,7 @@ MAX_LINE = 2000
 """characters in a line; a longer one is refused unread"""
 
 _BEGINNING = 80
-_MOST_KEPT = 500
+MOST_KEPT = 500
 """errors; further ones are counted, but not kept"""
 _LINE_END = re.compile(r"\r\n|\r|\n")
 _Item = TypeVar("_Item")
@@ -194,7 +194,7 @@ class Diagnostics:
     ) -> None:
         if severity is Severity.ERROR:
             self.errors += 1
-            if self.errors > _MOST_KEPT:
+            if self.errors > MOST_KEPT:
                 return
         excerpt = _excerpt(self.source.lines[span.line - 1], span) if span else None
         self.entries.append(

@@ -142,6 +142,10 @@ SCRIPT = {
         "The height of a place is missing, or contradicts its floor.",
         "Say the floor or the height that is meant.",
     ),
+    "script.instead": error(
+        "Something is to be done instead of something else that is not said.",
+        "Write it behind `otherwise`, or behind what is done if a task fails.",
+    ),
     "script.long-line": error("A line or cell is too long to be a script's.", "Shorten it."),
     "script.needless-exception": warning(
         "What is left out of some checkpoints is none of them anyway.",
@@ -166,6 +170,14 @@ SCRIPT = {
     "script.not-measured": warning(
         "A condition asks for a checkpoint that is not measured before it.",
         "Measure it before, unless somebody else tells its value.",
+    ),
+    "script.not-first": error(
+        "Something is to be done first, and something else stands before it.",
+        "Write what is done first above the others.",
+    ),
+    "script.not-last": error(
+        "Something is to be done at the end, and more stands behind it.",
+        "Write what is done at the end below the others.",
     ),
     "script.not-planned": error(
         "An edit names what is not in the plan at this point.",
@@ -338,4 +350,5 @@ SCRIPT = {
         "Write `wait 90 s`, `wait until #1 is below 3` or `wait for the all-clear`.",
     ),
     "script.which-checkpoint": error("It is not said which checkpoint is compared.", "Name it."),
+    "script.which-place": error("It is not said which place `there` is.", "Name the floor."),
 }

@@ -15,6 +15,7 @@ from argo_compiler.script.syntax.labels import FieldLabels
 from argo_compiler.script.syntax.layout import LineItem, items_of
 from argo_compiler.script.syntax.line_sense import LineSense
 from argo_compiler.script.syntax.lines import LineMark, lines_of
+from argo_compiler.script.syntax.placing import PlacingCheck
 from argo_compiler.script.syntax.repeats import Repeats, repeats
 from argo_compiler.script.syntax.rows import tables
 from argo_compiler.script.syntax.sentence_ends import sentences
@@ -122,6 +123,7 @@ class _Parser:
         sense = LineSense(self.understanding, self.asides, self.labels)
         items = items_of(lines_of(texts), sense, language.words)
         steps = list(self._steps(KindLists(self.understanding, self.reader.note).told(items)))
+        PlacingCheck(self.diagnostics).steps(steps)
         first = [_step_of(sentence) for sentence in self.fields.first]
         last = [_step_of(sentence) for sentence in self.fields.last]
         return Script(

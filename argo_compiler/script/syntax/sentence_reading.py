@@ -1,6 +1,6 @@
 """Reads the sentences of a script one after the other: which say what, and which have no effect."""
 
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 
 from argo_compiler.script.syntax.asides import Asides
 from argo_compiler.script.syntax.fields import ScriptFields
@@ -9,6 +9,7 @@ from argo_compiler.script.syntax.hints import not_understood
 from argo_compiler.script.syntax.labels import FieldLabels
 from argo_compiler.script.syntax.layout import LineItem
 from argo_compiler.script.syntax.lines import LineMark
+from argo_compiler.script.syntax.placing import placed_in
 from argo_compiler.script.syntax.preamble import Preamble
 from argo_compiler.script.syntax.text.source import Diagnostics, ScriptText
 from argo_compiler.script.syntax.tree.facts import Fact
@@ -147,6 +148,8 @@ class SentenceReader:
             self.diagnostics.note("no-effect", f"`{idle.content}` has no effect", idle.span())
         node = self.understanding.node(text, reading)
         if isinstance(node, Sentence):
+            placed = placed_in(text, node, self.understanding.language.lexicon)
+            node = replace(node, placed=placed) if placed else node
             self.ordered |= any(not isinstance(order, Start) for order in node.orders)
         return Unread(span=text.span()) if node is None else node
 

@@ -609,3 +609,39 @@ def test_what_has_not_failed_has_to_be_clear(text: str, code: str, catalog: Cata
 
 def tasks(mission: Mission) -> list[object]:
     return [task.model_copy(update={"source": None}) for task in mission.tasks]
+
+
+@pytest.mark.parametrize(
+    ("text", "asked"),
+    [
+        ("Check 4 at the end. Check 5.", "at the end, and line 2"),
+        ("Check 4 at the end, then check 5.", "at the end, and line 2"),
+        ("Prüfe Kontrollpunkt 4 zum Schluss. Prüfe Kontrollpunkt 5.", "at the end, and line 2"),
+        ("Check 4. First of all check 1.", "first, and line 2"),
+        ("Check 4. Check 5 first.", "first, and line 2"),
+        ("Go to floor 3. Check everything there.", "where `there` is"),
+        ("Fahre auf Ebene 3. Prüfe dort alle Ventile.", "where `there` is"),
+        ("Check 1. If it is above 4, check 8 instead. Check 5.", "instead of what"),
+        ("Check 1 along the way to 5.", "can't understand `along`"),
+        ("Check 1, then each time check 4.", "can't understand"),
+    ],
+)
+def test_words_that_say_where_something_stands_are_true_or_asked_about(
+    text: str, asked: str, catalog: Catalog
+) -> None:
+    with pytest.raises(DiagnosticError, match=asked):
+        read(text, catalog)
+
+
+@pytest.mark.parametrize(
+    "text",
+    [
+        "First of all check 1. Check 4. Finally, check 5 and 8, then return to the dock.",
+        "Check 1 first. Check 4. Finally check 5. If it is abnormal, check 8.",
+        "Check 1. Check 4 over there. Check 5. If it fails, check 8 instead.",
+    ],
+)
+def test_words_that_say_where_something_stands_are_read_where_they_are_true(
+    text: str, catalog: Catalog
+) -> None:
+    assert measured(read(text, catalog)) == ["1", "4", "5", "8"]

@@ -222,6 +222,26 @@ class Case(Node):
     """`otherwise, if ...`; `otherwise` without a condition as well"""
 
 
+class Placing(StrEnum):
+    """Where a word says that something stands."""
+
+    AT_END = "AT_END"
+    """`at the end`, `finally`"""
+    AT_BEGIN = "AT_BEGIN"
+    """`first of all`; `first` at the end of a sentence"""
+    THERE = "THERE"
+    INSTEAD = "INSTEAD"
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Placed(Node):
+    """A word of an order that says where it stands: `Finally check 4`."""
+
+    placing: Placing
+    orders: int
+    """how many of the sentence's orders begin before it"""
+
+
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Sentence(Node):
     """Orders, then cases in the order in which they are said."""
@@ -230,3 +250,5 @@ class Sentence(Node):
     cases: tuple[Case, ...] = ()
     facts: tuple[Fact, ...] = ()
     """what is said of the mission beside: `but checkpoint 9 before checkpoint 14`"""
+    placed: tuple[Placed, ...] = ()
+    """where it says that it stands"""

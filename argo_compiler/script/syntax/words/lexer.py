@@ -38,7 +38,9 @@ _NAMES = {("AREA", "NUMBER"), ("KIND", "IDENT"), ("KIND", "NUMBER"), ("AREA",), 
 """what is often put between quotation marks, and means the same without"""
 _NAMING = frozenset(["STEP", "SHOWN_IN", "ABOUT", "LPAR_CALLED", "LSQB"])
 _JOINING = frozenset(["JOINT", "TO", "DASH", "UPTO"])
-_UNSAID = frozenset(["FILLER", "IDLE"])
+_PLACED = frozenset(["AT_END", "AT_BEGIN", "THERE", "INSTEAD"])
+"""words that say where something stands in the script, or on the site"""
+_UNSAID = frozenset(["FILLER", "IDLE"]) | _PLACED
 
 
 # A sentence is looked at several times: what it is, whether it makes sense, what it says.
@@ -102,7 +104,15 @@ def _goals(words: list[Word]) -> list[Word]:
     return words
 
 
-def _looked_up(text: str, lexicon: Lexicon) -> list[Word]:
+def placed_words(text: str, lexicon: Lexicon) -> list[Word]:
+    """The words of a sentence that say where it stands: `at the end`, `first of all`, `there`; and
+    `first` at its very end."""
+    found = _looked_up(text, lexicon, _UNSAID - _PLACED)
+    ends = found[-1:] if found and found[-1].type == "ORDINAL" and found[-1].value == 1 else []
+    return [word for word in found if word.type in _PLACED] + ends
+
+
+def _looked_up(text: str, lexicon: Lexicon, unsaid: frozenset[str] = _UNSAID) -> list[Word]:
     pieces = list(_PIECE.finditer(_lower(text)))
     said = [folded(piece.group()) for piece in pieces]
     apart: set[int] = set()
@@ -125,7 +135,7 @@ def _looked_up(text: str, lexicon: Lexicon) -> list[Word]:
             i += 1
             continue
         type_, value = phrase.entry
-        if type_ not in _UNSAID:
+        if type_ not in unsaid:
             if type_ == "KIND":
                 value = _definite(value, said[i - 1] if i > 0 else "", lexicon)
             elif type_ == "UNIT_S" and _is_one(value, said, i, found, lexicon):

@@ -14,7 +14,17 @@ from argo_compiler.script.syntax.tree.orders import PlainWord, ScriptOrder
 
 ROUND = frozenset(
     {
-        *("times", "more", "at_most", "every", "duration", "until", "endless", "in_circles"),
+        *(
+            "times",
+            "more",
+            "at_most",
+            "every",
+            "pause",
+            "duration",
+            "until",
+            "endless",
+            "in_circles",
+        ),
         *("finishing", "count_interruptions"),
     }
 )
@@ -64,6 +74,7 @@ _WORDS = {
     "more": "that it is done again",
     "at_most": "how often at most",
     "every": "every so often",
+    "pause": "a pause between rounds",
     "duration": "for how long",
     "until": "until when",
     "finishing": "whether a round is finished",

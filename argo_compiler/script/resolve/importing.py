@@ -15,10 +15,12 @@ from argo_compiler.script.resolve.locating import Locator
 from argo_compiler.script.resolve.lookup import Lookup
 from argo_compiler.script.resolve.lowering import lower_program
 from argo_compiler.script.resolve.ordering import Ordering
+from argo_compiler.script.resolve.pausing import put_pauses
 from argo_compiler.script.resolve.planning import Planner
 from argo_compiler.script.resolve.program import Do, ProgramNode, all_nodes, depth
 from argo_compiler.script.resolve.starting import Starting
 from argo_compiler.script.resolve.stepping import Stepping
+from argo_compiler.script.resolve.waiting import warn_of_long_waits
 from argo_compiler.script.syntax.parsing import parse
 from argo_compiler.script.syntax.text.source import Diagnostics, RefusedError, Source
 from argo_compiler.script.syntax.tree.places import Steps
@@ -85,6 +87,8 @@ def _mission(
     with suppress(RefusedError):
         starting.finish()
     planner.repeating.finish()
+    put_pauses(context)
+    warn_of_long_waits(context, script.header)
     order = ordering.finish(context.program)
     _require_no_error(diagnostics)
 

@@ -72,6 +72,7 @@ def _limits(order: ScriptOrder, context: Context) -> Limits:
         count=count,
         duration=manner.duration or 0.0,
         every=manner.every or 0.0,
+        pause=manner.pause or 0.0,
         until=until,
         soft=bool(manner.finishing),
         count_interruptions=manner.count_interruptions,

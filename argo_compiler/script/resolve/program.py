@@ -130,6 +130,8 @@ class Limits:
     """s"""
     every: float = 0.0
     """s"""
+    pause: float = 0.0
+    """s between one round and the next"""
     until: tuple[Condition, ...] = ()
     soft: bool = False
     count_interruptions: bool = False

@@ -72,12 +72,15 @@ class Repeating:
         return len([*islice(done, 2)]) > 1
 
     def limited(self, order: orders.Amend, block: ProgramBlock) -> bool:
-        """`Stop with it after 5 minutes`: says of the round before how long it lasts. False: that
-        is not what it says, or of none."""
+        """`Stop with it after 5 minutes`, `wait 1 minute in between`: said of the round before.
+        False: that is not what it says, or of none."""
         manner, round_ = order.manner, block.last
-        if manner is None or not isinstance(round_, ProgramRound) or manner.duration is None:
+        if manner is None or not isinstance(round_, ProgramRound):
             return False
-        if said(manner) - {"duration", "finishing"}:
+        if said(manner) == {"pause"} and manner.pause is not None and not round_.limits.pause:
+            round_.limits = replace(round_.limits, pause=manner.pause)
+            return True
+        if manner.duration is None or said(manner) - {"duration", "finishing"}:
             return False
         if round_.limits.duration:
             message = "how long is said twice"

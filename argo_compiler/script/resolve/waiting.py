@@ -4,9 +4,11 @@ from dataclasses import replace
 
 from argo_compiler.il import EventKind, WaitRule
 from argo_compiler.script.resolve.context import Context
+from argo_compiler.script.resolve.program import Do, all_nodes
 from argo_compiler.script.syntax.tree.conditions import Occurs
 from argo_compiler.script.syntax.tree.manner import Manner
 from argo_compiler.script.syntax.tree.orders import WaitOrder
+from argo_compiler.script.syntax.tree.script import ScriptHeader
 
 
 def wait_rule(order: WaitOrder, context: Context) -> WaitRule:
@@ -38,3 +40,17 @@ def wait_rule(order: WaitOrder, context: Context) -> WaitRule:
         message = "a wait ends by conditions that all hold, not by one of several"
         diagnostics.refuse("wait", message, until.span, "join them by `and`")
     return WaitRule(event=event, conditions=conditions[0] if conditions else (), limit=limit)
+
+
+def warn_of_long_waits(context: Context, header: ScriptHeader) -> None:
+    """Warns of each wait that lasts at least as long as the whole mission may take."""
+    if header.max_duration is None:
+        return
+    most_s = header.max_duration[0]
+    for do in all_nodes(context.program):
+        if not isinstance(do, Do) or do.wait is None or (do.wait.duration or 0) < most_s:
+            continue
+        message = f"this wait takes {do.wait.duration:g} s, and the whole mission may take "
+        message += f"{most_s:g} s"
+        hint = "wait for a shorter time, or give the mission more"
+        context.diagnostics.warning("long-wait", message, do.source, hint)

@@ -6,6 +6,7 @@ import pytest
 
 from argo_compiler.catalog import Catalog
 from argo_compiler.diagnostics import DiagnosticError
+from argo_compiler.il import Action
 from argo_compiler.script import import_script
 
 _ENGLISH = "Start in starting area 1.\n"
@@ -80,6 +81,35 @@ _BEGRENZT = f"{_GERMAN}Prüfe #1 und #4 dreimal für 5 Minuten.\n"
             f"{_GERMAN}Prüfe #1.\nZum Schluss in die Dockingstation von Startbereich 2 fahren.",
             f"{_GERMAN}Prüfe #1.\nFahre zur Dockingstation von Startbereich 2.",
         ),
+        (
+            f"{_ENGLISH}Check #1 twice, with a pause of 10 minutes in between.",
+            f"{_ENGLISH}Check #1. Wait 10 minutes. Check #1.",
+        ),
+        (
+            f"{_ENGLISH}1. Do the following twice, waiting ten minutes between the rounds:\n"
+            "   a) check #1\n   b) check #4\n2. Check #7.",
+            f"{_ENGLISH}Check #1. Check #4. Wait 10 minutes. Check #1. Check #4. Check #7.",
+        ),
+        (
+            f"{_ENGLISH}1. Check #1 and #4 twice. Between two readings wait for 1 minute.",
+            f"{_ENGLISH}Check #1. Check #4. Wait 1 minute. Check #1. Check #4.",
+        ),
+        (
+            f"{_GERMAN}Prüfe #1 zweimal, mit einer Pause von 10 Minuten dazwischen.",
+            f"{_GERMAN}Prüfe #1. Warte 10 Minuten. Prüfe #1.",
+        ),
+        (
+            f"{_GERMAN}Prüfe #1 zweimal. Zwischen den Ablesungen 1 Minute warten.",
+            f"{_GERMAN}Prüfe #1. Warte 1 Minute. Prüfe #1.",
+        ),
+        (
+            f"{_ENGLISH}do three rounds over checkpoints 5 to 8",
+            f"{_ENGLISH}Check checkpoints 5 to 8 three times.",
+        ),
+        (
+            f"{_GERMAN}Fahre drei Runden über die Kontrollpunkte 5 bis 8.",
+            f"{_GERMAN}Prüfe die Kontrollpunkte 5 bis 8 dreimal.",
+        ),
     ],
 )
 def test_other_words_mean_the_same(
@@ -106,8 +136,30 @@ def test_title_with_a_colon(title: str, start: str, catalog: Catalog) -> None:
         ("Check #1 and #4. Check the same two valves again.", "ambiguous-pronoun"),
         ("Check #1 twice for 5 minutes. Stop with it after 6 minutes.", "repeated-limit"),
         ("Check #1. Stop with it after 6 minutes.", "stray-clause"),
+        ("Check #1. Wait 1 minute between two readings.", "stray-clause"),
+        ("Check #1 three times. Wait between two readings.", "unfinished"),
+        ("Check #1 for 20 minutes, with a pause of 1 minute in between.", "script.pause"),
+        ("Check #1 three times every 5 min, with a pause of 1 min in between.", "script.pause"),
     ],
 )
 def test_what_does_not_fit_is_refused(text: str, code: str, catalog: Catalog) -> None:
     with pytest.raises(DiagnosticError, match=code):
         import_script(_ENGLISH + text, catalog)
+
+
+@pytest.mark.parametrize("how", ["three times", "until it is below 1 bar, at most 3 times"])
+def test_pauses_are_between_rounds_only(how: str, catalog: Catalog) -> None:
+    text = f"{_ENGLISH}Check #15 {how}. Wait 1 minute between two readings."
+    mission = import_script(text, catalog).mission
+    done = [t for t in mission.tasks if t.action is not Action.START]
+    waits = [t.wait.duration for t in done if t.wait is not None and t.wait.duration]
+    assert waits == [60]
+    assert [t.action for t in done][:3] == [Action.MEASURE, Action.WAIT, Action.MEASURE]
+
+
+def test_wait_longer_than_the_mission(catalog: Catalog) -> None:
+    text = f"Maximum duration: 10 min\n{_ENGLISH}Check #1.\nWait for 15 minutes.\nCheck #1."
+    found = [d for d in import_script(text, catalog).diagnostics if "long-wait" in str(d)]
+    assert len(found) == 1
+    assert found[0].span is not None
+    assert found[0].span.line == 4

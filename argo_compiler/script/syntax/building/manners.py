@@ -125,6 +125,7 @@ RULES: dict[str, Make] = {
     "times": _times,
     "more": _more,
     "every": lambda part: Manner(every=duration(part)),
+    "pause": lambda part: Manner(pause=duration(part)),
     "for_": _for,
     "until": lambda part: Manner(until=part.the(SaidCondition)),
     "within": lambda part: Manner(latest=duration(part)),

@@ -2,7 +2,7 @@
 
 from dataclasses import replace
 
-from argo_compiler.script.syntax.building.figures import whole
+from argo_compiler.script.syntax.building.figures import duration, whole
 from argo_compiler.script.syntax.building.manners import combined
 from argo_compiler.script.syntax.building.nouns import named
 from argo_compiler.script.syntax.building.part import Make, RulePart
@@ -140,6 +140,11 @@ def _wait(part: RulePart) -> ScriptOrder:
     return orders.WaitOrder(span=part.span, manner=manner, where=place, person=person, stays=stays)
 
 
+def _waits_between(part: RulePart) -> ScriptOrder:
+    """`Wait 1 minute between two readings`: said of the rounds before."""
+    return orders.Amend(span=part.span, manner=Manner(pause=duration(part)))
+
+
 def _things(part: RulePart) -> list[Nouns | Steps]:
     return [c for c in part.children if isinstance(c, Nouns | Steps)]
 
@@ -200,6 +205,7 @@ RULES: dict[str, Make] = {
     "start_here": _start_here,
     "patrol": _patrol,
     "wait": _wait,
+    "waits_between": _waits_between,
     "target": _target,
     "visit": _visit,
     "beside": lambda part: orders.Beside(

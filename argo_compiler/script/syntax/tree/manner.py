@@ -52,6 +52,8 @@ class Manner:
     """rounds, with `until`"""
     every: float | None = None
     """s from the beginning of a round to that of the next"""
+    pause: float | None = None
+    """s between one round and the next"""
     duration: float | None = None
     """s"""
     until: SaidCondition | None = None

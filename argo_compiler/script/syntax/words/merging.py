@@ -25,6 +25,7 @@ _EARLY = frozenset(["MEASURE", "GO", "PATROL"])
 """verbs, behind which `optionally` may stand"""
 _UNITS = ("UNIT_S", "A_UNIT")
 _AMOUNTS = _RELATIONS | {"NUMBER", "QUANTITY"}
+_BEHIND_BETWEEN = ("JOINT", "SIGN", "RPAR", "WAIT", "COLON")
 _OPENING = frozenset(["JOINT", "IN_ANY_CASE", "BEFORE", "AFTER", "ELSE", "IN_ALL_OTHERS"])
 """what a sentence or a clause may begin behind"""
 _LIMITS = {"TIMES": "MOST_TIMES", "DURATION": "MOST_TIME"}
@@ -297,6 +298,13 @@ def _add(word: Word, after: Word | None, found: list[Word]) -> None:
         word = replace(word, type="IS", value=None)
     elif word.type in _AMOUNTS and [w.type for w in found[-2:]] == ["IS", "AT"]:
         found.pop()  # `is at 5 bar`, `is at more than 5 bar`
+    elif word.type in ("KIND", "HASH", "ALL") and _are_rounds(found):
+        rounds = found.pop()  # `do three rounds over checkpoints 5 to 8`
+        number = found.pop()
+        found[-1] = replace(found[-1], type="MEASURE", value=None)
+        found.append(Word("TIMES", number.value, number.start, rounds.end))
+    elif word.type == "BETWEEN" and (after is None or after.type in _BEHIND_BETWEEN):
+        word = replace(word, type="IN_BETWEEN")  # `with a pause of 5 minutes in between`
     elif word.type == "MEASURE" and last is not None and last.type == "NOT":
         found.pop()
         word = Word("SPARE", None, last.start, word.end)  # `don't check checkpoint 19`
@@ -316,6 +324,12 @@ def _add(word: Word, after: Word | None, found: list[Word]) -> None:
         found[-1:] = [word, last]  # `optionally check checkpoint 4`
         return
     found.append(word)
+
+
+def _are_rounds(found: list[Word]) -> bool:
+    """Whether it is said before that rounds are done of what comes next."""
+    types = [word.type for word in found[-3:]]
+    return types[1:] == ["NUMBER", "ROUNDS_OF"] and types[0] in ("REPEAT", "GO", "PATROL")
 
 
 def _begins(found: list[Word]) -> bool:

@@ -76,7 +76,8 @@ def _judge(case: Case, catalog: Catalog) -> Result:
     driven = [Drive(mission, catalog, trace).run() for trace in e["traces"]]
     found = (compare(trace, steps) for trace, steps in zip(e["traces"], driven, strict=True))
     differences += [difference for difference in found if difference]
-    differences += compare_requirements(e.get("requirements", {}), mission, driven[0])
+    if driven:
+        differences += compare_requirements(e.get("requirements", {}), mission, driven[0])
     if differences:
         return Result(case.name, Kind.WARNED if warnings else Kind.SILENT, "; ".join(differences))
     wanted = e.get("mentions", ())

@@ -25,6 +25,8 @@ from argo_compiler.script.syntax.words.prose import Prose
 from argo_compiler.script.syntax.words.word import Word
 
 _STOP = re.compile(r"[.!](?=\s|$)")
+_SEPARATORS = " ,;/|"
+"""between fields"""
 _INITIAL = re.compile(r"\b(?:[A-Z]|Dr|Mr|Mrs|Ms)\.")
 """in a name: `J. Smith`"""
 _QUOTED = re.compile(r'"(?:[^"\\]|\\.)*"(?:[\s,]*"(?:[^"\\]|\\.)*")*')
@@ -68,10 +70,19 @@ class ScriptFields:
                 return value
             end = _end(self.prose, name, value.content)
             rest = value[end:].strip()
-            said = value[: len(value.content[:end].rstrip(" ,;" if name in _PROSE else " ,;."))]
+            ends = _SEPARATORS if name in _PROSE else f"{_SEPARATORS}."
+            said = value[: len(value.content[:end].rstrip(ends))]
             self._read(name, said, text[: label.end()])
-            text = rest[len(rest.content) - len(rest.content.lstrip(" ,;.")) :]
+            text = rest[len(rest.content) - len(rest.content.lstrip(f"{_SEPARATORS}.")) :]
         return text
+
+    def behind(self, text: ScriptText) -> tuple[ScriptText, ScriptText] | None:
+        """A title and the fields behind it: `Work order 12 / start: area 1`."""
+        for label in self.prose.label.finditer(text.content):
+            title = text.content[: label.start()].rstrip()
+            if title and title[-1] in _SEPARATORS:
+                return text[: len(title.rstrip(_SEPARATORS))], text[label.start() :]
+        return None
 
     def _read(self, name: str, value: ScriptText, label: ScriptText) -> None:
         if not value.content:
@@ -245,7 +256,7 @@ def _end(prose: Prose, name: str, content: str) -> int:
     ends = [
         m.start()
         for m in prose.label.finditer(content)
-        if content[: m.start()].rstrip()[-1:] in (",", ";", ".")
+        if content[: m.start()].rstrip()[-1:] in (*_SEPARATORS.strip(), ".")
     ]
     if name == "nothing":
         content = _INITIAL.sub(lambda found: "x" * len(found[0]), content)

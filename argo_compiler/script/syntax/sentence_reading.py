@@ -180,6 +180,14 @@ class SentenceReader:
         first = not self.begun and header.title is None and item.line.number is None
         if not first and not self._is_heading(text, item):
             return None
+        titled = self.fields.behind(text) if first else None
+        if titled is not None and self.asides.is_title(titled[0]):
+            head, fields = titled
+            header.title = Text(span=head.span(), text=head.content)
+            self.note(head, "the title")
+            self.begun = True
+            rest = self.fields.read(fields)
+            return self.read(rest, item) if rest.content else []
         if self.asides.is_title(text):
             head, behind = text, []
         elif first and "," in text.content:

@@ -163,3 +163,24 @@ def test_wait_longer_than_the_mission(catalog: Catalog) -> None:
     assert len(found) == 1
     assert found[0].span is not None
     assert found[0].span.line == 4
+
+
+@pytest.mark.parametrize(
+    ("line", "title"),
+    [
+        (
+            "Work order 7781 / site UMAD / start: area 1 / end: area 2",
+            "Work order 7781 / site UMAD",
+        ),
+        ("Evening tour | start area: 1 | end area: 2", "Evening tour"),
+        ("Auftrag 12; Startbereich: 1; Endbereich: 2", "Auftrag 12"),
+    ],
+)
+def test_fields_behind_a_title(line: str, title: str, catalog: Catalog) -> None:
+    mission = import_script(f"{line}\n\n#1.", catalog).mission
+    assert (mission.designation, mission.start_area, mission.end_area) == (title, 1, 2)
+
+
+def test_orders_before_fields_are_no_title(catalog: Catalog) -> None:
+    with pytest.raises(DiagnosticError):
+        import_script("Read the oil meter / start: area 1\n\nCheck #1.", catalog)

@@ -30,6 +30,9 @@ def is_back(order: ScriptOrder, block: ProgramBlock, context: Context) -> bool:
             return True
         context.program.remove(docked)  # `go home and dock in area 2`
         return False
+    if isinstance(order, orders.WaitOrder) and order.manner and order.manner.duration:
+        context.docked = None  # `stay there for 5 minutes`: it goes on behind that
+        return False
     line = docked.source.line if docked.source else 0
     message = f"the robot is back in its docking station since line {line}"
     hint = "move the return to the end, or say how it goes on: `then go to step 3`"

@@ -184,3 +184,25 @@ def test_fields_behind_a_title(line: str, title: str, catalog: Catalog) -> None:
 def test_orders_before_fields_are_no_title(catalog: Catalog) -> None:
     with pytest.raises(DiagnosticError):
         import_script("Read the oil meter / start: area 1\n\nCheck #1.", catalog)
+
+
+@pytest.mark.parametrize(
+    "text",
+    [
+        f"{_ENGLISH}Check #1.\nDrive back to the docking station and stay there for 5 minutes.\n"
+        "Check #1 again.\nGo home.",
+        f"{_GERMAN}Prüfe #1.\nFahre zur Dockingstation und warte dort 5 Minuten.\n"
+        "Prüfe #1 noch einmal.\nFahre nach Hause.",
+    ],
+)
+def test_a_stay_in_the_dock_is_followed_by_more(text: str, catalog: Catalog) -> None:
+    tasks = import_script(text, catalog).mission.tasks
+    said = [t.action for t in tasks if t.action is not Action.START]
+    back, stay, again = Action.WAYPOINT, Action.WAIT, Action.MEASURE
+    assert said == [again, back, stay, again, back]
+
+
+def test_what_follows_the_dock_is_refused(catalog: Catalog) -> None:
+    text = f"{_ENGLISH}Check #1.\nDrive back to the docking station.\nCheck #4."
+    with pytest.raises(DiagnosticError, match="after-docking"):
+        import_script(text, catalog)

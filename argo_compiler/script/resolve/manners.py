@@ -16,6 +16,8 @@ from argo_compiler.script.syntax.tree import orders
 from argo_compiler.script.syntax.tree.manner import Manner
 from argo_compiler.script.syntax.tree.orders import ScriptOrder
 
+_NOTHING = Manner()
+
 
 class Manners:
     """What is said of orders besides what they do."""
@@ -79,7 +81,7 @@ class Manners:
 
     def around(self, order: ScriptOrder, nodes: Sequence[ProgramNode]) -> list[ProgramNode]:
         """The nodes with a wait before them, in the case that is said of them only."""
-        manner = order.manner or Manner()
+        manner = order.manner or _NOTHING
         if manner.delay is not None:
             nodes = [making.wait(WaitRule(duration=manner.delay), order.span), *nodes]
         if manner.condition is None:

@@ -216,12 +216,14 @@ def depth(block: ProgramBlock) -> int:
 def inner_blocks(node: ProgramNode) -> tuple[ProgramBlock, ...]:
     """The blocks of a node, in order."""
     match node:
+        case Do(failure=None, missed=None):
+            return ()  # most nodes
+        case Do():
+            return tuple(b for b in (node.failure, node.missed) if b is not None)
         case Choice():
             return node.then, node.otherwise
         case ProgramRound():
             return (node.body,)
-        case Do():
-            return tuple(b for b in (node.failure, node.missed) if b is not None)
     return ()
 
 

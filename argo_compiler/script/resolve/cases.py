@@ -115,9 +115,8 @@ class Cases:
             hint = "write this condition before the `otherwise`"
             self.diagnostics.refuse("second-route", message, case.span, hint)
         target = None if condition.negated else self.branches.target(case.orders)
-        leads = target is not None and target is not Ahead.END
-        if leads and isinstance(do, Do) and do.failure is None and do.missed is None:
-            assert target is not None
+        plain = isinstance(do, Do) and do.failure is None and do.missed is None
+        if target is not None and isinstance(do, Do) and plain:
             way = Way(alternatives, target, case.span)
             do.ways.append(way)
             self.context.choice = way

@@ -9,6 +9,7 @@ from argo_compiler.diagnostics import Diagnostic, Severity, Span
 from argo_compiler.diagnostics.subject import subject_of
 from argo_compiler.il import Action, Group, Mission, Task, Transition
 from argo_compiler.il.grouping import GroupNesting
+from argo_compiler.script.write.ends import unlisted_ends
 from argo_compiler.script.write.places import Places
 from argo_compiler.script.write.rounds import FloorPatrol, RoundNames, limits, patrols
 from argo_compiler.script.write.tasks import command, manners
@@ -66,8 +67,11 @@ class _Writer:
     before it in the mission are."""
 
     def __init__(self, mission: Mission, catalog: Catalog, places: Places) -> None:
+        self.ends = unlisted_ends(mission, catalog)
+        listed = tuple(task for task in mission.tasks if task.name not in self.ends)
+        mission = mission.model_copy(update={"tasks": listed})
         self.mission = mission
-        self.tasks = mission.tasks
+        self.tasks = listed
         self.catalog = catalog
         self.places = places
         self.layout = GroupNesting.of(mission)
@@ -140,7 +144,8 @@ class _Writer:
         inner = self.layout.innermost[i]
         group = "" if inner is None else self.layout.ranges[inner].group.name
         yield ",\n".join([said, *manners(task, group)])
-        yield from ways(task, Around(self.following[i], bool(self.layout.ending[i]), self.steps))
+        ends_round = bool(self.layout.ending[i])
+        yield from ways(task, Around(self.following[i], ends_round, self.steps, self.ends))
 
     def _command(self, i: int, task: Task) -> str:
         if task.action is Action.START:

@@ -23,6 +23,8 @@ class Around:
     """whether a round ends with it"""
     steps: Mapping[str, int]
     """the steps of those tasks that can be named by one"""
+    ends: Mapping[str, str]
+    """the words for going to those tasks that have no step"""
 
 
 def ways(task: Task, around: Around) -> Iterator[str]:
@@ -71,7 +73,7 @@ def _rest(around: Around, conditional: bool, last: bool) -> str:
 
 
 def _jump(target: str, around: Around) -> str:
-    return f"go to {step_of(target, around.steps)}"
+    return around.ends.get(target) or f"go to {step_of(target, around.steps)}"
 
 
 def step_of(task: str, steps: Mapping[str, int]) -> str:

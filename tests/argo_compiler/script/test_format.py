@@ -315,3 +315,52 @@ def test_what_is_said_back_is_the_same_mission(tangled: bool, catalog: Catalog) 
         assert read(text, catalog) == bare(mission)
 
     read_again()
+
+
+@pytest.mark.parametrize(
+    ("script", "said"),
+    [
+        (
+            "1. Check #1. If it is above 4, end the mission.\n2. Check #4.",
+            "2. Check checkpoint #1. If checkpoint #1 is above 4, end the mission.\n"
+            "3. Check checkpoint #4.\n",
+        ),
+        (
+            "1. Check #1. If it is above 4, abort. Otherwise dock in area 2.\n2. Go home.",
+            "2. Check checkpoint #1.\n"
+            "   If checkpoint #1 is above 4, end the mission.\n"
+            "   Otherwise return to the docking station in starting area 2.\n"
+            "3. Return to the docking station in starting area 1.\n",
+        ),
+        (
+            "1. Check #1. If it is above 4, go home.\n2. Check #4.\n3. Repeat steps 1 and 2 twice.",
+            "2. Check checkpoint #1.\n"
+            "   If checkpoint #1 is above 4, return to the docking station in starting area 1.\n"
+            "3. Check checkpoint #4.\n",
+        ),
+    ],
+)
+def test_ends_in_one_case_are_said_in_words(script: str, said: str, catalog: Catalog) -> None:
+    text = assert_kept(read(f"Start in starting area 1.\n{script}", catalog), catalog)
+    assert said in text
+    assert '"END"' not in text
+    assert '"DOCK"' not in text
+
+
+@pytest.mark.parametrize(
+    ("name", "way", "velocity"),
+    [("home", "home", None), ("DOCK (2)", "DOCK (2)", None), ("DOCK", "DOCK", 0.2)],
+)
+def test_an_end_that_no_words_make_is_a_step(
+    name: str, way: str, velocity: float | None, catalog: Catalog
+) -> None:
+    mission = read("Start in starting area 1.\nCheck #1. If it is above 4, go home.", catalog)
+    first, measure, dock = mission.tasks
+    to_dock = measure.transitions[0].model_copy(update={"target": way})
+    tasks = (
+        first,
+        measure.model_copy(update={"transitions": (to_dock,)}),
+        dock.model_copy(update={"name": name, "velocity": velocity}),
+    )
+    text = assert_kept(mission.model_copy(update={"tasks": tasks}), catalog)
+    assert f'"{name}": go to starting area 1' in text

@@ -19,8 +19,10 @@ from argo_compiler.script.syntax.words.prose import Prose, begins, either
 
 _SAYING = NAMED | {*VERBS, *ASKING, "PLACE", "FLOOR_NAME", "EVENT", "IT", "THEM", "ALL"}
 _HEADING = frozenset(["WORD", "NUMBER", "ORDINAL", "FLOOR", "FLOOR_NAME", "TIME_WORD", "STEP"])
-_FURTHER = frozenset(["TIME_WORD", "ORDINAL", "COLON", "ALL", "BOTH", "EVERYTHING", "BEFORE"])
-"""words of these types are in no reason"""
+_FURTHER = frozenset(
+    ["TIME_WORD", "ORDINAL", "COLON", "ALL", "BOTH", "EVERYTHING", "BEFORE", "FLOOR", "FLOOR_NAME"]
+)
+"""words of these types are in no reason; `which hang on floor 2` says which are meant"""
 _MOST_REASONS = 3
 """in a sentence"""
 _LONGEST_TITLE = 14
@@ -152,7 +154,8 @@ class Asides:
         for cut in islice(cuts, _MOST_REASONS):
             comma = content.find(",", cut.end())
             end = comma if comma > 0 else len(content)
-            for behind in (len(content), end):
+            named = self.asking.names(text[end:])
+            for behind in (end,) if named else (len(content), end):
                 aside = text[cut.end() : behind].strip()
                 said = aside[len(aside.content.split()[0]) :]
                 if not self.asking.asks(said) and not _FURTHER & {*self.understanding.types(said)}:

@@ -108,6 +108,11 @@ def combined(part: RulePart, manners: Iterable[Manner]) -> Manner | None:
     """All of them in one; what is said twice is an error."""
     values: dict[str, Any] = {}
     for manner in manners:
+        asked = "condition" in values or "until" in values
+        if asked and (manner.times is not None or manner.duration is not None):
+            message = "this can say how often or how long the condition has to hold, or the order"
+            hint = "write it before the condition: `check #4 twice if it is above 5`"
+            part.error("ambiguous-manner", message, hint)
         for field in fields(manner):
             value = getattr(manner, field.name)
             if value == field.default:

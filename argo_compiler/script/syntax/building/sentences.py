@@ -18,7 +18,14 @@ from argo_compiler.script.syntax.text.source import Diagnostics, ScriptText
 from argo_compiler.script.syntax.tree.conditions import SaidCondition
 from argo_compiler.script.syntax.tree.facts import Fact
 from argo_compiler.script.syntax.tree.nouns import Labelled
-from argo_compiler.script.syntax.tree.orders import Case, Measure, Rest, ScriptOrder, Sentence
+from argo_compiler.script.syntax.tree.orders import (
+    Amend,
+    Case,
+    Measure,
+    Rest,
+    ScriptOrder,
+    Sentence,
+)
 from argo_compiler.script.syntax.words.word import Word
 
 
@@ -33,6 +40,8 @@ def _case(part: RulePart) -> Case:
     condition = part.first(SaidCondition)
     if condition is not None and part.the(Word).value == "unless":
         condition = replace(condition, negated=True)
+    if condition is not None and orders and isinstance(orders[0], Amend):
+        _require_joint(part, condition, orders[0])
     for order in orders[1:]:
         if ";" in order.joint:
             message = "this can be meant for this case only, or for any case"
@@ -45,6 +54,16 @@ def _case(part: RulePart) -> Case:
         rest=rest,
         chained=part.has("ELSE"),
     )
+
+
+def _require_joint(part: RulePart, condition: SaidCondition, manner: Amend) -> None:
+    """`If it is above 4 for 2 minutes, ...`: nothing says what the time is said of."""
+    before = part.children.index(condition) + 1
+    if part.children[before] is not manner:
+        return
+    message = "this can be said of the condition, or of what is done if it holds"
+    hint = "leave it out, or write it behind what is done: `if it is above 5, check #4 twice`"
+    part.diagnostics.error("ambiguous-manner", message, manner.span, hint)
 
 
 def _sentence(part: RulePart) -> Sentence | Fact:

@@ -109,3 +109,10 @@ def test_no_option_is_named(site):
     assert "--" not in str(refused.value)
     assert [d.remedies for d in refused.value.diagnostics] == [(Remedy.CHOOSE_START,)]
     assert import_mission(open_start, site, start_area=1).mission.start_area == 1
+
+
+@pytest.mark.parametrize(("speed", "codes"), [("5", ["site.faster-than-robot"]), ("0.2", [])])
+def test_a_speed_beyond_the_robots_own_is_warned_of(speed, codes, site):
+    script = SCRIPT.replace(b"checkpoint #2", f"checkpoint #2 at {speed} m/s".encode())
+    found = import_mission(Upload("plan.txt", script), site).warnings
+    assert [(d.code, d.span.line) for d in found] == [(code, 4) for code in codes]

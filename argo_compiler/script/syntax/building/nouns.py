@@ -152,5 +152,6 @@ RULES: dict[str, Make] = {
     "all": _all,
     "the_one": _the_one,
     "pronoun": _pronoun,
+    "the_same": _pronoun,
     "nouns": _nouns,
 }

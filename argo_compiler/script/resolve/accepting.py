@@ -48,7 +48,7 @@ _USED: Mapping[type[ScriptOrder], frozenset[str]] = {
     orders.Home: OF_TASKS | ROUND | _CASE,
     orders.VisitOrder: frozenset(["speed"]),
     orders.Start: OF_TASKS,
-    orders.WaitOrder: OF_TASKS - {"speed"} | _CASE | {"duration", "until", "pose"},
+    orders.WaitOrder: OF_TASKS - {"speed"} | _CASE | {"duration", "until", "pose", "person"},
     orders.Patrol: OF_TASKS - {"reading_limit", "object_id"} | ROUND | _CASE | {"order"},
     orders.Repeat: ROUND | {"time_limit", "order"},
     orders.Follow: ROUND | {"time_limit", "order", "by_importance"},

@@ -49,6 +49,8 @@ class Context:
     """the condition, or the task whose failure, `otherwise` belongs to"""
     spared: dict[str, Span] = field(default_factory=dict)
     """the checkpoints that are not to be measured, and where that is said"""
+    stays: Span | None = None
+    """where it is said that the robot stays there, if nothing is said of how long"""
     once: dict[str, Span] = field(default_factory=dict)
     """the checkpoints that are measured because another one is before or after them"""
     before: list[ProgramNode] = field(default_factory=list)

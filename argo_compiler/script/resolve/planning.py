@@ -27,6 +27,7 @@ from argo_compiler.script.resolve.repeating import Repeating
 from argo_compiler.script.resolve.sparing import check_spared
 from argo_compiler.script.resolve.starting import Starting
 from argo_compiler.script.resolve.tasks import TaskMaker
+from argo_compiler.script.resolve.waiting import staying
 from argo_compiler.script.syntax.text.source import RefusedError
 from argo_compiler.script.syntax.tree import orders
 from argo_compiler.script.syntax.tree.manner import Manner
@@ -111,7 +112,7 @@ class Planner:
 
     def _order(self, order: ScriptOrder, block: ProgramBlock) -> None:
         context = self.context
-        order = counted(order, context)
+        order = staying(counted(order, context), block, context)
         if self.done:
             hint = "move `Done!` to the end"
             self.diagnostics.refuse("after-done", "this comes after `Done!`", order.span, hint)

@@ -4,11 +4,27 @@ from dataclasses import replace
 
 from argo_compiler.il import EventKind, WaitRule
 from argo_compiler.script.resolve.context import Context
-from argo_compiler.script.resolve.program import Do, all_nodes
+from argo_compiler.script.resolve.program import Do, ProgramBlock, all_nodes, in_branch
 from argo_compiler.script.syntax.tree.conditions import Occurs
 from argo_compiler.script.syntax.tree.manner import Manner
-from argo_compiler.script.syntax.tree.orders import WaitOrder
+from argo_compiler.script.syntax.tree.orders import Plain, PlainWord, ScriptOrder, WaitOrder
 from argo_compiler.script.syntax.tree.script import ScriptHeader
+
+
+def staying(order: ScriptOrder, block: ProgramBlock, context: Context) -> ScriptOrder:
+    """`Stay there` is the end of the mission, unless another order comes behind it; then it has to
+    say how long."""
+    if context.stays is not None and not isinstance(order, Plain):
+        hint = "write `stay there for 90 s`, or move it to the end if the mission ends with it"
+        context.diagnostics.error("wait", "this does not say how long", context.stays, hint)
+        context.stays = None
+        context.fail()
+    if not isinstance(order, WaitOrder) or not order.stays or in_branch(block):
+        return order
+    if order.manner is not None or order.where is not None:
+        return order
+    context.stays = order.span
+    return Plain(span=order.span, word=PlainWord.END)
 
 
 def wait_rule(order: WaitOrder, context: Context) -> WaitRule:

@@ -81,7 +81,7 @@ class Asides:
             assert comma is not None
             end = start + comma.end()
         types = self.understanding.types(text[start:end])
-        short = len(text.content[start:end].split()) <= 6
+        short = len(text.content[start:end].split()) <= 8
         asks = {*types} & {*ASKING, *VERBS, "KIND"} or self.asking.names(text[start:end])
         return end if short and not asks else 0
 

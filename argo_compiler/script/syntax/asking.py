@@ -15,7 +15,7 @@ _MANNERS = frozenset(
         *("DURATION", "SPEED", "TIMES", "AT_MOST", "MOST_TIME", "MOST_TIMES", "WITHIN", "LATEST"),
         *("EARLIEST", "IF_TIME", "ANY_ORDER", "THIS_ORDER", "RETRY", "MAX_DURATION", "BACK_IN"),
         *("PRIORITY", "RANKED", "BY_IMPORTANCE", "ENDLESS", "FINISHING", "STOPPING", "SPARE"),
-        *("LEAVE_OUT", "ORDER_FREE", "SINCE_START", "ROUND_DRIVEN", "EXCEPT", "CANNOT"),
+        *("LEAVE_OUT", "ORDER_FREE", "ROUND_DRIVEN", "EXCEPT", "CANNOT"),
     ]
 )
 """how, when and how often"""

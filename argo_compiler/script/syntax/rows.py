@@ -165,9 +165,23 @@ class _Rows:
                 yield from (" ", _as(self.prose.say["optional"], cell))
             elif said not in expand(self.prose.no):
                 yield from (" ", cell)
+        if (cell := cells.get("needed")) is not None:
+            yield from self._unless_needed(cell)
         if (cell := cells.get("speed")) is not None:
             yield from (f" {self.prose.say['speed']} ", cell)
         if (cell := cells.get("remark")) is not None:
+            yield from (" ", cell)
+
+    def _unless_needed(self, cell: ScriptText) -> Iterator[str | ScriptText]:
+        """What a row says of its step under `Needed`, where `no` may mean two things."""
+        said = cell.content.lower()
+        if said in expand(self.prose.columns["optional"]):
+            yield from (" ", _as(self.prose.say["optional"], cell))
+        elif said in expand(self.prose.no) and said not in expand(self.prose.columns["needed"]):
+            message = f"`{cell.content}` may mean that this may be left out, or that it is left out"
+            hint = f"write `{self.prose.columns['optional'].split(' |')[0]}`, or leave the row out"
+            self.diagnostics.error("ambiguous-cell", message, cell.span(), hint)
+        elif said not in expand(f"{self.prose.yes} | {self.prose.columns['needed']}"):
             yield from (" ", cell)
 
 

@@ -28,6 +28,7 @@ _AMOUNTS = _RELATIONS | {"NUMBER", "QUANTITY"}
 _BEHIND_BETWEEN = ("JOINT", "SIGN", "RPAR", "WAIT", "COLON")
 _OPENING = frozenset(["JOINT", "IN_ANY_CASE", "BEFORE", "AFTER", "ELSE", "IN_ALL_OTHERS"])
 """what a sentence or a clause may begin behind"""
+_BETWEEN_FLOORS = ("JOINT", "ORDINAL", "ON", "IN")
 _LIMITS = {"TIMES": "MOST_TIMES", "DURATION": "MOST_TIME"}
 
 
@@ -127,6 +128,9 @@ def _limited(words: list[Word]) -> list[Word]:
         if word.type == "AT_MOST" and after is not None and after.type in _LIMITS:
             found.append(Word(_LIMITS[after.type], after.value, word.start, after.end))
             i += 1
+        elif word.type == "AT_MOST" and after is not None and _tries(found, after):
+            found.append(Word("MOST_TIMES", after.value, word.start, after.end))
+            i += 1
         elif word.type == "AT_MOST" and found and found[-1].type in _LIMITS:
             last = found.pop()
             found.append(Word(_LIMITS[last.type], last.value, last.start, word.end))
@@ -136,13 +140,18 @@ def _limited(words: list[Word]) -> list[Word]:
     return found
 
 
+def _tries(found: list[Word], after: Word) -> bool:
+    """`Try again up to two more times` is as often as `up to twice`."""
+    return after.type == "MORE" and any(word.type == "RETRY" for word in found)
+
+
 def _tells_order(words: list[Word], i: int) -> bool:
     """Whether an ordinal says only what comes when, and not which floor or gauge is meant:
     `first check ...`, `checkpoint 13 first, then ...`."""
     next_ = words[i + 1 : i + 3]
     if words[i].value == 1 and any(word.type in VERBS for word in next_[: 1 + _is_it(next_)]):
         return True
-    after = next((w for w in words[i + 1 :] if w.type not in ("JOINT", "ORDINAL")), None)
+    after = next((w for w in words[i + 1 :] if w.type not in _BETWEEN_FLOORS), None)
     listed = i + 1 < len(words) and words[i + 1].type in ("JOINT", "ORDINAL")
     return after is None or (after.type != "FLOOR" and listed)
 

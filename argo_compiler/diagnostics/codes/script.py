@@ -11,6 +11,14 @@ SCRIPT = {
         "A line comes after the protocol has said that it is done.",
         "Move it up, or remove the earlier `Done!`.",
     ),
+    "script.ambiguous-all": error(
+        "All of it can mean what was done so far, or all checkpoints of the site.",
+        "Write `repeat everything once more`, or `check all checkpoints`.",
+    ),
+    "script.ambiguous-and-or": error(
+        "`And` and `or` stand in one list, which can be read in two ways.",
+        "Write it as one of the two readings in the message.",
+    ),
     "script.ambiguous-case": error(
         "What stands behind a case can be meant for this case only, or for any.",
         "Write `, then ...` for the first, a sentence of its own for the second.",
@@ -21,6 +29,10 @@ SCRIPT = {
     "script.ambiguous-cut": error(
         "A word cut by text recognition can be read in more than one way.",
         "Write it without the tab as it is meant.",
+    ),
+    "script.ambiguous-demand": error(
+        "A demand can be one on what is measured before, or ask for it once more.",
+        "Say it where the checkpoint is measured.",
     ),
     "script.ambiguous-duration": error(
         "A duration can be read in two ways, or be that of each or of all together.",
@@ -147,6 +159,10 @@ SCRIPT = {
         "Write it behind `otherwise`, or behind what is done if a task fails.",
     ),
     "script.long-line": error("A line or cell is too long to be a script's.", "Shorten it."),
+    "script.long-wait": warning(
+        "A wait takes as long as the whole mission may take, or longer.",
+        "Wait for a shorter time, or give the mission more.",
+    ),
     "script.needless-exception": warning(
         "What is left out of some checkpoints is none of them anyway.",
         "Name the one that is meant, or leave the exception away.",
@@ -154,6 +170,9 @@ SCRIPT = {
     "script.no-area": error(
         "The sheet names no starting area.",
         "Name one in the sheet, or choose the areas to start and to end in.",
+    ),
+    "script.no-checkpoint": error(
+        "An exception leaves no checkpoint.", "Name those that are left."
     ),
     "script.no-effect": note(
         "Words such as a title, a greeting or a remark ask for nothing: the mission is the same "
@@ -216,6 +235,10 @@ SCRIPT = {
         "Only some of the tasks are to be done in any order.",
         "Say that the order is free, and what has to come before what.",
     ),
+    "script.pause": error(
+        "A pause is asked for between rounds that have conditions, or no known end.",
+        "Write the tasks and the waits out as often as they are done.",
+    ),
     "script.precedence": error(
         "The order that is written does not keep to what has to come before what. A warning where "
         "the order is free.",
@@ -239,6 +262,10 @@ SCRIPT = {
     "script.reaction": error(
         "A reaction has a response that does not exist, or two of them.",
         "Write one of those in the hint.",
+    ),
+    "script.remark": warning(
+        "A remark asks for something, and is not planned.",
+        "Write it without the word that makes it a remark, if it is an order.",
     ),
     "script.repeated-field": error("A field or title stands twice.", "Leave one of the two out."),
     "script.repeated-limit": error(
@@ -268,6 +295,9 @@ SCRIPT = {
     "script.self-move": error("A step is to stand before or after itself.", "Name another place."),
     "script.several-floors": error(
         "The robot is sent to several floors at a time.", "Write an order for each of them."
+    ),
+    "script.several-places": error(
+        "Two places are named where one is meant.", "Leave one of the two out."
     ),
     "script.speed": error("A speed is zero or no number.", "Write, say, `at 0.3 m/s`."),
     "script.speed-shared": warning(

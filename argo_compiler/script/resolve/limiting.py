@@ -65,9 +65,9 @@ def _limits(order: ScriptOrder, context: Context) -> Limits:
         message = f"this {what} is said to end, and not to"
         refuse("repeated-limit", message, span, "leave one of them out")
     if not limited and not manner.endless:
-        code = "endless-patrol" if what == "patrol" else "endless-repeat"
+        message = f"this {what} would never end"
         hint = "say how long or how often: `for 10 minutes`, `three times`, `endlessly`"
-        refuse(code, f"this {what} would never end", span, hint)
+        refuse("endless-patrol" if what == "patrol" else "endless-repeat", message, span, hint)
     return Limits(
         count=count,
         duration=manner.duration or 0.0,

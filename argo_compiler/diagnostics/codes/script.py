@@ -23,6 +23,9 @@ SCRIPT = {
         "What stands behind a case can be meant for this case only, or for any.",
         "Write `, then ...` for the first, a sentence of its own for the second.",
     ),
+    "script.ambiguous-cell": error(
+        "A cell of a table can be read in two ways.", "Write it as the hint shows."
+    ),
     "script.ambiguous-checkpoint": error(
         "Several checkpoints have the name that the script uses.", "Name it by its number."
     ),

@@ -80,9 +80,9 @@ class SentenceReader:
             self.note(text, "a remark")
             return []
         if self._is_stray(text, item):
-            self._ask_of_stray(text)
+            _ask_of_stray(text, self.listed, self.diagnostics)
             return [Unread(span=text.span())]
-        self.listed = self._kind_listed(text)
+        self.listed = _kind_listed(text, tuple(self.understanding.types(text)))
         stands_over = item.line.heading or text.content.endswith(":")
         if stands_over and self.preamble.introduces(text):
             return []
@@ -123,24 +123,6 @@ class SentenceReader:
         """Whether a line is a number alone, as a page's is, and no list says of what."""
         alone = item.line.mark is LineMark.NONE and text.content == item.text.content
         return alone and not self.fields.lists and self.understanding.types(text) == ("NUMBER",)
-
-    def _ask_of_stray(self, text: ScriptText) -> None:
-        number = text.content
-        message, hint = (
-            f"`{number}` may be checkpoint {number}",
-            f"write `check checkpoint {number}`",
-        )
-        if self.listed:
-            message += f", one more of the `{self.listed}` above it"
-            hint += f", or `{self.listed}:` over the list"
-        message, hint = f"{message}, or nothing at all", f"{hint}, or leave it out"
-        self.diagnostics.error("not-understood", message, text.span(), hint)
-
-    def _kind_listed(self, text: ScriptText) -> str:
-        """The words for the kind where a text is a checkpoint's kind, or that with its number."""
-        types = self.understanding.types(text)
-        listed = types[:1] == ("KIND",) and {*types[1:]} <= {"NUMBER", "HASH", "IDENT"}
-        return text.content.rstrip("0123456789#: ") if listed else ""
 
     def _node(self, text: ScriptText, reading: Reading) -> Said:
         self.begun = True
@@ -239,3 +221,22 @@ def _is_amend(node: Said) -> bool:
     if not isinstance(node, Sentence) or node.cases or not node.orders:
         return False
     return all(isinstance(order, Amend) for order in node.orders)
+
+
+def _ask_of_stray(text: ScriptText, listed: str, diagnostics: Diagnostics) -> None:
+    number = text.content
+    message, hint = (
+        f"`{number}` may be checkpoint {number}",
+        f"write `check checkpoint {number}`",
+    )
+    if listed:
+        message += f", one more of the `{listed}` above it"
+        hint += f", or `{listed}:` over the list"
+    message, hint = f"{message}, or nothing at all", f"{hint}, or leave it out"
+    diagnostics.error("not-understood", message, text.span(), hint)
+
+
+def _kind_listed(text: ScriptText, types: tuple[str, ...]) -> str:
+    """The words for the kind where a text is a checkpoint's kind, or that with its number."""
+    listed = types[:1] == ("KIND",) and {*types[1:]} <= {"NUMBER", "HASH", "IDENT"}
+    return text.content.rstrip("0123456789#: ") if listed else ""

@@ -666,3 +666,17 @@ def test_words_that_say_where_something_stands_are_read_where_they_are_true(
     text: str, catalog: Catalog
 ) -> None:
     assert measured(read(text, catalog)) == ["1", "4", "5", "8"]
+
+
+@pytest.mark.parametrize(
+    ("text", "asked"),
+    [
+        ("Check 1. If it is still above 4 after 5 minutes, check 8.", "that of the condition"),
+        ("Check 1 twice an hour.", "can't understand `hour`"),
+    ],
+)
+def test_a_time_that_is_of_something_else_is_asked_about(
+    text: str, asked: str, catalog: Catalog
+) -> None:
+    with pytest.raises(DiagnosticError, match=asked):
+        read(text, catalog)

@@ -38,6 +38,13 @@ def _case(part: RulePart) -> Case:
     elif part.has("LAST_ROUND"):
         rest = Rest.LAST_ROUND
     condition = part.first(SaidCondition)
+    late = orders[0].manner if orders else None
+    if condition is not None and late is not None and late.delay is not None:
+        behind = part.children[part.children.index(condition) + 1]
+        if not isinstance(behind, Word):
+            message = "this time can be that of the condition, or that before what is done"
+            hint = "write `if ..., wait 5 minutes and check ...`, or `wait 5 minutes` before it"
+            part.diagnostics.error("ambiguous-case", message, orders[0].span, hint)
     if condition is not None and part.the(Word).value == "unless":
         condition = replace(condition, negated=True)
     if condition is not None and orders and isinstance(orders[0], Amend):

@@ -62,7 +62,10 @@ def merged(words: list[Word]) -> list[Word]:
             word = Word("DURATION", length, word.start, after.end)
             i += 1
         elif word.type == "A_UNIT":
-            word = Word("DURATION", Length(word.value, word.value), word.start, word.end)
+            per = bool(found) and found[-1].type in ("TIMES", "TIME_WORD")  # `twice an hour`
+            word = Word(
+                "STRAY" if per else "DURATION", Length(word.value, word.value), word.start, word.end
+            )
         i += 1
         _add(word, after, found)
     return _last_if(_limited(_of_values(found)))

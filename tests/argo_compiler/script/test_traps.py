@@ -577,6 +577,12 @@ def test_one_is_one_of_them_and_not_checkpoint_1(condition: str, catalog: Catalo
             "1. Check #1. If it fails, go to step 3.\n2. Check #4.\n3. Check #8.",
         ),
         ("Check both #1 and #4.", "Check #1 and #4."),
+        ("Make three tours of the second floor.", "Patrol the second floor three times."),
+        ("We check #1, thanks a lot.", "Check #1."),
+        (
+            "Check #1 and #4. If #1 and #4 are both abnormal, check #8.",
+            "Check #1 and #4. If #1 and #4 are abnormal, check #8.",
+        ),
         ("Check both checkpoints 1 and 4.", "Check #1 and #4."),
         ("Prüfe sowohl #1 als auch #4.", "Check #1 and #4."),
         ("Check #1, then optionally check #4.", "Check #1. Check #4 if there is time."),

@@ -679,6 +679,9 @@ def test_words_that_say_where_something_stands_are_read_where_they_are_true(
     [
         ("Check 1. If it is still above 4 after 5 minutes, check 8.", "that of the condition"),
         ("Check 1 twice an hour.", "can't understand `hour`"),
+        ("Check 1. Whenever it is above 4, check 8.", "not at any time"),
+        ("Check 1. Immer wenn es über 4 liegt, prüfe 8.", "not at any time"),
+        ("Check 1, up to 3 attempts.", "can't understand `attempts`"),
     ],
 )
 def test_a_time_that_is_of_something_else_is_asked_about(

@@ -31,6 +31,7 @@ _MEANINGS: dict[str, Callable[..., Any]] = {
     "FLOOR": _COUNTS.__getitem__,
     "EVENT": lambda name: None if name == "obstacle" else EventKind(name),
     "MODE": Mode,
+    "IF": {"if": None, "whenever": "whenever"}.__getitem__,
     "THEM": {"all": None, "either": "either"}.__getitem__,
     "UNIT_S": _SECONDS.__getitem__,
     "RATE": _METRES_PER_SECOND.__getitem__,

@@ -45,10 +45,14 @@ def test_a_return(catalog):
         f"wait {CLEAR} for at most 5 minutes",
         "abort the mission and go on",
         "recharge until the all-clear",
-        f"wait {CLEAR} for 5 minutes for at most 6 minutes",
     ],
 )
 def test_what_can_not_be_or_is_open_is_an_error(catalog, said):
     with pytest.raises(DiagnosticError) as error:
         read(catalog, said)
     assert {d.code for d in error.value.diagnostics} == {"script.reaction"}
+
+
+def test_a_wait_with_two_times_is_asked_about(catalog):
+    with pytest.raises(DiagnosticError, match="ambiguous-manner"):
+        read(catalog, f"wait {CLEAR} for 5 minutes for at most 6 minutes")

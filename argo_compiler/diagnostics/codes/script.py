@@ -56,6 +56,10 @@ SCRIPT = {
         "A clause can be meant for the last of several orders only, or for each of them.",
         "Write it behind a list of what it is said of, or in two sentences.",
     ),
+    "script.ambiguous-measure": error(
+        "What was just measured is to be read, which may be meant as the same or as once more.",
+        "Leave it out, or write `check it again`.",
+    ),
     "script.ambiguous-number": error(
         "A number can be read in two ways, such as `1.200`.", "Write it as the hint shows."
     ),

@@ -219,7 +219,10 @@ class Planner:
             case PlainWord.END:
                 self._leave(Leave(Ahead.END, order.span), block)
             case PlainWord.GO_ON | PlainWord.REPORT:
-                pass  # every reading is reported, and what comes next is done anyway
+                done = "reported" if order.word is PlainWord.REPORT else "done next"
+                what = "every reading" if order.word is PlainWord.REPORT else "what comes behind"
+                message = f"{what} is {done} anyway, so that this has no effect"
+                self.diagnostics.note("no-effect", message, order.span)
             case _:
                 message = f"when is the robot to {order.word}?"
                 hint = "write `if a gas leak is detected, pause`, or `wait 5 minutes`"

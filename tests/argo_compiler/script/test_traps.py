@@ -679,6 +679,7 @@ def test_words_that_say_where_something_stands_are_read_where_they_are_true(
     [
         ("Check 1. If it is still above 4 after 5 minutes, check 8.", "that of the condition"),
         ("Check 1 twice an hour.", "can't understand `hour`"),
+        ("Check 4 and note the value.", "another measurement of it"),
         ("Check 1. Whenever it is above 4, check 8.", "not at any time"),
         ("Check 1. Immer wenn es über 4 liegt, prüfe 8.", "not at any time"),
         ("Check 1, up to 3 attempts.", "can't understand `attempts`"),
@@ -689,3 +690,9 @@ def test_a_time_that_is_of_something_else_is_asked_about(
 ) -> None:
     with pytest.raises(DiagnosticError, match=asked):
         read(text, catalog)
+
+
+@pytest.mark.parametrize("text", ["Check #1, report it.", "Check #1, then go on. Check #4."])
+def test_what_is_done_anyway_has_no_effect(text: str, catalog: Catalog) -> None:
+    found = import_script(f"Start in starting area 1.\n{text}", catalog).diagnostics
+    assert [d.code for d in found] == ["script.no-effect"]

@@ -17,7 +17,7 @@ from argo_compiler.script.syntax.grammar.parser import Branch
 from argo_compiler.script.syntax.text.source import Diagnostics, ScriptText
 from argo_compiler.script.syntax.tree.conditions import SaidCondition, Test
 from argo_compiler.script.syntax.tree.facts import Fact
-from argo_compiler.script.syntax.tree.nouns import Labelled
+from argo_compiler.script.syntax.tree.nouns import Labelled, Pronoun
 from argo_compiler.script.syntax.tree.orders import (
     Amend,
     Case,
@@ -107,9 +107,22 @@ def _joined(part: RulePart) -> tuple[ScriptOrder, ...]:
                     message = "this number may be a checkpoint's or that of a step"
                     hint = "write `check checkpoint 4` for the first, `4. ...` for the second"
                     part.diagnostics.error("ambiguous-number", message, last.span, hint)
+                if isinstance(last, Measure) and _is_same_reading(child):
+                    message = "this can be what was just measured, or another measurement of it"
+                    hint = "leave it out for the first, write `check it again` for the second"
+                    part.diagnostics.error("ambiguous-measure", message, child.span, hint)
                 found.append(child.joined(joint) if joint else child)
         joint = str(child.value) if isinstance(child, Word) and child.type == "NEXT" else ""
     return tuple(found)
+
+
+def _is_same_reading(order: ScriptOrder) -> bool:
+    """Whether an order measures what another one has just measured: `and note the value`."""
+    return (
+        isinstance(order, Measure)
+        and order.manner is None
+        and all(isinstance(noun, Pronoun) for noun in order.what.nouns)
+    )
 
 
 def _may_be_step(part: RulePart, order: ScriptOrder, joint: str) -> bool:

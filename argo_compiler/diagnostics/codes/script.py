@@ -281,6 +281,10 @@ SCRIPT = {
     "script.repeated-name": error(
         "More than one task has the same name.", "Give each task a name of its own."
     ),
+    "script.repeated-there": warning(
+        "Steps are repeated where they stand, not at the line that says so.",
+        "Write `repeat step 2 again` for doing them at that line once more.",
+    ),
     "script.respelled": warning(
         "A misspelt word was taken for one that is known.", "Check that it is read as it is meant."
     ),

@@ -5,6 +5,7 @@ from dataclasses import replace
 from typing import TYPE_CHECKING
 
 from argo_compiler.il import Action, OnFailure
+from argo_compiler.listing import listed
 from argo_compiler.script.resolve.branching import CaseBranches
 from argo_compiler.script.resolve.context import Context
 from argo_compiler.script.resolve.program import Do, ProgramBlock, leads_away
@@ -42,6 +43,7 @@ class Failures:
             message = "there is no task before this that could fail"
             hint = "write it behind the task that it is said of"
             self.diagnostics.refuse("no-task", message, case.span, hint)
+        self._require_told(recent, case)
         for order in case.orders:
             if isinstance(order, orders.Retry):
                 self.planner.order(order, block)
@@ -61,6 +63,18 @@ class Failures:
         do = recent[-1]
         do.failure = ProgramBlock(do)
         self.branches.plan(rest, do.failure)
+
+    def _require_told(self, recent: Sequence[Do], case: Case) -> None:
+        """Asks which task is meant, where one was to be measured in one case only."""
+        numbers = {do.object_id for do in recent}
+        last = self.context.memory.last
+        others = [c for c in last if str(c.id) not in numbers]
+        if not others or len(others) == len(last):
+            return
+        names = listed((f"{c.name} (#{c.id})" for c in last[:6]), "or")
+        message = f"this can be said of {names}"
+        hint = "say it behind the task that it is said of: `check checkpoint 4; if it fails, ...`"
+        self.diagnostics.refuse("ambiguous-pronoun", message, case.span, hint)
 
     def otherwise(self, do: Do, case: Case, block: ProgramBlock) -> bool:
         """Plans what is done if a task does not fail; False if a failure leads on to the same."""

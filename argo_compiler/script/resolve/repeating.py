@@ -38,6 +38,8 @@ class Repeating:
         else:
             points = () if order.steps is None else (order.steps.points[0], order.steps.points[-1])
             base = f"Repeat {' to '.join(str(p) for p in dict.fromkeys(points))}".rstrip()
+            if order.steps is not None:
+                self._say_where(order, order.steps, block)
             round_ = make_round(order, base, context, order.name)
             self.pending.append(Repetition(order, round_, context.step, len(context.step)))
             context.put([round_], block, block.last)
@@ -100,6 +102,18 @@ class Repeating:
         known = all(self.context.steps.get(p) for p in steps.points if isinstance(p, int))
         nodes = self.context.nodes_of(steps) if known else []
         return bool(nodes) and topmost(nodes, block)[-1:] != [block.last]
+
+    def _say_where(self, order: orders.Repeat, steps: Steps, block: ProgramBlock) -> None:
+        """Warns where steps that are repeated stand apart from the line that says so."""
+        if not all(isinstance(p, int) and self.context.steps.get(p) for p in steps.points):
+            return
+        tops = topmost(self.context.nodes_of(steps), block)
+        behind = block.last
+        if not tops or isinstance(behind, ProgramRound) or behind in tops:
+            return
+        message = "these steps are repeated where they stand, before those between them and this"
+        hint = "write `repeat step 2 again` for doing them here once more"
+        self.diagnostics.warning("repeated-there", message, order.span, hint)
 
     def _once_more(self, order: orders.Repeat, steps: Steps, block: ProgramBlock) -> None:
         """`4. Repeat step 2`: what it does is done here again."""

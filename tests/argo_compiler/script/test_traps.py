@@ -91,6 +91,16 @@ def bounds(mission: Mission, name: str) -> list[list[tuple[str | None, Condition
             "ambiguous-and-or",
             ["below 2, and #4 is above 2`", "above 4, or below 2"],
         ),
+        (
+            "Check #1. If it is above 5, check #8. If it fails, go home.",
+            "ambiguous-pronoun",
+            ["pressure gauge 1 (#1)", "pressure gauge 5 (#8)"],
+        ),
+        (
+            "Check 18 and 7. Check 7 before 18.",
+            "precedence",
+            ["'MEASURE 7' is to come before 'MEASURE 18'"],
+        ),
         ("Check valve #1.", "checkpoint-mismatch", ["checkpoint #1 is pressure gauge 1"]),
         ("Check pressure gauge #8.", "ambiguous-checkpoint", ["gauge 8 (#18)", "gauge 5 (#8)"]),
         ("Check level gauge no. R31.", "unknown-checkpoint", ["no liquid level gauge R31"]),
@@ -318,7 +328,7 @@ def test_otherwise_behind_conditions_that_exclude_each_other_is_of_all(catalog: 
 
 
 def test_otherwise_is_not_of_a_failure(catalog: Catalog) -> None:
-    text = "Check #1. If #1 is above 5, check #2. If it fails, check #3; otherwise check #4."
+    text = "Check #1. If #1 is above 5, wait 10 s. If it fails, check #3; otherwise check #4."
     with pytest.raises(DiagnosticError, match="of what"):
         read(text, catalog)
 
@@ -696,3 +706,17 @@ def test_a_time_that_is_of_something_else_is_asked_about(
 def test_what_is_done_anyway_has_no_effect(text: str, catalog: Catalog) -> None:
     found = import_script(f"Start in starting area 1.\n{text}", catalog).diagnostics
     assert [d.code for d in found] == ["script.no-effect"]
+
+
+def test_steps_that_are_repeated_apart_from_the_line_that_says_so(catalog: Catalog) -> None:
+    text = "1. Start in starting area 1.\n2. Check #1.\n3. Check #4.\n4. Repeat step {}."
+    there = import_script(text.format("2 twice"), catalog)
+    assert [d.code for d in there.diagnostics] == ["script.repeated-there"]
+    assert measured(there.mission) == ["1", "4"]
+    assert measured(import_script(text.format("2 again"), catalog).mission) == ["1", "4", "1"]
+    assert not import_script(text.format("3 twice"), catalog).diagnostics
+
+
+def test_what_comes_before_what_is_said_as_an_order(catalog: Catalog) -> None:
+    mission = read("Check 18, 7 and 9 in any order. Check 7 before checking 18.", catalog)
+    assert mission.before == (("MEASURE 7", "MEASURE 18"),)

@@ -18,7 +18,7 @@ from argo_compiler.script import import_script
 from tests.argo_compiler.script.conftest import CATALOG
 from tests.fuzz.laws import try_sentence
 from tests.fuzz.mutating import Composer, Mutator, Restructurer
-from tests.fuzz.sentences import Sayer, sayer
+from tests.fuzz.sentences import Sayer, sayer, text_of
 from tests.fuzz.trying import try_mission, try_script
 
 ROOT = Path(__file__).parents[2]
@@ -111,11 +111,12 @@ def fuzz_sentences(runs: range, seed: int) -> tuple[Counter[str], list[Failure]]
     for number in runs:
         rng = random.Random(f"{seed}:{number}")
         speaker.rng = rng
+        words = speaker.sentence()
         try:
-            outcome, breaches = try_sentence(speaker, rng)
+            outcome, breaches = try_sentence(words, speaker, rng)
         except Exception:
             outcomes["sentence: FAILED"] += 1
-            failures.append(Failure(number, b"", traceback.format_exc()))
+            failures.append(Failure(number, text_of(words).encode(), traceback.format_exc()))
             continue
         outcomes[f"sentence: {outcome}"] += 1
         for breach in breaches:

@@ -79,9 +79,8 @@ def unplaced(mission: Mission) -> object:
     return without(json.loads(mission.model_dump_json()))
 
 
-def try_sentence(sayer: Sayer, rng: random.Random) -> tuple[str, list[Breach]]:
+def try_sentence(words: list[Said], sayer: Sayer, rng: random.Random) -> tuple[str, list[Breach]]:
     """What became of a sentence, `mission` or `refused`, and the laws that it breaks."""
-    words = sayer.sentence()
     outcome, mission = outcome_of(words)
     if mission is None:
         return "refused", []

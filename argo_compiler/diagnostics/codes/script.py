@@ -126,6 +126,10 @@ SCRIPT = {
         "The quotation marks in front of a command have nothing between them.",
         "Write a name there, or leave them out.",
     ),
+    "script.empty-floor": warning(
+        "On one of several floors there is nothing of the kind that is to be done there.",
+        "Leave the floor out, or name another one.",
+    ),
     "script.empty-range": error(
         "A range of checkpoints has its numbers the wrong way round.",
         "Write the lower number first.",

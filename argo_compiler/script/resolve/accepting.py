@@ -39,6 +39,7 @@ OF_TASKS = frozenset(
 """what is said of each task of an order"""
 _CASE = frozenset(["delay", "condition"])
 _ONCE_MORE = frozenset(["times", "more"])
+_OF_MEETING = OF_TASKS - {"speed", "time_limit"} | _CASE
 _NOTHING: frozenset[str] = frozenset()
 
 _USED: Mapping[type[ScriptOrder], frozenset[str]] = {
@@ -119,7 +120,7 @@ def require_used(order: ScriptOrder, diagnostics: Diagnostics) -> None:
         diagnostics.refuse("stray-clause", message, order.span, hint)
     if order.manner is None:
         return
-    used = _USED[orders.WaitOrder] if meets else _USED.get(type(order), _NOTHING)
+    used = _OF_MEETING if meets else _USED.get(type(order), _NOTHING)
     given = said(order.manner)
     if isinstance(order, orders.WaitOrder) and given >= _ONCE_MORE and order.manner.times == 1:
         used |= _ONCE_MORE  # `wait again`

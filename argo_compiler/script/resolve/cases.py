@@ -44,7 +44,7 @@ class Cases:
         asks of, or what is measured in that case only."""
         memory = self.context.memory
         before = memory.last
-        if case.condition is None or case.chained:
+        if self.context.choice is not None and (case.condition is None or case.chained):
             memory.last = self.asked
         else:
             self.asked = before

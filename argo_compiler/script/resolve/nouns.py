@@ -137,6 +137,10 @@ class NounResolver:
             where = f" on floor {listed(map(str, floors), 'or')}" if floors else ""
             message = f"there is no {noun.kind}{where} on {self.lookup.catalog.site}"
             self.diagnostics.refuse("unknown-checkpoint", message, noun.span, "name another floor")
+        without = [floor for floor in floors if not any(c.floor == floor for c in found)]
+        if without:
+            message = f"there is no {noun.kind} on floor {listed(map(str, without), 'or')}"
+            self.diagnostics.warning("empty-floor", message, noun.span)
         if noun.count is not None and noun.count != len(found):
             said = self.diagnostics.source.said(noun.span)
             message = f"`{said}`: there are {len(found)}, {listed(map(told, found[:_SHOWN]))}"

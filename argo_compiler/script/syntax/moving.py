@@ -6,7 +6,7 @@ from functools import cache
 from typing import Any
 
 from argo_compiler.diagnostics import Span, span_at
-from argo_compiler.script.syntax.tree.manner import Manner
+from argo_compiler.script.syntax.tree.manner import Joints, Manner
 from argo_compiler.script.syntax.tree.node import Node
 from argo_compiler.script.syntax.words.unknown import Fill, Unknown, UnknownText
 
@@ -32,12 +32,12 @@ def mover(part: object) -> Move | None:
             return lambda lines, columns, figures: tuple(
                 [one if move is None else move(lines, columns, figures) for one, move in pairs]
             )
-        case Node() | Manner():
+        case Node() | Manner() | Joints():
             return _mover_of_node(part)
     return None
 
 
-def _mover_of_node(part: Node | Manner) -> Move:
+def _mover_of_node(part: Node | Manner | Joints) -> Move:
     type_: Any = type(part)
     same: list[tuple[_Fill, object]] = []
     moving: list[tuple[_Fill, Move]] = []

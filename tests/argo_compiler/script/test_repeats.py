@@ -57,6 +57,7 @@ FIGURED = [
     "Wait 2 h 15, then check checkpoints 2 to 7, but not checkpoint 4.",
     "Check the 2 valves on floor 3.",
     "If the battery drops below 25 %, return to the docking station.",
+    'Go to (1, 2, 0), with joints ["arm 1", "arm 2"] at [0.5, -1] velocities [0.1, 0.1].',
 ]
 
 

@@ -51,6 +51,22 @@ _BEGRENZT = f"{_GERMAN}Prüfe #1 und #4 dreimal für 5 Minuten.\n"
             "dauern.\nPrüfe #1.",
             f"Maximale Dauer: 20 min\n{_GERMAN}Prüfe #1.",
         ),
+        *(
+            (f"{_ENGLISH}Check all valves on {said}.", f"{_ENGLISH}Check #4, #5, #10 and #11.")
+            for said in (
+                "floors 1 to 3",
+                "floor 1 and on floors 2-3",
+                "floor 1, floor 2 and floor 3",
+            )
+        ),
+        *(
+            (f"{_GERMAN}Prüfe alle Ventile auf {said}.", f"{_GERMAN}Prüfe #4, #5, #10 und #11.")
+            for said in ("den Etagen 1 bis 3", "Etage 1, Etage 2 und Etage 3")
+        ),
+        (
+            f"{_ENGLISH}Go to floor 2 to valve R12 and check it.",
+            f"{_ENGLISH}Check valve R12 on floor 2.",
+        ),
         (f"{_ENGLISH}Check #1.\n\npage 2 of 3\n\nCheck #4.", f"{_ENGLISH}Check #1.\nCheck #4."),
         (f"Seite 1 von 2\n{_GERMAN}Prüfe #1.\nSeite 2/2", f"{_GERMAN}Prüfe #1."),
         (

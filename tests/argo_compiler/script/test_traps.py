@@ -693,6 +693,8 @@ def test_words_that_say_where_something_stands_are_read_where_they_are_true(
         ("Check 1. Whenever it is above 4, check 8.", "not at any time"),
         ("Check 1. Immer wenn es über 4 liegt, prüfe 8.", "not at any time"),
         ("Check 1, up to 3 attempts.", "can't understand `attempts`"),
+        ("Check 1. Go on here for at most 10 minutes. Check 4.", "a limit of time"),
+        ("Check 4 not before 5 min. Unless it is too late by importance: check 1.", "condition"),
     ],
 )
 def test_a_time_that_is_of_something_else_is_asked_about(
@@ -720,3 +722,19 @@ def test_steps_that_are_repeated_apart_from_the_line_that_says_so(catalog: Catal
 def test_what_comes_before_what_is_said_as_an_order(catalog: Catalog) -> None:
     mission = read("Check 18, 7 and 9 in any order. Check 7 before checking 18.", catalog)
     assert mission.before == (("MEASURE 7", "MEASURE 18"),)
+
+
+def test_a_floor_without_any_is_named(catalog: Catalog) -> None:
+    found = import_script("Start in area 1.\nCheck all level gauges on floors 1 and 4.", catalog)
+    assert [d.code for d in found.diagnostics] == ["script.empty-floor"]
+    assert "floor 4" in found.diagnostics[0].message
+
+
+def test_what_fails_behind_a_case_that_asks_of_the_same(catalog: Catalog) -> None:
+    text = (
+        "1. Check #1.\n2. Check #2. If it fails, return to the docking station.\n"
+        "3. Check #1.\n   In all other cases go on.\n"
+        "   If checkpoint #1 is unreadable, go to step 1.\n"
+        "   If it fails, return to the docking station.\n4. Check #4."
+    )
+    assert read(text, catalog).tasks[3].on_failure is OnFailure.RETURN

@@ -17,6 +17,8 @@ from argo_compiler.script.syntax.tree.places import (
 from argo_compiler.script.syntax.words.word import Word
 
 _RADIANS = pi / 180
+_MOST_FLOORS = 100
+"""of a range; no site has more"""
 
 
 def _area(part: RulePart) -> AreaLocation:
@@ -49,12 +51,23 @@ def _floors(part: RulePart) -> tuple[FloorName, ...]:
             number = NamedFloor(word.value)
         if number is not None:
             found.append(FloorName(span=part.text.span(word.start, word.end), number=number))
+    if part.has("UPTO", "DASH"):
+        return _range_of_floors(part, *found)
     if len(found) > 1 and not part.has("ORDINAL") and not _plural(part):
         said = " and ".join(str(floor.number) for floor in found)
         message = f"can't tell whether `{said}` are both floors"
         hint = f"write `floors {said}`, or name what else is meant: `checkpoint 4`"
         part.error("ambiguous-floor", message, hint)
     return tuple(found)
+
+
+def _range_of_floors(part: RulePart, first: FloorName, last: FloorName) -> tuple[FloorName, ...]:
+    """`floors 1 to 4`"""
+    between = range(int(first.number), int(last.number) + 1)
+    if not 1 < len(between) <= _MOST_FLOORS:
+        hint = "write the lower floor first: `floors 1 to 4`"
+        part.error("empty-range", f"`{part.said}` is no range of floors", hint)
+    return tuple(FloorName(span=part.span, number=number) for number in between)
 
 
 def _plural(part: RulePart) -> bool:

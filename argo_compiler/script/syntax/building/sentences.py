@@ -52,10 +52,10 @@ def _case(part: RulePart) -> Case:
             message = "a value is looked at where that is said, not at any time"
             hint = "write `if ...` behind each measurement that it is looked at after"
             part.diagnostics.error("ambiguous-case", message, condition.span, hint)
-    if condition is not None and part.the(Word).value == "unless":
-        condition = replace(condition, negated=True)
     if condition is not None and orders and isinstance(orders[0], Amend):
         _require_joint(part, condition, orders[0])
+    if condition is not None and part.the(Word).value == "unless":
+        condition = replace(condition, negated=True)
     for order in orders[1:]:
         if ";" in order.joint:
             message = "this can be meant for this case only, or for any case"

@@ -29,6 +29,8 @@ _BEHIND_BETWEEN = ("JOINT", "SIGN", "RPAR", "WAIT", "COLON")
 _OPENING = frozenset(["JOINT", "IN_ANY_CASE", "BEFORE", "AFTER", "ELSE", "IN_ALL_OTHERS"])
 """what a sentence or a clause may begin behind"""
 _BETWEEN_FLOORS = ("JOINT", "ORDINAL", "ON", "IN")
+_UPTO = ("TO", "UNTIL")
+"""`1 to 4`, `1 bis 4`"""
 _LIMITS = {"TIMES": "MOST_TIMES", "DURATION": "MOST_TIME"}
 
 
@@ -57,6 +59,8 @@ def merged(words: list[Word]) -> list[Word]:
         elif word.type == "BOTH" and _names_two(words[i + 1 : i + 8]):
             i += 1
             continue  # `both #1 and #4`
+        elif word.type in _UPTO and after is not None and _is_range_of_floors(found, after):
+            word = replace(word, type="UPTO")
         elif word.type == "UNIT_S" and after is not None and after.type == "NUMBER":
             length = _length(after.value, word.value)  # `not before minute 10`
             word = Word("DURATION", length, word.start, after.end)
@@ -69,6 +73,12 @@ def merged(words: list[Word]) -> list[Word]:
         i += 1
         _add(word, after, found)
     return _last_if(_limited(_of_values(found)))
+
+
+def _is_range_of_floors(found: list[Word], after: Word) -> bool:
+    """`floors 1 to 4`; in `go to floor 1 to valve R12` and `from floor 1 to floor 4` `to` leads
+    on."""
+    return after.type == "NUMBER" and [w.type for w in found[-2:]] == ["FLOOR", "NUMBER"]
 
 
 def _of_values(words: list[Word]) -> list[Word]:

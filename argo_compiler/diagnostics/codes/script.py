@@ -342,6 +342,10 @@ SCRIPT = {
     "script.stray-clause": error(
         "A part of the line belongs to nothing before it.", "Write it behind what it belongs to."
     ),
+    "script.title": note(
+        "A line over the script is taken for its title, which is the mission's designation.",
+        "Write what is to be done as a sentence; nothing else has to be done.",
+    ),
     "script.too-late": error(
         "What is done if it is too late follows no task that is due by a certain time.",
         "Write it behind such a task.",

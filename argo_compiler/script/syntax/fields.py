@@ -13,11 +13,12 @@ from argo_compiler.script.syntax.area_cells import AreaCells
 from argo_compiler.script.syntax.asides import Asides
 from argo_compiler.script.syntax.building.figures import seconds
 from argo_compiler.script.syntax.building.part import RulePart
+from argo_compiler.script.syntax.field_values import FieldValues
 from argo_compiler.script.syntax.text.source import Diagnostics, ScriptText
 from argo_compiler.script.syntax.tree import orders
 from argo_compiler.script.syntax.tree.orders import Sentence
 from argo_compiler.script.syntax.tree.places import Coordinates, Steps
-from argo_compiler.script.syntax.tree.script import AreaChosen, ScriptHeader, Text
+from argo_compiler.script.syntax.tree.script import AreaChosen, Text
 from argo_compiler.script.syntax.understanding import Understanding
 from argo_compiler.script.syntax.words.joints import VERBS
 from argo_compiler.script.syntax.words.lexer import unquoted
@@ -40,19 +41,17 @@ _SAME = {"start_area": "initial_position", "end_area": "end_of_mission"}
 
 @dataclass
 class ScriptFields:
-    """Reads fields. Mutable: the header grows field by field."""
+    """Reads fields. Mutable: `first` and `last` grow field by field."""
 
     understanding: Understanding
     asides: Asides
     diagnostics: Diagnostics
-    header: ScriptHeader = field(default_factory=ScriptHeader)
+    values: FieldValues
     first: list[Sentence] = field(default_factory=list)
     last: list[Sentence] = field(default_factory=list)
     """what is to be done at the very end: `Finish: at the front of the site`"""
     lists: bool = False
     """whether `Checkpoints:` stands above"""
-    _said: dict[str, tuple[Any, ScriptText]] = field(default_factory=dict)
-    """what the fields say, and where"""
 
     def __post_init__(self) -> None:
         self.prose = self.understanding.language.prose
@@ -96,9 +95,9 @@ class ScriptFields:
             case "nothing":
                 self._nothing(value, label)
             case "mode":
-                self.set(name, self._meaning(name, value, Mode), value)
+                self.values.set(name, self._meaning(name, value, Mode), value)
             case "order":
-                self.set(name, self._meaning(name, value, Order), value)
+                self.values.set(name, self._meaning(name, value, Order), value)
             case "max_duration":
                 self.duration(value)
             case "initial_position" | "end_of_mission":
@@ -107,8 +106,8 @@ class ScriptFields:
                 chosen = self.areas.chosen(value)
                 same = _SAME[name]
                 key = (chosen.area,) if chosen and chosen.area is not None else ()
-                if chosen is not None and self._is_new(same, key, value):
-                    setattr(self.header, name, chosen)
+                if chosen is not None and self.values.is_new(same, key, value):
+                    setattr(self.values.header, name, chosen)
             case "dock":
                 self._dock(value)
             case "current":
@@ -117,23 +116,7 @@ class ScriptFields:
                 self._left_out(value)
             case _:
                 text = self._text(value)
-                self.set(name, text, value, text and text.text)
-
-    def set(self, name: str, meaning: Any, value: ScriptText, key: Any = None) -> None:
-        """Keeps a field, unless it stands elsewhere with another value; None: it has an error.
-        The key is what tells two values apart, where the meaning has its place in it."""
-        if meaning is not None and self._is_new(name, meaning if key is None else key, value):
-            setattr(self.header, name, meaning)
-
-    def _is_new(self, name: str, key: Any, value: ScriptText) -> bool:
-        known, before = self._said.setdefault(name, (key, value))
-        if known == key:
-            return before is value
-        line = before.span().line
-        message = f"line {line} says `{before.content}`, and this says `{value.content}`"
-        hint = "leave one of the two out"
-        self.diagnostics.error("repeated-field", message, value.span(), hint)
-        return False
+                self.values.set(name, text, value, text and text.text)
 
     def _text(self, value: ScriptText) -> Text | None:
         said = " ".join(value.content.split())
@@ -172,7 +155,7 @@ class ScriptFields:
     def duration(self, value: ScriptText) -> None:
         """Reads the maximum duration."""
         if self.is_none(value):
-            self._is_new("max_duration", "none", value)
+            self.values.is_new("max_duration", "none", value)
             return
         found = self.understanding.words(value)
         lengths = [w for w in found if w.type in ("DURATION", "MOST_TIME")]
@@ -189,21 +172,21 @@ class ScriptFields:
         length = seconds(part, word)
         if self.diagnostics.errors == errors:
             node = Text(span=value.span(), text=value.content)
-            self.set("max_duration", (length, node), value, length)
+            self.values.set("max_duration", (length, node), value, length)
 
     def _place(self, name: str, value: ScriptText) -> None:
         """`docked in starting area 1 or 2`, or any other place."""
         if name == "end_of_mission" and self.is_none(value):
             chosen = AreaChosen(span=value.span(), area=None, as_planned=False)
-            if self._is_new(name, (), value):
-                self.header.end_area = chosen
+            if self.values.is_new(name, (), value):
+                self.values.header.end_area = chosen
             return
         where = self.understanding.location(value) if not self.areas.names_areas(value) else None
         if where is None or isinstance(where, tuple) or self.areas.names_dock(value):
             areas = self.areas.read(value)
-            self.set(name, areas, value, areas and areas.areas)
+            self.values.set(name, areas, value, areas and areas.areas)
             return
-        if not self._is_new(name, _plain(value), value):
+        if not self.values.is_new(name, _plain(value), value):
             return
         span = value.span()
         if name == "initial_position":
@@ -221,7 +204,7 @@ class ScriptFields:
         elif where is None and not self.is_none(value):
             self._no_value(value, "write `(3, -2.5, 0) heading 90 degrees`, or `none`")
         else:
-            self.header.dock_said, self.header.dock = True, where
+            self.values.header.dock_said, self.values.header.dock = True, where
 
     def _current(self, value: ScriptText) -> None:
         found = [w for w in self.understanding.words(value) if w.type != "STEP"]
@@ -233,7 +216,7 @@ class ScriptFields:
         if point is None:
             self._no_value(value, 'write a step or a name: `3`, `"MEASURE 4"`')
         else:
-            self.set("current", Steps(span=value.span(), points=(point,)), value, point)
+            self.values.set("current", Steps(span=value.span(), points=(point,)), value, point)
 
     def _left_out(self, value: ScriptText) -> None:
         found = [w for w in self.understanding.words(value) if not w.type.startswith("AND_")]
@@ -241,7 +224,7 @@ class ScriptFields:
         if len(names) != len([w for w in found if w.type != "JOINT"]) or not names:
             self._no_value(value, 'write names in quotation marks: `"MEASURE 4", "MEASURE 8"`')
         else:
-            self.set("left_out", names, value)
+            self.values.set("left_out", names, value)
 
     def _no_value(self, value: ScriptText, hint: str) -> None:
         message = f"can't understand `{value.content}` here"

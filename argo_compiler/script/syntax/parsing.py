@@ -9,6 +9,7 @@ from argo_compiler.diagnostics import DiagnosticError
 from argo_compiler.garbage_collector import collector_held
 from argo_compiler.script.syntax.asides import Asides
 from argo_compiler.script.syntax.cells import Cells
+from argo_compiler.script.syntax.field_values import FieldValues
 from argo_compiler.script.syntax.fields import ScriptFields
 from argo_compiler.script.syntax.kind_lists import KindLists
 from argo_compiler.script.syntax.labels import FieldLabels
@@ -55,7 +56,7 @@ def parse(
     understanding = Understanding(language, words, diagnostics)
     asides = Asides(understanding)
     labels = FieldLabels(understanding, diagnostics)
-    fields = ScriptFields(understanding, asides, diagnostics)
+    fields = ScriptFields(understanding, asides, diagnostics, FieldValues(diagnostics))
     reader = SentenceReader(understanding, asides, fields, labels, diagnostics)
     known = repeats(language.lexicon, words)
     return _Parser(understanding, asides, fields, labels, diagnostics, reader, known).script()
@@ -129,7 +130,7 @@ class _Parser:
         return Script(
             source_name=source.name,
             source_text=source.text,
-            header=self.fields.header,
+            header=self.fields.values.header,
             steps=(*first, *steps, *last),
             remarks=tuple(self.reader.remarks),
             diagnostics=self.diagnostics.by_place(),

@@ -30,7 +30,7 @@ class Preamble:
         if not _INTRODUCTION.fullmatch("".join(f"{type_} " for type_ in types)):
             return False
         order = Order.ANY if types[-1] == "ANY_ORDER" else Order.PRECISE
-        self.fields.set("order", order, text)
+        self.fields.values.set("order", order, text)
         return True
 
     def leaves_open(self, text: ScriptText) -> bool:
@@ -38,7 +38,7 @@ class Preamble:
         said = begins(self.fields.prose.left_open).match(text.content)
         if said is None or self.fields.areas.may_ask(text[said.end() :]):
             return False
-        self.fields.header.areas_open = Text(span=text.span(), text=text.content)
+        self.fields.values.header.areas_open = Text(span=text.span(), text=text.content)
         return True
 
     def says_whole(self, text: ScriptText) -> bool:
@@ -54,7 +54,7 @@ class Preamble:
         for word in self.understanding.words(text):
             if word.type in ("ANY_ORDER", "THIS_ORDER"):
                 order = Order.ANY if word.type == "ANY_ORDER" else Order.PRECISE
-                self.fields.set("order", order, text[word.start : word.end])
+                self.fields.values.set("order", order, text[word.start : word.end])
             elif word.type in ("DURATION", "MOST_TIME"):
                 self.fields.duration(text[word.start : word.end])
         return True

@@ -158,15 +158,14 @@ class SentenceReader:
     def _title(self, text: ScriptText, item: LineItem) -> list[Said] | None:
         """Takes a text for a title, if it may be one, and reads what stands behind a comma in it:
         `Evening round, at most 40 minutes`. None: it is none."""
-        header = self.fields.header
+        header = self.fields.values.header
         first = not self.begun and header.title is None and item.line.number is None
         if not first and not self._is_heading(text, item):
             return None
         titled = self.fields.behind(text) if first else None
         if titled is not None and self.asides.is_title(titled[0]):
             head, fields = titled
-            header.title = Text(span=head.span(), text=head.content)
-            self.note(head, "the title")
+            self._entitle(head)
             self.begun = True
             rest = self.fields.read(fields)
             return self.read(rest, item) if rest.content else []
@@ -180,15 +179,21 @@ class SentenceReader:
         else:
             return None
         if first:
-            header.title = Text(span=head.span(), text=head.content)
-        if not first or not self.asides.is_explicit_title(head):
-            self.note(head, "the title" if first else "a heading")
+            self._entitle(head)
+        else:
+            self.note(head, "a heading")
         said: list[Said] = []
         for part in behind:
             reading = self.understanding.read(part)
             if not self.preamble.whole_mission(part) and not isinstance(reading, StumbleError):
                 said.append(self._node(part, reading))
         return said
+
+    def _entitle(self, title: ScriptText) -> None:
+        self.fields.values.header.title = Text(span=title.span(), text=title.content)
+        if not self.asides.is_explicit_title(title):
+            message = f"`{title.content}` is taken for the title"
+            self.diagnostics.note("title", message, title.span())
 
     def _behind_title(self, text: ScriptText) -> list[ScriptText]:
         """The parts of what stands behind a title, if all of them make sense."""

@@ -19,6 +19,7 @@ from argo_compiler.script.write.text import INDENT, number, wrapped
 _ASSUMING = frozenset(
     [
         "script.dock-assumed",
+        "script.title",
         "script.healed",
         "script.priority-taken",
         "script.quantity",

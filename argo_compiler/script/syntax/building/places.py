@@ -51,7 +51,7 @@ def _floors(part: RulePart) -> tuple[FloorName, ...]:
             number = NamedFloor(word.value)
         if number is not None:
             found.append(FloorName(span=part.text.span(word.start, word.end), number=number))
-    if part.has("UPTO", "DASH"):
+    if part.has("UPTO", "DASH") and len(found) == 2:
         return _range_of_floors(part, *found)
     if len(found) > 1 and not part.has("ORDINAL") and not _plural(part):
         said = " and ".join(str(floor.number) for floor in found)
@@ -67,6 +67,7 @@ def _range_of_floors(part: RulePart, first: FloorName, last: FloorName) -> tuple
     if not 1 < len(between) <= _MOST_FLOORS:
         hint = "write the lower floor first: `floors 1 to 4`"
         part.error("empty-range", f"`{part.said}` is no range of floors", hint)
+        return first, last
     return tuple(FloorName(span=part.span, number=number) for number in between)
 
 
@@ -89,11 +90,20 @@ def _coordinates(part: RulePart) -> Coordinates:
         values = [0.0, 0.0]
     x, y, *z = values
     poses = part.every(dict)
-    height = next((p["z"] for p in poses if "z" in p), z[0] if z else None)
-    yaw = next((p["yaw"] for p in poses if "yaw" in p), 0.0)
-    floors = next((c for c in part.children if isinstance(c, tuple)), ())
+    heights = [*z, *(p["z"] for p in poses if "z" in p)]
+    yaws = [p["yaw"] for p in poses if "yaw" in p]
+    floors = [floor for c in part.children if isinstance(c, tuple) for floor in c]
+    for many, what in ((heights, "heights"), (yaws, "headings"), (floors, "floors")):
+        if len(many) > 1:
+            hint = "leave all but one of them out"
+            part.error("coordinates", f"these coordinates have {len(many)} {what}", hint)
     return Coordinates(
-        span=part.span, x=x, y=y, z=height, yaw=yaw, floor=floors[0] if floors else None
+        span=part.span,
+        x=x,
+        y=y,
+        z=heights[0] if heights else None,
+        yaw=yaws[0] if yaws else 0.0,
+        floor=floors[0] if floors else None,
     )
 
 

@@ -117,7 +117,14 @@ def data_model(xml: XmlWriter, hfsm: Hfsm, ids: ActionIds) -> None:
             for name in ("value", "time", "abnormal"):
                 xml.add("data", {"id": f"{name}_{k}", "expr": "0"})
         for state in hfsm.reactions:
-            xml.add("data", {"id": f"since_{state.reaction.event}", "expr": "0"})
+            xml.add(
+                "data",
+                {
+                    "id": f"since_{state.reaction.event}",
+                    "expr": "0",
+                    "argo:battery_below": state.reaction.battery_below,
+                },
+            )
             xml.add("data", {"id": f"over_{state.reaction.event}", "expr": "0"})
 
 

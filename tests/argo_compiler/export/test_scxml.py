@@ -224,6 +224,15 @@ def test_states_say_what_a_driver_needs():
     }  # fmt: skip
 
 
+@pytest.mark.parametrize("response", ["return", "report"])
+def test_the_level_of_the_battery_is_told(response):
+    react = reaction("low_battery", response, battery_below=0.37)
+    mission = Mission(tasks=(a("A"),), reactions=(react,), dock=HERE)
+    root = ET.fromstring(to_scxml(mission, lower(mission)))
+    levels = [e.get(f"{ARGO}battery_below") for e in root.iter(f"{{{NS['s']}}}data")]
+    assert [level for level in levels if level] == ["0.37"]
+
+
 def test_timers_of_the_engine():
     tasks = tuple(Task(name=n, action="MEASURE", object_id=n) for n in "AB")
     groups = (

@@ -71,6 +71,10 @@ SCRIPT = {
         "`Otherwise` can belong to the last of several conditions or to all of them.",
         "Write `otherwise, if ...`, or each condition in a step of its own.",
     ),
+    "script.ambiguous-priority": error(
+        "Numbers of priorities can be counted from the most important one, or from the least.",
+        "Write `high`, `medium` or `low`, or over a table's column which number is the highest.",
+    ),
     "script.ambiguous-pronoun": error(
         "A word such as `it` can mean several checkpoints.", "Name the one."
     ),

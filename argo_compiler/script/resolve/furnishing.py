@@ -29,6 +29,10 @@ class Furnishing:
             message = f"{manner.priority} is no priority of a task"
             hint = f"write a number from 1 to {_MOST_PRIORITY}"
             self.diagnostics.refuse("number", message, span, hint)
+        if manner.priority == 1:
+            message = "priority 1 can be meant as the highest, or as the lowest as it is without it"
+            hint = "write `with high priority`, or a greater number for what is more important"
+            self.diagnostics.error("ambiguous-priority", message, span, hint)
         if manner.rank is not None and manner.priority not in (None, manner.rank):
             message = "the priority is said twice"
             self.diagnostics.error("repeated-limit", message, span, "leave one of them out")

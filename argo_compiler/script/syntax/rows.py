@@ -10,6 +10,7 @@ from dataclasses import dataclass
 
 from argo_compiler.listing import listed
 from argo_compiler.script.syntax.asking import Asking
+from argo_compiler.script.syntax.priorities import Priorities, PriorityScale, scale_of
 from argo_compiler.script.syntax.text.source import Diagnostics, ScriptText, Source
 from argo_compiler.script.syntax.understanding import Understanding, quotes
 from argo_compiler.script.syntax.words.lexicon import expand
@@ -29,6 +30,7 @@ class _Heading:
 
     holds: str
     start: int
+    scale: PriorityScale = PriorityScale.OPEN
 
 
 def tables(
@@ -51,6 +53,7 @@ def tables(
                 headings = rows.headings(text, cut)
                 if headings is not None:
                     found[number] = text[:0]
+                    rows.begin(headings, cut, _below(source, number, cut))
         elif len(found) > _MOST_ROWS:
             message = f"tables have more than {_MOST_ROWS} rows; the rest is not read"
             span = source.line_text(number).span()
@@ -61,6 +64,14 @@ def tables(
         else:
             found[number] = rows.sentence(source.line_text(number), headings, cut)
     return found
+
+
+def _below(source: Source, number: int, cut: str) -> Iterator[ScriptText]:
+    """The rows of a table below the line of its headings."""
+    for at in range(number + 1, len(source.lines) + 1):
+        if cut not in source.lines[at - 1] or at > number + _MOST_ROWS:
+            return
+        yield source.line_text(at)
 
 
 def _cut_of(line: str) -> str:
@@ -81,6 +92,7 @@ class _Rows:
         self.prose = understanding.language.prose
         self.asking = Asking(understanding)
         self.diagnostics = diagnostics
+        self.priorities = Priorities(self.prose, diagnostics)
 
     def headings(self, text: ScriptText, cut: str) -> list[_Heading] | None:
         """The columns, if a line has the headings of a table."""
@@ -88,7 +100,12 @@ class _Rows:
         if cut != "|" and first and self.prose.column(first) is None:
             return None
         cells = list(_cells(text, cut))
-        known = [(self.prose.column(cell.content), at, cell) for at, cell in cells if cell.content]
+        scales = {at: scale_of(cell.content, self.prose) for at, cell in cells}
+        known = [
+            ("priority" if scales[at] else self.prose.column(cell.content), at, cell)
+            for at, cell in cells
+            if cell.content
+        ]
         if not (2 if cut in ";," else 1) <= len(known) <= _MOST_COLUMNS:
             return None
         strange = [cell for holds, _, cell in known if holds is None]
@@ -102,19 +119,21 @@ class _Rows:
         if not held & {"checkpoint", "object", "action"}:
             return None
         by_start = {at: holds or "nothing" for holds, at, _ in known}
-        return [_Heading(by_start.get(at, "nothing"), at) for at, _ in cells]
+        return [
+            _Heading(by_start.get(at, "nothing"), at, scales[at] or PriorityScale.OPEN)
+            for at, _ in cells
+        ]
+
+    def begin(self, headings: list[_Heading], cut: str, rows: Iterator[ScriptText]) -> None:
+        """Looks at the priorities of all rows: what each is worth hangs on the others."""
+        column = next((heading for heading in headings if heading.holds == "priority"), None)
+        if column is not None:
+            found = (_by_column(row, headings, cut).get("priority") for row in rows)
+            self.priorities.begin(column.scale, [cell.content for cell in found if cell])
 
     def sentence(self, text: ScriptText, headings: list[_Heading], cut: str) -> ScriptText:
         """The sentence of a row."""
-        cells: dict[str, ScriptText] = {}
-        for i, (at, cell) in enumerate(_cells(text, cut, len(headings))):
-            under = [h for h in headings if h.start <= at + 1]
-            heading = (
-                headings[min(i, len(headings) - 1)] if cut != "  " else (under or headings)[-1]
-            )
-            if cell.content:
-                before = cells.get(heading.holds)
-                cells[heading.holds] = cell if before is None else _joined([before, " ", cell])
+        cells = _by_column(text, headings, cut)
         if "remark" in cells and not self._asks(cells["remark"]):
             self._note(cells.pop("remark"))
         if "nothing" in cells:
@@ -157,8 +176,9 @@ class _Rows:
     def _behind(self, cells: dict[str, ScriptText]) -> Iterator[str | ScriptText]:
         """What a row says of its step: priority, whether it may be left out, speed."""
         if (cell := cells.get("priority")) is not None:
-            rank = self.prose.rank(cell.content)
-            yield from (f" {self.prose.say['priority']} ", _as(rank, cell) if rank else cell)
+            worth = self.priorities.worth(cell)
+            if worth != "1":
+                yield from (f" {self.prose.say['priority']} ", _as(worth, cell) if worth else cell)
         if (cell := cells.get("optional")) is not None:
             said = cell.content.lower()
             if said in expand(self.prose.yes):
@@ -183,6 +203,18 @@ class _Rows:
             self.diagnostics.error("ambiguous-cell", message, cell.span(), hint)
         elif said not in expand(f"{self.prose.yes} | {self.prose.columns['needed']}"):
             yield from (" ", cell)
+
+
+def _by_column(text: ScriptText, headings: list[_Heading], cut: str) -> dict[str, ScriptText]:
+    """The cells of a row that say something, by what their columns hold."""
+    found: dict[str, ScriptText] = {}
+    for i, (at, cell) in enumerate(_cells(text, cut, len(headings))):
+        under = [h for h in headings if h.start <= at + 1]
+        heading = headings[min(i, len(headings) - 1)] if cut != "  " else (under or headings)[-1]
+        if cell.content:
+            before = found.get(heading.holds)
+            found[heading.holds] = cell if before is None else _joined([before, " ", cell])
+    return found
 
 
 def _cells(

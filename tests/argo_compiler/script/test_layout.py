@@ -90,6 +90,33 @@ def test_what_a_table_says_of_its_steps(catalog: Catalog) -> None:
     assert (first.optional, second.optional) == (False, True)
 
 
+@pytest.mark.parametrize(
+    ("heading", "priorities"),
+    [
+        ("Priority (1 = highest)", [2, 3, 1]),
+        ("Priority (1 is the most important)", [2, 3, 1]),
+        ("Prio [1 = low, 3 = high]", [2, 1, 3]),
+        ("Priority: 3 = highest", [2, 1, 3]),
+        ("Importance - 5 means top priority", [2, 1, 3]),
+        ("Priorität (1 = am wichtigsten)", [2, 3, 1]),
+    ],
+)
+def test_numbers_of_priorities_count_as_the_heading_says(
+    heading: str, priorities: list[int], catalog: Catalog
+) -> None:
+    german = heading.startswith("Priorität")
+    point, start = ("Prüfpunkt", "Starte in Startbereich 1.") if german else ("Checkpoint", START)
+    rows = "\n".join(f"| #{k} | {n} |" for k, n in ((4, 2), (8, 1), (10, 3)))
+    table = f"| {point} | {heading} |\n|---|---|\n{rows}"
+    tasks = import_script(f"{start}\n{table}", catalog).mission.tasks
+    assert [task.priority for task in tasks[1:]] == priorities
+
+
+def test_numbers_of_priorities_are_asked_about_once(catalog: Catalog) -> None:
+    table = f"{START}\n| Checkpoint | Priority |\n| #4 | 2 |\n| #8 | 1 |"
+    assert [d.code for d in findings(table, catalog)] == ["script.ambiguous-priority"]
+
+
 def test_a_remark_in_a_table_may_say_something(catalog: Catalog) -> None:
     table = "Pos\tCP\tTag\tRemark\n1\t4\tvalve R25\ttwice\n2\t8\t\tonly if #4 is above 5 degrees"
     mission = import_script(f"{START}\n{table}", catalog).mission

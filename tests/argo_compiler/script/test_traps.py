@@ -693,6 +693,7 @@ def test_words_that_say_where_something_stands_are_read_where_they_are_true(
         ("Check 1. Whenever it is above 4, check 8.", "not at any time"),
         ("Check 1. Immer wenn es über 4 liegt, prüfe 8.", "not at any time"),
         ("Check 1, up to 3 attempts.", "can't understand `attempts`"),
+        ("Check 4 with priority 1, check 8 with priority 2.", "highest, or as the lowest"),
         ("Check 1. Go on here for at most 10 minutes. Check 4.", "a limit of time"),
         ("Check 4 not before 5 min. Unless it is too late by importance: check 1.", "condition"),
     ],

@@ -22,6 +22,9 @@ class Prose:
     """the headings of a table's columns, by what they hold"""
     ranks: Mapping[str, str]
     """words for a priority, by the number that they stand for"""
+    highest: str
+    """words behind a number that is the highest priority"""
+    lowest: str
     yes: str
     greeting: str
     closing: str
@@ -106,6 +109,14 @@ class Prose:
     def rank(self, said: str) -> str | None:
         """The priority that a word such as `high` stands for."""
         return next((n for n, text in self.ranks.items() if said.lower() in expand(text)), None)
+
+    def is_highest(self, said: str) -> bool | None:
+        """Whether words such as `= highest` or `is the lowest` stand for the highest of all; None
+        if they say something else."""
+        words = " ".join(re.findall(r"\w+", said.lower()))
+        if words in expand(self.highest):
+            return True
+        return False if words in expand(self.lowest) else None
 
 
 def either(text: str) -> str:

@@ -26,6 +26,9 @@ def _area(part: RulePart) -> AreaLocation:
     area, *others = (whole(part, w.value) for w in part.every(Word) if w.type == "NUMBER")
     if area in others:
         part.error("several-places", "this area is said and excluded", "leave one of the two out")
+    for other in others:
+        message = f"that it is not area {other} has no effect beside area {area}"
+        part.diagnostics.note("no-effect", message, part.span)
     return AreaLocation(span=part.span, area=area)
 
 

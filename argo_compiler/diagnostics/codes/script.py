@@ -71,6 +71,10 @@ SCRIPT = {
         "`Otherwise` can belong to the last of several conditions or to all of them.",
         "Write `otherwise, if ...`, or each condition in a step of its own.",
     ),
+    "script.ambiguous-place": error(
+        "The names of two places of the site differ in capitals or small words only.",
+        "Write the coordinates of the one that is meant.",
+    ),
     "script.ambiguous-priority": error(
         "Numbers of priorities can be counted from the most important one, or from the least.",
         "Write `high`, `medium` or `low`, or over a table's column which number is the highest.",

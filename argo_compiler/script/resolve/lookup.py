@@ -5,7 +5,7 @@ from collections.abc import Collection, Iterable
 
 from rapidfuzz.distance import OSA
 
-from argo_compiler.catalog import Area, Catalog, CheckpointInfo, CheckpointKind, Floor
+from argo_compiler.catalog import Area, Catalog, CheckpointInfo, CheckpointKind, Floor, Place
 from argo_compiler.diagnostics import Span
 from argo_compiler.listing import listed
 from argo_compiler.model import Pose
@@ -13,6 +13,7 @@ from argo_compiler.script.syntax.text.source import Diagnostics
 from argo_compiler.script.syntax.text.spelling import nearest
 from argo_compiler.script.syntax.tree.nouns import Kind, Quantity
 from argo_compiler.script.syntax.tree.places import FloorName, NamedFloor, PlaceLocation
+from argo_compiler.script.syntax.words.language import place_key
 
 _QUANTITIES = {
     CheckpointKind.PRESSURE_GAUGE: (Quantity.PRESSURE,),
@@ -128,9 +129,15 @@ class Lookup:
     def place(self, location: PlaceLocation) -> Pose:
         """The pose of the named place; small words and the site's own name make no difference."""
         said = self._place_key(location.name)
-        places = {self._place_key(place.name): place for place in self.catalog.places}
-        if place := places.get(said):
-            return place.pose
+        places: dict[str, Place] = {}
+        for place in self.catalog.places:
+            other = places.setdefault(self._place_key(place.name), place)
+            if other is not place and self._place_key(place.name) == said:
+                message = f"`{location.name}` may be the place `{other.name}` or `{place.name}`"
+                hint = "write its coordinates, or give one of them another name on the site"
+                self.diagnostics.refuse("ambiguous-place", message, location.span, hint)
+        if found := places.get(said):
+            return found.pose
         alike = [key for key in places if _same_place(said, key)]
         if len(alike) == 1:
             place = places[alike[0]]
@@ -144,7 +151,7 @@ class Lookup:
         self.diagnostics.refuse("unknown-place", message, location.span, hint)
 
     def _place_key(self, name: str) -> str:
-        return " ".join(word for word in name.lower().split() if word not in self._unsaid)
+        return place_key(name, self._unsaid)
 
 
 def told(checkpoint: CheckpointInfo) -> str:

@@ -9,6 +9,7 @@ from argo_compiler.diagnostics import DiagnosticError
 from argo_compiler.garbage_collector import collector_held
 from argo_compiler.script.syntax.asides import Asides
 from argo_compiler.script.syntax.cells import Cells
+from argo_compiler.script.syntax.field_reading import FieldReader
 from argo_compiler.script.syntax.field_values import FieldValues
 from argo_compiler.script.syntax.fields import ScriptFields
 from argo_compiler.script.syntax.kind_lists import KindLists
@@ -56,7 +57,7 @@ def parse(
     understanding = Understanding(language, words, diagnostics)
     asides = Asides(understanding)
     labels = FieldLabels(understanding, diagnostics)
-    fields = ScriptFields(understanding, asides, diagnostics, FieldValues(diagnostics))
+    fields = ScriptFields(FieldReader(understanding, asides, diagnostics, FieldValues(diagnostics)))
     reader = SentenceReader(understanding, asides, fields, labels, diagnostics)
     known = repeats(language.lexicon, words)
     return _Parser(understanding, asides, fields, labels, diagnostics, reader, known).script()
@@ -125,12 +126,12 @@ class _Parser:
         items = items_of(lines_of(texts), sense, language.words)
         steps = list(self._steps(KindLists(self.understanding, self.reader.note).told(items)))
         PlacingCheck(self.diagnostics).steps(steps)
-        first = [_step_of(sentence) for sentence in self.fields.first]
-        last = [_step_of(sentence) for sentence in self.fields.last]
+        first = [_step_of(sentence) for sentence in self.fields.reader.first]
+        last = [_step_of(sentence) for sentence in self.fields.reader.last]
         return Script(
             source_name=source.name,
             source_text=source.text,
-            header=self.fields.values.header,
+            header=self.fields.reader.values.header,
             steps=(*first, *steps, *last),
             remarks=tuple(self.reader.remarks),
             diagnostics=self.diagnostics.by_place(),

@@ -4,7 +4,7 @@ import re
 from dataclasses import dataclass
 
 from argo_compiler.il import Order
-from argo_compiler.script.syntax.fields import ScriptFields
+from argo_compiler.script.syntax.field_reading import FieldReader
 from argo_compiler.script.syntax.text.source import ScriptText
 from argo_compiler.script.syntax.tree.script import Text
 from argo_compiler.script.syntax.understanding import Understanding
@@ -22,7 +22,7 @@ class Preamble:
     """Reads such sentences into the header's fields."""
 
     understanding: Understanding
-    fields: ScriptFields
+    fields: FieldReader
 
     def introduces(self, text: ScriptText) -> bool:
         """Reads the sentence over the steps: `Control the checkpoints in this precise order:`."""

@@ -12,6 +12,7 @@ from argo_compiler.script.syntax.lines import LineMark
 from argo_compiler.script.syntax.placing import placed_in
 from argo_compiler.script.syntax.preamble import Preamble
 from argo_compiler.script.syntax.text.source import Diagnostics, ScriptText
+from argo_compiler.script.syntax.titles import FoundTitle, Titles
 from argo_compiler.script.syntax.tree.facts import Fact
 from argo_compiler.script.syntax.tree.orders import Amend, Sentence, Start
 from argo_compiler.script.syntax.tree.script import Text, Unread
@@ -41,7 +42,10 @@ class SentenceReader:
     """`Pressure gauges`, if that is what was read last"""
 
     def __post_init__(self) -> None:
-        self.preamble = Preamble(self.understanding, self.fields)
+        self.preamble = Preamble(self.understanding, self.fields.reader)
+        self.titles = Titles(
+            self.understanding, self.asides, self.fields, self.labels, self.preamble
+        )
 
     def note(self, text: ScriptText, what: str) -> None:
         """Says that a text has no effect."""
@@ -147,78 +151,38 @@ class SentenceReader:
         if free and self.asides.is_small_talk(text):
             self.note(text, "a remark")
             return []
-        titled = self._title(text, item)
-        if titled is not None:
-            return titled
+        header = self.fields.reader.values.header
+        first = not self.begun and header.title is None and item.line.number is None
+        title = self.titles.found(text, item, first)
+        if title is not None:
+            return self._entitled(title, item, first)
         if not self.labels.is_unknown(text):
             not_understood(text, stumble, self.understanding, self.diagnostics)
         self.begun = True
         return [Unread(span=text.span())]
 
-    def _title(self, text: ScriptText, item: LineItem) -> list[Said] | None:
-        """Takes a text for a title, if it may be one, and reads what stands behind a comma in it:
-        `Evening round, at most 40 minutes`. None: it is none."""
-        header = self.fields.values.header
-        first = not self.begun and header.title is None and item.line.number is None
-        if not first and not self._is_heading(text, item):
-            return None
-        titled = self.fields.behind(text) if first else None
-        if titled is not None and self.asides.is_title(titled[0]):
-            head, fields = titled
-            self._entitle(head)
-            self.begun = True
-            rest = self.fields.read(fields)
-            return self.read(rest, item) if rest.content else []
-        if self.asides.is_title(text):
-            head, behind = text, []
-        elif first and "," in text.content:
-            head = text[: text.content.index(",")]
-            behind = self._behind_title(text[len(head.content) + 1 :].strip())
-            if not self.asides.is_title(head) or not behind:
-                return None
-        else:
-            return None
+    def _entitled(self, title: FoundTitle, item: LineItem, first: bool) -> list[Said]:
+        """Keeps a title, and reads what stands behind it."""
+        self.begun = True
         if first:
-            self._entitle(head)
+            self._entitle(title.head)
         else:
-            self.note(head, "a heading")
+            self.note(title.head, "a heading")
+        if title.fields is not None:
+            rest = self.fields.read(title.fields)
+            return self.read(rest, item) if rest.content else []
         said: list[Said] = []
-        for part in behind:
+        for part in title.parts:
             reading = self.understanding.read(part)
             if not self.preamble.whole_mission(part) and not isinstance(reading, StumbleError):
                 said.append(self._node(part, reading))
         return said
 
     def _entitle(self, title: ScriptText) -> None:
-        self.fields.values.header.title = Text(span=title.span(), text=title.content)
+        self.fields.reader.values.header.title = Text(span=title.span(), text=title.content)
         if not self.asides.is_explicit_title(title):
             message = f"`{title.content}` is taken for the title"
             self.diagnostics.note("title", message, title.span())
-
-    def _behind_title(self, text: ScriptText) -> list[ScriptText]:
-        """The parts of what stands behind a title, if all of them make sense."""
-        commas = [i for i, sign in enumerate(text.content) if sign == ","]
-        ends = [*commas, len(text.content)]
-        parts = [
-            text[a:b].strip() for a, b in zip([0, *(c + 1 for c in commas)], ends, strict=True)
-        ]
-        for behind in (parts, [text]):
-            if all(self._makes_sense(part) for part in behind):
-                return behind
-        return []
-
-    def _makes_sense(self, text: ScriptText) -> bool:
-        return self.preamble.says_whole(text) or self.understanding.fits(text)
-
-    def _is_heading(self, text: ScriptText, item: LineItem) -> bool:
-        """Whether a line stands over others: marked as a heading, or with items of its own."""
-        line = item.line
-        whole = text.content == item.text.content.rstrip(".!")
-        if self.labels.has_value(text):
-            return False
-        return line.heading or (
-            whole and line.number is None and (bool(item.items) or text.content.endswith(":"))
-        )
 
 
 def _is_amend(node: Said) -> bool:

@@ -5,7 +5,7 @@ from pathlib import Path
 
 import pytest
 
-from argo_compiler.catalog import Catalog
+from argo_compiler.catalog import Catalog, Place
 from argo_compiler.diagnostics import DiagnosticError, Severity
 from argo_compiler.il import (
     Afterwards,
@@ -639,3 +639,24 @@ def test_what_is_wrong_in_a_header(line: str, code: str, catalog: Catalog) -> No
 def test_an_unknown_label_names_the_known_ones(catalog: Catalog) -> None:
     with pytest.raises(DiagnosticError, match=r"there is no field `Battery`(?s:.*)`Mode:`"):
         import_script(PLAN + "Battery: full", catalog)
+
+
+@pytest.mark.parametrize(
+    "names", [("Gate", "gate"), ("Gate A", "the gate A"), ("Tür", "Tuer"), ("gate at umad", "Gate")]
+)
+def test_places_that_are_written_alike_are_asked_about(
+    names: tuple[str, str], catalog: Catalog
+) -> None:
+    poses = (Pose(x=-1, y=4, z=0), Pose(x=-2, y=4, z=0))
+    places = tuple(Place(name=n, pose=p) for n, p in zip(names, poses, strict=True))
+    catalog = catalog.model_copy(update={"places": (*catalog.places, *places)})
+    assert import_script(PLAN, catalog).diagnostics == ()
+    with pytest.raises(DiagnosticError) as raised:
+        import_script(f"{PLAN}5. Go to the {names[1]}\n", catalog)
+    (found,) = raised.value.diagnostics
+    assert found.code == "script.ambiguous-place"
+    assert found.span is not None
+    assert found.span.line == 6
+    assert all(f"`{name}`" in found.message for name in names)
+    assert found.hint is not None
+    assert "coordinates" in found.hint

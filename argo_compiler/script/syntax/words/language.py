@@ -1,7 +1,7 @@
 """The language of a script, with the names of its site."""
 
 import re
-from collections.abc import Iterable
+from collections.abc import Container, Iterable
 from dataclasses import dataclass
 from functools import cached_property, lru_cache
 from itertools import islice
@@ -42,13 +42,19 @@ def _language(lexicon: Lexicon, name: str, besides: str | None = None) -> Langua
     return Language(lexicon, loading.prose(name, besides=besides))
 
 
+def place_key(name: str, unsaid: Container[str]) -> str:
+    """The words of a place's name that tell it from others: those are asked about that have the
+    same ones."""
+    return " ".join(word for word in folded(name.lower()).split() if word not in unsaid)
+
+
 @lru_cache(maxsize=8)
 def _lexicons(places: tuple[str, ...]) -> tuple[Lexicon, Lexicon]:
     loading.compare(*loading.LANGUAGES)
     one, two = map(loading.lexicon, loading.LANGUAGES)
-    for place in places:
-        pieces = [word for word in place.lower().split() if word not in one.articles]
+    named = {place_key(place, one.articles): place for place in reversed(places)}
+    for key, place in named.items():
         for lexicon in (one, two):
-            lexicon.add(("PLACE", place), [" ".join(pieces)])
+            lexicon.add(("PLACE", place), [key])
     one.other, two.other = two, one
     return one, two

@@ -82,6 +82,10 @@ SCRIPT = {
     "script.ambiguous-pronoun": error(
         "A word such as `it` can mean several checkpoints.", "Name the one."
     ),
+    "script.ambiguous-repeat": error(
+        "How often something is done can be read in two ways.",
+        "Write it as one of the two readings in the message.",
+    ),
     "script.ambiguous-step": error(
         "More than one step has the number that is named.",
         "Number the steps anew, or name the task.",
@@ -228,6 +232,10 @@ SCRIPT = {
         "The script asks for nothing to be done.", "Add a step, such as a checkpoint to read."
     ),
     "script.number": error("A number is too large.", "Correct the number."),
+    "script.once-more": warning(
+        "Steps that are to be repeated once are taken to be done once more.",
+        "Write `once more`, or `once in total`.",
+    ),
     "script.one-checkpoint": error(
         "Several checkpoints are named where there can be one.", "Name one of them."
     ),

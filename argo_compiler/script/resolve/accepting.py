@@ -122,7 +122,7 @@ def require_used(order: ScriptOrder, diagnostics: Diagnostics) -> None:
         return
     used = _OF_MEETING if meets else _USED.get(type(order), _NOTHING)
     given = said(order.manner)
-    if isinstance(order, orders.WaitOrder) and given >= _ONCE_MORE and order.manner.times == 1:
+    if isinstance(order, orders.WaitOrder) and order.manner.more and order.manner.times == 1:
         used |= _ONCE_MORE  # `wait again`
     if isinstance(order, orders.WaitOrder) and order.where is not None:
         used |= {"speed"}  # of the way to the place

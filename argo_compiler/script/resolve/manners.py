@@ -73,7 +73,7 @@ class Manners:
         manner = round_order.manner
         if manner is not None and manner.times == 1 and (manner.more or manner.every is not None):
             # `once every ten minutes`, `again every ten minutes`
-            round_order = replace(round_order, manner=replace(manner, times=None, more=False))
+            round_order = replace(round_order, manner=replace(manner, times=None, more=None))
         base = f"Repeat {' and '.join(do.base for do in tasks)}"
         round_ = make_round(round_order, base, self.context)
         self.context.put(tasks, round_.body, None)

@@ -31,6 +31,7 @@ class Repeating:
     def repeat(self, order: orders.Repeat, block: ProgramBlock) -> None:
         """Notes that steps are repeated: a round is put here, which they come into later."""
         context = self.context
+        order = self._again(order)
         if order.last:
             self._repeat_last(order, block)
         elif order.steps is not None and self._is_once_more(order, order.steps, block):
@@ -45,6 +46,22 @@ class Repeating:
             context.put([round_], block, block.last)
             context.recent = []
         context.choice = None
+
+    def _again(self, order: orders.Repeat) -> orders.Repeat:
+        """`Repeat step 2 once`: a repetition of one round in all would change nothing."""
+        manner = order.manner
+        if manner is None or manner.more is not None or 1 not in (manner.times, manner.at_most):
+            return order
+        if manner.every is not None and manner.times == 1:  # `once every ten minutes`
+            return replace(order, manner=replace(manner, times=None))
+        if not order.again:
+            message = "this can be that the steps are done once in all, or once more"
+            hint = "write `once in total`, or `once more`"
+            self.diagnostics.refuse("ambiguous-repeat", message, order.span, hint)
+        message = "to repeat once is taken as once more, so that it is done twice in all"
+        hint = "write `once more`, or `once in total` if it is done a single time"
+        self.diagnostics.warning("once-more", message, order.span, hint)
+        return replace(order, manner=replace(manner, more=True))
 
     def _repeat_last(self, order: orders.Repeat, block: ProgramBlock) -> None:
         """`Repeat this twice`: the step before, or what was said before in the same step."""

@@ -21,6 +21,7 @@ _ASSUMING = frozenset(
         "script.dock-assumed",
         "script.title",
         "script.healed",
+        "script.once-more",
         "script.priority-taken",
         "script.quantity",
         "script.respelled",

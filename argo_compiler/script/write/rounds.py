@@ -28,7 +28,8 @@ def limits(group: Group) -> str:
     if group.max_repeat_duration:
         said.append(f"for {duration(group.max_repeat_duration)}")
     if group.max_repeat_count:
-        said.append(times(group.max_repeat_count))
+        once = group.max_repeat_count == 1  # `repeat once` would be once more
+        said.append("once in total" if once else times(group.max_repeat_count))
     if group.until:
         said.append(f"until {conditions(group.until)}")
     text = " or\n".join(said) or "endlessly"

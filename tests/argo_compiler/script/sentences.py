@@ -78,11 +78,11 @@ class Rounds:
     def said(self):
         text = f"Repeat steps {self.first} to {self.last}"
         if self.until is not None:
-            text += f" until {self.until.said()}, at most {self.count} times"
+            text += f" until {self.until.said()}, at most {self.count} times in total"
         elif self.duration:
             text += f" for {self.duration} s, finishing the round"
         else:
-            text += f" {self.count} times"
+            text += f" {self.count} times in total"
         text += f", every {self.every} s" if self.every else ""
         after = "" if self.after is None else f". {self.after.said().capitalize()}"
         return f"{text}{after}"

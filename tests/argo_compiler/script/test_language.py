@@ -89,7 +89,7 @@ def test_numbers_of_checkpoints(said: str, number: int, catalog: Catalog) -> Non
         ("two thousand three hundred and forty-two times", 2342),
         ("ninety-nine hundred times", 9900),
         ("nine thousand nine hundred and ninety-nine rounds", 9999),
-        ("once", 1),
+        ("once in total", 1),
         ("twice", 2),
         ("three more times", 4),
         ("twice more", 3),
@@ -284,7 +284,8 @@ def test_places(said: str, pose: Pose, catalog: Catalog) -> None:
             [None, 0.2, 0.2],
         ),
         (
-            "Check #2, leaving at 0.2 m/s.\n6. Repeat step 5 once; if #2 is above 3, check #3.\n"
+            "Check #2, leaving at 0.2 m/s.\n6. Repeat step 5 once in total; if #2 is above 3, "
+            "check #3.\n"
             "7. Check #5",
             [None, None, 0.2, 0.2],
         ),

@@ -31,7 +31,11 @@ _ON_LIMIT = {"GO_ON": Afterwards.RESUME, "END": Afterwards.END, "WAIT": Afterwar
 
 
 def _times(part: RulePart) -> Manner:
-    return Manner(times=whole(part, part.the_word("TIMES").value))
+    return Manner(times=whole(part, part.the_word("TIMES").value), more=_in_all(part))
+
+
+def _in_all(part: RulePart) -> bool | None:
+    return False if part.has("TOTAL") else None
 
 
 def _more(part: RulePart) -> Manner:
@@ -62,7 +66,7 @@ def _between_times(part: RulePart) -> Manner:
 
 def _at_most(part: RulePart) -> Manner:
     if word := part.word("MOST_TIMES"):
-        return Manner(at_most=whole(part, word.value))
+        return Manner(at_most=whole(part, word.value), more=_in_all(part))
     word = part.the_word("MOST_TIME", "DURATION")
     limit = seconds(part, word)
     return Manner(mission_time=limit) if part.has("TOTAL") else Manner(time_limit=limit)

@@ -127,6 +127,7 @@ def _repeat(part: RulePart) -> ScriptOrder:
         manner=_manner(part),
         steps=part.first(Steps),
         last=part.first(Pronoun) is not None,
+        again=part.the_word("REPEAT").value == "again",
     )
 
 

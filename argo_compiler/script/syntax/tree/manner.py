@@ -46,8 +46,8 @@ class Manner:
     soft_window: bool = False
     times: int | None = None
     """rounds in all"""
-    more: bool = False
-    """`again`: the rounds are further ones"""
+    more: bool | None = None
+    """whether the rounds are further ones (`again`), or all of them (`in total`)"""
     at_most: int | None = None
     """rounds, with `until`"""
     every: float | None = None

@@ -142,6 +142,8 @@ class Repeat(ScriptOrder):
     """None: all"""
     last: bool = False
     """`repeat this`: what was said last"""
+    again: bool = True
+    """`repeat`, and not `do` or `run through`, which may be the first time"""
 
 
 class Side(StrEnum):

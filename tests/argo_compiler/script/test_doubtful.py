@@ -1,0 +1,63 @@
+"""Sentences that leave something open: taken as they make sense, and said so, or asked about."""
+
+import pytest
+
+from argo_compiler.catalog import Catalog
+from argo_compiler.diagnostics import DiagnosticError, Severity
+from argo_compiler.il import Mission
+from argo_compiler.script import format_script, import_script
+
+_ENGLISH = "1. Start in starting area 1.\n"
+_GERMAN = "1. Start in Startbereich 1.\n"
+_TWO = "2. Check #1.\n3. Check #4.\n"
+_ZWEI = "2. Prüfe #1.\n3. Prüfe #4.\n"
+
+
+def read(text: str, catalog: Catalog) -> tuple[Mission, set[str]]:
+    """The mission, and the codes of what was warned of."""
+    result = import_script(text, catalog)
+    warned = {d.code for d in result.diagnostics if d.severity is Severity.WARNING}
+    return result.mission, warned
+
+
+@pytest.mark.parametrize(
+    ("text", "count", "assumed"),
+    [
+        (f"{_ENGLISH}{_TWO}4. Repeat steps 2 and 3 once", 2, True),
+        (f"{_ENGLISH}{_TWO}4. Redo steps 2 to 3 one time", 2, True),
+        (f"{_ENGLISH}{_TWO}4. Repeat steps 2 and 3 for 10 minutes or once", 2, True),
+        (f"{_ENGLISH}{_TWO}4. Repeat steps 2 and 3 once more", 2, False),
+        (f"{_ENGLISH}{_TWO}4. Repeat steps 2 and 3 one more time", 2, False),
+        (f"{_ENGLISH}{_TWO}4. Repeat steps 2 and 3 once in total", 1, False),
+        (f"{_ENGLISH}{_TWO}4. Run through steps 2 and 3 once in total", 1, False),
+        (f"{_ENGLISH}{_TWO}4. Repeat steps 2 and 3 twice in total", 2, False),
+        (f"{_ENGLISH}{_TWO}4. Repeat steps 2 and 3 twice", 2, False),
+        (f"{_GERMAN}{_ZWEI}4. Schritte 2 und 3 einmal wiederholen", 2, True),
+        (f"{_GERMAN}{_ZWEI}4. Wiederhole die Schritte 2 und 3 einmal", 2, True),
+        (f"{_GERMAN}{_ZWEI}4. Wiederhole die Schritte 2 und 3 noch einmal", 2, False),
+        (f"{_GERMAN}{_ZWEI}4. Wiederhole die Schritte 2 und 3 insgesamt einmal", 1, False),
+    ],
+)
+def test_to_repeat_once(text: str, count: int, assumed: bool, catalog: Catalog) -> None:
+    mission, warned = read(text, catalog)
+    assert [group.max_repeat_count for group in mission.groups] == [count]
+    assert ("script.once-more" in warned) == assumed
+    again, warned = read(format_script(mission, catalog), catalog)
+    assert [group.max_repeat_count for group in again.groups] == [count]
+    assert not warned
+
+
+@pytest.mark.parametrize(
+    ("text", "code", "readings"),
+    [
+        (f"{_ENGLISH}{_TWO}4. Do steps 2 and 3 once", "repeat", ["once in all", "once more"]),
+        (f"{_GERMAN}{_ZWEI}4. Führe die Schritte 2 und 3 einmal durch", "repeat", ["once more"]),
+    ],
+)
+def test_what_is_asked_about(text: str, code: str, readings: list[str], catalog: Catalog) -> None:
+    with pytest.raises(DiagnosticError) as caught:
+        import_script(text, catalog)
+    errors = [d for d in caught.value.diagnostics if d.severity is Severity.ERROR]
+    assert [error.code for error in errors] == [f"script.ambiguous-{code}"]
+    assert all(reading in errors[0].message for reading in readings)
+    assert errors[0].span is not None

@@ -11,6 +11,10 @@ SCRIPT = {
         "A line comes after the protocol has said that it is done.",
         "Move it up, or remove the earlier `Done!`.",
     ),
+    "script.always-holds": warning(
+        "A condition holds for every value that is measured.",
+        "Write `and` for `or` if a range is meant, or correct its bounds.",
+    ),
     "script.ambiguous-all": error(
         "All of it can mean what was done so far, or all checkpoints of the site.",
         "Write `repeat everything once more`, or `check all checkpoints`.",
@@ -181,6 +185,10 @@ SCRIPT = {
         "Something is to be done instead of something else that is not said.",
         "Write it behind `otherwise`, or behind what is done if a task fails.",
     ),
+    "script.listed-twice": warning(
+        "A list names the same checkpoint more than once.",
+        "Leave it out if it is to be done once.",
+    ),
     "script.long-line": error("A line or cell is too long to be a script's.", "Shorten it."),
     "script.long-wait": warning(
         "A wait takes as long as the whole mission may take, or longer.",
@@ -212,6 +220,10 @@ SCRIPT = {
     "script.not-measured": warning(
         "A condition asks for a checkpoint that is not measured before it.",
         "Measure it before, unless somebody else tells its value.",
+    ),
+    "script.no-time-limit": warning(
+        "Something is done if there is time, and nothing says how much time there is.",
+        "Give the mission a maximum duration.",
     ),
     "script.not-first": error(
         "Something is to be done first, and something else stands before it.",

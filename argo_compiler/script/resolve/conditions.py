@@ -6,7 +6,7 @@ from itertools import product
 from argo_compiler.catalog import CheckpointInfo
 from argo_compiler.il import Condition, ConditionType
 from argo_compiler.script.resolve import units
-from argo_compiler.script.resolve.excluding import contradict
+from argo_compiler.script.resolve.excluding import contradict, cover_all
 from argo_compiler.script.resolve.lookup import told
 from argo_compiler.script.resolve.nouns import NounResolver
 from argo_compiler.script.resolve.program import Alternatives
@@ -69,6 +69,11 @@ class ConditionResolver:
                 message = f"this condition has more than {_MOST} alternatives"
                 hint = "divide it into several sentences"
                 self.diagnostics.refuse("condition", message, condition.span, hint)
+        if cover_all(tuple(found)):
+            said = self.diagnostics.source.said(condition.span)
+            message = f"`{said}` holds for every value"
+            hint = "is `and` meant, or another bound?"
+            self.diagnostics.warning("always-holds", message, condition.span, hint)
         return tuple(found)
 
     def _test(self, test: Asked) -> list[tuple[Condition, ...]]:

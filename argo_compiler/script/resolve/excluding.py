@@ -1,4 +1,4 @@
-"""Conditions of which no two can hold at the same time."""
+"""Conditions of which no two can hold at the same time, or of which one always does."""
 
 from collections.abc import Iterable
 from itertools import combinations, pairwise
@@ -38,6 +38,22 @@ def exclude(one: Alternatives, other: Alternatives) -> bool:
 def contradict(conditions: Iterable[Condition]) -> bool:
     """Whether no value satisfies all the bounds for one of the checkpoints."""
     return any(_apart(a, b) for a, b in combinations(conditions, 2))
+
+
+def cover_all(alternatives: Alternatives) -> bool:
+    """Whether each value of a checkpoint satisfies one of the alternatives."""
+    single = [held[0] for held in alternatives if len(held) == 1 and held[0].max_age is None]
+    return any(_meet(a, b) or _meet(b, a) for a, b in combinations(single, 2))
+
+
+def _meet(low: Condition, high: Condition) -> bool:
+    """Whether the values above the one bound and below the other are all there are."""
+    if low.object_id != high.object_id or low.param1 is None or high.param1 is None:
+        return False
+    if (low.type, high.type) != (ConditionType.GREATER, ConditionType.LESS):
+        return False
+    both = low.inclusive or high.inclusive
+    return low.param1 < high.param1 or (low.param1 == high.param1 and both)
 
 
 def _apart(a: Condition, b: Condition) -> bool:

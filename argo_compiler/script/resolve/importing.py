@@ -147,8 +147,20 @@ def _mission(
         before=ordering.named(names),
     )
     ordering.check(mission)
+    _warn_of_time(mission, diagnostics)
     _require_no_error(diagnostics)
     return mission
+
+
+def _warn_of_time(mission: Mission, diagnostics: Diagnostics) -> None:
+    """Warns where something is done if there is time, and nothing says how much there is."""
+    optional = next((task for task in mission.tasks if task.optional), None)
+    if optional is None or mission.max_duration is not None:
+        return
+    if all(task.window is None or task.window.latest is None for task in mission.tasks):
+        message = "nothing limits the time of the mission, so that there is always time for this"
+        hint = "say how long it may take: `Maximum duration: 30 min`"
+        diagnostics.warning("no-time-limit", message, optional.source, hint)
 
 
 def _require_no_error(diagnostics: Diagnostics) -> None:

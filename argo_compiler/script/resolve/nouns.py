@@ -58,7 +58,13 @@ class NounResolver:
             message = f"`{said}` leaves open which of them, or whether both"
             hint = "write `and` for all of them, or name the one that is meant"
             self.diagnostics.refuse("ambiguous-or", message, nouns.span, hint)
-        return self.each(nouns)
+        found = self.each(nouns)
+        twice = {c.id: c for i, c in enumerate(found) if c in found[:i]}
+        for checkpoint in twice.values():
+            message = f"{told(checkpoint)} stands in this list more than once, and is done as often"
+            hint = "leave it out if it is to be done once"
+            self.diagnostics.warning("listed-twice", message, nouns.span, hint)
+        return found
 
     def on(self, floors: Sequence[FloorName], nouns: Nouns) -> Nouns:
         """The phrase, of what is on these floors; a floor that it names itself has to be one."""

@@ -739,3 +739,33 @@ def test_what_fails_behind_a_case_that_asks_of_the_same(catalog: Catalog) -> Non
         "   If it fails, return to the docking station.\n4. Check #4."
     )
     assert read(text, catalog).tasks[3].on_failure is OnFailure.RETURN
+
+
+@pytest.mark.parametrize(
+    ("text", "code", "named"),
+    [
+        ("Check #1. If it is above 2 or below 4, check #4.", "always-holds", "every value"),
+        ("Check #1. If it is above 2 or not above 2, check #4.", "always-holds", "every value"),
+        ("Check checkpoints 5, 6, 6 and 7.", "listed-twice", "#6"),
+        ("Check valve R12, checkpoint 4 and checkpoint 5.", "listed-twice", "#5"),
+        ("Check #1. If there is time left, check #4.", "no-time-limit", "always time"),
+    ],
+)
+def test_what_is_odd_is_a_warning(text: str, code: str, named: str, catalog: Catalog) -> None:
+    (found,) = import_script(f"Start in starting area 1.\n{text}", catalog).diagnostics
+    assert (found.code, found.severity) == (f"script.{code}", Severity.WARNING)
+    assert named in found.message
+
+
+@pytest.mark.parametrize(
+    "text",
+    [
+        "Check #1. If it is below 2 or above 4, check #4.",
+        "Check #1 and #4. If #1 is above 2 or #4 is below 4, check #8.",
+        "Maximum duration: 20 min\nCheck #1. If there is time left, check #4.",
+        "Check #1 within 10 minutes. If there is time left, check #4.",
+        "Check #5. Check #5 again.",
+    ],
+)
+def test_what_is_not_odd_is_none(text: str, catalog: Catalog) -> None:
+    assert not import_script(f"Start in starting area 1.\n{text}", catalog).diagnostics

@@ -82,7 +82,9 @@ class Asides:
             end = start + comma.end()
         types = self.understanding.types(text[start:end])
         short = len(text.content[start:end].split()) <= 8
-        asks = {*types} & {*ASKING, *VERBS, "KIND"} or self.asking.names(text[start:end])
+        asks = {*types} & ({*ASKING, *VERBS, "KIND"} - {"FROM"}) or self.asking.names(
+            text[start:end]
+        )
         return end if short and not asks else 0
 
     def is_small_talk(self, text: ScriptText) -> bool:
@@ -105,6 +107,16 @@ class Asides:
         if text.content.endswith(":") and {*words} <= phrases_of(self.prose.around_reactions):
             return True  # `To be obeyed all the time:`
         return len(words) <= _LONGEST_TITLE and not self.asking.asks(text, counted=True)
+
+    def stands_for_title(self, text: ScriptText) -> bool:
+        """Whether a line over numbered steps, which makes no sense as an order, is a title though
+        it has the words of one: `Depressurising line 7`, `Watching the column`."""
+        words = self.understanding.words(text)
+        found = {word.type for word in words}
+        ordered = min(words, key=lambda word: word.start).type in VERBS if words else True
+        short = len(text.content.split()) <= _LONGEST_TITLE
+        named = (NAMED - {"STEP"} | {"EVENT", "PLACE", "AREA"}) & found
+        return short and "WORD" in found and not (found & ASKING or named or ordered)
 
     def is_explicit_title(self, text: ScriptText) -> bool:
         """Whether a title says itself that it is one: `Mission Protocol #2`."""

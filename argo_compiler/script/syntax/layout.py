@@ -73,7 +73,9 @@ def items_of(
             _append(around[-1], line.unmarked, words)
             continue
         item = LineItem(line.text, line)
-        while around and not _lies_in(line, around[-1].line):
+        while around and not (
+            _lies_in(line, around[-1].line) or _is_listed(line, around[-1], sense)
+        ):
             outer = around.pop()
             if not around:
                 yield outer.finish()
@@ -186,3 +188,11 @@ def _lies_in(line: ScriptLine, outer: ScriptLine) -> bool:
     if outer.mark is LineMark.NUMBER and line.mark is LineMark.LETTER:
         return True
     return line.indent > outer.indent
+
+
+def _is_listed(line: ScriptLine, outer: LineItem, sense: LineSense) -> bool:
+    """Whether a line is one of those that an unmarked one announces: `Do the following twice:`."""
+    if outer.line.mark is not LineMark.NONE or line.mark is LineMark.NONE:
+        return False
+    indented = line.indent > outer.line.indent
+    return (indented or line.mark is not LineMark.NUMBER) and sense.announces(outer.last)

@@ -37,6 +37,12 @@ class LineSense:
         alone = numbered or asides.is_remark(content) or asides.opens(content)
         return alone or self.labels.is_field(text)
 
+    def announces(self, text: ScriptText) -> bool:
+        """Whether a text says that lines below it are to be done: `Do the following twice:`."""
+        listed = text.content.endswith(":")
+        types = {*self.understanding.types(text)} if listed else set()
+        return "DO_FOLLOWING" in types and not types & {"MEASURE", "KIND"}
+
     def is_complete(self, text: ScriptText) -> bool:
         """Whether a text makes sense by itself."""
         if self.labels.is_field(text):

@@ -165,7 +165,7 @@ class SentenceReader:
         """Keeps a title, and reads what stands behind it."""
         self.begun = True
         if first:
-            self._entitle(title.head)
+            self._entitle(title.head, asked=not self.asides.is_title(title.head))
         else:
             self.note(title.head, "a heading")
         if title.fields is not None:
@@ -178,9 +178,14 @@ class SentenceReader:
                 said.append(self._node(part, reading))
         return said
 
-    def _entitle(self, title: ScriptText) -> None:
+    def _entitle(self, title: ScriptText, asked: bool = False) -> None:
+        """Takes a text for the title; with a warning, where something may be asked for in it."""
         self.fields.reader.values.header.title = Text(span=title.span(), text=title.content)
-        if not self.asides.is_explicit_title(title):
+        if asked:
+            message = f"`{title.content}` is taken for the title: nothing is planned for it"
+            hint = "write it as a step if it is to be done"
+            self.diagnostics.warning("title", message, title.span(), hint)
+        elif not self.asides.is_explicit_title(title):
             message = f"`{title.content}` is taken for the title"
             self.diagnostics.note("title", message, title.span())
 

@@ -39,7 +39,9 @@ class Titles:
         titled = self.fields.behind(text) if first else None
         if titled is not None and self.asides.is_title(titled[0]):
             return FoundTitle(titled[0], fields=titled[1])
-        if self.asides.is_title(text):
+        alone = text.content == item.text.content
+        over = first and alone and item.line.heading and self.asides.stands_for_title(text)
+        if over or self.asides.is_title(text):
             return FoundTitle(text)
         if not first or "," not in text.content:
             return None

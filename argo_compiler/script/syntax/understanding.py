@@ -29,6 +29,9 @@ _MOST_SLIPS = 8
 _MOST_TRIED = 32
 """ways to put the misspelt words of a sentence right"""
 _MIXED = re.compile(r"(?<![\w.,'-])(?=[lIiOo|]*[0-9])(?=[0-9]*[lIiOo|])([0-9lIiOo|]+)(?![\w|]|-\w)")
+_WORD = re.compile(r"(?<![\w.'-])(?=[^\W\d_]*[0-9])[^\W_]{4,}(?![\w-])")
+_LETTERS = {"0": "o", "1": "li", "5": "s", "8": "b"}
+"""what text recognition takes for figures"""
 _DIGITS = str.maketrans("lIi|Oo", "111100")
 
 
@@ -138,7 +141,10 @@ class Understanding:
         return fixed
 
     def figures(self, text: ScriptText) -> ScriptText:
-        """The text with letters among digits read as digits: `#l7`. Digits are never changed."""
+        """The text with letters among digits read as digits, `#l7`, and with words that have
+        digits in them read as those that they can only be: `p0int`. Digits by themselves are never
+        changed."""
+        text = self._letters(text)
         if not _MIXED.search(text.content):
             return text
         quoted = quotes(text.content)
@@ -151,6 +157,22 @@ class Understanding:
             meant = found[0].translate(_DIGITS)
             self._warn(text, start, end, meant)
             text = text.replace(start, end, meant)
+        return text
+
+    def _letters(self, text: ScriptText) -> ScriptText:
+        quoted = quotes(text.content)
+        for found in reversed(list(_WORD.finditer(text.content))):
+            start, end = found.span()
+            signs = [_LETTERS.get(s, s) if s.isdigit() else s for s in found[0].lower()]
+            letters = sum(s.isalpha() for s in found[0])
+            named = found[0].lower() in self.names or any(a < start < b for a, b in quoted)
+            if named or 2 * letters <= len(signs):
+                continue
+            meant = {"".join(word) for word in islice(product(*signs), _MOST_TRIED)} & self.known
+            if len(meant) == 1:
+                (word,) = meant
+                self._warn(text, start, end, word)
+                text = text.replace(start, end, word)
         return text
 
     def _warn(self, text: ScriptText, start: int, end: int, meant: str) -> None:

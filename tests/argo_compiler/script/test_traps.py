@@ -502,6 +502,7 @@ def test_what_is_done_in_an_event_is_one_thing(
         "Starting area 2",
         "Starting area 2.",
         "strating area 2",
+        "The robot in starting area 2.",
         "The robot sits in starting area 2.",
         "From: J. Smith, shift C\nThe robot is sitting in starting area 2.",
         "Startbereich 2",
@@ -604,6 +605,30 @@ def test_one_is_one_of_them_and_not_checkpoint_1(condition: str, catalog: Catalo
         (
             "Check #1. If it is not readable, check #4.",
             "Check #1. Should it not be readable, check #4.",
+        ),
+        ("Check PG 1, 5 and 8.", "Check pressure gauges 1, 5 and 8."),
+        ("Check PG 3, LLG2 and V R12.", "Check #6, #7 and #5."),
+        ("Prüfe PG 3.", "Check pressure gauge 3."),
+        ("Check CP4 and Ckpt 1.", "Check #4 and #1."),
+        ("Prüfe Kontrollpunkt4.", "Check #4."),
+        ("He must look first the valve R7 and after the valve R9.", "Check valve R7 and valve R9."),
+        ("Check first pressure gauge 2, then #1.", "Check pressure gauge 2, then #1."),
+        ("Check the checkp0int #4 and va1ve R25.", "Check checkpoint #4 and valve R25."),
+        (
+            "Prüfe Manometer 2. Lässt es sich nicht ablesen, versuche es zweimal.",
+            "Check pressure gauge 2. If it cannot be read, retry twice.",
+        ),
+        (
+            "Do the following twice, and wait one minute between the rounds:\n- #1\n- #4",
+            "1. Do the following twice with a pause of one minute:\n  a) #1\n  b) #4",
+        ),
+        (
+            "Mache Folgendes zweimal und warte zwischen den Runden eine Minute:\na) #1\nb) #4",
+            "1. Do the following twice with a pause of one minute:\n  a) #1\n  b) #4",
+        ),
+        (
+            "Check #1.\nDo the following twice:\n- check #4\n- check #8\nCheck #5.",
+            "1. Check #1.\n2. Do the following twice:\n a) check #4\n b) check #8\n3. Check #5.",
         ),
     ],
 )
@@ -769,3 +794,28 @@ def test_what_is_odd_is_a_warning(text: str, code: str, named: str, catalog: Cat
 )
 def test_what_is_not_odd_is_none(text: str, catalog: Catalog) -> None:
     assert not import_script(f"Start in starting area 1.\n{text}", catalog).diagnostics
+
+
+@pytest.mark.parametrize(
+    "title", ["Depressurising line 7 - follow-up by robot", "Füllstand Kolonne beobachten"]
+)
+def test_a_title_with_the_words_of_an_order_is_a_warning(title: str, catalog: Catalog) -> None:
+    text = f"{title}\n\n1. Start in starting area 1.\n2. Check #1."
+    script = import_script(text, catalog, source_name="script")
+    assert [t.name for t in script.mission.tasks][-1:] == ["MEASURE 1"]
+    (warning,) = [d for d in script.diagnostics if d.severity is Severity.WARNING]
+    assert "nothing is planned for it" in warning.message
+
+
+@pytest.mark.parametrize(
+    "line", ["Check the pump house", "Check pump house valve", "Watch the pump if it leaks"]
+)
+def test_an_order_that_makes_no_sense_is_no_title(line: str, catalog: Catalog) -> None:
+    with pytest.raises(DiagnosticError):
+        import_script(f"{line}\n\n1. Start in starting area 1.\n2. Check #1.", catalog)
+
+
+@pytest.mark.parametrize("name", ["TG 4", "V 4", "PG R12"])
+def test_what_an_abbreviation_does_not_fit(name: str, catalog: Catalog) -> None:
+    with pytest.raises(DiagnosticError):
+        import_script(f"Start in starting area 1. Check {name}.", catalog)

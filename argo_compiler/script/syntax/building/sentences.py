@@ -17,11 +17,14 @@ from argo_compiler.script.syntax.grammar.parser import Branch
 from argo_compiler.script.syntax.text.source import Diagnostics, ScriptText
 from argo_compiler.script.syntax.tree.conditions import SaidCondition, Test
 from argo_compiler.script.syntax.tree.facts import Fact
+from argo_compiler.script.syntax.tree.manner import Manner
 from argo_compiler.script.syntax.tree.nouns import Labelled, Pronoun
 from argo_compiler.script.syntax.tree.orders import (
     Amend,
     Case,
+    Follow,
     Measure,
+    Repeat,
     Rest,
     ScriptOrder,
     Sentence,
@@ -102,6 +105,8 @@ def _joined(part: RulePart) -> tuple[ScriptOrder, ...]:
                 and _same(last, child, joint)
             ):
                 found[-1] = _both(last, child)
+            elif isinstance(last, Follow | Repeat) and isinstance(child, Amend) and _pauses(child):
+                found[-1] = _with_pause(last, child)
             else:
                 if last is not None and _may_be_step(part, last, joint):
                     message = "this number may be a checkpoint's or that of a step"
@@ -114,6 +119,19 @@ def _joined(part: RulePart) -> tuple[ScriptOrder, ...]:
                 found.append(child.joined(joint) if joint else child)
         joint = str(child.value) if isinstance(child, Word) and child.type == "NEXT" else ""
     return tuple(found)
+
+
+def _pauses(order: Amend) -> bool:
+    """Whether an order says nothing but how long to wait between rounds."""
+    manner = order.manner
+    return manner is not None and manner == Manner(pause=manner.pause)
+
+
+def _with_pause(order: ScriptOrder, pause: Amend) -> ScriptOrder:
+    """`Do the following twice, and wait 1 minute in between:`"""
+    assert pause.manner is not None
+    manner = order.manner or Manner()
+    return replace(order, manner=replace(manner, pause=pause.manner.pause))
 
 
 def _is_same_reading(order: ScriptOrder) -> bool:

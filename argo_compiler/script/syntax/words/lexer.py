@@ -30,6 +30,7 @@ _PIECE = re.compile(
     re.VERBOSE,
 )
 _QUOTED = re.compile(r"\"(?:[^\"\\]|\\.)*\"")
+_GLUED_NUMBER = re.compile(r"([^\W\d_]{2,})([0-9]+)")
 _SIGNS = {"(": "LPAR", ")": "RPAR", "[": "LSQB", "]": "RSQB", "-": "DASH", "=": "EQUAL"}
 _JOINTS = {",": ",", ";": ";", ":": ":", "&": "and"}
 _LONGEST = 60
@@ -129,6 +130,12 @@ def _looked_up(text: str, lexicon: Lexicon, unsaid: frozenset[str] = _UNSAID) ->
                 found += inner
                 i += 1
                 continue
+        if phrase is None and pieces[i].lastgroup == "IDENT":
+            numbered = _numbered(pieces[i], lexicon)
+            if numbered:
+                found += numbered
+                i += 1
+                continue
         if phrase is None:
             after = pieces[i + 1] if i + 1 < len(pieces) else None
             found.append(_plain(pieces[i], after, found, text, lexicon))
@@ -145,6 +152,17 @@ def _looked_up(text: str, lexicon: Lexicon, unsaid: frozenset[str] = _UNSAID) ->
         apart.update(phrase.apart)
         i += phrase.length
     return found
+
+
+def _numbered(piece: re.Match[str], lexicon: Lexicon) -> list[Word]:
+    """The words of `LLG2` and `checkpoint4`, kinds and numbers; none of a name such as `R25`."""
+    parts = _GLUED_NUMBER.fullmatch(piece.group())
+    phrase = None if parts is None else longest([folded(parts[1])], 0, lexicon)
+    if parts is None or phrase is None or phrase.entry[0] != "KIND":
+        return []
+    middle = piece.start() + len(parts[1])
+    kind = Word("KIND", _definite(phrase.entry[1], "", lexicon), piece.start(), middle)
+    return [kind, Word("NUMBER", read_figure(parts[2]), middle, piece.end())]
 
 
 def _is_name(before: list[Word]) -> bool:

@@ -31,6 +31,7 @@ _OPENING = frozenset(["JOINT", "IN_ANY_CASE", "BEFORE", "AFTER", "ELSE", "IN_ALL
 _BETWEEN_FLOORS = ("JOINT", "ORDINAL", "ON", "IN")
 _UPTO = ("TO", "UNTIL")
 """`1 to 4`, `1 bis 4`"""
+_LISTING = frozenset(["JOINT", "TO", "UNTIL", "DASH", "UPTO"])
 _LIMITS = {"TIMES": "MOST_TIMES", "DURATION": "MOST_TIME"}
 
 
@@ -53,12 +54,18 @@ def merged(words: list[Word]) -> list[Word]:
         if pair is not None:
             word = pair
             i += 1
+        elif word.type == "AFTER" and _comes_next(words, i):
+            i += 1
+            continue  # `first checkpoint 3 and after checkpoint 4`
         elif word.type == "ORDINAL" and _tells_order(words, i):
             i += 1
             continue  # `checkpoint 13 first, then ...`
         elif word.type == "BOTH" and _names_two(words[i + 1 : i + 8]):
             i += 1
             continue  # `both #1 and #4`
+        elif word.type == "KIND" and word.value[1] is None:
+            kind, _, definite = word.value
+            word = replace(word, value=(kind, _is_list(words, i + 1), definite))
         elif word.type in _UPTO and after is not None and _is_range_of_floors(found, after):
             word = replace(word, type="UPTO")
         elif word.type == "UNIT_S" and after is not None and after.type == "NUMBER":
@@ -73,6 +80,13 @@ def merged(words: list[Word]) -> list[Word]:
         i += 1
         _add(word, after, found)
     return _last_if(_limited(_of_values(found)))
+
+
+def _is_list(words: list[Word], i: int) -> bool:
+    """Whether numbers are listed behind `Manometer` or `PG`, which then are several."""
+    types = [word.type for word in words[i : i + 4]]
+    types = types[1:] if types[:1] == ["HASH"] else types
+    return types[1:2] != [] and types[1] in _LISTING and types[2:3] in (["NUMBER"], ["IDENT"])
 
 
 def _is_range_of_floors(found: list[Word], after: Word) -> bool:
@@ -164,9 +178,27 @@ def _tells_order(words: list[Word], i: int) -> bool:
     next_ = words[i + 1 : i + 3]
     if words[i].value == 1 and any(word.type in VERBS for word in next_[: 1 + _is_it(next_)]):
         return True
+    if words[i].value == 1 and _begins_name(next_):
+        return True
     after = next((w for w in words[i + 1 :] if w.type not in _BETWEEN_FLOORS), None)
     listed = i + 1 < len(words) and words[i + 1].type in ("JOINT", "ORDINAL")
     return after is None or (after.type != "FLOOR" and listed)
+
+
+def _begins_name(words: list[Word]) -> bool:
+    """Whether a checkpoint is named that needs no counting: `first valve R7`."""
+    types = [word.type for word in words[:2]]
+    return types[:1] == ["HASH"] or (
+        types[:1] == ["KIND"] and types[1:] in (["NUMBER"], ["NUMBER_WORD"], ["IDENT"], ["HASH"])
+    )
+
+
+def _comes_next(words: list[Word], i: int) -> bool:
+    """Whether `after` says only what comes next: `first valve R7 and after valve R9`."""
+    first = any(word.type == "ORDINAL" and word.value == 1 for word in words[:i])
+    joined = i > 0 and (words[i - 1].type, words[i - 1].value) == ("JOINT", "and")
+    verbs = any(word.type in VERBS for word in words[i:])
+    return first and joined and not verbs and _begins_name(words[i + 1 :])
 
 
 def _names_two(words: list[Word]) -> bool:

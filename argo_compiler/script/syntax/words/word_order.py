@@ -6,6 +6,7 @@ are, and the grammar does not take them.
 """
 
 from dataclasses import replace
+from itertools import takewhile
 
 from argo_compiler.script.syntax.words.joints import VERBS
 from argo_compiler.script.syntax.words.word import Word
@@ -80,13 +81,16 @@ def _told(words: list[Word], i: int) -> list[Word]:
             return [Word("ORDINAL", word.value.whole, word.start, word.end)]
         case "SIGN" if last == "NUMBER" and _is_ordinal(words, i - 1):
             return []
-        case "KIND" if word.value[1] is None:
-            kind, _, definite = word.value
-            return [replace(word, value=(kind, _is_list(words, i + 1), definite))]
         case "HE" if last in _OPENING or after in ("NOT", *_RELATIONS, "STATE", "FAILS"):
             return [replace(word, type="IT")]
         case "HE":
             return []
+        case "CAN" if last in ("", "JOINT", "ELSE") and _denied(words, i):
+            return [replace(word, type="IF")]
+        case "CAN":
+            return []
+        case "SPARE" if any(w.type == "CAN" and _denied(words, k) for k, w in enumerate(words[:i])):
+            return [replace(word, type="FAILS")]
         case "ON_FAILURE":
             return [replace(word, type="IF"), replace(word, type="FAILS")]
         case "THEM" if after == "KIND" and _then(words, i + 2) in _LABELS:
@@ -98,6 +102,12 @@ def _told(words: list[Word], i: int) -> list[Word]:
 
 def _then(words: list[Word], i: int) -> str:
     return words[i].type if i < len(words) else ""
+
+
+def _denied(words: list[Word], i: int) -> bool:
+    """`Lässt sich Manometer 2 nicht ablesen, ...` is a condition."""
+    clause = list(takewhile(lambda word: word.type != "JOINT", words[i:]))
+    return clause[-1].type == "SPARE"
 
 
 def _waits(words: list[Word], i: int) -> bool:
@@ -116,15 +126,6 @@ def _is_ordinal(words: list[Word], i: int) -> bool:
             return False
         i += 3
     return False
-
-
-def _is_list(words: list[Word], i: int) -> bool:
-    """Whether numbers are listed behind `Manometer`, which then are several."""
-    if _then(words, i) == "HASH":
-        i += 1
-    return _then(words, i + 1) in ("JOINT", "TO", "UNTIL", "DASH", "UPTO") and _then(
-        words, i + 2
-    ) in ("NUMBER", "IDENT")
 
 
 # ---- conditions

@@ -3,8 +3,8 @@
 from collections.abc import Sequence
 
 from argo_compiler.il import Action, Group, OnFailure, Stop, Task, TimeWindow, Transition
-from argo_compiler.script.resolve.lowering import Item, Lowered, Point
 from argo_compiler.script.resolve.naming import name_groups, name_tasks
+from argo_compiler.script.resolve.points import Item, Lowered, Point
 from argo_compiler.script.syntax.text.source import Diagnostics
 
 

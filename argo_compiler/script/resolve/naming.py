@@ -3,7 +3,7 @@
 from collections import Counter
 from collections.abc import Sequence
 
-from argo_compiler.script.resolve.lowering import Item, Range
+from argo_compiler.script.resolve.points import Item, Range
 from argo_compiler.script.resolve.program import own_names
 from argo_compiler.script.syntax.text.source import Diagnostics
 

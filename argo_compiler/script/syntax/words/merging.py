@@ -1,13 +1,11 @@
-"""Puts words together that are one: numbers in words, and numbers with what they count.
-
-`twenty five` is a number, `10 minutes` a length of time, `0.3 m/s` a speed, `4.5 bar` a quantity,
-`three times` says how often.
-"""
+"""Puts words together that are one, such as numbers in words, and tells by its neighbours what a
+word of two senses means."""
 
 from dataclasses import replace
 
+from argo_compiler.script.syntax.words.amounts import counted, hours_and, limited, total
 from argo_compiler.script.syntax.words.joints import VERBS
-from argo_compiler.script.syntax.words.lengths import Length, told
+from argo_compiler.script.syntax.words.lengths import Length
 from argo_compiler.script.syntax.words.numbers import Figure, compose
 from argo_compiler.script.syntax.words.word import Word
 
@@ -23,7 +21,6 @@ _SAID = _RELATIONS | {"IS", "NOT", "STATE", "FAILS"}
 """what begins that which a condition says of its subject"""
 _EARLY = frozenset(["MEASURE", "GO", "PATROL"])
 """verbs, behind which `optionally` may stand"""
-_UNITS = ("UNIT_S", "A_UNIT")
 _AMOUNTS = _RELATIONS | {"NUMBER", "QUANTITY"}
 _BEHIND_BETWEEN = ("JOINT", "SIGN", "RPAR", "WAIT", "COLON")
 _OPENING = frozenset(["JOINT", "IN_ANY_CASE", "BEFORE", "AFTER", "ELSE", "IN_ALL_OTHERS"])
@@ -32,7 +29,6 @@ _BETWEEN_FLOORS = ("JOINT", "ORDINAL", "ON", "IN")
 _UPTO = ("TO", "UNTIL")
 """`1 to 4`, `1 bis 4`"""
 _LISTING = frozenset(["JOINT", "TO", "UNTIL", "DASH", "UPTO"])
-_LIMITS = {"TIMES": "MOST_TIMES", "DURATION": "MOST_TIME"}
 
 
 def merged(words: list[Word]) -> list[Word]:
@@ -41,8 +37,6 @@ def merged(words: list[Word]) -> list[Word]:
         words = _inverted(words)
     if any(word.type == "NUMBER_WORD" for word in words):
         words = _numbers(words)
-    if any(word.type == "MORE_WORD" for word in words):
-        words = _further(words)
     if any(word.type in _BEYOND for word in words):
         words = _joined_bounds(words)
     found: list[Word] = []
@@ -50,7 +44,7 @@ def merged(words: list[Word]) -> list[Word]:
     while i < len(words):
         word = words[i]
         after = words[i + 1] if i + 1 < len(words) else None
-        pair = _counted(word, after) if after is not None else None
+        pair = counted(word, after) if after is not None else None
         if pair is not None:
             word = pair
             i += 1
@@ -68,10 +62,6 @@ def merged(words: list[Word]) -> list[Word]:
             word = replace(word, value=(kind, _is_list(words, i + 1), definite))
         elif word.type in _UPTO and after is not None and _is_range_of_floors(found, after):
             word = replace(word, type="UPTO")
-        elif word.type == "UNIT_S" and after is not None and after.type == "NUMBER":
-            length = _length(after.value, word.value)  # `not before minute 10`
-            word = Word("DURATION", length, word.start, after.end)
-            i += 1
         elif word.type == "A_UNIT":
             per = bool(found) and found[-1].type in ("TIMES", "TIME_WORD")  # `twice an hour`
             word = Word(
@@ -79,7 +69,7 @@ def merged(words: list[Word]) -> list[Word]:
             )
         i += 1
         _add(word, after, found)
-    return _last_if(_limited(_of_values(found)))
+    return _last_if(limited(_of_values(found)))
 
 
 def _is_list(words: list[Word], i: int) -> bool:
@@ -141,35 +131,6 @@ def _last_if(words: list[Word]) -> list[Word]:
     if any(word.type == "IF" for word in words[:at]):
         return words
     return [*words[:at], replace(words[at], type="IF_ONLY"), *words[at + 1 :]]
-
-
-def _limited(words: list[Word]) -> list[Word]:
-    """The words with limits in one: `at most 10 times`, `50 minutes at most`."""
-    if not any(word.type == "AT_MOST" for word in words):
-        return words
-    found: list[Word] = []
-    i = 0
-    while i < len(words):
-        word = words[i]
-        after = words[i + 1] if i + 1 < len(words) else None
-        if word.type == "AT_MOST" and after is not None and after.type in _LIMITS:
-            found.append(Word(_LIMITS[after.type], after.value, word.start, after.end))
-            i += 1
-        elif word.type == "AT_MOST" and after is not None and _tries(found, after):
-            found.append(Word("MOST_TIMES", after.value, word.start, after.end))
-            i += 1
-        elif word.type == "AT_MOST" and found and found[-1].type in _LIMITS:
-            last = found.pop()
-            found.append(Word(_LIMITS[last.type], last.value, last.start, word.end))
-        else:
-            found.append(word)
-        i += 1
-    return found
-
-
-def _tries(found: list[Word], after: Word) -> bool:
-    """`Try again up to two more times` is as often as `up to twice`."""
-    return after.type == "MORE" and any(word.type == "RETRY" for word in found)
 
 
 def _tells_order(words: list[Word], i: int) -> bool:
@@ -254,86 +215,18 @@ def _joined_bounds(words: list[Word]) -> list[Word]:
     return found
 
 
-def _further(words: list[Word]) -> list[Word]:
-    """`three more times`, `twice more`: how often besides what is done already."""
-    found: list[Word] = []
-    for word in words:
-        last, before = (found[-1] if found else None), (found[-2] if len(found) > 1 else None)
-        if word.type == "MORE_WORD" and last is not None and last.type == "TIMES":
-            found[-1] = Word("MORE", last.value, last.start, word.end)
-        elif (
-            word.type == "TIME_WORD"
-            and last is not None
-            and last.type == "MORE_WORD"
-            and before is not None
-            and before.type == "NUMBER"
-        ):
-            found[-2:] = [Word("MORE", before.value, before.start, word.end)]
-        else:
-            found.append(word)
-    return found
-
-
-def _counted(word: Word, after: Word) -> Word | None:
-    """A number and what it counts, as one word."""
-    if word.type == "HALF" and after.type in _UNITS:
-        return Word("DURATION", Length(after.value / 2, after.value), word.start, after.end)
-    if word.type == "DURATION" and after.type in _UNITS:
-        length = _of_clock(word.value, after.value)
-        return None if length is None else Word("DURATION", length, word.start, after.end)
-    if word.type != "NUMBER":
-        return None
-    figure: Figure = word.value
-    match after.type:
-        case "UNIT_S" | "A_UNIT":
-            return Word("DURATION", _length(figure, after.value), word.start, after.end)
-        case "TIME_WORD" | "X":
-            return Word("TIMES", figure, word.start, after.end)
-        case "RATE":
-            return Word("SPEED", (figure, after.value), word.start, after.end)
-        case "UNIT":
-            return Word("QUANTITY", (figure, after.value), word.start, after.end)
-        case "ORDINAL" if after.value == 2 and figure.value == 1:  # `one second`
-            return Word("DURATION", Length(1.0), word.start, after.end)
-        case _:
-            return None
-
-
-def _length(figure: Figure, unit: float) -> Length:
-    if figure.other is None:
-        return Length(figure.value * unit, unit)
-    return Length(
-        figure.value * unit,
-        unit,
-        other=figure.other * unit,
-        first=told(figure.value, unit),
-        second=told(figure.other, unit),
-    )
-
-
-def _of_clock(length: Length, unit: float) -> Length | None:
-    """`1:30 h` is hours and minutes, `1:30 min` minutes and seconds."""
-    if length.unit != 1.0 or unit not in (60.0, 3600.0):
-        return None
-    if unit == 60.0:
-        return Length(length.seconds)
-    return Length(length.seconds * 60 if length.other is None else length.other)
-
-
 def _add(word: Word, after: Word | None, found: list[Word]) -> None:
     """Adds a word, by what stands beside it."""
     last = found[-1] if found else None
     before = found[-2] if last is not None and last.type == "JOINT" and len(found) > 1 else last
-    if word.type == "DURATION" and before is not None and before.type == "DURATION":
-        sum_ = _sum(before, word)
-        if sum_ is not None:
-            del found[found.index(before) :]
-            found.append(sum_)
-            return
-    if word.type == "NUMBER" and last is not None and _hours_and(last, word, after):
+    sum_ = total(before, word) if before is not None else None
+    clock = hours_and(last, word, after) if last is not None else None
+    if before is not None and sum_ is not None:
+        del found[found.index(before) :]
+        word = sum_
+    elif clock is not None:
         found.pop()
-        length = Length(last.value.seconds + word.value.value * 60, 60.0)
-        word = Word("DURATION", length, last.start, word.end)
+        word = clock
     elif word.type == "HALF" and before is not None and before.type == "DURATION":
         longer = before.value.seconds + before.value.unit / 2
         del found[found.index(before) :]
@@ -389,20 +282,3 @@ def _are_rounds(found: list[Word]) -> bool:
 def _begins(found: list[Word]) -> bool:
     """Whether the last word begins a sentence or what is joined to one."""
     return len(found) < 2 or found[-2].type in _OPENING
-
-
-def _hours_and(hours: Word, minutes: Word, after: Word | None) -> bool:
-    """`1 h 15`: the number behind the hours is the minutes, unless it begins something else."""
-    if hours.type != "DURATION" or hours.value.unit != 3600.0 or hours.value.other is not None:
-        return False
-    number = minutes.value.whole
-    ends = after is None or after.type in ("JOINT", "SIGN", "RPAR")
-    return number is not None and number < 60 and ends
-
-
-def _sum(first: Word, second: Word) -> Word | None:
-    """Hours, then minutes, then seconds; None if the units are not in this order."""
-    a, b = first.value, second.value
-    if a.unit <= b.unit or a.other is not None or b.other is not None:
-        return None
-    return Word("DURATION", Length(a.seconds + b.seconds, b.unit), first.start, second.end)

@@ -54,6 +54,11 @@ def _limits(order: ScriptOrder, context: Context) -> Limits:
         refuse("rounds", f"a {what} of no rounds", span, "write how often, say, `three times`")
     if manner.times is not None and manner.at_most is not None:
         refuse("repeated-limit", "how often is said twice", span, "leave one of them out")
+    ended = manner.until is not None or manner.duration is not None or manner.every is not None
+    if manner.at_most is not None and not ended and not manner.endless:
+        message = "this can be exactly so often, or less often if something holds that is not said"
+        hint = "write `three times`, or what ends it: `until it is above 5, at most three times`"
+        refuse("ambiguous-repeat", message, span, hint)
     count = manner.times or manner.at_most or 0
     if manner.more and isinstance(order, orders.Repeat):
         count += 1  # what is repeated has been done once

@@ -82,6 +82,11 @@ class Manners:
     def around(self, order: ScriptOrder, nodes: Sequence[ProgramNode]) -> list[ProgramNode]:
         """The nodes with a wait before them, in the case that is said of them only."""
         manner = order.manner or _NOTHING
+        if manner.delay is not None and isinstance(order, orders.Go | orders.Home):
+            message = "this can be a wait of that time before, or that time since the start"
+            hint = "write `wait 20 minutes, then return home`, or `return home not before 20 "
+            hint += "minutes after the start`; `maximum duration: 20 minutes` ends the mission"
+            self.diagnostics.refuse("ambiguous-duration", message, order.span, hint)
         if manner.delay is not None:
             nodes = [making.wait(WaitRule(duration=manner.delay), order.span), *nodes]
         if manner.condition is None:

@@ -52,6 +52,16 @@ def test_to_repeat_once(text: str, count: int, assumed: bool, catalog: Catalog) 
     [
         (f"{_ENGLISH}{_TWO}4. Do steps 2 and 3 once", "repeat", ["once in all", "once more"]),
         (f"{_GERMAN}{_ZWEI}4. Führe die Schritte 2 und 3 einmal durch", "repeat", ["once more"]),
+        (f"{_ENGLISH}2. Check #1 up to three times", "repeat", ["exactly", "less often"]),
+        (f"{_ENGLISH}2. Patrol floor 1 at most 3 times", "repeat", ["exactly", "less often"]),
+        (f"{_ENGLISH}{_TWO}4. Repeat steps 2 and 3 at most 3 times", "repeat", ["less often"]),
+        (f"{_GERMAN}2. Prüfe #1 höchstens dreimal", "repeat", ["exactly", "less often"]),
+        (f"{_GERMAN}2. Prüfe #1 bis zu dreimal", "repeat", ["exactly", "less often"]),
+        (f"{_ENGLISH}{_TWO}4. Return home after 20 minutes", "duration", ["wait", "the start"]),
+        (f"{_ENGLISH}{_TWO}4. After 20 minutes, go home", "duration", ["wait", "the start"]),
+        (f"{_ENGLISH}2. Go to starting area 2 after 5 minutes", "duration", ["wait"]),
+        (f"{_ENGLISH}2. Return to the dock in area 2 after 5 minutes", "duration", ["wait"]),
+        (f"{_GERMAN}{_ZWEI}4. Fahre nach 5 Minuten zu Startbereich 2", "duration", ["wait"]),
     ],
 )
 def test_what_is_asked_about(text: str, code: str, readings: list[str], catalog: Catalog) -> None:
@@ -61,3 +71,17 @@ def test_what_is_asked_about(text: str, code: str, readings: list[str], catalog:
     assert [error.code for error in errors] == [f"script.ambiguous-{code}"]
     assert all(reading in errors[0].message for reading in readings)
     assert errors[0].span is not None
+
+
+@pytest.mark.parametrize(
+    "text",
+    [
+        f"{_ENGLISH}2. Check #1 every 10 minutes, at most three times",
+        f"{_ENGLISH}2. Check #1 for 10 minutes, at most three times",
+        f"{_ENGLISH}2. Check #1 until it is above 4, at most three times",
+        f"{_GERMAN}2. Prüfe #1 alle 10 Minuten, höchstens dreimal",
+    ],
+)
+def test_at_most_so_often_with_what_ends_it(text: str, catalog: Catalog) -> None:
+    mission, _ = read(text, catalog)
+    assert [group.max_repeat_count for group in mission.groups] == [3]

@@ -67,6 +67,24 @@ _BEGRENZT = f"{_GERMAN}Prüfe #1 und #4 dreimal für 5 Minuten.\n"
             f"{_ENGLISH}Go to floor 2 to valve R12 and check it.",
             f"{_ENGLISH}Check valve R12 on floor 2.",
         ),
+        *(
+            (
+                f"{_ENGLISH}Check #1. If it is above 4, check #4{one} #1 is above 2, check #8{two}",
+                f"{_ENGLISH}Check #1.\nIf it is above 4, check #4.\n"
+                "Otherwise, if #1 is above 2, check #8.\nOtherwise check #3.",
+            )
+            for one, two in (
+                (". Else if", ". Else check #3."),
+                (", else if", ", else check #3."),
+                ("; otherwise if", "; otherwise check #3."),
+            )
+        ),
+        (
+            f"{_GERMAN}Prüfe #1. Wenn er über 4 liegt, prüfe #4, sonst wenn er über 2 liegt, "
+            "prüfe #8, sonst prüfe #3.",
+            f"{_GERMAN}Prüfe #1.\nWenn er über 4 liegt, prüfe #4.\n"
+            "Sonst, wenn er über 2 liegt, prüfe #8.\nSonst prüfe #3.",
+        ),
         (f"{_ENGLISH}Check #1.\n\npage 2 of 3\n\nCheck #4.", f"{_ENGLISH}Check #1.\nCheck #4."),
         (f"Seite 1 von 2\n{_GERMAN}Prüfe #1.\nSeite 2/2", f"{_GERMAN}Prüfe #1."),
         (

@@ -258,7 +258,7 @@ def _add(word: Word, after: Word | None, found: list[Word]) -> None:
     elif word.type in VERBS and last is not None and last.type == "IT" and _begins(found):
         if word.type != "MEASURE" or (after is not None and after.type != "JOINT"):
             found.pop()  # `it reads checkpoint 4`, but `es prüfen`
-    elif word.type == "IF" and last is not None and last.type != "JOINT":
+    elif word.type == "IF" and last is not None and last.type not in _OPENING:
         word = replace(word, type="IF_ONLY")
     elif word.type == "UNLESS" and (last is None or last.value in (";", ".")):
         word = replace(word, type="IF", value="unless")

@@ -27,6 +27,11 @@ class LineItem:
     """the last sentence of the parts; of a long one its end"""
     long: bool = False
     """whether the last sentence is so long that only its end tells whether it goes on"""
+    over: bool = False
+    """whether its last line stands over one with a mark"""
+
+    def __post_init__(self) -> None:
+        self.over = self.line.heading
 
     @property
     def last(self) -> ScriptText:
@@ -71,6 +76,7 @@ def items_of(
     for line in lines:
         if around and not line.first and _goes_on(around[-1], line, sense):
             _append(around[-1], line.unmarked, words)
+            around[-1].over = line.heading
             continue
         item = LineItem(line.text, line)
         while around and not (

@@ -14,7 +14,7 @@ from argo_compiler.script.syntax.preamble import Preamble
 from argo_compiler.script.syntax.text.source import Diagnostics, ScriptText
 from argo_compiler.script.syntax.titles import FoundTitle, Titles
 from argo_compiler.script.syntax.tree.facts import Fact
-from argo_compiler.script.syntax.tree.orders import Amend, Sentence, Start
+from argo_compiler.script.syntax.tree.orders import Amend, Follow, Sentence, Start
 from argo_compiler.script.syntax.tree.script import Text, Unread
 from argo_compiler.script.syntax.understanding import Reading, Understanding
 from argo_compiler.script.syntax.words.joints import VERBS
@@ -117,11 +117,23 @@ class SentenceReader:
             hint = "say what follows, or leave it out"
             self.diagnostics.error("unfinished", message, joint.span(), hint)
         node = self._node(text, reading)
+        if item.over and not item.items and text.content.endswith(":"):
+            return self._announced(text, node)
         if text.content.endswith(":") and not item.items and _is_amend(node):
             message = "this stands over other lines, and says only how they are done"
             hint = "say it in each of them, or write them as sub-steps of this line"
             self.diagnostics.error("stray-clause", message, text.span(), hint)
         return [node]
+
+    def _announced(self, text: ScriptText, node: Said) -> list[Said]:
+        """What a line over steps of their own says besides `do the following:`."""
+        if not isinstance(node, Sentence) or node.cases or not node.orders:
+            return [node]
+        *orders, last = node.orders
+        if not isinstance(last, Follow) or last.manner is not None or last.name is not None:
+            return [node]
+        self.diagnostics.note("no-effect", f"`{text.content}` has no effect by itself", text.span())
+        return [replace(node, orders=tuple(orders))] if orders or node.facts else []
 
     def _is_stray(self, text: ScriptText, item: LineItem) -> bool:
         """Whether a line is a number alone, as a page's is, and no list says of what."""

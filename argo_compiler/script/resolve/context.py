@@ -13,7 +13,6 @@ from argo_compiler.script.resolve.nouns import Memory, NounResolver
 from argo_compiler.script.resolve.program import (
     Choice,
     Do,
-    HomeAhead,
     ProgramBlock,
     ProgramNode,
     Way,
@@ -62,7 +61,6 @@ class Context:
     """the drive into the docking station after which nothing more can come"""
     own_names: dict[str, Do] | None = None
     """the tasks by name, as long as the program is not changed"""
-    home_ways: list[HomeAhead] = field(default_factory=list)
     rounds: int = 0
     """how many rounds have been asked for"""
 

@@ -661,3 +661,35 @@ def test_places_that_are_written_alike_are_asked_about(
     assert all(f"`{name}`" in found.message for name in names)
     assert found.hint is not None
     assert "coordinates" in found.hint
+
+
+SAID_TWICE = (
+    "Check checkpoint #9 not later than 10 minutes after the start. If it is too late, go to"
+)
+
+
+@pytest.mark.parametrize(
+    ("line", "code"),
+    [
+        ("Don't check checkpoint 4", "spared"),
+        ("Don't check checkpoint 9", "no-effect"),
+        (f"{SAID_TWICE} step 2. If it is too late, go to step 3", "second-route"),
+        ("Check checkpoint #9. If it is too late, go to step 2", "too-late"),
+        ("Check #9. If it fails, go to step 2. If it fails, go to step 3", "second-route"),
+        ("Repeat steps 2 and 4 twice", "step-range"),
+        ("Repeat steps 4 to 2 twice", "step-range"),
+        ("Repeat step 1 twice", "empty-step"),
+        ("Check checkpoint #9 until #1 is above 4 or #4 is above 4", "condition"),
+        ("Go to (1, 2)", "height"),
+        ("Check checkpoint #9 at 1.200 m/s", "ambiguous-number"),
+        ("Wait 1.200 minutes", "ambiguous-duration"),
+        ("Wait 0 minutes", "duration"),
+        ("Wait 90000000000000 minutes", "duration"),
+    ],
+)
+def test_what_a_line_is_told(line: str, code: str, catalog: Catalog) -> None:
+    try:
+        found = import_script(f"{PLAN}5. {line}\n", catalog).diagnostics
+    except DiagnosticError as error:
+        found = error.diagnostics
+    assert [(f.code, f.span and f.span.line) for f in found] == [(f"script.{code}", 6)]

@@ -16,7 +16,6 @@ from argo_compiler.script.syntax.tree.nouns import (
     Quantity,
     TheOne,
 )
-from argo_compiler.script.syntax.tree.places import FloorName
 from argo_compiler.script.syntax.words.numbers import Figure
 from argo_compiler.script.syntax.words.word import Word
 
@@ -83,10 +82,6 @@ def _aka(part: RulePart) -> list[Noun]:
     return [replace(first, also=second, span=part.span)]
 
 
-def _floors(part: RulePart) -> tuple[FloorName, ...]:
-    return tuple(floor for found in part.every(tuple) for floor in found)
-
-
 def _all(part: RulePart) -> AllOf:
     kind, _ = _kind(part.word("KIND"))
     number = part.word("NUMBER")
@@ -94,7 +89,7 @@ def _all(part: RulePart) -> AllOf:
     return AllOf(
         span=part.span,
         kind=kind or Kind.CHECKPOINT,
-        floors=_floors(part),
+        floors=part.joined(tuple),
         count=count,
         whole=part.has("EVERYTHING"),
     )
@@ -102,7 +97,9 @@ def _all(part: RulePart) -> AllOf:
 
 def _the_one(part: RulePart) -> TheOne:
     kind, plural = _kind(part.word("KIND"))
-    return TheOne(span=part.span, kind=kind or Kind.CHECKPOINT, floors=_floors(part), plural=plural)
+    return TheOne(
+        span=part.span, kind=kind or Kind.CHECKPOINT, floors=part.joined(tuple), plural=plural
+    )
 
 
 def _pronoun(part: RulePart) -> Pronoun:
@@ -137,9 +134,7 @@ def _nouns(part: RulePart) -> Nouns:
 
 def _but(part: RulePart) -> Nouns:
     """`except valve R40`, behind how the others are measured."""
-    return Nouns(
-        span=part.span, nouns=(), but=tuple(n for found in part.every(list) for n in found)
-    )
+    return Nouns(span=part.span, nouns=(), but=part.joined(list))
 
 
 RULES: dict[str, Make] = {

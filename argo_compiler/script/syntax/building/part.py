@@ -1,6 +1,6 @@
 """A rule's part of a sentence while its node is made."""
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterable
 from dataclasses import dataclass
 from typing import Any, TypeVar
 
@@ -50,6 +50,10 @@ class RulePart:
 
     def every(self, type_: type[T]) -> tuple[T, ...]:
         return tuple([child for child in self.children if isinstance(child, type_)])
+
+    def joined(self, type_: type[Iterable[Any]]) -> tuple[Any, ...]:
+        """What is in the children of a type, which have several things each."""
+        return tuple([one for child in self.every(type_) for one in child])
 
     def first(self, type_: type[T]) -> T | None:
         for child in self.children:

@@ -79,10 +79,6 @@ def _plural(part: RulePart) -> bool:
     return word is not None and bool(word.value)
 
 
-def _on_floors(part: RulePart) -> tuple[FloorName, ...]:
-    return tuple(floor for found in part.every(tuple) for floor in found)
-
-
 def _coordinates(part: RulePart) -> Coordinates:
     values = [s.value for s in part.every(Signed)]
     (only, *more) = part.every(Signed)
@@ -155,7 +151,7 @@ RULES: dict[str, Make] = {
     "dock": _dock,
     "place": _place,
     "floors": _floors,
-    "on_floors": _on_floors,
+    "on_floors": lambda part: part.joined(tuple),
     "coordinates": _coordinates,
     "height": _height,
     "heading": _heading,

@@ -94,6 +94,10 @@ SCRIPT = {
         "More than one step has the number that is named.",
         "Number the steps anew, or name the task.",
     ),
+    "script.ambiguous-title": error(
+        "A line over numbered steps may be their title or an order.",
+        "Write `Designation: ...` for a title, a numbered step for an order.",
+    ),
     "script.area-choice": error(
         "The script leaves the starting area to be chosen during preparation.",
         "Choose the areas to start and to end in.",

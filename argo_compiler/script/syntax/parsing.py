@@ -24,6 +24,7 @@ from argo_compiler.script.syntax.sentence_ends import sentences
 from argo_compiler.script.syntax.sentence_reading import Said, SentenceReader
 from argo_compiler.script.syntax.text.healing import MOST_ERRORS, heal
 from argo_compiler.script.syntax.text.source import Diagnostics, ScriptText, Source
+from argo_compiler.script.syntax.titles import ask_of_title
 from argo_compiler.script.syntax.tree.orders import Sentence
 from argo_compiler.script.syntax.tree.script import Script, ScriptStep, Unread
 from argo_compiler.script.syntax.understanding import Understanding
@@ -126,6 +127,7 @@ class _Parser:
         items = items_of(lines_of(texts), sense, language.words)
         steps = list(self._steps(KindLists(self.understanding, self.reader.note).told(items)))
         PlacingCheck(self.diagnostics).steps(steps)
+        ask_of_title(steps, self.diagnostics)
         first = [_step_of(sentence) for sentence in self.fields.reader.first]
         last = [_step_of(sentence) for sentence in self.fields.reader.last]
         return Script(

@@ -1,5 +1,6 @@
 """Titles and headings, with what stands behind them: `Evening round, at most 40 minutes`."""
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 from argo_compiler.script.syntax.asides import Asides
@@ -7,7 +8,10 @@ from argo_compiler.script.syntax.fields import ScriptFields
 from argo_compiler.script.syntax.labels import FieldLabels
 from argo_compiler.script.syntax.layout import LineItem
 from argo_compiler.script.syntax.preamble import Preamble
-from argo_compiler.script.syntax.text.source import ScriptText
+from argo_compiler.script.syntax.text.source import Diagnostics, ScriptText
+from argo_compiler.script.syntax.tree.nouns import Labelled
+from argo_compiler.script.syntax.tree.orders import Measure, Sentence
+from argo_compiler.script.syntax.tree.script import ScriptStep
 from argo_compiler.script.syntax.understanding import Understanding
 
 
@@ -69,3 +73,23 @@ class Titles:
         whole = text.content == item.text.content.rstrip(".!")
         above = bool(item.items) or text.content.endswith(":")
         return line.heading or (whole and line.number is None and above)
+
+
+def ask_of_title(steps: Sequence[ScriptStep], diagnostics: Diagnostics) -> None:
+    """Asks about a line over numbered steps that orders to measure a bare number: `Test 12`."""
+    if len(steps) < 2 or steps[0].number is not None or steps[1].number != 1:
+        return
+    first = steps[0]
+    for sentence in first.sentences:
+        orders = sentence.orders if isinstance(sentence, Sentence) and not sentence.cases else ()
+        if len(orders) == 1 and isinstance(orders[0], Measure) and _is_bare_number(orders[0]):
+            message = "this line over the steps may be their title, or an order"
+            hint = "write `Designation: ...` for the first, a numbered step for the second"
+            diagnostics.error("ambiguous-title", message, first.span, hint)
+            return
+
+
+def _is_bare_number(order: Measure) -> bool:
+    noun = order.what.nouns[0]
+    plain = isinstance(noun, Labelled) and noun.kind is None and not noun.hash
+    return plain and len(order.what.nouns) == 1 and order.manner is None

@@ -62,6 +62,15 @@ def test_to_repeat_once(text: str, count: int, assumed: bool, catalog: Catalog) 
         (f"{_ENGLISH}2. Go to starting area 2 after 5 minutes", "duration", ["wait"]),
         (f"{_ENGLISH}2. Return to the dock in area 2 after 5 minutes", "duration", ["wait"]),
         (f"{_GERMAN}{_ZWEI}4. Fahre nach 5 Minuten zu Startbereich 2", "duration", ["wait"]),
+        (f"{_ENGLISH}{_TWO}4. If 1 or 4 are both abnormal, check #5", "and-or", ["one", "both"]),
+        (f"{_ENGLISH}{_TWO}4. If #1 and #4 is either abnormal, check #5", "and-or", ["both"]),
+        (f"{_ENGLISH}2. Check #1, and 4 only if 1 is above 4", "manner", ["last", "both"]),
+        (f"{_ENGLISH}2. Check #1, and #4 if #1 is above 4", "manner", ["last", "both"]),
+        (f"{_GERMAN}2. Prüfe #1, und #4 nur wenn #1 über 4 liegt", "manner", ["last", "both"]),
+        (f"Test 12\n{_ENGLISH}{_TWO}", "title", ["title", "order"]),
+        (f"Check 7\n\n{_ENGLISH}{_TWO}", "title", ["title", "order"]),
+        (f"Test 12\n{_GERMAN}{_ZWEI}", "title", ["title", "order"]),
+        (f"Prüfe 7\n{_GERMAN}{_ZWEI}", "title", ["title", "order"]),
     ],
 )
 def test_what_is_asked_about(text: str, code: str, readings: list[str], catalog: Catalog) -> None:
@@ -85,3 +94,28 @@ def test_what_is_asked_about(text: str, code: str, readings: list[str], catalog:
 def test_at_most_so_often_with_what_ends_it(text: str, catalog: Catalog) -> None:
     mission, _ = read(text, catalog)
     assert [group.max_repeat_count for group in mission.groups] == [3]
+
+
+@pytest.mark.parametrize(
+    ("condition", "ways"),
+    [
+        ("either #1 or #4 is abnormal", 2),
+        ("#1 or #4 is abnormal", 2),
+        ("both #1 and #4 are abnormal", 1),
+        ("#1 and #4 are both abnormal", 1),
+    ],
+)
+def test_one_of_them_or_both(condition: str, ways: int, catalog: Catalog) -> None:
+    mission, _ = read(f"{_ENGLISH}{_TWO}4. If {condition}, check #5", catalog)
+    task = mission.task("MEASURE 4")
+    assert task is not None
+    assert sum(bool(way.conditions) for way in task.transitions) == ways
+
+
+@pytest.mark.parametrize(
+    "text", ["Check #7\n", "Morning test 12\n", "Behaviour, test 12\n", "Designation: Test 12\n"]
+)
+def test_lines_over_the_steps_that_are_clear(text: str, catalog: Catalog) -> None:
+    mission, _ = read(f"{text}{_ENGLISH}{_TWO}", catalog)
+    measured = [task.object_id for task in mission.tasks if task.object_id is not None]
+    assert measured == (["7", "1", "4"] if "#" in text else ["1", "4"])

@@ -50,7 +50,7 @@ def _beyond(part: RulePart) -> Compared:
     return Compared(span=part.span, relation=relation, bound=part.the(Amount))
 
 
-def _predicate(part: RulePart) -> tuple[Predicate, bool]:
+def _predicate(part: RulePart) -> tuple[Predicate, bool, str]:
     negated = part.has("NOT")
     state = part.word("STATE")
     stale = part.first(InState)
@@ -61,7 +61,8 @@ def _predicate(part: RulePart) -> tuple[Predicate, bool]:
     else:
         plain = next((c for c in part.children if isinstance(c, Compared | Between)), None)
         found = plain or _exactly(part)
-    return found, negated
+    verb = part.word("IS")
+    return found, negated, str(verb.value) if verb is not None else ""
 
 
 def _stale(part: RulePart) -> InState:
@@ -75,12 +76,18 @@ def _detail(part: RulePart) -> dict[str, object]:
 
 
 def _test(part: RulePart) -> Test:
-    predicate, negated = next(c for c in part.children if isinstance(c, tuple))
+    predicate, negated, how_many = next(c for c in part.children if isinstance(c, tuple))
+    subject = part.first(Nouns)
+    several = subject is not None and len(subject.nouns) > 1
+    if subject is not None and several and how_many == ("both" if subject.either else "either"):
+        message = "this can be meant of one of them, or of both"
+        hint = "write `if either #1 or #5 is abnormal`, or `if both #1 and #5 are abnormal`"
+        part.error("ambiguous-and-or", message, hint)
     age = part.first(float)
     detail = part.first(dict) or {"id": "", "second": None}
     return Test(
         span=part.span,
-        subject=part.first(Nouns),
+        subject=subject,
         predicate=predicate,
         negated=negated,
         max_age=predicate.age if isinstance(predicate, InState) and predicate.age else age,

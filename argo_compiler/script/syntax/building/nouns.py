@@ -129,7 +129,11 @@ def _nouns(part: RulePart) -> Nouns:
         else:
             either = either or (isinstance(child, Pronoun) and child.either)
             (but if excluded else nouns).extend(child if isinstance(child, list) else [child])
-    return Nouns(span=part.span, nouns=tuple(nouns), but=tuple(but), either=either)
+    words = part.every(Word)
+    parted = len(nouns) == 2 and len(words) == 1 and str(words[0].value).strip() != ","
+    parted = parted and str(words[0].value).startswith(",")
+    all_ = tuple(nouns)
+    return Nouns(span=part.span, nouns=all_, but=tuple(but), either=either, parted=parted)
 
 
 def _but(part: RulePart) -> Nouns:

@@ -41,9 +41,15 @@ def _measure(part: RulePart) -> ScriptOrder:
     what, *but = part.every(Nouns)
     if but:
         what = replace(what, but=(*what.but, *but[0].but))
+    manner = _manner(part)
+    if what.parted and manner is not None and manner.condition is not None:
+        message = "this condition can be meant for the last of these only, or for both"
+        hint = "write a sentence for each: `check #1. Check #4 only if #1 is above 4`, or leave "
+        hint += "out the comma"
+        part.error("ambiguous-manner", message, hint)
     return orders.Measure(
         span=part.span,
-        manner=_manner(part),
+        manner=manner,
         what=what,
         bare=not part.has("MEASURE", "KEEP_MEASURING", "BE_MEASURED", "ADD"),
         keep=part.has("KEEP_MEASURING"),

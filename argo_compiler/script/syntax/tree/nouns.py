@@ -99,3 +99,5 @@ class Nouns(Node):
     """what is left out of them"""
     either: bool = False
     """joined by `or`"""
+    parted: bool = False
+    """whether a comma stands before the second of two: `1, and 4`"""

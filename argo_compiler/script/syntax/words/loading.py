@@ -39,7 +39,8 @@ _MEANINGS: dict[str, Callable[..., Any]] = {
     **dict.fromkeys(["TIMES", "MORE"], lambda n: Figure(float(n))),
     "NUMBER_WORD": float,
     **dict.fromkeys(
-        ["FLOOR_NAME", "OF", "WAIT", "REPEAT", "VALUE", "SHOWN", "STATE", "UNIT", "NEITHER"], str
+        ["FLOOR_NAME", "OF", "WAIT", "REPEAT", "IS", "VALUE", "SHOWN", "STATE", "UNIT", "NEITHER"],
+        str,
     ),
     **dict.fromkeys(["OR_MORE", "OR_LESS", "JOINT"], str),
 }

@@ -8,6 +8,7 @@ from functools import lru_cache
 from argo_compiler.diagnostics import DiagnosticError
 from argo_compiler.garbage_collector import collector_held
 from argo_compiler.script.syntax.asides import Asides
+from argo_compiler.script.syntax.case_lists import CaseLists
 from argo_compiler.script.syntax.cells import Cells
 from argo_compiler.script.syntax.field_reading import FieldReader
 from argo_compiler.script.syntax.field_values import FieldValues
@@ -125,6 +126,7 @@ class _Parser:
         texts = Cells(self.labels, self.understanding).joined(healed.lines)
         sense = LineSense(self.understanding, self.asides, self.labels)
         items = items_of(lines_of(texts), sense, language.words)
+        items = CaseLists(self.understanding).told(items)
         steps = list(self._steps(KindLists(self.understanding, self.reader.note).told(items)))
         PlacingCheck(self.diagnostics).steps(steps)
         ask_of_title(steps, self.diagnostics)

@@ -85,6 +85,26 @@ _BEGRENZT = f"{_GERMAN}Prüfe #1 und #4 dreimal für 5 Minuten.\n"
             f"{_GERMAN}Prüfe #1.\nWenn er über 4 liegt, prüfe #4.\n"
             "Sonst, wenn er über 2 liegt, prüfe #8.\nSonst prüfe #3.",
         ),
+        *(
+            (said, f"{_ENGLISH}Check #1. If it is above 4, check #4, then check #8. Check #3.")
+            for said in (
+                f"{_ENGLISH}1. Check #1. If it is above 4:\n   a) check #4\n   b) check #8\n"
+                "2. Check #3.",
+                f"{_ENGLISH}Check #1.\nIf it is above 4:\n- check #4;\n- check #8.\nCheck #3.",
+                f"{_ENGLISH}1. Check #1.\n2. If it is above 4, do the following:\n   - check #4,\n"
+                "   - check #8.\n3. Check #3.",
+            )
+        ),
+        (
+            f"{_GERMAN}1. Prüfe #1.\n2. Wenn er über 4 liegt:\n   a) prüfe #4\n   b) prüfe #8",
+            f"{_GERMAN}Prüfe #1. Wenn er über 4 liegt, prüfe #4, dann prüfe #8.",
+        ),
+        (
+            f"{_ENGLISH}If a gas leak is detected:\n- return home\n- wait until all clear\n- resume"
+            "\nCheck #1.",
+            f"{_ENGLISH}Check #1.\nIf a gas leak is detected, return home, wait until all clear, "
+            "resume.",
+        ),
         (f"{_ENGLISH}Check #1.\n\npage 2 of 3\n\nCheck #4.", f"{_ENGLISH}Check #1.\nCheck #4."),
         (f"Seite 1 von 2\n{_GERMAN}Prüfe #1.\nSeite 2/2", f"{_GERMAN}Prüfe #1."),
         (

@@ -116,14 +116,14 @@ class ScriptText:
         return self.source.span(after, after + 1)
 
 
-def join(parts: Sequence[ScriptText]) -> ScriptText:
-    """The texts, at least one, with a blank between each two."""
+def join(parts: Sequence[ScriptText], between: str = " ") -> ScriptText:
+    """The texts, at least one, with a blank or other signs between each two."""
     content: list[str] = []
     offsets: list[int] = []
     for part in parts:
         if content and part.content:
-            content.append(" ")
-            offsets.append(part.offsets[0])
+            content.append(between)
+            offsets.extend([part.offsets[0]] * len(between))
         content.append(part.content)
         offsets.extend(part.offsets)
     return ScriptText("".join(content), offsets, parts[0].source)

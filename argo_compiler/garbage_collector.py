@@ -13,9 +13,9 @@ _holding = Lock()
 def collector_held() -> Iterator[None]:
     """No collection inside; a large mission is built in half the time.
 
-    The collector looks through all that lives each time that enough was added, and finds nothing,
-    for the compiler's data refers in one direction only. It is the process' own, so one thread at a
-    time holds it off; what others build meanwhile may see it come back before they are done.
+    The collector looks through all that lives each time that enough was added, and finds nothing
+    while what is built is still in use. It is the process' own, so one thread at a time holds it
+    off; what others build meanwhile may see it come back before they are done.
     """
     if not _holding.acquire(blocking=False):
         yield
@@ -28,11 +28,6 @@ def collector_held() -> Iterator[None]:
         try:
             yield
         finally:
-            if not gc.get_freeze_count():
-                # What was built counts as old at once: the next collection need not look through
-                # it.
-                gc.freeze()
-                gc.unfreeze()
             gc.enable()
     finally:
         _holding.release()

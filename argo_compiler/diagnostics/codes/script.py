@@ -71,6 +71,10 @@ SCRIPT = {
         "Checkpoints that are to be measured are joined by `or`.",
         "Write `and` for all of them, or name the one that is meant.",
     ),
+    "script.ambiguous-order": error(
+        "A kind is said to come first or last; that may be a step, or the order of the others.",
+        "Write `check all ...` as a step, or the steps in the order that is meant.",
+    ),
     "script.ambiguous-otherwise": error(
         "`Otherwise` can belong to the last of several conditions or to all of them.",
         "Write `otherwise, if ...`, or each condition in a step of its own.",

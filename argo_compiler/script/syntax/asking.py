@@ -87,6 +87,18 @@ class Asking:
         types = self.understanding.types(text)
         return bool(_MANNERS & {*types}) or self.orders(text) or types[:1] in _SINGLE
 
+    def ranks(self, text: ScriptText) -> bool:
+        """Whether a text says of a kind only when it is done: `The valves come first`."""
+        types = self.understanding.types(text)
+        words = text.content.strip(" .!:").lower().split()
+        ends = {*words[:1], *words[-1:]}
+        return (
+            types[:1] == ("KIND",)
+            and len(types) <= 3
+            and {*types[1:]} <= {"BE_MEASURED", "WORD"}
+            and not ends.isdisjoint(phrases_of(self.prose.foremost))
+        )
+
     def adds(self, text: ScriptText) -> bool:
         """Whether a part of a sentence may say something of its order: `(and 4)`, `(go home)`."""
         found = self.understanding.words(text)

@@ -58,6 +58,8 @@ class SentenceReader:
         """Says that a remark has no effect; a warning, where it tells what is to be done. What it
         says of the order is kept: `Note: valve R40 has to be checked before valve R12.`"""
         inner = self.asides.remark(text)
+        if self.asides.asking.ranks(inner):
+            return self._ask_of_rank(inner)
         types = {*self.understanding.types(inner)}
         if types & {"BEFORE", "AFTER"} and not types & {"IF", "UNLESS", *VERBS}:
             reading = self.understanding.read(inner)
@@ -86,6 +88,8 @@ class SentenceReader:
         if self._is_stray(text, item):
             _ask_of_stray(text, self.listed, self.diagnostics)
             return [Unread(span=text.span())]
+        if item.line.number is None and self.asides.asking.ranks(text):
+            return self._ask_of_rank(text)
         self.listed = _kind_listed(text, tuple(self.understanding.types(text)))
         stands_over = item.line.heading or text.content.endswith(":")
         if stands_over and self.preamble.introduces(text):
@@ -134,6 +138,12 @@ class SentenceReader:
             return [node]
         self.diagnostics.note("no-effect", f"`{text.content}` has no effect by itself", text.span())
         return [replace(node, orders=tuple(orders))] if orders or node.facts else []
+
+    def _ask_of_rank(self, text: ScriptText) -> list[Said]:
+        message = f"`{text.content}` may ask for all of them, or for the other lines in this order"
+        hint = "write `check all ...` as a step, or the steps in the order that is meant"
+        self.diagnostics.error("ambiguous-order", message, text.span(), hint)
+        return [Unread(span=text.span())]
 
     def _is_stray(self, text: ScriptText, item: LineItem) -> bool:
         """Whether a line is a number alone, as a page's is, and no list says of what."""
@@ -198,7 +208,7 @@ class SentenceReader:
             hint = "write it as a step if it is to be done"
             self.diagnostics.warning("title", message, title.span(), hint)
         elif not self.asides.is_explicit_title(title):
-            message = f"`{title.content}` is taken for the title"
+            message = f"`{title.content}` is taken for the title, and has no effect on what is done"
             self.diagnostics.note("title", message, title.span())
 
 

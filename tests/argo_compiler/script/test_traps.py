@@ -29,6 +29,9 @@ def bounds(mission: Mission, name: str) -> list[list[tuple[str | None, Condition
     [
         ("Check checkpoint 1 or 4.", "ambiguous-or", ["which of them", "both"]),
         ("Check #1. Check the whole round again.", "ambiguous-all", ["so far", "of the site"]),
+        ("# The valves come first\nCheck #1 and #4.", "ambiguous-order", ["all", "in this order"]),
+        ("Die Ventile zuerst\nPrüfe #1 und #4.", "ambiguous-order", ["all", "in this order"]),
+        ("Note: the gauges come last\nCheck #1.", "ambiguous-order", ["all", "in this order"]),
         ("Check #1. Check the whole list.", "ambiguous-all", ["so far", "of the site"]),
         ("Check #1 and #4. Check everything twice.", "ambiguous-all", ["so far", "of the site"]),
         ("Check #1. Check everything once more.", "ambiguous-all", ["so far", "of the site"]),

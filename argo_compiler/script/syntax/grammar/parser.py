@@ -28,7 +28,8 @@ class Grammar:
     """A parser, and the trees of the sentences it has met, by the types of their words."""
 
     parser: Lark
-    _known: dict[tuple[str, ...], Branch | StumbleError] = field(default_factory=dict)
+    _known: dict[tuple[str, ...], Branch | int] = field(default_factory=dict)
+    """the tree, or the word at which the parser stumbles"""
 
     _MOST = 4096
 
@@ -40,16 +41,12 @@ class Grammar:
         if found is None:
             if len(self._known) >= self._MOST:
                 self._known.clear()
-            try:
-                found = self._parse(words, start)
-            except StumbleError as stumble:
-                found = stumble
-            self._known[key] = found
-        if isinstance(found, StumbleError):
-            raise StumbleError(found.at)
+            self._known[key] = found = self._parse(words, start)
+        if isinstance(found, int):
+            raise StumbleError(found)
         return found
 
-    def _parse(self, words: tuple[str, ...], start: str) -> Branch:
+    def _parse(self, words: tuple[str, ...], start: str) -> Branch | int:
         parser = self.parser.parse_interactive("", start)
         at = 0
         try:
@@ -58,7 +55,7 @@ class Grammar:
             at = len(words)
             tree = parser.feed_token(Token("$END", "", start_pos=at, end_pos=at))
         except UnexpectedToken:
-            raise StumbleError(at) from None
+            return at
         return _branch(tree)
 
     def begins(self, words: tuple[str, ...]) -> bool:

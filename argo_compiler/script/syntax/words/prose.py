@@ -44,6 +44,8 @@ class Prose:
     """verbs that may be nouns as well, which titles number"""
     preposition: str
     """words behind which a title may have an article"""
+    foremost: str
+    """words for the first and the last place in the order"""
     determiner: str
     """words that begin the object of a verb"""
     page: str

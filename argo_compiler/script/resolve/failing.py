@@ -34,6 +34,8 @@ class Failures:
         self.context = context
         self.diagnostics = context.diagnostics
         self.planner = planner
+        self.told: list[Do] = []
+        """the tasks of which it is said what is done if they fail"""
         self.branches = branches
 
     def failure(self, case: Case, block: ProgramBlock) -> None:
@@ -46,13 +48,14 @@ class Failures:
         self._require_told(recent, case)
         for order in case.orders:
             if isinstance(order, orders.Retry):
-                self.planner.order(order, block)
+                self.planner.order(replace(order, again=False), block)
         rest = [order for order in case.orders if not isinstance(order, orders.Retry)]
         if not rest:
             return
-        if any(do.failure or do.on_failure is not OnFailure.CONTINUE for do in recent):
+        if any(do.failure or any(do is one for one in self.told) for do in recent):
             message = "what is done if it fails is said already"
             self.diagnostics.refuse("second-route", message, case.span, "leave one of the two out")
+        self.told += recent
         if (policy := _policy(rest)) is not None:
             self.planner.manners.on_failure(policy)
             return

@@ -123,6 +123,10 @@ class Manners:
             self.furnish(order, recent)
 
     def _retry(self, order: orders.Retry, recent: Sequence[Do]) -> None:
+        if order.again:
+            message = "this can ask to do it once more in any case, or only if it fails"
+            hint = "write `check it again`, or `if it fails, retry once`"
+            self.diagnostics.refuse("ambiguous-repeat", message, order.span, hint)
         manner = order.manner or Manner()
         counts = [n for n in (manner.times, manner.at_most) if n is not None]
         retries = counts[0] if counts else 1

@@ -101,6 +101,16 @@ class NounResolver:
             self.diagnostics.refuse("no-checkpoint", message, nouns.span, hint)
         return left
 
+    def warn_of_empty(
+        self, floors: Sequence[FloorName], found: Sequence[CheckpointInfo], what: str, span: Span
+    ) -> None:
+        """Warns of floors that are named, and have nothing of what is to be done."""
+        numbers = self.lookup.numbers(floors)
+        without = [floor for floor in numbers if not any(c.floor == floor for c in found)]
+        if without:
+            message = f"there is no {what} on floor {listed(map(str, without), 'or')}"
+            self.diagnostics.warning("empty-floor", message, span)
+
     def one(self, nouns: Nouns) -> CheckpointInfo:
         """The only checkpoint of a phrase."""
         found = self.each(nouns)
@@ -143,10 +153,7 @@ class NounResolver:
             where = f" on floor {listed(map(str, floors), 'or')}" if floors else ""
             message = f"there is no {noun.kind}{where} on {self.lookup.catalog.site}"
             self.diagnostics.refuse("unknown-checkpoint", message, noun.span, "name another floor")
-        without = [floor for floor in floors if not any(c.floor == floor for c in found)]
-        if without:
-            message = f"there is no {noun.kind} on floor {listed(map(str, without), 'or')}"
-            self.diagnostics.warning("empty-floor", message, noun.span)
+        self.warn_of_empty(noun.floors, found, str(noun.kind), noun.span)
         if noun.count is not None and noun.count != len(found):
             said = self.diagnostics.source.said(noun.span)
             message = f"`{said}`: there are {len(found)}, {listed(map(told, found[:_SHOWN]))}"

@@ -8,7 +8,7 @@ from argo_compiler.script.resolve.program import Do
 from argo_compiler.script.resolve.starting import Starting
 from argo_compiler.script.resolve.waiting import wait_rule
 from argo_compiler.script.syntax.tree import orders
-from argo_compiler.script.syntax.tree.nouns import AllOf
+from argo_compiler.script.syntax.tree.nouns import AllOf, Labelled
 from argo_compiler.script.syntax.tree.orders import PlainWord, ScriptOrder
 from argo_compiler.script.syntax.tree.places import FloorName
 
@@ -51,6 +51,8 @@ class TaskMaker:
         if order.manner is not None and order.manner.floors:
             what = nouns.on(order.manner.floors, what)
         found = nouns.all(what)
+        if order.manner is not None and all(isinstance(noun, Labelled) for noun in what.nouns):
+            nouns.warn_of_empty(order.manner.floors, found, "one of these", order.span)
         self.context.memory.measured(found)
         if order.manner is not None and order.manner.backwards:
             found.reverse()

@@ -121,9 +121,10 @@ class SentenceReader:
             hint = "say what follows, or leave it out"
             self.diagnostics.error("unfinished", message, joint.span(), hint)
         node = self._node(text, reading)
-        if item.over and not item.items and text.content.endswith(":"):
+        introduces = text.content.endswith(":") and not item.items
+        if introduces and item.over and not _is_amend(node):
             return self._announced(text, node)
-        if text.content.endswith(":") and not item.items and _is_amend(node):
+        if introduces and _is_amend(node):
             message = "this stands over other lines, and says only how they are done"
             hint = "say it in each of them, or write them as sub-steps of this line"
             self.diagnostics.error("stray-clause", message, text.span(), hint)

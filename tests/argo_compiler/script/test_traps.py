@@ -727,6 +727,9 @@ def test_words_that_say_where_something_stands_are_read_where_they_are_true(
         ("Check 1. Immer wenn es über 4 liegt, prüfe 8.", "not at any time"),
         ("Check 1, up to 3 attempts.", "can't understand `attempts`"),
         ("Check 4 with priority 1, check 8 with priority 2.", "highest, or as the lowest"),
+        ("Check 1. Repeat the reading twice.", "once more in any case"),
+        ("Check 1. If it fails, skip it. If it fails, end the mission.", "said already"),
+        ("Go to (1, 2, 0) heading -1e999 degrees.", "too large a number"),
         ("Check 1. Go on here for at most 10 minutes. Check 4.", "a limit of time"),
         ("Check 4 not before 5 min. Unless it is too late by importance: check 1.", "condition"),
     ],
@@ -758,8 +761,11 @@ def test_what_comes_before_what_is_said_as_an_order(catalog: Catalog) -> None:
     assert mission.before == (("MEASURE 7", "MEASURE 18"),)
 
 
-def test_a_floor_without_any_is_named(catalog: Catalog) -> None:
-    found = import_script("Start in area 1.\nCheck all level gauges on floors 1 and 4.", catalog)
+@pytest.mark.parametrize(
+    "text", ["Check all level gauges on floors 1 and 4.", "On floors 1, 2 and 4, check #1 and #5."]
+)
+def test_a_floor_without_any_is_named(text: str, catalog: Catalog) -> None:
+    found = import_script(f"Start in area 1.\n{text}", catalog)
     assert [d.code for d in found.diagnostics] == ["script.empty-floor"]
     assert "floor 4" in found.diagnostics[0].message
 

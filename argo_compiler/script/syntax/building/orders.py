@@ -127,6 +127,11 @@ def _word(part: RulePart) -> ScriptOrder:
     return orders.Plain(span=part.span, manner=_manner(part), word=word)
 
 
+def _retry(part: RulePart) -> ScriptOrder:
+    again = part.the_word("RETRY").value == "again"
+    return orders.Retry(span=part.span, manner=_manner(part), again=again)
+
+
 def _repeat(part: RulePart) -> ScriptOrder:
     return orders.Repeat(
         span=part.span,
@@ -223,7 +228,7 @@ RULES: dict[str, Make] = {
     ),
     "spare": lambda part: orders.Spare(span=part.span, what=part.the(Nouns)),
     "word": _word,
-    "retry": lambda part: orders.Retry(span=part.span, manner=_manner(part)),
+    "retry": _retry,
     "repeat": _repeat,
     "follow": lambda part: orders.Follow(span=part.span, manner=_manner(part)),
     "amend": lambda part: orders.Amend(span=part.span, manner=_manner(part)),

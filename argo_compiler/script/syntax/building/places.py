@@ -116,6 +116,9 @@ def _heading(part: RulePart) -> dict[str, float]:
         if unit != "deg":
             hint = "write `heading 90 degrees` or `heading 1.5 rad`"
             part.error("unit", f"a heading is no number of {unit}", hint)
+        if not figure.value < inf:
+            part.error("number", "this heading is too large a number", "write a smaller one")
+            return {"yaw": 0.0}
         return {"yaw": (-1 if part.has("MINUS") else 1) * figure.value * _RADIANS}
     value = single(part)
     return {"yaw": value if part.has("RAD") else value * _RADIANS}

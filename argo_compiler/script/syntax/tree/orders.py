@@ -126,6 +126,9 @@ class Follow(ScriptOrder):
 class Retry(ScriptOrder):
     """`retry twice`."""
 
+    again: bool = False
+    """whether it may be meant as once more, too: `repeat the reading`"""
+
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Jump(ScriptOrder):

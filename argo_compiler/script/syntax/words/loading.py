@@ -33,6 +33,7 @@ _MEANINGS: dict[str, Callable[..., Any]] = {
     "MODE": Mode,
     "IF": {"if": None, "whenever": "whenever"}.__getitem__,
     "THEM": {"all": None, "either": "either"}.__getitem__,
+    "RETRY": {"failed": None, "again": "again"}.__getitem__,
     "UNIT_S": _SECONDS.__getitem__,
     "RATE": _METRES_PER_SECOND.__getitem__,
     **dict.fromkeys(["ORDINAL", "RANKED"], int),

@@ -99,8 +99,9 @@ SCRIPT = {
         "Number the steps anew, or name the task.",
     ),
     "script.ambiguous-title": error(
-        "A line over numbered steps may be their title or an order.",
-        "Write `Designation: ...` for a title, a numbered step for an order.",
+        "A line over steps may be their title or an order, or say that they are not to be done.",
+        "Write `Designation: ...` for a title, a numbered step for an order, and leave steps out "
+        "that are not to be done.",
     ),
     "script.area-choice": error(
         "The script leaves the starting area to be chosen during preparation.",

@@ -8,6 +8,7 @@ from argo_compiler.script.syntax.text.source import ScriptText
 from argo_compiler.script.syntax.understanding import Understanding
 from argo_compiler.script.syntax.words.joints import VERBS
 from argo_compiler.script.syntax.words.lexicon import expand
+from argo_compiler.script.syntax.words.prose import either
 from argo_compiler.script.syntax.words.word import Word
 
 _MANNERS = frozenset(
@@ -86,6 +87,11 @@ class Asking:
         """Whether a remark says what is to be done, or how."""
         types = self.understanding.types(text)
         return bool(_MANNERS & {*types}) or self.orders(text) or types[:1] in _SINGLE
+
+    def sets_aside(self, heading: ScriptText) -> bool:
+        """Whether a heading may say that what stands below it is not to be done."""
+        pattern = rf"\b(?:{either(self.prose.set_aside)})\b"
+        return re.search(pattern, heading.content, re.IGNORECASE) is not None
 
     def ranks(self, text: ScriptText) -> bool:
         """Whether a text says of a kind only when it is done: `The valves come first`."""

@@ -189,6 +189,8 @@ class SentenceReader:
         self.begun = True
         if first:
             self._entitle(title.head, asked=not self.asides.is_title(title.head))
+        elif self.asides.asking.sets_aside(title.head):
+            _ask_of_heading(title.head, self.diagnostics)
         else:
             self.note(title.head, "a heading")
         if title.fields is not None:
@@ -218,6 +220,12 @@ def _is_amend(node: Said) -> bool:
     if not isinstance(node, Sentence) or node.cases or not node.orders:
         return False
     return all(isinstance(order, Amend) for order in node.orders)
+
+
+def _ask_of_heading(heading: ScriptText, diagnostics: Diagnostics) -> None:
+    message = f"`{heading.content}` may say that what stands below it is not to be done"
+    hint = "leave out what is not to be done, and the heading; or write another heading"
+    diagnostics.error("ambiguous-title", message, heading.span(), hint)
 
 
 def _ask_of_stray(text: ScriptText, listed: str, diagnostics: Diagnostics) -> None:

@@ -52,6 +52,10 @@ SCRIPT = {
         "An obstacle may stand in the way, or be a part of the way that is missing.",
         "Write `a positive obstacle` or `a negative obstacle`.",
     ),
+    "script.ambiguous-exception": error(
+        "What stands behind an exception can be left out as well, or be done as well.",
+        "Write what is left out at the end, or a sentence for each.",
+    ),
     "script.ambiguous-floor": error(
         "A number behind a floor can be another floor or something else.",
         "Write `floors 1 and 2`, or name what else is meant.",

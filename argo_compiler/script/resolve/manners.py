@@ -10,7 +10,7 @@ from argo_compiler.script.resolve.accepting import ROUND, said
 from argo_compiler.script.resolve.context import Context
 from argo_compiler.script.resolve.furnishing import Furnishing
 from argo_compiler.script.resolve.limiting import make_round, timed
-from argo_compiler.script.resolve.program import Choice, Do, ProgramNode
+from argo_compiler.script.resolve.program import Alternatives, Choice, Do, ProgramNode
 from argo_compiler.script.syntax.text.source import RefusedError
 from argo_compiler.script.syntax.tree import orders
 from argo_compiler.script.syntax.tree.manner import Manner
@@ -97,9 +97,22 @@ class Manners:
             memory.last = memory.before  # it is looked at before this order measures
         found = self.context.conditions.alternatives(manner.condition)
         memory.last = measured
+        self._require_of_others(order, nodes, found)
         choice = Choice(found, order.span, negated=manner.condition.negated)
         self.context.put(nodes, choice.then, None)
         return [choice]
+
+    def _require_of_others(
+        self, order: ScriptOrder, nodes: Sequence[ProgramNode], found: Alternatives
+    ) -> None:
+        """Asks about `check #1 and #4 if #1 is above 4`, which is looked at before both, or before
+        the second."""
+        done = {node.object_id for node in nodes if isinstance(node, Do)}
+        asked = {condition.object_id for held in found for condition in held}
+        if len(done) > 1 and done & asked:
+            message = "this condition can be meant for the last of these only, or for all of them"
+            hint = "write a sentence for each: `check #1. Check #4 only if #1 is above 4`"
+            self.diagnostics.refuse("ambiguous-manner", message, order.span, hint)
 
     def furnish(self, order: ScriptOrder, tasks: Sequence[Do]) -> None:
         """Applies to each of the tasks what is said of each."""

@@ -88,7 +88,13 @@ class NounResolver:
         found = [checkpoint for part in parts for checkpoint in part]
         out: list[CheckpointInfo] = []
         for noun, kind, _ in _inheriting(nouns.but):
-            for checkpoint in self._left_out(noun, kind, found):
+            excepted = self._left_out(noun, kind, found)
+            if len(nouns.but) > 1 and not any(checkpoint in found for checkpoint in excepted):
+                said = self.diagnostics.source.said(noun.span)
+                message = f"`{said}` can be left out as well, or be done as well"
+                hint = "write what is left out at the end: `all valves and all gauges except #1`"
+                self.diagnostics.refuse("ambiguous-exception", message, noun.span, hint)
+            for checkpoint in excepted:
                 if checkpoint not in found:
                     message = f"{told(checkpoint)} is none of these anyway"
                     hint = "is another one meant?"

@@ -184,8 +184,8 @@ PAIRS = [
         "Check checkpoint 1. If the pressure is at least 5 bar, check valve R25.",
     ),
     (
-        "Prüfe Kontrollpunkt 1 und Kontrollpunkt 3, wenn Kontrollpunkt 1 über 5 bar liegt.",
-        "Check checkpoint 1 and checkpoint 3 if checkpoint 1 is above 5 bar.",
+        "Prüfe Kontrollpunkt 1 und Kontrollpunkt 3, wenn Kontrollpunkt 6 über 5 bar liegt.",
+        "Check checkpoint 1 and checkpoint 3 if checkpoint 6 is above 5 bar.",
     ),
     (
         "Prüfe Kontrollpunkt 1. Wenn das fehlschlägt, versuche es noch einmal.",

@@ -39,7 +39,12 @@ def _in_all(part: RulePart) -> bool | None:
 
 
 def _more(part: RulePart) -> Manner:
-    return Manner(times=whole(part, part.children[0].value), more=True)
+    word = part.children[0]
+    if "and" in word.before:
+        message = "this can be once more right after it, or at another place"
+        hint = "write `check it twice`, or what is done in between: `..., then check it again`"
+        part.error("ambiguous-manner", message, hint)
+    return Manner(times=whole(part, word.value), more=True)
 
 
 def _for(part: RulePart) -> Manner:

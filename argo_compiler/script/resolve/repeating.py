@@ -128,6 +128,8 @@ class Repeating:
         behind = block.last
         if not tops or isinstance(behind, ProgramRound) or behind in tops:
             return
+        if isinstance(behind, Do) and behind.docks:
+            return  # nothing can be meant behind the return
         message = "these steps are repeated where they stand, before those between them and this"
         hint = "write `repeat step 2 again` for doing them here once more"
         self.diagnostics.warning("repeated-there", message, order.span, hint)

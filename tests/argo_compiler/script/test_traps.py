@@ -761,6 +761,8 @@ def test_steps_that_are_repeated_apart_from_the_line_that_says_so(catalog: Catal
     assert measured(there.mission) == ["1", "4"]
     assert measured(import_script(text.format("2 again"), catalog).mission) == ["1", "4", "1"]
     assert not import_script(text.format("3 twice"), catalog).diagnostics
+    home = text.replace("3. Check #4", "3. Return to the docking station in starting area 1")
+    assert not import_script(home.format("2 twice"), catalog).diagnostics
 
 
 def test_what_comes_before_what_is_said_as_an_order(catalog: Catalog) -> None:

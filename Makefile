@@ -32,7 +32,7 @@ format: .venv/test.stamp ## put the style right where that can be done by itself
 	$(BIN)/ruff check --fix .
 	$(BIN)/ruff format .
 
-generated: .venv/test.stamp ## write anew what is made from the code: JSON Schemas, table of codes, parser tables
+generated: .venv/test.stamp ## write anew what is made from the code: JSON Schemas, pages of codes and of scripts, parser tables
 	$(BIN)/python -m argo_compiler.schemas
 	$(BIN)/python -m argo_compiler.script docs/script.md
 	$(BIN)/python -m argo_compiler.diagnostics docs/diagnostics.md

@@ -5,8 +5,8 @@ from itertools import product
 
 from argo_compiler.catalog import CheckpointInfo
 from argo_compiler.il import Condition, ConditionType
+from argo_compiler.il.bounds import contradict, cover_all
 from argo_compiler.script.resolve import units
-from argo_compiler.script.resolve.excluding import contradict, cover_all
 from argo_compiler.script.resolve.lookup import told
 from argo_compiler.script.resolve.nouns import NounResolver
 from argo_compiler.script.resolve.program import Alternatives

@@ -124,7 +124,7 @@ def _mission(
     _require_no_error(diagnostics)
     said = script.header
     text = said.designation or said.title
-    if said.designation and said.title:
+    if said.designation and said.title and not said.format_title:
         message = f"`{said.title.text}` has no effect: another designation is given"
         diagnostics.note("no-effect", message, said.title.span)
     mission = Mission(

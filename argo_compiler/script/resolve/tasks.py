@@ -42,6 +42,10 @@ class TaskMaker:
                 return [making.wait(wait_rule(order, self.context), span)]
             case orders.Plain(word=PlainWord.MEET):
                 return [making.meeting(span)]
+        if isinstance(order, orders.Follow):
+            message = "there are no steps within this one"
+            hint = "write `repeat this three times`, or the steps as sub-steps below it"
+            self.context.diagnostics.refuse("route", message, span, hint)
         message = "this can't be done here"
         self.context.diagnostics.refuse("route", message, span, "write it as a step of its own")
 

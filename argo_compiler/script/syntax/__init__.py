@@ -1,1 +1,1 @@
-"""From text to syntax tree: noise is healed, statements are parsed."""
+"""From text to syntax tree: noise is healed, lines become sentences, sentences are parsed."""

@@ -1,7 +1,7 @@
 """What in a script asks for nothing: greetings, remarks, titles, reasons, words such as `tonight`.
 
-Whatever is taken for such is a note, so that nothing is left out without a word; and what may ask
-for something is never taken for such.
+Whatever is taken for such is a note, so that nothing is left out without a word; what may ask for
+something after all is a warning or an error.
 """
 
 import re
@@ -11,8 +11,8 @@ from itertools import islice
 
 from argo_compiler.script.syntax.asking import ASKING, NAMED, Asking, phrases_of
 from argo_compiler.script.syntax.grammar.parser import StumbleError
-from argo_compiler.script.syntax.text.source import ScriptText, join
-from argo_compiler.script.syntax.understanding import Understanding, quotes
+from argo_compiler.script.syntax.text.source import ScriptText, join, quotes
+from argo_compiler.script.syntax.understanding import Understanding
 from argo_compiler.script.syntax.words.joints import VERBS
 from argo_compiler.script.syntax.words.lexicon import Lexicon
 from argo_compiler.script.syntax.words.prose import Prose, begins, either

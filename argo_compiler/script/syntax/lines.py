@@ -6,8 +6,7 @@ from dataclasses import dataclass
 from enum import StrEnum
 from functools import cache
 
-from argo_compiler.script.syntax.text.source import ScriptText
-from argo_compiler.script.syntax.understanding import quotes
+from argo_compiler.script.syntax.text.source import ScriptText, quotes
 from argo_compiler.script.syntax.words.loading import everywhere
 
 

@@ -11,8 +11,8 @@ from dataclasses import dataclass
 from argo_compiler.listing import listed
 from argo_compiler.script.syntax.asking import Asking
 from argo_compiler.script.syntax.priorities import Priorities, PriorityScale, scale_of
-from argo_compiler.script.syntax.text.source import Diagnostics, ScriptText, Source
-from argo_compiler.script.syntax.understanding import Understanding, quotes
+from argo_compiler.script.syntax.text.source import Diagnostics, ScriptText, Source, quotes
+from argo_compiler.script.syntax.understanding import Understanding
 from argo_compiler.script.syntax.words.lexicon import expand
 
 _RULE = re.compile(r"[\s|:=+-]*-[\s|:=+-]*")

@@ -3,8 +3,7 @@
 import re
 from functools import cache
 
-from argo_compiler.script.syntax.text.source import ScriptText
-from argo_compiler.script.syntax.understanding import quotes
+from argo_compiler.script.syntax.text.source import ScriptText, quotes
 from argo_compiler.script.syntax.words.loading import everywhere
 
 _LABEL = re.compile(r"\s*(?:[A-Za-z]?-?[0-9]|[A-Z](?!\w))")

@@ -205,7 +205,9 @@ class SentenceReader:
 
     def _entitle(self, title: ScriptText, asked: bool = False) -> None:
         """Takes a text for the title; with a warning, where something may be asked for in it."""
-        self.fields.reader.values.header.title = Text(span=title.span(), text=title.content)
+        header = self.fields.reader.values.header
+        header.title = Text(span=title.span(), text=title.content)
+        header.format_title = self.asides.is_explicit_title(title)
         if asked:
             message = f"`{title.content}` is taken for the title: nothing is planned for it"
             hint = "write it as a step if it is to be done"

@@ -8,7 +8,7 @@ from itertools import islice, product
 
 from argo_compiler.script.syntax.building.sentences import build
 from argo_compiler.script.syntax.grammar.parser import Branch, StumbleError, sentence_grammar
-from argo_compiler.script.syntax.text.source import Diagnostics, ScriptText
+from argo_compiler.script.syntax.text.source import Diagnostics, ScriptText, quotes
 from argo_compiler.script.syntax.text.spelling import candidates
 from argo_compiler.script.syntax.tree.facts import Fact
 from argo_compiler.script.syntax.tree.nouns import Kind
@@ -212,13 +212,6 @@ def _identified(lexicon: Lexicon) -> re.Pattern[str]:
 
 def _all_known(found: list[Word]) -> bool:
     return all(word.type != "WORD" for word in found)
-
-
-def quotes(content: str) -> list[tuple[int, int]]:
-    """Where quoted texts begin and end."""
-    if '"' not in content:
-        return []
-    return [m.span() for m in re.finditer(r'"(?:[^"\\]|\\.)*"', content)]
 
 
 def _is_amend(tree: Branch) -> bool:

@@ -3,7 +3,7 @@
 from collections.abc import Sequence
 
 from argo_compiler.il import Condition, ConditionType, EventKind
-from argo_compiler.script.resolve.excluding import contradict
+from argo_compiler.il.bounds import contradict
 from argo_compiler.script.write.text import UnwritableError, duration, number, quote
 
 _RELATIONS = {

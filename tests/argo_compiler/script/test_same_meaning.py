@@ -105,6 +105,12 @@ _BEGRENZT = f"{_GERMAN}Prüfe #1 und #4 dreimal für 5 Minuten.\n"
             f"{_ENGLISH}Check #1.\nIf a gas leak is detected, return home, wait until all clear, "
             "resume.",
         ),
+        (f"{_ENGLISH}Check all valves of the whole site.", f"{_ENGLISH}Check all valves."),
+        (f"{_GERMAN}Prüfe alle Ventile der Anlage.", f"{_GERMAN}Prüfe alle Ventile."),
+        (
+            f"{_ENGLISH}The order of the checkpoints is free.\nCheck #1 and #4.",
+            f"{_ENGLISH}Check #1 and #4 in any order.",
+        ),
         (f"{_ENGLISH}Check #1.\n\npage 2 of 3\n\nCheck #4.", f"{_ENGLISH}Check #1.\nCheck #4."),
         (f"Seite 1 von 2\n{_GERMAN}Prüfe #1.\nSeite 2/2", f"{_GERMAN}Prüfe #1."),
         (

@@ -842,3 +842,16 @@ def test_an_order_that_makes_no_sense_is_no_title(line: str, catalog: Catalog) -
 def test_what_an_abbreviation_does_not_fit(name: str, catalog: Catalog) -> None:
     with pytest.raises(DiagnosticError):
         import_script(f"Start in starting area 1. Check {name}.", catalog)
+
+
+@pytest.mark.parametrize("name", ['"a*b"', "\u201ca*b\u201d", '"*a* b"'])
+def test_stars_in_a_name_are_kept(name: str, catalog: Catalog) -> None:
+    assert read(f"{name}: check #1.", catalog).tasks[-1].name == name[1:-1]
+
+
+@pytest.mark.parametrize(
+    ("said", "area"),
+    [("Return to dock 2.", 2), ("Return to the docking station in starting area 2.", 2)],
+)
+def test_a_dock_by_its_number_is_that_of_the_area(said: str, area: int, catalog: Catalog) -> None:
+    assert read(f"Check #1. {said}", catalog).end_area == area

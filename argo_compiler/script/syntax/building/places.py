@@ -33,7 +33,11 @@ def _area(part: RulePart) -> AreaLocation:
 
 
 def _dock(part: RulePart) -> DockLocation:
-    return DockLocation(span=part.span, area=part.first(AreaLocation))
+    """`the docking station in starting area 1`, `dock 1`."""
+    area = part.first(AreaLocation)
+    if (word := part.word("NUMBER")) is not None:
+        area = AreaLocation(span=part.span, area=whole(part, word.value))
+    return DockLocation(span=part.span, area=area)
 
 
 def _place(part: RulePart) -> PlaceLocation:

@@ -1,4 +1,4 @@
-"""Heals the noise of text recognition; nothing after this stage knows of it.
+"""Heals the words that text recognition cut or misread.
 
 A mission sheet is a table of two columns, and text recognition leaves tabs where the column
 boundary cuts through a word. The letters beside the cut may stand twice or be lost. What a run of
@@ -24,7 +24,13 @@ from types import MappingProxyType
 
 from argo_compiler.diagnostics import Diagnostic
 from argo_compiler.listing import listed
-from argo_compiler.script.syntax.text.source import MAX_LINE, Diagnostics, ScriptText, Source
+from argo_compiler.script.syntax.text.source import (
+    MAX_LINE,
+    Diagnostics,
+    ScriptText,
+    Source,
+    quotes,
+)
 
 _PLAIN = {
     **dict.fromkeys("\u2018\u2019\u201b\u2032\u00b4`", "'"),
@@ -108,10 +114,15 @@ def _plain(line: ScriptText) -> ScriptText:
     content = line.content
     if not content.isascii() or "*" in content or "`" in content:
         mark = len(content) - len(content.lstrip())
+        quoted = quotes("".join((_PLAIN.get(c, c) or " ")[0] for c in content))
         signs = [
             (sign, at)
             for i, (c, at) in enumerate(zip(content, line.offsets, strict=True))
-            for sign in _sign(c, i == mark and content[i + 1 : i + 2] == " ")
+            for sign in (
+                c
+                if c in "*`" and any(a < i < b for a, b in quoted)
+                else _sign(c, i == mark and content[i + 1 : i + 2] == " ")
+            )
         ]
         line = ScriptText("".join(s for s, _ in signs), [at for _, at in signs], line.source)
     return line[: len(line.content.rstrip())]

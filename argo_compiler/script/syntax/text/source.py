@@ -116,6 +116,13 @@ class ScriptText:
         return self.source.span(after, after + 1)
 
 
+def quotes(content: str) -> list[tuple[int, int]]:
+    """Where quoted texts begin and end."""
+    if '"' not in content:
+        return []
+    return [m.span() for m in re.finditer(r'"(?:[^"\\]|\\.)*"', content)]
+
+
 def join(parts: Sequence[ScriptText], between: str = " ") -> ScriptText:
     """The texts, at least one, with a blank or other signs between each two."""
     content: list[str] = []

@@ -19,7 +19,8 @@ class Joints:
 
 @dataclass(slots=True, kw_only=True)
 class Manner:
-    """What is said of an order besides what it does. None: nothing is."""
+    """What is said of an order besides what it does. None: nothing is. Not frozen, for very many
+    are made, and they are made faster so; nothing changes one."""
 
     speed: float | None = None
     """m/s on the way to each task"""

@@ -50,9 +50,11 @@ class ScriptStep(Node):
 
 @dataclass(kw_only=True)
 class ScriptHeader:
-    """What is said of the mission as a whole. None: nothing is."""
+    """What is said of the mission as a whole. None: nothing is. Mutable: it grows line by line."""
 
     title: Text | None = None
+    format_title: bool = False
+    """whether the title is no more than the name of the format, such as `Mission protocol`"""
     designation: Text | None = None
     site: Text | None = None
     mode: Mode | None = None

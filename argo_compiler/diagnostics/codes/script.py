@@ -94,6 +94,10 @@ SCRIPT = {
     "script.ambiguous-pronoun": error(
         "A word such as `it` can mean several checkpoints.", "Name the one."
     ),
+    "script.ambiguous-remark": error(
+        "What looks like a remark may take something back, or say when or how it is done.",
+        "Write the sentence as it is meant, or leave the remark out.",
+    ),
     "script.ambiguous-repeat": error(
         "How often something is done can be read in two ways.",
         "Write it as one of the two readings in the message.",

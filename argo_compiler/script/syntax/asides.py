@@ -94,6 +94,10 @@ class Asides:
             return False
         return not self.asking.asks(text[found.end() :].strip())
 
+    def is_reason(self, text: ScriptText) -> bool:
+        """Whether a part of a sentence says why: `because it was replaced`."""
+        return begins(self.prose.reason).match(text.content) is not None
+
     def is_signature(self, text: ScriptText) -> bool:
         """Whether a line behind the end of a letter is a name, an address or the like."""
         named = self.asking.names(text) or "KIND" in self.understanding.types(text)

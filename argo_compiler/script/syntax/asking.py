@@ -8,7 +8,7 @@ from argo_compiler.script.syntax.text.source import ScriptText
 from argo_compiler.script.syntax.understanding import Understanding
 from argo_compiler.script.syntax.words.joints import VERBS
 from argo_compiler.script.syntax.words.lexicon import expand
-from argo_compiler.script.syntax.words.prose import either
+from argo_compiler.script.syntax.words.loading import everywhere
 from argo_compiler.script.syntax.words.word import Word
 
 _MANNERS = frozenset(
@@ -33,6 +33,7 @@ _PLACES = frozenset(["AREA", "DOCK", "PLACE", "FLOOR", "FLOOR_NAME", "LPAR", "X"
 """where one may come from; `from` is no order beside anything else"""
 _SINGLE = frozenset((verb,) for verb in VERBS)
 _JOINTS = ("JOINT", "NEXT", "AND_", "OR_", "COLON")
+_CLOCK = re.compile(r"\b[0-9]{1,2}[:.][0-9]{2}\b(?!\.)")
 _TOKEN = re.compile(r"[\w'-]+|[^\w\s]")
 
 
@@ -89,9 +90,14 @@ class Asking:
         return bool(_MANNERS & {*types}) or self.orders(text) or types[:1] in _SINGLE
 
     def sets_aside(self, heading: ScriptText) -> bool:
-        """Whether a heading may say that what stands below it is not to be done."""
-        pattern = rf"\b(?:{either(self.prose.set_aside)})\b"
-        return re.search(pattern, heading.content, re.IGNORECASE) is not None
+        """Whether a heading may say that what stands below it is not to be done, or not always."""
+        types = self.understanding.types(heading)
+        timed = types[:1] in (("BEFORE",), ("AFTER",)) or _CLOCK.search(heading.content) is not None
+        return timed or _limits(heading, "set_aside", "past")
+
+    def corrects(self, remark: ScriptText) -> bool:
+        """Whether a remark may take something back, or say when or how it is done."""
+        return _limits(remark, "set_aside", "correcting")
 
     def ranks(self, text: ScriptText) -> bool:
         """Whether a text says of a kind only when it is done: `The valves come first`."""
@@ -125,6 +131,16 @@ class Asking:
             and last not in article
             for last, token, after in zip(tokens, tokens[1:], tokens[2:], strict=False)
         )
+
+
+def _limits(text: ScriptText, *names: str) -> bool:
+    """Whether a text has words of these names, or is one that says when something is done."""
+    words = "|".join(map(everywhere, names))
+    whole = text.content.strip(" :.!?()*_")
+    return bool(
+        re.search(rf"\b(?:{words})\b", text.content, re.IGNORECASE)
+        or re.fullmatch(everywhere("in_some_case"), whole, re.IGNORECASE)
+    )
 
 
 def _said(text: ScriptText, word: Word) -> str:

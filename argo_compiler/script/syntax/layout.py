@@ -164,11 +164,14 @@ def _are_one(item: LineItem, line: ScriptLine, sense: LineSense) -> bool:
         return True
     if whole and sense.opens_sentence(rest):
         return False
+    marked = item.line.mark is not LineMark.NONE
+    indented = marked and line.indent > item.line.indent
+    if marked and not indented and whole and below.content[:1].isupper():
+        return False  # `Optional:` between two bullets
     if sense.is_complete(both[:end]) or sense.is_beginning(both[:end], end < len(both.content)):
         return True
     if sense.is_complete(rest) or len(last.content) > _LONGEST_STRANGE:
         return False
-    indented = item.line.mark is not LineMark.NONE and line.indent > item.line.indent
     return not whole or sense.is_fragment(rest, indented)
 
 

@@ -138,20 +138,52 @@ class _Rows:
             self._note(cells.pop("remark"))
         if "nothing" in cells:
             self._note(cells["nothing"])
+        if "done" in cells:
+            self._done(cells["done"])
         number = cells.get("number")
         mark: list[str | ScriptText] = ["- "]
         if number is not None and _FIRST_NUMBER.fullmatch(number.content.strip(" .)#")):
             mark = [number.content.strip(" .)#"), ". "]
         elif number is not None:
             self._note(number)
-        wholes = [_joined([*mark, *parts], text) for parts in self._readings(cells)]
-        fitting = (w for w in wholes if self.understanding.fits(w[len("".join(map(str, mark))) :]))
-        return next(fitting, wholes[0])
+        wholes = [
+            [_joined([*mark, *parts], text) for parts in self._readings(placed)]
+            for placed in self._on_floor(cells)
+        ]
+        behind = len("".join(map(str, mark)))
+        fitting = (w for ws in wholes for w in ws if self.understanding.fits(w[behind:]))
+        return next(fitting, wholes[0][0])
+
+    def _on_floor(self, cells: dict[str, ScriptText]) -> list[dict[str, ScriptText]]:
+        """The cells with the floor said of the checkpoint, so that one on another is found."""
+        floor = cells.get("floor")
+        named = next((key for key in ("checkpoint", "object") if key in cells), None)
+        if floor is None:
+            return [cells]
+        if named is None:
+            self._note(floor)
+            return [cells]
+        says = (self.prose.say["floor"], self.prose.say["on"])
+        return [{**cells, named: _joined([cells[named], f" {said} ", floor])} for said in says]
+
+    def _done(self, cell: ScriptText) -> None:
+        """Asks about a step that may be done already."""
+        if cell.content.lower() in expand(self.prose.no):
+            self._note(cell)
+            return
+        message = f"`{cell.content}` may mean that this is done already"
+        hint = "leave the column out, or the rows that are not to be done"
+        self.diagnostics.error("ambiguous-cell", message, cell.span(), hint)
 
     def _asks(self, remark: ScriptText) -> bool:
         return self.asking.asks(remark) or self.asking.bids(remark)
 
     def _note(self, aside: ScriptText) -> None:
+        if self.asking.corrects(aside) or self.asking.bids(aside):
+            message = f"`{aside.content}` may change what is done, or be a remark"
+            hint = "write the row as it is meant, or leave this out"
+            self.diagnostics.error("ambiguous-remark", message, aside.span(), hint)
+            return
         message = f"`{aside.content}` is taken for a remark and has no effect"
         self.diagnostics.note("no-effect", message, aside.span())
 
@@ -191,6 +223,11 @@ class _Rows:
             yield from (f" {self.prose.say['speed']} ", cell)
         if (cell := cells.get("remark")) is not None:
             yield from (" ", cell)
+        if (cell := cells.get("condition")) is not None:
+            if cell.content.lower() in expand(self.prose.no):
+                self._note(cell)
+            else:
+                yield from (" ", cell)
 
     def _unless_needed(self, cell: ScriptText) -> Iterator[str | ScriptText]:
         """What a row says of its step under `Needed`, where `no` may mean two things."""

@@ -111,7 +111,7 @@ class SentenceReader:
             if cut is not None:
                 text, asides = cut
                 for aside in asides:
-                    self.note(aside, "a remark")
+                    self._aside(aside)
                 reading = self.understanding.read(text)
         if isinstance(reading, StumbleError):
             return self._not_understood(text, item, reading)
@@ -124,11 +124,21 @@ class SentenceReader:
         introduces = text.content.endswith(":") and not item.items
         if introduces and item.over and not _is_amend(node):
             return self._announced(text, node)
-        if introduces and _is_amend(node):
+        if stands_over and not item.items and _is_amend(node):
             message = "this stands over other lines, and says only how they are done"
             hint = "say it in each of them, or write them as sub-steps of this line"
             self.diagnostics.error("stray-clause", message, text.span(), hint)
+            return [Unread(span=text.span())]
         return [node]
+
+    def _aside(self, aside: ScriptText) -> None:
+        """Says that a part of a sentence has no effect, or asks about it."""
+        if not self.asides.asking.corrects(aside) or self.asides.is_reason(aside):
+            self.note(aside, "a remark")
+            return
+        message = f"`{aside.content}` may change what is done, or be a remark"
+        hint = "write the sentence as it is meant, or leave this out"
+        self.diagnostics.error("ambiguous-remark", message, aside.span(), hint)
 
     def _announced(self, text: ScriptText, node: Said) -> list[Said]:
         """What a line over steps of their own says besides `do the following:`."""
@@ -225,7 +235,9 @@ def _is_amend(node: Said) -> bool:
 
 
 def _ask_of_heading(heading: ScriptText, diagnostics: Diagnostics) -> None:
-    message = f"`{heading.content}` may say that what stands below it is not to be done"
+    message = (
+        f"`{heading.content}` may say that what stands below it is not to be done, or not always"
+    )
     hint = "leave out what is not to be done, and the heading; or write another heading"
     diagnostics.error("ambiguous-title", message, heading.span(), hint)
 

@@ -44,8 +44,6 @@ class Prose:
     """verbs that may be nouns as well, which titles number"""
     preposition: str
     """words behind which a title may have an article"""
-    set_aside: str
-    """words of a heading that may say that what stands below it is not to be done"""
     foremost: str
     """words for the first and the last place in the order"""
     determiner: str

@@ -747,6 +747,7 @@ def test_words_that_say_where_something_stands_are_read_where_they_are_true(
         ("Check 1, up to 3 attempts.", "can't understand `attempts`"),
         ("Check 4 with priority 1, check 8 with priority 2.", "highest, or as the lowest"),
         ("Check 1. Repeat the reading twice.", "once more in any case"),
+        ("Check 1 and 5. If either 1 and 5 is abnormal, check 8.", "can't understand `either`"),
         ("Check #1, then #4 unless #1 was abnormal.", "the last of these only"),
         ("Check all gauges except #1 and all valves.", "be done as well"),
         ("Check #1 now and again at the end.", "at another place"),

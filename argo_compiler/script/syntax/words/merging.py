@@ -57,6 +57,9 @@ def merged(words: list[Word]) -> list[Word]:
         elif word.type == "BOTH" and _names_two(words[i + 1 : i + 8]):
             i += 1
             continue  # `both #1 and #4`
+        elif word.type == "EITHER" and _are_joined_by_or(words[i + 1 : i + 12]):
+            i += 1
+            continue  # `either #1 or #4`
         elif word.type == "KIND" and word.value[1] is None:
             kind, _, definite = word.value
             word = replace(word, value=(kind, _is_list(words, i + 1), definite))
@@ -167,6 +170,11 @@ def _names_two(words: list[Word]) -> bool:
     named = [word for word in words if word.type not in ("KIND", "HASH")][:3]
     joined = len(named) == 3 and (named[1].type, named[1].value) == ("JOINT", "and")
     return joined and {named[0].type, named[2].type} <= {"NUMBER", "IDENT", "STRING"}
+
+
+def _are_joined_by_or(words: list[Word]) -> bool:
+    joints = (str(word.value) for word in words if word.type == "JOINT")
+    return "or" in next((said for said in joints if "or" in said or "and" in said), "")
 
 
 def _is_it(words: list[Word]) -> bool:

@@ -84,8 +84,9 @@ SCRIPT = {
         "Write `otherwise, if ...`, or each condition in a step of its own.",
     ),
     "script.ambiguous-place": error(
-        "The names of two places of the site differ in capitals or small words only.",
-        "Write the coordinates of the one that is meant.",
+        "The names of two places of the site differ in capitals or small words only, or a place "
+        "may be where something is done or where the robot goes to.",
+        "Write the coordinates of the one that is meant, or the sentence as the hint shows.",
     ),
     "script.ambiguous-priority": error(
         "Numbers of priorities can be counted from the most important one, or from the least.",
@@ -93,6 +94,10 @@ SCRIPT = {
     ),
     "script.ambiguous-pronoun": error(
         "A word such as `it` can mean several checkpoints.", "Name the one."
+    ),
+    "script.ambiguous-quote": error(
+        "Some orders stand in lines of a letter that is answered, others do not.",
+        "Leave out those that are not to be done, and `>` before those that are.",
     ),
     "script.ambiguous-remark": error(
         "What looks like a remark may take something back, or say when or how it is done.",
@@ -110,6 +115,9 @@ SCRIPT = {
         "A line over steps may be their title or an order, or say that they are not to be done.",
         "Write `Designation: ...` for a title, a numbered step for an order, and leave steps out "
         "that are not to be done.",
+    ),
+    "script.ambiguous-word": error(
+        "A small word may change what is meant where it stands.", "Write it as the hint shows."
     ),
     "script.area-choice": error(
         "The script leaves the starting area to be chosen during preparation.",

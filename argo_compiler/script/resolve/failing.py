@@ -46,6 +46,7 @@ class Failures:
             hint = "write it behind the task that it is said of"
             self.diagnostics.refuse("no-task", message, case.span, hint)
         self._require_told(recent, case)
+        self._require_each(recent, case)
         for order in case.orders:
             if isinstance(order, orders.Retry):
                 self.planner.order(replace(order, again=False), block)
@@ -78,6 +79,23 @@ class Failures:
         message = f"this can be said of {names}"
         hint = "say it behind the task that it is said of: `check checkpoint 4; if it fails, ...`"
         self.diagnostics.refuse("ambiguous-pronoun", message, case.span, hint)
+
+    def _require_each(self, recent: Sequence[Do], case: Case) -> None:
+        """Asks about `if both fail`, as each task has a failure path of its own."""
+        assert case.condition is not None
+        nouns = [
+            noun
+            for tests in case.condition.alternatives
+            for test in tests
+            if isinstance(test, Test) and test.subject is not None
+            for noun in test.subject.nouns
+        ]
+        all_ = any(isinstance(noun, Pronoun) and noun.every and not noun.either for noun in nouns)
+        one = any(isinstance(noun, Pronoun) and noun.either for noun in nouns)
+        if all_ or (one and len(recent) == 1):
+            message = "this can be asked of each of them, or of all together"
+            hint = "write `if one of them fails, ...` behind a list, or a sentence for each"
+            self.diagnostics.refuse("failure", message, case.span, hint)
 
     def otherwise(self, do: Do, case: Case, block: ProgramBlock) -> bool:
         """Plans what is done if a task does not fail; False if a failure leads on to the same."""

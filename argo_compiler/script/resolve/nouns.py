@@ -61,6 +61,10 @@ class NounResolver:
         found = self.each(nouns)
         twice = {c.id: c for i, c in enumerate(found) if c in found[:i]}
         for checkpoint in twice.values():
+            if any(isinstance(noun, AllOf) for noun in nouns.nouns):
+                message = f"{told(checkpoint)} is one of all of these, and may be meant once more"
+                hint = "leave it out, or write a sentence for it: `check it again`"
+                self.diagnostics.refuse("ambiguous-measure", message, nouns.span, hint)
             message = f"{told(checkpoint)} stands in this list more than once, and is done as often"
             hint = "leave it out if it is to be done once"
             self.diagnostics.warning("listed-twice", message, nouns.span, hint)
@@ -89,6 +93,7 @@ class NounResolver:
         out: list[CheckpointInfo] = []
         for noun, kind, _ in _inheriting(nouns.but):
             excepted = self._left_out(noun, kind, found)
+            self._require_no_count(noun, excepted, found)
             if len(nouns.but) > 1 and not any(checkpoint in found for checkpoint in excepted):
                 said = self.diagnostics.source.said(noun.span)
                 message = f"`{said}` can be left out as well, or be done as well"
@@ -106,6 +111,19 @@ class NounResolver:
             hint = "name those that are left"
             self.diagnostics.refuse("no-checkpoint", message, nouns.span, hint)
         return left
+
+    def _require_no_count(
+        self, noun: Noun, excepted: list[CheckpointInfo], found: list[CheckpointInfo]
+    ) -> None:
+        """Asks about `all valves except two`, which may be checkpoint 2, or any two of them."""
+        if not isinstance(noun, Labelled) or noun.kind is not None or noun.hash or noun.last:
+            return
+        said = self.diagnostics.source.said(noun.span)
+        inside = any(checkpoint in found for checkpoint in excepted)
+        if isinstance(noun.label, int) and not (inside and said.isdigit()):
+            message = f"`{said}` can be {told(excepted[0])}, or how many of them are left out"
+            hint = f"write `except checkpoint {noun.label}`, or name those that are left out"
+            self.diagnostics.refuse("ambiguous-exception", message, noun.span, hint)
 
     def warn_of_empty(
         self, floors: Sequence[FloorName], found: Sequence[CheckpointInfo], what: str, span: Span

@@ -7,7 +7,7 @@ something after all is a warning or an error.
 import re
 from collections.abc import Iterator
 from functools import cache
-from itertools import islice
+from itertools import islice, pairwise
 
 from argo_compiler.script.syntax.asking import ASKING, NAMED, Asking, phrases_of
 from argo_compiler.script.syntax.grammar.parser import StumbleError
@@ -187,6 +187,8 @@ class Asides:
             rest = text[token.start() :].strip()
             if "WORD" in self.understanding.types(rest):
                 continue
+            if ("AT", "NUMBER") in pairwise(self.understanding.types(aside)):
+                continue  # `während du an 1 wartest`
             if "WORD" in types and not types & _SAYING and not self.asking.asks(aside):
                 yield rest, [aside]
 

@@ -4,7 +4,7 @@ import re
 from functools import cache
 from itertools import pairwise
 
-from argo_compiler.script.syntax.text.source import ScriptText
+from argo_compiler.script.syntax.text.source import Diagnostics, ScriptText
 from argo_compiler.script.syntax.understanding import Understanding
 from argo_compiler.script.syntax.words.joints import VERBS
 from argo_compiler.script.syntax.words.lexicon import expand
@@ -131,6 +131,13 @@ class Asking:
             and last not in article
             for last, token, after in zip(tokens, tokens[1:], tokens[2:], strict=False)
         )
+
+
+def ask_of_remark(remark: ScriptText, diagnostics: Diagnostics) -> None:
+    """Asks about a remark that may not be one."""
+    message = f"`{remark.content}` may change what is done, or be a remark"
+    hint = "write what is done as it is meant, or leave this out"
+    diagnostics.error("ambiguous-remark", message, remark.span(), hint)
 
 
 def _limits(text: ScriptText, *names: str) -> bool:

@@ -19,6 +19,7 @@ from argo_compiler.script.syntax.layout import LineItem, items_of
 from argo_compiler.script.syntax.line_sense import LineSense
 from argo_compiler.script.syntax.lines import LineMark, lines_of
 from argo_compiler.script.syntax.placing import PlacingCheck
+from argo_compiler.script.syntax.quoted import ask_of_quotes
 from argo_compiler.script.syntax.repeats import Repeats, repeats
 from argo_compiler.script.syntax.rows import tables
 from argo_compiler.script.syntax.sentence_ends import sentences
@@ -130,6 +131,7 @@ class _Parser:
         steps = list(self._steps(KindLists(self.understanding, self.reader.note).told(items)))
         PlacingCheck(self.diagnostics).steps(steps)
         ask_of_title(steps, self.diagnostics)
+        ask_of_quotes(steps, self.diagnostics)
         first = [_step_of(sentence) for sentence in self.fields.reader.first]
         last = [_step_of(sentence) for sentence in self.fields.reader.last]
         return Script(

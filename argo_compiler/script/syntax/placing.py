@@ -11,7 +11,7 @@ from functools import cache
 from argo_compiler.script.syntax.text.source import Diagnostics, ScriptText
 from argo_compiler.script.syntax.tree import orders
 from argo_compiler.script.syntax.tree.conditions import InState, TaskState, Test, TooLate
-from argo_compiler.script.syntax.tree.nouns import AllOf, TheOne
+from argo_compiler.script.syntax.tree.nouns import AllOf, Labelled, TheOne
 from argo_compiler.script.syntax.tree.orders import Case, Placed, Placing, ScriptOrder, Sentence
 from argo_compiler.script.syntax.tree.script import ScriptStep
 from argo_compiler.script.syntax.words.lexer import placed_words
@@ -71,6 +71,10 @@ class PlacingCheck:
                     message = "this does not say where `there` is"
                     hint = "name the floor: `all gauges on floor 3`"
                     self.diagnostics.error("which-place", message, placed.span, hint)
+            case Placing.AT_END | Placing.AT_BEGIN if any(map(_names_twice, before)):
+                message = "this may be said of one that stands in the list already, or once more"
+                hint = "write the list in the order that is meant"
+                self.diagnostics.error("ambiguous-measure", message, placed.span, hint)
             case Placing.AT_END if not sentence.cases:
                 others = [order for order in after if before and isinstance(order, _WORK)]
                 if others:
@@ -105,6 +109,13 @@ def _is_of_all(order: ScriptOrder) -> bool:
     return isinstance(order, orders.Measure) and any(
         isinstance(noun, AllOf | TheOne) and not noun.floors for noun in order.what.nouns
     )
+
+
+def _names_twice(order: ScriptOrder) -> bool:
+    """Whether an order names a checkpoint more than once."""
+    nouns = order.what.nouns if isinstance(order, orders.Measure) else ()
+    labels = [noun.label for noun in nouns if isinstance(noun, Labelled)]
+    return len({*labels}) < len(labels)
 
 
 @cache

@@ -9,7 +9,7 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 
 from argo_compiler.listing import listed
-from argo_compiler.script.syntax.asking import Asking
+from argo_compiler.script.syntax.asking import Asking, ask_of_remark
 from argo_compiler.script.syntax.priorities import Priorities, PriorityScale, scale_of
 from argo_compiler.script.syntax.text.source import Diagnostics, ScriptText, Source, quotes
 from argo_compiler.script.syntax.understanding import Understanding
@@ -180,9 +180,7 @@ class _Rows:
 
     def _note(self, aside: ScriptText) -> None:
         if self.asking.corrects(aside) or self.asking.bids(aside):
-            message = f"`{aside.content}` may change what is done, or be a remark"
-            hint = "write the row as it is meant, or leave this out"
-            self.diagnostics.error("ambiguous-remark", message, aside.span(), hint)
+            ask_of_remark(aside, self.diagnostics)
             return
         message = f"`{aside.content}` is taken for a remark and has no effect"
         self.diagnostics.note("no-effect", message, aside.span())

@@ -3,6 +3,8 @@
 from dataclasses import dataclass, field, replace
 
 from argo_compiler.script.syntax.asides import Asides
+from argo_compiler.script.syntax.asking import ask_of_remark
+from argo_compiler.script.syntax.doubts import ask_of_words
 from argo_compiler.script.syntax.fields import ScriptFields
 from argo_compiler.script.syntax.grammar.parser import StumbleError
 from argo_compiler.script.syntax.hints import not_understood
@@ -133,12 +135,10 @@ class SentenceReader:
 
     def _aside(self, aside: ScriptText) -> None:
         """Says that a part of a sentence has no effect, or asks about it."""
-        if not self.asides.asking.corrects(aside) or self.asides.is_reason(aside):
+        if self.asides.asking.corrects(aside) and not self.asides.is_reason(aside):
+            ask_of_remark(aside, self.diagnostics)
+        else:
             self.note(aside, "a remark")
-            return
-        message = f"`{aside.content}` may change what is done, or be a remark"
-        hint = "write the sentence as it is meant, or leave this out"
-        self.diagnostics.error("ambiguous-remark", message, aside.span(), hint)
 
     def _announced(self, text: ScriptText, node: Said) -> list[Said]:
         """What a line over steps of their own says besides `do the following:`."""
@@ -165,6 +165,7 @@ class SentenceReader:
         self.begun = True
         for idle in self.asides.idle(text):
             self.diagnostics.note("no-effect", f"`{idle.content}` has no effect", idle.span())
+        ask_of_words(text, self.understanding.language.lexicon, self.diagnostics)
         node = self.understanding.node(text, reading)
         if isinstance(node, Sentence):
             placed = placed_in(text, node, self.understanding.language.lexicon)

@@ -24,6 +24,25 @@ from argo_compiler.script.syntax.tree.nouns import Nouns
 from argo_compiler.script.syntax.words.word import Word
 
 
+def require_moment(part: RulePart) -> None:
+    """Asks about `whenever` and `as soon as` of values, which are looked at when that is said."""
+    opening = part.word("IF", "IF_ONLY", "UNLESS")
+    if opening is None or opening.value != "whenever":
+        return
+    condition = part.the(SaidCondition)
+    tests = [test for tests in condition.alternatives for test in tests]
+    if any(isinstance(test, Test) and not _is_failure(test) for test in tests):
+        message = "a value is looked at where that is said, not at any time"
+        hint = "write `if ...` behind each measurement that it is looked at after"
+        part.diagnostics.error("ambiguous-case", message, condition.span, hint)
+
+
+def _is_failure(test: Test) -> bool:
+    """Whether a test asks whether a task has failed, which is answered at once."""
+    states = (TaskState.FAILED, TaskState.UNREADABLE)
+    return isinstance(test.predicate, InState) and test.predicate.state in states
+
+
 def _compared(part: RulePart) -> Compared:
     relation = Relation[part.children[0].type]
     return Compared(span=part.span, relation=relation, bound=part.the(Amount))

@@ -6,6 +6,7 @@ from itertools import pairwise
 from typing import Any
 
 from argo_compiler.il import Afterwards, Order
+from argo_compiler.script.syntax.building.conditions import require_moment
 from argo_compiler.script.syntax.building.figures import Signed, duration, seconds, speed, whole
 from argo_compiler.script.syntax.building.part import Make, RulePart
 from argo_compiler.script.syntax.tree.conditions import Occurs, SaidCondition
@@ -133,6 +134,11 @@ def combined(part: RulePart, manners: Iterable[Manner]) -> Manner | None:
     return Manner(**values) if values else None
 
 
+def _only_if(part: RulePart) -> Manner:
+    require_moment(part)
+    return Manner(condition=part.the(SaidCondition))
+
+
 RULES: dict[str, Make] = {
     "speed": _speed,
     "leaving": _speed,
@@ -152,7 +158,7 @@ RULES: dict[str, Make] = {
     "priority": _priority,
     "ranked": _ranked,
     "by_importance": lambda part: Manner(by_importance=True),  # noqa: ARG005
-    "only_if": lambda part: Manner(condition=part.the(SaidCondition)),
+    "only_if": _only_if,
     "unless": lambda part: Manner(condition=replace(part.the(SaidCondition), negated=True)),
     "flag": lambda part: Manner(**_FLAGS[part.children[0].type]),
     "floored": lambda part: Manner(floors=part.the(tuple)),

@@ -1,5 +1,6 @@
 """Makes orders."""
 
+import re
 from dataclasses import replace
 
 from argo_compiler.script.syntax.building.figures import duration, whole
@@ -19,6 +20,7 @@ from argo_compiler.script.syntax.tree.places import (
     PlaceLocation,
     Steps,
 )
+from argo_compiler.script.syntax.words.loading import everywhere
 from argo_compiler.script.syntax.words.word import Word
 
 
@@ -58,7 +60,19 @@ def _measure(part: RulePart) -> ScriptOrder:
 
 
 def _go(part: RulePart) -> ScriptOrder:
-    return _towards(part, where(part))
+    where_to = where(part)
+    order = _towards(part, where_to)
+    driven = order.manner is not None and order.manner.speed is not None
+    if isinstance(where_to, FloorName) and driven and _says_where(part.said):
+        message = "this may be where the robot goes to, or where it drives at this speed"
+        hint = "write `go to floor 2` for the first, the speed behind each order for the second"
+        part.error("ambiguous-place", message, hint)
+    return order
+
+
+def _says_where(said: str) -> bool:
+    """Whether words say where something is, and not where to: `on the second floor`."""
+    return re.search(rf"\b(?:{everywhere('whereabouts')})\b", said, re.IGNORECASE) is not None
 
 
 def where(part: RulePart) -> Location | FloorName:

@@ -15,7 +15,7 @@ from argo_compiler.script.syntax.building import (
 from argo_compiler.script.syntax.building.part import Make, RulePart
 from argo_compiler.script.syntax.grammar.parser import Branch
 from argo_compiler.script.syntax.text.source import Diagnostics, ScriptText
-from argo_compiler.script.syntax.tree.conditions import SaidCondition, Test
+from argo_compiler.script.syntax.tree.conditions import SaidCondition
 from argo_compiler.script.syntax.tree.facts import Fact
 from argo_compiler.script.syntax.tree.manner import Manner
 from argo_compiler.script.syntax.tree.nouns import Labelled, Pronoun
@@ -48,13 +48,7 @@ def _case(part: RulePart) -> Case:
             message = "this time can be that of the condition, or that before what is done"
             hint = "write `if ..., wait 5 minutes and check ...`, or `wait 5 minutes` before it"
             part.diagnostics.error("ambiguous-case", message, orders[0].span, hint)
-    opening = part.word("IF", "UNLESS")
-    if condition is not None and opening is not None and opening.value == "whenever":
-        tests = [test for tests in condition.alternatives for test in tests]
-        if any(isinstance(test, Test) for test in tests):
-            message = "a value is looked at where that is said, not at any time"
-            hint = "write `if ...` behind each measurement that it is looked at after"
-            part.diagnostics.error("ambiguous-case", message, condition.span, hint)
+    conditions.require_moment(part)
     if condition is not None and orders and isinstance(orders[0], Amend):
         _require_joint(part, condition, orders[0])
     if condition is not None and part.the(Word).value == "unless":

@@ -113,6 +113,11 @@ def placed_words(text: str, lexicon: Lexicon) -> list[Word]:
     return [word for word in found if word.type in _PLACED] + ends
 
 
+def all_words(text: str, lexicon: Lexicon) -> list[Word]:
+    """The words of a sentence one by one, those that say nothing as well."""
+    return _looked_up(text, lexicon, frozenset())
+
+
 def _looked_up(text: str, lexicon: Lexicon, unsaid: frozenset[str] = _UNSAID) -> list[Word]:
     pieces = list(_PIECE.finditer(_lower(text)))
     said = [folded(piece.group()) for piece in pieces]

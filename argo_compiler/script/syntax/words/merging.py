@@ -28,6 +28,7 @@ _OPENING = frozenset(["JOINT", "IN_ANY_CASE", "BEFORE", "AFTER", "ELSE", "IN_ALL
 _BETWEEN_FLOORS = ("JOINT", "ORDINAL", "ON", "IN")
 _UPTO = ("TO", "UNTIL")
 """`1 to 4`, `1 bis 4`"""
+_LABELS = frozenset(["NUMBER", "NUMBER_WORD", "IDENT", "STRING"])
 _LISTING = frozenset(["JOINT", "TO", "UNTIL", "DASH", "UPTO"])
 
 
@@ -146,6 +147,8 @@ def _tells_order(words: list[Word], i: int) -> bool:
         return True
     after = next((w for w in words[i + 1 :] if w.type not in _BETWEEN_FLOORS), None)
     listed = i + 1 < len(words) and words[i + 1].type in ("JOINT", "ORDINAL")
+    if words[i].value > 1 and i > 0 and words[i - 1].type in _LABELS:
+        return False  # `check 8 second, 1 first`
     return after is None or (after.type != "FLOOR" and listed)
 
 

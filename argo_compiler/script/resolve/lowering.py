@@ -228,7 +228,7 @@ def _closes(body: ProgramBlock) -> bool:
     last = body.last
     if isinstance(last, Do):
         open_ = any(
-            (not way.alternatives and not way.last_round)
+            (not way.alternatives and not way.last_round and way.target is not Ahead.GO_ON)
             or (way.alternatives and way.target is Ahead.GO_ON)
             for way in last.ways
         )

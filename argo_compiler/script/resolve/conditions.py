@@ -22,7 +22,7 @@ from argo_compiler.script.syntax.tree.conditions import (
     TaskState,
     Test,
 )
-from argo_compiler.script.syntax.tree.nouns import Nouns, Pronoun
+from argo_compiler.script.syntax.tree.nouns import AllOf, Labelled, Nouns, Pronoun
 
 _MOST = 64
 """alternatives of one condition"""
@@ -82,12 +82,29 @@ class ConditionResolver:
             message = "values and events can't be asked for in one condition"
             self.diagnostics.refuse("condition", message, test.span, "write a sentence for each")
         checkpoints = self._subjects(test)
+        self._require_value(test, checkpoints)
         for checkpoint in checkpoints:
             self._note_unmeasured(checkpoint, test)
         ways = self.diagnostics.each(lambda one: self._of(test, one), checkpoints)
         if test.subject is not None and test.subject.either:
             return [one for way in ways for one in way]
         return [sum(parts, ()) for parts in product(*ways)]
+
+    def _require_value(self, test: Test, checkpoints: Sequence[CheckpointInfo]) -> None:
+        """Asks about `if 1 is above 8`, where 8 may be a value or what checkpoint 8 shows."""
+        nouns = test.subject.nouns if test.subject is not None else ()
+        bare = all(isinstance(n, Labelled) and n.kind is None and not n.hash for n in nouns)
+        if not nouns or not bare or not isinstance(test.predicate, Compared):
+            return
+        bound = test.predicate.bound
+        measured = self.nouns.memory.so_far.values()
+        other = next((c for c in measured if c.id == bound.value), None)
+        if other is None or bound.unit or other in checkpoints:
+            return
+        if all(checkpoint.unit == other.unit for checkpoint in checkpoints):
+            message = f"`{other.id}` can be {other.id} {other.unit}, or what {told(other)} shows"
+            hint = f"write `{other.id} {other.unit}`; two checkpoints are not compared"
+            self.diagnostics.refuse("ambiguous-number", message, bound.span, hint)
 
     def _note_unmeasured(self, checkpoint: CheckpointInfo, test: Test) -> None:
         if checkpoint.id in self.nouns.memory.so_far or not self.nouns.memory.known:
@@ -98,6 +115,11 @@ class ConditionResolver:
 
     def _subjects(self, test: Test) -> Sequence[CheckpointInfo]:
         """Which checkpoints are asked for; `it` is the only one whose unit is that of the value."""
+        if test.subject is not None and test.subject.but:
+            message = "what is left out may be anything, or must not be so"
+            hint = "write `if #1 is above 5 and #4 is at most 5`, or leave the exception out"
+            if not any(isinstance(noun, AllOf) for noun in test.subject.nouns):
+                self.diagnostics.refuse("condition", message, test.subject.span, hint)
         match test.subject:
             case None | Nouns(nouns=(Pronoun(every=False),)):
                 measured = self.nouns.memory.last

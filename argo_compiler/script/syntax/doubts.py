@@ -19,7 +19,11 @@ _ENDS = frozenset(
     [*VERBS, "GREATER", "LESS", "AT_LEAST", "AT_MOST", "BETWEEN", "STATE", "FAILS", "IS"]
 )
 """words behind which a condition says no more of which checkpoints it is"""
+_FROM_START = frozenset(["SINCE_START", "BACK_IN", "MAX_DURATION"])
 _NAMED = frozenset(["KIND", "HASH", "NUMBER", "IDENT", "STRING", "IT", "THEM", "BOTH", "THIS"])
+
+
+_AND_SO_ON = re.compile(r"(?:^|[\d,])\s*(\.{3}|…)(?=\s|$)")
 
 
 @dataclass(frozen=True)
@@ -34,10 +38,18 @@ _ONLY = Doubt(
     "may mean that the others are not so",
     "leave it out, or say of the others as well what they have to be",
 )
+_ONLY_THEN = Doubt(
+    "may mean only in that case, or only after that",
+    "write `if ..., then ...` for the first, and leave it out for the second",
+)
 _SUM = Doubt("may ask for their sum, or for each of them", "write `and` for the second")
 _ALSO = Doubt(
     "may mean `if`, or `even if`",
     "write `if ...` for the first, and leave the condition out for the second",
+)
+_WITHIN = Doubt(
+    "may be counted from the start of the mission, or from what is done before",
+    "write `within 10 minutes of the start`; no time is counted from another step",
 )
 _THERE = Doubt(
     "may be the docking station, or the place that was named before",
@@ -49,18 +61,30 @@ _AND_BACK = Doubt(
 )
 
 
-def ask_of_words(text: ScriptText, lexicon: Lexicon, diagnostics: Diagnostics) -> None:
-    """Asks about the words of a sentence that may change what is meant."""
+def ask_of_dots(text: ScriptText, diagnostics: Diagnostics) -> None:
+    """Asks about `Check 1, 4, ...`."""
+    dots = _AND_SO_ON.search(text.content)
+    if dots is not None:
+        message = f"`{dots[1]}` may mean that more is to be done"
+        hint = "name all that is to be done, or leave the dots out"
+        diagnostics.error("ambiguous-word", message, text.span(*dots.span(1)), hint)
+
+
+def ask_of_words(
+    text: ScriptText, lexicon: Lexicon, diagnostics: Diagnostics, ordered: bool
+) -> None:
+    """Asks about the words of a sentence that may change what is meant. `ordered`: something is
+    to be done before it."""
     if _looks_doubtful().search(text.content) is None:
         return
     words = all_words(text.content, lexicon)
-    for word, doubt in _doubts(words, text.content.lower()):
+    for word, doubt in _doubts(words, text.content.lower(), ordered):
         said = text.content[word.start : word.end]
         span = text.span(word.start, word.end)
         diagnostics.error("ambiguous-word", f"`{said}` {doubt.message}", span, doubt.hint)
 
 
-def _doubts(words: Sequence[Word], content: str) -> Iterator[tuple[Word, Doubt]]:
+def _doubts(words: Sequence[Word], content: str, ordered: bool) -> Iterator[tuple[Word, Doubt]]:
     for i, word in enumerate(words):
         said = content[word.start : word.end]
         after = [w.type for w in words[i + 1 :] if w.type != "FILLER"]
@@ -69,6 +93,8 @@ def _doubts(words: Sequence[Word], content: str) -> Iterator[tuple[Word, Doubt]]
             case "FILLER" if _is(said, "restricting"):
                 if _names_subject(words, i) and after[:1] and after[0] in _NAMED:
                     yield word, _ONLY
+                elif i == 0 and _is(_next(words, i, content), "following"):
+                    yield word, _ONLY_THEN
             case "FILLER" if _is(said, "adding"):
                 behind = [type_ for type_ in after if type_ != "JOINT"]
                 ordered = any(w.type in VERBS for w in words[:i])
@@ -78,14 +104,33 @@ def _doubts(words: Sequence[Word], content: str) -> Iterator[tuple[Word, Doubt]]
                 yield word, _AND_BACK
             case "JOINT" if _is(said, "summing") and _names_subject(words, i):
                 yield word, _SUM
+            case "WITHIN" if ordered or _is_second(words, i):
+                types = {w.type for w in words}
+                if types.isdisjoint(_FROM_START) and not _is_first(said):
+                    yield word, _WITHIN
             case "THERE" if before is not None and before.type == "HOME":
                 yield word, _THERE
+
+
+def _next(words: Sequence[Word], i: int, content: str) -> str:
+    """The word behind one."""
+    return content[words[i + 1].start : words[i + 1].end] if i + 1 < len(words) else ""
 
 
 def _names_subject(words: Sequence[Word], i: int) -> bool:
     """Whether a word stands where a condition says of which checkpoints it is."""
     last = next((w.type for w in reversed(words[:i]) if w.type in _OPENS | _ENDS), "")
     return last in _OPENS
+
+
+def _is_second(words: Sequence[Word], i: int) -> bool:
+    """Whether the order that a word belongs to has others before it."""
+    return sum(w.type in VERBS and w.type != "START" for w in words[:i]) > 1
+
+
+def _is_first(said: str) -> bool:
+    """`within the first`"""
+    return re.search(rf"\b(?:{everywhere('of_start')})\b", said) is not None
 
 
 def _is(said: str, name: str) -> bool:
@@ -95,6 +140,6 @@ def _is(said: str, name: str) -> bool:
 @cache
 def _looks_doubtful() -> re.Pattern[str]:
     """A pattern of such words, so that few sentences are looked at once more."""
-    names = ("restricting", "adding", "thither", "summing", "yonder")
+    names = ("restricting", "adding", "thither", "summing", "yonder", "windows")
     said = "|".join(map(everywhere, names))
     return re.compile(rf"(?<![\w-])(?:{said})(?![\w-])", re.IGNORECASE)

@@ -5,13 +5,14 @@ where its last sentence and the line below make sense as one, they are one.
 """
 
 import re
-from collections.abc import Collection, Iterable, Iterator
+from collections.abc import Collection, Iterable, Iterator, Sequence
 from dataclasses import dataclass, field
 
 from argo_compiler.script.syntax.line_sense import LineSense
 from argo_compiler.script.syntax.lines import LineMark, ScriptLine
 from argo_compiler.script.syntax.sentence_ends import sentence_bounds
 from argo_compiler.script.syntax.text.source import ScriptText, join
+from argo_compiler.script.syntax.tree.places import FloorName
 
 
 @dataclass(slots=True)
@@ -29,6 +30,8 @@ class LineItem:
     """whether the last sentence is so long that only its end tells whether it goes on"""
     over: bool = False
     """whether its last line stands over one with a mark"""
+    floors: Sequence[FloorName] = ()
+    """where what it names is, as the heading over it says"""
 
     def __post_init__(self) -> None:
         self.over = self.line.heading
@@ -132,6 +135,8 @@ def _goes_on(item: LineItem, line: ScriptLine, sense: LineSense) -> bool:
         return _ends_in_number(item, line, sense) and not sense.stands_alone(item.text)
     if line.mark is not LineMark.NONE:
         return False
+    if item.line.heading and item.line.mark is LineMark.BULLET:
+        return False  # `# Second floor`
     indented = line.indent > item.line.indent
     key = (item.last.content, line.text.content, item.line.mark, item.long, indented)
     known = sense.one.get(key)

@@ -10,9 +10,11 @@ from argo_compiler.garbage_collector import collector_held
 from argo_compiler.script.syntax.asides import Asides
 from argo_compiler.script.syntax.case_lists import CaseLists
 from argo_compiler.script.syntax.cells import Cells
+from argo_compiler.script.syntax.doubts import ask_of_dots
 from argo_compiler.script.syntax.field_reading import FieldReader
 from argo_compiler.script.syntax.field_values import FieldValues
 from argo_compiler.script.syntax.fields import ScriptFields
+from argo_compiler.script.syntax.floor_lists import FloorLists, on_floors
 from argo_compiler.script.syntax.kind_lists import KindLists
 from argo_compiler.script.syntax.labels import FieldLabels
 from argo_compiler.script.syntax.layout import LineItem, items_of
@@ -128,6 +130,7 @@ class _Parser:
         sense = LineSense(self.understanding, self.asides, self.labels)
         items = items_of(lines_of(texts), sense, language.words)
         items = CaseLists(self.understanding).told(items)
+        items = FloorLists(self.understanding).told(items)
         steps = list(self._steps(KindLists(self.understanding, self.reader.note).told(items)))
         PlacingCheck(self.diagnostics).steps(steps)
         ask_of_title(steps, self.diagnostics)
@@ -161,7 +164,7 @@ class _Parser:
 
     def _step(self, item: LineItem) -> ScriptStep | None:
         known = self.repeats.said(item.text) if self._is_plain(item) else None
-        said = self._said(item) if known is None else known
+        said = on_floors(self._said(item) if known is None else known, item.floors)
         return self._of(item, said, list(self._steps(item.items)))
 
     def _said(self, item: LineItem) -> list[Said]:
@@ -175,6 +178,8 @@ class _Parser:
         said: list[Said] = []
         remark = False
         parts = sentences(text)
+        if not self.asides.is_remark(text.content):
+            ask_of_dots(text, self.diagnostics)
         for sentence in parts:
             # What stands behind a remark is one as well, unless it makes sense.
             after = remark and not self.understanding.fits(sentence)

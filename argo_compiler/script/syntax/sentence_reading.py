@@ -165,10 +165,11 @@ class SentenceReader:
         self.begun = True
         for idle in self.asides.idle(text):
             self.diagnostics.note("no-effect", f"`{idle.content}` has no effect", idle.span())
-        ask_of_words(text, self.understanding.language.lexicon, self.diagnostics)
+        lexicon = self.understanding.language.lexicon
+        ask_of_words(text, lexicon, self.diagnostics, self.ordered)
         node = self.understanding.node(text, reading)
         if isinstance(node, Sentence):
-            placed = placed_in(text, node, self.understanding.language.lexicon)
+            placed = placed_in(text, node, lexicon)
             node = replace(node, placed=placed) if placed else node
             self.ordered |= any(not isinstance(order, Start) for order in node.orders)
         return Unread(span=text.span()) if node is None else node

@@ -1,6 +1,8 @@
 """Makes conditions."""
 
+import re
 from dataclasses import replace
+from functools import cache
 
 from argo_compiler.script.syntax.building.alternatives import alternatives, is_named
 from argo_compiler.script.syntax.building.figures import Signed, duration
@@ -21,6 +23,7 @@ from argo_compiler.script.syntax.tree.conditions import (
     TooLate,
 )
 from argo_compiler.script.syntax.tree.nouns import Nouns
+from argo_compiler.script.syntax.words.loading import everywhere
 from argo_compiler.script.syntax.words.word import Word
 
 
@@ -135,8 +138,37 @@ def _condition(part: RulePart) -> SaidCondition:
                 test = replace(test, subject=subject)
             subject = test.subject
         tests.append(test)
+    _require_plain_negation(part)
     found = alternatives(part, tests, [is_named(test) for test in said])
     return SaidCondition(span=part.span, alternatives=found)
+
+
+def _require_plain_negation(part: RulePart) -> None:
+    """Asks about `not above 4 or below 2`: whether the second is to be so, or not."""
+    content, start = part.text.content, part.start
+    for test, joint in zip(part.children[::2], part.children[1::2], strict=False):
+        plain = isinstance(test, Test) and not isinstance(test.predicate, Between)
+        parted = joint.type == "OR_TEST" or (joint.type == "AND_TEST" and plain)
+        said, behind = content[start : joint.start], content[joint.end :].lstrip()
+        start = joint.end
+        if parted and _negating().search(said) and _bounding().match(behind):
+            message = "`not` can be said of the first of these only, or of both"
+            hint = "write `is not ... and is not ...`, or `is not ... or is ...`"
+            part.error("ambiguous-and-or", message, hint)
+            return
+
+
+@cache
+def _negating() -> re.Pattern[str]:
+    return re.compile(
+        rf"\b(?:{everywhere('negating')})\b(?!.*\b(?:{everywhere('closing')})\W*$)", re.IGNORECASE
+    )
+
+
+@cache
+def _bounding() -> re.Pattern[str]:
+    """How a bound begins that has no verb of its own."""
+    return re.compile(rf"(?:{everywhere('bounding')})(?!\w)", re.IGNORECASE)
 
 
 RULES: dict[str, Make] = {

@@ -37,7 +37,6 @@ _PLAIN = {
     **dict.fromkeys("\u201c\u201d\u201e\u201f\u2033\u00ab\u00bb", '"'),
     **dict.fromkeys("\u2010\u2011\u2012\u2013\u2014\u2015\u2212", "-"),
     **dict.fromkeys("\x0c\u200b\u200c\u200d\u2060\u00ad\ufeff", ""),
-    "\u2026": ".",
     "\ufb01": "fi",
     "\ufb02": "fl",
 }

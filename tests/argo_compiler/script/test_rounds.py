@@ -190,6 +190,12 @@ def test_a_priority_of_a_script_does_not_hold_an_emergency_stop_back(
                 "end of 'Repeat a'": ["MEASURE 3"],
             },
         ),
+        (
+            "1. Check #1.\n2. Check #2. In all other cases go on. If it is above 5, go to step 1.\n"
+            "3. Repeat steps 1 to 2 twice.\n4. Check #3",
+            "MEASURE 2",
+            {"MEASURE 2": ["MEASURE 3", "MEASURE 1"]},
+        ),
     ],
 )
 def test_where_a_round_ends_and_what_comes_then(

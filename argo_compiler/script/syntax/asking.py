@@ -116,8 +116,12 @@ class Asking:
         found = self.understanding.words(text)
         types = [word.type for word in found]
         sides = any(a in ("BEFORE", "AFTER") and b in NAMED | LABELS for a, b in pairwise(types))
-        opens = bool(found) and (found[0].before != "" or types[0] in VERBS)
-        opens = opens or types[:1] == ["JOINT"] or "".join(types[:1]).startswith(("OR_", "AND_"))
+        opens = bool(found) and (
+            found[0].before != ""
+            or types[0] in VERBS
+            or types[0] == "JOINT"
+            or types[0].startswith(("OR_", "AND_"))
+        )
         return sides or opens or {*types} <= LABELS or self.asks(text) or self.names(text)
 
     def _has_object(self, content: str) -> bool:

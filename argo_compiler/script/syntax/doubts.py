@@ -97,8 +97,8 @@ def _doubts(words: Sequence[Word], content: str, ordered: bool) -> Iterator[tupl
                     yield word, _ONLY_THEN
             case "FILLER" if _is(said, "adding"):
                 behind = [type_ for type_ in after if type_ != "JOINT"]
-                ordered = any(w.type in VERBS for w in words[:i])
-                if ordered and behind[:1] == ["IF"] and not {*VERBS} & {*behind}:
+                bidden = any(w.type in VERBS for w in words[:i])
+                if bidden and behind[:1] == ["IF"] and not {*VERBS} & {*behind}:
                     yield word, _ALSO
             case "FILLER" if _is(said, "thither") and after[:2] == ["JOINT", "BACK"]:
                 yield word, _AND_BACK

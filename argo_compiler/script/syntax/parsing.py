@@ -170,6 +170,7 @@ class _Parser:
     def _said(self, item: LineItem) -> list[Said]:
         """What an item says; kept, if it says so wherever it stands."""
         before = len(self.diagnostics.entries)
+        plain = self._is_plain(item)  # now: what is said first hangs on being first
         text = self._without_letter(item)
         text = self.labels.relabelled(text)
         if self.labels.is_field(text):
@@ -193,7 +194,7 @@ class _Parser:
                 said += self.reader.read(sentence, item)
         whole = text is item.text and not self.labels.is_field(text)
         whole = whole and len(said) == len(parts) and len(self.diagnostics.entries) == before
-        plain = whole and not self.understanding.unknown and self._is_plain(item)
+        plain = plain and whole and not self.understanding.unknown and self._is_plain(item)
         if plain and not any(isinstance(s, Unread) for s in said):
             self.repeats.keep(text, said, lambda text, unknown: self._again(item, text, unknown))
         return said

@@ -10,7 +10,7 @@ from functools import cache
 
 from argo_compiler.script.syntax.text.source import Diagnostics, ScriptText
 from argo_compiler.script.syntax.tree import orders
-from argo_compiler.script.syntax.tree.conditions import InState, TaskState, Test, TooLate
+from argo_compiler.script.syntax.tree.conditions import InState, Test, TooLate
 from argo_compiler.script.syntax.tree.nouns import AllOf, Labelled, TheOne
 from argo_compiler.script.syntax.tree.orders import Case, Placed, Placing, ScriptOrder, Sentence
 from argo_compiler.script.syntax.tree.script import ScriptStep
@@ -135,7 +135,7 @@ def _is_other_way(case: Case | None) -> bool:
         or (
             isinstance(test, Test)
             and isinstance(test.predicate, InState)
-            and test.predicate.state in (TaskState.FAILED, TaskState.UNREADABLE)
+            and test.predicate.is_failure
         )
         for test in tests
     )

@@ -10,15 +10,16 @@ from argo_compiler.script.syntax.tree.script import ScriptStep
 def ask_of_quotes(steps: Sequence[ScriptStep], diagnostics: Diagnostics) -> None:
     """Asks which orders count, where some are quoted and others are not."""
     lines = diagnostics.source.lines
-    ordered = list(_ordered(steps))
-    quoted = [s for s in ordered if lines[s.span.line - 1].lstrip().startswith(">")]
-    if not 0 < len(quoted) < len(ordered):
+    first: dict[bool, Sentence] = {}  # that is quoted, and that is not
+    for sentence in _ordered(steps):
+        first.setdefault(lines[sentence.span.line - 1].lstrip().startswith(">"), sentence)
+    if len(first) < 2:
         return
-    other = next(s for s in ordered if s not in quoted)
-    message = f"this is quoted, and line {other.span.line} is not: it may be done as well, or be "
+    line = first[False].span.line
+    message = f"this is quoted, and line {line} is not: it may be done as well, or be "
     message += "of another plan"
     hint = "leave out what is not to be done, and `>` before what is"
-    diagnostics.error("ambiguous-quote", message, quoted[0].span, hint)
+    diagnostics.error("ambiguous-quote", message, first[True].span, hint)
 
 
 def _ordered(steps: Sequence[ScriptStep]) -> Iterator[Sentence]:

@@ -165,6 +165,12 @@ def bounds(mission: Mission, name: str) -> list[list[tuple[str | None, Condition
         ("Prüfe #1. Wenn er nicht über 4 oder unter 2 liegt, ende.", "ambiguous-and-or", ["both"]),
         ("Check #14. Check #1 within 2 minutes.", "ambiguous-word", ["start", "done before"]),
         ("Check #14, then check #1 within 2 minutes.", "ambiguous-word", ["done before"]),
+        ("Check #14.\nAlso check #1 within 2 minutes.", "ambiguous-word", ["done before"]),
+        (
+            "1. Check #1 within 2 minutes.\n2. Check #4.\n3. Check #1 within 2 minutes.",
+            "ambiguous-word",
+            ["done before"],
+        ),
         ("Check 1 and 8. If 1 is higher than 8, go home.", "ambiguous-number", ["8 bar", "(#8)"]),
         ("Check 1, 8. If 1 but not 8 is above 4, go home.", "condition", ["left out"]),
         ("First floor\n- check #1\n- check #5", "checkpoint-mismatch", ["not on floor 1"]),

@@ -41,9 +41,7 @@ def require_moment(part: RulePart) -> None:
 
 
 def _is_failure(test: Test) -> bool:
-    """Whether a test asks whether a task has failed, which is answered at once."""
-    states = (TaskState.FAILED, TaskState.UNREADABLE)
-    return isinstance(test.predicate, InState) and test.predicate.state in states
+    return isinstance(test.predicate, InState) and test.predicate.is_failure
 
 
 def _compared(part: RulePart) -> Compared:

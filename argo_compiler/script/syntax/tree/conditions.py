@@ -60,6 +60,11 @@ class InState(Node):
     age: float | None = None
     """s, of STALE"""
 
+    @property
+    def is_failure(self) -> bool:
+        """Whether it says that a task has failed, which is known as soon as it has ended."""
+        return self.state in (TaskState.FAILED, TaskState.UNREADABLE)
+
 
 Predicate = Compared | Between | InState
 

@@ -9,7 +9,6 @@ import fcntl
 import hashlib
 import json
 import os
-import zlib
 from collections.abc import Sequence
 from pathlib import Path
 from typing import Literal, NoReturn, Self, TypeVar
@@ -20,6 +19,13 @@ from argo_compiler import __version__
 from argo_compiler.errors import ArgoError, Conflict, Invalid, NotFound, Remedy, Unavailable
 from argo_compiler.model import Model
 from argo_env.closing import Closing
+from argo_env.files.checked_lines import (
+    checked_line,
+    checked_object,
+    cut_off,
+    sync_folder,
+    write_all,
+)
 from argo_env.files.yaml_messages import message_of
 from argo_env.planning.opening import OpenedSite
 from argo_env.run.log import Entry
@@ -76,11 +82,11 @@ class Journal(Observer, Closing):
         """
         line = _line(self._lines, entry)
         try:
-            _write(self._file, line)
+            write_all(self._file, line)
             if entry.precious:
                 os.fsync(self._file)
         except OSError as error:
-            _cut(self._file, self._size)
+            cut_off(self._file, self._size)
             raise Unavailable(
                 f"{self.path}: the journal can't be written any further: {error.strerror}; what "
                 "was written stays, and the run can be resumed from there",
@@ -179,10 +185,10 @@ def create_journal(path: Path, header: Header, replace: bool = False) -> Journal
             draft.unlink(missing_ok=True)
             require_free(path)
         os.ftruncate(file, 0)
-        _write(file, line)
+        write_all(file, line)
         os.fsync(file)
         draft.rename(path)
-        _sync_folder(path.parent)
+        sync_folder(path.parent)
     except OSError as error:
         os.close(file)
         draft.unlink(missing_ok=True)
@@ -222,8 +228,8 @@ def _parse(path: Path, content: bytes) -> tuple[Header, list[Entry], int]:
     lines = content.split(b"\n")
     # Behind the last line end there is nothing, or the beginning of a line.
     whole = lines[:-1]
-    first = _payload(whole[0]) if whole else None
-    if whole and whole[0].endswith(b"\r") and _payload(whole[0][:-1]) is not None:
+    first = checked_object(whole[0]) if whole else None
+    if whole and whole[0].endswith(b"\r") and checked_object(whole[0][:-1]) is not None:
         _refuse(path, "has line ends of another system (CR LF): bring it over as it was written")
     if first is None or first.get("format") != _MARK:
         _refuse(path, "is no journal, or its first line is damaged: nothing can go on from it")
@@ -237,7 +243,7 @@ def _parse(path: Path, content: bytes) -> tuple[Header, list[Entry], int]:
     entries: list[Entry] = []
     size = len(whole[0]) + 1
     for number, line in enumerate(whole[1:], start=1):
-        data = _payload(line)
+        data = checked_object(line)
         if data is None or data.pop("n", None) != number:
             if number + 1 < len(whole) or lines[-1]:
                 _refuse(
@@ -264,20 +270,7 @@ def _line(number: int, model: Model) -> bytes:
     data = {"n": number} | model.model_dump(mode="json", exclude_defaults=True)
     if isinstance(model, Header):
         data |= {"format": model.format, "version": model.version}
-    payload = json.dumps(data, ensure_ascii=False, separators=(",", ":")).encode()
-    return b"%08x %s\n" % (zlib.crc32(payload), payload)
-
-
-def _payload(line: bytes) -> dict[str, object] | None:
-    """The data in a line; None if its checksum does not fit."""
-    checksum, _, payload = line.partition(b" ")
-    if checksum != b"%08x" % zlib.crc32(payload):
-        return None
-    try:
-        data = json.loads(payload)
-    except (ValueError, RecursionError):
-        return None
-    return data if isinstance(data, dict) else None
+    return checked_line(data)
 
 
 def _open(path: Path) -> int:
@@ -309,28 +302,6 @@ def _read(file: int, path: Path) -> bytes:
     while part := os.read(file, 1 << 20):
         parts.append(part)
     return b"".join(parts)
-
-
-def _write(file: int, data: bytes) -> None:
-    while data:
-        data = data[os.write(file, data) :]
-
-
-def _cut(file: int, size: int) -> None:
-    """Takes back what was written of a line, if the disk lets us; else it is a torn one."""
-    try:
-        os.ftruncate(file, size)
-    except OSError:
-        return
-
-
-def _sync_folder(folder: Path) -> None:
-    """So that the file's name is on disk as well."""
-    file = os.open(folder, os.O_RDONLY)
-    try:
-        os.fsync(file)
-    finally:
-        os.close(file)
 
 
 def _digest(content: str | bytes) -> str:

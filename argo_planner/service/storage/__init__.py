@@ -1,0 +1,1 @@
+"""Plans on disk: what was acknowledged survives a process that is killed."""

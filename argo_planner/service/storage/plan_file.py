@@ -1,0 +1,309 @@
+"""The file of one plan: a line with the plan as it was once, and a line for each record since.
+
+A record that has been written and synced survives the process and the machine. From time to time
+the file is written anew with fewer records; the one before is kept beside it.
+"""
+
+import os
+from dataclasses import dataclass
+from datetime import datetime
+from pathlib import Path
+from typing import Any, Literal
+
+from pydantic import TypeAdapter, ValidationError
+
+from argo_compiler import __version__
+from argo_compiler.errors import Invalid, NotFound, Unavailable
+from argo_compiler.il import Mission
+from argo_compiler.model import Model
+from argo_env.closing import Closing
+from argo_env.files.checked_lines import (
+    checked_line,
+    checked_object,
+    cut_off,
+    sync_folder,
+    write_all,
+)
+from argo_planner.service.core.document import (
+    PlanDocument,
+    PlanRecord,
+    PlanVersion,
+    RevisionMade,
+)
+from argo_planner.service.core.plan import MissionPlan
+
+VERSION = 1
+"""of the file's format"""
+MAX_BYTES = 1_000_000_000
+MOST_RECORDS = 400
+"""after which the file is written anew"""
+KEPT_RECORDS = 100
+"""revisions that can still be undone then"""
+_FLAGS = os.O_RDWR | os.O_APPEND | os.O_CLOEXEC | os.O_NOFOLLOW
+_RECORD: TypeAdapter[PlanRecord] = TypeAdapter(PlanRecord)
+
+
+class PlanBase(Model):
+    """The first line: the plan as it was before the records that follow."""
+
+    format: Literal["argo plan"] = "argo plan"
+    version: Literal[1] = 1
+    argo: str = __version__
+    id: str
+    name: str
+    created: datetime
+    changed: datetime
+    revision: int
+    mission: Mission
+    versions: tuple[PlanVersion, ...] = ()
+
+
+@dataclass(frozen=True)
+class Recovery:
+    """What was lost of a damaged file."""
+
+    message: str
+    kept_as: str
+    """name of the damaged file, beside the plan's"""
+
+
+class PlanFile(Closing):
+    """An open file of a plan. Holds the file and the plan as it is on disk; one thread at a time
+    may use it."""
+
+    def __init__(
+        self, path: Path, file: int, document: PlanDocument, size: int, lines: int
+    ) -> None:
+        self.path = path
+        self.document = document
+        self.recovery: Recovery | None = None
+        """what was lost when it was opened, if anything was"""
+        self._file = file
+        self._size = size
+        self._lines = lines
+
+    def append(self, document: PlanDocument, record: PlanRecord) -> None:
+        """Writes a record, after which the plan is the document. When this returns, it is on disk.
+
+        Raises Unavailable if it can't be written; the file is as it was then.
+        """
+        data = record.model_dump(mode="json")
+        line = checked_line({"n": self._lines} | data)
+        try:
+            write_all(self._file, line)
+            os.fdatasync(self._file)
+        except OSError as error:
+            cut_off(self._file, self._size)
+            raise _unwritten(self.path, error) from error
+        self._size += len(line)
+        self._lines += 1
+        self.document = document
+        if self._lines > MOST_RECORDS:
+            self._write_anew()
+
+    def close(self) -> None:
+        os.close(self._file)
+
+    def _write_anew(self) -> None:
+        """Writes the plan with its last revisions; the file before stays beside it."""
+        plan = self.document.plan
+        kept = plan.history[-KEPT_RECORDS:]
+        try:
+            written = _written(self.path, self.document, plan, kept)
+        except Unavailable:
+            return  # all is in the file that there is
+        os.close(self._file)
+        self._file, self._size, self._lines = written
+
+
+def create_plan_file(path: Path, document: PlanDocument) -> PlanFile:
+    """A new file with the plan. Raises Unavailable if it can't be written."""
+    file, size, lines = _written(path, document, document.plan, ())
+    return PlanFile(path, file, document, size, lines)
+
+
+def open_plan_file(path: Path) -> PlanFile:
+    """The file of a plan, ready for more. What was not written to its end is cut off. Of a damaged
+    one the last good state is opened, and `recovery` says what was lost; the damaged file is kept.
+
+    Raises:
+        NotFound: there is no such file.
+        Invalid: nothing of it can be read.
+        Unavailable: it can't be opened or written.
+    """
+    content = _content(path)
+    read = _read(content)
+    earlier = _earlier(path)
+    if read is None and earlier.exists():
+        before = _read(_content(earlier))
+        if before is not None:
+            lost = "its first line is damaged: this is how the mission was some time before"
+            return _recovered(path, before, lost)
+    if read is None:
+        raise Invalid(
+            f"{path.name}: is damaged from its first line on, and nothing of it can be read: "
+            "take it from a copy"
+        )
+    if read.lost:
+        lost = (
+            f"{read.lost} of {read.lost + read.lines} lines are damaged or follow a damaged one: "
+            f"this is the mission at revision {read.document.plan.revision}"
+        )
+        return _recovered(path, read, lost)
+    file = _open(path)
+    if read.size < len(content):
+        os.ftruncate(file, read.size)  # what nobody was told was written
+        os.fsync(file)
+    return PlanFile(path, file, read.document, read.size, read.lines)
+
+
+@dataclass(frozen=True)
+class _Read:
+    document: PlanDocument
+    size: int
+    """bytes that are good"""
+    lines: int
+    lost: int
+    """lines, which were whole once"""
+
+
+def _read(content: bytes) -> _Read | None:
+    """The plan in a file as far as it is good; None if its first line is not."""
+    *whole, torn = content.split(b"\n")
+    base = checked_object(whole[0]) if whole else None
+    if base is None or base.get("format") != "argo plan":
+        return None
+    if base.get("version") != VERSION:
+        raise Invalid(
+            f"the plan has version {base.get('version')} of its format, and this Argo reads "
+            f"{VERSION}: open it with the Argo that wrote it"
+        )
+    base.pop("n", None)
+    try:
+        document = _document(PlanBase.model_validate(base))
+    except ValidationError:
+        return None
+    size = len(whole[0]) + 1
+    for number, line in enumerate(whole[1:], start=1):
+        following = _following(document, line, number)
+        if following is None:
+            return _Read(document, size, number, len(whole) - number)
+        document = following
+        size += len(line) + 1
+    del torn
+    return _Read(document, size, len(whole), 0)
+
+
+def _following(document: PlanDocument, line: bytes, number: int) -> PlanDocument | None:
+    """The document after the record in a line; None if there is no such record."""
+    data = checked_object(line)
+    if data is None or data.pop("n", None) != number:
+        return None
+    try:
+        return document.after(_RECORD.validate_python(data))
+    except ValueError:
+        return None
+
+
+def _document(base: PlanBase) -> PlanDocument:
+    plan = MissionPlan(base.mission, base.revision)
+    return PlanDocument(base.id, base.name, base.created, base.changed, plan, base.versions)
+
+
+def _recovered(path: Path, read: _Read, lost: str) -> PlanFile:
+    """The file with what is good of it, the damaged one kept beside it."""
+    aside = next(
+        name
+        for k in range(1, 10_000)
+        if not (name := path.with_name(f"{path.name}.damaged-{k}")).exists()
+    )
+    try:
+        os.link(path, aside, follow_symlinks=False)
+    except OSError as error:
+        raise _unwritten(path, error) from error
+    plan = read.document.plan
+    written = _written(path, read.document, plan, plan.history, keep_before=False)
+    opened = PlanFile(path, written[0], read.document, *written[1:])
+    opened.recovery = Recovery(f"{lost}; the damaged file is kept as {aside.name}", aside.name)
+    return opened
+
+
+def _written(
+    path: Path,
+    document: PlanDocument,
+    plan: MissionPlan,
+    revisions: tuple[Any, ...],
+    keep_before: bool = True,
+) -> tuple[int, int, int]:
+    """Writes the whole file under another name, then gives it its own. Returns the open file, its
+    size (bytes) and its lines."""
+    begins = plan.before(revisions[0].number) if revisions else plan
+    base = PlanBase.model_construct(
+        id=document.id,
+        name=document.name,
+        created=document.created,
+        changed=document.changed,
+        revision=begins.revision,
+        mission=begins.mission,
+        versions=document.versions,
+    )
+    made = [RevisionMade.model_construct(revision=revision) for revision in revisions]
+    lines = [checked_line({"n": 0} | base.model_dump(mode="json"))]
+    for number, record in enumerate(made, start=1):
+        data = record.model_dump(mode="json")
+        lines.append(checked_line({"n": number} | data))
+    content = b"".join(lines)
+    draft = path.with_name(f"{path.name}.new")
+    try:
+        draft.unlink(missing_ok=True)
+        file = os.open(draft, os.O_CREAT | os.O_EXCL | _FLAGS, 0o600)
+    except OSError as error:
+        raise _unwritten(path, error) from error
+    try:
+        write_all(file, content)
+        os.fsync(file)
+        if keep_before and path.exists():
+            _earlier(path).unlink(missing_ok=True)
+            os.link(path, _earlier(path), follow_symlinks=False)
+        draft.replace(path)
+        sync_folder(path.parent)
+    except OSError as error:
+        os.close(file)
+        draft.unlink(missing_ok=True)
+        raise _unwritten(path, error) from error
+    return file, len(content), len(lines)
+
+
+def _earlier(path: Path) -> Path:
+    return path.with_name(f"{path.name}.before")
+
+
+def _open(path: Path) -> int:
+    try:
+        return os.open(path, _FLAGS)
+    except FileNotFoundError:
+        raise NotFound(f"{path.name}: there is no such mission") from None
+    except OSError as error:
+        raise Unavailable(f"{path.name}: can't be opened: {error.strerror}") from error
+
+
+def _content(path: Path) -> bytes:
+    file = _open(path)
+    try:
+        if os.fstat(file).st_size > MAX_BYTES:
+            raise Invalid(f"{path.name}: is larger than {MAX_BYTES // 1_000_000} MB: no plan is")
+        parts = []
+        while part := os.read(file, 1 << 20):
+            parts.append(part)
+    except OSError as error:
+        raise Unavailable(f"{path.name}: can't be read: {error.strerror}") from error
+    finally:
+        os.close(file)
+    return b"".join(parts)
+
+
+def _unwritten(path: Path, error: OSError) -> Unavailable:
+    return Unavailable(
+        f"{path.name}: can't be written: {error.strerror}; nothing was changed. Make room, or "
+        "choose another folder"
+    )

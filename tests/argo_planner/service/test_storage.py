@@ -1,0 +1,247 @@
+"""Plans on disk: what was written stays, whatever happens to the file or the process."""
+
+import os
+import random
+import subprocess
+import sys
+import textwrap
+from datetime import UTC, datetime, timedelta
+from itertools import count
+from pathlib import Path
+
+import pytest
+
+from argo_compiler.editing import commands as edits
+from argo_compiler.errors import Conflict, Invalid, NotFound
+from argo_compiler.il import Mission
+from argo_planner.service.core.commands import EditPlan, UndoEdit
+from argo_planner.service.core.document import PlanDocument
+from argo_planner.service.storage.folder import PlanFolder
+from argo_planner.service.storage.plan_file import (
+    KEPT_RECORDS,
+    MOST_RECORDS,
+    PlanFile,
+    open_plan_file,
+)
+from tests.argo_planner.service.test_plan import mission
+
+AT = datetime(2026, 1, 2, 3, 4, 5, tzinfo=UTC)
+NUMBERS = count(1)
+
+
+def ids() -> str:
+    return f"{next(NUMBERS):012x}"
+
+
+@pytest.fixture
+def folder(tmp_path):
+    with PlanFolder(tmp_path / "plans", ids) as opened:
+        yield opened
+
+
+def edit(file: PlanFile, id: str, velocity: float, author: str = "ann") -> None:
+    document = file.document
+    command = EditPlan(id=id, edits=(edits.ChangeTask(name="a", velocity=velocity),))
+    plan = document.plan.carried_out(command, author, document.plan.revision, AT)
+    file.append(*document.made(plan))
+
+
+def filled(folder: PlanFolder, revisions: int = 6) -> tuple[str, PlanDocument]:
+    with folder.create("Round", mission("a", "b"), AT) as file:
+        for k in range(revisions):
+            edit(file, f"c{k}", 0.1 + k / 1000)
+        return file.document.id, file.document
+
+
+def path_of(folder: PlanFolder, id: str) -> Path:
+    return folder.path / f"{id}.plan"
+
+
+def test_what_was_written_is_there_again(folder):
+    with folder.create("Round", mission("a", "b"), AT) as file:
+        edit(file, "c1", 0.2)
+        document = file.document
+        file.append(document.after(r := document.rename("Tour", "ann", AT)), r)
+        document = file.document
+        file.append(document.after(r := document.keep_version("first", "ann", AT)), r)
+        edit(file, "c2", 0.3)
+        document = file.document
+        undone = document.plan.carried_out(UndoEdit(id="u"), "ann", 3, AT)
+        file.append(*document.made(undone))
+        written = file.document
+    with folder.open(written.id) as again:
+        assert again.document == written
+        assert again.recovery is None
+        assert again.document.version("first").mission.tasks[0].velocity == 0.2
+        with pytest.raises(NotFound, match="it has: 'first'"):
+            again.document.version("second")
+        with pytest.raises(Conflict, match="already"):
+            again.document.keep_version("first", "bob", AT)
+    (summary,) = folder.plans()
+    assert (summary.name, summary.revision, summary.tasks) == ("Tour", 4, 2)
+
+
+def test_the_end_of_a_line_that_was_not_written_is_cut_off(folder):
+    id, document = filled(folder)
+    path = path_of(folder, id)
+    content = path.read_bytes()
+    last = content.rindex(b"\n", 0, -1) + 1
+    for length in {*random.Random(1).sample(range(last + 1, len(content)), 20)}:
+        path.write_bytes(content[:length])
+        with folder.open(id) as file:
+            assert file.recovery is None
+            assert file.document.plan.revision == document.plan.revision - 1
+            edit(file, "c5", 0.1 + 5 / 1000)
+            assert file.document == document
+
+
+def test_of_a_damaged_file_the_last_good_state_is_opened(folder):
+    id, document = filled(folder)
+    path = path_of(folder, id)
+    content = path.read_bytes()
+    ends = [k + 1 for k, byte in enumerate(content) if byte == ord("\n")]
+    rng = random.Random(2)
+    for _ in range(30):
+        at = rng.randrange(ends[0], len(content) - 1)
+        damaged = bytearray(content)
+        damaged[at] ^= 1 << rng.randrange(8)
+        path.write_bytes(damaged)
+        line = sum(end <= at for end in ends)
+        with folder.open(id) as file:
+            assert file.document.plan.revision == line
+            assert file.document.plan.history == document.plan.history[: line - 1]
+            assert file.recovery is not None
+            assert f"revision {line}" in file.recovery.message
+            kept = path.with_name(file.recovery.kept_as)
+            assert kept.read_bytes() == damaged
+        with folder.open(id) as file:
+            assert file.recovery is None
+
+
+def test_with_a_damaged_first_line_the_file_before_is_opened(folder):
+    id, _ = filled(folder, MOST_RECORDS + 3)
+    path = path_of(folder, id)
+    content = path.read_bytes()
+    path.write_bytes(b"x" + content[1:])
+    with folder.open(id) as file:
+        assert file.recovery is not None
+        assert "first line" in file.recovery.message
+        assert file.document.plan.revision == MOST_RECORDS + 1
+    path.write_bytes(b"x" + content[1:])
+    for other in path.parent.glob("*.before"):
+        other.unlink()
+    with pytest.raises(Invalid, match="from its first line on"):
+        folder.open(id)
+    (summary,) = folder.plans()
+    assert summary.problem is not None
+    assert "damaged" in summary.problem
+
+
+def test_a_file_is_written_anew_and_its_last_revisions_can_be_undone(folder):
+    id, document = filled(folder, MOST_RECORDS + 1)
+    lines = path_of(folder, id).read_bytes().count(b"\n")
+    assert lines < MOST_RECORDS
+    with folder.open(id) as file:
+        plan = file.document.plan
+        assert plan.mission == document.plan.mission
+        assert plan.revision == document.plan.revision
+        assert len(plan.history) >= KEPT_RECORDS
+        assert plan.history == document.plan.history[-len(plan.history) :]
+        undone = plan.carried_out(UndoEdit(id="u"), "ann", plan.revision, AT)
+        assert undone.mission == document.plan.missions[-1]
+
+
+def test_plans_are_deleted_to_a_bin_and_come_back(folder):
+    id, document = filled(folder)
+    folder.delete(id)
+    assert folder.plans() == []
+    assert [plan.id for plan in folder.deleted()] == [id]
+    with pytest.raises(NotFound, match="no mission"):
+        folder.open(id)
+    folder.restore(id)
+    with folder.open(id) as file:
+        assert file.document == document
+    folder.delete(id)
+    folder.destroy(id)
+    assert folder.deleted() == []
+    with pytest.raises(NotFound):
+        folder.restore(id)
+
+
+def test_nothing_outside_of_the_folder_is_opened(folder, tmp_path):
+    id, _ = filled(folder)
+    elsewhere = tmp_path / "elsewhere.plan"
+    path_of(folder, id).rename(elsewhere)
+    path_of(folder, id).symlink_to(elsewhere)
+    assert folder.plans() == []
+    for wrong in (id, "../elsewhere", "..", "", "a" * 12 + "/", "A" * 12, "\0" * 12):
+        for act in (folder.open, folder.delete, folder.restore, folder.destroy):
+            with pytest.raises(NotFound):
+                act(wrong)
+    assert elsewhere.exists()
+
+
+def test_one_service_at_a_time_has_a_folder(folder):
+    with pytest.raises(Conflict, match="another service"):
+        PlanFolder(folder.path, ids)
+
+
+def test_names_are_texts_that_can_be_seen(folder):
+    for name in ("", "  ", "x" * 201, "a\0b", "a\u202eb", "\ud800"):
+        with pytest.raises(Invalid):
+            folder.create(name, Mission(tasks=()), AT)
+    for name in ("../x", "<img src=x onerror=alert(1)>", "גשר", "数", "."):
+        folder.create(name, Mission(tasks=()), AT).close()
+    assert {plan.name for plan in folder.plans()} == {
+        "../x", "<img src=x onerror=alert(1)>", "גשר", "数", ".",
+    }  # fmt: skip
+
+
+def test_the_newest_plans_come_first(folder):
+    for k in (2, 1, 3):
+        folder.create(str(k), Mission(tasks=()), AT + timedelta(hours=k)).close()
+    assert [plan.name for plan in folder.plans()] == ["3", "2", "1"]
+
+
+WRITER = textwrap.dedent(
+    """
+    import sys
+    from pathlib import Path
+    from argo_planner.service.storage.plan_file import open_plan_file
+    from tests.argo_planner.service.test_storage import edit
+
+    with open_plan_file(Path(sys.argv[1])) as file:
+        while True:
+            number = file.document.plan.revision
+            edit(file, f"k{number}", 0.1 + number / 1e5)
+            print(number + 1, flush=True)
+    """
+)
+
+
+def test_what_was_acknowledged_survives_a_kill(folder):
+    with folder.create("Round", mission("a", "b"), AT) as file:
+        path = file.path
+    rng = random.Random(3)
+    acknowledged = 1
+    for _ in range(6):
+        writer = subprocess.Popen(
+            [sys.executable, "-c", WRITER, str(path)],
+            stdout=subprocess.PIPE,
+            env=os.environ | {"PYTHONPATH": str(Path(__file__).parents[3])},
+        )
+        assert writer.stdout is not None
+        for _ in range(rng.randint(1, 250)):
+            acknowledged = int(writer.stdout.readline())
+        writer.kill()
+        rest = writer.stdout.read().split(b"\n")[:-1]
+        acknowledged = int(rest[-1]) if rest else acknowledged
+        writer.wait()
+        writer.stdout.close()
+        with open_plan_file(path) as file:
+            assert file.recovery is None
+            assert acknowledged <= file.document.plan.revision <= acknowledged + 1
+            acknowledged = file.document.plan.revision
+            assert len({r.id for r in file.document.plan.history}) == len(
+                file.document.plan.history
+            )

@@ -1,0 +1,72 @@
+"""The analysis of a mission over all its paths, in a process of its own."""
+
+import asyncio
+import multiprocessing
+from concurrent.futures import ProcessPoolExecutor
+from concurrent.futures.process import BrokenProcessPool
+
+from argo_compiler.analysis import Analysis, analyse
+from argo_compiler.checks import check
+from argo_compiler.diagnostics import has_errors
+from argo_compiler.errors import ArgoError
+from argo_compiler.il import Mission
+from argo_compiler.model import Model
+from argo_env.planning.opening import OpenedSite, open_site
+from argo_env.planning.poses_to_read_from import unseen_from_poses
+from argo_planner.use_cases.checking import MOST_PLACES
+
+
+class AnalysisFound(Model):
+    """What the analysis of a revision has found."""
+
+    revision: int
+    analysis: Analysis | None = None
+    """without the witnesses; None: there is none, and `problem` says why"""
+    problem: str | None = None
+
+
+class Analyst:
+    """Analyses missions of one site. Holds a process, which opens the site once."""
+
+    def __init__(self, site: OpenedSite) -> None:
+        self._site = site.reference
+        self._pool = _pool()
+
+    async def analyse(self, mission: Mission, revision: int) -> AnalysisFound:
+        """The analysis of a mission, and of which revision it is."""
+        for _ in range(2):  # once more in a new process
+            job = self._pool.submit(_analysed, self._site, mission, revision)
+            try:
+                return await asyncio.wrap_future(job)
+            except BrokenProcessPool:
+                self._pool.shutdown(wait=False)
+                self._pool = _pool()
+        return AnalysisFound(revision=revision, problem="the process that analyses it has died")
+
+    def close(self) -> None:
+        """Ends the process, whatever it does."""
+        processes = list((self._pool._processes or {}).values())
+        self._pool.shutdown(wait=False, cancel_futures=True)
+        for process in processes:
+            process.terminate()
+
+
+def _pool() -> ProcessPoolExecutor:
+    return ProcessPoolExecutor(1, mp_context=multiprocessing.get_context("spawn"))
+
+
+def _analysed(reference: str, mission: Mission, revision: int) -> AnalysisFound:
+    try:
+        site = open_site(reference)
+        if has_errors(check(mission, site.catalog)):
+            return AnalysisFound(revision=revision, problem="the mission has errors")
+        places = len({task.pose for task in mission.tasks if task.pose is not None})
+        travel = None if places > MOST_PLACES else site.travel
+        found = analyse(mission, site.catalog, travel)
+        unseen = tuple(unseen_from_poses(mission, site))
+    except ArgoError as error:
+        return AnalysisFound(revision=revision, problem=str(error))
+    told = found.model_copy(
+        update={"witnesses": None, "diagnostics": (*found.diagnostics, *unseen)}
+    )
+    return AnalysisFound(revision=revision, analysis=told)

@@ -1,0 +1,1 @@
+"""Plans that are open: what somebody changes is on disk, then everybody who is there is told."""

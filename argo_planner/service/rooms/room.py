@@ -1,0 +1,260 @@
+"""One open plan: its file, those who have it open, and the one way to change it."""
+
+import asyncio
+from collections.abc import Callable, Coroutine
+from datetime import datetime
+from typing import Any, TypeVar
+
+from argo_compiler.catalog import Catalog
+from argo_compiler.checks import check
+from argo_compiler.errors import Conflict
+from argo_compiler.model import Model
+from argo_planner.service.core.commands import PlanCommand, Revision
+from argo_planner.service.core.document import (
+    PlanDocument,
+    PlanRecord,
+    VersionDropped,
+)
+from argo_planner.service.core.refusals import StaleRevision
+from argo_planner.service.jobs.analysis import AnalysisFound, Analyst
+from argo_planner.service.rooms.mailbox import Mailbox, MailboxClosed
+from argo_planner.service.rooms.messages import (
+    AnalysisTold,
+    CommandDone,
+    DeletedTold,
+    Findings,
+    Member,
+    MembersTold,
+    NameTold,
+    PlanState,
+    ResumedTold,
+    RevisionTold,
+    SnapshotTold,
+    VersionsTold,
+    VersionSummary,
+)
+from argo_planner.service.storage.plan_file import PlanFile
+
+T = TypeVar("T")
+ANALYSED_AFTER = 0.3
+"""s without another command"""
+
+
+class PlanRoom:
+    """One open plan. Holds its file; what it does is done one after the other."""
+
+    def __init__(
+        self,
+        file: PlanFile,
+        catalog: Catalog,
+        analyst: Analyst | None,
+        clock: Callable[[], datetime],
+    ) -> None:
+        self._file = file
+        self._catalog = catalog
+        self._analyst = analyst
+        self._clock = clock
+        self._turn = asyncio.Lock()
+        self._members: dict[str, tuple[Member, Mailbox]] = {}
+        self._findings = self._found()
+        self._analysis: AnalysisFound | None = None
+        self._analysing: asyncio.Task[None] | None = None
+        self._closed = False
+        self._analyse_soon()
+
+    @property
+    def document(self) -> PlanDocument:
+        return self._file.document
+
+    @property
+    def empty(self) -> bool:
+        """Whether nobody has the plan open, and nothing is being done to it."""
+        return not self._members and not self._turn.locked()
+
+    @property
+    def analysis(self) -> AnalysisFound | None:
+        """The last one; it may be of an earlier revision."""
+        return self._analysis
+
+    def state(self, author: str) -> PlanState:
+        """The plan as it stands, for an author."""
+        lost = self._file.recovery
+        return PlanState.of(
+            self.document, self._findings, author, self._analysis, lost.message if lost else None
+        )
+
+    async def carry_out(
+        self, command: PlanCommand, author: str, made_on: int | None
+    ) -> CommandDone:
+        """Carries out a command that was made on a revision; None: on whichever there is. When
+        this returns, it is on disk, and all who are there are being told.
+
+        Raises what `MissionPlan.carried_out` raises, or Unavailable where it can't be written.
+        """
+        return await _to_the_end(self._carry_out(command, author, made_on))
+
+    async def _carry_out(
+        self, command: PlanCommand, author: str, made_on: int | None
+    ) -> CommandDone:
+        async with self._turn:
+            self._require_open()
+            plan = self.document.plan
+            known = plan.repeated(command, author)
+            if known is not None:
+                return self._done(known, author)
+            on = plan.revision if made_on is None else made_on
+            changed, record = self.document.made(
+                plan.carried_out(command, author, on, self._clock())
+            )
+            await self._write(changed, record)
+            before, self._findings = self._findings, self._found()
+            findings = None if self._findings == before else self._findings
+            self._tell(RevisionTold.model_construct(revision=record.revision, findings=findings))
+            self._analyse_soon()
+            return self._done(record.revision, author)
+
+    async def rename(self, name: str, author: str) -> None:
+        """Gives the plan another name. Raises Invalid, Unavailable."""
+        await _to_the_end(self._rename(name, author))
+
+    async def _rename(self, name: str, author: str) -> None:
+        async with self._turn:
+            self._require_open()
+            record = self.document.rename(name, author, self._clock())
+            await self._write(self.document.after(record), record)
+            self._tell(NameTold(name=name))
+
+    async def keep_version(self, name: str, author: str, made_on: int | None) -> VersionSummary:
+        """Keeps the present mission under a name. Raises Invalid, Conflict, Unavailable."""
+        return await _to_the_end(self._keep_version(name, author, made_on))
+
+    async def _keep_version(self, name: str, author: str, made_on: int | None) -> VersionSummary:
+        async with self._turn:
+            self._require_open()
+            if made_on is not None and made_on != self.document.plan.revision:
+                raise StaleRevision(made_on, self.document.plan.revision)
+            record = self.document.keep_version(name, author, self._clock())
+            await self._write(self.document.after(record), record)
+            self._tell_versions()
+            return VersionSummary.of(record.version)
+
+    async def drop_version(self, name: str) -> None:
+        """Keeps a version no longer. Raises NotFound, Unavailable."""
+        await _to_the_end(self._drop_version(name))
+
+    async def _drop_version(self, name: str) -> None:
+        async with self._turn:
+            self._require_open()
+            record = VersionDropped(name=self.document.version(name).name)
+            await self._write(self.document.after(record), record)
+            self._tell_versions()
+
+    # ---- those who have it open
+
+    def join(self, client: str, author: str, since: int | None = None) -> Mailbox:
+        """Somebody opens the plan. Their first message is the whole state, or, where the revision
+        that they know is known here, what happened since then."""
+        self._require_open()
+        mailbox = Mailbox()
+        self._members[client] = (Member(client=client, author=author), mailbox)
+        members = self._present()
+        missed = None if since is None else self.document.plan.since(since)
+        if since is None or missed is None:
+            state = self.state(author)
+            first: Model = SnapshotTold.model_construct(client=client, state=state, members=members)
+            mailbox.post(first.model_dump_json())
+        else:
+            first = ResumedTold.model_construct(client=client, revision=since, members=members)
+            mailbox.post(first.model_dump_json())
+            for revision in missed:
+                told = RevisionTold.model_construct(revision=revision, findings=self._findings)
+                mailbox.post(told.model_dump_json())
+            if self._analysis is not None:
+                mailbox.post(AnalysisTold(analysis=self._analysis).model_dump_json())
+        self._tell(MembersTold(members=members), but=client)
+        return mailbox
+
+    def select(self, client: str, names: tuple[str, ...]) -> None:
+        """Somebody has selected these tasks and groups."""
+        member, mailbox = self._members[client]
+        if member.selection != names:
+            self._members[client] = (member.model_copy(update={"selection": names}), mailbox)
+            self._tell(MembersTold(members=self._present()), but=client)
+
+    def leave(self, client: str) -> None:
+        """Somebody has gone."""
+        if self._members.pop(client, None) is not None:
+            self._tell(MembersTold(members=self._present()))
+
+    async def close(self, deleted: bool = False) -> None:
+        """Lets everybody go, and closes the file once nothing is being done."""
+        async with self._turn:
+            if self._closed:
+                return
+            if deleted:
+                self._tell(DeletedTold())
+            self.close_idle()
+
+    def close_idle(self) -> None:
+        """Closes the file, while nothing is being done."""
+        self._closed = True
+        if self._analysing is not None:
+            self._analysing.cancel()
+        for _, mailbox in self._members.values():
+            mailbox.close(MailboxClosed("the mission is closed"))
+        self._file.close()
+
+    def _present(self) -> tuple[Member, ...]:
+        return tuple(member for member, _ in self._members.values())
+
+    def _tell(self, message: Model, but: str | None = None) -> None:
+        if not self._members:
+            return
+        text = message.model_dump_json()
+        for client, (_, mailbox) in self._members.items():
+            if client != but:
+                mailbox.post(text)
+
+    def _tell_versions(self) -> None:
+        versions = tuple(map(VersionSummary.of, self.document.versions))
+        self._tell(VersionsTold(versions=versions))
+
+    # ---- what is found out
+
+    async def _write(self, document: PlanDocument, record: PlanRecord) -> None:
+        await asyncio.to_thread(self._file.append, document, record)
+
+    def _done(self, revision: Revision, author: str) -> CommandDone:
+        plan = self.document.plan
+        return CommandDone.model_construct(
+            revision=revision,
+            newest=plan.revision,
+            findings=self._findings,
+            undoable=plan.undoable.get(author, ()),
+            redoable=plan.redoable.get(author, ()),
+        )
+
+    def _require_open(self) -> None:
+        if self._closed:
+            raise Conflict("the mission was closed or deleted meanwhile: open it again")
+
+    def _found(self) -> Findings:
+        return Findings.of(check(self.document.plan.mission, self._catalog))
+
+    def _analyse_soon(self) -> None:
+        if self._analyst is None:
+            return
+        if self._analysing is not None:
+            self._analysing.cancel()
+        self._analysing = asyncio.get_running_loop().create_task(self._analyse(self._analyst))
+
+    async def _analyse(self, analyst: Analyst) -> None:
+        await asyncio.sleep(ANALYSED_AFTER)
+        plan = self.document.plan
+        self._analysis = await analyst.analyse(plan.mission, plan.revision)
+        self._tell(AnalysisTold.model_construct(analysis=self._analysis))
+
+
+async def _to_the_end(work: Coroutine[Any, Any, T]) -> T:
+    """Does the work to its end, even where whoever asked for it does not wait any longer."""
+    return await asyncio.shield(asyncio.get_running_loop().create_task(work))

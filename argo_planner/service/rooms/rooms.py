@@ -1,0 +1,98 @@
+"""The plans of a folder, those that are in use open."""
+
+import asyncio
+from collections.abc import Callable
+from datetime import datetime
+
+from argo_compiler.catalog import Catalog
+from argo_compiler.errors import Conflict
+from argo_compiler.il import Mission
+from argo_planner.service.jobs.analysis import Analyst
+from argo_planner.service.rooms.room import PlanRoom
+from argo_planner.service.storage.folder import PlanFolder, PlanSummary, summary_of
+
+MOST_OPEN = 50
+"""rooms without anybody in them that stay open"""
+
+
+class PlanRooms:
+    """Opens plans when they are asked for, one room each. Holds the folder."""
+
+    def __init__(
+        self,
+        folder: PlanFolder,
+        catalog: Catalog,
+        analyst: Analyst | None,
+        clock: Callable[[], datetime],
+    ) -> None:
+        self._folder = folder
+        self._catalog = catalog
+        self._analyst = analyst
+        self._clock = clock
+        self._rooms: dict[str, PlanRoom] = {}
+        self._turn = asyncio.Lock()
+
+    async def plans(self) -> list[PlanSummary]:
+        """All plans, the newest ones first."""
+        async with self._turn:
+            listed = await asyncio.to_thread(self._folder.plans)
+        opened = {id: summary_of(room.document) for id, room in self._rooms.items()}
+        return [opened.get(plan.id, plan) for plan in listed]
+
+    async def deleted(self) -> list[PlanSummary]:
+        """Those in the bin."""
+        async with self._turn:
+            return await asyncio.to_thread(self._folder.deleted)
+
+    async def create(self, name: str, mission: Mission) -> PlanRoom:
+        """A new plan. Raises what `PlanFolder.create` raises."""
+        async with self._turn:
+            file = await asyncio.to_thread(self._folder.create, name, mission, self._clock())
+            return self._opened(PlanRoom(file, self._catalog, self._analyst, self._clock))
+
+    async def open(self, id: str) -> PlanRoom:
+        """The plan with that id. Raises what `PlanFolder.open` raises."""
+        if (room := self._rooms.get(id)) is not None:
+            return room
+        async with self._turn:
+            if (room := self._rooms.get(id)) is not None:
+                return room
+            file = await asyncio.to_thread(self._folder.open, id)
+            return self._opened(PlanRoom(file, self._catalog, self._analyst, self._clock))
+
+    async def delete(self, id: str) -> None:
+        """Moves a plan to the bin; whoever has it open is told. Raises NotFound, Conflict."""
+        await self._closed(id, deleted=True)
+        async with self._turn:
+            if id in self._rooms:
+                raise Conflict(f"mission {id} was opened meanwhile: delete it again")
+            await asyncio.to_thread(self._folder.delete, id)
+
+    async def restore(self, id: str) -> PlanRoom:
+        """Takes a plan out of the bin. Raises NotFound."""
+        async with self._turn:
+            await asyncio.to_thread(self._folder.restore, id)
+        return await self.open(id)
+
+    async def destroy(self, id: str) -> None:
+        """Deletes a plan in the bin for good. Raises NotFound."""
+        async with self._turn:
+            await asyncio.to_thread(self._folder.destroy, id)
+
+    async def close(self) -> None:
+        """Closes all of them, and the folder."""
+        for id in [*self._rooms]:
+            await self._closed(id)
+        self._folder.close()
+
+    def _opened(self, room: PlanRoom) -> PlanRoom:
+        self._rooms[room.document.id] = room
+        idle = [id for id, other in self._rooms.items() if other.empty and other is not room]
+        for id in idle[: max(0, len(idle) - MOST_OPEN)]:
+            self._rooms.pop(id).close_idle()
+        return room
+
+    async def _closed(self, id: str, deleted: bool = False) -> None:
+        if (room := self._rooms.get(id)) is not None:
+            await room.close(deleted)
+            self._rooms.pop(id, None)

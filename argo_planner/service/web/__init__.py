@@ -1,0 +1,1 @@
+"""The planning service over HTTP and WebSockets: a thin layer, safe by default."""

@@ -1,0 +1,81 @@
+"""The app: all routes, behind the guard."""
+
+import json
+from collections.abc import AsyncIterator, Callable
+from contextlib import AbstractAsyncContextManager, asynccontextmanager
+
+from fastapi import APIRouter, FastAPI, Response
+
+from argo_compiler import __version__
+from argo_compiler.model import Model
+from argo_planner.service.web import commands, live, missions
+from argo_planner.service.web.access import Role, TokenBook
+from argo_planner.service.web.guard import Doors, Guard
+from argo_planner.service.web.problems import answer_problems, documented
+from argo_planner.service.web.requests import KEYS, PlanningService, Service, Viewer, said
+
+Opened = Callable[[], AbstractAsyncContextManager[PlanningService]]
+"""opens the service when the app begins, and closes it when it ends"""
+
+router = APIRouter(
+    prefix="/api", tags=["service"], dependencies=KEYS, responses=documented(401, 403)
+)
+
+
+class ServiceSummary(Model):
+    """What the service is, and who asks."""
+
+    argo: str
+    """its version"""
+    site: str
+    author: str
+    role: Role
+
+
+@router.get("/service", operation_id="read_service", response_model=ServiceSummary)
+async def read_service(service: Service, visitor: Viewer) -> Response:
+    """What the service is, and what whoever asks may do."""
+    return said(
+        ServiceSummary(
+            argo=__version__, site=service.site.name, author=visitor.author, role=visitor.role
+        )
+    )
+
+
+def make_app(opened: Opened) -> FastAPI:
+    """The app without its guard, as the OpenAPI document is made from it."""
+
+    @asynccontextmanager
+    async def lifespan(app: FastAPI) -> AsyncIterator[None]:
+        async with opened() as service:
+            app.state.service = service
+            yield
+
+    app = FastAPI(
+        title="Argo planning service",
+        version=__version__,
+        description="Plans inspection missions for one robot: many people at once, one authority.",
+        lifespan=lifespan,
+        openapi_url="/api/openapi.json",
+        docs_url=None,
+        redoc_url=None,
+        swagger_ui_oauth2_redirect_url=None,
+    )
+    answer_problems(app)
+    for part in (router, missions.router, commands.router, live.router):
+        app.include_router(part)
+    return app
+
+
+def guarded(app: FastAPI, tokens: TokenBook, doors: Doors) -> Guard:
+    """The app behind its guard."""
+    return Guard(app, tokens, doors)
+
+
+def document() -> str:
+    """The OpenAPI document as JSON."""
+
+    def never() -> AbstractAsyncContextManager[PlanningService]:
+        raise AssertionError("the document needs no service")
+
+    return json.dumps(make_app(never).openapi(), indent=1, ensure_ascii=False) + "\n"

@@ -1,0 +1,114 @@
+"""Commands to a mission, its script, its reading and its analysis."""
+
+import asyncio
+from typing import Annotated
+
+from fastapi import APIRouter, Body, Response
+from pydantic import Field
+
+from argo_compiler.errors import NotFound
+from argo_compiler.model import Model
+from argo_compiler.script.write.reading import MissionReading
+from argo_planner.service.core.commands import (
+    CommandId,
+    EditPlan,
+    PlanCommand,
+    RedoEdit,
+    ReplacePlan,
+    UndoEdit,
+)
+from argo_planner.service.core.refusals import StaleRevision
+from argo_planner.service.jobs.analysis import AnalysisFound
+from argo_planner.service.rooms.messages import CommandDone
+from argo_planner.service.rooms.room import PlanRoom
+from argo_planner.service.web.problems import StaleCommand, documented
+from argo_planner.service.web.requests import (
+    KEYS,
+    MadeOn,
+    PlanId,
+    Planner,
+    Service,
+    Viewer,
+    said,
+)
+from argo_planner.use_cases.explaining import reading_of
+from argo_planner.use_cases.importing import ImportedMission, Upload, import_mission
+
+MOST_SCRIPT = 1_000_000
+"""characters"""
+
+router = APIRouter(
+    prefix="/api/missions/{id}",
+    tags=["commands"],
+    dependencies=KEYS,
+    responses=documented(400, 401, 403, 404, 409, 413, 422, 503),
+)
+
+AnyCommand = Annotated[EditPlan | UndoEdit | RedoEdit | ReplacePlan, Body(discriminator="kind")]
+
+
+class ScriptGiven(Model):
+    """A script in place of the mission."""
+
+    id: CommandId
+    script: str = Field(max_length=MOST_SCRIPT)
+
+
+@router.post(
+    "/commands",
+    operation_id="carry_out_command",
+    response_model=CommandDone,
+    responses=documented(412, 428),
+)
+async def carry_out_command(
+    service: Service, visitor: Planner, id: PlanId, command: AnyCommand, made_on: MadeOn
+) -> Response:
+    """Carries out a command. Sent again with the same id it does nothing twice."""
+    room = await service.rooms.open(id)
+    return await _carried_out(room, command, visitor.author, made_on)
+
+
+@router.put(
+    "/script",
+    operation_id="write_script",
+    response_model=CommandDone,
+    responses=documented(412, 428),
+)
+async def write_script(
+    service: Service, visitor: Planner, id: PlanId, given: ScriptGiven, made_on: MadeOn
+) -> Response:
+    """Puts what a script says in place of the mission, as a command that can be undone."""
+    room = await service.rooms.open(id)
+    upload = Upload("script", given.script.encode(errors="replace"))
+    imported = await asyncio.to_thread(import_mission, upload, service.site)
+    command = ReplacePlan.model_construct(id=given.id, mission=imported.mission, about="a script")
+    return await _carried_out(room, command, visitor.author, made_on)
+
+
+@router.get("/reading", operation_id="read_back", response_model=MissionReading)
+async def read_back(service: Service, _: Viewer, id: PlanId) -> Response:
+    """The mission in plain sentences, task by task; `text` is a script that gives the same."""
+    document = (await service.rooms.open(id)).document
+    imported = ImportedMission(document.plan.mission, document.name, (), ())
+    reading = await asyncio.to_thread(reading_of, imported, service.site)
+    return said(reading, revision=document.plan.revision)
+
+
+@router.get("/analysis", operation_id="read_analysis", response_model=AnalysisFound)
+async def read_analysis(service: Service, _: Viewer, id: PlanId) -> Response:
+    """What the analysis has found last, and of which revision; 404 until there is one."""
+    room = await service.rooms.open(id)
+    if room.analysis is None:
+        raise NotFound("the mission has not been analysed yet: ask again in a moment")
+    return said(room.analysis)
+
+
+async def _carried_out(
+    room: PlanRoom, command: PlanCommand, author: str, made_on: int | None
+) -> Response:
+    try:
+        done = await room.carry_out(command, author, made_on)
+    except StaleRevision as stale:
+        since = room.document.plan.since(stale.made_on)
+        raise StaleCommand(stale, since) from None
+    return said(done, revision=done.newest)

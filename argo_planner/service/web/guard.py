@@ -1,0 +1,218 @@
+"""What stands before every request: who may come in, from where, and how much they may bring."""
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from http import HTTPStatus
+from http.cookies import CookieError, SimpleCookie
+from urllib.parse import parse_qsl, quote, urlencode, urlsplit
+
+from starlette.datastructures import Headers, MutableHeaders
+from starlette.responses import RedirectResponse, Response
+from starlette.types import ASGIApp, Message, Receive, Scope, Send
+
+from argo_compiler.errors import ArgoError
+from argo_planner.service.web.access import AccessToken, TokenBook, TokenMissing, visitor
+from argo_planner.service.web.problems import Problem, TooLarge, answer, plain, problem_of
+
+MOST_BYTES = 2_000_000
+"""of a request's body"""
+MOST_UPLOADED = 50_000_000
+"""of a mission that is imported"""
+UPLOADS = ("/api/missions/import",)
+LOOPBACK = ("localhost", "127.0.0.1", "[::1]")
+
+_POLICY = (
+    "default-src 'self'; script-src 'self'; style-src 'self'; img-src 'self' data: blob:; "
+    "connect-src 'self'; worker-src 'self' blob:; object-src 'none'; base-uri 'none'; "
+    "form-action 'none'; frame-ancestors 'none'"
+)
+_HEADERS = {
+    "content-security-policy": _POLICY,
+    "x-content-type-options": "nosniff",
+    "referrer-policy": "no-referrer",
+    "cross-origin-opener-policy": "same-origin",
+    "cross-origin-resource-policy": "same-origin",
+    "x-frame-options": "DENY",
+}
+
+
+@dataclass(frozen=True)
+class Doors:
+    """From where requests may come."""
+
+    hosts: frozenset[str]
+    """names under which the service is asked for, without ports; `*`: any"""
+    origins: frozenset[str] = frozenset()
+    """further origins of pages, such as that of a proxy: `https://argo.example.org`"""
+    cookie: str = "argo"
+    """name of the cookie, one for each port, as browsers don't tell ports apart"""
+
+
+class Guard:
+    """Lets requests in that have a token, and come from where they may; limits what they bring."""
+
+    def __init__(self, app: ASGIApp, tokens: TokenBook, doors: Doors) -> None:
+        self._app = app
+        self._tokens = tokens
+        self._doors = doors
+
+    async def __call__(self, scope: Scope, receive: Receive, send: Send) -> None:
+        if scope["type"] == "lifespan":
+            await self._app(scope, receive, send)
+            return
+        headers = Headers(scope=scope)
+        refused = self._refused(scope, headers)
+        if refused is None:
+            token, entering = self._token(scope, headers)
+            if token is None:
+                refused = problem_of(
+                    TokenMissing(
+                        "no token was given, or an unknown one: open the address that the service "
+                        "printed when it began, or send `Authorization: Bearer TOKEN`"
+                    )
+                )
+            elif entering:
+                await self._entered(scope, token)(scope, receive, send)
+                return
+            else:
+                try:
+                    scope["visitor"] = visitor(token, headers, _query(scope))
+                except ArgoError as error:
+                    refused = problem_of(error)
+        if refused is None:
+            refused = _too_large(scope, headers)
+        if refused is not None:
+            await _refuse(refused, scope, receive, send)
+            return
+        if scope["type"] == "websocket":
+            await self._app(scope, receive, send)
+        else:
+            await self._app(scope, _limited(scope, receive), _protected(scope, send))
+
+    def _refused(self, scope: Scope, headers: Headers) -> Problem | None:
+        """Why a request from there is not let in, if it is not."""
+        hosts = headers.getlist("host")
+        name = hosts[0].rpartition(":")[0] if hosts and _has_port(hosts[0]) else "".join(hosts)
+        if len(hosts) != 1 or not ("*" in self._doors.hosts or name.lower() in self._doors.hosts):
+            said = "the service is not known under this name (`Host`)"
+            return plain(HTTPStatus.FORBIDDEN, "foreign-host", said)
+        origin = headers.get("origin")
+        if origin is not None and origin not in self._doors.origins:
+            parts = urlsplit(origin)
+            if parts.netloc.lower() != hosts[0].lower() or parts.scheme not in ("http", "https"):
+                said = "pages of another origin may not use the service (`Origin`)"
+                return plain(HTTPStatus.FORBIDDEN, "foreign-origin", said)
+        elif origin is None and headers.get("sec-fetch-site") in ("cross-site", "same-site"):
+            safe = scope["type"] == "http" and scope["method"] == "GET"
+            if not (safe and headers.get("sec-fetch-mode") == "navigate"):
+                said = "pages of another site may not use the service (`Sec-Fetch-Site`)"
+                return plain(HTTPStatus.FORBIDDEN, "foreign-origin", said)
+        return None
+
+    def _token(self, scope: Scope, headers: Headers) -> tuple[AccessToken | None, bool]:
+        """The token that was given, and whether it was in the address of a page."""
+        kind, _, secret = headers.get("authorization", "").partition(" ")
+        if kind.lower() == "bearer":
+            return self._tokens.of_secret(secret.strip()), False
+        given = _query(scope).get("token")
+        if given is not None:
+            page = scope["type"] == "http" and not scope["path"].startswith("/api/")
+            return self._tokens.of_secret(given), page
+        cookie = _cookie(headers, self._doors.cookie)
+        return (None if cookie is None else self._tokens.of_cookie(cookie)), False
+
+    def _entered(self, scope: Scope, token: AccessToken) -> Response:
+        """Keeps the token in a cookie, and takes it out of the address."""
+        query = [(k, v) for k, v in parse_qsl(scope["query_string"].decode()) if k != "token"]
+        path = "/" + quote(scope["path"].lstrip("/\\"))  # never another host
+        response = RedirectResponse(path + ("?" + urlencode(query) if query else ""), 303)
+        secure = scope["scheme"] == "https"
+        response.set_cookie(
+            self._doors.cookie, token.cookie, httponly=True, samesite="strict", secure=secure
+        )
+        response.headers["cache-control"] = "no-store"
+        return response
+
+
+async def _refuse(problem: Problem, scope: Scope, receive: Receive, send: Send) -> None:
+    if scope["type"] == "http":
+        response = answer(problem, {"connection": "close"})
+        response.headers.update(_HEADERS)
+        if problem.status == HTTPStatus.UNAUTHORIZED:
+            response.headers["www-authenticate"] = "Bearer"
+        await response(scope, receive, send)
+        return
+    if "websocket.http.response" in scope.get("extensions", {}):
+        response = answer(problem)
+        await response(scope, receive, _for_socket(send))
+        return
+    await send({"type": "websocket.close", "code": 1008, "reason": problem.code})
+
+
+def _for_socket(send: Send) -> Send:
+    async def sending(message: Message) -> None:
+        await send({**message, "type": message["type"].replace("http.", "websocket.http.")})
+
+    return sending
+
+
+def _too_large(scope: Scope, headers: Headers) -> Problem | None:
+    said = headers.get("content-length")
+    if scope["type"] != "http" or said is None:
+        return None
+    return problem_of(_too_much(scope)) if len(said) > 12 or int(said) > _most(scope) else None
+
+
+def _most(scope: Scope) -> int:
+    return MOST_UPLOADED if scope["path"] in UPLOADS else MOST_BYTES
+
+
+def _too_much(scope: Scope) -> TooLarge:
+    return TooLarge(f"more than {_most(scope) // 1_000_000} MB were sent: that is not taken")
+
+
+def _limited(scope: Scope, receive: Receive) -> Receive:
+    """Raises TooLarge when more arrives than is taken, whatever was said before."""
+    arrived = 0
+
+    async def receiving() -> Message:
+        nonlocal arrived
+        message = await receive()
+        arrived += len(message.get("body", b""))
+        if arrived > _most(scope):
+            raise _too_much(scope)
+        return message
+
+    return receiving
+
+
+def _protected(scope: Scope, send: Send) -> Send:
+    """Adds the headers that keep a page safe, and keeps what is told out of caches."""
+    api = scope["path"].startswith("/api/")
+
+    async def sending(message: Message) -> None:
+        if message["type"] == "http.response.start":
+            headers = MutableHeaders(scope=message)
+            headers.update(_HEADERS)
+            if api and "cache-control" not in headers:
+                headers["cache-control"] = "no-store"
+        await send(message)
+
+    return sending
+
+
+def _has_port(host: str) -> bool:
+    tail = host.rpartition(":")[2]
+    return ":" in host and tail.isdigit()
+
+
+def _query(scope: Scope) -> Mapping[str, str]:
+    return dict(parse_qsl(scope["query_string"].decode(errors="replace")))
+
+
+def _cookie(headers: Headers, name: str) -> str | None:
+    try:
+        found = SimpleCookie(headers.get("cookie", "")).get(name)
+    except CookieError:
+        return None
+    return found.value if found else None

@@ -1,0 +1,364 @@
+"""Missions: made, imported, listed, renamed, copied, deleted, exported, and their versions."""
+
+import asyncio
+import io
+import os
+import re
+import zipfile
+from collections.abc import Mapping
+from typing import Annotated
+from urllib.parse import quote
+
+from fastapi import APIRouter, Path, Query, Request, Response
+from pydantic import Field
+
+from argo_compiler.errors import NotFound
+from argo_compiler.il import Mission
+from argo_compiler.model import Model
+from argo_env.planning.opening import OpenedSite
+from argo_planner.service.core.change import difference
+from argo_planner.service.core.commands import CommandId, ReplacePlan, Revision
+from argo_planner.service.core.document import PlanVersion
+from argo_planner.service.core.limits import require_fitting
+from argo_planner.service.rooms.messages import CommandDone, PlanState, VersionSummary
+from argo_planner.service.storage.folder import PlanSummary, summary_of
+from argo_planner.service.web.problems import documented
+from argo_planner.service.web.requests import (
+    KEYS,
+    MadeOn,
+    NameGiven,
+    PlanId,
+    Planner,
+    Service,
+    Viewer,
+    created,
+    link,
+    said,
+)
+from argo_planner.use_cases.exporting import as_script, export_mission
+from argo_planner.use_cases.importing import ImportedMission, Upload, import_mission
+
+ID = "$response.body#/id"
+OF_MISSION = {
+    name: link(name, id=ID)
+    for name in (
+        "read_mission",
+        "rename_mission",
+        "duplicate_mission",
+        "delete_mission",
+        "export_mission",
+        "carry_out_command",
+        "list_revisions",
+        "keep_version",
+        "list_versions",
+    )
+}
+ETAG = "$response.header.ETag"
+for _name in ("carry_out_command", "keep_version"):
+    OF_MISSION[_name]["parameters"]["If-Match"] = ETAG
+
+router = APIRouter(
+    prefix="/api",
+    tags=["missions"],
+    dependencies=KEYS,
+    responses=documented(400, 401, 403, 404, 409, 413, 422, 503),
+)
+
+
+class PlanList(Model):
+    """Missions, the newest ones first."""
+
+    missions: tuple[PlanSummary, ...]
+
+
+class NewMission(Model):
+    """A mission to begin with: empty, or as it is given."""
+
+    name: str = Field(max_length=1_000)
+    mission: Mission | None = None
+
+
+class RestoredVersion(Model):
+    """A command that makes a version the mission again."""
+
+    id: CommandId
+
+
+class VersionList(Model):
+    """Versions in the order in which they were kept."""
+
+    versions: tuple[VersionSummary, ...]
+
+
+class RevisionList(Model):
+    """Revisions in order."""
+
+    revisions: tuple[Revision, ...]
+
+
+@router.get("/missions", operation_id="list_missions", response_model=PlanList)
+async def list_missions(service: Service, _: Viewer) -> Response:
+    """The missions of the folder."""
+    return said(PlanList(missions=tuple(await service.rooms.plans())))
+
+
+@router.post(
+    "/missions",
+    operation_id="create_mission",
+    status_code=201,
+    response_model=PlanSummary,
+    responses={201: created(PlanSummary, OF_MISSION)},
+)
+async def create_mission(service: Service, _: Planner, new: NewMission) -> Response:
+    """Makes a mission."""
+    return await _create(
+        service, new.name, new.mission or Mission(tasks=(), site=service.site.name)
+    )
+
+
+@router.post(
+    "/missions/import",
+    operation_id="import_mission",
+    status_code=201,
+    response_model=PlanSummary,
+    responses={201: created(PlanSummary, OF_MISSION)},
+    openapi_extra={
+        "requestBody": {
+            "required": True,
+            "content": {
+                "application/octet-stream": {"schema": {"type": "string", "format": "binary"}}
+            },
+        }
+    },
+)
+async def import_a_mission(
+    request: Request,
+    service: Service,
+    _: Planner,
+    filename: Annotated[str, Query(max_length=200, description="tells what it is by its ending")],
+    name: Annotated[str | None, Query(max_length=1_000)] = None,
+    start_area: Annotated[int | None, Query(ge=-1000, le=1000)] = None,
+    end_area: Annotated[int | None, Query(ge=-1000, le=1000)] = None,
+) -> Response:
+    """Makes a mission of a script, a mission in JSON, a ROS bag or an isar mission: the body."""
+    upload = Upload(os.path.basename(filename) or "mission", await request.body())
+    imported = await asyncio.to_thread(import_mission, upload, service.site, start_area, end_area)
+    return await _create(service, name or os.path.splitext(upload.name)[0], imported.mission)
+
+
+@router.get("/missions/{id}", operation_id="read_mission", response_model=PlanState)
+async def read_mission(service: Service, visitor: Viewer, id: PlanId) -> Response:
+    """A mission as it stands; its ETag is the revision."""
+    state = (await service.rooms.open(id)).state(visitor.author)
+    return said(state, revision=state.revision)
+
+
+@router.put("/missions/{id}/name", operation_id="rename_mission", response_model=PlanSummary)
+async def rename_mission(
+    service: Service, visitor: Planner, id: PlanId, given: NameGiven
+) -> Response:
+    """Gives a mission another name."""
+    room = await service.rooms.open(id)
+    await room.rename(given.name, visitor.author)
+    return said(summary_of(room.document))
+
+
+@router.post(
+    "/missions/{id}/duplicate",
+    operation_id="duplicate_mission",
+    status_code=201,
+    response_model=PlanSummary,
+    responses={201: created(PlanSummary, OF_MISSION)},
+)
+async def duplicate_mission(service: Service, _: Planner, id: PlanId, given: NameGiven) -> Response:
+    """Makes another mission of the same tasks."""
+    room = await service.rooms.open(id)
+    return await _create(service, given.name, room.document.plan.mission)
+
+
+@router.delete(
+    "/missions/{id}",
+    operation_id="delete_mission",
+    status_code=204,
+    responses={
+        204: {
+            "description": "No Content",
+            "links": {"restore": link("restore_mission", id="$request.path.id")},
+        }
+    },
+)
+async def delete_mission(service: Service, _: Planner, id: PlanId) -> Response:
+    """Moves a mission to the bin."""
+    await service.rooms.delete(id)
+    return Response(status_code=204)
+
+
+@router.get("/bin", operation_id="list_bin", response_model=PlanList)
+async def list_bin(service: Service, _: Viewer) -> Response:
+    """What was deleted."""
+    return said(PlanList(missions=tuple(await service.rooms.deleted())))
+
+
+@router.post("/bin/{id}/restore", operation_id="restore_mission", response_model=PlanSummary)
+async def restore_mission(service: Service, _: Planner, id: PlanId) -> Response:
+    """Takes a mission out of the bin."""
+    room = await service.rooms.restore(id)
+    return said(summary_of(room.document), location=f"/api/missions/{id}")
+
+
+@router.delete("/bin/{id}", operation_id="destroy_mission", status_code=204)
+async def destroy_mission(service: Service, _: Planner, id: PlanId) -> Response:
+    """Deletes a mission in the bin for good."""
+    await service.rooms.destroy(id)
+    return Response(status_code=204)
+
+
+@router.get(
+    "/missions/{id}/export/{format}",
+    operation_id="export_mission",
+    response_class=Response,
+    responses={
+        200: {
+            "description": "the file; of a format that is a folder, a zip of it",
+            "content": {
+                media: {"schema": {"type": "string", "format": "binary"}}
+                for media in ("application/octet-stream", "application/zip")
+            },
+        }
+    },
+)
+async def export_a_mission(
+    service: Service,
+    _: Viewer,
+    id: PlanId,
+    format: Annotated[
+        str, Path(max_length=40, description="`script`, `json`, or of `argo export`")
+    ],
+) -> Response:
+    """The mission in the format of another tool, as a script or as JSON."""
+    room = await service.rooms.open(id)
+    document = room.document
+    imported = ImportedMission(document.plan.mission, document.name, (), ())
+    content, ending = await asyncio.to_thread(_exported, imported, service.site, format)
+    media = "application/zip" if ending == ".zip" else "application/octet-stream"
+    file = re.sub(r"[^\w.-]+", "_", document.name).strip("._") or "mission"
+    named = f"attachment; filename*=UTF-8''{quote(file + ending)}"
+    return Response(content, 200, {"content-disposition": named}, media)
+
+
+@router.get("/missions/{id}/revisions", operation_id="list_revisions", response_model=RevisionList)
+async def list_revisions(
+    service: Service, _: Viewer, id: PlanId, since: Annotated[int, Query(ge=1, le=10**12)]
+) -> Response:
+    """What was done after a revision; 404 where that is not known any more."""
+    plan = (await service.rooms.open(id)).document.plan
+    found = plan.since(since)
+    if found is None:
+        raise NotFound(
+            f"what was done since revision {since} is not known: read the mission, which is at "
+            f"revision {plan.revision}"
+        )
+    return said(RevisionList.model_construct(revisions=found), revision=plan.revision)
+
+
+@router.get("/missions/{id}/versions", operation_id="list_versions", response_model=VersionList)
+async def list_versions(service: Service, _: Viewer, id: PlanId) -> Response:
+    """The versions that were kept of a mission."""
+    document = (await service.rooms.open(id)).document
+    return said(VersionList(versions=tuple(map(VersionSummary.of, document.versions))))
+
+
+@router.post(
+    "/missions/{id}/versions",
+    operation_id="keep_version",
+    status_code=201,
+    response_model=VersionSummary,
+    responses=documented(412, 428)
+    | {
+        201: created(
+            VersionSummary,
+            {
+                name: link(name, id="$request.path.id", name="$response.body#/name")
+                for name in ("read_version", "restore_version", "drop_version")
+            },
+        )
+    },
+)
+async def keep_version(
+    service: Service, visitor: Planner, id: PlanId, given: NameGiven, made_on: MadeOn
+) -> Response:
+    """Keeps the mission as it stands under a name."""
+    room = await service.rooms.open(id)
+    version = await room.keep_version(given.name, visitor.author, made_on)
+    return said(version, 201, location=f"/api/missions/{id}/versions/{quote(version.name, '')}")
+
+
+VersionName = Annotated[str, Path(max_length=1_000, description="name of the version")]
+
+
+@router.get(
+    "/missions/{id}/versions/{name}", operation_id="read_version", response_model=PlanVersion
+)
+async def read_version(service: Service, _: Viewer, id: PlanId, name: VersionName) -> Response:
+    """A version with its mission."""
+    return said((await service.rooms.open(id)).document.version(name))
+
+
+@router.delete("/missions/{id}/versions/{name}", operation_id="drop_version", status_code=204)
+async def drop_version(service: Service, _: Planner, id: PlanId, name: VersionName) -> Response:
+    """Keeps a version no longer."""
+    await (await service.rooms.open(id)).drop_version(name)
+    return Response(status_code=204)
+
+
+@router.post(
+    "/missions/{id}/versions/{name}/restore",
+    operation_id="restore_version",
+    response_model=CommandDone,
+    responses=documented(412, 428),
+)
+async def restore_version(
+    service: Service,
+    visitor: Planner,
+    id: PlanId,
+    name: VersionName,
+    command: RestoredVersion,
+    made_on: MadeOn,
+) -> Response:
+    """Makes a version the mission again, as a command that can be undone."""
+    room = await service.rooms.open(id)
+    version = room.document.version(name)
+    replaced = ReplacePlan.model_construct(
+        id=command.id, mission=version.mission, about=f"version {version.name}"
+    )
+    done = await room.carry_out(replaced, visitor.author, made_on)
+    return said(done, revision=done.newest)
+
+
+async def _create(service: Service, name: str, mission: Mission) -> Response:
+    require_fitting(mission, difference(Mission(tasks=()), mission))
+    room = await service.rooms.create(name, mission)
+    document = room.document
+    return said(
+        summary_of(document),
+        201,
+        revision=document.plan.revision,
+        location=f"/api/missions/{document.id}",
+    )
+
+
+def _exported(imported: ImportedMission, site: OpenedSite, format: str) -> tuple[bytes, str]:
+    """The content of a file, and the ending of its name."""
+    if format == "json":
+        return imported.mission.model_dump_json(indent=2).encode(), ".json"
+    if format == "script":
+        return as_script(imported, site).encode(), ".txt"
+    content = export_mission(imported, site, format).content
+    if isinstance(content, Mapping):
+        packed = io.BytesIO()
+        with zipfile.ZipFile(packed, "w", zipfile.ZIP_DEFLATED) as archive:
+            for path, part in sorted(content.items()):
+                archive.writestr(zipfile.ZipInfo(path), part)
+        return packed.getvalue(), ".zip"
+    endings = {"isar": ".json"}
+    return content.encode() if isinstance(content, str) else content, endings.get(format, "")

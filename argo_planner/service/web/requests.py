@@ -1,0 +1,121 @@
+"""What all routes share: who asks, of what service, on which revision; and how answers are made."""
+
+import re
+from collections.abc import Mapping
+from dataclasses import dataclass
+from datetime import datetime
+from pathlib import Path as FilePath
+from typing import Annotated, Any
+
+from fastapi import Depends, Header, Path, Request, Response
+from fastapi.security import APIKeyCookie, HTTPBearer
+from pydantic import Field
+
+from argo_compiler.errors import Invalid
+from argo_compiler.model import Model
+from argo_env.planning.opening import OpenedSite
+from argo_planner.service.rooms.rooms import PlanRooms
+from argo_planner.service.storage.folder import PLAN_ID
+from argo_planner.service.web.access import Role, Visitor
+from argo_planner.service.web.problems import RevisionMissing
+
+JSON = "application/json"
+
+
+@dataclass(frozen=True)
+class PlanningService:
+    """What the routes stand on."""
+
+    site: OpenedSite
+    folder: FilePath
+    rooms: PlanRooms
+    started: datetime
+
+
+class NameGiven(Model):
+    """A name for something."""
+
+    name: str = Field(max_length=1_000)
+
+
+def service_of(request: Request) -> PlanningService:
+    """The service that a request is for."""
+    service: PlanningService = request.app.state.service
+    return service
+
+
+def visitor_of(request: Request) -> Visitor:
+    """Who has sent a request."""
+    found: Visitor = request.scope["visitor"]
+    return found
+
+
+def _who_may(role: Role) -> Any:
+    def found(request: Request) -> Visitor:
+        visitor = visitor_of(request)
+        visitor.require(role)
+        return visitor
+
+    return Depends(found)
+
+
+Service = Annotated[PlanningService, Depends(service_of)]
+Viewer = Annotated[Visitor, _who_may(Role.VIEW)]
+Planner = Annotated[Visitor, _who_may(Role.PLAN)]
+Operator = Annotated[Visitor, _who_may(Role.OPERATE)]
+PlanId = Annotated[str, Path(pattern=f"^{PLAN_ID}$", description="id of the mission")]
+
+# The guard looks at these before any route; here they are for the document.
+KEYS = [
+    Depends(HTTPBearer(auto_error=False, description="a token of the service")),
+    Depends(APIKeyCookie(name="argo", auto_error=False, description="set by the page's address")),
+]
+
+
+def _made_on(
+    if_match: Annotated[
+        str | None,
+        Header(
+            description='the revision that the request was made on, as `"12"`, or `*` for '
+            "whichever there is; without it the answer is 428"
+        ),
+    ] = None,
+) -> int | None:
+    if if_match is None:
+        raise RevisionMissing(
+            'say on which revision this was made: `If-Match: "12"`, as the ETag of the mission has '
+            "it, or `If-Match: *`"
+        )
+    if if_match.strip() == "*":
+        return None
+    if not (found := re.fullmatch(r'\s*"(\d{1,12})"\s*', if_match, re.ASCII)):
+        raise Invalid(f'`If-Match: {if_match[:40]}` is no revision: write it as `"12"`')
+    return int(found[1])
+
+
+MadeOn = Annotated[int | None, Depends(_made_on)]
+
+
+def said(
+    model: Model, status: int = 200, revision: int | None = None, location: str | None = None
+) -> Response:
+    """A model as an answer, with its revision as ETag. It is not checked once more."""
+    headers: dict[str, str] = {}
+    if revision is not None:
+        headers["etag"] = f'"{revision}"'
+    if location is not None:
+        headers["location"] = location
+    return Response(model.model_dump_json(), status, headers, JSON)
+
+
+def created(model: Mapping[str, Any] | type[Model], links: Mapping[str, Any]) -> dict[str, Any]:
+    """What the OpenAPI document says of an answer that something was made, with its links."""
+    return {"model": model, "description": "Created", "links": links, "headers": _LOCATION}
+
+
+_LOCATION = {"Location": {"description": "where it is", "schema": {"type": "string"}}}
+
+
+def link(operation: str, **parameters: str) -> dict[str, Any]:
+    """A link of the OpenAPI document: parameters of another operation that the answer has."""
+    return {"operationId": operation, "parameters": parameters}

@@ -90,6 +90,12 @@ class ArgoCommands(LazyGroup):
             "List the sites, or check one; exits with status 2 if it can't be driven.",
         ),
         _command(
+            "serve",
+            "serve",
+            "serve_plans",
+            "Serve the missions of a folder to many people at once, for planning and for runs.",
+        ),
+        _command(
             "schema",
             "schema",
             "show_schema",

@@ -5,6 +5,7 @@ from collections.abc import AsyncIterator, Callable
 from contextlib import AbstractAsyncContextManager, asynccontextmanager
 
 from fastapi import APIRouter, FastAPI, Response
+from fastapi.responses import HTMLResponse
 
 from argo_compiler import __version__
 from argo_compiler.model import Model
@@ -14,6 +15,7 @@ from argo_planner.service.web.guard import Doors, Guard
 from argo_planner.service.web.problems import answer_problems, documented
 from argo_planner.service.web.requests import KEYS, PlanningService, Service, Viewer, said
 
+page = APIRouter()
 Opened = Callable[[], AbstractAsyncContextManager[PlanningService]]
 """opens the service when the app begins, and closes it when it ends"""
 
@@ -42,6 +44,16 @@ async def read_service(service: Service, visitor: Viewer) -> Response:
     )
 
 
+@page.get("/", include_in_schema=False)
+async def show_page() -> Response:
+    """What a browser shows that opens the service's address."""
+    return HTMLResponse(
+        "<!doctype html><html lang=en><meta charset=utf-8><title>Argo</title>"
+        "<h1>The Argo planning service is running</h1>"
+        "<p>Programs use its <a href=/api/openapi.json>interface</a>.</p></html>"
+    )
+
+
 def make_app(opened: Opened) -> FastAPI:
     """The app without its guard, as the OpenAPI document is made from it."""
 
@@ -62,7 +74,7 @@ def make_app(opened: Opened) -> FastAPI:
         swagger_ui_oauth2_redirect_url=None,
     )
     answer_problems(app)
-    for part in (router, missions.router, commands.router, live.router):
+    for part in (page, router, missions.router, commands.router, live.router):
         app.include_router(part)
     return app
 

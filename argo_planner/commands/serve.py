@@ -1,0 +1,138 @@
+"""`argo serve`: the planning service."""
+
+import ipaddress
+import os
+from contextlib import suppress
+from pathlib import Path
+from typing import Annotated
+
+import typer
+from rich.console import Console
+
+from argo_compiler.errors import Invalid, Unavailable
+from argo_compiler.extras import install_line
+from argo_env.planning.opening import open_site
+from argo_planner.terminal import completion
+from argo_planner.terminal.verbosity import is_quiet
+
+_SECRET = ".token"
+
+
+def serve_plans(
+    folder: Annotated[
+        Path, typer.Argument(metavar="FOLDER", help="where the missions are kept")
+    ] = Path("missions"),
+    site: Annotated[
+        str,
+        typer.Option(
+            "--site",
+            help="a site's name, its .yaml, or generated:…",
+            autocompletion=completion.sites,
+        ),
+    ] = "umad",
+    host: Annotated[
+        str,
+        typer.Option(
+            "--host",
+            help="address to listen at; others than this machine's own "
+            "need a token that you choose",
+        ),
+    ] = "127.0.0.1",
+    port: Annotated[int, typer.Option("--port", min=0, max=65535, help="0: a free one")] = 8310,
+    token: Annotated[
+        str | None,
+        typer.Option("--token", envvar="ARGO_TOKEN", help="who has it may do everything"),
+    ] = None,
+    token_file: Annotated[
+        Path | None,
+        typer.Option(
+            "--token-file",
+            metavar="FILE",
+            help="a token a line, with its role (view, plan, operate) and who has it",
+        ),
+    ] = None,
+    allow_host: Annotated[
+        list[str] | None,
+        typer.Option("--allow-host", metavar="NAME", help="a name under which it is asked for"),
+    ] = None,
+    origin: Annotated[
+        list[str] | None,
+        typer.Option(
+            "--origin", metavar="URL", help="address of a proxy in front: https://argo.example.org"
+        ),
+    ] = None,
+) -> None:
+    """Serve the missions of a folder to many people at once."""
+    try:
+        from argo_planner.service.web.access import (
+            AccessToken,
+            TokenBook,
+            checked_secret,
+            read_tokens,
+        )
+        from argo_planner.service.web.guard import LOOPBACK, Doors
+        from argo_planner.service.web.serving import ServiceOrder, listen, serve
+    except ImportError as error:
+        raise Unavailable(f"the service needs {error.name}: {install_line('planner')}") from None
+    own = _is_own(host)
+    if token is None and token_file is None and not own:
+        raise Invalid(f"--host {host}: others can reach this address: give --token or --token-file")
+    if token is not None and token_file is not None:
+        raise Invalid("give --token or --token-file, not both")
+    if token_file is not None:
+        tokens = read_tokens(token_file)
+    else:
+        secret = checked_secret(token, "--token") if token else _kept_secret(folder)
+        tokens = (AccessToken(secret),)
+    names = {*LOOPBACK, *(allow_host or ()), *([] if _is_any(host) else [_in_address(host)])}
+    listening = listen(host, port)
+    port = listening.getsockname()[1]
+    doors = Doors(frozenset(n.lower() for n in names), frozenset(origin or ()), f"argo-{port}")
+    opened = open_site(site).prepare()
+    console = Console(stderr=True, highlight=False, quiet=is_quiet(), soft_wrap=True)
+    shown = "127.0.0.1" if _is_any(host) else _in_address(host)
+    address = f"http://{shown}:{port}/"
+    if token_file is None and token is None:
+        address += f"?token={tokens[0].secret}"
+    console.print(f"Site {opened.name}, missions in {folder}. Open {address}")
+    console.print("Ctrl-C ends the service; what was acknowledged is kept.")
+    with suppress(KeyboardInterrupt):
+        serve(ServiceOrder(folder, opened, TokenBook(tokens), doors), listening)
+
+
+def _is_own(host: str) -> bool:
+    """Whether only this machine reaches the address."""
+    if host == "localhost":
+        return True
+    try:
+        return ipaddress.ip_address(host).is_loopback
+    except ValueError:
+        return False
+
+
+def _is_any(host: str) -> bool:
+    return host in ("0.0.0.0", "::", "")
+
+
+def _in_address(host: str) -> str:
+    return f"[{host}]" if ":" in host else host
+
+
+def _kept_secret(folder: Path) -> str:
+    """The token of the folder, made where there is none: a service that begins again has the same,
+    so that open pages go on."""
+    from argo_planner.service.web.access import checked_secret, new_secret
+
+    path = folder / _SECRET
+    try:
+        folder.mkdir(parents=True, exist_ok=True)
+        with suppress(FileExistsError):
+            flags = os.O_WRONLY | os.O_CREAT | os.O_EXCL | os.O_NOFOLLOW
+            file = os.open(path, flags, 0o600)
+            with open(file, "w", encoding="ascii") as new:
+                new.write(new_secret())
+        file = os.open(path, os.O_RDONLY | os.O_NOFOLLOW)
+        with open(file, encoding="ascii") as kept:
+            return checked_secret(kept.read().strip(), str(path))
+    except (OSError, UnicodeDecodeError) as error:
+        raise Unavailable(f"{path}: can't be kept: {error}; choose another folder") from None

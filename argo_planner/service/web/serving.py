@@ -1,0 +1,74 @@
+"""The service from its beginning to its end."""
+
+import secrets
+import socket
+from collections.abc import AsyncIterator
+from contextlib import asynccontextmanager
+from dataclasses import dataclass
+from datetime import UTC, datetime
+from pathlib import Path
+
+import uvicorn
+
+from argo_compiler.errors import Unavailable
+from argo_env.planning.opening import OpenedSite
+from argo_planner.service.jobs.analysis import Analyst
+from argo_planner.service.rooms.rooms import PlanRooms
+from argo_planner.service.storage.folder import PlanFolder
+from argo_planner.service.web.access import TokenBook
+from argo_planner.service.web.app import Opened, guarded, make_app
+from argo_planner.service.web.connections import raise_file_limit, server_options
+from argo_planner.service.web.guard import Doors
+from argo_planner.service.web.requests import PlanningService
+
+
+@dataclass(frozen=True)
+class ServiceOrder:
+    """What is to be served, and to whom."""
+
+    folder: Path
+    site: OpenedSite
+    tokens: TokenBook
+    doors: Doors
+
+
+def opened_service(folder: Path, site: OpenedSite) -> Opened:
+    """What opens the service with the plans of a folder, and closes it again."""
+
+    @asynccontextmanager
+    async def opened() -> AsyncIterator[PlanningService]:
+        analyst = Analyst(site)
+        try:
+            plans = PlanFolder(folder, lambda: secrets.token_hex(6))
+            rooms = PlanRooms(plans, site.catalog, analyst, _now)
+            try:
+                yield PlanningService(site, folder, rooms, _now())
+            finally:
+                await rooms.close()
+        finally:
+            analyst.close()
+
+    return opened
+
+
+def listen(host: str, port: int) -> socket.socket:
+    """A socket at the address; port 0 takes a free one. Raises Unavailable if it can't be had."""
+    try:
+        family = socket.getaddrinfo(host or None, port, type=socket.SOCK_STREAM)[0][0]
+        return socket.create_server((host, port), family=family, backlog=1024)
+    except OSError as error:
+        raise Unavailable(
+            f"{host}:{port}: can't be listened at: {error.strerror}; choose another port"
+        ) from None
+
+
+def serve(order: ServiceOrder, listening: socket.socket) -> None:
+    """Serves at a socket until a signal ends it."""
+    raise_file_limit()
+    app = make_app(opened_service(order.folder, order.site))
+    guard = guarded(app, order.tokens, order.doors)
+    uvicorn.Server(uvicorn.Config(guard, **server_options())).run(sockets=[listening])
+
+
+def _now() -> datetime:
+    return datetime.now(UTC)

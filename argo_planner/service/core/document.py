@@ -1,6 +1,5 @@
 """A plan with its name and its kept versions, and the records of which its file consists."""
 
-from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from datetime import datetime
 from typing import Annotated, Literal
@@ -21,6 +20,8 @@ MOST_VERSIONS = 100
 class PlanVersion(Model):
     """A mission that was kept under a name."""
 
+    number: int = Field(ge=1)
+    """that no other version of the plan has, or has had while it was there"""
     name: str
     revision: int
     author: str
@@ -55,7 +56,7 @@ class VersionDropped(Model):
     """A version is kept no longer."""
 
     kind: Literal["version-dropped"] = "version-dropped"
-    name: str
+    number: int
 
 
 PlanRecord = Annotated[
@@ -84,8 +85,8 @@ class PlanDocument:
                 return replace(self, name=name, changed=at)
             case VersionKept(version=version):
                 return replace(self, versions=(*self.versions, version))
-            case VersionDropped(name=name):
-                kept = tuple(v for v in self.versions if v.name != name)
+            case VersionDropped(number=number):
+                kept = tuple(v for v in self.versions if v.number != number)
                 return replace(self, versions=kept)
 
     def made(self, plan: MissionPlan) -> tuple["PlanDocument", RevisionMade]:
@@ -108,6 +109,7 @@ class PlanDocument:
         if len(self.versions) >= MOST_VERSIONS:
             raise Conflict(f"the mission has {MOST_VERSIONS} versions: drop one of them first")
         version = PlanVersion.model_construct(
+            number=max((v.number for v in self.versions), default=0) + 1,
             name=name,
             revision=self.plan.revision,
             author=author,
@@ -116,13 +118,10 @@ class PlanDocument:
         )
         return VersionKept.model_construct(version=version)
 
-    def version(self, name: str) -> PlanVersion:
-        """The version of that name. Raises NotFound."""
+    def version(self, number: int) -> PlanVersion:
+        """The version of that number. Raises NotFound."""
         for version in self.versions:
-            if version.name == name:
+            if version.number == number:
                 return version
-        raise NotFound(f"the mission has no version '{name}'; it has: {_told(self.versions)}")
-
-
-def _told(versions: Sequence[PlanVersion]) -> str:
-    return ", ".join(f"'{version.name}'" for version in versions) or "none"
+        known = ", ".join(f"{v.number} ('{v.name}')" for v in self.versions) or "none"
+        raise NotFound(f"the mission has no version {number}; it has: {known}")

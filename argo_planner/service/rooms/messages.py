@@ -32,6 +32,7 @@ class Findings(Model):
 class VersionSummary(Model):
     """A version without its mission."""
 
+    number: int
     name: str
     revision: int
     author: str
@@ -40,7 +41,11 @@ class VersionSummary(Model):
     @staticmethod
     def of(version: PlanVersion) -> "VersionSummary":
         return VersionSummary(
-            name=version.name, revision=version.revision, author=version.author, at=version.at
+            number=version.number,
+            name=version.name,
+            revision=version.revision,
+            author=version.author,
+            at=version.at,
         )
 
 

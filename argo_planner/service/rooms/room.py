@@ -138,14 +138,14 @@ class PlanRoom:
             self._tell_versions()
             return VersionSummary.of(record.version)
 
-    async def drop_version(self, name: str) -> None:
+    async def drop_version(self, number: int) -> None:
         """Keeps a version no longer. Raises NotFound, Unavailable."""
-        await _to_the_end(self._drop_version(name))
+        await _to_the_end(self._drop_version(number))
 
-    async def _drop_version(self, name: str) -> None:
+    async def _drop_version(self, number: int) -> None:
         async with self._turn:
             self._require_open()
-            record = VersionDropped(name=self.document.version(name).name)
+            record = VersionDropped(number=self.document.version(number).number)
             await self._write(self.document.after(record), record)
             self._tell_versions()
 

@@ -278,7 +278,7 @@ async def list_versions(service: Service, _: Viewer, id: PlanId) -> Response:
         201: created(
             VersionSummary,
             {
-                name: link(name, id="$request.path.id", name="$response.body#/name")
+                name: link(name, id="$request.path.id", number="$response.body#/number")
                 for name in ("read_version", "restore_version", "drop_version")
             },
         )
@@ -290,29 +290,29 @@ async def keep_version(
     """Keeps the mission as it stands under a name."""
     room = await service.rooms.open(id)
     version = await room.keep_version(given.name, visitor.author, made_on)
-    return said(version, 201, location=f"/api/missions/{id}/versions/{quote(version.name, '')}")
+    return said(version, 201, location=f"/api/missions/{id}/versions/{version.number}")
 
 
-VersionName = Annotated[str, Path(max_length=1_000, description="name of the version")]
+VersionNumber = Annotated[int, Path(ge=1, le=10**9, description="of the version")]
 
 
 @router.get(
-    "/missions/{id}/versions/{name}", operation_id="read_version", response_model=PlanVersion
+    "/missions/{id}/versions/{number}", operation_id="read_version", response_model=PlanVersion
 )
-async def read_version(service: Service, _: Viewer, id: PlanId, name: VersionName) -> Response:
+async def read_version(service: Service, _: Viewer, id: PlanId, number: VersionNumber) -> Response:
     """A version with its mission."""
-    return said((await service.rooms.open(id)).document.version(name))
+    return said((await service.rooms.open(id)).document.version(number))
 
 
-@router.delete("/missions/{id}/versions/{name}", operation_id="drop_version", status_code=204)
-async def drop_version(service: Service, _: Planner, id: PlanId, name: VersionName) -> Response:
+@router.delete("/missions/{id}/versions/{number}", operation_id="drop_version", status_code=204)
+async def drop_version(service: Service, _: Planner, id: PlanId, number: VersionNumber) -> Response:
     """Keeps a version no longer."""
-    await (await service.rooms.open(id)).drop_version(name)
+    await (await service.rooms.open(id)).drop_version(number)
     return Response(status_code=204)
 
 
 @router.post(
-    "/missions/{id}/versions/{name}/restore",
+    "/missions/{id}/versions/{number}/restore",
     operation_id="restore_version",
     response_model=CommandDone,
     responses=documented(412, 428),
@@ -321,13 +321,13 @@ async def restore_version(
     service: Service,
     visitor: Planner,
     id: PlanId,
-    name: VersionName,
+    number: VersionNumber,
     command: RestoredVersion,
     made_on: MadeOn,
 ) -> Response:
     """Makes a version the mission again, as a command that can be undone."""
     room = await service.rooms.open(id)
-    version = room.document.version(name)
+    version = room.document.version(number)
     replaced = ReplacePlan.model_construct(
         id=command.id, mission=version.mission, about=f"version {version.name}"
     )

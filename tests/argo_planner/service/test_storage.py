@@ -72,9 +72,9 @@ def test_what_was_written_is_there_again(folder):
     with folder.open(written.id) as again:
         assert again.document == written
         assert again.recovery is None
-        assert again.document.version("first").mission.tasks[0].velocity == 0.2
-        with pytest.raises(NotFound, match="it has: 'first'"):
-            again.document.version("second")
+        assert again.document.version(1).mission.tasks[0].velocity == 0.2
+        with pytest.raises(NotFound, match="it has: 1 \\('first'\\)"):
+            again.document.version(2)
         with pytest.raises(Conflict, match="already"):
             again.document.keep_version("first", "bob", AT)
     (summary,) = folder.plans()

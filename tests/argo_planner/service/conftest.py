@@ -1,0 +1,18 @@
+"""What the tests of the service share."""
+
+import pytest
+
+from argo_env.planning.opening import OpenedSite, open_site
+from tests.argo_planner.service.served import Served, served
+
+
+@pytest.fixture(scope="session")
+def site() -> OpenedSite:
+    return open_site("umad").prepare()
+
+
+@pytest.fixture(scope="module")
+def service(tmp_path_factory, site) -> Served:
+    """One for all tests of a file."""
+    with served(tmp_path_factory.mktemp("missions"), site) as found:
+        yield found

@@ -1,0 +1,112 @@
+"""A service under test: a real server on a socket of its own, in a thread of this process."""
+
+import socket
+import threading
+from collections.abc import Callable, Iterator
+from contextlib import ExitStack, contextmanager, suppress
+from itertools import count
+from pathlib import Path
+from typing import Any
+
+import httpx
+import uvicorn
+from websockets.sync.client import ClientConnection, connect
+
+from argo_env.planning.opening import OpenedSite
+from argo_planner.service.web.access import AccessToken, Role, TokenBook
+from argo_planner.service.web.app import guarded, make_app
+from argo_planner.service.web.connections import server_options
+from argo_planner.service.web.guard import LOOPBACK, Doors
+from argo_planner.service.web.serving import listen, opened_service
+
+ALL = "all-may-be-done-with-this"
+SECRETS = {
+    Role.OPERATE: "operator-of-the-robot",
+    Role.PLAN: "planner-of-missions",
+    Role.VIEW: "viewer-of-everything",
+}
+_IDS = count(1)
+
+
+class Served:
+    """A service that is there. `client` may do everything, as `ann`."""
+
+    def __init__(self, folder: Path, address: str) -> None:
+        self.folder = folder
+        self.address = address
+        self.closing = ExitStack()
+        self.client = self.as_("ann")
+
+    def as_(self, author: str, secret: str = ALL) -> httpx.Client:
+        headers = {"authorization": f"Bearer {secret}", "argo-author": author}
+        client = httpx.Client(base_url=f"http://{self.address}", headers=headers, timeout=60)
+        return self.closing.enter_context(client)
+
+    def follow(self, id: str, author: str = "ann", since: int | None = None) -> ClientConnection:
+        query = f"?author={author}" + ("" if since is None else f"&since={since}")
+        return connect(
+            f"ws://{self.address}/api/missions/{id}/live{query}",
+            additional_headers={"authorization": f"Bearer {ALL}"},
+            max_size=None,
+            proxy=None,
+        )
+
+    def create(self, name: str = "Round", mission: Any = None) -> str:
+        body = {"name": name} | ({} if mission is None else {"mission": mission})
+        made = self.client.post("/api/missions", json=body)
+        assert made.status_code == 201, made.text
+        id: str = made.json()["id"]
+        return id
+
+    def command(
+        self,
+        id: str,
+        revision: int | str,
+        *edits: Any,
+        client: httpx.Client | None = None,
+        **said: Any,
+    ) -> httpx.Response:
+        body = {"kind": "edit", "id": f"k{next(_IDS)}"} | ({"edits": edits} if edits else {}) | said
+        headers = {"if-match": revision if isinstance(revision, str) else f'"{revision}"'}
+        used = client or self.client
+        return used.post(f"/api/missions/{id}/commands", json=body, headers=headers)
+
+
+@contextmanager
+def served(folder: Path, site: OpenedSite) -> Iterator[Served]:
+    """A service with the missions of a folder; all its threads end with the context."""
+    tokens = [AccessToken(ALL), *(AccessToken(s, role, str(role)) for role, s in SECRETS.items())]
+    app = make_app(opened_service(folder, site))
+    guard = guarded(app, TokenBook(tokens), Doors(frozenset(LOOPBACK)))
+    listening = listen("127.0.0.1", 0)
+    server = uvicorn.Server(uvicorn.Config(guard, **server_options()))
+    thread = threading.Thread(target=server.run, kwargs={"sockets": [listening]}, daemon=True)
+    thread.start()
+    try:
+        _wait(lambda: server.started or not thread.is_alive())
+        assert thread.is_alive(), "the service has not begun"
+        with (found := Served(folder, f"127.0.0.1:{listening.getsockname()[1]}")).closing:
+            yield found
+    finally:
+        server.should_exit = True
+        thread.join(30)
+        listening.close()
+        assert not thread.is_alive()
+
+
+def _wait(done: Callable[[], bool]) -> None:
+    while not done():
+        threading.Event().wait(0.01)
+
+
+def raw(address: str, content: bytes, most: int = 1_000_000) -> bytes:
+    """What the service answers to bytes that no HTTP library would send."""
+    host, _, port = address.partition(":")
+    with socket.create_connection((host, int(port)), timeout=30) as connection:
+        with suppress(BrokenPipeError, ConnectionResetError):
+            connection.sendall(content)
+        answer = b""
+        with suppress(ConnectionResetError):
+            while len(answer) < most and (part := connection.recv(65_536)):
+                answer += part
+        return answer

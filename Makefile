@@ -32,10 +32,11 @@ format: .venv/test.stamp ## put the style right where that can be done by itself
 	$(BIN)/ruff check --fix .
 	$(BIN)/ruff format .
 
-generated: .venv/test.stamp ## write anew what is made from the code: JSON Schemas, pages of codes and of scripts, parser tables
+generated: .venv/test.stamp ## write anew what is made from the code: JSON Schemas, pages of codes and of scripts, parser tables, the service's document
 	$(BIN)/python -m argo_compiler.schemas
 	$(BIN)/python -m argo_compiler.script docs/script.md
 	$(BIN)/python -m argo_compiler.diagnostics docs/diagnostics.md
+	$(BIN)/python -m argo_planner.service.web docs/openapi.json
 
 help: ## say what can be made
 	@sed -n 's/^\([a-z-]*\):.*## /\1\t/p' $(MAKEFILE_LIST) | expand -t 12

@@ -19,10 +19,7 @@ class Mailbox:
     """Messages for one client, in order. Of poses only the newest one waits; nothing else is ever
     dropped: a client for which too much waits is let go, and resumes."""
 
-    def __init__(
-        self, most_messages: int = MOST_MESSAGES, most_characters: int = MOST_CHARACTERS
-    ) -> None:
-        self._most = most_messages, most_characters
+    def __init__(self) -> None:
         self._messages: deque[str] = deque()
         self._characters = 0
         self._newest: dict[str, str] = {}
@@ -35,7 +32,7 @@ class Mailbox:
             return
         self._messages.append(message)
         self._characters += len(message)
-        if len(self._messages) > self._most[0] or self._characters > self._most[1]:
+        if len(self._messages) > MOST_MESSAGES or self._characters > MOST_CHARACTERS:
             self._messages.clear()
             self._newest.clear()
             self.close(MailboxClosed("too slow: connect again and resume", too_slow=True))

@@ -3,6 +3,8 @@
 import json
 from collections.abc import AsyncIterator, Callable
 from contextlib import AbstractAsyncContextManager, asynccontextmanager
+from functools import partial
+from typing import Any
 
 from fastapi import APIRouter, FastAPI, Response
 from fastapi.responses import HTMLResponse
@@ -12,7 +14,7 @@ from argo_compiler.model import Model
 from argo_planner.service.web import commands, live, missions
 from argo_planner.service.web.access import Role, TokenBook
 from argo_planner.service.web.guard import Doors, Guard
-from argo_planner.service.web.problems import answer_problems, documented
+from argo_planner.service.web.problems import MEDIA, answer_problems, documented
 from argo_planner.service.web.requests import KEYS, PlanningService, Service, Viewer, said
 
 page = APIRouter()
@@ -74,9 +76,23 @@ def make_app(opened: Opened) -> FastAPI:
         swagger_ui_oauth2_redirect_url=None,
     )
     answer_problems(app)
+    app.openapi = partial(_document_of, app)  # type: ignore[method-assign]
     for part in (page, router, missions.router, commands.router, live.router):
         app.include_router(part)
     return app
+
+
+def _document_of(app: FastAPI) -> dict[str, Any]:
+    """The OpenAPI document, in which problems have the media type that they are answered with."""
+    if app.openapi_schema is None:
+        made = FastAPI.openapi(app)
+        for path in made["paths"].values():
+            for operation in path.values():
+                for status, told in operation["responses"].items():
+                    if status >= "400":
+                        told["content"] = {MEDIA: told["content"]["application/json"]}
+    assert app.openapi_schema is not None
+    return app.openapi_schema
 
 
 def guarded(app: FastAPI, tokens: TokenBook, doors: Doors) -> Guard:

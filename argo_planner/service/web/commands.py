@@ -21,6 +21,7 @@ from argo_planner.service.core.refusals import StaleRevision
 from argo_planner.service.jobs.analysis import AnalysisFound
 from argo_planner.service.rooms.messages import CommandDone
 from argo_planner.service.rooms.room import PlanRoom
+from argo_planner.service.web.missions import sound
 from argo_planner.service.web.problems import StaleCommand, documented
 from argo_planner.service.web.requests import (
     KEYS,
@@ -32,7 +33,7 @@ from argo_planner.service.web.requests import (
     said,
 )
 from argo_planner.use_cases.explaining import reading_of
-from argo_planner.use_cases.importing import ImportedMission, Upload, import_mission
+from argo_planner.use_cases.importing import Upload, import_mission
 
 MOST_SCRIPT = 1_000_000
 """characters"""
@@ -89,8 +90,7 @@ async def write_script(
 async def read_back(service: Service, _: Viewer, id: PlanId) -> Response:
     """The mission in plain sentences, task by task; `text` is a script that gives the same."""
     document = (await service.rooms.open(id)).document
-    imported = ImportedMission(document.plan.mission, document.name, (), ())
-    reading = await asyncio.to_thread(reading_of, imported, service.site)
+    reading = await asyncio.to_thread(reading_of, sound(document, service.site), service.site)
     return said(reading, revision=document.plan.revision)
 
 

@@ -18,7 +18,7 @@ MOST_BYTES = 2_000_000
 """of a request's body"""
 MOST_UPLOADED = 50_000_000
 """of a mission that is imported"""
-UPLOADS = ("/api/missions/import",)
+UPLOADS = ("/api/imports",)
 LOOPBACK = ("localhost", "127.0.0.1", "[::1]")
 
 _POLICY = (
@@ -144,16 +144,9 @@ async def _refuse(problem: Problem, scope: Scope, receive: Receive, send: Send) 
         return
     if "websocket.http.response" in scope.get("extensions", {}):
         response = answer(problem)
-        await response(scope, receive, _for_socket(send))
+        await response(scope, receive, send)
         return
     await send({"type": "websocket.close", "code": 1008, "reason": problem.code})
-
-
-def _for_socket(send: Send) -> Send:
-    async def sending(message: Message) -> None:
-        await send({**message, "type": message["type"].replace("http.", "websocket.http.")})
-
-    return sending
 
 
 def _too_large(scope: Scope, headers: Headers) -> Problem | None:

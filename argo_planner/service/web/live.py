@@ -9,7 +9,7 @@ from typing import Annotated
 from fastapi import APIRouter, Query, WebSocket, WebSocketDisconnect
 from pydantic import ValidationError
 
-from argo_compiler.errors import ArgoError
+from argo_compiler.errors import ArgoError, Unavailable
 from argo_planner.service.rooms.mailbox import Mailbox, MailboxClosed
 from argo_planner.service.rooms.messages import SelectTasks
 from argo_planner.service.web.access import Visitor
@@ -36,6 +36,7 @@ async def follow(
     service: PlanningService = socket.app.state.service
     visitor: Visitor = socket.scope["visitor"]
     try:
+        _require_room_for_one_more(socket)
         room = await service.rooms.open(id)
     except ArgoError as error:
         await socket.send_denial_response(answer(problem_of(error)))
@@ -57,8 +58,17 @@ async def follow(
         room.leave(client)
 
 
+def _require_room_for_one_more(socket: WebSocket) -> None:
+    """Raises Unavailable."""
+    state = socket.app.state
+    if getattr(state, "sockets", 0) >= MOST_SOCKETS:
+        raise Unavailable(f"{MOST_SOCKETS} pages are open already: close some of them")
+
+
 async def carry(socket: WebSocket, mailbox: Mailbox, heard: Callable[[str], None]) -> None:
     """Sends what comes into the mailbox, and tells what the client says, until one of them ends."""
+    state = socket.app.state
+    state.sockets = getattr(state, "sockets", 0) + 1
     working = [
         asyncio.ensure_future(_sending(socket, mailbox)),
         asyncio.ensure_future(_hearing(socket, heard)),
@@ -75,6 +85,7 @@ async def carry(socket: WebSocket, mailbox: Mailbox, heard: Callable[[str], None
         fault = error.errors(include_url=False, include_input=False)[0]
         await _closed(socket.close(WRONG, f"no message: {fault['msg']}"[:100]))
     finally:
+        state.sockets -= 1
         for task in working:
             task.cancel()
         await asyncio.gather(*working, return_exceptions=True)

@@ -12,13 +12,15 @@ from urllib.parse import quote
 from fastapi import APIRouter, Path, Query, Request, Response
 from pydantic import Field
 
+from argo_compiler.checks import check
+from argo_compiler.diagnostics import DiagnosticError, has_errors
 from argo_compiler.errors import NotFound
 from argo_compiler.il import Mission
 from argo_compiler.model import Model
 from argo_env.planning.opening import OpenedSite
 from argo_planner.service.core.change import difference
 from argo_planner.service.core.commands import CommandId, ReplacePlan, Revision
-from argo_planner.service.core.document import PlanVersion
+from argo_planner.service.core.document import PlanDocument, PlanVersion
 from argo_planner.service.core.limits import require_fitting
 from argo_planner.service.rooms.messages import CommandDone, PlanState, VersionSummary
 from argo_planner.service.storage.folder import PlanSummary, summary_of
@@ -51,10 +53,13 @@ OF_MISSION = {
         "list_revisions",
         "keep_version",
         "list_versions",
+        "read_back",
+        "read_analysis",
+        "write_script",
     )
 }
 ETAG = "$response.header.ETag"
-for _name in ("carry_out_command", "keep_version"):
+for _name in ("carry_out_command", "keep_version", "write_script"):
     OF_MISSION[_name]["parameters"]["If-Match"] = ETAG
 
 router = APIRouter(
@@ -111,13 +116,14 @@ async def list_missions(service: Service, _: Viewer) -> Response:
 )
 async def create_mission(service: Service, _: Planner, new: NewMission) -> Response:
     """Makes a mission."""
-    return await _create(
-        service, new.name, new.mission or Mission(tasks=(), site=service.site.name)
-    )
+    if new.mission is not None and has_errors(found := check(new.mission, service.site.catalog)):
+        raise DiagnosticError(new.name, found)
+    mission = new.mission or Mission(tasks=(), site=service.site.name)
+    return await _create(service, new.name, mission)
 
 
 @router.post(
-    "/missions/import",
+    "/imports",
     operation_id="import_mission",
     status_code=201,
     response_model=PlanSummary,
@@ -238,7 +244,7 @@ async def export_a_mission(
     """The mission in the format of another tool, as a script or as JSON."""
     room = await service.rooms.open(id)
     document = room.document
-    imported = ImportedMission(document.plan.mission, document.name, (), ())
+    imported = sound(document, service.site) if format != "json" else as_it_is(document)
     content, ending = await asyncio.to_thread(_exported, imported, service.site, format)
     media = "application/zip" if ending == ".zip" else "application/octet-stream"
     file = re.sub(r"[^\w.-]+", "_", document.name).strip("._") or "mission"
@@ -333,6 +339,18 @@ async def restore_version(
     )
     done = await room.carry_out(replaced, visitor.author, made_on)
     return said(done, revision=done.newest)
+
+
+def as_it_is(document: PlanDocument) -> ImportedMission:
+    """The mission of a plan, which may have errors."""
+    return ImportedMission(document.plan.mission, document.name, (), ())
+
+
+def sound(document: PlanDocument, site: OpenedSite) -> ImportedMission:
+    """The mission of a plan. Raises DiagnosticError if it has errors."""
+    if has_errors(found := check(document.plan.mission, site.catalog)):
+        raise DiagnosticError(document.name, found)
+    return as_it_is(document)
 
 
 async def _create(service: Service, name: str, mission: Mission) -> Response:

@@ -1,6 +1,7 @@
 """What went wrong, as one answer (RFC 9457), whatever it was."""
 
 import logging
+import re
 from collections.abc import Awaitable, Callable
 from http import HTTPStatus
 from typing import Any
@@ -122,10 +123,13 @@ def answer_problems(app: FastAPI) -> None:
         assert isinstance(error, RequestValidationError)
         return answer(plain(HTTPStatus.UNPROCESSABLE_ENTITY, "invalid", _first(error)))
 
-    async def of_http(_: Request, error: Exception) -> Response:
+    async def of_http(request: Request, error: Exception) -> Response:
         assert isinstance(error, HTTPException)
         code = {404: "not-found", 405: "method-not-allowed"}.get(error.status_code, "invalid")
-        return answer(plain(error.status_code, code, str(error.detail)), dict(error.headers or {}))
+        headers = dict(error.headers or {})
+        if error.status_code == HTTPStatus.METHOD_NOT_ALLOWED:
+            headers["allow"] = ", ".join(_methods(request))
+        return answer(plain(error.status_code, code, str(error.detail)), headers)
 
     async def of_defect(_: Request, error: Exception) -> Response:
         _log.error("a defect of Argo", exc_info=error)
@@ -140,6 +144,17 @@ def answer_problems(app: FastAPI) -> None:
     }
     for kind, handler in handlers.items():
         app.add_exception_handler(kind, handler)
+
+
+def _methods(request: Request) -> list[str]:
+    """What can be asked of an address."""
+    path = request.scope["path"]
+    return [
+        method.upper()
+        for known, operations in request.app.openapi()["paths"].items()
+        if re.fullmatch(re.sub(r"\\{.*?\\}", "[^/]+", re.escape(known)), path)
+        for method in operations
+    ]
 
 
 def _first(error: RequestValidationError) -> str:

@@ -76,8 +76,9 @@ def _made_on(
     if_match: Annotated[
         str | None,
         Header(
+            alias="If-Match",
             description='the revision that the request was made on, as `"12"`, or `*` for '
-            "whichever there is; without it the answer is 428"
+            "whichever there is; without it the answer is 428",
         ),
     ] = None,
 ) -> int | None:

@@ -44,12 +44,14 @@ class Served:
 
     def follow(self, id: str, author: str = "ann", since: int | None = None) -> ClientConnection:
         query = f"?author={author}" + ("" if since is None else f"&since={since}")
-        return connect(
-            f"ws://{self.address}/api/missions/{id}/live{query}",
-            additional_headers={"authorization": f"Bearer {ALL}"},
-            max_size=None,
-            proxy=None,
+        return self.socket(f"/api/missions/{id}/live{query}", {"authorization": f"Bearer {ALL}"})
+
+    def socket(self, path: str, headers: dict[str, str]) -> ClientConnection:
+        """A WebSocket, which is closed at the end if nobody has done so before."""
+        opening = connect(
+            f"ws://{self.address}{path}", additional_headers=headers, max_size=None, proxy=None
         )
+        return self.closing.enter_context(opening)
 
     def create(self, name: str = "Round", mission: Any = None) -> str:
         body = {"name": name} | ({} if mission is None else {"mission": mission})

@@ -52,7 +52,7 @@ def test_a_mission_from_its_making_to_its_end(service: Served) -> None:
 def test_a_script_becomes_a_mission_and_is_read_back(service: Served) -> None:
     client = service.client
     made = client.post(
-        "/api/missions/import", params={"filename": "first.txt", "end_area": 2}, content=SCRIPT
+        "/api/imports", params={"filename": "first.txt", "end_area": 2}, content=SCRIPT
     )
     assert made.status_code == 201, made.text
     assert made.json()["name"] == "first"
@@ -62,13 +62,13 @@ def test_a_script_becomes_a_mission_and_is_read_back(service: Served) -> None:
     as_script = client.get(f"{at}/export/script")
     assert "first.txt" in as_script.headers["content-disposition"]
     again = client.post(
-        "/api/missions/import", params={"filename": "again.txt"}, content=as_script.content
+        "/api/imports", params={"filename": "again.txt"}, content=as_script.content
     )
     both = [client.get(made.headers["location"]).json()["mission"] for made in (made, again)]
     assert [t["name"] for t in both[0]["tasks"]] == [t["name"] for t in both[1]["tasks"]]
     problem(
         client.post(
-            "/api/missions/import", params={"filename": "x.txt"}, content="Check valve R99"
+            "/api/imports", params={"filename": "x.txt"}, content="Check valve R99"
         ),
         422,
         "invalid",
@@ -81,7 +81,7 @@ def test_a_script_becomes_a_mission_and_is_read_back(service: Served) -> None:
 def test_a_mission_is_exported(service: Served, format: str) -> None:
     client = service.client
     made = client.post(
-        "/api/missions/import", params={"filename": "f.txt", "end_area": 2}, content=SCRIPT
+        "/api/imports", params={"filename": "f.txt", "end_area": 2}, content=SCRIPT
     )
     answer = client.get(f"{made.headers['location']}/export/{format}")
     if answer.status_code == 404:
@@ -205,7 +205,7 @@ def test_who_may_do_what(service: Served) -> None:
 
 def test_the_analysis_follows(service: Served) -> None:
     made = service.client.post(
-        "/api/missions/import", params={"filename": "first.txt", "end_area": 2}, content=SCRIPT
+        "/api/imports", params={"filename": "first.txt", "end_area": 2}, content=SCRIPT
     )
     with service.follow(made.json()["id"]) as socket:
         for message in socket:

@@ -1,0 +1,276 @@
+"""What comes from strangers is refused in one clear answer, and the service goes on serving."""
+
+import json
+import socket
+from concurrent.futures import ThreadPoolExecutor
+
+import pytest
+from websockets.exceptions import ConnectionClosed, InvalidStatus
+from websockets.sync.client import ClientConnection
+
+from argo_planner.service.web.connections import MOST_CONNECTIONS, raise_file_limit
+from tests.argo_planner.service.served import ALL, Served, raw
+from tests.argo_planner.service.test_http import data, problem
+
+
+@pytest.fixture(autouse=True)
+def goes_on(service: Served):
+    """After each of these tests the service serves as before."""
+    yield
+    id = service.create(mission=data("a", "b"))
+    assert service.command(id, 1, {"kind": "remove_task", "name": "b"}).status_code == 200
+
+
+@pytest.mark.parametrize(
+    "headers",
+    [
+        {"host": "evil.example"},
+        {"host": "evil.example:80"},
+        {"host": "localhost.evil.example"},
+        {"host": ""},
+        {"origin": "http://evil.example"},
+        {"origin": "null"},
+        {"origin": "http://127.0.0.1:1"},
+        {"origin": "file://"},
+        {"sec-fetch-site": "cross-site"},
+    ],
+)
+def test_who_comes_from_elsewhere_is_refused(service: Served, headers: dict[str, str]) -> None:
+    for answer in (
+        service.client.get("/api/missions", headers=headers),
+        service.client.post("/api/missions", json={"name": "x"}, headers=headers),
+    ):
+        assert answer.status_code == 403
+        assert answer.json()["code"] in ("foreign-host", "foreign-origin")
+        assert "content-security-policy" in answer.headers
+    if "host" not in headers:  # the library sends its own
+        path = f"/api/missions/{service.create()}/live"
+        with pytest.raises(InvalidStatus, match="403"):
+            service.socket(path, {"authorization": f"Bearer {ALL}"} | headers)
+
+
+@pytest.mark.parametrize(
+    "headers",
+    [
+        {"authorization": ""},
+        {"authorization": "Bearer wrong"},
+        {"authorization": f"Basic {ALL}"},
+        {"authorization": "Bearer", "cookie": "argo=x"},
+        {"authorization": "Bearer é"},
+    ],
+)
+def test_without_a_token_nothing_is_told(service: Served, headers: dict[str, str]) -> None:
+    sent = {k: v.encode() for k, v in headers.items()}
+    for path in ("/", "/api/missions", "/api/openapi.json", "/api/nothing"):
+        answer = service.client.get(path, headers=sent)
+        problem(answer, 401, "token-missing")
+        assert answer.headers["www-authenticate"] == "Bearer"
+    with pytest.raises(InvalidStatus, match="401"):
+        service.socket(f"/api/missions/{'0' * 12}/live", {})
+
+
+def test_the_address_with_the_token_sets_a_cookie(service: Served) -> None:
+    client = service.client
+    client.headers.pop("authorization")
+    try:
+        entered = client.get("/", params={"token": ALL, "mission": "5"})
+        assert (entered.status_code, entered.headers["location"]) == (303, "/?mission=5")
+        cookie = entered.headers["set-cookie"]
+        assert "HttpOnly" in cookie
+        assert "samesite=strict" in cookie.lower()
+        assert ALL not in cookie
+        page = client.get("/")  # the client keeps the cookie
+        assert page.status_code == 200
+        assert "unsafe-eval" not in page.headers["content-security-policy"]
+        away = f"GET //evil.example/x?token={ALL} HTTP/1.1\r\nHost: localhost\r\n"
+        answer = raw(service.address, f"{away}Connection: close\r\n\r\n".encode())
+        assert b"\r\nlocation: /evil.example/x\r\n" in answer
+        problem(client.get("/", params={"token": "wrong"}), 401, "token-missing")
+    finally:
+        client.cookies.clear()
+        client.headers["authorization"] = f"Bearer {ALL}"
+
+
+@pytest.mark.parametrize(
+    "path",
+    [
+        "/api/missions/../../../etc/passwd",
+        "/api/missions/..%2f..%2fetc%2fpasswd",
+        "/api/missions/%2e%2e",
+        "/api/missions/000000000000%00",
+        "/api/missions/ABCDEFABCDEF",
+        "/api/missions/0000000000000",
+        "/api/bin/..%2f000000000000/restore",
+    ],
+)
+def test_no_path_leads_out_of_the_folder(service: Served, path: str) -> None:
+    for method in ("GET", "DELETE", "POST"):
+        answer = raw(
+            service.address,
+            f"{method} {path} HTTP/1.1\r\nHost: localhost\r\nAuthorization: Bearer {ALL}\r\n"
+            "Connection: close\r\nContent-Length: 0\r\n\r\n".encode(),
+        )
+        status = int(answer.split()[1])
+        assert status in (400, 404, 405, 422), answer
+        assert b"root:" not in answer
+
+
+def test_a_link_out_of_the_folder_is_not_followed(service: Served, tmp_path) -> None:
+    id = service.create(mission=data("a"))
+    service.client.delete(f"/api/missions/{id}")
+    file = service.folder / "bin" / f"{id}.plan"
+    file.rename(tmp_path / "elsewhere")
+    (service.folder / f"{id}.plan").symlink_to(tmp_path / "elsewhere")
+    file.symlink_to(tmp_path / "elsewhere")
+    for answer in (
+        service.client.get(f"/api/missions/{id}"),
+        service.client.delete(f"/api/missions/{id}"),
+        service.client.post(f"/api/bin/{id}/restore"),
+        service.client.delete(f"/api/bin/{id}"),
+    ):
+        problem(answer, 404, "not-found")
+    assert id not in service.client.get("/api/missions").text
+    assert (tmp_path / "elsewhere").exists()
+
+
+def test_bodies_of_100_mb_are_not_taken(service: Served) -> None:
+    problem(service.client.post("/api/missions", content=b"x" * 3_000_000), 413, "too-large")
+    head = f"POST /api/missions HTTP/1.1\r\nHost: localhost\r\nAuthorization: Bearer {ALL}\r\n"
+    said = raw(service.address, f"{head}Content-Length: 100000000\r\n\r\n".encode())
+    assert b" 413 " in said.split(b"\r\n")[0]
+    chunk = b"10000\r\n" + b"x" * 65_536 + b"\r\n"
+    unsaid = raw(
+        service.address,
+        head.encode()
+        + b"Connection: close\r\nTransfer-Encoding: chunked\r\n\r\n"
+        + chunk * 1_600
+        + b"0\r\n\r\n",
+    )
+    assert unsaid.split()[1] in (b"413", b"400"), unsaid[:300]
+
+
+def test_missions_that_are_too_large_are_not_taken(service: Served) -> None:
+    tasks = b",".join(
+        b'{"name":"t%d","action":"MEASURE","object_id":"1"}' % k for k in range(1_000_000)
+    )
+    content = b'{"version":3,"tasks":[' + tasks + b"]}"
+    answer = service.client.post("/api/imports?filename=m.json", content=content)
+    assert answer.status_code in (413, 422), answer.text
+    many = data(*(f"t{k}" for k in range(10_001)))
+    for task in many["tasks"]:
+        task["object_id"] = "1"
+    answer = service.client.post(
+        "/api/imports?filename=m.json", content=json.dumps(many).encode()
+    )
+    problem(answer, 422, "plan-too-large")
+
+
+@pytest.mark.parametrize(
+    ("name", "why"),
+    [
+        ("x" * 1_000_000, "at most"),
+        ("x" * 201, "at most 200"),
+        ("a\0b", "can't be seen"),
+        ("a\u202egnp.exe", "can't be seen"),
+        ("", "needs a name"),
+    ],
+)
+def test_what_can_be_no_name_is_refused(service: Served, name: str, why: str) -> None:
+    id = service.create(mission=data("a", "b"))
+    for answer in (
+        service.client.post("/api/missions", json={"name": name}),
+        service.client.put(f"/api/missions/{id}/name", json={"name": name}),
+        service.command(id, 1, {"kind": "rename_task", "name": "a", "new_name": name}),
+    ):
+        assert answer.status_code in (409, 422), answer.text[:300]
+        assert len(answer.content) < 5_000
+        assert why in answer.text or "empty" in answer.text or "is to be" in answer.text
+
+
+def test_names_are_texts(service: Served) -> None:
+    name = "<img src=x onerror=alert(1)> גשר"
+    id = service.create(name)
+    answer = service.client.get(f"/api/missions/{id}")
+    assert answer.json()["name"] == name
+    assert answer.headers["content-type"] == "application/json"
+    assert answer.headers["x-content-type-options"] == "nosniff"
+
+
+@pytest.mark.parametrize(
+    "body",
+    [
+        b"[" * 100_000,
+        b'{"name": ' + b"9" * 10_000 + b"}",
+        b'{"name": NaN}',
+        b'{"name": "\\ud800"}',
+        b"\xff\xfe",
+        b"",
+        b"null",
+    ],
+)
+def test_bodies_that_make_no_sense_are_refused(service: Served, body: bytes) -> None:
+    answer = service.client.post(
+        "/api/missions", content=body, headers={"content-type": "application/json"}
+    )
+    assert answer.status_code in (400, 422), answer.text
+    assert answer.json()["code"] == "invalid"
+
+
+@pytest.mark.parametrize(
+    "said",
+    [
+        "nothing",
+        "[" * 50_000,
+        '{"kind":"select"}',
+        '{"kind":"select","names":["' + "x" * 201 + '"]}',
+        '{"kind":"move","names":[]}',
+        b"\x00\xff",
+        "x" * 2_000_000,
+    ],
+)
+def test_messages_that_make_no_sense_end_the_connection(service: Served, said: str) -> None:
+    id = service.create(mission=data("a"))
+    page = service.follow(id)
+    page.recv()
+    page.send(said)
+    with pytest.raises(ConnectionClosed):
+        hear_all(page)
+    assert page.close_code in (4400, 1009)
+
+
+def hear_all(page: ClientConnection) -> None:
+    while True:
+        page.recv(timeout=30)
+
+
+@pytest.mark.long
+def test_ten_thousand_connections_do_not_lock_others_out(service: Served) -> None:
+    raise_file_limit()
+    host, _, port = service.address.partition(":")
+    held: list[socket.socket] = []
+    try:
+        for k in range(10_000):
+            held.append(socket.create_connection((host, int(port)), timeout=60))
+            if len(held) > MOST_CONNECTIONS + 500:
+                held.pop(0).close()
+            if k % 1_000 == 0:
+                assert service.as_("ann").get("/api/missions").status_code == 200
+        assert service.as_("ann").get("/api/missions").status_code == 200
+    finally:
+        for one in held:
+            one.close()
+
+
+def test_more_pages_than_there_may_be_are_told_so(service: Served, monkeypatch) -> None:
+    monkeypatch.setattr("argo_planner.service.web.live.MOST_SOCKETS", 3)
+    id = service.create(mission=data("a"))
+    pages = [service.follow(id) for _ in range(3)]
+    with pytest.raises(InvalidStatus, match="503"):
+        service.follow(id)
+    for page in pages:
+        page.close()
+    with ThreadPoolExecutor(4) as pool:
+        assert all(
+            answer.status_code == 200
+            for answer in pool.map(lambda _: service.client.get("/api/missions"), range(20))
+        )

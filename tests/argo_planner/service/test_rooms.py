@@ -1,0 +1,148 @@
+"""Open plans: slow clients, and work that goes on when nobody waits for it."""
+
+import asyncio
+import json
+from datetime import UTC, datetime
+from itertools import count
+
+import pytest
+
+from argo_compiler.catalog import Catalog
+from argo_compiler.editing import commands as edits
+from argo_compiler.errors import Conflict
+from argo_planner.service.core.commands import EditPlan
+from argo_planner.service.rooms import mailbox as mailboxes
+from argo_planner.service.rooms.mailbox import Mailbox, MailboxClosed
+from argo_planner.service.rooms.room import PlanRoom
+from argo_planner.service.rooms.rooms import PlanRooms
+from argo_planner.service.storage.folder import PlanFolder
+from tests.argo_planner.service.test_plan import mission
+
+
+def now() -> datetime:
+    return datetime(2026, 1, 2, tzinfo=UTC)
+
+
+@pytest.fixture
+def rooms(tmp_path):
+    numbers = count(1)
+    folder = PlanFolder(tmp_path, lambda: f"{next(numbers):012x}")
+    return PlanRooms(folder, Catalog(site="x", checkpoints=(), areas=(), floors=()), None, now)
+
+
+def renamed(k: int) -> EditPlan:
+    old = "a" if k == 1 else f"a{k - 1}"
+    return EditPlan(id=f"k{k}", edits=(edits.RenameTask(name=old, new_name=f"a{k}"),))
+
+
+async def taken(mailbox: Mailbox, kind: str) -> list[dict]:
+    """All messages of a kind that wait."""
+    found = []
+    while True:
+        try:
+            message = json.loads(await asyncio.wait_for(mailbox.take(), 0.01))
+        except TimeoutError:
+            return found
+        if message["kind"] == kind:
+            found.append(message)
+
+
+def test_poses_are_the_newest_and_events_are_all_there() -> None:
+    async def play() -> list[str]:
+        mailbox = Mailbox()
+        for k in range(5):
+            mailbox.post_newest("pose", f"pose {k}")
+            mailbox.post(f"event {k}")
+        mailbox.close(MailboxClosed("over"))
+        mailbox.post("too late")
+        heard = [await mailbox.take() for _ in range(6)]
+        with pytest.raises(MailboxClosed, match="over"):
+            await mailbox.take()
+        return heard
+
+    assert asyncio.run(play()) == [*(f"event {k}" for k in range(5)), "pose 4"]
+
+
+def test_who_is_too_slow_is_let_go_delays_nobody_and_resumes(rooms, monkeypatch) -> None:
+    monkeypatch.setattr(mailboxes, "MOST_MESSAGES", 10)
+
+    async def play() -> None:
+        room = await rooms.create("Round", mission("a", "b"))
+        slow, quick = room.join("1", "ann"), room.join("2", "bob")
+        heard = []
+        for k in range(1, 21):
+            await room.carry_out(renamed(k), "ann", k)
+            heard += await taken(quick, "revision")
+        assert [message["revision"]["number"] for message in heard] == [*range(2, 22)]
+        with pytest.raises(MailboxClosed) as closed:
+            await slow.take()
+        assert closed.value.too_slow
+        room.leave("1")
+        monkeypatch.setattr(mailboxes, "MOST_MESSAGES", 100)
+        again = await taken(room.join("3", "ann", since=11), "revision")
+        assert [message["revision"]["number"] for message in again] == [*range(12, 22)]
+        await rooms.close()
+
+    asyncio.run(play())
+
+
+def test_a_command_is_carried_out_to_its_end_where_nobody_waits(rooms) -> None:
+    async def play() -> None:
+        room = await rooms.create("Round", mission("a", "b"))
+        told = room.join("1", "ann")
+        asked = asyncio.ensure_future(room.carry_out(renamed(1), "ann", 1))
+        await asyncio.sleep(0)
+        asked.cancel()
+        with pytest.raises(asyncio.CancelledError):
+            await asked
+        done = await room.carry_out(renamed(2), "ann", 2)
+        assert done.newest == 3
+        assert len(await taken(told, "revision")) == 2
+        await rooms.close()
+
+    asyncio.run(play())
+
+
+def test_commands_at_once_are_done_one_after_the_other(rooms) -> None:
+    async def play() -> None:
+        room = await rooms.create("Round", mission("a", "b"))
+        answers = await asyncio.gather(
+            *(room.carry_out(renamed(1), "ann", 1) for _ in range(5)),
+            room.carry_out(EditPlan(id="x", edits=(edits.RemoveTask(name="b"),)), "bob", None),
+        )
+        assert [answer.revision.number for answer in answers] == [2, 2, 2, 2, 2, 3]
+        await rooms.close()
+
+    asyncio.run(play())
+
+
+def test_a_closed_room_refuses(rooms) -> None:
+    async def play() -> None:
+        room: PlanRoom = await rooms.create("Round", mission("a", "b"))
+        await rooms.delete(room.document.id)
+        with pytest.raises(Conflict, match="closed or deleted"):
+            await room.carry_out(renamed(1), "ann", 1)
+        with pytest.raises(Conflict):
+            room.join("1", "ann")
+        back = await rooms.restore(room.document.id)
+        assert back.document.plan.mission == mission("a", "b")
+        await rooms.close()
+
+    asyncio.run(play())
+
+
+def test_rooms_that_nobody_uses_are_closed(rooms, monkeypatch) -> None:
+    monkeypatch.setattr("argo_planner.service.rooms.rooms.MOST_OPEN", 2)
+
+    async def play() -> None:
+        used = await rooms.create("used", mission("a"))
+        used.join("1", "ann")
+        others = [await rooms.create(str(k), mission("a")) for k in range(5)]
+        with pytest.raises(Conflict):
+            others[0].join("2", "bob")
+        await used.carry_out(renamed(1), "ann", 1)
+        assert (await rooms.open(others[0].document.id)).document.name == "0"
+        assert len(await rooms.plans()) == 6
+        await rooms.close()
+
+    asyncio.run(play())

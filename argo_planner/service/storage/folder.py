@@ -3,6 +3,7 @@
 import fcntl
 import os
 import re
+import stat
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 from datetime import datetime
@@ -151,7 +152,7 @@ class PlanFolder(Closing):
     def _free_id(self) -> str:
         while True:
             id = self._new_id()
-            if not self._path(id).exists() and not self._deleted_path(id).exists():
+            if not any(map(os.path.lexists, (self._path(id), self._deleted_path(id)))):
                 return id
 
     def _path(self, id: str) -> Path:
@@ -185,17 +186,22 @@ def _files(folder: Path) -> Iterator[Path]:
     with os.scandir(folder) as entries:
         for entry in entries:
             named = re.fullmatch(PLAN_ID + re.escape(_SUFFIX), entry.name)
-            if named and entry.is_file(follow_symlinks=False):
+            if named and _is_own(entry):
                 yield folder / entry.name
+
+
+def _is_own(entry: os.DirEntry[str]) -> bool:
+    """Whether it is a file, and no link to one."""
+    return stat.S_ISREG(entry.stat(follow_symlinks=False).st_mode)
 
 
 def _beside(path: Path) -> list[Path]:
     """What belongs to a plan's file besides itself."""
-    return [other for other in path.parent.glob(f"{path.name}.*") if other.is_file()]
+    return [other for other in path.parent.glob(f"{path.name}.*") if os.path.isfile(other)]
 
 
 def _require_file(path: Path, id: str) -> None:
-    if path.is_symlink() or not path.is_file():
+    if os.path.islink(path) or not os.path.isfile(path):
         raise NotFound(f"there is no mission {id} here")
 
 

@@ -134,7 +134,7 @@ def open_plan_file(path: Path) -> PlanFile:
     content = _content(path)
     read = _read(content)
     earlier = _earlier(path)
-    if read is None and earlier.exists():
+    if read is None and os.path.exists(earlier):
         before = _read(_content(earlier))
         if before is not None:
             lost = "its first line is damaged: this is how the mission was some time before"
@@ -215,7 +215,7 @@ def _recovered(path: Path, read: _Read, lost: str) -> PlanFile:
     aside = next(
         name
         for k in range(1, 10_000)
-        if not (name := path.with_name(f"{path.name}.damaged-{k}")).exists()
+        if not os.path.lexists(name := path.with_name(f"{path.name}.damaged-{k}"))
     )
     try:
         os.link(path, aside, follow_symlinks=False)
@@ -262,7 +262,7 @@ def _written(
     try:
         write_all(file, content)
         os.fsync(file)
-        if keep_before and path.exists():
+        if keep_before and os.path.exists(path):
             _earlier(path).unlink(missing_ok=True)
             os.link(path, _earlier(path), follow_symlinks=False)
         draft.replace(path)

@@ -18,7 +18,7 @@ AUTHOR_HEADER = "argo-author"
 """the HTTP header in which a client says who is working, percent-encoded"""
 
 
-class Role(StrEnum):
+class AccessRole(StrEnum):
     """What somebody may do; each may do what those before may."""
 
     VIEW = "view"
@@ -28,9 +28,9 @@ class Role(StrEnum):
     OPERATE = "operate"
     """start runs and steer them"""
 
-    def includes(self, other: "Role") -> bool:
+    def includes(self, other: "AccessRole") -> bool:
         """Whether who has this one may do what the other one may."""
-        roles = list(Role)
+        roles = list(AccessRole)
         return roles.index(self) >= roles.index(other)
 
 
@@ -51,7 +51,7 @@ class AccessToken:
     """A secret, and what who has it may do."""
 
     secret: str
-    role: Role = Role.OPERATE
+    role: AccessRole = AccessRole.OPERATE
     name: str | None = None
     """who it is; None: who has it says so"""
 
@@ -65,10 +65,10 @@ class AccessToken:
 class Visitor:
     """Who has sent a request."""
 
-    role: Role
+    role: AccessRole
     author: str
 
-    def require(self, role: Role) -> None:
+    def require(self, role: AccessRole) -> None:
         """Raises AccessDenied."""
         if not self.role.includes(role):
             raise AccessDenied(
@@ -123,13 +123,13 @@ def read_tokens(path: Path) -> tuple[AccessToken, ...]:
         if not words:
             continue
         where = f"{path}, line {number}"
-        role = words[1] if len(words) > 1 else Role.OPERATE
-        if role not in list(Role):
-            raise Invalid(f"{where}: no role `{role}`; there are: {', '.join(Role)}")
+        role = words[1] if len(words) > 1 else AccessRole.OPERATE
+        if role not in list(AccessRole):
+            raise Invalid(f"{where}: no role `{role}`; there are: {', '.join(AccessRole)}")
         name = words[2].strip() if len(words) > 2 else None
         if name is not None:
             require_name(name, f"the owner of the token in {where}")
-        tokens.append(AccessToken(checked_secret(words[0], where), Role(role), name))
+        tokens.append(AccessToken(checked_secret(words[0], where), AccessRole(role), name))
     if not tokens:
         raise Invalid(f"{path}: has no tokens: write one a line, such as `SECRET plan Ann`")
     if len({token.secret for token in tokens}) < len(tokens):

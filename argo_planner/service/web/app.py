@@ -12,7 +12,7 @@ from fastapi.responses import HTMLResponse
 from argo_compiler import __version__
 from argo_compiler.model import Model
 from argo_planner.service.web import commands, live, missions
-from argo_planner.service.web.access import Role, TokenBook
+from argo_planner.service.web.access import AccessRole, TokenBook
 from argo_planner.service.web.guard import Doors, Guard
 from argo_planner.service.web.problems import MEDIA, answer_problems, documented
 from argo_planner.service.web.requests import KEYS, PlanningService, Service, Viewer, said
@@ -33,7 +33,7 @@ class ServiceSummary(Model):
     """its version"""
     site: str
     author: str
-    role: Role
+    role: AccessRole
 
 
 @router.get("/service", operation_id="read_service", response_model=ServiceSummary)

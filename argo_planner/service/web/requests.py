@@ -16,7 +16,7 @@ from argo_compiler.model import Model
 from argo_env.planning.opening import OpenedSite
 from argo_planner.service.rooms.rooms import PlanRooms
 from argo_planner.service.storage.folder import PLAN_ID
-from argo_planner.service.web.access import Role, Visitor
+from argo_planner.service.web.access import AccessRole, Visitor
 from argo_planner.service.web.problems import RevisionMissing
 
 JSON = "application/json"
@@ -50,7 +50,7 @@ def visitor_of(request: Request) -> Visitor:
     return found
 
 
-def _who_may(role: Role) -> Any:
+def _who_may(role: AccessRole) -> Any:
     def found(request: Request) -> Visitor:
         visitor = visitor_of(request)
         visitor.require(role)
@@ -60,9 +60,9 @@ def _who_may(role: Role) -> Any:
 
 
 Service = Annotated[PlanningService, Depends(service_of)]
-Viewer = Annotated[Visitor, _who_may(Role.VIEW)]
-Planner = Annotated[Visitor, _who_may(Role.PLAN)]
-Operator = Annotated[Visitor, _who_may(Role.OPERATE)]
+Viewer = Annotated[Visitor, _who_may(AccessRole.VIEW)]
+Planner = Annotated[Visitor, _who_may(AccessRole.PLAN)]
+Operator = Annotated[Visitor, _who_may(AccessRole.OPERATE)]
 PlanId = Annotated[str, Path(pattern=f"^{PLAN_ID}$", description="id of the mission")]
 
 # The guard looks at these before any route; here they are for the document.

@@ -13,7 +13,7 @@ import uvicorn
 from websockets.sync.client import ClientConnection, connect
 
 from argo_env.planning.opening import OpenedSite
-from argo_planner.service.web.access import AccessToken, Role, TokenBook
+from argo_planner.service.web.access import AccessRole, AccessToken, TokenBook
 from argo_planner.service.web.app import guarded, make_app
 from argo_planner.service.web.connections import server_options
 from argo_planner.service.web.guard import LOOPBACK, Doors
@@ -21,9 +21,9 @@ from argo_planner.service.web.serving import listen, opened_service
 
 ALL = "all-may-be-done-with-this"
 SECRETS = {
-    Role.OPERATE: "operator-of-the-robot",
-    Role.PLAN: "planner-of-missions",
-    Role.VIEW: "viewer-of-everything",
+    AccessRole.OPERATE: "operator-of-the-robot",
+    AccessRole.PLAN: "planner-of-missions",
+    AccessRole.VIEW: "viewer-of-everything",
 }
 _IDS = count(1)
 

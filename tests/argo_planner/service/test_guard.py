@@ -159,9 +159,7 @@ def test_missions_that_are_too_large_are_not_taken(service: Served) -> None:
     many = data(*(f"t{k}" for k in range(10_001)))
     for task in many["tasks"]:
         task["object_id"] = "1"
-    answer = service.client.post(
-        "/api/imports?filename=m.json", content=json.dumps(many).encode()
-    )
+    answer = service.client.post("/api/imports?filename=m.json", content=json.dumps(many).encode())
     problem(answer, 422, "plan-too-large")
 
 

@@ -61,15 +61,11 @@ def test_a_script_becomes_a_mission_and_is_read_back(service: Served) -> None:
     assert "R18" in reading["text"]
     as_script = client.get(f"{at}/export/script")
     assert "first.txt" in as_script.headers["content-disposition"]
-    again = client.post(
-        "/api/imports", params={"filename": "again.txt"}, content=as_script.content
-    )
+    again = client.post("/api/imports", params={"filename": "again.txt"}, content=as_script.content)
     both = [client.get(made.headers["location"]).json()["mission"] for made in (made, again)]
     assert [t["name"] for t in both[0]["tasks"]] == [t["name"] for t in both[1]["tasks"]]
     problem(
-        client.post(
-            "/api/imports", params={"filename": "x.txt"}, content="Check valve R99"
-        ),
+        client.post("/api/imports", params={"filename": "x.txt"}, content="Check valve R99"),
         422,
         "invalid",
     )
@@ -80,9 +76,7 @@ def test_a_script_becomes_a_mission_and_is_read_back(service: Served) -> None:
 )
 def test_a_mission_is_exported(service: Served, format: str) -> None:
     client = service.client
-    made = client.post(
-        "/api/imports", params={"filename": "f.txt", "end_area": 2}, content=SCRIPT
-    )
+    made = client.post("/api/imports", params={"filename": "f.txt", "end_area": 2}, content=SCRIPT)
     answer = client.get(f"{made.headers['location']}/export/{format}")
     if answer.status_code == 404:
         assert "there are" in answer.text or "choose from" in answer.text

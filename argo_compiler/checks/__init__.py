@@ -13,6 +13,7 @@ from argo_compiler.checks.reactions import check_reactions
 from argo_compiler.checks.tasks import TaskChecks
 from argo_compiler.diagnostics import Diagnostic, Severity
 from argo_compiler.il import Mission
+from argo_compiler.remembering import remembering
 
 __all__ = ["check"]
 
@@ -39,9 +40,17 @@ def check(mission: Mission, catalog: Catalog | None = None) -> tuple[Diagnostic,
         known = None if catalog is None else frozenset(str(c.id) for c in catalog.checkpoints)
     return (
         *TaskChecks(mission, known).diagnostics(),
+        *_check_structure(mission),
+        *check_header(mission, catalog),
+        *check_precedence(mission),
+    )
+
+
+@remembering
+def _check_structure(mission: Mission) -> tuple[Diagnostic, ...]:
+    """What no catalogue is needed for, and takes longest."""
+    return (
         *check_instant_loops(mission),
         *check_groups(mission),
         *check_reactions(mission),
-        *check_header(mission, catalog),
-        *check_precedence(mission),
     )

@@ -3,6 +3,7 @@
 from dataclasses import dataclass
 
 from argo_compiler.il import Group, Mission
+from argo_compiler.remembering import remembering
 
 
 @dataclass(frozen=True, slots=True)
@@ -55,27 +56,32 @@ class GroupNesting:
     ending: tuple[tuple[int, ...], ...]
     """for each task, the ranges that end with it, innermost first"""
 
-    @classmethod
-    def of(cls, mission: Mission) -> "GroupNesting":
+    @staticmethod
+    def of(mission: Mission) -> "GroupNesting":
         """The layout of a mission whose groups `check` finds no error in. Linear time."""
-        ranges = group_ranges(mission)
-        parent: list[int | None] = []
-        innermost: list[int | None] = []
-        ending: list[tuple[int, ...]] = []
-        open_ranges: list[int] = []
-        for i in range(len(mission.tasks)):
-            while len(parent) < len(ranges) and ranges[len(parent)].first == i:
-                parent.append(open_ranges[-1] if open_ranges else None)
-                open_ranges.append(len(parent) - 1)
-            innermost.append(open_ranges[-1] if open_ranges else None)
-            ended = []
-            while open_ranges and ranges[open_ranges[-1]].last == i:
-                ended.append(open_ranges.pop())
-            ending.append(tuple(ended))
-        return cls(ranges, tuple(parent), tuple(innermost), tuple(ending))
+        return _nesting(mission)
 
     def common(self, inside: int | None, task: int) -> int | None:
         """The smallest range that holds both the range `inside` and the task; None: the mission."""
         while inside is not None and not self.ranges[inside].contains(task):
             inside = self.parent[inside]
         return inside
+
+
+@remembering
+def _nesting(mission: Mission) -> GroupNesting:
+    ranges = group_ranges(mission)
+    parent: list[int | None] = []
+    innermost: list[int | None] = []
+    ending: list[tuple[int, ...]] = []
+    open_ranges: list[int] = []
+    for i in range(len(mission.tasks)):
+        while len(parent) < len(ranges) and ranges[len(parent)].first == i:
+            parent.append(open_ranges[-1] if open_ranges else None)
+            open_ranges.append(len(parent) - 1)
+        innermost.append(open_ranges[-1] if open_ranges else None)
+        ended = []
+        while open_ranges and ranges[open_ranges[-1]].last == i:
+            ended.append(open_ranges.pop())
+        ending.append(tuple(ended))
+    return GroupNesting(ranges, tuple(parent), tuple(innermost), tuple(ending))

@@ -155,7 +155,8 @@ def stalled_client(address: str, id: str) -> Iterator[None]:
         connection.sendall(
             f"GET /api/missions/{id}/live HTTP/1.1\r\nHost: {address}\r\n"
             f"Authorization: Bearer {TOKEN}\r\nUpgrade: websocket\r\nConnection: Upgrade\r\n"
-            "Sec-WebSocket-Version: 13\r\nSec-WebSocket-Key: AAAAAAAAAAAAAAAAAAAAAA==\r\n\r\n".encode()
+            "Sec-WebSocket-Version: 13\r\n"
+            f"Sec-WebSocket-Key: {'A' * 22}==\r\n\r\n".encode()
         )
         yield
 

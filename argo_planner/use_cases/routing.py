@@ -1,5 +1,6 @@
 """A mission's best order: asked for, and applied."""
 
+from collections.abc import Callable
 from dataclasses import dataclass, replace
 
 from argo_compiler.analysis import analyse
@@ -106,9 +107,11 @@ def suggest_order(
     *,
     time_limit: float = TIME_LIMIT,
     seed: int = 0,
+    heard: Callable[[SearchProgress, float], None] | None = None,
 ) -> Suggested:
     """The best order of the mission that is found within the time limit (s); `why_none` tells why
-    there is none, where there is none.
+    there is none, where there is none. What is `heard` meanwhile is how far the search is, and how
+    long (s) its unit of time is.
 
     Raises:
         DiagnosticError: `check` finds errors in the mission.
@@ -127,6 +130,8 @@ def suggest_order(
 
         def found(progress: SearchProgress, *_: object) -> None:
             tell(None, _known(progress, planned.problem.unit))
+            if heard is not None:
+                heard(progress, planned.problem.unit)
 
         suggestion = suggest_route(planned.problem, time_limit, seed, on_best=found, on_bound=found)
     return Suggested(planned, suggestion, site.travel)

@@ -11,6 +11,7 @@ from argo_compiler.model import Model
 from argo_planner.service.core.commands import Revision
 from argo_planner.service.core.document import PlanDocument, PlanVersion
 from argo_planner.service.jobs.analysis import AnalysisFound
+from argo_planner.service.jobs.jobs import OrderJob
 
 MOST_DIAGNOSTICS = 500
 """that are told of a mission; the first ones by place"""
@@ -174,6 +175,14 @@ class MembersTold(Model):
     members: tuple[Member, ...]
 
 
+class JobTold(Model):
+    """How far a job of the plan is. Of several that wait to be sent only the last one is."""
+
+    kind: Literal["job"] = "job"
+    job: OrderJob
+    """without the mission in its new order"""
+
+
 class DeletedTold(Model):
     """The plan was moved to the bin; the connection ends."""
 
@@ -188,6 +197,7 @@ RoomMessage = Annotated[
     | NameTold
     | VersionsTold
     | MembersTold
+    | JobTold
     | DeletedTold,
     Field(discriminator="kind"),
 ]

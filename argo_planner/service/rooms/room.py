@@ -17,12 +17,14 @@ from argo_planner.service.core.document import (
 )
 from argo_planner.service.core.refusals import StaleRevision
 from argo_planner.service.jobs.analysis import AnalysisFound, Analyst
+from argo_planner.service.jobs.jobs import OrderJob
 from argo_planner.service.rooms.mailbox import Mailbox, MailboxClosed
 from argo_planner.service.rooms.messages import (
     AnalysisTold,
     CommandDone,
     DeletedTold,
     Findings,
+    JobTold,
     Member,
     MembersTold,
     NameTold,
@@ -180,6 +182,13 @@ class PlanRoom:
         if member.selection != names:
             self._members[client] = (member.model_copy(update={"selection": names}), mailbox)
             self._tell(MembersTold(members=self._present()), but=client)
+
+    def tell_of(self, job: OrderJob) -> None:
+        """How far a job is is told to all who are there."""
+        found = job.found and job.found.model_copy(update={"mission": None})
+        text = JobTold(job=job.model_copy(update={"found": found})).model_dump_json()
+        for _, mailbox in self._members.values():
+            mailbox.post_newest(job.id, text)
 
     def leave(self, client: str) -> None:
         """Somebody has gone."""

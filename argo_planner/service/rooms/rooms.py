@@ -60,6 +60,10 @@ class PlanRooms:
             file = await asyncio.to_thread(self._folder.open, id)
             return self._opened(PlanRoom(file, self._catalog, self._analyst, self._clock))
 
+    def opened(self, id: str) -> PlanRoom | None:
+        """The plan with that id, if it is open."""
+        return self._rooms.get(id)
+
     async def delete(self, id: str) -> None:
         """Moves a plan to the bin; whoever has it open is told. Raises NotFound, Conflict."""
         await self._closed(id, deleted=True)

@@ -66,7 +66,7 @@ async def carry_out_command(
 ) -> Response:
     """Carries out a command. Sent again with the same id it does nothing twice."""
     room = await service.rooms.open(id)
-    return await _carried_out(room, command, visitor.author, made_on)
+    return await carried_out(room, command, visitor.author, made_on)
 
 
 @router.put(
@@ -83,7 +83,7 @@ async def write_script(
     upload = Upload("script", given.script.encode(errors="replace"))
     imported = await asyncio.to_thread(import_mission, upload, service.site)
     command = ReplacePlan.model_construct(id=given.id, mission=imported.mission, about="a script")
-    return await _carried_out(room, command, visitor.author, made_on)
+    return await carried_out(room, command, visitor.author, made_on)
 
 
 @router.get("/reading", operation_id="read_back", response_model=MissionReading)
@@ -103,9 +103,10 @@ async def read_analysis(service: Service, _: Viewer, id: PlanId) -> Response:
     return said(room.analysis)
 
 
-async def _carried_out(
+async def carried_out(
     room: PlanRoom, command: PlanCommand, author: str, made_on: int | None
 ) -> Response:
+    """The answer to a command. Raises StaleCommand, which has what was done meanwhile."""
     try:
         done = await room.carry_out(command, author, made_on)
     except StaleRevision as stale:

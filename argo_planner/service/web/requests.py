@@ -14,6 +14,7 @@ from pydantic import Field
 from argo_compiler.errors import Invalid
 from argo_compiler.model import Model
 from argo_env.planning.opening import OpenedSite
+from argo_planner.service.jobs.jobs import Jobs
 from argo_planner.service.rooms.rooms import PlanRooms
 from argo_planner.service.storage.folder import PLAN_ID
 from argo_planner.service.web.access import AccessRole, Visitor
@@ -29,6 +30,7 @@ class PlanningService:
     site: OpenedSite
     folder: FilePath
     rooms: PlanRooms
+    jobs: Jobs
     started: datetime
 
 

@@ -6,6 +6,7 @@ from collections.abc import AsyncIterator
 from contextlib import asynccontextmanager
 from dataclasses import dataclass
 from datetime import UTC, datetime
+from functools import partial
 from pathlib import Path
 
 import uvicorn
@@ -13,6 +14,7 @@ import uvicorn
 from argo_compiler.errors import Unavailable
 from argo_env.planning.opening import OpenedSite
 from argo_planner.service.jobs.analysis import Analyst
+from argo_planner.service.jobs.jobs import Jobs, OrderJob
 from argo_planner.service.rooms.rooms import PlanRooms
 from argo_planner.service.storage.folder import PlanFolder
 from argo_planner.service.web.access import TokenBook
@@ -39,11 +41,18 @@ def opened_service(folder: Path, site: OpenedSite) -> Opened:
     async def opened() -> AsyncIterator[PlanningService]:
         analyst = Analyst(site)
         try:
-            plans = PlanFolder(folder, lambda: secrets.token_hex(6))
+            plans = PlanFolder(folder, partial(secrets.token_hex, 6))
             rooms = PlanRooms(plans, site.catalog, analyst, _now)
+
+            def tell(job: OrderJob) -> None:
+                if (room := rooms.opened(job.mission)) is not None:
+                    room.tell_of(job)
+
+            jobs = Jobs(site.reference, partial(secrets.token_hex, 6), _now, tell)
             try:
-                yield PlanningService(site, folder, rooms, _now())
+                yield PlanningService(site, folder, rooms, jobs, _now())
             finally:
+                await jobs.close()
                 await rooms.close()
         finally:
             analyst.close()

@@ -1,0 +1,65 @@
+"""Work in a process of its own, which tells how far it is and can be ended at any moment."""
+
+import asyncio
+import multiprocessing
+from collections.abc import Callable
+from concurrent.futures import ThreadPoolExecutor
+from multiprocessing.connection import Connection
+from typing import Any, Generic, TypeVar
+
+from argo_compiler.errors import ArgoError, Unavailable
+
+Result = TypeVar("Result")
+Tell = Callable[[Any], None]
+"""what the work is given to tell how far it is"""
+_SPAWN = multiprocessing.get_context("spawn")
+
+
+class JobProcess(Generic[Result]):
+    """One piece of work under way. Holds the process."""
+
+    def __init__(self, work: Callable[..., Result], *arguments: Any) -> None:
+        """Begins the work, `work(*arguments, tell)`; all of it can be pickled."""
+        self._here, there = _SPAWN.Pipe(duplex=False)
+        self._process = _SPAWN.Process(target=_carried_out, args=(there, work, arguments))
+        self._process.daemon = True
+        self._process.start()
+        there.close()
+
+    async def result(self, heard: Tell) -> Result:
+        """What came of the work; `heard` is told how far it is.
+
+        Raises the ArgoError that the work has raised, or Unavailable if its process has died.
+        """
+        loop = asyncio.get_running_loop()
+        with ThreadPoolExecutor(1) as thread:
+            while True:
+                try:
+                    kind, what = await loop.run_in_executor(thread, self._here.recv)
+                except (EOFError, OSError):
+                    raise Unavailable("the process that worked on it has died: try again") from None
+                match kind:
+                    case "told":
+                        heard(what)
+                    case "raised":
+                        raise what
+                    case _:
+                        result: Result = what
+                        return result
+
+    def end(self) -> None:
+        """Ends the process, whatever it does."""
+        self._process.kill()
+        self._process.join()
+
+
+def _carried_out(pipe: Connection, work: Callable[..., Any], arguments: tuple[Any, ...]) -> None:
+    def tell(what: Any) -> None:
+        pipe.send(("told", what))
+
+    try:
+        result = work(*arguments, tell)
+    except ArgoError as error:
+        pipe.send(("raised", error))
+    else:
+        pipe.send(("done", result))

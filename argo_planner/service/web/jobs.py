@@ -1,0 +1,128 @@
+"""Jobs: the best order of a mission, searched for, watched, accepted."""
+
+from typing import Annotated
+
+from fastapi import APIRouter, Path, Response
+from pydantic import Field
+
+from argo_compiler.errors import Conflict
+from argo_compiler.model import Model
+from argo_compiler.reorder.requirements import Requirements
+from argo_planner.service.core.commands import CommandId, ReplacePlan
+from argo_planner.service.core.refusals import StaleRevision
+from argo_planner.service.jobs.jobs import OrderJob
+from argo_planner.service.rooms.messages import CommandDone
+from argo_planner.service.web.commands import carried_out
+from argo_planner.service.web.missions import sound
+from argo_planner.service.web.problems import StaleCommand, documented
+from argo_planner.service.web.requests import (
+    KEYS,
+    MadeOn,
+    PlanId,
+    Planner,
+    Service,
+    Viewer,
+    created,
+    link,
+    said,
+)
+
+LONGEST_SEARCH = 600.0
+"""s"""
+
+router = APIRouter(
+    prefix="/api",
+    tags=["jobs"],
+    dependencies=KEYS,
+    responses=documented(400, 401, 403, 404, 409, 413, 422, 503),
+)
+
+JobId = Annotated[str, Path(pattern=r"^[0-9a-f]{12}$", description="id of the job")]
+_JOB = {
+    name: link(name, id="$response.body#/id") for name in ("read_job", "cancel_job", "accept_order")
+}
+
+
+class OrderAsked(Model):
+    """What an order has to keep to besides its mission, and how long to search."""
+
+    time_limit: float = Field(default=10.0, gt=0, le=LONGEST_SEARCH)
+    """s"""
+    requirements: Requirements = Requirements()
+
+
+class OrderAccepted(Model):
+    """A command that puts the mission into the order that was found."""
+
+    id: CommandId
+
+
+class JobList(Model):
+    """Jobs, the newest ones first."""
+
+    jobs: tuple[OrderJob, ...]
+
+
+@router.post(
+    "/missions/{id}/orders",
+    operation_id="suggest_order",
+    status_code=202,
+    response_model=OrderJob,
+    responses={202: created(OrderJob, _JOB)},
+)
+async def suggest_order(
+    service: Service, visitor: Planner, id: PlanId, asked: OrderAsked
+) -> Response:
+    """Begins to search for the mission's best order."""
+    document = (await service.rooms.open(id)).document
+    sound(document, service.site)
+    plan = document.plan
+    job = service.jobs.suggest_order(
+        id, plan.revision, plan.mission, asked.requirements, asked.time_limit, visitor.author
+    )
+    return said(job, 202, location=f"/api/jobs/{job.id}")
+
+
+@router.get("/jobs", operation_id="list_jobs", response_model=JobList)
+async def list_jobs(service: Service, _: Viewer) -> Response:
+    """The jobs under way and the last ones that were, without what came of them."""
+    return said(
+        JobList(jobs=tuple(job.model_copy(update={"found": None}) for job in service.jobs.all()))
+    )
+
+
+@router.get("/jobs/{id}", operation_id="read_job", response_model=OrderJob)
+async def read_job(service: Service, _: Viewer, id: JobId) -> Response:
+    """How far a job is, and what came of it."""
+    return said(service.jobs.job(id))
+
+
+@router.delete("/jobs/{id}", operation_id="cancel_job", response_model=OrderJob)
+async def cancel_job(service: Service, _: Planner, id: JobId) -> Response:
+    """Ends a job that is under way."""
+    return said(service.jobs.cancel(id))
+
+
+@router.post(
+    "/jobs/{id}/accept",
+    operation_id="accept_order",
+    response_model=CommandDone,
+    responses=documented(412, 428),
+)
+async def accept_order(
+    service: Service, visitor: Planner, id: JobId, accepted: OrderAccepted, made_on: MadeOn
+) -> Response:
+    """Puts the mission into the order that was found, as a command that can be undone; 412 where
+    the mission has changed since the search began."""
+    job = service.jobs.job(id)
+    if job.found is None or job.found.mission is None:
+        raise Conflict(f"job {id} is {job.state}, and has found no order")
+    room = await service.rooms.open(job.mission)
+    command = ReplacePlan.model_construct(
+        id=accepted.id, mission=job.found.mission, about="a suggested order"
+    )
+    plan = room.document.plan
+    on = plan.revision if made_on is None else made_on
+    if job.revision != on and plan.repeated(command, visitor.author) is None:
+        raise StaleCommand(StaleRevision(job.revision, plan.revision), plan.since(job.revision))
+    return await carried_out(room, command, visitor.author, made_on)

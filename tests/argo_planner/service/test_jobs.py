@@ -1,0 +1,117 @@
+"""The best order as a job: watched, accepted as one command, cancelled."""
+
+import json
+import time
+
+from argo_compiler.il import Mission
+from argo_env.planning.opening import OpenedSite
+from argo_planner.use_cases.importing import ImportedMission
+from argo_planner.use_cases.routing import suggest_order
+from tests.argo_planner.service.served import Served
+from tests.argo_planner.service.test_http import problem
+
+SCRIPT = (
+    "Mission Protocol #2\nOrder: any\n"
+    "1. Set the starting point in starting area 1.\n"
+    "2. Check valve R18.\n3. Check pressure gauge 5.\n4. Check valve R25.\n5. Check valve R12.\n"
+    "6. Return to the docking station in starting area 1.\n"
+)
+
+
+def imported(service: Served) -> str:
+    made = service.client.post(
+        "/api/imports", params={"filename": "m.txt", "start_area": 1}, content=SCRIPT
+    )
+    assert made.status_code == 201, made.text
+    return made.json()["id"]
+
+
+def begin(service: Served, id: str, time_limit: float = 5) -> str:
+    begun = service.client.post(f"/api/missions/{id}/orders", json={"time_limit": time_limit})
+    assert begun.status_code == 202, begun.text
+    assert begun.headers["location"] == f"/api/jobs/{begun.json()['id']}"
+    return begun.json()["id"]
+
+
+def over(service: Served, job: str) -> dict:
+    while True:
+        read = service.client.get(f"/api/jobs/{job}").json()
+        if read["state"] != "running":
+            return read
+        time.sleep(0.05)
+
+
+def test_an_order_is_found_watched_accepted_and_undone(service: Served, site: OpenedSite) -> None:
+    id = imported(service)
+    before = service.client.get(f"/api/missions/{id}").json()["mission"]
+    page = service.follow(id)
+    job = begin(service, id)
+    states = []
+    while "done" not in states:
+        message = json.loads(page.recv(timeout=60))
+        if message["kind"] == "job":
+            states.append(message["job"]["state"])
+            assert message["job"]["id"] == job
+    done = over(service, job)
+    found = done["found"]
+    same = suggest_order(
+        ImportedMission(Mission.model_validate(before), "m", (), ()), site, time_limit=5
+    )
+    assert found["reordering"] == same.reordering.model_dump(mode="json")
+    assert found["reordering"]["proven"]
+    last = done["progress"][-1]
+    assert last["bound"] <= last["best"] + 1e-6
+    at = f"/api/jobs/{job}/accept"
+    problem(service.client.post(at, json={"id": "o"}), 428, "revision-missing")
+    accepted = service.client.post(at, json={"id": "o"}, headers={"if-match": '"1"'})
+    assert accepted.json()["revision"]["about"] == "a suggested order"
+    again = service.client.post(at, json={"id": "o"}, headers={"if-match": '"1"'})
+    assert again.json()["revision"] == accepted.json()["revision"]
+    after = service.client.get(f"/api/missions/{id}").json()["mission"]
+    assert after == same.mission.model_dump(mode="json")
+    service.command(id, 2, kind="undo")
+    assert service.client.get(f"/api/missions/{id}").json()["mission"] == before
+
+
+def test_an_order_of_an_earlier_revision_is_not_accepted(service: Served) -> None:
+    id = imported(service)
+    job = begin(service, id)
+    over(service, job)
+    edit = {"kind": "set_header", "designation": "other"}
+    assert service.command(id, 1, edit).status_code == 200
+    for revision in ('"1"', '"2"', "*"):
+        stale = service.client.post(
+            f"/api/jobs/{job}/accept", json={"id": "o"}, headers={"if-match": revision}
+        )
+        problem(stale, 412, "stale-revision")
+
+
+def test_a_search_is_cancelled(service: Served) -> None:
+    id = imported(service)
+    jobs = [begin(service, id, 600), begin(service, id, 600)]
+    problem(service.client.post(f"/api/missions/{id}/orders", json={}), 409, "conflict")
+    for job in jobs:
+        cancelled = service.client.delete(f"/api/jobs/{job}")
+        if cancelled.status_code == 200:
+            assert cancelled.json()["state"] == "cancelled"
+        problem(service.client.delete(f"/api/jobs/{job}"), 409, "conflict")
+        assert service.client.get(f"/api/jobs/{job}").json()["state"] in ("cancelled", "done")
+    assert over(service, begin(service, id))["state"] == "done"
+
+
+def test_what_can_not_be_ordered_says_why(service: Served) -> None:
+    empty = service.create()
+    problem(service.client.post(f"/api/missions/{empty}/orders", json={}), 422, "invalid")
+    id = imported(service)
+    begun = service.client.post(
+        f"/api/missions/{id}/orders",
+        json={"requirements": {"before": [["MEASURE 14", "nobody"]]}},
+    )
+    failed = over(service, begun.json()["id"])
+    assert failed["state"] == "failed"
+    assert "nobody" in failed["problem"]
+    accepted = service.client.post(
+        f"/api/jobs/{failed['id']}/accept", json={"id": "o"}, headers={"if-match": "*"}
+    )
+    problem(accepted, 409, "conflict")
+    problem(service.client.get("/api/jobs/000000000000"), 404, "not-found")

@@ -9,7 +9,6 @@ from foxglove_schemas_protobuf.SceneUpdate_pb2 import SceneUpdate
 from foxglove_schemas_protobuf.SpherePrimitive_pb2 import SpherePrimitive
 from foxglove_schemas_protobuf.TextPrimitive_pb2 import TextPrimitive
 
-from argo_env.pictures.scene import storeys
 from argo_env.recording.messages import WORLD, colour, pose, timestamp, vector
 from argo_env.recording.robot_model import (
     Colour,
@@ -22,6 +21,7 @@ from argo_env.recording.robot_model import (
 from argo_env.run.record import Anomaly, Reading
 from argo_env.site import Site, SiteCheckpoint
 from argo_env.site.shapes import Box, Element, Solid, Vector
+from argo_env.site.storeys import storeys
 from argo_env.site.urdf import COLOURS
 
 _FACE = (0.16, 0.16, 0.02)  # m, the disc that marks a checkpoint

@@ -11,9 +11,10 @@ from argo_compiler.il import Action, Mission, Task
 from argo_env.pictures import check_film, film, overview, write_film, write_overview
 from argo_env.pictures.camera import Camera
 from argo_env.pictures.motion import RecordedMotion
-from argo_env.pictures.scene import Scene, storeys
+from argo_env.pictures.scene import Scene
 from argo_env.robot.pose import BodyPose
 from argo_env.run.record import PathSample, Reading, Result, RunRecord
+from argo_env.site.storeys import storeys
 
 DURATION = 20.0
 

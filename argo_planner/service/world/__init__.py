@@ -1,0 +1,1 @@
+"""A site as a page shows it: what is where, meshes, where the robot can stand, and ways."""

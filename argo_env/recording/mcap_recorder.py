@@ -253,11 +253,11 @@ class McapRecorder(Observer):
         )
 
     def _task(self, task: TaskRun) -> None:
-        self._done += task.outcome == "done"
+        self._done += task.outcome == "done" and not task.by_hand
         self._writer.put_json("/tasks", task, task.end)
         level = {"done": Log.INFO, "failed": Log.ERROR}.get(task.outcome, Log.WARNING)
         because = f": {task.reason}" if task.reason else ""
-        self._log(f"{task.task} {task.outcome}{because}", level, "task", task.end)
+        self._log(f"{task.task} {task.how}{because}", level, "task", task.end)
 
     def _contact(self, contact: Contact, now: float) -> None:
         self._writer.put_json("/contacts", contact, now)

@@ -16,6 +16,7 @@ from argo_env.run.scheduled_events import GivenEvents
 from argo_env.run.spec import RunSpec
 from argo_env.run.steering import as_seen_on
 from argo_env.run.summary import make_record
+from argo_env.run.supervision import Supervision
 from argo_env.run.vehicle import Vehicle, way_come
 
 
@@ -28,6 +29,9 @@ class Course:
         self.action: ActionUnderWay | None = None
         """the one under way"""
         self.log = RunLog(vehicle.rig.navigator.site)
+        self.supervision = Supervision(spec.mission)
+        self.lost: TaskRun | None = None
+        """the action by hand that was under way when the process before this one died"""
         self.given = GivenEvents(spec.events)
         self.steps = 0
         """time steps of the drive since the run began"""
@@ -77,10 +81,18 @@ class Course:
         if entry.task:
             self._came = (self.action and self.action.path) or self._came
             self.action = None
+            if entry.task.by_hand:
+                self.supervision.ended(entry.task, entry)
         for event in entry.events:
             if not self.machine.finished:
                 self.obey(self.machine.handle(event.original(), self.now))
                 self._look()
+                self.supervision.heard(event.kind, self.machine)
+        if entry.by_hand:
+            self.supervision.acting = True
+            self._begin(StartAction(entry.by_hand))
+        if entry.stop_by_hand and self.action:
+            self.action.cancel("a person stopped it", interrupted=False)
         if closed and self.action:
             self.action.detour(self._vehicle.rig)
 
@@ -91,14 +103,10 @@ class Course:
 
     def obey(self, commands: Sequence[Command]) -> None:
         """Does what the machine asks for."""
-        odometry = self._vehicle.odometry
         for command in commands:
             match command:
                 case StartAction():
-                    self.action = ActionUnderWay(
-                        command, self._vehicle.rig, self.now,
-                        odometry.distance, odometry.climbed, self._came,
-                    )  # fmt: skip
+                    self._begin(command)
                 case CancelAction(_, reason):
                     if self.action:
                         goes_on = self.machine.paused or self.machine.reaction is not None
@@ -123,7 +131,12 @@ class Course:
             ) from error
 
     def look_back(self) -> None:
-        """After a replay: by what path the robot came is what the log has seen of it."""
+        """After a replay: by what path the robot came is what the log has seen of it, and what it
+        did by hand is over."""
+        if self.supervision.acting and self.action:
+            self.action.cancel("the process that carried it out died", interrupted=True)
+            self.lost = self.run_of(ActionStopped(self.action.task.name))
+            self.action, self.supervision.acting = None, False
         if came := way_come(self.log):
             self._came = came
             if self.action:
@@ -133,7 +146,8 @@ class Course:
         """The action under way as it goes into the record, now that it ends."""
         assert self.action is not None
         odometry = self._vehicle.odometry
-        return self.action.run(end, self.now, odometry.distance, odometry.climbed)
+        run = self.action.run(end, self.now, odometry.distance, odometry.climbed)
+        return run.model_copy(update={"by_hand": True}) if self.supervision.acting else run
 
     def break_off(self) -> TaskRun | None:
         """Ends the action under way, if there is one, as the run ends."""
@@ -147,6 +161,12 @@ class Course:
         log = self.log if present is None else self.log.with_entry(present)
         return make_record(
             spec, self._vehicle.rig, self.machine, log, self._interruptions, self._rounds
+        )
+
+    def _begin(self, command: StartAction) -> None:
+        odometry = self._vehicle.odometry
+        self.action = ActionUnderWay(
+            command, self._vehicle.rig, self.now, odometry.distance, odometry.climbed, self._came
         )
 
     def _seen(self, event: Event) -> Event:

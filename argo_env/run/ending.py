@@ -19,9 +19,10 @@ def exhausted(now: float, supply: PowerSupply) -> str | None:
     return None
 
 
-def standstill(now: float, machine: Machine, rig: Rig, log: RunLog) -> str | None:
-    """Why nothing goes on by itself at time `now` (s), if nothing is to occur any more."""
-    waits = machine.running is None and machine.next_deadline is None
+def standstill(now: float, machine: Machine, rig: Rig, log: RunLog, acting: bool) -> str | None:
+    """Why nothing goes on by itself at time `now` (s), if nothing is to occur any more; `acting`
+    by hand the robot does not stand."""
+    waits = not acting and machine.running is None and machine.next_deadline is None
     held = isinstance(rig.drive, Powertrain) and rig.drive.pressed
     if not (waits or held):
         return None

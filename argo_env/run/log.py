@@ -26,7 +26,7 @@ from argo_compiler.hfsm import (
     Tick,
 )
 from argo_compiler.hfsm.events import ReadingGiven
-from argo_compiler.il import EventKind
+from argo_compiler.il import EventKind, Task
 from argo_compiler.model import Model
 from argo_env.faults.kinds import AnyFault
 from argo_env.files.yaml_messages import message_of
@@ -149,6 +149,10 @@ class Entry(Model):
     reading: Reading | None = None
     task: TaskRun | None = None
     """the run of a task that has ended"""
+    by_hand: Task | None = None
+    """what a person lets the robot do from here on"""
+    stop_by_hand: bool = False
+    """whether that is to be stopped"""
     contacts: tuple[Contact, ...] = ()
     """those that are over since the entry before"""
     touching: tuple[Contact, ...] = ()
@@ -169,7 +173,8 @@ class Entry(Model):
     @property
     def precious(self) -> bool:
         """Whether it tells more than where the robot was."""
-        return bool(self.events) or bool(self.faults) or self.resumed or self.ended
+        told = self.events or self.faults or self.task or self.by_hand or self.stop_by_hand
+        return bool(told) or self.resumed or self.ended
 
     @property
     def news(self) -> tuple[Reading | Anomaly, ...]:
@@ -195,10 +200,18 @@ class Entry(Model):
             if event.event is not None
         )
 
+    @property
+    def _read_by_hand(self) -> bool:
+        """Whether the first event after what was found is what the robot itself read, by hand."""
+        return self.reading is not None and self.task is not None and self.task.by_hand
+
     def given_values(self, site: Site) -> tuple[GivenValue, ...]:
         """The values of checkpoints that the robot was told."""
         given = []
-        for event in self.events:
+        own = len(self.found) if self._read_by_hand else None
+        for number, event in enumerate(self.events):
+            if number == own:
+                continue
             if event.kind == "reading_given" and event.value is not None:
                 checkpoint = site.measured_by(event.object_id)
                 given.append(
@@ -231,7 +244,7 @@ class RunLog:
         self.anomalies: list[Anomaly] = []
         self.mishaps: list[Mishap] = []
         self.last_event = 0.0
-        """s, when the executor was told of something last"""
+        """s, when the machine was told of something last, or a person let the robot do something"""
         self.contacts: list[Contact] = []
         self.path: list[PathSample] = []
         self.resumed: list[float] = []
@@ -245,7 +258,7 @@ class RunLog:
         self.given_values += entry.given_values(self.site)
         self.anomalies += (*entry.found, *entry.told(self.site))
         self.mishaps += entry.mishaps
-        if entry.events:
+        if entry.events or entry.by_hand or entry.task:
             self.last_event = entry.t
         self.contacts += entry.contacts
         if entry.resumed:

@@ -89,11 +89,18 @@ class TaskRun(Model):
     """s, from when to when it stood at the place, as the task's window had not begun yet"""
     unmoved: tuple[str, ...] = ()
     """the joints that the task asks for, and this robot or its simulation does not move"""
+    by_hand: bool = False
+    """whether a person let the robot do it, and not the mission"""
 
     @property
     def measured_for(self) -> float:
         """s, that it measured."""
         return sum(end - start for start, end in self.measuring or ())
+
+    @property
+    def how(self) -> str:
+        """Its outcome in words."""
+        return f"{self.outcome} by hand" if self.by_hand else self.outcome
 
 
 class Reading(Model):

@@ -2,7 +2,7 @@
 
 from collections.abc import Iterable
 
-from argo_compiler.hfsm import Event, GiveBack
+from argo_compiler.hfsm import Event, GiveBack, Resume
 from argo_env.run.log import LoggedEvent
 
 
@@ -24,12 +24,15 @@ class GivenEvents:
         ahead = [*self._events[self.occurred :], *((t, event.original()) for t, event in events)]
         self._events[self.occurred :] = sorted(ahead, key=lambda given: given[0])
 
-    def due(self, now: float, at_rest: bool) -> list[Event]:
+    def due(self, now: float, at_rest: bool, acting: bool = False) -> list[Event]:
         """Those that occur now, at time `now` (s). A robot is given back only `at_rest`, without
-        an action, and in a step of its own; what comes after waits as well."""
+        an action, and in a step of its own; and where it is `acting` by hand the mission is not
+        resumed. What comes after waits as well."""
         first = self.occurred
         while self.pending and self._events[self.occurred][0] <= now:
             if self._gives_back and (not at_rest or self.occurred > first):
+                break
+            if acting and isinstance(self._events[self.occurred][1], Resume):
                 break
             self.occurred += 1
         return [event for _, event in self._events[first : self.occurred]]

@@ -5,7 +5,8 @@ from collections.abc import Callable, Iterator, Sequence
 from contextlib import ExitStack, contextmanager
 
 from argo_compiler.errors import Conflict, Invalid, NotFound
-from argo_compiler.hfsm import Event, GiveBack, Occurred, Tick
+from argo_compiler.hfsm import ByHand, Event, GiveBack, Occurred, Tick
+from argo_compiler.hfsm.events import ReadingGiven
 from argo_compiler.il import Task
 from argo_env.closing import Closing
 from argo_env.planning.opening import OpenedSite
@@ -21,15 +22,19 @@ from argo_env.run.record import RunRecord
 from argo_env.run.rig import Rig, fit_out
 from argo_env.run.spec import RunSpec, checked
 from argo_env.run.steering import (
+    DoByHand,
     ReachIn,
     Steering,
+    StopByHand,
     StopRun,
     check_event,
     check_given,
     from_now,
     require_at_rest,
+    require_hand_off,
     require_taken_over,
 )
+from argo_env.run.supervision import check_by_hand, require_supervised
 from argo_env.run.vehicle import Vehicle
 
 _log = logging.getLogger(__name__)
@@ -120,8 +125,24 @@ class Simulation(Closing):
 
     @property
     def task(self) -> Task | None:
-        """The task whose action is under way."""
+        """The task whose action is under way, by hand or not."""
         return self._course.action.task if self._course.action else None
+
+    @property
+    def taken_over(self) -> bool:
+        """Whether a person has taken the robot over, and not given it back."""
+        return self._course.supervision.taken_over
+
+    @property
+    def by_hand(self) -> Task | None:
+        """The task that a person lets the robot carry out."""
+        return self.task if self._course.supervision.acting else None
+
+    @property
+    def done_by_hand(self) -> tuple[ByHand, ...]:
+        """The mission's tasks that a person let the robot do since they took it over, and how long
+        ago: what `GiveBack` tells the machine if it is given this, now."""
+        return self._course.supervision.done(self.now)
 
     def record(self) -> RunRecord:
         """The record of the run: of the whole of it, or as it stands now."""
@@ -150,8 +171,9 @@ class Simulation(Closing):
     def handle(self, event: Steering) -> None:
         """Tells the run something from outside, now.
 
-        Raises Conflict if the run has ended, the robot is given back while an action still runs, or
-        a fault can't begin now; Invalid, or NotFound, for what makes no sense.
+        Raises Conflict if the run has ended, the robot is given back while an action still runs,
+        it can do nothing by hand now, or a fault can't begin now; Invalid, or NotFound, for what
+        makes no sense.
         """
         self._require_going_on()
         if self._open():
@@ -165,8 +187,17 @@ class Simulation(Closing):
                 settled = from_now(fault, self.rig, self._spec.seed, self.now)
                 self._tell(self._course.entry().model_copy(update={"faults": (settled,)}))
                 self._vehicle.let_faults_happen(self.now)
+            case DoByHand(task):
+                check_by_hand(task, self._spec.mission, self.rig.navigator.site)
+                require_supervised(self._course.supervision, self.machine.running or self.task)
+                self._tell(self._course.entry().model_copy(update={"by_hand": task}))
+            case StopByHand():
+                if self.by_hand is None:
+                    raise Conflict("the robot does nothing by hand that could be stopped")
+                self._tell(self._course.entry().model_copy(update={"stop_by_hand": True}))
             case _:
                 checked = check_event(event, self._spec.mission, self.rig.navigator.site)
+                require_hand_off(checked, self.by_hand)
                 if isinstance(checked, GiveBack):
                     require_at_rest(self.machine)
                 self._tell(self._course.entry([checked]))
@@ -254,7 +285,8 @@ class Simulation(Closing):
             course = self._course
             resumed = course.log.last is not None and not course.machine.finished
             first = {"resumed": resumed, "added": self._more}
-            self._tell(course.entry(sample=course.unsampled).model_copy(update=first))
+            entry = course.entry(sample=course.unsampled, task=course.lost)
+            self._tell(entry.model_copy(update=first))
             self.settle()
         return self.over
 
@@ -266,19 +298,22 @@ class Simulation(Closing):
         sensed = self._vehicle.advance(course.steps, now, course.action)
         # Before the end, so that a reaction to it comes first and no next task is begun.
         events: list[Event] = [Occurred(a.kind, a.detail) for a in sensed.found]
-        run = None
-        if sensed.end:
+        acting, reading = course.supervision.acting, sensed.reading
+        run = course.run_of(sensed.end) if sensed.end else None
+        if sensed.end and not acting:
             events.append(sensed.end)
-            run = course.run_of(sensed.end)
+        elif reading:
+            events.append(ReadingGiven(str(reading.checkpoint), reading.value))
         given = course.given
-        events += given.due(now, at_rest=machine.running is None and not events)
+        at_rest = machine.running is None and not acting and not events
+        events += given.due(now, at_rest, acting)
         if not events and given.waits_to_give_back(now):
             require_taken_over(machine, now)
         due = course.steps % self._sampled_every == 0
-        if events or due:
+        if events or due or run:
             entry = course.entry(events, sample=due, task=run)
-            if sensed.found or sensed.reading:
-                came = {"found": sensed.found, "reading": sensed.reading}
+            if sensed.found or reading:
+                came = {"found": sensed.found, "reading": reading}
                 entry = entry.model_copy(update=came)
             self._tell(entry)
         deadline = machine.next_deadline
@@ -326,7 +361,8 @@ class Simulation(Closing):
     def _standstill(self) -> str | None:
         if self._course.given.pending or self._vehicle.supply.charging:
             return None
-        return standstill(self.now, self.machine, self.rig, self._course.log)
+        acting = self._course.supervision.acting
+        return standstill(self.now, self.machine, self.rig, self._course.log, acting)
 
     def _end(self, stopped: str | None) -> None:
         course = self._course

@@ -17,7 +17,7 @@ from argo_compiler.hfsm import (
     TakeOver,
 )
 from argo_compiler.hfsm.events import ReadingGiven
-from argo_compiler.il import Mission
+from argo_compiler.il import Mission, Task
 from argo_env.faults.fault import Fault, TimedFault
 from argo_env.faults.kinds import AnyFault, settle_one
 from argo_env.run.log import LoggedEvent, require_from_outside, require_time
@@ -40,9 +40,23 @@ class StopRun:
     reason: str = "it was stopped by a person"
 
 
+@dataclass(frozen=True, slots=True)
+class DoByHand:
+    """A person who has taken the robot over lets it carry out the action of a task: one of the
+    mission's, or another WAYPOINT or MEASURE under a name of its own."""
+
+    task: Task
+
+
+@dataclass(frozen=True, slots=True)
+class StopByHand:
+    """The action that a person let the robot carry out is cancelled, and cleans up."""
+
+
 Steering = (
     Pause | Resume | TakeOver | GiveBack | Cancel | Occurred | ReadingGiven | ReachIn | StopRun
-)
+    | DoByHand | StopByHand
+)  # fmt: skip
 
 _TO_THE_MACHINE = (Pause, Resume, TakeOver, GiveBack, Cancel, Occurred, ReadingGiven)
 
@@ -67,6 +81,15 @@ def check_given(events: Sequence[tuple[float, LoggedEvent]], mission: Mission, s
             _check(event, mission, site)
         except (Invalid, NotFound) as error:
             raise Invalid(f"the event {event.kind} given at {t:g} s: {error}") from None
+
+
+def require_hand_off(event: Event, acting: Task | None) -> None:
+    """Raises Conflict if the mission were to go on while an action by hand is under way."""
+    if acting is not None and isinstance(event, Resume | GiveBack):
+        raise Conflict(
+            f"the robot still carries out '{acting.name}' by hand: stop that, or let time pass "
+            "until it has ended"
+        )
 
 
 def require_at_rest(machine: Machine) -> None:

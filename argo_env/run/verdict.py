@@ -27,7 +27,9 @@ def failed_tasks(
     """The tasks that failed for good, by name and in order."""
     retried = {(e.time, e.source) for e in trace if e.cause is Cause.RETRY}
     failed = [
-        (r.end, r.task) for r in runs if r.outcome == "failed" and (r.end, r.task) not in retried
+        (r.end, r.task)
+        for r in runs
+        if r.outcome == "failed" and not r.by_hand and (r.end, r.task) not in retried
     ]
     failed += [(s.end, s.task) for s in stays if s.failure is not None and s.end is not None]
     return tuple(dict.fromkeys(task for _, task in sorted(failed, key=lambda f: f[0])))
@@ -106,7 +108,9 @@ def _praise(
     """The verdict of a success: a plan with conditions may pass tasks over, a person may have done
     or skipped some, and optional ones may have failed."""
     by_hand, skipped = _by_hand(trace, skipped=False), _by_hand(trace, skipped=True)
-    done = {run.task for run in runs if run.outcome != "interrupted"} | RESERVED_NAMES
+    done = {
+        run.task for run in runs if run.outcome != "interrupted" and not run.by_hand
+    } | RESERVED_NAMES
     ended = done.union(by_hand, skipped, (stay.task for stay in stays if stay.end is not None))
     passed_over = [leaf.task.name for leaf in hfsm.leaves if leaf.task.name not in ended]
     said = ["the plan was carried out"]

@@ -97,7 +97,7 @@ def _task_rows(record: RunRecord) -> Iterator[tuple[float, tuple[str, ...]]]:
     for name in dict.fromkeys([*(t.task for t in record.tasks), *(name for name, _ in missed)]):
         runs = [t for t in record.tasks if t.task == name]
         begins = [t.start for t in runs] + [at for task, at in missed if task == name]
-        outcomes = dict.fromkeys(t.outcome for t in runs)
+        outcomes = dict.fromkeys(t.how for t in runs)
         if len(begins) > len(runs):
             outcomes["missed"] = None
         reasons = dict.fromkeys(t.reason for t in runs if t.reason)

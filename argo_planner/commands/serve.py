@@ -71,7 +71,7 @@ def serve_plans(
             read_tokens,
         )
         from argo_planner.service.web.guard import LOOPBACK, Doors
-        from argo_planner.service.web.serving import ServiceOrder, listen, serve
+        from argo_planner.service.web.serving import ServiceOrder, listen, open_folder, serve
     except ImportError as error:
         raise Unavailable(f"the service needs {error.name}: {install_line('planner')}") from None
     own = _is_own(host)
@@ -88,6 +88,7 @@ def serve_plans(
     listening = listen(host, port)
     port = listening.getsockname()[1]
     doors = Doors(frozenset(n.lower() for n in names), frozenset(origin or ()), f"argo-{port}")
+    plans = open_folder(folder)
     opened = open_site(site).prepare()
     console = Console(stderr=True, highlight=False, quiet=is_quiet(), soft_wrap=True)
     shown = "127.0.0.1" if _is_any(host) else _in_address(host)
@@ -97,7 +98,7 @@ def serve_plans(
     console.print(f"Site {opened.name}, missions in {folder}. Open {address}")
     console.print("Ctrl-C ends the service; what was acknowledged is kept.")
     with suppress(KeyboardInterrupt):
-        serve(ServiceOrder(folder, opened, TokenBook(tokens), doors), listening)
+        serve(ServiceOrder(plans, opened, TokenBook(tokens), doors), listening)
 
 
 def _is_own(host: str) -> bool:

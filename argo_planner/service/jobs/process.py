@@ -8,6 +8,7 @@ from multiprocessing.connection import Connection
 from typing import Any, Generic, TypeVar
 
 from argo_compiler.errors import ArgoError, Unavailable
+from argo_planner.service.jobs.orphans import end_with_parent
 
 Result = TypeVar("Result")
 Tell = Callable[[Any], None]
@@ -54,6 +55,8 @@ class JobProcess(Generic[Result]):
 
 
 def _carried_out(pipe: Connection, work: Callable[..., Any], arguments: tuple[Any, ...]) -> None:
+    end_with_parent()
+
     def tell(what: Any) -> None:
         pipe.send(("told", what))
 

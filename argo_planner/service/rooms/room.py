@@ -53,6 +53,7 @@ class PlanRoom:
         clock: Callable[[], datetime],
     ) -> None:
         self._file = file
+        self._document = file.document
         self._catalog = catalog
         self._analyst = analyst
         self._clock = clock
@@ -66,7 +67,8 @@ class PlanRoom:
 
     @property
     def document(self) -> PlanDocument:
-        return self._file.document
+        """The plan as all who are there have been told."""
+        return self._document
 
     @property
     def empty(self) -> bool:
@@ -232,6 +234,8 @@ class PlanRoom:
 
     async def _write(self, document: PlanDocument, record: PlanRecord) -> None:
         await asyncio.to_thread(self._file.append, document, record)
+        # Not before, so that whoever joins meanwhile is told of it like all others.
+        self._document = document
 
     def _done(self, revision: Revision, author: str) -> CommandDone:
         plan = self.document.plan

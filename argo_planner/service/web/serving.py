@@ -28,20 +28,24 @@ from argo_planner.service.web.requests import PlanningService
 class ServiceOrder:
     """What is to be served, and to whom."""
 
-    folder: Path
+    plans: PlanFolder
     site: OpenedSite
     tokens: TokenBook
     doors: Doors
 
 
-def opened_service(folder: Path, site: OpenedSite) -> Opened:
-    """What opens the service with the plans of a folder, and closes it again."""
+def open_folder(path: Path) -> PlanFolder:
+    """The folder of the plans. Raises what `PlanFolder` raises."""
+    return PlanFolder(path, partial(secrets.token_hex, 6))
+
+
+def opened_service(plans: PlanFolder, site: OpenedSite) -> Opened:
+    """What opens the service with the plans of a folder, and closes both again."""
 
     @asynccontextmanager
     async def opened() -> AsyncIterator[PlanningService]:
         analyst = Analyst(site)
         try:
-            plans = PlanFolder(folder, partial(secrets.token_hex, 6))
             rooms = PlanRooms(plans, site.catalog, analyst, _now)
 
             def tell(job: OrderJob) -> None:
@@ -50,7 +54,7 @@ def opened_service(folder: Path, site: OpenedSite) -> Opened:
 
             jobs = Jobs(site.reference, partial(secrets.token_hex, 6), _now, tell)
             try:
-                yield PlanningService(site, folder, rooms, jobs, _now())
+                yield PlanningService(site, plans.path, rooms, jobs, _now())
             finally:
                 await jobs.close()
                 await rooms.close()
@@ -74,7 +78,7 @@ def listen(host: str, port: int) -> socket.socket:
 def serve(order: ServiceOrder, listening: socket.socket) -> None:
     """Serves at a socket until a signal ends it."""
     raise_file_limit()
-    app = make_app(opened_service(order.folder, order.site))
+    app = make_app(opened_service(order.plans, order.site))
     guard = guarded(app, order.tokens, order.doors)
     uvicorn.Server(uvicorn.Config(guard, **server_options())).run(sockets=[listening])
 

@@ -17,7 +17,7 @@ from argo_planner.service.web.access import AccessRole, AccessToken, TokenBook
 from argo_planner.service.web.app import guarded, make_app
 from argo_planner.service.web.connections import server_options
 from argo_planner.service.web.guard import LOOPBACK, Doors
-from argo_planner.service.web.serving import listen, opened_service
+from argo_planner.service.web.serving import listen, open_folder, opened_service
 
 ALL = "all-may-be-done-with-this"
 SECRETS = {
@@ -78,7 +78,7 @@ class Served:
 def served(folder: Path, site: OpenedSite) -> Iterator[Served]:
     """A service with the missions of a folder; all its threads end with the context."""
     tokens = [AccessToken(ALL), *(AccessToken(s, role, str(role)) for role, s in SECRETS.items())]
-    app = make_app(opened_service(folder, site))
+    app = make_app(opened_service(open_folder(folder), site))
     guard = guarded(app, TokenBook(tokens), Doors(frozenset(LOOPBACK)))
     listening = listen("127.0.0.1", 0)
     server = uvicorn.Server(uvicorn.Config(guard, **server_options()))

@@ -146,3 +146,22 @@ def test_rooms_that_nobody_uses_are_closed(rooms, monkeypatch) -> None:
         await rooms.close()
 
     asyncio.run(play())
+
+
+def test_who_joins_while_a_command_is_written_hears_of_it_once(rooms) -> None:
+    async def play() -> None:
+        room = await rooms.create("Round", mission("a", "b"))
+        for k in range(1, 31):
+            asked = asyncio.ensure_future(room.carry_out(renamed(k), "ann", k))
+            for _ in range(k % 7):
+                await asyncio.sleep(0.001)
+            page = room.join(str(k), "bob")
+            await asked
+            told = [json.loads(await page.take())]
+            known = told[0]["state"]["revision"]
+            later = [m["revision"]["number"] for m in await taken(page, "revision")]
+            assert later == [*range(known + 1, k + 2)]
+            room.leave(str(k))
+        await rooms.close()
+
+    asyncio.run(play())

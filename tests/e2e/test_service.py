@@ -1,0 +1,205 @@
+"""`argo serve` as people run it: killed and begun again, nothing that was acknowledged is lost."""
+
+import asyncio
+import json
+import os
+import re
+import signal
+import socket
+import subprocess
+import sys
+from collections import Counter
+from pathlib import Path
+
+import httpx
+import pytest
+from websockets.asyncio.client import connect
+from websockets.exceptions import ConnectionClosed, InvalidStatus
+
+from argo_compiler.il import Mission
+from argo_planner.service.core.commands import Revision
+from tests.argo_planner.service.test_plan import Follower, mission
+
+TOKEN = "token-of-the-test-of-kills"
+HEADERS = {"authorization": f"Bearer {TOKEN}"}
+
+
+class Serving:
+    """A process of `argo serve` at a port that stays the same."""
+
+    def __init__(self, folder: Path) -> None:
+        with socket.create_server(("127.0.0.1", 0)) as free:
+            self.port = free.getsockname()[1]
+        self.address = f"127.0.0.1:{self.port}"
+        self.folder = folder
+
+    def begin(self) -> None:
+        command = [sys.executable, "-m", "argo_planner", "serve", str(self.folder)]
+        self.process = subprocess.Popen(
+            [*command, "--port", str(self.port)],
+            stderr=subprocess.PIPE,
+            text=True,
+            env=os.environ | {"ARGO_TOKEN": TOKEN},
+        )
+        assert self.process.stderr is not None
+        said = ""
+        while "Ctrl-C" not in said:
+            line = self.process.stderr.readline()
+            assert line, said
+            said += line
+
+    def end(self, number: int) -> str:
+        """Ends it by a signal; what it has said."""
+        self.process.send_signal(number)
+        said = self.process.communicate(timeout=60)[1]
+        return said or ""
+
+
+@pytest.fixture
+def serving(tmp_path):
+    found = Serving(tmp_path / "missions")
+    found.begin()
+    yield found
+    if found.process.poll() is None:
+        found.end(signal.SIGKILL)
+
+
+def test_the_service_begins_says_where_it_is_and_ends(serving: Serving) -> None:
+    with httpx.Client(base_url=f"http://{serving.address}", headers=HEADERS) as client:
+        assert client.get("/api/service").json()["site"] == "umad"
+    said = serving.end(signal.SIGINT)
+    assert "Traceback" not in said
+    assert serving.process.returncode in (0, 130)
+
+
+@pytest.mark.parametrize(
+    ("options", "said"),
+    [
+        (["--host", "0.0.0.0"], "give --token or --token-file"),
+        (["--token", "short"], "at least 16 characters"),
+        (["--token-file", "nothing"], "can't be read"),
+        (["--site", "nowhere"], "nowhere"),
+        (["--port", "70000"], "65535"),
+        (["--host", "no.such.host.invalid", "--token", "x" * 20], "can't be listened at"),
+    ],
+)
+def test_what_can_not_be_served_is_said(argo_process, tmp_path, options, said) -> None:
+    ended = argo_process("serve", str(tmp_path / "m"), *options)
+    assert ended.returncode == 2
+    assert said in re.sub(r"\s+", " ", ended.stderr)
+    assert "Traceback" not in ended.stderr
+
+
+def test_one_service_has_a_folder(serving: Serving, argo_process) -> None:
+    ended = argo_process("serve", str(serving.folder), "--port", "0", "--token", TOKEN)
+    assert ended.returncode == 2
+    assert "another service has this folder" in ended.stderr
+
+
+class Subscriber:
+    """Follows a mission over all that happens to the service."""
+
+    def __init__(self, serving: Serving, id: str, author: str) -> None:
+        self.url = f"ws://{serving.address}/api/missions/{id}/live?author={author}"
+        self.follower: Follower | None = None
+        self.revision: int | None = None
+        self.connections = 0
+
+    async def follow(self) -> None:
+        while True:
+            since = "" if self.revision is None else f"&since={self.revision}"
+            try:
+                async with connect(
+                    self.url + since, additional_headers=HEADERS, max_size=None, proxy=None
+                ) as opened:
+                    self.connections += 1
+                    async for text in opened:
+                        self.hear(json.loads(text))
+            except (OSError, ConnectionClosed, InvalidStatus, EOFError):
+                await asyncio.sleep(0.2)
+
+    def hear(self, message: dict) -> None:
+        if message["kind"] == "snapshot":
+            state = message["state"]
+            assert state["revision"] >= (self.revision or 0), "what was told is not so any more"
+            self.follower = Follower(Mission.model_validate(state["mission"]))
+            self.revision = state["revision"]
+        elif message["kind"] == "revision":
+            revision = Revision.model_validate(message["revision"])
+            assert self.revision is not None
+            assert self.follower is not None
+            assert revision.number == self.revision + 1
+            self.follower.hears(revision)
+            self.revision = revision.number
+
+
+async def edit_for(serving: Serving, id: str, seconds: float, acknowledged: Counter[str]) -> int:
+    """Twenty edits a second, each sent again until it is acknowledged."""
+    loop = asyncio.get_running_loop()
+    ends, number, highest = loop.time() + seconds, 0, 1
+    async with httpx.AsyncClient(
+        base_url=f"http://{serving.address}", headers=HEADERS, timeout=10
+    ) as client:
+        while loop.time() < ends:
+            number += 1
+            edit = {"kind": "change_task", "name": f"t{number % 50}", "velocity": number / 1e4}
+            body = {"kind": "edit", "id": f"e{number}", "edits": [edit]}
+            due = loop.time() + 0.05
+            while True:
+                try:
+                    answer = await client.post(
+                        f"/api/missions/{id}/commands", json=body, headers={"if-match": "*"}
+                    )
+                except httpx.HTTPError:
+                    await asyncio.sleep(0.1)
+                    continue
+                assert answer.status_code == 200, answer.text
+                acknowledged[body["id"]] = answer.json()["revision"]["number"]
+                highest = max(highest, answer.json()["newest"])
+                break
+            await asyncio.sleep(max(0.0, due - loop.time()))
+    return highest
+
+
+async def play(serving: Serving, seconds: float, subscribers: int, kills: int) -> None:
+    async with httpx.AsyncClient(
+        base_url=f"http://{serving.address}", headers=HEADERS, timeout=30
+    ) as client:
+        tasks = mission(*(f"t{k}" for k in range(50))).model_dump(mode="json")
+        for task in tasks["tasks"]:
+            task["object_id"] = "1"
+        made = await client.post("/api/missions", json={"name": "Round", "mission": tasks})
+        id = made.json()["id"]
+    pages = [Subscriber(serving, id, f"p{k}") for k in range(subscribers)]
+    following = [asyncio.create_task(page.follow()) for page in pages]
+    acknowledged: Counter[str] = Counter()
+    editing = asyncio.create_task(edit_for(serving, id, seconds, acknowledged))
+    for _ in range(kills):
+        await asyncio.sleep(seconds / (kills + 1))
+        await asyncio.to_thread(serving.end, signal.SIGKILL)
+        await asyncio.to_thread(serving.begin)
+    highest = await editing
+    async with httpx.AsyncClient(base_url=f"http://{serving.address}", headers=HEADERS) as client:
+        state = (await client.get(f"/api/missions/{id}")).json()
+    assert state["revision"] == highest
+    assert sorted(acknowledged.values()) == [*range(2, highest + 1)], "lost, or done twice"
+    async with asyncio.timeout(60):
+        while any(page.revision != highest for page in pages):
+            await asyncio.sleep(0.05)
+            for task in following:
+                assert not task.done(), task.exception()
+    for page, task in zip(pages, following, strict=True):
+        assert page.follower is not None
+        assert page.follower.state == state["mission"]
+        assert page.connections == kills + 1
+        task.cancel()
+    await asyncio.gather(*following, return_exceptions=True)
+
+
+def test_nothing_is_lost_or_done_twice_when_the_service_is_killed(serving: Serving) -> None:
+    asyncio.run(play(serving, seconds=4, subscribers=5, kills=1))
+
+
+@pytest.mark.long
+def test_fifty_subscribers_for_a_minute_and_two_kills(serving: Serving) -> None:
+    asyncio.run(play(serving, seconds=60, subscribers=50, kills=2))

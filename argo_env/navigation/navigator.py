@@ -58,16 +58,17 @@ class Navigator:
         self._path = lru_cache(remembered)(self._find_path)
         self._path_to_view = lru_cache(remembered)(self._find_path_to_view)
 
-    def avoiding(self, blockages: Sequence[Blockage]) -> "Navigator":
-        """A navigator of the same site that also keeps clear of `blockages`.
+    def avoiding(self, blockages: Sequence[Blockage], site: Site | None = None) -> "Navigator":
+        """A navigator of the same site that also keeps clear of `blockages`. Where these stand for
+        solids that `site` has besides, checkpoints are not seen through them.
 
         Raster and surface are shared. Docks and checkpoints may be out of reach then: the paths
         there raise Unreachable. A robot that stands where it may no longer be starts from the
         nearest place where it may.
         """
-        if not blockages:
+        if not blockages and site is None:
             return self
-        other = Navigator(self.site, self.robot)
+        other = Navigator(site or self.site, self.robot)
         other.blockages = (*self.blockages, *blockages)
         other.surface = self.surface
         other.lattice = close(self.lattice, blockages)

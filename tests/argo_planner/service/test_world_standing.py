@@ -1,0 +1,192 @@
+"""Maps of where the robot can stand say what the navigator says."""
+
+import math
+
+import numpy as np
+import pytest
+
+from argo_compiler.errors import Invalid, NotFound, Unreachable
+from argo_compiler.model import Pose
+from argo_env.navigation.lattice import build_lattice
+from argo_env.navigation.navigator import SNAP_DISTANCE, nearest_state
+from argo_env.navigation.stencil import HEADINGS
+from argo_env.planning import open_site
+from argo_planner.service.world.obstacles import Obstacle, with_obstacles
+from argo_planner.service.world.standing import Ground, read_standing_map, standing_map
+
+FLOORS = range(1, 7)
+
+
+def obstacle(id, x, y, z, size=(0.5, 0.4, 1.0), yaw=0.0):
+    return Obstacle(id=id, name=f"crate {id}", pose=Pose(x=x, y=y, z=z, yaw=yaw), size=size)
+
+
+@pytest.fixture(scope="module")
+def site():
+    return open_site("umad")
+
+
+@pytest.fixture(scope="module")
+def crates(site):
+    """Some on the walkways of several floors, one of which closes a way for good."""
+    rng = np.random.default_rng(5)
+    places = site.navigator.turning_places(2)
+    chosen = places[rng.choice(len(places), 4, replace=False)]
+    return tuple(
+        obstacle(str(k), x, y, z, yaw=0.4 * k) for k, (x, y, z, _) in enumerate(chosen.tolist())
+    )
+
+
+def maps_of(site, obstacles=()):
+    made = {
+        (floor, heading): standing_map(site, floor, heading, obstacles)
+        for floor in FLOORS
+        for heading in range(HEADINGS)
+    }
+    return {key: read_standing_map(one.to_bytes()) for key, one in made.items()}
+
+
+@pytest.fixture(scope="module")
+def maps(site):
+    return maps_of(site)
+
+
+def cells_of(one):
+    """All cells with ground: poses and codes."""
+    layer, row, column = np.nonzero(one.codes)
+    x = one.origin[0] + (column + 0.5) * one.cell
+    y = one.origin[1] + (row + 0.5) * one.cell
+    z = one.z + one.heights[layer, row, column] / 1000
+    return np.column_stack([x, y, z]), one.codes[layer, row, column]
+
+
+def poses_of(maps, rng, count):
+    """Poses over the middles of cells drawn from all maps, each code alike, with the code."""
+    for _ in range(count):
+        one = maps[int(rng.choice(FLOORS)), int(rng.integers(HEADINGS))]
+        places, codes = cells_of(one)
+        code = rng.choice(np.unique(codes))
+        x, y, z = places[rng.choice(np.flatnonzero(codes == code))].tolist()
+        yield Pose(x=x, y=y, z=z, yaw=one.yaw), Ground(int(code)), one
+
+
+def is_state(lattice, pose):
+    state = nearest_state(lattice, pose)
+    if state is None:
+        return False
+    x, y, z, yaw = lattice.poses(np.array([state]))[0]
+    here = math.dist((x, y, z), (pose.x, pose.y, pose.z)) < 2e-3
+    return here and abs(yaw - pose.yaw) < 1e-6
+
+
+def test_all_cells_of_the_surface_are_on_one_floor(site, maps):
+    lattice, surface = site.navigator.lattice, site.navigator.surface
+    for heading in range(HEADINGS):
+        codes = [cells_of(maps[floor, heading])[1] for floor in FLOORS]
+        assert sum(map(len, codes)) == surface.size
+        reached = sum(int((c == Ground.REACHED).sum()) for c in codes)
+        assert reached == int((lattice.heading == heading).sum())
+
+
+def test_the_robot_stands_where_the_navigator_says(site, maps):
+    rng, lattice = np.random.default_rng(1), site.navigator.lattice
+    seen = set()
+    for pose, code, one in poses_of(maps, rng, 300):
+        assert one.at(pose.x, pose.y, pose.z) is code
+        assert is_state(lattice, pose) == (code is Ground.REACHED), (pose, code)
+        seen.add(code)
+    assert seen >= {Ground.TOO_NEAR, Ground.TOO_STEEP, Ground.CUT_OFF, Ground.REACHED}
+
+
+def test_what_is_cut_off_can_be_stood_on_and_what_is_near_or_steep_not(site, maps):
+    everything = build_lattice(site.navigator.surface, site.robot)
+    for pose, code, _ in poses_of(maps, np.random.default_rng(2), 200):
+        assert is_state(everything, pose) == (code in (Ground.CUT_OFF, Ground.REACHED))
+
+
+def test_the_robot_gets_to_what_is_reached(site, maps):
+    dock = site.site.docks[1]
+    reached = 0
+    for pose, code, _ in poses_of(maps, np.random.default_rng(3), 60):
+        if code is Ground.REACHED:
+            end = site.navigator.plan(dock, pose).end
+            assert math.dist((end.x, end.y, end.z), (pose.x, pose.y, pose.z)) < 2e-3
+            assert math.cos(end.yaw - pose.yaw) > 1 - 1e-6
+            reached += 1
+    assert reached > 10
+
+
+def test_a_pose_is_taken_where_something_reached_is_near(site, maps):
+    rng = np.random.default_rng(4)
+    near = [cells_of(one) for one in maps.values()]
+    places = np.vstack([p[c == Ground.REACHED] for p, c in near])
+    x0, y0, x1, y1 = site.site.spec.ground
+    taken = set()
+    for _ in range(200):
+        x, y = rng.uniform(x0, x1), rng.uniform(y0, y1)
+        z = float(rng.choice([0.0, 2.5, 5.0])) + rng.uniform(-0.6, 0.6)
+        away = np.hypot(places[:, 0] - x, places[:, 1] - y) + np.abs(places[:, 2] - z)
+        if abs(away.min() - SNAP_DISTANCE) < 2e-3:
+            continue
+        expected = away.min() < SNAP_DISTANCE
+        try:
+            site.navigator.snap(Pose(x=x, y=y, z=z))
+            assert expected
+        except Unreachable:
+            assert not expected
+        taken.add(bool(expected))
+    assert taken == {True, False}
+
+
+def test_with_obstacles_the_map_says_what_plans_say(site, crates):
+    maps, navigator = maps_of(site, crates), with_obstacles(site, crates).navigator
+    dock, seen = site.site.docks[1], set()
+    for pose, code, _ in poses_of(maps, np.random.default_rng(6), 250):
+        if code is Ground.CLOSED:
+            assert is_state(site.navigator.lattice, pose)
+            assert not is_state(navigator.lattice, pose)
+        elif code is Ground.REACHED:
+            assert is_state(navigator.lattice, pose)
+            if len(seen) < 12:
+                end = navigator.plan(dock, pose).end
+                assert math.dist((end.x, end.y), (pose.x, pose.y)) < 2e-3
+        elif code is Ground.CUT_OFF and is_state(navigator.lattice, pose):
+            with pytest.raises(Unreachable):
+                navigator.plan(dock, pose)
+        seen.add((code, pose.x))
+    assert {code for code, _ in seen} >= {Ground.CLOSED, Ground.REACHED}
+
+
+def test_an_obstacle_closes_no_more_than_what_the_robot_would_touch(site):
+    x, y, z, _ = site.navigator.turning_places(3)[40].tolist()
+    crate = obstacle("a", x, y, z, (0.6, 0.3, 0.5), yaw=0.7)
+    robot = site.robot.footprint
+    reach, inner = robot.radius + 0.6, robot.half_width
+    for heading in range(HEADINGS):
+        before, after = (standing_map(site, 3, heading, o) for o in ((), (crate,)))
+        changed = before.codes != after.codes
+        assert set(np.unique(after.codes[changed])) <= {Ground.CLOSED, Ground.CUT_OFF}
+        places, codes = cells_of(after)
+        away = np.hypot(places[:, 0] - x, places[:, 1] - y)
+        assert away[codes == Ground.CLOSED].max(initial=0) < reach
+        assert not (codes[away < inner] == Ground.REACHED).any()
+        places, codes = cells_of(standing_map(site, 2, heading, (crate,)))
+        assert (codes[places[:, 2] < z - 1.0] != Ground.CLOSED).all()
+
+
+def test_what_lies_over_the_robot_closes_nothing(site):
+    x, y, z, _ = site.navigator.turning_places(6)[10].tolist()
+    beam = obstacle("beam", x, y, z + site.robot.driving_height + 0.1, (1.0, 1.0, 0.3))
+    assert (standing_map(site, 6, 0, (beam,)).codes == standing_map(site, 6, 0).codes).all()
+
+
+def test_what_is_not_there_is_refused(site):
+    with pytest.raises(NotFound):
+        standing_map(site, 8, 0)
+    with pytest.raises(Invalid, match="no heading 8"):
+        standing_map(site, 1, 8)
+    with pytest.raises(Invalid, match="no map"):
+        read_standing_map(b"{}\nnothing")
+    twice = obstacle("a", 0, 0, 0), obstacle("a", 1, 1, 0)
+    with pytest.raises(Invalid, match="two obstacles"):
+        with_obstacles(site, twice)

@@ -2,7 +2,6 @@
 
 from itertools import pairwise
 
-from argo_compiler.hfsm import Executor, lower
 from argo_compiler.il import Action, Mission, Task, Transition
 from argo_compiler.model import Pose
 from argo_env.drives.drive import DriveStatus
@@ -10,6 +9,7 @@ from argo_env.navigation import Navigator
 from argo_env.planning.opening import OpenedSite
 from argo_env.robot.pose import BodyPose
 from argo_env.robot.spec import load_robot
+from argo_env.run.beginning import machine_of
 from argo_env.run.observer import Observer
 from argo_env.run.rig import Rig
 from argo_env.run.session import simulate
@@ -202,4 +202,4 @@ def run_with(plan, rig, *, observers=(), journal=None, interrupted=lambda: False
 
 def simulation_of(spec, site, **arguments):
     """A simulation of the spec's mission."""
-    return Simulation(Executor(lower(spec.mission)), site, spec, **arguments)
+    return Simulation(machine_of(spec.mission, spec.beginning), site, spec, **arguments)

@@ -3,9 +3,17 @@
 from collections.abc import Sequence
 
 from argo_compiler.errors import Invalid, Remedy
-from argo_compiler.hfsm import ActionStopped, CancelAction, Command, Event, StartAction
+from argo_compiler.hfsm import (
+    ActionStopped,
+    CancelAction,
+    Command,
+    Event,
+    Progress,
+    StartAction,
+)
 from argo_env.navigation import Path
 from argo_env.run.action import ActionEnd, ActionUnderWay
+from argo_env.run.beginning import KnownAnomaly, RunBeginning
 from argo_env.run.interruptions import InterruptionWatch
 from argo_env.run.log import Entry, LoggedEvent, RunLog
 from argo_env.run.machine import Machine
@@ -35,7 +43,9 @@ class Course:
         self.given = GivenEvents(spec.events)
         self.steps = 0
         """time steps of the drive since the run began"""
-        self.now = 0.0
+        self._beginning = spec.beginning
+        self._begun = spec.beginning.at if spec.beginning else 0.0
+        self.now = self._begun
         """s of simulated time"""
         self._mission = spec.mission
         self._time_step = vehicle.rig.drive.time_step
@@ -53,7 +63,7 @@ class Course:
         """So many time steps of the drive have passed since the run began."""
         self.steps = steps
         # Counted in steps, so that nothing adds up.
-        self.now = round(steps * self._time_step, 6)
+        self.now = round(self._begun + steps * self._time_step, 6)
 
     def entry(
         self, events: Sequence[Event] = (), *, sample: bool = False, task: TaskRun | None = None
@@ -117,7 +127,7 @@ class Course:
 
         Raises Invalid if it is one of another run.
         """
-        self.step_to(round(entry.t / self._time_step))
+        self.step_to(round((entry.t - self._begun) / self._time_step))
         self._vehicle.odometry.restore(entry)
         self.given.occurred = entry.given
         try:
@@ -155,6 +165,21 @@ class Course:
             return None
         self.action.cancel("the run was stopped", interrupted=False)
         return self.run_of(ActionStopped(self.action.task.name))
+
+    def beginning(self, progress: Progress) -> RunBeginning:
+        """Where a run begins that goes on from here, with such a progress."""
+        drive, odometry = self._vehicle.rig.drive, self._vehicle.odometry
+        before = self._beginning.known if self._beginning else ()
+        found = (KnownAnomaly(anomaly=a, pose=pose) for a, pose in self.log.found)
+        pose = drive.pose
+        return RunBeginning(
+            progress=progress,
+            pose=(pose.x, pose.y, pose.z, pose.yaw, pose.pitch),
+            charge=self._vehicle.supply.charge,
+            distance=odometry.distance,
+            climbed=odometry.climbed,
+            known=(*before, *found),
+        )
 
     def record(self, spec: RunSpec, present: Entry | None = None) -> RunRecord:
         """The record of the run as far as its log goes, or up to the `present` entry."""

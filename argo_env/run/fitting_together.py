@@ -1,7 +1,7 @@
 """Whether what a run is made of fits together: the machine, the site and the spec."""
 
 from argo_compiler.errors import Conflict
-from argo_compiler.hfsm import lower
+from argo_compiler.hfsm import Cause, lower
 from argo_env.planning.opening import OpenedSite, open_site
 from argo_env.run.machine import Machine
 from argo_env.run.spec import RunSpec
@@ -11,9 +11,23 @@ def require_machine(machine: Machine, spec: RunSpec) -> None:
     """Raises Conflict for a machine that has been started, or is another than the mission's."""
     if machine.configuration:
         raise Conflict("the machine has been started already: make another one for this run")
-    if machine.hfsm != lower(spec.mission):
+    progress = spec.beginning.progress if spec.beginning else None
+    if machine.hfsm != lower(spec.mission, progress):
         raise Conflict(
             "the machine is not that of the spec's mission: lower the mission that the spec has"
+        )
+
+
+def require_begun(machine: Machine, spec: RunSpec) -> None:
+    """Raises Conflict for a machine, started now, that does not stand where the run begins."""
+    restored = machine.trace[0].cause is Cause.RESTORE
+    expected = spec.beginning.progress.active if spec.beginning else None
+    if restored != (spec.beginning is not None) or (
+        restored and machine.trace[0].target != expected
+    ):
+        raise Conflict(
+            "the machine does not stand where the run begins: make it with `machine_of` from the "
+            "spec's mission and beginning"
         )
 
 

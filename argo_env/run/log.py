@@ -228,7 +228,8 @@ class Entry(Model):
 
 
 _LISTS = (
-    "tasks", "readings", "given_values", "anomalies", "mishaps", "contacts", "path", "resumed",
+    "tasks", "readings", "given_values", "anomalies", "found", "mishaps", "contacts", "path",
+    "resumed",
 )  # fmt: skip
 
 
@@ -242,6 +243,8 @@ class RunLog:
         self.readings: list[Reading] = []
         self.given_values: list[GivenValue] = []
         self.anomalies: list[Anomaly] = []
+        self.found: list[tuple[Anomaly, tuple[float, float, float, float, float]]] = []
+        """what the robot noticed by itself, and its pose then"""
         self.mishaps: list[Mishap] = []
         self.last_event = 0.0
         """s, when the machine was told of something last, or a person let the robot do something"""
@@ -256,6 +259,7 @@ class RunLog:
         if entry.reading:
             self.readings.append(entry.reading)
         self.given_values += entry.given_values(self.site)
+        self.found += [(anomaly, entry.pose) for anomaly in entry.found]
         self.anomalies += (*entry.found, *entry.told(self.site))
         self.mishaps += entry.mishaps
         if entry.events or entry.by_hand or entry.task:

@@ -30,10 +30,15 @@ class PowerSupply:
 
     def restore(self, entry: Entry) -> None:
         """Goes on from an entry."""
-        if self._battery and entry.charge is not None:
-            self._battery.charge = entry.charge
+        if entry.charge is not None:
+            self.begin(entry.charge, entry.body_pose)
+
+    def begin(self, charge: float, pose: BodyPose) -> None:
+        """Goes on with such a charge (0 to 1), the robot at `pose`."""
+        if self._battery:
+            self._battery.charge = charge
             # If it does not stand there, the next step shows it.
-            self.charging = entry.charge < 1.0 and self._docked(entry.body_pose)
+            self.charging = charge < 1.0 and self._docked(pose)
 
     def spend(self, before: BodyPose, after: BodyPose, seconds: float, measuring: bool) -> None:
         """Draws what the way between two poses took, or charges while the robot stands docked."""

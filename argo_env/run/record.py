@@ -12,6 +12,7 @@ from pydantic import computed_field, model_validator
 from argo_compiler.catalog import CheckpointKind, Interval
 from argo_compiler.diagnostics import Diagnostic
 from argo_compiler.hfsm import Hfsm, Outcome
+from argo_compiler.hfsm.progress import TaskTally
 from argo_compiler.il import Action, EventKind, Mission, Response
 from argo_compiler.model import Model
 from argo_env.drives.drive import Trouble
@@ -372,7 +373,7 @@ class Result(Model):
     outcome: Outcome | None = None
     """how the state machine ended; None: the run was stopped before"""
     duration: float
-    """s"""
+    """s since the mission's start"""
     max_duration: float | None
     """s"""
     within_max_duration: bool
@@ -424,6 +425,10 @@ class RunRecord(Model):
     """what was found, in the order of time"""
     faults: tuple[AnyFault, ...] = ()
     """what really went wrong, with all that the seed drew; the robot was told nothing of it"""
+    began: float = 0.0
+    """s of the mission's time: more than 0 where the run goes on from where another one stood"""
+    before: tuple[TaskTally, ...] = ()
+    """what had ended before that, and is none of this run"""
     resumed: tuple[float, ...] = ()
     """s, when the run went on from its journal after its process had died"""
     reordering: Reordering | None = None

@@ -19,6 +19,11 @@ class GivenEvents:
         """Whether any are still to occur."""
         return self.occurred < len(self._events)
 
+    @property
+    def ahead(self) -> tuple[tuple[float, LoggedEvent], ...]:
+        """Those that are still to occur."""
+        return tuple((t, LoggedEvent.of(event)) for t, event in self._events[self.occurred :])
+
     def add(self, events: Iterable[tuple[float, LoggedEvent]]) -> None:
         """More of them; of equal times, those that were there before come first."""
         ahead = [*self._events[self.occurred :], *((t, event.original()) for t, event in events)]

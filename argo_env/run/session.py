@@ -8,9 +8,9 @@ from contextlib import ExitStack
 from pathlib import Path
 
 from argo_compiler.errors import Invalid
-from argo_compiler.hfsm import Executor, lower
 from argo_env.planning.opening import OpenedSite, open_site
 from argo_env.run.action import ActionUnderWay
+from argo_env.run.beginning import machine_of
 from argo_env.run.fitting_together import require_site
 from argo_env.run.journal import Header, Journal, create_journal
 from argo_env.run.observer import Observer
@@ -60,7 +60,7 @@ def simulate(
     require_site(site, spec)
     check_spec(spec, site.site)
     check_given(spec.events, spec.mission, site.site)
-    machine = Executor(lower(spec.mission))
+    machine = machine_of(spec.mission, spec.beginning)
     _log.info(
         "a run on %s: drive %s, sensor %s, seed %d", site.name, spec.drive, spec.sensor, spec.seed
     )
@@ -99,7 +99,7 @@ def resume(
     spec = journal.header.spec
     site = site or open_site(spec.site)
     journal.require_unchanged(site)
-    machine = Executor(lower(spec.mission))
+    machine = machine_of(spec.mission, spec.beginning)
     told = [journal, *_paced(pace), *observers]
     with Simulation(
         machine, site, spec, past=journal.entries, events=events, observers=told, gui=gui

@@ -5,16 +5,18 @@ from collections.abc import Callable, Iterator, Sequence
 from contextlib import ExitStack, contextmanager
 
 from argo_compiler.errors import Conflict, Invalid, NotFound
-from argo_compiler.hfsm import ByHand, Event, GiveBack, Occurred, Tick
+from argo_compiler.hfsm import ByHand, Event, GiveBack, Occurred, Resume, Tick
 from argo_compiler.hfsm.events import ReadingGiven
-from argo_compiler.il import Task
+from argo_compiler.il import Mission, Task
+from argo_compiler.model import Pose
 from argo_env.closing import Closing
 from argo_env.planning.opening import OpenedSite
 from argo_env.planning.start import start_pose
 from argo_env.robot.pose import BodyPose
+from argo_env.run.beginning import matched, progress_now
 from argo_env.run.course import Course
 from argo_env.run.ending import exhausted, standstill
-from argo_env.run.fitting_together import require_machine, require_site
+from argo_env.run.fitting_together import require_begun, require_machine, require_site
 from argo_env.run.log import Entry, LoggedEvent
 from argo_env.run.machine import Machine, OpenMachine
 from argo_env.run.observer import Observer
@@ -27,6 +29,7 @@ from argo_env.run.steering import (
     Steering,
     StopByHand,
     StopRun,
+    as_seen_on,
     check_event,
     check_given,
     from_now,
@@ -203,6 +206,34 @@ class Simulation(Closing):
                 self._tell(self._course.entry([checked]))
         self.settle()
 
+    def going_on(self, mission: Mission, by_hand: Sequence[ByHand] = ()) -> RunSpec:
+        """The spec of a run that goes on from here with the mission as a person has edited it while
+        they had the robot, and with what they did or skipped `by_hand` until now. In it the robot
+        is given back. What does not fit any more is among its diagnostics.
+
+        Raises Conflict unless the mission is paused and no action runs, DiagnosticError if the
+        edited mission can't go on from here, Invalid for what nobody can have done.
+        """
+        site = self.rig.navigator.site
+        require_hand_off(GiveBack(), self.by_hand)
+        check_event(GiveBack(tuple(by_hand)), self._spec.mission, site)
+        seen = as_seen_on(site, self._spec.mission, GiveBack(tuple(by_hand)))
+        assert isinstance(seen, GiveBack)
+        progress = progress_now(self.machine, self.now, seen.by_hand)
+        progress, diagnostics = matched(progress, mission)
+        spec = self._spec.model_copy(
+            update={
+                "mission": mission,
+                "beginning": self._course.beginning(progress),
+                "events": ((self.now, LoggedEvent.of(Resume())), *self._course.given.ahead),
+                "faults": self.rig.schedule.faults if self.rig.schedule else (),
+                "diagnostics": (*self._spec.diagnostics, *diagnostics),
+                "reordering": None,
+                "source": None,
+            }
+        )
+        return checked(spec)
+
     def give(self, task: Task) -> None:
         """Gives the next task to a machine that takes them one by one, an `OpenMachine`. A journal
         does not hold such tasks, and can't be gone on from.
@@ -254,14 +285,23 @@ class Simulation(Closing):
     def _set_up(self, past: Sequence[Entry]) -> None:
         """Puts everything to where the run begins, or goes on."""
         course = self._course
+        vehicle, beginning = self._vehicle, self._spec.beginning
+        start = self._start_pose()
+        if beginning:
+            vehicle.begin(beginning)
         course.start()
+        require_begun(course.machine, self._spec)
         for entry in past:
             course.replay(entry)
         last = course.log.last
-        self._vehicle.place(last.body_pose if last else self._start_pose(), self.now)
+        vehicle.place(last.body_pose if last else start, self.now)
+        told = [(k.anomaly, BodyPose(*k.pose)) for k in (beginning.known if beginning else ())]
+        told += [(anomaly, e.body_pose) for e in past for anomaly in e.found]
+        if beginning or last:
+            vehicle.remember(told, self.now)
         if last is None:
             return
-        self._vehicle.restore(last, past, self.now)
+        vehicle.restore(last)
         course.look_back()
         if last.ended:
             self._conclude()
@@ -275,6 +315,10 @@ class Simulation(Closing):
                 raise NotFound(
                     f"site {navigator.site.name} has no starting area {area}; there are: {known}"
                 )
+        if beginning := self._spec.beginning:
+            place = beginning.body_pose
+            navigator.snap(Pose(x=place.x, y=place.y, z=place.z, yaw=place.yaw))
+            return place
         pose = navigator.snap(start_pose(mission, docks))
         return BodyPose(pose.x, pose.y, pose.z, pose.yaw)
 
@@ -283,9 +327,13 @@ class Simulation(Closing):
         if not self._opened:
             self._opened = True
             course = self._course
+            events = []
+            if self._spec.beginning and course.log.last is None:
+                # What was told while nothing ran, as that the robot was given back.
+                events = course.given.due(self.now, at_rest=course.machine.running is None)
             resumed = course.log.last is not None and not course.machine.finished
             first = {"resumed": resumed, "added": self._more}
-            entry = course.entry(sample=course.unsampled, task=course.lost)
+            entry = course.entry(events, sample=course.unsampled, task=course.lost)
             self._tell(entry.model_copy(update=first))
             self.settle()
         return self.over

@@ -12,6 +12,7 @@ from argo_compiler.il import Mission
 from argo_compiler.model import Model
 from argo_env.faults.kinds import AnyFault
 from argo_env.files.yaml_messages import message_of
+from argo_env.run.beginning import RunBeginning
 from argo_env.run.log import LoggedEvent, require_from_outside, require_time
 from argo_env.run.record import Reordering
 
@@ -36,6 +37,8 @@ class RunSpec(Model):
     """what the run is told, and when (s)"""
     faults: tuple[AnyFault, ...] = ()
     """what goes wrong; the robot finds out by sensing"""
+    beginning: RunBeginning | None = None
+    """where another run stood, from which this one goes on; None: the mission begins"""
     diagnostics: tuple[Diagnostic, ...] = ()
     """what the mission's import had to say, for the record"""
     reordering: Reordering | None = None

@@ -1,6 +1,6 @@
 """From the trace of a machine: how long it stood at tasks, what it waited for, what was on time."""
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Collection, Iterator, Sequence
 from dataclasses import dataclass
 
 from argo_compiler.hfsm import Cause, TraceEntry
@@ -51,13 +51,16 @@ class Stay:
         return by_itself and self.failure is None
 
 
-def stays_of(trace: Sequence[TraceEntry]) -> Iterator[Stay]:
-    """All of them, in the order of time. A round that is not due yet is not begun."""
+def stays_of(trace: Sequence[TraceEntry], since: float = 0.0) -> Iterator[Stay]:
+    """All of them, in the order of time. A round that is not due yet is not begun.
+
+    A machine that was restored had stood at its task for `since` (s).
+    """
     task: str | None = None
     start = 0.0
     for entry in trace:
         if entry.cause in (Cause.START, Cause.RESTORE):
-            task, start = entry.target, entry.time
+            task, start = entry.target, entry.time - since
         elif entry.cause is Cause.ROUND:
             start = entry.time
         elif entry.cause in MOVES:
@@ -86,12 +89,15 @@ def waits_of(mission: Mission, stays: Sequence[Stay], now: float) -> tuple[WaitR
     )
 
 
-def windows_of(mission: Mission, stays: Sequence[Stay]) -> tuple[WindowRun, ...]:
-    """The visits of tasks with time windows, then those that the mission has not come to."""
+def windows_of(
+    mission: Mission, stays: Sequence[Stay], before: Collection[str] = ()
+) -> tuple[WindowRun, ...]:
+    """The visits of tasks with time windows, then those that the mission has not come to, nor had
+    come to `before` these stays."""
     tasks = {t.name: t for t in mission.tasks if t.window is not None}
     found = [_window(tasks[stay.task], stay) for stay in stays if stay.task in tasks]
     seen = {run.task for run in found}
-    found += [_window(task, None) for name, task in tasks.items() if name not in seen]
+    found += [_window(task, None) for name, task in tasks.items() if name not in {*seen, *before}]
     return tuple(found)
 
 

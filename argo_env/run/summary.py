@@ -1,5 +1,6 @@
 """From how a run stands to its record."""
 
+from argo_compiler.hfsm import Progress
 from argo_env.run.interruptions import InterruptionWatch
 from argo_env.run.log import RunLog
 from argo_env.run.machine import Machine
@@ -23,8 +24,9 @@ def make_record(
     site = rig.navigator.site
     assert log.last is not None
     trace = tuple(machine.trace)
-    stays = tuple(stays_of(trace))
-    windows = windows_of(spec.mission, stays)
+    progress = spec.beginning.progress if spec.beginning else Progress(active=None)
+    stays = tuple(stays_of(trace, progress.since))
+    windows = windows_of(spec.mission, stays, {tally.task for tally in progress.tallies})
     result = judge(
         spec.mission,
         machine.hfsm,
@@ -34,6 +36,7 @@ def make_record(
         trace,
         stays,
         windows,
+        progress,
     )
     return RunRecord(
         mission=spec.mission,
@@ -60,6 +63,8 @@ def make_record(
         mishaps=tuple(log.mishaps),
         anomalies=tuple(log.anomalies),
         faults=rig.schedule.faults if rig.schedule else (),
+        began=spec.beginning.at if spec.beginning else 0.0,
+        before=progress.tallies,
         resumed=tuple(log.resumed),
         reordering=spec.reordering,
     )

@@ -9,9 +9,10 @@ from argo_env.navigation import Blockage, Path
 from argo_env.navigation.retreat import driven, recent
 from argo_env.robot.pose import BodyPose
 from argo_env.run.action import RETREAT, ActionEnd, ActionUnderWay
+from argo_env.run.beginning import RunBeginning
 from argo_env.run.log import Entry, RunLog
 from argo_env.run.odometry import Odometry
-from argo_env.run.perception import Perception, abnormal_reading
+from argo_env.run.perception import Perception, abnormal_reading, blockage
 from argo_env.run.power_supply import PowerSupply
 from argo_env.run.record import Anomaly, Reading
 from argo_env.run.rig import Rig
@@ -46,11 +47,23 @@ class Vehicle:
         self.rig.drive.place(pose)
         self.let_faults_happen(now)
 
-    def restore(self, last: Entry, past: Sequence[Entry], now: float) -> None:
-        """Goes on at time `now` (s) after the `past` entries, the last of them `last`."""
+    def begin(self, beginning: RunBeginning) -> None:
+        """Goes on from where another run stood."""
+        self.odometry.distance, self.odometry.climbed = beginning.distance, beginning.climbed
+        if beginning.charge is not None:
+            self.supply.begin(beginning.charge, beginning.body_pose)
+        known = [one.anomaly for one in beginning.known]
+        if closed := [b for anomaly in known if (b := blockage(anomaly))]:
+            self.avoid(closed)
+
+    def remember(self, told: Sequence[tuple[Anomaly, BodyPose]], now: float) -> None:
+        """Goes on at time `now` (s) after these have been found, with the robot at these poses."""
+        self._perception.remember(told, now)
+
+    def restore(self, last: Entry) -> None:
+        """Goes on after the entry."""
         self.odometry.restore(last)
         self.supply.restore(last)
-        self._perception.remember([(a, e.body_pose) for e in past for a in e.found], now)
 
     def let_faults_happen(self, now: float) -> None:
         """Lets all begin and end that is due at time `now` (s)."""

@@ -1,8 +1,8 @@
 """The verdict: whether the mission is a success, and what is missing if it is not."""
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 
-from argo_compiler.hfsm import Cause, Hfsm, Outcome, TraceEntry
+from argo_compiler.hfsm import Cause, Hfsm, Outcome, Progress, TraceEntry
 from argo_compiler.il import Mission
 from argo_compiler.il.docked import at_dock
 from argo_compiler.il.reserved import RESERVED_NAMES
@@ -44,9 +44,10 @@ def judge(
     trace: Sequence[TraceEntry],
     stays: Sequence[Stay],
     windows: Sequence[WindowRun],
+    before: Progress,
 ) -> Result:
     """How the mission ended: the machine with `outcome`, by the steps of its `trace`, the visits of
-    tasks and what came of their windows.
+    tasks and what came of their windows; and by what had come of it `before` this run.
 
     An `outcome` of None is that of a run that was stopped before, or is still under way.
     """
@@ -62,7 +63,9 @@ def judge(
     elif outcome in _ENDINGS:
         missing.append(_ENDINGS[outcome])
     optional = {task.name for task in mission.tasks if task.optional}
-    failed = failed_tasks(log.tasks, trace, stays)
+    failed = tuple(
+        dict.fromkeys((*_failed_before(before, mission), *failed_tasks(log.tasks, trace, stays)))
+    )
     needed = [name for name in failed if name not in optional]
     missed = {run.task for run in windows if run.kept is WindowKept.MISSED}
     for what, names in (
@@ -87,7 +90,9 @@ def judge(
     return Result(
         success=success,
         ended=last.ended,
-        verdict=_praise(hfsm, log.tasks, trace, stays, failed) if success else "; ".join(missing),
+        verdict=_praise(hfsm, log.tasks, trace, stays, failed, before)
+        if success
+        else "; ".join(missing),
         outcome=outcome,
         duration=now,
         max_duration=limit,
@@ -104,6 +109,7 @@ def _praise(
     trace: Sequence[TraceEntry],
     stays: Sequence[Stay],
     failed: Sequence[str],
+    before: Progress,
 ) -> str:
     """The verdict of a success: a plan with conditions may pass tasks over, a person may have done
     or skipped some, and optional ones may have failed."""
@@ -112,8 +118,13 @@ def _praise(
         run.task for run in runs if run.outcome != "interrupted" and not run.by_hand
     } | RESERVED_NAMES
     ended = done.union(by_hand, skipped, (stay.task for stay in stays if stay.end is not None))
+    ended |= {tally.task for tally in before.tallies}
     passed_over = [leaf.task.name for leaf in hfsm.leaves if leaf.task.name not in ended]
     said = ["the plan was carried out"]
+    if earlier := [tally.task for tally in before.tallies if tally.done]:
+        said.append(f"done before this run: {', '.join(earlier)}")
+    if earlier := [tally.task for tally in before.tallies if tally.by_hand]:
+        said.append(f"done by hand or skipped before this run: {', '.join(earlier)}")
     if passed_over:
         said.append(f"it led past {', '.join(passed_over)}")
     if by_hand:
@@ -123,6 +134,14 @@ def _praise(
     if failed:
         said.append(f"failed, and optional: {', '.join(failed)}")
     return "; ".join(said) if len(said) > 1 else AS_PLANNED
+
+
+def _failed_before(before: Progress, mission: Mission) -> Iterator[str]:
+    """The tasks that had failed for good. One that the plan does not have any more counts if the
+    mission does: nobody can say of it alone whether it was optional."""
+    for tally in before.tallies:
+        if tally.failed and (mission.task(tally.task) is not None or before.failed):
+            yield tally.task
 
 
 def _by_hand(trace: Sequence[TraceEntry], *, skipped: bool) -> tuple[str, ...]:

@@ -1,0 +1,270 @@
+"""A run that goes on from where another one stood, with the mission as it was or as edited."""
+
+from collections import Counter
+
+import pytest
+from hypothesis import assume, given, settings
+from hypothesis import strategies as st
+
+from argo_compiler.diagnostics import DiagnosticError
+from argo_compiler.errors import Conflict, Invalid
+from argo_compiler.hfsm import ByHand, Executor, Outcome, TakeOver, lower
+from argo_compiler.il import EventKind, Group
+from argo_compiler.il.mission import TimeWindow
+from argo_env.faults.checkpoints import AbnormalValue
+from argo_env.run.beginning import KnownAnomaly
+from argo_env.run.journal import Header, create_journal, open_journal
+from argo_env.run.record import Anomaly, WindowKept
+from argo_env.run.session import resume, simulate
+from argo_env.run.simulation import Simulation
+from argo_env.run.spec import RunSpec
+from argo_env.run.steering import DoByHand
+from tests.conftest import examples
+from tests.yard import measure, mission, opened, simulation_of, waypoint, yard
+
+PARTS = (
+    measure(1), measure(2), measure(3), waypoint("A", 4.05, 2.05), waypoint("B", 2.05, 1.55),
+)  # fmt: skip
+PLAN = mission(measure(1), waypoint("A", 4.05, 2.05), measure(2), waypoint("B", 2.05, 1.55))
+
+
+@pytest.fixture(scope="module")
+def site():
+    return opened(yard())
+
+
+def spec_of(plan, **fields):
+    return RunSpec(mission=plan, site="yard", drive="route", seed=3, **fields)
+
+
+def to_rest(simulation):
+    while simulation.task is not None and not simulation.over:
+        simulation.step()
+
+
+def stopped_after(simulation, reached):
+    """Taken over and at rest, once the record has so many tasks that are done."""
+    while sum(t.outcome == "done" for t in simulation.record().tasks) < reached:
+        simulation.step()
+    for _ in range(3):
+        simulation.step()
+    simulation.handle(TakeOver())
+    to_rest(simulation)
+
+
+def ended(progress):
+    return {t.task: (t.done + t.by_hand, t.failed) for t in progress.tallies}
+
+
+def values(progress):
+    return {r.object_id: (r.kind, r.value, r.abnormal) for r in progress.readings}
+
+
+@st.composite
+def plans(draw):
+    """A few tasks in some order, perhaps with a group of two or three rounds around some."""
+    tasks = draw(st.permutations(PARTS))[: draw(st.integers(2, 5))]
+    first = draw(st.integers(0, len(tasks) - 1))
+    last = draw(st.integers(first, len(tasks) - 1))
+    rounds = draw(st.integers(1, 3))
+    names = {"start": tasks[first].name, "end": tasks[last].name}
+    return mission(*tasks, groups=(Group(name="G", max_repeat_count=rounds, **names),))
+
+
+@pytest.mark.rule("H4", "H5", "H7")
+@settings(max_examples=examples(25), deadline=None)
+@given(plans(), st.integers(1, 900), st.data())
+def test_before_by_hand_and_after_are_the_whole_mission(site, plan, at, data):
+    whole = simulation_of(spec_of(plan), site)
+    with whole, simulation_of(spec_of(plan), site) as first:
+        for _ in range(at):
+            if not first.over:
+                first.step()
+        assume(not first.over)
+        first.handle(TakeOver())
+        to_rest(first)
+        assume(not first.over)
+        left = list(names_left(plan, first))
+        by_hand = (
+            data.draw(st.lists(st.sampled_from(left), max_size=3, unique=True)) if left else []
+        )
+        for name in by_hand:
+            first.handle(DoByHand(plan.task(name)))
+            to_rest(first)
+        skipped = data.draw(st.sampled_from(["", *(n for n in left if not n.startswith("M"))]))
+        done = [*first.done_by_hand]
+        if skipped and skipped not in by_hand:
+            done.append(ByHand(task=skipped, skipped=True))
+        before, spec = first.record(), first.going_on(plan, done)
+        assert spec.beginning.progress.elapsed == pytest.approx(first.now)
+        with simulation_of(RunSpec.model_validate_json(spec.model_dump_json()), site) as rest:
+            assert rest.pose == first.pose
+            assert rest.now == pytest.approx(first.now)
+            after = rest.run()
+            expected = whole.run()
+            assert ended(rest.machine.progress()) == ended(whole.machine.progress())
+            assert values(rest.machine.progress()) == values(whole.machine.progress())
+        assert after.result.success is expected.result.success is True
+        # Each visit was made once, by whomever.
+        made = Counter(t.task for r in (before, after) for t in r.tasks if t.outcome == "done")
+        made += Counter(done.task for done in done if done.skipped)
+        assert made == Counter(t.task for t in expected.tasks)
+        assert after.result.duration >= after.began == spec.beginning.at
+
+
+def names_left(plan, simulation):
+    """The tasks whose visits have not all ended, the present one among them."""
+    counts = ended(simulation.machine.progress())
+    group = plan.groups[0]
+    names = [t.name for t in plan.tasks[1:]]
+    inside = names[names.index(group.start) : names.index(group.end) + 1]
+    for name in names:
+        rounds = group.max_repeat_count if name in inside else 1
+        if counts.get(name, (0, 0))[0] < rounds:
+            yield name
+
+
+class TestRecord:
+    def test_the_verdict_tells_what_was_done_before(self, site):
+        with simulation_of(spec_of(PLAN), site) as first:
+            stopped_after(first, 2)
+            spec = first.going_on(PLAN)
+        record = simulate(spec, site)
+        assert record.result.outcome is Outcome.COMPLETED
+        assert record.result.verdict == (
+            "the plan was carried out; done before this run: MEASURE 1, A"
+        )
+        assert [t.task for t in record.tasks] == ["MEASURE 2", "B"]
+        assert [tally.task for tally in record.before] == ["MEASURE 1", "A"]
+        assert record.path[0].t == record.began == first.now
+        assert record.result.distance > first.record().result.distance
+        assert record.path[0].charge == pytest.approx(first.record().path[-1].charge, abs=1e-3)
+
+    def test_what_failed_before_is_missing(self, site):
+        off = waypoint("off the slab", 50.0, 50.0)
+        plan = mission(off, measure(1), measure(2))
+        with simulation_of(spec_of(plan), site) as first:
+            stopped_after(first, 1)
+            spec = first.going_on(plan)
+            edited = first.going_on(mission(measure(1), measure(2)))
+        for one in (spec, edited):
+            record = simulate(one, site)
+            assert record.result.outcome is Outcome.COMPLETED_WITH_FAILURES
+            assert record.result.verdict == "failed: off the slab"
+
+    def test_times_are_those_of_the_whole_mission(self, site):
+        window = TimeWindow(earliest=60.0)
+        plan = mission(measure(1), measure(2), waypoint("B", 2.05, 1.55, window=window),
+                       max_duration=65.0)  # fmt: skip
+        with simulation_of(spec_of(plan), site) as first:
+            stopped_after(first, 1)
+            spec = first.going_on(plan)
+        record = simulate(spec, site)
+        run = record.tasks[-1]
+        assert run.end == pytest.approx(60.0, abs=0.2)
+        assert record.windows[0].kept is WindowKept.KEPT
+        late = spec.mission.model_copy(update={"max_duration": 30.0})
+        record = simulate(spec.model_copy(update={"mission": late}), site)
+        assert record.result.within_max_duration is False
+
+    def test_a_window_that_was_kept_before_is_not_said_to_be_open(self, site):
+        window = TimeWindow(earliest=0.0, latest=500.0)
+        plan = mission(measure(1, window=window), measure(2, window=window))
+        with simulation_of(spec_of(plan), site) as first:
+            stopped_after(first, 1)
+            spec = first.going_on(plan)
+        (run,) = simulate(spec, site).windows
+        assert (run.task, run.kept) == ("MEASURE 2", WindowKept.KEPT)
+
+
+class TestEdited:
+    def test_new_tasks_are_done_and_old_ones_are_not(self, site):
+        edited = mission(measure(1), measure(3), waypoint("B", 2.05, 1.55))
+        with simulation_of(spec_of(PLAN), site) as first:
+            stopped_after(first, 1)
+            # It stands at a task that the edit must keep.
+            with pytest.raises(DiagnosticError, match="which the plan does not have"):
+                first.going_on(edited)
+            kept = mission(measure(1), waypoint("A", 4.05, 2.05), measure(3))
+            spec = first.going_on(kept)
+        record = simulate(spec, site)
+        assert [t.task for t in record.tasks] == ["A", "MEASURE 3"]
+
+    def test_what_does_not_fit_is_told(self, site):
+        with simulation_of(spec_of(PLAN), site) as first:
+            stopped_after(first, 1)
+            shorter = mission(measure(1), waypoint("A", 4.05, 2.05))
+            spec = first.going_on(shorter, [ByHand(task="MEASURE 2", value=3.0)])
+        assert [d.code for d in spec.diagnostics] == ["handover.by-hand-gone"]
+        assert simulate(spec, site).diagnostics == spec.diagnostics
+
+
+def test_what_was_found_before_is_known(site):
+    fault = AbnormalValue(checkpoint=1, value=9.0)
+    with simulation_of(spec_of(PLAN, faults=(fault,)), site) as first:
+        stopped_after(first, 1)
+        spec = first.going_on(PLAN)
+    (known,) = spec.beginning.known
+    assert known.anomaly == first.record().anomalies[0]
+    told = Anomaly(t=1.0, kind=EventKind.POSITIVE_OBSTACLE, detail="a box", source="camera",
+                   place=(3.0, 2.0, 0.0), extent=(2.9, 1.9, 3.1, 2.1))  # fmt: skip
+    more = (known, KnownAnomaly(anomaly=told, pose=spec.beginning.pose))
+    beginning = spec.beginning.model_copy(update={"known": more})
+    with simulation_of(spec.model_copy(update={"beginning": beginning}), site) as rest:
+        (closed,) = rest.rig.navigator.blockages
+        stopped_after(rest, 1)
+        assert rest.going_on(PLAN).beginning.known[:2] == more
+    assert closed.rect[0] < 2.9 < 3.1 < closed.rect[2]
+
+
+class TestRefusals:
+    def test_not_while_the_mission_goes_on(self, site):
+        with simulation_of(spec_of(PLAN), site) as first:
+            first.step()
+            with pytest.raises(Conflict, match="take the robot over"):
+                first.going_on(PLAN)
+            first.handle(TakeOver())
+            with pytest.raises(Conflict, match="take the robot over"):
+                first.going_on(PLAN)
+            to_rest(first)
+            first.handle(DoByHand(PLAN.task("A")))
+            with pytest.raises(Conflict, match="'A' by hand"):
+                first.going_on(PLAN)
+
+    def test_what_nobody_did(self, site):
+        with simulation_of(spec_of(PLAN), site) as first:
+            stopped_after(first, 1)
+            with pytest.raises(Invalid, match="MEASURE 9"):
+                first.going_on(PLAN, [ByHand(task="MEASURE 9")])
+
+    def test_another_machine(self, site):
+        with simulation_of(spec_of(PLAN), site) as first:
+            stopped_after(first, 1)
+            spec = first.going_on(PLAN)
+        with pytest.raises(Conflict, match="machine"):
+            Simulation(Executor(lower(PLAN)), site, spec)
+        machine = Executor(lower(PLAN, spec.beginning.progress))
+        with pytest.raises(Conflict, match="does not stand where the run begins"):
+            Simulation(machine, site, spec)
+
+
+@pytest.mark.parametrize("share", [0.2, 0.5, 0.8, 1.0])
+def test_its_journal_goes_on_from_anywhere(site, tmp_path, share):
+    with simulation_of(spec_of(PLAN), site) as first:
+        stopped_after(first, 1)
+        spec = first.going_on(PLAN)
+    path = tmp_path / "run.journal"
+    with (
+        create_journal(path, Header.of(site, spec)) as journal,
+        simulation_of(spec, site, observers=[journal]) as rest,
+    ):
+        record = rest.run()
+    lines = path.read_bytes().splitlines(keepends=True)
+    path.write_bytes(b"".join(lines[: max(2, int(share * len(lines)))]))
+    with open_journal(path) as journal:
+        again = resume(journal, site)
+    assert [(t.task, t.outcome) for t in again.tasks] == [(t.task, t.outcome) for t in record.tasks]
+    assert again.result.verdict == record.result.verdict
+    assert (again.began, again.before) == (record.began, record.before)
+    if share == 1.0:
+        assert again == record

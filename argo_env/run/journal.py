@@ -134,6 +134,8 @@ def fingerprints(site: OpenedSite, spec: RunSpec) -> dict[str, str]:
     for what, model in (("site", site.site.spec), ("robot", site.robot)):
         for field, value in model.model_dump(mode="json").items():
             found[f"{what}'s {field}"] = _digest(json.dumps(value))
+    if site.site.altered is not None:
+        found["site's alterations"] = _digest(repr(site.site.altered))
     source = None if spec.source is None else Path(spec.source)
     if source is not None and os.path.isfile(source):  # a pipe can't be read once more
         try:

@@ -1,0 +1,240 @@
+"""Previews say what the drive that knows no forces does, with obstacles and without."""
+
+import math
+from itertools import pairwise
+
+import numpy as np
+import pytest
+
+from argo_compiler.errors import Conflict, NotFound
+from argo_compiler.il import (
+    Action,
+    Condition,
+    ConditionType,
+    Group,
+    Mission,
+    Task,
+    TimeWindow,
+    Transition,
+    WaitRule,
+)
+from argo_compiler.model import Pose
+from argo_env.planning import open_site
+from argo_env.planning.opening import OpenedSite
+from argo_env.run.journal import open_journal
+from argo_env.run.session import resume, simulate
+from argo_env.run.spec import RunSpec
+from argo_planner.service.world.description import describe, world_digest
+from argo_planner.service.world.obstacles import Obstacle, with_obstacles
+from argo_planner.service.world.previews import WayKind, preview_mission, preview_way
+
+
+@pytest.fixture(scope="module")
+def site():
+    return open_site("umad")
+
+
+def crate(id, x, y, z, size=(0.4, 0.4, 0.8), yaw=0.3):
+    return Obstacle(id=id, name=f"crate {id}", pose=Pose(x=x, y=y, z=z, yaw=yaw), size=size)
+
+
+def chain(*tasks, **fields):
+    linked = [
+        a.model_copy(update={"transitions": (Transition(target=b.name),)})
+        for a, b in pairwise(tasks)
+    ]
+    return Mission(site="umad", start_area=1, tasks=(*linked, tasks[-1]), **fields)
+
+
+def measure(id, **fields):
+    return Task(name=f"M{id}", action=Action.MEASURE, object_id=str(id), **fields)
+
+
+def waypoint(name, pose, **fields):
+    return Task(name=name, action=Action.WAYPOINT, pose=pose, **fields)
+
+
+def random_tasks(site, rng, count):
+    for k in range(count):
+        velocity = float(rng.choice([0.1, 0.3])) if rng.random() < 0.3 else None
+        if rng.random() < 0.5:
+            chosen = site.site.checkpoints[int(rng.integers(len(site.site.checkpoints)))]
+            yield Task(
+                name=f"T{k}",
+                action=Action.MEASURE,
+                object_id=str(chosen.id),
+                velocity=velocity,
+            )
+        else:
+            places = site.navigator.turning_places(int(rng.integers(1, 4)))
+            x, y, z, _ = places[int(rng.integers(len(places)))].tolist()
+            pose = Pose(x=x, y=y, z=z, yaw=float(rng.uniform(-3, 3)))
+            yield waypoint(f"T{k}", pose, velocity=velocity)
+
+
+def driven(site, mission, drive="route"):
+    spec = RunSpec(mission=mission, site=site.reference, drive=drive, seed=1)
+    return simulate(spec, site)
+
+
+@pytest.mark.parametrize("seed", range(3))
+def test_the_times_are_those_of_the_drive(site, seed):
+    mission = chain(*random_tasks(site, np.random.default_rng(seed), 8))
+    seen, record = preview_mission(site, mission), driven(site, mission)
+    assert not seen.at_least
+    assert [way.target for way in seen.ways] == [run.task for run in record.tasks]
+    for way, run in zip(seen.ways, record.tasks, strict=True):
+        assert run.outcome == "done"
+        assert run.end - run.start == pytest.approx(way.way.time, abs=0.01)
+        assert run.distance == pytest.approx(way.way.distance, abs=0.01)
+        assert run.climbed == pytest.approx(way.way.climb, abs=0.01)
+    assert seen.time == pytest.approx(record.tasks[-1].end, abs=0.1)
+
+
+def test_a_way_is_drawn_from_where_the_robot_is_to_where_it_ends(site):
+    dock = site.site.docks[1]
+    way = preview_way(site, dock, measure(20))
+    assert math.dist(way.points[0][1:4], (dock.x, dock.y, dock.z)) < 0.3
+    assert way.points[-1][1:4] == pytest.approx((way.end.x, way.end.y, way.end.z), abs=1e-3)
+    assert all(a[0] <= b[0] for a, b in pairwise(way.points))
+    length = sum(math.dist(a[1:4], b[1:4]) for a, b in pairwise(way.points))
+    assert length == pytest.approx(way.distance, abs=0.01)
+    assert way.points[-1][0] + way.work == pytest.approx(way.time, abs=0.11)
+    assert preview_way(site, dock, way.end).work == 0
+
+
+def test_what_cant_be_reached_says_why(site):
+    nowhere = Pose(x=100, y=0, z=0)
+    way = preview_way(site, site.site.docks[1], nowhere)
+    assert way.time is None
+    assert "no place that the robot can reach" in way.problem
+    seen = preview_mission(site, chain(waypoint("far", nowhere), measure(1)))
+    assert seen.problems == (f"task 'far': {way.problem}",)
+    assert seen.at_least == ("there is no way to task 'far'",)
+    assert seen.ways[1].way.time > 0
+
+
+def test_branches_rounds_and_waits_are_told_apart(site):
+    hot = Condition(type=ConditionType.ABNORMAL, object_id="1")
+    tasks = (
+        measure(1, transitions=(
+            Transition(target="M3", conditions=(hot,)), Transition(target="M2"),
+        )),
+        measure(2, transitions=(Transition(target="rest"),)),
+        Task(name="rest", action=Action.WAIT, wait=WaitRule(duration=30.0)),
+        measure(3, transitions=(Transition(target="M4"),)),
+        measure(4, window=TimeWindow(earliest=10.0)),
+    )  # fmt: skip
+    groups = (Group(name="round", start="M1", end="M2", max_repeat_count=3),)
+    seen = preview_mission(site, Mission(site="umad", tasks=tasks, groups=groups))
+    told = {(w.source, w.target): w.kind for w in seen.ways}
+    assert told == {
+        (None, "M1"): WayKind.DEFAULT,
+        ("M1", "M2"): WayKind.DEFAULT,
+        ("M2", "rest"): WayKind.DEFAULT,
+        ("M1", "M3"): WayKind.BRANCH,
+        ("M2", "M1"): WayKind.ROUND,
+        ("M3", "M4"): WayKind.OTHER,
+    }
+    assert not seen.at_least
+    assert seen.time == pytest.approx(sum(w.way.time for w in seen.ways[:3]) + 30, abs=0.01)
+    back = preview_way(site, seen.ways[1].way.end, tasks[0])
+    assert back == next(w.way for w in seen.ways if w.kind is WayKind.ROUND)
+
+
+def test_totals_that_leave_something_open_say_so(site):
+    waiting = Task(
+        name="wait",
+        action=Action.WAIT,
+        wait=WaitRule(event="all_clear", limit=60.0),
+        transitions=(Transition(target="M1"),),
+    )
+    late = measure(1, window=TimeWindow(earliest=500.0), transitions=(Transition(target="wait"),))
+    seen = preview_mission(site, Mission(site="umad", tasks=(late, waiting)))
+    assert len(seen.at_least) == 3
+    assert preview_mission(site, Mission(site="umad")).ways == ()
+    broken = measure(1, transitions=(Transition(target="gone"),))
+    with pytest.raises(NotFound, match="no task 'gone'"):
+        preview_mission(site, Mission(site="umad", tasks=(broken,)))
+
+
+def test_ways_and_runs_go_round_an_obstacle_alike(site):
+    start, goal = Pose(x=4.0, y=1.5, z=0.0), Pose(x=4.0, y=10.0, z=0.0, yaw=1.57)
+    free = preview_way(site, start, goal)
+    middle = next(p for p in free.points if p[0] > free.time / 2)
+    before = free.points[free.points.index(middle) - 1]
+    x, y = ((a + b) / 2 for a, b in zip(before[1:3], middle[1:3], strict=True))
+    crates = (crate("a", x, y, 0.0),)
+    round_it = preview_way(site, start, goal, crates)
+    assert round_it.time > free.time
+    tasks = (
+        Task(name="START", action=Action.START, pose=start),
+        waypoint("there", goal),
+    )
+    mission, altered = chain(*tasks), with_obstacles(site, crates)
+    seen = preview_mission(site, mission, crates)
+    for drive in ("route", "kinematic"):
+        record = driven(altered, mission, drive)
+        (run,) = record.tasks
+        assert run.outcome == "done"
+        assert run.end - run.start == pytest.approx(seen.ways[0].way.time, abs=0.1)
+        assert not record.contacts
+        assert not record.anomalies
+    # A plan that does not know of it leads into what is solid there.
+    unaware = OpenedSite.of_navigator(site.navigator.avoiding((), altered.site))
+    touched = driven(unaware, mission, "kinematic").contacts
+    assert {contact.element for contact in touched} == {"obstacle a"}
+
+
+def test_checkpoints_behind_obstacles_are_told(site):
+    whole = describe(site)
+    assert all(c.problem is None and c.stands is not None for c in whole.checkpoints)
+    wall = tuple(
+        crate(f"{tower} {k}", x, y, 0.0, (2.5, 2.5, 2.0), 0.0)
+        for tower, k, x, y in _feet_of_stairs(site)
+    )
+    told = describe(site, wall)
+    assert told.obstacles == wall
+    assert told.digest == world_digest(site, wall) != whole.digest
+    for before, after in zip(whole.checkpoints, told.checkpoints, strict=True):
+        if before.floor > 1:
+            assert after.stands is None
+            assert "can't be" in after.problem or "no way" in after.problem
+            way = preview_way(site, site.site.docks[1], measure(before.id), wall)
+            assert way.problem
+    assert any(c.stands for c in told.checkpoints if c.floor == 1)
+
+
+def _feet_of_stairs(site):
+    for tower in site.site.spec.towers:
+        foot = min(tower.flights, key=lambda f: f.foot[2])
+        yield tower.name, 1, foot.foot[0], foot.foot[1]
+
+
+def test_the_description_is_that_of_the_site(site):
+    told = describe(site)
+    assert told.model_validate_json(told.model_dump_json()) == told
+    assert [f.number for f in told.floors] == [1, 2, 3, 4, 5, 6]
+    for floor in told.floors:
+        x0, y0, x1, y1 = floor.bounds
+        area = sum((p[2] - p[0]) * (p[3] - p[1]) for p in floor.plates)
+        assert 0 < area <= (x1 - x0) * (y1 - y0) + 1e-6
+    for checkpoint in told.checkpoints:
+        away = math.dist(checkpoint.position[:2], (checkpoint.stands.x, checkpoint.stands.y))
+        assert away < site.robot.sensor.max_range + 1.0
+        assert site.site.floor_at(checkpoint.stands.z) == checkpoint.floor
+
+
+def test_a_run_goes_on_among_the_same_obstacles_only(site, tmp_path):
+    place = site.navigator.turning_places(1)[5].tolist()
+    one, other = (
+        with_obstacles(site, (crate("a", *place[:3], (0.4, 0.4, high)),)) for high in (0.8, 0.9)
+    )
+    mission, journal = chain(measure(1)), tmp_path / "run.journal"
+    spec = RunSpec(mission=mission, site=site.reference, drive="route")
+    simulate(spec, one, journal=journal, interrupted=lambda: True)
+    for changed in (site, other):
+        with open_journal(journal) as book, pytest.raises(Conflict, match="alterations"):
+            resume(book, changed)
+    with open_journal(journal) as book:
+        assert resume(book, one).result.success

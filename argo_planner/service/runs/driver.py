@@ -1,0 +1,306 @@
+"""Drives one simulation: lets time pass at its speed, does what people ask, tells what happens."""
+
+from collections.abc import Callable
+
+from argo_compiler.errors import ArgoError, Conflict, NotFound
+from argo_compiler.hfsm import ByHand, Cancel, GiveBack, Occurred, Pause, Resume, TakeOver
+from argo_compiler.hfsm.events import ReadingGiven
+from argo_compiler.il import Action, Task
+from argo_compiler.model import Model
+from argo_env.drives.powertrain import Powertrain
+from argo_env.run.log import Entry
+from argo_env.run.machine import Machine
+from argo_env.run.observer import Observer
+from argo_env.run.record import Reading
+from argo_env.run.simulation import Simulation
+from argo_env.run.steering import DoByHand, ReachIn, Steering, StopByHand, StopRun
+from argo_planner.service.runs import requests as asked
+from argo_planner.service.runs.pace import Pace
+from argo_planner.service.runs.requests import RequestProgress, RequestState, RunRequest
+from argo_planner.service.runs.state import (
+    EntryTold,
+    PoseTold,
+    RequestTold,
+    RunMode,
+    RunState,
+    RunStatus,
+    StateTold,
+    TaskCount,
+)
+
+POSES = 30.0
+"""a second of the clock, at most"""
+STATES = 10.0
+"""likewise, of those that tell nothing but how time goes on"""
+MOST_REQUESTS = 50
+"""that are over and still told"""
+_FREE = ("drive by hand", "measure by hand")
+
+Tell = Callable[[Model], None]
+
+
+class RunTeller(Observer):
+    """Tells the entries of a run, with their numbers. Holds the last readings."""
+
+    def __init__(self, run: str, tell: Tell, past: tuple[Entry, ...] = ()) -> None:
+        self._run, self._tell = run, tell
+        self.count = 0
+        self.readings: dict[int, Reading] = {}
+        self.fresh = True
+        """whether something has been told since this was last set to False"""
+        for entry in past:
+            self._note(entry)
+
+    def on_change(self, entry: Entry, machine: Machine) -> None:  # noqa: ARG002
+        """An entry was made, and the machine has it."""
+        self._note(entry)
+        self._tell(EntryTold.model_construct(run=self._run, number=self.count, entry=entry))
+
+    def _note(self, entry: Entry) -> None:
+        self.count += 1
+        self.fresh = True
+        if entry.reading is not None:
+            self.readings[entry.reading.checkpoint] = entry.reading
+
+
+class RunDriver:
+    """One run under way. Holds the simulation's requests and its pace."""
+
+    def __init__(
+        self,
+        simulation: Simulation,
+        first: RunState,
+        teller: RunTeller,
+        tell: Tell,
+        clock: Callable[[], float],
+    ) -> None:
+        """The run as it stood `first`; the clock tells seconds."""
+        self._simulation = simulation
+        self._state = first.model_copy(update={"status": RunStatus.RUNNING})
+        self._teller = teller
+        self._tell = tell
+        self._clock = clock
+        self._pace = Pace(first.speed, simulation.now, clock())
+        self._requests: dict[str, RequestState] = {}
+        self._awaited: dict[str, Callable[[], bool]] = {}
+        self._by_hand: str | None = None
+        self._skipped: list[ByHand] = []
+        self._posed = self._stated = -1.0
+
+    @property
+    def over(self) -> bool:
+        """Whether the run has ended."""
+        return self._simulation.over
+
+    def turn(self) -> float:
+        """Lets one time step pass if it is due; returns how long (s) nothing has to be done."""
+        waits = self._waits_for_person()
+        left = self._pace.left(self._simulation.now, self._clock(), waits)
+        if left <= 0.0:
+            self._simulation.step()
+            self._look()
+        now = self._clock()
+        if now - self._posed >= 1.0 / POSES:
+            self._posed = now
+            self._tell(self._pose())
+        if self._teller.fresh or now - self._stated >= 1.0 / STATES:
+            self.tell_state()
+        return left
+
+    def ask(self, request: RunRequest, by: str) -> None:
+        """Does what is asked for, or refuses it."""
+        try:
+            until = self._begin(request)
+        except ArgoError as error:
+            self._progress(request.id, request.kind, by, RequestProgress.REFUSED, str(error))
+        else:
+            self._progress(request.id, request.kind, by, RequestProgress.UNDER_WAY)
+            self._awaited[request.id] = until
+        self._look()
+        self.tell_state()
+
+    def tell_state(self) -> None:
+        """Tells how the run stands."""
+        self._stated, self._teller.fresh = self._clock(), False
+        self._tell(StateTold.model_construct(state=self.state()))
+
+    def state(self) -> RunState:
+        """How the run stands."""
+        simulation = self._simulation
+        machine = simulation.machine
+        progress = machine.progress()
+        if simulation.taken_over:
+            mode = RunMode.SUPERVISED
+        elif machine.paused:
+            mode = RunMode.PAUSED
+        else:
+            mode = RunMode.AUTONOMOUS if machine.reaction is None else RunMode.REACTING
+        task = simulation.task
+        return self._state.model_copy(
+            update={
+                "status": RunStatus.ENDED if self.over else RunStatus.RUNNING,
+                "t": simulation.now,
+                "mode": mode,
+                "moving": task is not None,
+                "task": task.name if task else None,
+                "by_hand": simulation.by_hand is not None,
+                "reaction": machine.reaction,
+                "rounds": dict(machine.rounds),
+                "tasks": tuple(TaskCount(**dict(tally)) for tally in progress.tallies),
+                "skipped": tuple(one.task for one in self._skipped),
+                "readings": tuple(self._teller.readings.values()),
+                "charge": self._charge(),
+                "entries": self._teller.count,
+                "requests": tuple(self._requests.values()),
+                "speed": self._pace.speed,
+                "headline": simulation.record().headline if self.over else None,
+            }
+        )
+
+    # ---- requests
+
+    def _begin(self, request: RunRequest) -> Callable[[], bool]:
+        """Begins what is asked for; returns what tells whether it is so."""
+        simulation = self._simulation
+        machine = simulation.machine
+        match request:
+            case asked.ChangeSpeed(speed=speed):
+                self._pace.change(speed, simulation.now, self._clock())
+                return _at_once
+            case asked.SkipTask(task=name):
+                self._skip(name)
+                return _at_once
+            case asked.GiveRobotBack():
+                done = (*simulation.done_by_hand, *self._skipped)
+                simulation.handle(GiveBack(done))
+                self._skipped.clear()
+                return lambda: simulation.over or not simulation.taken_over
+            case asked.TakeRobot():
+                simulation.handle(TakeOver())
+                return lambda: simulation.taken_over and simulation.task is None
+            case asked.PauseRun():
+                simulation.handle(Pause())
+                return lambda: machine.paused and simulation.task is None
+            case asked.GoOnWithRun():
+                if simulation.taken_over:
+                    raise Conflict("a person has the robot: it goes on when they give it back")
+                simulation.handle(Resume())
+                return lambda: simulation.over or not machine.paused
+            case asked.StopByHandNow():
+                simulation.handle(StopByHand())
+                return lambda: simulation.task is None
+            case asked.DoTask() | asked.DriveTo() | asked.MeasureAt():
+                simulation.handle(DoByHand(self._task(request)))
+                self._by_hand = request.id
+                return lambda: simulation.by_hand is None
+            case asked.CancelMission():
+                simulation.handle(Cancel())
+                return lambda: simulation.over
+        simulation.handle(_steering(request))
+        return _at_once
+
+    def _task(self, request: asked.DoTask | asked.DriveTo | asked.MeasureAt) -> Task:
+        """What the robot is to do by hand. Raises NotFound for a task that there is not."""
+        mission = self._simulation.spec.mission
+        if isinstance(request, asked.DoTask):
+            task = mission.task(request.task)
+            if task is None:
+                raise NotFound(f"the mission has no task '{request.task}'")
+            return task
+        drive = isinstance(request, asked.DriveTo)
+        name = _FREE[0 if drive else 1]
+        while mission.task(name) is not None:
+            name += "'"
+        if isinstance(request, asked.DriveTo):
+            return Task(name=name, action=Action.WAYPOINT, pose=request.pose)
+        return Task(name=name, action=Action.MEASURE, object_id=request.checkpoint)
+
+    def _skip(self, name: str) -> None:
+        if not self._simulation.taken_over:
+            raise Conflict("a task is skipped by a person who has the robot: take it over first")
+        task = self._simulation.spec.mission.task(name)
+        if task is None or task.action is Action.START:
+            raise NotFound(f"the mission has no task '{name}' that could be skipped")
+        self._skipped.append(ByHand(task=name, skipped=True))
+
+    def _look(self) -> None:
+        """Confirms what is so by now."""
+        if not self._awaited:
+            return
+        for id, until in [*self._awaited.items()]:
+            if until():
+                del self._awaited[id]
+                known = self._requests[id]
+                progress, reason = RequestProgress.CONFIRMED, None
+                if id == self._by_hand:
+                    self._by_hand = None
+                    progress, reason = self._outcome()
+                self._progress(id, known.kind, known.by, progress, reason)
+            elif self.over:
+                del self._awaited[id]
+                known = self._requests[id]
+                self._progress(
+                    id, known.kind, known.by, RequestProgress.FAILED, "the run has ended before"
+                )
+
+    def _outcome(self) -> tuple[RequestProgress, str | None]:
+        """How what was done by hand last has ended."""
+        last = next(run for run in reversed(self._simulation.record().tasks) if run.by_hand)
+        if last.outcome == "done":
+            return RequestProgress.CONFIRMED, None
+        return RequestProgress.FAILED, last.reason or last.outcome
+
+    def _progress(
+        self, id: str, kind: str, by: str, progress: RequestProgress, reason: str | None = None
+    ) -> None:
+        told = RequestState(id=id, kind=kind, by=by, progress=progress, reason=reason)
+        self._requests.pop(id, None)
+        self._requests[id] = told
+        over = [id for id, known in self._requests.items() if known.over]
+        for old in over[: max(0, len(over) - MOST_REQUESTS)]:
+            del self._requests[old]
+        self._tell(RequestTold(run=self._state.id, request=told))
+
+    # ---- what is told
+
+    def _waits_for_person(self) -> bool:
+        """Whether nothing goes on until somebody tells the run something."""
+        simulation, machine = self._simulation, self._simulation.machine
+        drive = simulation.rig.drive
+        if isinstance(drive, Powertrain) and drive.pressed:
+            return True
+        if simulation.task is not None:
+            return False
+        held = simulation.taken_over or machine.paused
+        return held or (machine.running is None and machine.next_deadline is None)
+
+    def _charge(self) -> float | None:
+        battery = self._simulation.rig.battery
+        return None if battery is None else battery.charge
+
+    def _pose(self) -> PoseTold:
+        pose = self._simulation.pose
+        return PoseTold.model_construct(
+            run=self._state.id,
+            t=self._simulation.now,
+            pose=(pose.x, pose.y, pose.z, pose.yaw, pose.pitch),
+            charge=self._charge(),
+        )
+
+
+def _at_once() -> bool:
+    return True
+
+
+def _steering(request: RunRequest) -> Steering:
+    """What a simulation is told for a request that needs nothing else."""
+    match request:
+        case asked.EndRun():
+            return StopRun()
+        case asked.TellEvent(event=event, detail=detail):
+            return Occurred(event, detail)
+        case asked.TellReading(checkpoint=checkpoint, value=value):
+            return ReadingGiven(checkpoint, value)
+        case asked.BeginFault(fault=fault):
+            return ReachIn(fault)
+    raise AssertionError(f"{request.kind} is begun otherwise")

@@ -1,0 +1,98 @@
+"""The runs of a service on disk: a folder each, with its order, its journal and its report."""
+
+import os
+import re
+from contextlib import suppress
+from pathlib import Path
+
+from pydantic import ValidationError
+
+from argo_compiler.errors import NotFound, Unavailable
+from argo_compiler.model import Model
+from argo_env.files.checked_lines import sync_folder
+from argo_env.run.journal import open_journal
+from argo_env.run.log import Entry
+from argo_planner.service.runs.requests import RunOrder
+from argo_planner.service.runs.state import RunState
+from argo_planner.service.runs.worker import JOURNAL
+
+RUN_ID = r"[0-9]{8}-[0-9]{6}-[0-9a-f]{4}"
+"""what a run's id looks like: when it was begun, in UTC, and something that tells it from others"""
+_KEPT = "run.json"
+
+
+class KeptRun(Model):
+    """A run as it is kept: what was ordered, and how it stood when that last changed much."""
+
+    order: RunOrder
+    state: RunState
+
+
+class RunFolder:
+    """The folder of all runs."""
+
+    def __init__(self, path: Path) -> None:
+        self._path = path
+
+    def make(self, kept: KeptRun) -> Path:
+        """The folder of a new run. Raises Unavailable if it can't be made."""
+        folder = self._path / kept.state.id
+        try:
+            folder.mkdir(parents=True)
+            sync_folder(self._path)
+        except OSError as error:
+            raise Unavailable(f"{folder}: can't be made: {error.strerror}") from error
+        self.keep(kept)
+        return folder
+
+    def keep(self, kept: KeptRun) -> None:
+        """Writes down how a run stands. Raises Unavailable."""
+        path = self.path(kept.state.id) / _KEPT
+        draft = path.with_name(f"{path.name}.new")
+        try:
+            with open(draft, "w", encoding="utf-8") as file:
+                file.write(kept.model_dump_json())
+                file.flush()
+                os.fsync(file.fileno())
+            draft.replace(path)
+            sync_folder(path.parent)
+        except OSError as error:
+            raise Unavailable(f"{path}: can't be written: {error.strerror}") from error
+
+    def all(self) -> list[KeptRun]:
+        """The runs, the newest first."""
+        found = []
+        with suppress(FileNotFoundError):
+            for name in sorted(os.listdir(self._path), reverse=True):
+                if re.fullmatch(RUN_ID, name):
+                    with suppress(OSError, ValidationError):
+                        found.append(self.kept(name))
+        return found
+
+    def kept(self, id: str) -> KeptRun:
+        """How a run stands. Raises OSError or ValidationError where that can't be read."""
+        content = (self.path(id) / _KEPT).read_bytes()
+        return KeptRun.model_validate_json(content)
+
+    def path(self, id: str) -> Path:
+        """The folder of a run. Raises NotFound for what can't be a run's id, or is a link."""
+        path = self._path / id
+        if not re.fullmatch(RUN_ID, id) or os.path.islink(path):
+            raise NotFound(f"there is no run {id[:40]!r}")
+        return path
+
+    def entries(self, id: str) -> tuple[Entry, ...]:
+        """What has happened in a run whose process has ended; nothing where it has not begun.
+
+        Raises ArgoError if its journal can't be read.
+        """
+        path = self.path(id) / JOURNAL
+        if not os.path.lexists(path):
+            return ()
+        with open_journal(path) as journal:
+            return journal.entries
+
+
+def has_ended(entries: tuple[Entry, ...]) -> bool:
+    """Whether a run of these entries is over."""
+    return bool(entries) and entries[-1].ended

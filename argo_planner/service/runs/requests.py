@@ -1,0 +1,192 @@
+"""What people ask of a run, as data, and how far each request is."""
+
+from enum import StrEnum
+from typing import Annotated, Literal
+
+from pydantic import Field
+
+from argo_compiler.il import EventKind, Mission
+from argo_compiler.model import Model, Pose
+from argo_env.faults.kinds import AnyFault
+from argo_planner.service.core.commands import CommandId
+
+SLOWEST, FASTEST = 0.1, 1_000.0
+"""simulated seconds a second"""
+
+Speed = Annotated[float, Field(ge=SLOWEST, le=FASTEST)] | None
+"""simulated seconds a second; None: as fast as possible"""
+
+
+class RunOrder(Model):
+    """A run that is to be begun."""
+
+    plan: str
+    """id of the mission"""
+    revision: int
+    name: str
+    """of the mission, for people"""
+    mission: Mission
+    site: str
+    """what opens it"""
+    drive: str = "kinematic"
+    sensor: str = "ideal"
+    seed: int = Field(default=0, ge=0, le=2**31)
+    values: dict[int, float] = Field(default_factory=dict)
+    """what checkpoints show, where it is not drawn"""
+    faults: tuple[AnyFault, ...] = ()
+    speed: Speed = 1.0
+
+
+class RequestProgress(StrEnum):
+    """How far a request is."""
+
+    ACCEPTED = "accepted"
+    """it is on its way to the robot"""
+    UNDER_WAY = "under way"
+    """the robot has it, and is not yet where it asks for"""
+    CONFIRMED = "confirmed"
+    """it is so"""
+    REFUSED = "refused"
+    """nothing was changed"""
+    FAILED = "failed"
+    """it was begun, and did not come to its end"""
+
+
+class RequestState(Model):
+    """A request, and how far it is."""
+
+    id: CommandId
+    kind: str
+    by: str
+    progress: RequestProgress
+    reason: str | None = None
+    """of a refusal or a failure"""
+
+    @property
+    def over(self) -> bool:
+        return self.progress not in (RequestProgress.ACCEPTED, RequestProgress.UNDER_WAY)
+
+
+class _Request(Model):
+    id: CommandId
+
+
+class PauseRun(_Request):
+    """The mission stands still; confirmed when nothing moves any more."""
+
+    kind: Literal["pause"] = "pause"
+
+
+class GoOnWithRun(_Request):
+    """The mission goes on after a pause, or the run after its process has died."""
+
+    kind: Literal["go_on"] = "go_on"
+
+
+class EndRun(_Request):
+    """The run ends here, whatever it is doing."""
+
+    kind: Literal["stop"] = "stop"
+
+
+class CancelMission(_Request):
+    """The mission ends; the action under way cleans up first."""
+
+    kind: Literal["cancel"] = "cancel"
+
+
+class TakeRobot(_Request):
+    """A person takes the robot over; confirmed when it stands still."""
+
+    kind: Literal["take_over"] = "take_over"
+
+
+class GiveRobotBack(_Request):
+    """The person gives the robot back: what was done by hand or skipped is passed over."""
+
+    kind: Literal["give_back"] = "give_back"
+
+
+class DoTask(_Request):
+    """By hand: a task of the mission."""
+
+    kind: Literal["do_task"] = "do_task"
+    task: str
+
+
+class DriveTo(_Request):
+    """By hand: to a place."""
+
+    kind: Literal["drive_to"] = "drive_to"
+    pose: Pose
+
+
+class MeasureAt(_Request):
+    """By hand: a checkpoint."""
+
+    kind: Literal["measure"] = "measure"
+    checkpoint: str
+
+
+class StopByHandNow(_Request):
+    """What the robot does by hand is stopped; confirmed when it stands still."""
+
+    kind: Literal["stop_by_hand"] = "stop_by_hand"
+
+
+class SkipTask(_Request):
+    """The next visit of a task is left out; it counts when the robot is given back."""
+
+    kind: Literal["skip"] = "skip"
+    task: str
+
+
+class ChangeSpeed(_Request):
+    """How fast the simulation goes."""
+
+    kind: Literal["speed"] = "speed"
+    speed: Speed
+
+
+class TellEvent(_Request):
+    """Something has happened that the mission may react to."""
+
+    kind: Literal["event"] = "event"
+    event: EventKind
+    detail: str = Field(default="", max_length=1_000)
+
+
+class TellReading(_Request):
+    """Somebody tells what a checkpoint shows."""
+
+    kind: Literal["reading"] = "reading"
+    checkpoint: str
+    value: float
+
+
+class BeginFault(_Request):
+    """Something goes wrong from now on, in the simulation."""
+
+    kind: Literal["fault"] = "fault"
+    fault: AnyFault
+
+
+RunRequest = Annotated[
+    PauseRun
+    | GoOnWithRun
+    | EndRun
+    | CancelMission
+    | TakeRobot
+    | GiveRobotBack
+    | DoTask
+    | DriveTo
+    | MeasureAt
+    | StopByHandNow
+    | SkipTask
+    | ChangeSpeed
+    | TellEvent
+    | TellReading
+    | BeginFault,
+    Field(discriminator="kind"),
+]
+"""all that can be asked of a run, told apart by `kind`"""

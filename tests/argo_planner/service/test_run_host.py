@@ -1,0 +1,265 @@
+"""Runs in processes of their own: what they are asked, what they tell, and what kills leave."""
+
+import asyncio
+import json
+import os
+import signal
+from collections.abc import Awaitable, Callable
+from datetime import UTC, datetime
+from pathlib import Path
+
+import pytest
+
+from argo_compiler.errors import Conflict, NotFound
+from argo_compiler.script import import_script
+from argo_env.planning.opening import OpenedSite
+from argo_env.run.record import RunRecord
+from argo_env.run.session import simulate
+from argo_env.run.spec import RunSpec
+from argo_planner.service.rooms.mailbox import Mailbox
+from argo_planner.service.runs import requests as asked
+from argo_planner.service.runs.host import AfterRestart, RunHost
+from argo_planner.service.runs.requests import RunOrder
+from argo_planner.service.runs.state import RunMode, RunStatus
+
+SCRIPT = (
+    "Mission Protocol #1\n1. Set the starting point in starting area 1.\n2. Check valve R18.\n"
+    "3. Check valve R25.\n4. Return to the docking station in starting area 1.\n"
+)
+
+
+def now() -> datetime:
+    return datetime.now(UTC)
+
+
+def order(site: OpenedSite, **other: object) -> RunOrder:
+    mission = import_script(SCRIPT, site.catalog).mission
+    fields = {"drive": "route", "speed": None, "seed": 4} | other
+    return RunOrder(
+        plan="0" * 12, revision=3, name="Round", mission=mission, site=site.reference, **fields
+    )
+
+
+def play(folder: Path, script: Callable[[RunHost], Awaitable[None]], after: str = "wait") -> None:
+    """Lets a script play with a host."""
+
+    async def playing() -> None:
+        host = RunHost(folder, AfterRestart(after), now)
+        await host.open()
+        try:
+            async with asyncio.timeout(120):
+                await script(host)
+        finally:
+            await host.close()
+
+    asyncio.run(playing())
+
+
+async def until(_: RunHost, so: Callable[[], bool]) -> None:
+    while not so():
+        await asyncio.sleep(0.01)
+
+
+async def done(host: RunHost, request: asked.RunRequest, by: str = "ann") -> str:
+    """Asks for something; how it has ended."""
+    state = host.state
+    assert state is not None
+    await host.ask(state.id, request, by)
+    await until(host, lambda: host.request(state.id, request.id).over)
+    return host.request(state.id, request.id).progress
+
+
+async def told(mailbox: Mailbox, kind: str) -> list[dict]:
+    found = []
+    while True:
+        try:
+            message = json.loads(await asyncio.wait_for(mailbox.take(), 0.05))
+        except TimeoutError:
+            return found
+        if message["kind"] == kind:
+            found.append(message)
+
+
+def ended(host: RunHost) -> Callable[[], bool]:
+    return lambda: host.state is not None and host.state.status is RunStatus.ENDED
+
+
+async def reported(host: RunHost) -> RunRecord:
+    assert host.state is not None
+    path = host.folder.path(host.state.id) / "report.html"
+    await until(host, lambda: os.path.exists(path))
+    return RunRecord.model_validate_json((path.parent / "report.json").read_bytes())
+
+
+def test_a_run_is_that_of_the_simulation(tmp_path, site) -> None:
+    wanted = order(site)
+    spec = RunSpec(mission=wanted.mission, site=site.reference, drive="route", seed=4)
+    alone = simulate(spec, site)
+
+    async def script(host: RunHost) -> None:
+        follower = host.follow("1")
+        begun = await host.start(wanted, "ann")
+        assert begun.status is RunStatus.PREPARING
+        await until(host, ended(host))
+        state = host.state
+        assert state is not None
+        assert state.headline == alone.headline
+        assert {t.task: t.done for t in state.tasks} == {
+            run.task: 1 for run in alone.tasks if run.task in {t.name for t in wanted.mission.tasks}
+        }
+        assert [r.value for r in state.readings] == [r.value for r in alone.readings]
+        entries = await told(follower, "entry")
+        assert [entry["number"] for entry in entries] == [*range(1, state.entries + 1)]
+        assert await reported(host) == alone
+
+    play(tmp_path, script)
+
+
+def test_a_second_run_is_refused_with_who_has_the_robot(tmp_path, site) -> None:
+    async def script(host: RunHost) -> None:
+        await host.start(order(site, speed=1.0), "ann")
+        with pytest.raises(Conflict, match="ann has begun run"):
+            await host.start(order(site), "bob")
+        assert host.state is not None
+        await until(host, lambda: host.state.status is RunStatus.RUNNING)
+        assert await done(host, asked.EndRun(id="s")) == "confirmed"
+        await until(host, ended(host))
+        await host.start(order(site), "bob")
+        await until(host, ended(host))
+        assert host.state.by == "bob"
+        assert [kept.state.by for kept in host.folder.all()] == ["bob", "ann"]
+
+    play(tmp_path, script)
+
+
+def test_paused_is_said_only_when_nothing_moves(tmp_path, site) -> None:
+    async def script(host: RunHost) -> None:
+        await host.start(order(site, speed=20.0), "ann")
+        await until(host, lambda: bool(host.state and host.state.moving and host.state.t > 5))
+        run = host.state.id
+        follower = host.follow("1", host.state.entries)
+        accepted = await host.ask(run, asked.PauseRun(id="p"), "ann")
+        assert accepted.progress == "accepted"
+        again = await host.ask(run, asked.PauseRun(id="p"), "ann")
+        assert again.id == "p"
+        await until(host, lambda: host.request(run, "p").over)
+        steps = [m["request"]["progress"] for m in await told(follower, "request")]
+        assert steps == ["accepted", "under way", "confirmed"]
+        await until(host, lambda: host.state.mode is RunMode.PAUSED)
+        assert not host.state.moving
+        with pytest.raises(Conflict, match="id p"):
+            await host.ask(run, asked.TakeRobot(id="p"), "ann")
+        assert await done(host, asked.ChangeSpeed(id="f", speed=None)) == "confirmed"
+        at = host.state.t
+        await asyncio.sleep(0.5)
+        assert host.state.t < at + 5, "time runs away while a person is waited for"
+        assert await done(host, asked.GoOnWithRun(id="g")) == "confirmed"
+        await until(host, ended(host))
+        assert host.state.headline is not None
+        assert host.state.headline.word == "Success"
+        with pytest.raises(Conflict, match="is over"):
+            await host.ask(run, asked.PauseRun(id="q"), "ann")
+
+    play(tmp_path, script)
+
+
+def test_a_person_takes_over_drives_measures_skips_and_gives_back(tmp_path, site) -> None:
+    async def script(host: RunHost) -> None:
+        wanted = order(site, speed=None)
+        await host.start(order(site, speed=20.0), "ann")
+        await until(host, lambda: bool(host.state and host.state.moving and host.state.t > 3))
+        refused = [
+            asked.SkipTask(id="1", task="MEASURE 1"),
+            asked.DoTask(id="2", task="MEASURE 1"),
+            asked.StopByHandNow(id="3"),
+        ]
+        for request in refused:
+            assert await done(host, request) == "refused", request
+        assert await done(host, asked.TakeRobot(id="t")) == "confirmed"
+        assert await done(host, asked.ChangeSpeed(id="f", speed=None)) == "confirmed"
+        first, second = [t for t in wanted.mission.tasks if t.action == "MEASURE"]
+        assert await done(host, asked.DoTask(id="4", task="nobody")) == "refused"
+        assert await done(host, asked.DoTask(id="5", task=first.name)) == "confirmed"
+        assert await done(host, asked.MeasureAt(id="6", checkpoint=second.object_id)) == "confirmed"
+        assert await done(host, asked.SkipTask(id="7", task=second.name)) == "confirmed"
+        await until(host, lambda: host.state.skipped == (second.name,))
+        assert host.state.mode is RunMode.SUPERVISED
+        assert len(host.state.readings) == 2
+        assert await done(host, asked.GoOnWithRun(id="8")) == "refused"
+        assert await done(host, asked.GiveRobotBack(id="9")) == "confirmed"
+        await until(host, ended(host))
+        assert {t.task: (t.done, t.by_hand) for t in host.state.tasks if t.by_hand} == {
+            first.name: (0, 1),
+            second.name: (0, 1),
+        }
+        record = await reported(host)
+        assert sum(run.by_hand for run in record.tasks) == 2
+
+    play(tmp_path, script)
+
+
+def test_a_run_goes_on_when_its_process_was_killed(tmp_path, site) -> None:
+    spec = RunSpec(mission=order(site).mission, site=site.reference, drive="route", seed=4)
+    alone = simulate(spec, site)
+
+    async def script(host: RunHost) -> None:
+        await host.start(order(site, speed=50.0), "ann")
+        await until(host, lambda: bool(host.state and host.state.t > 10))
+        process = host._worker._process
+        os.kill(process.pid, signal.SIGKILL)
+        await until(host, lambda: host.state.status is RunStatus.INTERRUPTED)
+        assert "signal 9" in host.state.problem
+        with pytest.raises(Conflict, match="interrupted"):
+            await host.ask(host.state.id, asked.PauseRun(id="p"), "ann")
+        with pytest.raises(Conflict, match="ann has begun"):
+            await host.start(order(site), "bob")
+        assert await done(host, asked.GoOnWithRun(id="g")) == "confirmed"
+        await until(host, ended(host))
+        record = await reported(host)
+        assert [(r.task, r.value) for r in record.readings] == [
+            (r.task, r.value) for r in alone.readings
+        ]
+        assert record.resumed
+
+    play(tmp_path, script)
+
+
+@pytest.mark.parametrize("after", ["go-on", "wait"])
+def test_a_service_that_begins_again_finds_its_run(tmp_path, site, after: str) -> None:
+    async def begin(host: RunHost) -> None:
+        await host.start(order(site, speed=50.0), "ann")
+        await until(host, lambda: bool(host.state and host.state.t > 10))
+
+    async def find(host: RunHost) -> None:
+        state = host.state
+        assert state is not None
+        if after == "wait":
+            assert state.status is RunStatus.INTERRUPTED
+            assert "the service has ended" in state.problem
+            assert await done(host, asked.GoOnWithRun(id="g")) == "confirmed"
+        assert await done_by_itself(host) == "Success"
+        known, entries = host.entries(state.id, 0)
+        assert known == len(entries) == host.state.entries
+        with pytest.raises(NotFound):
+            host.entries("20200101-000000-0000", 0)
+
+    play(tmp_path, begin)
+    play(tmp_path, find, after)
+
+
+async def done_by_itself(host: RunHost) -> str:
+    await until(host, ended(host))
+    assert host.state is not None
+    assert host.state.headline is not None
+    return host.state.headline.word
+
+
+def test_what_can_not_be_run_is_said(tmp_path, site) -> None:
+    async def script(host: RunHost) -> None:
+        await host.start(order(site, drive="flying"), "ann")
+        await until(host, lambda: host.state.status is RunStatus.INTERRUPTED)
+        assert "no drive `flying`" in host.state.problem
+        assert await done(host, asked.EndRun(id="s")) == "confirmed"
+        assert host.state.status is RunStatus.ENDED
+
+    play(tmp_path, script)

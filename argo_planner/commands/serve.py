@@ -51,6 +51,14 @@ def serve_plans(
             help="a token a line, with its role (view, plan, operate) and who has it",
         ),
     ] = None,
+    after_restart: Annotated[
+        str,
+        typer.Option(
+            "--after-restart",
+            metavar="go-on|wait",
+            help="what becomes of a run that was under way when the service was killed",
+        ),
+    ] = "wait",
     allow_host: Annotated[
         list[str] | None,
         typer.Option("--allow-host", metavar="NAME", help="a name under which it is asked for"),
@@ -64,6 +72,7 @@ def serve_plans(
 ) -> None:
     """Serve the missions of a folder to many people at once."""
     try:
+        from argo_planner.service.runs.host import AfterRestart
         from argo_planner.service.web.access import (
             AccessToken,
             TokenBook,
@@ -74,6 +83,8 @@ def serve_plans(
         from argo_planner.service.web.serving import ServiceOrder, listen, open_folder, serve
     except ImportError as error:
         raise Unavailable(f"the service needs {error.name}: {install_line('planner')}") from None
+    if after_restart not in list(AfterRestart):
+        raise Invalid(f"--after-restart {after_restart}: choose from {', '.join(AfterRestart)}")
     own = _is_own(host)
     if token is None and token_file is None and not own:
         raise Invalid(f"--host {host}: others can reach this address: give --token or --token-file")
@@ -98,7 +109,8 @@ def serve_plans(
     console.print(f"Site {opened.name}, missions in {folder}. Open {address}")
     console.print("Ctrl-C ends the service; what was acknowledged is kept.")
     with suppress(KeyboardInterrupt):
-        serve(ServiceOrder(plans, opened, TokenBook(tokens), doors), listening)
+        order = ServiceOrder(plans, opened, TokenBook(tokens), doors, AfterRestart(after_restart))
+        serve(order, listening)
 
 
 def _is_own(host: str) -> bool:

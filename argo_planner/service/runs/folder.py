@@ -65,14 +65,17 @@ class RunFolder:
         with suppress(FileNotFoundError):
             for name in sorted(os.listdir(self._path), reverse=True):
                 if re.fullmatch(RUN_ID, name):
-                    with suppress(OSError, ValidationError):
+                    with suppress(NotFound):
                         found.append(self.kept(name))
         return found
 
     def kept(self, id: str) -> KeptRun:
-        """How a run stands. Raises OSError or ValidationError where that can't be read."""
-        content = (self.path(id) / _KEPT).read_bytes()
-        return KeptRun.model_validate_json(content)
+        """How a run stands. Raises NotFound if there is none, or that can't be read."""
+        try:
+            content = (self.path(id) / _KEPT).read_bytes()
+            return KeptRun.model_validate_json(content)
+        except (OSError, ValidationError):
+            raise NotFound(f"there is no run {id}, or what is kept of it is damaged") from None
 
     def path(self, id: str) -> Path:
         """The folder of a run. Raises NotFound for what can't be a run's id, or is a link."""
@@ -86,6 +89,7 @@ class RunFolder:
 
         Raises ArgoError if its journal can't be read.
         """
+        self.kept(id)
         path = self.path(id) / JOURNAL
         if not os.path.lexists(path):
             return ()

@@ -24,6 +24,7 @@ from argo_planner.service.runs.requests import (
     RunRequest,
 )
 from argo_planner.service.runs.state import (
+    EntryList,
     EntryTold,
     PoseTold,
     RequestTold,
@@ -156,6 +157,15 @@ class RunHost:
         """How many entries there are, and those after the first `since`, as JSON."""
         self._of(run)
         return len(self._entries), self._entries[since:]
+
+    async def history(self, run: str, since: int, most: int) -> EntryList:
+        """What has happened in a run after the first `since` entries. Raises NotFound."""
+        state = self.state
+        if state is not None and state.id == run:
+            told = [EntryTold.model_validate_json(t) for t in self._entries[since : since + most]]
+            return EntryList(count=len(self._entries), entries=tuple(one.entry for one in told))
+        entries = await asyncio.to_thread(self._folder.entries, run)
+        return EntryList(count=len(entries), entries=entries[since : since + most])
 
     def follow(self, client: str, since: int | None = None) -> Mailbox:
         """Somebody follows the robot's runs: first how it stands, then the entries after that

@@ -96,6 +96,14 @@ class RunState(Model):
     """why it was interrupted or could not begin"""
 
 
+class EntryList(Model):
+    """What has happened in a run, in order."""
+
+    count: int
+    """of all there are by now"""
+    entries: tuple[Entry, ...]
+
+
 class EntryTold(Model):
     """Something has happened; none of these is ever left out."""
 

@@ -36,12 +36,12 @@ async def follow(
     service: PlanningService = socket.app.state.service
     visitor: Visitor = socket.scope["visitor"]
     try:
-        _require_room_for_one_more(socket)
+        require_socket(socket)
         room = await service.rooms.open(id)
     except ArgoError as error:
         await socket.send_denial_response(answer(problem_of(error)))
         return
-    client = f"c{next(_NUMBERS)}"
+    client = socket_client()
     await socket.accept()
     try:
         mailbox = room.join(client, visitor.author, since)
@@ -58,8 +58,13 @@ async def follow(
         room.leave(client)
 
 
-def _require_room_for_one_more(socket: WebSocket) -> None:
-    """Raises Unavailable."""
+def socket_client() -> str:
+    """What a connection is called."""
+    return f"c{next(_NUMBERS)}"
+
+
+def require_socket(socket: WebSocket) -> None:
+    """Raises Unavailable if no more connections are taken."""
     state = socket.app.state
     if getattr(state, "sockets", 0) >= MOST_SOCKETS:
         raise Unavailable(f"{MOST_SOCKETS} pages are open already: close some of them")

@@ -56,10 +56,12 @@ OF_MISSION = {
         "read_back",
         "read_analysis",
         "write_script",
+        "suggest_order",
+        "start_run",
     )
 }
 ETAG = "$response.header.ETag"
-for _name in ("carry_out_command", "keep_version", "write_script"):
+for _name in ("carry_out_command", "keep_version", "write_script", "start_run"):
     OF_MISSION[_name]["parameters"]["If-Match"] = ETAG
 
 router = APIRouter(

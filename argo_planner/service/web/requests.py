@@ -16,6 +16,7 @@ from argo_compiler.model import Model
 from argo_env.planning.opening import OpenedSite
 from argo_planner.service.jobs.jobs import Jobs
 from argo_planner.service.rooms.rooms import PlanRooms
+from argo_planner.service.runs.host import RunHost
 from argo_planner.service.storage.folder import PLAN_ID
 from argo_planner.service.web.access import AccessRole, Visitor
 from argo_planner.service.web.problems import RevisionMissing
@@ -31,6 +32,7 @@ class PlanningService:
     folder: FilePath
     rooms: PlanRooms
     jobs: Jobs
+    runs: RunHost
     started: datetime
 
 

@@ -16,6 +16,7 @@ from argo_env.planning.opening import OpenedSite
 from argo_planner.service.jobs.analysis import Analyst
 from argo_planner.service.jobs.jobs import Jobs, OrderJob
 from argo_planner.service.rooms.rooms import PlanRooms
+from argo_planner.service.runs.host import AfterRestart, RunHost
 from argo_planner.service.storage.folder import PlanFolder
 from argo_planner.service.web.access import TokenBook
 from argo_planner.service.web.app import Opened, guarded, make_app
@@ -32,6 +33,8 @@ class ServiceOrder:
     site: OpenedSite
     tokens: TokenBook
     doors: Doors
+    after_restart: AfterRestart = AfterRestart.WAIT
+    """what becomes of a run that was under way when the service was killed"""
 
 
 def open_folder(path: Path) -> PlanFolder:
@@ -39,7 +42,9 @@ def open_folder(path: Path) -> PlanFolder:
     return PlanFolder(path, partial(secrets.token_hex, 6))
 
 
-def opened_service(plans: PlanFolder, site: OpenedSite) -> Opened:
+def opened_service(
+    plans: PlanFolder, site: OpenedSite, after_restart: AfterRestart = AfterRestart.WAIT
+) -> Opened:
     """What opens the service with the plans of a folder, and closes both again."""
 
     @asynccontextmanager
@@ -53,9 +58,12 @@ def opened_service(plans: PlanFolder, site: OpenedSite) -> Opened:
                     room.tell_of(job)
 
             jobs = Jobs(site.reference, partial(secrets.token_hex, 6), _now, tell)
+            runs = RunHost(plans.path / "runs", after_restart, _now)
+            await runs.open()
             try:
-                yield PlanningService(site, plans.path, rooms, jobs, _now())
+                yield PlanningService(site, plans.path, rooms, jobs, runs, _now())
             finally:
+                await runs.close()
                 await jobs.close()
                 await rooms.close()
         finally:
@@ -78,7 +86,7 @@ def listen(host: str, port: int) -> socket.socket:
 def serve(order: ServiceOrder, listening: socket.socket) -> None:
     """Serves at a socket until a signal ends it."""
     raise_file_limit()
-    app = make_app(opened_service(order.plans, order.site))
+    app = make_app(opened_service(order.plans, order.site, order.after_restart))
     guard = guarded(app, order.tokens, order.doors)
     uvicorn.Server(uvicorn.Config(guard, **server_options())).run(sockets=[listening])
 

@@ -1,0 +1,211 @@
+"""Runs: begun, asked, followed; and those that were."""
+
+from typing import Annotated
+
+from fastapi import APIRouter, Path, Query, Response, WebSocket
+from pydantic import Field
+
+from argo_compiler.errors import ArgoError, NotFound
+from argo_compiler.model import Model
+from argo_env.faults.kinds import AnyFault
+from argo_env.report.files import PAGE, RECORD
+from argo_planner.service.core.refusals import StaleRevision
+from argo_planner.service.runs.requests import RequestState, RunOrder, RunRequest, Speed
+from argo_planner.service.runs.state import EntryList, RunState
+from argo_planner.service.web.live import carry, require_socket, socket_client
+from argo_planner.service.web.missions import sound
+from argo_planner.service.web.problems import StaleCommand, answer, documented, problem_of
+from argo_planner.service.web.requests import (
+    KEYS,
+    MadeOn,
+    Operator,
+    PlanId,
+    PlanningService,
+    Service,
+    Viewer,
+    created,
+    link,
+    said,
+)
+
+router = APIRouter(
+    prefix="/api",
+    tags=["runs"],
+    dependencies=KEYS,
+    responses=documented(400, 401, 403, 404, 409, 413, 422, 503),
+)
+
+RunId = Annotated[str, Path(pattern=r"^[0-9]{8}-[0-9]{6}-[0-9a-f]{4}$", description="of the run")]
+_RUN = {
+    name: link(name, run="$response.body#/id")
+    for name in ("read_run", "ask_run", "list_entries", "read_report")
+}
+MOST_ENTRIES = 1_000
+"""in one answer"""
+
+
+class RunAsked(Model):
+    """How a mission is to be driven."""
+
+    drive: str = Field(default="kinematic", max_length=40)
+    sensor: str = Field(default="ideal", max_length=40)
+    seed: int = Field(default=0, ge=0, le=2**31)
+    values: dict[int, float] = Field(default_factory=dict, max_length=1_000)
+    """what checkpoints show, by number, where it is not drawn"""
+    faults: tuple[AnyFault, ...] = Field(default=(), max_length=100)
+    speed: Speed = 1.0
+
+
+class RunList(Model):
+    """Runs, the newest ones first."""
+
+    runs: tuple[RunState, ...]
+
+
+@router.post(
+    "/missions/{id}/runs",
+    operation_id="start_run",
+    status_code=201,
+    response_model=RunState,
+    responses=documented(412, 428) | {201: created(RunState, _RUN)},
+)
+async def start_run(
+    service: Service, visitor: Operator, id: PlanId, run: RunAsked, made_on: MadeOn
+) -> Response:
+    """Begins a run of the mission as it stands; 409 with who has the robot if there is one."""
+    document = (await service.rooms.open(id)).document
+    plan = document.plan
+    if made_on is not None and made_on != plan.revision:
+        raise StaleCommand(StaleRevision(made_on, plan.revision), plan.since(made_on))
+    sound(document, service.site)
+    order = RunOrder(
+        plan=id,
+        revision=plan.revision,
+        name=document.name,
+        mission=plan.mission,
+        site=service.site.reference,
+        **dict(run),
+    )
+    state = await service.runs.start(order, visitor.author)
+    return said(state, 201, location=f"/api/runs/{state.id}")
+
+
+@router.get("/runs", operation_id="list_runs", response_model=RunList)
+async def list_runs(service: Service, _: Viewer) -> Response:
+    """The present run and those before it."""
+    present = service.runs.state
+    kept = [k.state for k in service.runs.folder.all() if not present or k.state.id != present.id]
+    return said(RunList(runs=(*([present] if present else []), *kept)))
+
+
+@router.get("/runs/{run}", operation_id="read_run", response_model=RunState)
+async def read_run(service: Service, _: Viewer, run: RunId) -> Response:
+    """How a run stands, or how it ended."""
+    return said(_state(service, run))
+
+
+@router.post(
+    "/runs/{run}/requests",
+    operation_id="ask_run",
+    status_code=202,
+    response_model=RequestState,
+    responses={
+        202: created(
+            RequestState,
+            {
+                "read_request": link(
+                    "read_request", run="$request.path.run", request="$response.body#/id"
+                )
+            },
+        )
+    },
+)
+async def ask_run(service: Service, visitor: Operator, run: RunId, request: RunRequest) -> Response:
+    """Asks something of the present run. That it was accepted does not say that it is so: follow
+    how far it is."""
+    state = await service.runs.ask(run, request, visitor.author)
+    return said(state, 202, location=f"/api/runs/{run}/requests/{state.id}")
+
+
+@router.get(
+    "/runs/{run}/requests/{request}", operation_id="read_request", response_model=RequestState
+)
+async def read_request(
+    service: Service,
+    _: Viewer,
+    run: RunId,
+    request: Annotated[str, Path(pattern=r"^[A-Za-z0-9._:-]{1,64}$")],
+) -> Response:
+    """How far a request to the present run is."""
+    return said(service.runs.request(run, request))
+
+
+@router.get("/runs/{run}/entries", operation_id="list_entries", response_model=EntryList)
+async def list_entries(
+    service: Service,
+    _: Viewer,
+    run: RunId,
+    since: Annotated[int, Query(ge=0, le=10**9, description="so many are known")] = 0,
+    most: Annotated[int, Query(ge=1, le=MOST_ENTRIES)] = MOST_ENTRIES,
+) -> Response:
+    """What has happened in a run."""
+    return said(await service.runs.history(run, since, most))
+
+
+@router.get(
+    "/runs/{run}/report/{file}",
+    operation_id="read_report",
+    response_class=Response,
+    responses={
+        200: {
+            "description": "the file",
+            "content": {
+                media: {"schema": {"type": "string", "format": "binary"}}
+                for media in ("text/html", "application/json", "image/png")
+            },
+        }
+    },
+)
+async def read_report(
+    service: Service, _: Viewer, run: RunId, file: Annotated[str, Path(max_length=40)]
+) -> Response:
+    """A file of the report of a run that has ended: report.html, report.json or site.png."""
+    media = {PAGE: "text/html", RECORD: "application/json", "site.png": "image/png"}
+    _state(service, run)
+    path = service.runs.folder.path(run) / file
+    if file not in media:
+        raise NotFound(f"the report has no file {file!r}; it has: {', '.join(media)}")
+    try:
+        content = path.read_bytes()
+    except FileNotFoundError:
+        raise NotFound(f"run {run} has no report yet: it is made when the run has ended") from None
+    return Response(content, media_type=media[file])
+
+
+socket_router = APIRouter()
+
+
+@socket_router.websocket("/api/robot/live")
+async def follow_robot(socket: WebSocket, since: Annotated[int | None, Query(ge=0)] = None) -> None:
+    """How the present run stands, its entries after that number, then all that happens."""
+    service: PlanningService = socket.app.state.service
+    try:
+        require_socket(socket)
+    except ArgoError as error:
+        await socket.send_denial_response(answer(problem_of(error)))
+        return
+    await socket.accept()
+    client = socket_client()
+    mailbox = service.runs.follow(client, since)
+    try:
+        await carry(socket, mailbox, lambda _: None)
+    finally:
+        service.runs.leave(client)
+
+
+def _state(service: PlanningService, run: str) -> RunState:
+    """Raises NotFound."""
+    present = service.runs.state
+    if present is not None and present.id == run:
+        return present
+    return service.runs.folder.kept(run).state

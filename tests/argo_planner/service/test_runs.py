@@ -1,0 +1,138 @@
+"""Runs over HTTP and WebSockets, from their beginning to their report."""
+
+import json
+import time
+
+import pytest
+from websockets.exceptions import InvalidStatus
+
+from tests.argo_planner.service.served import ALL, SECRETS, Served
+from tests.argo_planner.service.test_http import problem
+from tests.argo_planner.service.test_run_host import SCRIPT
+
+
+@pytest.fixture(scope="module")
+def id(service: Served) -> str:
+    params = {"filename": "m.txt", "start_area": 1}
+    made = service.client.post("/api/imports", params=params, content=SCRIPT)
+    assert made.status_code == 201, made.text
+    return made.json()["id"]
+
+
+def start(service: Served, id: str, **other: object) -> dict:
+    begun = service.client.post(
+        f"/api/missions/{id}/runs",
+        json={"drive": "route", "seed": 4} | other,
+        headers={"if-match": '"1"'},
+    )
+    assert begun.status_code == 201, begun.text
+    assert begun.headers["location"] == f"/api/runs/{begun.json()['id']}"
+    return begun.json()
+
+
+def state(service: Served, run: str) -> dict:
+    return service.client.get(f"/api/runs/{run}").json()
+
+
+def wait(service: Served, run: str, **wanted: object) -> dict:
+    while True:
+        found = state(service, run)
+        if all(found[name] == value for name, value in wanted.items()):
+            return found
+        assert found["status"] != "interrupted", found
+        time.sleep(0.05)
+
+
+def ask(service: Served, run: str, kind: str, **fields: object) -> dict:
+    """Asks for something and waits for how it ends."""
+    request = {"kind": kind, "id": f"{kind}-{time.monotonic_ns()}"} | fields
+    accepted = service.client.post(f"/api/runs/{run}/requests", json=request)
+    assert accepted.status_code == 202, accepted.text
+    while True:
+        found = service.client.get(accepted.headers["location"]).json()
+        if found["progress"] not in ("accepted", "under way"):
+            return found
+        time.sleep(0.02)
+
+
+def test_a_run_is_begun_followed_steered_and_reported(service: Served, id: str) -> None:
+    live = service.socket("/api/robot/live", {"authorization": f"Bearer {ALL}"})
+    assert json.loads(live.recv())["kind"] == "state"
+    run = start(service, id, speed=20.0)["id"]
+    refused = service.as_("bob").post(
+        f"/api/missions/{id}/runs", json={}, headers={"if-match": "*"}
+    )
+    assert "ann has begun run" in problem(refused, 409, "conflict")["detail"]
+    wait(service, run, moving=True)
+    assert ask(service, run, "pause")["progress"] == "confirmed"
+    assert not wait(service, run, mode="paused")["moving"]
+    assert ask(service, run, "take_over")["progress"] == "confirmed"
+    wrong = ask(service, run, "measure", checkpoint="99")
+    assert wrong["progress"] == "refused"
+    assert "99" in wrong["reason"]
+    assert ask(service, run, "give_back")["progress"] == "confirmed"
+    assert ask(service, run, "speed", speed=None)["progress"] == "confirmed"
+    ended = wait(service, run, status="ended")
+    assert ended["headline"]["word"] == "Success"
+    kinds = set()
+    numbers: list[int] = []
+    while len(numbers) < ended["entries"]:
+        message = json.loads(live.recv(timeout=30))
+        kinds.add(message["kind"])
+        if message["kind"] == "entry":
+            numbers.append(message["number"])
+    assert numbers == [*range(1, ended["entries"] + 1)]
+    assert kinds >= {"state", "pose", "entry", "request"}
+    late = service.socket(f"/api/robot/live?since={ended['entries'] - 3}", auth())
+    heard = [json.loads(late.recv(timeout=30)) for _ in range(4)]
+    assert [message.get("number") for message in heard] == [None, *numbers[-3:]]
+    entries = service.client.get(f"/api/runs/{run}/entries", params={"since": 2, "most": 3}).json()
+    assert entries["count"] == ended["entries"]
+    assert len(entries["entries"]) == 3
+    while (page := service.client.get(f"/api/runs/{run}/report/report.html")).status_code == 404:
+        time.sleep(0.1)
+    assert page.headers["content-type"].startswith("text/html")
+    assert service.client.get(f"/api/runs/{run}/report/report.json").json()["seed"] == 4
+    problem(service.client.get(f"/api/runs/{run}/report/run.journal"), 404, "not-found")
+    over = service.client.post(f"/api/runs/{run}/requests", json={"kind": "pause", "id": "late"})
+    problem(over, 409, "conflict")
+    listed = service.client.get("/api/runs").json()["runs"]
+    assert [one["id"] for one in listed].count(run) == 1
+    live.close()
+    late.close()
+
+
+def auth() -> dict[str, str]:
+    return {"authorization": f"Bearer {ALL}"}
+
+
+def test_the_run_goes_on_when_nobody_looks(service: Served, id: str) -> None:
+    live = service.socket("/api/robot/live", auth())
+    run = start(service, id, speed=None)["id"]
+    live.close()
+    wait(service, run, status="ended")
+
+
+def test_only_operators_steer(service: Served, id: str) -> None:
+    planner = service.as_("x", SECRETS["plan"])
+    begun = planner.post(f"/api/missions/{id}/runs", json={}, headers={"if-match": "*"})
+    problem(begun, 403, "access-denied")
+    asked = planner.post(
+        "/api/runs/20200101-000000-0000/requests", json={"kind": "stop", "id": "x"}
+    )
+    problem(asked, 403, "access-denied")
+    assert planner.get("/api/runs").status_code == 200
+
+
+def test_what_is_no_run_is_said(service: Served, id: str) -> None:
+    client = service.client
+    problem(client.get("/api/runs/20200101-000000-0000"), 404, "not-found")
+    problem(client.get("/api/runs/20200101-000000-0000/entries"), 404, "not-found")
+    problem(client.get("/api/runs/..%2f..%2fetc/report/report.json"), 404, "not-found")
+    stale = client.post(f"/api/missions/{id}/runs", json={}, headers={"if-match": '"7"'})
+    problem(stale, 412, "stale-revision")
+    empty = service.create()
+    nothing = client.post(f"/api/missions/{empty}/runs", json={}, headers={"if-match": "*"})
+    problem(nothing, 422, "invalid")
+    with pytest.raises(InvalidStatus, match="401"):
+        service.socket("/api/robot/live", {})

@@ -4,12 +4,12 @@ from collections.abc import Callable
 from typing import TYPE_CHECKING
 
 from argo_env.recording.output import UnwritableRecording
-from argo_env.run.action import ActionUnderWay
 from argo_env.run.log import Entry
 from argo_env.run.machine import Machine
 from argo_env.run.observer import Observer
 from argo_env.run.record import RunRecord
 from argo_env.run.rig import Rig
+from argo_env.run.robot import RobotAction
 from argo_env.run.spec import RunSpec
 
 if TYPE_CHECKING:  # what the extra brings
@@ -33,7 +33,7 @@ class BestEffort(Observer):
     def on_entry(self, entry: Entry) -> None:
         self._try(lambda: self._recorder.on_entry(entry))
 
-    def on_step(self, now: float, action: ActionUnderWay | None) -> None:
+    def on_step(self, now: float, action: RobotAction | None) -> None:
         self._try(lambda: self._recorder.on_step(now, action))
 
     def on_change(self, entry: Entry, machine: Machine) -> None:

@@ -22,13 +22,13 @@ from argo_env.recording.topics import BatteryState, MissionState, mission_state
 from argo_env.recording.writer import RecordingWriter, media_type
 from argo_env.report.files import to_json
 from argo_env.robot.spec import robot_folder
-from argo_env.run.action import ActionUnderWay
 from argo_env.run.headline import Tone
 from argo_env.run.log import Entry
 from argo_env.run.machine import Machine
 from argo_env.run.observer import Observer
 from argo_env.run.record import Anomaly, Contact, Reading, RunRecord, TaskRun, TraceStep
 from argo_env.run.rig import Rig
+from argo_env.run.robot import RobotAction
 from argo_env.run.spec import RunSpec
 from argo_env.site import Site, SiteCheckpoint
 from argo_env.world.world import Shot, World
@@ -107,7 +107,7 @@ class McapRecorder(Observer):
         self._writer.flush(0.0)
         self._begun = True
 
-    def on_step(self, now: float, action: ActionUnderWay | None) -> None:
+    def on_step(self, now: float, action: RobotAction | None) -> None:
         """Writes the robot's motion, and the way ahead when there is a new one."""
         self._now = now
         for shot in self._shots:

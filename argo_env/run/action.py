@@ -14,10 +14,9 @@ from argo_env.navigation.retreat import way_back
 from argo_env.robot.pose import BodyPose
 from argo_env.run.record import DIGITS, Reading, TaskRun
 from argo_env.run.rig import Rig
+from argo_env.run.robot import ActionEnd
 from argo_env.sensing.sensor import Measurement, MeasurementError, PoorViewError
 from argo_env.site import SiteCheckpoint
-
-ActionEnd = ActionSucceeded | ActionFailed | ActionStopped
 
 RETREAT = 1.0
 """m that the robot goes back where it is cornered"""

@@ -12,29 +12,29 @@ from argo_compiler.hfsm import (
     StartAction,
 )
 from argo_env.navigation import Path
-from argo_env.run.action import ActionEnd, ActionUnderWay
 from argo_env.run.beginning import KnownAnomaly, RunBeginning
 from argo_env.run.interruptions import InterruptionWatch
 from argo_env.run.log import Entry, LoggedEvent, RunLog
 from argo_env.run.machine import Machine
 from argo_env.run.perception import blockage
 from argo_env.run.record import RunRecord, TaskRun
+from argo_env.run.robot import ActionEnd, AnyRobot, RobotAction
 from argo_env.run.rounds import RoundWatch
 from argo_env.run.scheduled_events import GivenEvents
 from argo_env.run.spec import RunSpec
 from argo_env.run.steering import as_seen_on
 from argo_env.run.summary import make_record
 from argo_env.run.supervision import Supervision
-from argo_env.run.vehicle import Vehicle, way_come
+from argo_env.run.vehicle import way_come
 
 
 class Course:
     """Where a run stands. Holds the machine, the log and the action under way, which change with
     the entries that it takes: equal entries lead to the same place, made now or read again."""
 
-    def __init__(self, machine: Machine, vehicle: Vehicle, spec: RunSpec) -> None:
+    def __init__(self, machine: Machine, vehicle: AnyRobot, spec: RunSpec) -> None:
         self.machine = machine
-        self.action: ActionUnderWay | None = None
+        self.action: RobotAction | None = None
         """the one under way"""
         self.log = RunLog(vehicle.rig.navigator.site)
         self.supervision = Supervision(spec.mission)
@@ -189,10 +189,7 @@ class Course:
         )
 
     def _begin(self, command: StartAction) -> None:
-        odometry = self._vehicle.odometry
-        self.action = ActionUnderWay(
-            command, self._vehicle.rig, self.now, odometry.distance, odometry.climbed, self._came
-        )
+        self.action = self._vehicle.start(command, self.now, self._came)
 
     def _seen(self, event: Event) -> Event:
         return as_seen_on(self.log.site, self._mission, event)

@@ -3,14 +3,14 @@
 from argo_env.drives.powertrain import Powertrain
 from argo_env.run.log import RunLog
 from argo_env.run.machine import Machine
-from argo_env.run.power_supply import PowerSupply
 from argo_env.run.rig import Rig
+from argo_env.run.robot import RobotPower
 
 TIME_LIMIT = 4 * 3600.0  # s of simulated time after which a run is stopped
 SETTLING = 120.0  # s that a robot which stands still waits for what faults may lead to
 
 
-def exhausted(now: float, supply: PowerSupply) -> str | None:
+def exhausted(now: float, supply: RobotPower) -> str | None:
     """Why nothing can go on at time `now` (s), whatever is told; None: it can."""
     if now >= TIME_LIMIT:
         return f"it was stopped after {now:.0f} s, Argo's limit for a run"

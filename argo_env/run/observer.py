@@ -1,10 +1,10 @@
 """What is told of a run to whoever observes it: a journal, a recording, a display."""
 
-from argo_env.run.action import ActionUnderWay
 from argo_env.run.log import Entry
 from argo_env.run.machine import Machine
 from argo_env.run.record import RunRecord
 from argo_env.run.rig import Rig
+from argo_env.run.robot import RobotAction
 from argo_env.run.spec import RunSpec
 
 
@@ -24,7 +24,7 @@ class Observer:
     def on_change(self, entry: Entry, machine: Machine) -> None:
         """The same, now that the machine has been told."""
 
-    def on_step(self, now: float, action: ActionUnderWay | None) -> None:
+    def on_step(self, now: float, action: RobotAction | None) -> None:
         """A step of simulated time has ended at `now` (s), `action` under way."""
 
     def on_interrupted(self, record: RunRecord) -> None:

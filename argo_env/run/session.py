@@ -9,13 +9,13 @@ from pathlib import Path
 
 from argo_compiler.errors import Invalid
 from argo_env.planning.opening import OpenedSite, open_site
-from argo_env.run.action import ActionUnderWay
 from argo_env.run.beginning import machine_of
 from argo_env.run.fitting_together import require_site
 from argo_env.run.journal import Header, Journal, create_journal
 from argo_env.run.observer import Observer
 from argo_env.run.record import RunRecord
 from argo_env.run.rig import check_spec
+from argo_env.run.robot import RobotAction
 from argo_env.run.simulation import LoggedEvents, Simulation
 from argo_env.run.spec import RunSpec, checked
 from argo_env.run.steering import check_given
@@ -115,7 +115,7 @@ class PacedRun(Observer):
         self._sleep = sleep
         self._begun: float | None = None
 
-    def on_step(self, now: float, action: ActionUnderWay | None) -> None:  # noqa: ARG002
+    def on_step(self, now: float, action: RobotAction | None) -> None:  # noqa: ARG002
         if self._begun is None:
             # A run that is resumed does not begin at 0.
             self._begun = time.monotonic() - now / self._pace

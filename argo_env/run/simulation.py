@@ -22,6 +22,7 @@ from argo_env.run.machine import Machine, OpenMachine
 from argo_env.run.observer import Observer
 from argo_env.run.record import RunRecord
 from argo_env.run.rig import Rig, fit_out
+from argo_env.run.robot import AnyRobot
 from argo_env.run.spec import RunSpec, checked
 from argo_env.run.steering import (
     DoByHand,
@@ -67,11 +68,13 @@ class Simulation(Closing):
         events: LoggedEvents = (),
         observers: Sequence[Observer] = (),
         rig: Rig | None = None,
+        robot: AnyRobot | None = None,
         gui: bool = False,
     ) -> None:
         """The robot stands where the mission begins, or where the `past` entries of the same run
         have led it. Further `events` occur at their times (s), at once if these are over. A `rig`
-        that is given stays its owner's; else one is fitted out.
+        that is given stays its owner's; else one is fitted out. Instead of a simulated robot with a
+        rig another `robot` may carry the actions out.
 
         Raises ArgoError if no such run can be on the site, the robot can't stand where it starts,
         or the past is not this run's: Conflict for a site or a machine that is not the spec's, or a
@@ -89,7 +92,9 @@ class Simulation(Closing):
         require_machine(machine, spec)
         check_given([*spec.events, *events], spec.mission, site.site)
         with ExitStack() as stack:
-            self._vehicle = Vehicle(rig or fit_out(spec, site.navigator, gui, stack))
+            self._vehicle: AnyRobot = robot or Vehicle(
+                rig or fit_out(spec, site.navigator, gui, stack)
+            )
             self._course = Course(machine, self._vehicle, spec)
             time_step = self.rig.drive.time_step
             self._sampled_every = max(1, round(SAMPLE_PERIOD / time_step))
@@ -125,6 +130,11 @@ class Simulation(Closing):
     def pose(self) -> BodyPose:
         """Where the robot is."""
         return self.rig.drive.pose
+
+    @property
+    def silent_since(self) -> float | None:
+        """s, since when nothing was heard of a robot that is somewhere else; None: it is heard."""
+        return self._vehicle.silent_since
 
     @property
     def task(self) -> Task | None:

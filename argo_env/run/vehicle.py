@@ -1,38 +1,32 @@
 """The robot under way: step by step it moves, spends power, and notices things."""
 
 from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from typing import Any
 
+from argo_compiler.hfsm import StartAction
 from argo_compiler.model import Pose
 from argo_env.navigation import Blockage, Path
 from argo_env.navigation.retreat import driven, recent
 from argo_env.robot.pose import BodyPose
-from argo_env.run.action import RETREAT, ActionEnd, ActionUnderWay
+from argo_env.run.action import RETREAT, ActionUnderWay
 from argo_env.run.beginning import RunBeginning
 from argo_env.run.log import Entry, RunLog
 from argo_env.run.odometry import Odometry
 from argo_env.run.perception import Perception, abnormal_reading, blockage
 from argo_env.run.power_supply import PowerSupply
-from argo_env.run.record import Anomaly, Reading
+from argo_env.run.record import Anomaly
 from argo_env.run.rig import Rig
-
-
-@dataclass(frozen=True)
-class Sensed:
-    """What came of one time step."""
-
-    end: ActionEnd | None = None
-    """of the action, if it has ended"""
-    reading: Reading | None = None
-    found: tuple[Anomaly, ...] = ()
-
+from argo_env.run.robot import RobotAction, Sensed
 
 _NOTHING = Sensed()
 
 
 class Vehicle:
-    """What a run is carried out with. Holds the rig and all that adds up on the way."""
+    """The simulated robot: what a run is carried out with. Holds the rig and all that adds up on
+    the way."""
+
+    silent_since: float | None = None
 
     def __init__(self, rig: Rig) -> None:
         site, robot = rig.navigator.site, rig.navigator.robot
@@ -40,6 +34,8 @@ class Vehicle:
         """its navigator knows of what was found in the way"""
         self.odometry = Odometry(site)
         self.supply = PowerSupply(rig.battery, robot, site)
+        self._action: ActionUnderWay | None = None
+        """the one started last"""
         self._perception = Perception(rig.watches, site, rig.drive.time_step)
 
     def place(self, pose: BodyPose, now: float) -> None:
@@ -75,21 +71,28 @@ class Vehicle:
         navigator = self.rig.navigator.avoiding(blockages)
         self.rig = replace(self.rig, navigator=navigator)
 
-    def advance(self, step: int, now: float, action: ActionUnderWay | None) -> Sensed:
+    def start(self, command: StartAction, now: float, came: Path | None) -> RobotAction:
+        """Starts an action at time `now` (s), after the robot `came` by that path."""
+        way = self.odometry
+        self._action = ActionUnderWay(command, self.rig, now, way.distance, way.climbed, came)
+        return self._action
+
+    def advance(self, step: int, now: float, action: RobotAction | None) -> Sensed:
         """Lets the time step of that number pass, up to time `now` (s), with `action` under way."""
         rig, odometry, drive = self.rig, self.odometry, self.rig.drive
         if rig.schedule:
             rig.schedule.advance(now)
         before = after = drive.pose
         end, measuring = None, False
-        if action:
-            end = action.step(now)
-            after, measuring = drive.pose, action.measuring
+        own = self._action if action else None
+        if own:
+            end = own.step(now)
+            after, measuring = drive.pose, own.measuring
             odometry.moved(before, after, rig.world.touches(), now)
             odometry.trouble(drive.incidents, now)
         self.supply.spend(before, after, drive.time_step, measuring)
         found = self._perception.look(step, now, after)
-        reading = action.reading(now) if action and end else None
+        reading = own.reading(now) if own and end else None
         if reading and not reading.normal:
             found = (*found, abnormal_reading(reading, rig.navigator.site))
         return Sensed(end, reading, found) if end or found else _NOTHING

@@ -10,12 +10,12 @@ from rich.markup import escape
 from rich.progress import BarColumn, Progress, TextColumn, TimeElapsedColumn
 
 from argo_env.closing import Closing
-from argo_env.run.action import ActionUnderWay
 from argo_env.run.log import Entry
 from argo_env.run.machine import Machine
 from argo_env.run.observer import Observer
 from argo_env.run.record import Anomaly, Reading, RunRecord
 from argo_env.run.rig import Rig
+from argo_env.run.robot import RobotAction
 from argo_env.run.spec import RunSpec
 from argo_env.site import Site
 from argo_planner.terminal.verbosity import is_quiet
@@ -34,7 +34,7 @@ class RunDisplay(Observer, Closing):
         """The run is about to begin on this site."""
         self._site = rig.navigator.site
 
-    def on_step(self, now: float, action: ActionUnderWay | None) -> None:
+    def on_step(self, now: float, action: RobotAction | None) -> None:
         """Shows the time (s) and the task under way."""
         task = action.task.name if action else "waits"
         self._progress.update(self._bar, completed=now, description=task)

@@ -183,6 +183,14 @@ class JobTold(Model):
     """without the mission in its new order"""
 
 
+class WorldTold(Model):
+    """The obstacles on the site have changed."""
+
+    kind: Literal["world"] = "world"
+    revision: int
+    """of the obstacles"""
+
+
 class DeletedTold(Model):
     """The plan was moved to the bin; the connection ends."""
 
@@ -198,6 +206,7 @@ RoomMessage = Annotated[
     | VersionsTold
     | MembersTold
     | JobTold
+    | WorldTold
     | DeletedTold,
     Field(discriminator="kind"),
 ]

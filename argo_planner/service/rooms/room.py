@@ -34,6 +34,7 @@ from argo_planner.service.rooms.messages import (
     SnapshotTold,
     VersionsTold,
     VersionSummary,
+    WorldTold,
 )
 from argo_planner.service.storage.plan_file import PlanFile
 
@@ -191,6 +192,10 @@ class PlanRoom:
         text = JobTold(job=job.model_copy(update={"found": found})).model_dump_json()
         for _, mailbox in self._members.values():
             mailbox.post_newest(job.id, text)
+
+    def tell_of_world(self, revision: int) -> None:
+        """That the obstacles on the site have changed is told to all who are there."""
+        self._tell(WorldTold(revision=revision))
 
     def leave(self, client: str) -> None:
         """Somebody has gone."""

@@ -64,6 +64,11 @@ class PlanRooms:
         """The plan with that id, if it is open."""
         return self._rooms.get(id)
 
+    def tell_of_world(self, revision: int) -> None:
+        """That the obstacles on the site have changed is told to all who have a plan open."""
+        for room in self._rooms.values():
+            room.tell_of_world(revision)
+
     async def delete(self, id: str) -> None:
         """Moves a plan to the bin; whoever has it open is told. Raises NotFound, Conflict."""
         await self._closed(id, deleted=True)

@@ -9,6 +9,7 @@ from argo_compiler.il import EventKind, Mission
 from argo_compiler.model import Model, Pose
 from argo_env.faults.kinds import AnyFault
 from argo_planner.service.core.commands import CommandId
+from argo_planner.service.world.obstacles import Obstacle
 
 SLOWEST, FASTEST = 0.1, 1_000.0
 """simulated seconds a second"""
@@ -34,6 +35,8 @@ class RunOrder(Model):
     values: dict[int, float] = Field(default_factory=dict)
     """what checkpoints show, where it is not drawn"""
     faults: tuple[AnyFault, ...] = ()
+    obstacles: tuple[Obstacle, ...] = ()
+    """that stand on the site"""
     speed: Speed = 1.0
 
 

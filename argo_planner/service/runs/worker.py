@@ -16,6 +16,7 @@ from argo_planner.service.jobs.orphans import end_with_parent
 from argo_planner.service.runs.driver import RunDriver, RunTeller
 from argo_planner.service.runs.requests import RunOrder
 from argo_planner.service.runs.state import RunState, RunStatus, StateTold
+from argo_planner.service.world.obstacles import with_obstacles
 from argo_planner.use_cases.reporting import report_files
 
 JOURNAL = "run.journal"
@@ -32,13 +33,13 @@ def carry_out(pipe: Connection, folder: Path, order: RunOrder, first: RunState) 
         pipe.send(StateTold(state=first.model_copy(update=broken)))
         return
     if record is not None:
-        _report(record, folder, order.site)
+        _report(record, folder, order)
 
 
 def _carried_out(
     pipe: Connection, folder: Path, order: RunOrder, first: RunState
 ) -> RunRecord | None:
-    site = open_site(order.site).prepare()
+    site = with_obstacles(open_site(order.site).prepare(), order.obstacles)
     path = folder / JOURNAL
     with ExitStack() as stack:
         if path in [*folder.iterdir()]:
@@ -47,7 +48,7 @@ def _carried_out(
         else:
             spec = RunSpec(
                 mission=order.mission,
-                site=site.reference,
+                site=order.site,
                 drive=order.drive,
                 sensor=order.sensor,
                 seed=order.seed,
@@ -75,7 +76,7 @@ def _carried_out(
         return simulation.record()
 
 
-def _report(record: RunRecord, folder: Path, reference: str) -> None:
-    site = open_site(reference)
+def _report(record: RunRecord, folder: Path, order: RunOrder) -> None:
+    site = with_obstacles(open_site(order.site), order.obstacles)
     for name, content in report_files(record, site.site, site.robot).items():
         (folder / name).write_bytes(content)

@@ -247,7 +247,7 @@ async def export_a_mission(
     room = await service.rooms.open(id)
     document = room.document
     imported = sound(document, service.site) if format != "json" else as_it_is(document)
-    content, ending = await asyncio.to_thread(_exported, imported, service.site, format)
+    content, ending = await service.on_site(_exported, imported, service.site, format)
     media = "application/zip" if ending == ".zip" else "application/octet-stream"
     file = re.sub(r"[^\w.-]+", "_", document.name).strip("._") or "mission"
     named = f"attachment; filename*=UTF-8''{quote(file + ending)}"

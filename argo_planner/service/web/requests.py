@@ -1,11 +1,14 @@
 """What all routes share: who asks, of what service, on which revision; and how answers are made."""
 
+import asyncio
 import re
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
+from concurrent.futures import Executor
 from dataclasses import dataclass
 from datetime import datetime
+from functools import partial
 from pathlib import Path as FilePath
-from typing import Annotated, Any
+from typing import Annotated, Any, TypeVar
 
 from fastapi import Depends, Header, Path, Request, Response
 from fastapi.security import APIKeyCookie, HTTPBearer
@@ -20,8 +23,10 @@ from argo_planner.service.runs.host import RunHost
 from argo_planner.service.storage.folder import PLAN_ID
 from argo_planner.service.web.access import AccessRole, Visitor
 from argo_planner.service.web.problems import RevisionMissing
+from argo_planner.service.world.kept import KeptObstacles
 
 JSON = "application/json"
+T = TypeVar("T")
 
 
 @dataclass(frozen=True)
@@ -33,7 +38,15 @@ class PlanningService:
     rooms: PlanRooms
     jobs: Jobs
     runs: RunHost
+    obstacles: KeptObstacles
+    site_thread: Executor
+    """one thread, as a site is used by one at a time"""
     started: datetime
+
+    async def on_site(self, work: Callable[..., T], *arguments: Any) -> T:
+        """What comes of work on the site, which may take long."""
+        loop = asyncio.get_running_loop()
+        return await loop.run_in_executor(self.site_thread, partial(work, *arguments))
 
 
 class NameGiven(Model):

@@ -84,6 +84,7 @@ async def start_run(
         name=document.name,
         mission=plan.mission,
         site=service.site.reference,
+        obstacles=service.obstacles.present.obstacles,
         **dict(run),
     )
     state = await service.runs.start(order, visitor.author)

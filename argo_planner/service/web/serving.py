@@ -3,6 +3,7 @@
 import secrets
 import socket
 from collections.abc import AsyncIterator
+from concurrent.futures import ThreadPoolExecutor
 from contextlib import asynccontextmanager
 from dataclasses import dataclass
 from datetime import UTC, datetime
@@ -23,6 +24,7 @@ from argo_planner.service.web.app import Opened, guarded, make_app
 from argo_planner.service.web.connections import raise_file_limit, server_options
 from argo_planner.service.web.guard import Doors
 from argo_planner.service.web.requests import PlanningService
+from argo_planner.service.world.kept import KeptObstacles
 
 
 @dataclass(frozen=True)
@@ -59,10 +61,15 @@ def opened_service(
 
             jobs = Jobs(site.reference, partial(secrets.token_hex, 6), _now, tell)
             runs = RunHost(plans.path / "runs", after_restart, _now)
+            obstacles = KeptObstacles(plans.path)
             await runs.open()
+            thread = ThreadPoolExecutor(1)
             try:
-                yield PlanningService(site, plans.path, rooms, jobs, runs, _now())
+                yield PlanningService(
+                    site, plans.path, rooms, jobs, runs, obstacles, thread, _now()
+                )
             finally:
+                thread.shutdown(wait=False, cancel_futures=True)
                 await runs.close()
                 await jobs.close()
                 await rooms.close()

@@ -1,0 +1,125 @@
+"""The world over HTTP: meshes, maps, obstacles, and ways before they are driven."""
+
+import json
+
+import pytest
+
+from argo_env.planning.opening import OpenedSite
+from argo_planner.service.world.standing import Ground, read_standing_map
+from tests.argo_planner.service.served import Served
+from tests.argo_planner.service.test_http import problem
+from tests.argo_planner.service.test_run_host import SCRIPT
+from tests.argo_planner.service.test_runs import start, wait
+
+
+@pytest.fixture(autouse=True)
+def without_obstacles(service: Served):
+    yield
+    given = service.client.put(
+        "/api/world/obstacles", json={"obstacles": []}, headers={"if-match": "*"}
+    )
+    assert given.status_code == 200
+
+
+def box(x: float, y: float, z: float, edge: float = 0.8) -> dict:
+    return {"id": "box", "name": "a box", "pose": {"x": x, "y": y, "z": z}, "size": [edge] * 3}
+
+
+def put(service: Served, *obstacles: dict, revision: str = "*"):
+    return service.client.put(
+        "/api/world/obstacles", json={"obstacles": obstacles}, headers={"if-match": revision}
+    )
+
+
+def test_the_world_is_told_with_meshes_and_maps(service: Served, site: OpenedSite) -> None:
+    client = service.client
+    world = client.get("/api/world").json()
+    assert len(world["floors"]) == len(site.site.spec.floors)
+    assert {c["id"] for c in world["checkpoints"]} == {c.id for c in site.site.checkpoints}
+    floor = world["floors"][0]["number"]
+    for detail in world["details"]:
+        mesh = client.get(f"/api/world/floors/{floor}/mesh/{detail}")
+        assert mesh.content[:4] == b"glTF"
+        assert mesh.headers["content-type"] == "model/gltf-binary"
+        again = client.get(
+            f"/api/world/floors/{floor}/mesh/{detail}",
+            headers={"if-none-match": mesh.headers["etag"]},
+        )
+        assert (again.status_code, again.content) == (304, b"")
+    assert client.get("/api/world/robot").content[:4] == b"glTF"
+    for kind in {c["kind"] for c in world["checkpoints"]}:
+        assert client.get(f"/api/world/checkpoints/{kind}").content[:4] == b"glTF"
+    found = client.get(f"/api/world/floors/{floor}/standing/0")
+    standing = read_standing_map(found.content)
+    dock = world["docks"][0]["pose"]
+    number = next(f["number"] for f in world["floors"] if abs(f["z"] - dock["z"]) < 0.1)
+    heading = min(
+        range(len(world["headings"])), key=lambda k: abs(world["headings"][k] - dock["yaw"])
+    )
+    there = client.get(f"/api/world/floors/{number}/standing/{heading}").content
+    assert read_standing_map(there).at(dock["x"], dock["y"], dock["z"]) is Ground.REACHED
+    assert standing.floor == floor
+    for path in ("floors/99/mesh/full", "floors/99/standing/0", "floors/1/standing/999"):
+        assert client.get(f"/api/world/{path}").status_code in (404, 422)
+    problem(client.get("/api/world/floors/1/mesh/none"), 422, "invalid")
+
+
+def test_obstacles_close_the_ground_and_are_kept(service: Served) -> None:
+    client = service.client
+    made = client.post(
+        "/api/imports", params={"filename": "m.txt", "start_area": 1}, content=SCRIPT
+    )
+    id = made.json()["id"]
+    preview = client.get(f"/api/missions/{id}/preview").json()
+    assert preview["time"] > 0
+    assert not preview["problems"]
+    way = preview["ways"][1]["way"]
+    middle = way["points"][len(way["points"]) // 2]
+    page = service.follow(id)
+    given = put(service, box(*middle[1:4]))
+    assert given.status_code == 200, given.text
+    while (told := json.loads(page.recv(timeout=30)))["kind"] != "world":
+        pass
+    assert told["revision"] == given.json()["revision"]
+    around = client.get(f"/api/missions/{id}/preview").json()
+    assert around["time"] > preview["time"] or around["problems"]
+    world = client.get("/api/world").json()
+    assert [o["name"] for o in world["obstacles"]] == ["a box"]
+    assert json.loads((service.folder / "obstacles.json").read_bytes())["obstacles"]
+    problem(put(service, revision='"1"'), 412, "stale-revision")
+    twice = put(service, box(0, 0, 0), box(1, 1, 0))
+    assert "two obstacles" in problem(twice, 422, "invalid")["detail"]
+    page.close()
+
+
+def test_runs_go_round_obstacles(service: Served) -> None:
+    client = service.client
+    made = client.post(
+        "/api/imports", params={"filename": "m.txt", "start_area": 1}, content=SCRIPT
+    )
+    id = made.json()["id"]
+    way = client.get(f"/api/missions/{id}/preview").json()["ways"][1]["way"]
+    middle = way["points"][len(way["points"]) // 2]
+    put(service, box(*middle[1:4], edge=0.4))
+    around = client.get(f"/api/missions/{id}/preview").json()
+    run = start(service, id, speed=None)["id"]
+    ended = wait(service, run, status="ended")
+    if around["problems"]:
+        assert ended["headline"]["word"] != "Success"
+    else:
+        assert ended["headline"]["word"] == "Success"
+        assert ended["t"] == pytest.approx(around["time"], rel=0.05)
+
+
+def test_a_way_is_previewed(service: Served) -> None:
+    client = service.client
+    world = client.get("/api/world").json()
+    dock = world["docks"][0]["pose"]
+    checkpoint = next(c for c in world["checkpoints"] if c["stands"])
+    asked = {"start": dock, "goal": checkpoint["stands"]}
+    way = client.post("/api/world/way", json=asked).json()
+    assert way["time"] > 0
+    assert way["problem"] is None
+    nowhere = {"start": dock, "goal": {"x": 1e3, "y": 1e3, "z": 0}}
+    assert client.post("/api/world/way", json=nowhere).json()["problem"]
+    problem(client.post("/api/world/way", json={"start": dock}), 404, "not-found")

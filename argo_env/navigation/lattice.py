@@ -99,7 +99,8 @@ def build_lattice(surface: Surface, robot: RobotSpec) -> Lattice:
     rises, rooms = [], []
     for heading in range(HEADINGS):
         stencil = standing(robot.footprint, heading, MARGIN)
-        rises.append(standing_rise(surface, stencil, heading))
+        z = stencil.heights(surface, np.arange(surface.size))
+        rises.append(standing_rise(z, stencil, heading))
         wide = standing(robot.footprint, heading, ROOM)
         rooms.append(np.isfinite(wide.heights(surface, np.arange(surface.size)).sum(axis=0)))
     rise, roomy = np.stack(rises, axis=1), np.stack(rooms, axis=1)
@@ -144,11 +145,10 @@ def connected_part(lattice: Lattice, state: int) -> Lattice:
     )
 
 
-def standing_rise(surface: Surface, stencil: Stencil, heading: int) -> NDArray[np.float64]:
-    """Height of the front above the rear for every cell; nan where the robot can't stand: there is
-    no ground all over the `stencil`, or one side is too high. Where it is more than LEVEL it can't
-    either."""
-    z = stencil.heights(surface, np.arange(surface.size))
+def standing_rise(z: NDArray[np.float64], stencil: Stencil, heading: int) -> NDArray[np.float64]:
+    """Height of the front above the rear for every cell, by the heights `z` (m) of its `stencil`;
+    nan where the robot can't stand: there is no ground all over the stencil, or one side is too
+    high. Where it is more than LEVEL it can't either."""
     yaw = heading_angle(heading)
     offsets = np.array(stencil.offsets)
     along = offsets @ np.array([np.cos(yaw), np.sin(yaw)])

@@ -23,6 +23,7 @@ from argo_planner.service.world.obstacles import Obstacle, with_obstacles
 
 _FORM = "1"  # of what is kept on disk
 _STEP = 1e-3  # m, of heights
+_AT_ONCE = 1 << 17  # cells that are looked at together: of large sites all would take GB
 
 
 class Ground(IntEnum):
@@ -181,8 +182,11 @@ def _codes_without_obstacles(navigator: Navigator) -> NDArray[np.uint8]:
     codes = np.empty((surface.size, HEADINGS), np.uint8)
     for heading in range(HEADINGS):
         stencil = standing(robot.footprint, heading, MARGIN)
-        fits = np.isfinite(stencil.heights(surface, np.arange(surface.size)).sum(axis=0))
-        stands = standing_rise(surface, stencil, heading) <= LEVEL
-        steep = np.where(stands, Ground.CUT_OFF, Ground.TOO_STEEP)
-        codes[:, heading] = np.where(fits, steep, Ground.TOO_NEAR)
+        for first in range(0, surface.size, _AT_ONCE):
+            cells = np.arange(first, min(first + _AT_ONCE, surface.size))
+            z = stencil.heights(surface, cells)
+            stands = standing_rise(z, stencil, heading) <= LEVEL
+            steep = np.where(stands, Ground.CUT_OFF, Ground.TOO_STEEP)
+            fits = np.isfinite(z.sum(axis=0))
+            codes[cells, heading] = np.where(fits, steep, Ground.TOO_NEAR)
     return codes

@@ -1,6 +1,11 @@
 """Maps of where the robot can stand say what the navigator says."""
 
+import json
 import math
+import re
+import shutil
+import subprocess
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -190,3 +195,30 @@ def test_what_is_not_there_is_refused(site):
     twice = obstacle("a", 0, 0, 0), obstacle("a", 1, 1, 0)
     with pytest.raises(Invalid, match="two obstacles"):
         with_obstacles(site, twice)
+
+
+@pytest.mark.skipif(shutil.which("node") is None, reason="needs node")
+def test_a_page_reads_a_map_as_the_documentation_shows(site, tmp_path):
+    page = Path(__file__).parents[3] / "docs" / "service.md"
+    (reader,) = re.findall("```js\n(.*?)```", page.read_text(encoding="utf-8"), re.DOTALL)
+    one = standing_map(site, 1, 3)
+    (tmp_path / "map").write_bytes(one.to_bytes())
+    script = f"""
+const content = require("fs").readFileSync({json.dumps(str(tmp_path / "map"))});
+globalThis.fetch = async () => new Response(content);
+{reader}
+readMap("map").then((map) => {{
+  const count = map.layers * map.rows * map.columns;
+  const cells = [...Array(count).keys()].filter((k) => k % 997 == 0 || k >= count - 500);
+  console.log(JSON.stringify(cells.map((k) => [k, map.code(k), map.height(k)])));
+}});
+"""
+    (tmp_path / "read.js").write_text(script, encoding="utf-8")
+    told = subprocess.run(
+        ["node", tmp_path / "read.js"], capture_output=True, text=True, check=True
+    ).stdout
+    cells = json.loads(told)
+    assert len(cells) > 500
+    for k, code, height in cells:
+        assert code == one.codes.ravel()[k]
+        assert height == pytest.approx(one.z + one.heights.ravel()[k] / 1000)

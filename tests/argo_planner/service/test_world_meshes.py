@@ -5,10 +5,12 @@ import io
 import numpy as np
 import pytest
 import trimesh
+import yourdfpy
 
 from argo_compiler.catalog import CheckpointKind
 from argo_compiler.errors import NotFound
 from argo_env.planning import open_site
+from argo_env.robot.spec import robot_folder
 from argo_env.site.shapes import Box, Role, half_extents
 from argo_env.site.storeys import storeys
 from argo_planner.service.world.meshes import Detail, checkpoint_mesh, floor_mesh, robot_mesh
@@ -114,6 +116,17 @@ def test_the_robot_is_as_large_as_its_footprint(site):
     assert high[0] - low[0] > 0.8 * (footprint.front + footprint.rear)
     assert 0.2 < high[2] <= site.robot.driving_height + 0.01
     assert low[2] > -0.01
+
+
+def test_each_link_of_the_robot_is_where_its_joints_put_it(site):
+    model = yourdfpy.URDF.load(robot_folder() / site.robot.urdf, load_meshes=False)
+    angles = {name: np.deg2rad(angle) for name, angle in site.robot.arm_stowed.items()}
+    model.update_cfg(angles)
+    scene = trimesh.load(io.BytesIO(robot_mesh(site)), file_type="glb")
+    turned = trimesh.transformations.rotation_matrix(np.pi / 2, [1, 0, 0])
+    for link in model.link_map:
+        drawn = turned @ scene.graph[link][0]
+        assert drawn == pytest.approx(model.get_transform(link), abs=1e-5), link
 
 
 @pytest.mark.parametrize("kind", CheckpointKind)

@@ -1,6 +1,6 @@
 """Drives one simulation: lets time pass at its speed, does what people ask, tells what happens."""
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 
 from argo_compiler.errors import ArgoError, Conflict, NotFound
 from argo_compiler.hfsm import ByHand, Cancel, GiveBack, Occurred, Pause, Resume, TakeOver
@@ -13,6 +13,7 @@ from argo_env.run.machine import Machine
 from argo_env.run.observer import Observer
 from argo_env.run.record import Reading
 from argo_env.run.simulation import Simulation
+from argo_env.run.spec import RunSpec
 from argo_env.run.steering import DoByHand, ReachIn, Steering, StopByHand, StopRun
 from argo_planner.service.runs import requests as asked
 from argo_planner.service.runs.pace import Pace
@@ -73,19 +74,33 @@ class RunDriver:
         teller: RunTeller,
         tell: Tell,
         clock: Callable[[], float],
+        requests: Sequence[RequestState] = (),
     ) -> None:
-        """The run as it stood `first`; the clock tells seconds."""
+        """The run as it stood `first`, and what was asked of it before; the clock tells seconds."""
         self._simulation = simulation
         self._state = first.model_copy(update={"status": RunStatus.RUNNING})
         self._teller = teller
         self._tell = tell
         self._clock = clock
         self._pace = Pace(first.speed, simulation.now, clock())
-        self._requests: dict[str, RequestState] = {}
+        self._requests = {request.id: request for request in requests}
         self._awaited: dict[str, Callable[[], bool]] = {}
         self._by_hand: str | None = None
         self._skipped: list[ByHand] = []
         self._posed = self._stated = -1.0
+        self.following: tuple[RunSpec, int] | None = None
+        """with what the run is to go on instead of this simulation, and of which revision of the
+        plan that is"""
+
+    @property
+    def speed(self) -> float | None:
+        """Simulated seconds a second; None: as fast as possible."""
+        return self._pace.speed
+
+    @property
+    def requests(self) -> tuple[RequestState, ...]:
+        """What was asked, the last one last."""
+        return tuple(self._requests.values())
 
     @property
     def over(self) -> bool:
@@ -118,6 +133,12 @@ class RunDriver:
             self._awaited[request.id] = until
         self._look()
         self.tell_state()
+
+    def confirm_following(self) -> None:
+        """Confirms that the run goes on with an edited plan, as it does now."""
+        for request in self.requests:
+            if request.kind == "go_on_edited" and not request.over:
+                self._progress(request.id, request.kind, request.by, RequestProgress.CONFIRMED)
 
     def tell_state(self) -> None:
         """Tells how the run stands."""
@@ -175,6 +196,12 @@ class RunDriver:
                 simulation.handle(GiveBack(done))
                 self._skipped.clear()
                 return lambda: simulation.over or not simulation.taken_over
+            case asked.GoOnEdited(mission=mission, revision=revision):
+                if not simulation.taken_over:
+                    raise Conflict("the plan is exchanged by a person who has the robot")
+                done = (*simulation.done_by_hand, *self._skipped)
+                self.following = simulation.going_on(mission, done), revision
+                return lambda: False
             case asked.TakeRobot():
                 simulation.handle(TakeOver())
                 return lambda: simulation.taken_over and simulation.task is None

@@ -14,7 +14,7 @@ from argo_env.run.journal import open_journal
 from argo_env.run.log import Entry
 from argo_planner.service.runs.requests import RunOrder
 from argo_planner.service.runs.state import RunState
-from argo_planner.service.runs.worker import JOURNAL
+from argo_planner.service.runs.worker import entries_of, journals
 
 RUN_ID = r"[0-9]{8}-[0-9]{6}-[0-9a-f]{4}"
 """what a run's id looks like: when it was begun, in UTC, and something that tells it from others"""
@@ -85,18 +85,15 @@ class RunFolder:
         return path
 
     def entries(self, id: str) -> tuple[Entry, ...]:
-        """What has happened in a run whose process has ended; nothing where it has not begun.
-
-        Raises ArgoError if its journal can't be read.
-        """
+        """What has happened in a run whose process has ended. Raises NotFound if there is no such
+        run, ArgoError if a journal of it can't be read."""
         self.kept(id)
-        path = self.path(id) / JOURNAL
-        if not os.path.lexists(path):
-            return ()
-        with open_journal(path) as journal:
-            return journal.entries
+        return entries_of(self.path(id))
 
-
-def has_ended(entries: tuple[Entry, ...]) -> bool:
-    """Whether a run of these entries is over."""
-    return bool(entries) and entries[-1].ended
+    def has_ended(self, id: str) -> bool:
+        """Whether the last plan of a run has come to its end. Raises ArgoError likewise."""
+        known = journals(self.path(id))
+        if not known:
+            return False
+        with open_journal(known[-1]) as journal:
+            return journal.ended

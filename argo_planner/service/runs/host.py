@@ -14,7 +14,7 @@ from typing import Any
 from argo_compiler.errors import ArgoError, Conflict, NotFound
 from argo_compiler.model import Model
 from argo_planner.service.rooms.mailbox import Mailbox, MailboxClosed
-from argo_planner.service.runs.folder import KeptRun, RunFolder, has_ended
+from argo_planner.service.runs.folder import KeptRun, RunFolder
 from argo_planner.service.runs.requests import (
     EndRun,
     GoOnWithRun,
@@ -128,7 +128,7 @@ class RunHost:
 
         Raises NotFound if the run is another one, Conflict if it is over.
         """
-        state = self._of(run)
+        state = self.of(run)
         if (known := self._requests.get(request.id)) is not None:
             if (known.kind, known.by) != (request.kind, by):
                 raise Conflict(f"another request has had the id {request.id}: give each its own")
@@ -148,14 +148,14 @@ class RunHost:
 
     def request(self, run: str, id: str) -> RequestState:
         """How far a request is. Raises NotFound."""
-        self._of(run)
+        self.of(run)
         if id not in self._requests:
             raise NotFound(f"run {run} has had no request {id[:64]!r}")
         return self._requests[id]
 
     def entries(self, run: str, since: int) -> tuple[int, list[str]]:
         """How many entries there are, and those after the first `since`, as JSON."""
-        self._of(run)
+        self.of(run)
         return len(self._entries), self._entries[since:]
 
     async def history(self, run: str, since: int, most: int) -> EntryList:
@@ -269,8 +269,10 @@ class RunHost:
 
     async def _found_interrupted(self, kept: KeptRun, problem: str) -> KeptRun:
         """A run whose process is gone, with what its journal says of it."""
+        ended = False
         try:
             entries = await asyncio.to_thread(self._folder.entries, kept.state.id)
+            ended = await asyncio.to_thread(self._folder.has_ended, kept.state.id)
         except ArgoError as error:
             entries, problem = (), f"{problem}; its journal can't be read: {error}"
         self._entries = [
@@ -280,7 +282,7 @@ class RunHost:
             for number, entry in enumerate(entries, start=1)
         ]
         update: dict[str, Any] = {"entries": len(entries), "moving": False, "requests": ()}
-        if has_ended(entries):
+        if ended:
             update |= {"status": RunStatus.ENDED, "t": entries[-1].t}
         else:
             update |= {"status": RunStatus.INTERRUPTED, "problem": problem}
@@ -305,7 +307,8 @@ class RunHost:
         self._hear(RequestTold(run=state.id, request=done))
         return done
 
-    def _of(self, run: str) -> RunState:
+    def of(self, run: str) -> RunState:
+        """How the present run stands. Raises NotFound if that is another one."""
         state = self.state
         if state is None or state.id != run:
             raise NotFound(f"run {run[:40]!r} is not the present one")

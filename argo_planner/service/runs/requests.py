@@ -174,7 +174,16 @@ class BeginFault(_Request):
     fault: AnyFault
 
 
-RunRequest = Annotated[
+class GoOnEdited(_Request):
+    """The person gives the robot back, and the run goes on with the mission as edited."""
+
+    kind: Literal["go_on_edited"] = "go_on_edited"
+    mission: Mission
+    revision: int
+    """of the plan"""
+
+
+AskedOfRun = Annotated[
     PauseRun
     | GoOnWithRun
     | EndRun
@@ -192,4 +201,6 @@ RunRequest = Annotated[
     | BeginFault,
     Field(discriminator="kind"),
 ]
-"""all that can be asked of a run, told apart by `kind`"""
+"""what clients can ask of a run, told apart by `kind`"""
+
+RunRequest = AskedOfRun | GoOnEdited

@@ -1,82 +1,141 @@
 """The process of a run: opens the site, drives the simulation, keeps its journal."""
 
+import os
+import re
 import time
+from collections.abc import Sequence
 from contextlib import ExitStack
 from multiprocessing.connection import Connection
 from pathlib import Path
 
 from argo_compiler.errors import ArgoError
-from argo_compiler.hfsm import Executor, lower
-from argo_env.planning.opening import open_site
-from argo_env.run.journal import Header, create_journal, open_journal
+from argo_env.planning.opening import OpenedSite, open_site
+from argo_env.run.beginning import machine_of
+from argo_env.run.journal import Header, Journal, create_journal, open_journal
+from argo_env.run.log import Entry
 from argo_env.run.record import RunRecord
 from argo_env.run.simulation import Simulation
 from argo_env.run.spec import RunSpec
+from argo_env.run.steering import StopRun
 from argo_planner.service.jobs.orphans import end_with_parent
 from argo_planner.service.runs.driver import RunDriver, RunTeller
-from argo_planner.service.runs.requests import RunOrder
+from argo_planner.service.runs.requests import RequestState, RunOrder
 from argo_planner.service.runs.state import RunState, RunStatus, StateTold
 from argo_planner.service.world.obstacles import with_obstacles
 from argo_planner.use_cases.reporting import report_files
 
-JOURNAL = "run.journal"
+_JOURNAL = re.compile(r"run-(\d{4})\.journal")
+
+
+def journals(folder: Path) -> list[Path]:
+    """The journals of a run in their order: one for each plan that it went on with."""
+    return sorted(folder / name for name in os.listdir(folder) if _JOURNAL.fullmatch(name))
+
+
+def entries_of(folder: Path) -> tuple[Entry, ...]:
+    """What has happened in a run whose process has ended, of all its plans. Raises ArgoError if a
+    journal can't be read."""
+    entries: list[Entry] = []
+    for path in journals(folder):
+        with open_journal(path) as journal:
+            entries += journal.entries
+    return tuple(entries)
 
 
 def carry_out(pipe: Connection, folder: Path, order: RunOrder, first: RunState) -> None:
-    """Carries a run out, or goes on with the journal that is in its folder. Through the pipe come
+    """Carries a run out, or goes on with the last journal in its folder. Through the pipe come
     requests with who sends them, and go all that is to be told."""
     end_with_parent()
     try:
-        record = _carried_out(pipe, folder, order, first)
+        site = with_obstacles(open_site(order.site).prepare(), order.obstacles)
+        record = _RunProcess(pipe, folder, order, first, site).carry_out()
     except ArgoError as error:
         broken = {"status": RunStatus.INTERRUPTED, "problem": str(error)}
         pipe.send(StateTold(state=first.model_copy(update=broken)))
         return
-    if record is not None:
-        _report(record, folder, order)
-
-
-def _carried_out(
-    pipe: Connection, folder: Path, order: RunOrder, first: RunState
-) -> RunRecord | None:
-    site = with_obstacles(open_site(order.site).prepare(), order.obstacles)
-    path = folder / JOURNAL
-    with ExitStack() as stack:
-        if path in [*folder.iterdir()]:
-            journal = stack.enter_context(open_journal(path))
-            journal.require_unchanged(site)
-        else:
-            spec = RunSpec(
-                mission=order.mission,
-                site=order.site,
-                drive=order.drive,
-                sensor=order.sensor,
-                seed=order.seed,
-                values=order.values,
-                faults=order.faults,
-            )
-            journal = stack.enter_context(create_journal(path, Header.of(site, spec)))
-        teller = RunTeller(first.id, pipe.send, journal.entries)
-        simulation = stack.enter_context(
-            Simulation(
-                Executor(lower(journal.header.spec.mission)),
-                site,
-                journal.header.spec,
-                past=journal.entries,
-                observers=[journal, teller],
-            )
-        )
-        driver = RunDriver(simulation, first, teller, pipe.send, time.monotonic)
-        driver.tell_state()
-        while not driver.over:
-            left = driver.turn()
-            if pipe.poll(max(0.0, left)):
-                driver.ask(*pipe.recv())
-        driver.tell_state()
-        return simulation.record()
-
-
-def _report(record: RunRecord, folder: Path, order: RunOrder) -> None:
-    site = with_obstacles(open_site(order.site), order.obstacles)
     for name, content in report_files(record, site.site, site.robot).items():
         (folder / name).write_bytes(content)
+
+
+class _RunProcess:
+    """A run, one simulation after the other: each time that it goes on with an edited plan, there
+    is another one with a journal of its own."""
+
+    def __init__(
+        self, pipe: Connection, folder: Path, order: RunOrder, first: RunState, site: OpenedSite
+    ) -> None:
+        self._pipe = pipe
+        self._folder = folder
+        self._order = order
+        self._state = first
+        self._site = site
+        self._teller = RunTeller(first.id, pipe.send, entries_of(folder))
+
+    def carry_out(self) -> RunRecord:
+        """The record of the last simulation."""
+        with ExitStack() as stack:
+            driver, simulation = self._begin(self._journal(stack), stack)
+            while not driver.over:
+                left = driver.turn()
+                if self._pipe.poll(max(0.0, left)):
+                    driver.ask(*self._pipe.recv())
+                if driver.following is not None:
+                    driver, simulation = self._exchange(driver, simulation, stack)
+            driver.tell_state()
+            return simulation.record()
+
+    def _journal(self, stack: ExitStack) -> Journal:
+        """The last journal that there is, or a first one."""
+        if known := journals(self._folder):
+            journal = stack.enter_context(open_journal(known[-1]))
+            journal.require_unchanged(self._site)
+            return journal
+        order = self._order
+        spec = RunSpec(
+            mission=order.mission,
+            site=order.site,
+            drive=order.drive,
+            sensor=order.sensor,
+            seed=order.seed,
+            values=order.values,
+            faults=order.faults,
+        )
+        return self._new_journal(spec, stack)
+
+    def _new_journal(self, spec: RunSpec, stack: ExitStack) -> Journal:
+        name = f"run-{len(journals(self._folder)) + 1:04d}.journal"
+        journal = create_journal(self._folder / name, Header.of(self._site, spec))
+        return stack.enter_context(journal)
+
+    def _begin(
+        self, journal: Journal, stack: ExitStack, requests: Sequence[RequestState] = ()
+    ) -> tuple[RunDriver, Simulation]:
+        spec, tell = journal.header.spec, self._pipe.send
+        simulation = Simulation(
+            machine_of(spec.mission, spec.beginning),
+            self._site,
+            spec,
+            past=journal.entries,
+            observers=[journal, self._teller],
+        )
+        stack.enter_context(simulation)
+        driver = RunDriver(simulation, self._state, self._teller, tell, time.monotonic, requests)
+        driver.tell_state()
+        return driver, simulation
+
+    def _exchange(
+        self, driver: RunDriver, simulation: Simulation, stack: ExitStack
+    ) -> tuple[RunDriver, Simulation]:
+        """Goes on with an edited plan. Its journal is there before the one before ends, so that a
+        run that is killed in between goes on with one of them."""
+        assert driver.following is not None
+        spec, revision = driver.following
+        journal = self._new_journal(spec, stack)
+        simulation.handle(StopRun("it goes on with an edited plan"))
+        simulation.close()
+        limit = spec.mission.max_duration
+        update = {"revision": revision, "max_duration": limit, "speed": driver.speed}
+        self._state = self._state.model_copy(update=update)
+        following, begun = self._begin(journal, stack, driver.requests)
+        following.confirm_following()
+        return following, begun

@@ -9,8 +9,9 @@ from argo_compiler.errors import ArgoError, NotFound
 from argo_compiler.model import Model
 from argo_env.faults.kinds import AnyFault
 from argo_env.report.files import PAGE, RECORD
+from argo_planner.service.core.commands import CommandId
 from argo_planner.service.core.refusals import StaleRevision
-from argo_planner.service.runs.requests import RequestState, RunOrder, RunRequest, Speed
+from argo_planner.service.runs.requests import AskedOfRun, GoOnEdited, RequestState, RunOrder, Speed
 from argo_planner.service.runs.state import EntryList, RunState
 from argo_planner.service.web.live import carry, require_socket, socket_client
 from argo_planner.service.web.missions import sound
@@ -54,6 +55,12 @@ class RunAsked(Model):
     """what checkpoints show, by number, where it is not drawn"""
     faults: tuple[AnyFault, ...] = Field(default=(), max_length=100)
     speed: Speed = 1.0
+
+
+class PlanGiven(Model):
+    """A request that the run goes on with its mission as it is now."""
+
+    id: CommandId
 
 
 class RunList(Model):
@@ -121,11 +128,33 @@ async def read_run(service: Service, _: Viewer, run: RunId) -> Response:
         )
     },
 )
-async def ask_run(service: Service, visitor: Operator, run: RunId, request: RunRequest) -> Response:
+async def ask_run(service: Service, visitor: Operator, run: RunId, request: AskedOfRun) -> Response:
     """Asks something of the present run. That it was accepted does not say that it is so: follow
     how far it is."""
     state = await service.runs.ask(run, request, visitor.author)
     return said(state, 202, location=f"/api/runs/{run}/requests/{state.id}")
+
+
+@router.post(
+    "/runs/{run}/plan",
+    operation_id="go_on_edited",
+    status_code=202,
+    response_model=RequestState,
+    responses=documented(412, 428),
+)
+async def go_on_edited(
+    service: Service, visitor: Operator, run: RunId, given: PlanGiven, made_on: MadeOn
+) -> Response:
+    """Gives the robot back, and lets the run go on with its mission as it was edited since."""
+    state = service.runs.of(run)
+    document = (await service.rooms.open(state.plan)).document
+    plan = document.plan
+    if made_on is not None and made_on != plan.revision:
+        raise StaleCommand(StaleRevision(made_on, plan.revision), plan.since(made_on))
+    sound(document, service.site)
+    request = GoOnEdited(id=given.id, mission=plan.mission, revision=plan.revision)
+    asked = await service.runs.ask(run, request, visitor.author)
+    return said(asked, 202, location=f"/api/runs/{run}/requests/{asked.id}")
 
 
 @router.get(

@@ -1,0 +1,113 @@
+"""The law of handover through the service: what was done before, by hand and after is what the
+mission would have done."""
+
+import random
+import time
+from collections import Counter
+from itertools import pairwise
+
+import pytest
+
+from argo_compiler.hfsm import Executor, lower
+from argo_compiler.il import Action, Group, Mission, Task, Transition
+from argo_env.planning.opening import OpenedSite
+from argo_env.run.simulation import Simulation
+from argo_env.run.spec import RunSpec
+from tests.argo_planner.service.served import Served
+from tests.argo_planner.service.test_runs import ask, state, wait
+from tests.conftest import examples
+
+
+def random_mission(rng: random.Random, site: OpenedSite) -> Mission:
+    """Some checkpoints of one floor, a part of them in a round."""
+    floor = rng.choice(sorted({c.floor for c in site.site.checkpoints}))
+    numbers = [c.id for c in site.site.checkpoints if c.floor == floor]
+    chosen = rng.sample(numbers, min(len(numbers), rng.randint(2, 4)))
+    dock = site.site.docks[min(site.site.docks)]
+    start = Task(name="START", action=Action.START, pose=dock)
+    tasks = [start]
+    for number in chosen:
+        tasks.append(Task(name=f"M{number}", action=Action.MEASURE, object_id=str(number)))
+    linked = [
+        one.model_copy(update={"transitions": (Transition(target=after.name),)})
+        for one, after in pairwise(tasks)
+    ]
+    first = rng.randrange(len(chosen))
+    last = rng.randrange(first, len(chosen))
+    group = Group(
+        name="round", start=f"M{chosen[first]}", end=f"M{chosen[last]}", max_repeat_count=2
+    )
+    groups = (group,) if rng.random() < 0.5 else ()
+    return Mission(tasks=(*linked, tasks[-1]), groups=groups)
+
+
+def visits(mission: Mission, site: OpenedSite) -> Counter[str]:
+    """What is done when nobody interrupts the mission."""
+    spec = RunSpec(mission=mission, site=site.reference, drive="route")
+    with Simulation(Executor(lower(mission)), site, spec) as simulation:
+        simulation.run()
+        return Counter({t.task: t.done for t in simulation.machine.progress().tallies})
+
+
+def play(service: Served, site: OpenedSite, seed: int) -> str:
+    """One random run with a person in it; what was played."""
+    rng = random.Random(seed)
+    mission = random_mission(rng, site)
+    expected = visits(mission, site)
+    id = service.create(f"Run {seed}", mission.model_dump(mode="json"))
+    begun = service.client.post(
+        f"/api/missions/{id}/runs",
+        json={"drive": "route", "speed": 60.0},
+        headers={"if-match": "*"},
+    )
+    assert begun.status_code == 201, begun.text
+    run = begun.json()["id"]
+    until = rng.uniform(0.0, 60.0)
+    while (now := state(service, run))["t"] < until and now["status"] != "ended":
+        time.sleep(0.02)
+    played = []
+    if ask(service, run, "take_over")["progress"] == "confirmed":
+        ask(service, run, "speed", speed=None)
+        counts = Counter({t["task"]: t["done"] for t in state(service, run)["tasks"]})
+        left = [name for name in expected if counts[name] < expected[name]]
+        for name in rng.sample(left, rng.randint(0, len(left))):
+            kind = rng.choice(["do_task", "skip"])
+            assert ask(service, run, kind, task=name)["progress"] == "confirmed"
+            played.append(kind)
+        if rng.random() < 0.5:
+            task = rng.choice(mission.tasks[1:]).name
+            edit = {"kind": "change_task", "name": task, "velocity": 0.25}
+            assert service.command(id, 1, edit).status_code == 200
+            asked = service.client.post(
+                f"/api/runs/{run}/plan", json={"id": "edited"}, headers={"if-match": '"2"'}
+            )
+            assert asked.status_code == 202, asked.text
+            while (found := service.client.get(asked.headers["location"]).json())["progress"] in (
+                "accepted",
+                "under way",
+            ):
+                time.sleep(0.02)
+            assert found["progress"] == "confirmed", found
+            assert state(service, run)["revision"] == 2
+            played.append("edited")
+        else:
+            assert ask(service, run, "give_back")["progress"] == "confirmed"
+            played.append("given back")
+    ended = wait(service, run, status="ended")
+    made = Counter({t["task"]: t["done"] + t["by_hand"] for t in ended["tasks"]})
+    assert made == expected, (seed, played)
+    count = service.client.get(f"/api/runs/{run}/entries", params={"since": 10**6}).json()["count"]
+    assert count == ended["entries"]
+    return " ".join(played)
+
+
+def test_by_hand_and_by_edit(service: Served, site: OpenedSite) -> None:
+    assert {seed: play(service, site, seed).split()[-1:] for seed in (0, 3)}
+
+
+@pytest.mark.long
+def test_many_random_runs(service: Served, site: OpenedSite) -> None:
+    played = Counter(
+        word for seed in range(examples(20)) for word in play(service, site, seed).split()
+    )
+    assert {"do_task", "skip", "edited", "given", "back"} <= played.keys()

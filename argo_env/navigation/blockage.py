@@ -55,9 +55,10 @@ def close(lattice: Lattice, blockages: Sequence[Blockage]) -> Lattice:
     The closed states keep their numbers, but have no moves and are not found in `state_of`.
     """
     shut, stuck = np.zeros(lattice.size, dtype=bool), np.zeros(lattice.size, dtype=bool)
+    places = lattice.surface.positions()
     for blockage in blockages:
-        near = _near(lattice, blockage)
-        standing, turning = _touched(lattice, near, blockage)
+        near = _near(lattice, places, blockage)
+        standing, turning = _touched(lattice, places, near, blockage)
         shut[near] |= standing
         stuck[near] |= turning
     state_of = lattice.state_of.copy()
@@ -76,11 +77,11 @@ def close(lattice: Lattice, blockages: Sequence[Blockage]) -> Lattice:
     return replace(lattice, state_of=state_of, costs=costs)
 
 
-def _near(lattice: Lattice, blockage: Blockage) -> NDArray[np.int64]:
-    """The states that may touch the blockage."""
+def _near(lattice: Lattice, places: NDArray[np.float64], blockage: Blockage) -> NDArray[np.int64]:
+    """The states that may touch the blockage; `places` are those of the cells."""
     x0, y0, x1, y1 = blockage.rect
     reach = lattice.robot.footprint.radius + MARGIN
-    x, y, z = lattice.surface.positions().T
+    x, y, z = places.T
     cells = (
         (np.abs(z - blockage.z) <= LAYER)
         & (x >= x0 - reach)
@@ -88,16 +89,20 @@ def _near(lattice: Lattice, blockage: Blockage) -> NDArray[np.int64]:
         & (y >= y0 - reach)
         & (y <= y1 + reach)
     )
-    return np.flatnonzero(cells[lattice.cell])
+    states = lattice.state_of[cells]
+    return np.sort(states[states >= 0])
 
 
 def _touched(
-    lattice: Lattice, states: NDArray[np.int64], blockage: Blockage
+    lattice: Lattice,
+    places: NDArray[np.float64],
+    states: NDArray[np.int64],
+    blockage: Blockage,
 ) -> tuple[NDArray[np.bool_], NDArray[np.bool_]]:
     """Whether the robot touches the blockage in each of the states, and while it turns from it to
     the next heading, counter-clockwise."""
     x0, y0, x1, y1 = blockage.rect
-    place = lattice.surface.positions()[lattice.cell[states]]
+    place = places[lattice.cell[states]]
     to_x, to_y = (x0 + x1) / 2 - place[:, 0], (y0 + y1) / 2 - place[:, 1]
     half = ((x1 - x0) / 2 + 1e-9, (y1 - y0) / 2 + 1e-9)
     yaw = lattice.heading[states].astype(np.float64) * heading_angle(1)

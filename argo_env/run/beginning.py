@@ -61,7 +61,7 @@ def machine_of(mission: Mission, beginning: RunBeginning | None = None) -> Execu
 def progress_now(machine: Machine, now: float, by_hand: Sequence[ByHand]) -> Progress:
     """The progress at time `now` (s of the mission's time), with what was done by hand until now.
 
-    Raises Conflict while an action still runs, or once the mission has ended.
+    Raises Conflict while an action still runs, or once nothing is left of the mission.
     """
     if machine.finished or machine.outcome is not None:
         raise Conflict("the mission has ended: there is nothing that could go on")
@@ -70,6 +70,8 @@ def progress_now(machine: Machine, now: float, by_hand: Sequence[ByHand]) -> Pro
             "the mission goes on: take the robot over, and let time pass until no action runs"
         )
     progress = machine.progress()
+    if progress.active is None:
+        raise Conflict("nothing is left of the mission: give the robot back, and it ends")
     return hand_over(progress, by_hand, max(0.0, now - progress.elapsed))
 
 

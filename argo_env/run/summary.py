@@ -29,7 +29,6 @@ def make_record(
     windows = windows_of(spec.mission, stays, {tally.task for tally in progress.tallies})
     result = judge(
         spec.mission,
-        machine.hfsm,
         site.docks,
         log,
         machine.outcome if machine.finished else None,

@@ -2,8 +2,8 @@
 
 from collections.abc import Iterator, Mapping, Sequence
 
-from argo_compiler.hfsm import Cause, Hfsm, Outcome, Progress, TraceEntry
-from argo_compiler.il import Mission
+from argo_compiler.hfsm import Cause, Outcome, Progress, TraceEntry
+from argo_compiler.il import Action, Mission
 from argo_compiler.il.docked import at_dock
 from argo_compiler.il.reserved import RESERVED_NAMES
 from argo_compiler.model import Pose
@@ -37,7 +37,6 @@ def failed_tasks(
 
 def judge(
     mission: Mission,
-    hfsm: Hfsm,
     docks: Mapping[int, Pose],
     log: RunLog,
     outcome: Outcome | None,
@@ -90,7 +89,7 @@ def judge(
     return Result(
         success=success,
         ended=last.ended,
-        verdict=_praise(hfsm, log.tasks, trace, stays, failed, before)
+        verdict=_praise(mission, log.tasks, trace, stays, failed, before)
         if success
         else "; ".join(missing),
         outcome=outcome,
@@ -104,7 +103,7 @@ def judge(
 
 
 def _praise(
-    hfsm: Hfsm,
+    mission: Mission,
     runs: Sequence[TaskRun],
     trace: Sequence[TraceEntry],
     stays: Sequence[Stay],
@@ -119,7 +118,9 @@ def _praise(
     } | RESERVED_NAMES
     ended = done.union(by_hand, skipped, (stay.task for stay in stays if stay.end is not None))
     ended |= {tally.task for tally in before.tallies}
-    passed_over = [leaf.task.name for leaf in hfsm.leaves if leaf.task.name not in ended]
+    # Of all tasks: a machine that was restored has only those that it could still come to.
+    own_tasks = (task.name for task in mission.tasks if task.action is not Action.START)
+    passed_over = [name for name in own_tasks if name not in ended]
     said = ["the plan was carried out"]
     if earlier := [tally.task for tally in before.tallies if tally.done]:
         said.append(f"done before this run: {', '.join(earlier)}")

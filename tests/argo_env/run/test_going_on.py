@@ -8,7 +8,7 @@ from hypothesis import strategies as st
 
 from argo_compiler.diagnostics import DiagnosticError
 from argo_compiler.errors import Conflict, Invalid
-from argo_compiler.hfsm import ByHand, Executor, Outcome, TakeOver, lower
+from argo_compiler.hfsm import ByHand, Executor, GiveBack, Outcome, TakeOver, lower
 from argo_compiler.il import EventKind, Group
 from argo_compiler.il.mission import TimeWindow
 from argo_env.faults.checkpoints import AbnormalValue
@@ -71,12 +71,17 @@ def plans(draw):
     return mission(*tasks, groups=(Group(name="G", max_repeat_count=rounds, **names),))
 
 
-@pytest.mark.rule("H4", "H5", "H7")
-@settings(max_examples=examples(25), deadline=None)
+@pytest.mark.rule("H4", "H5", "H6", "H7")
+@pytest.mark.parametrize("how", ["given back", "gone on", "edited"])
+@settings(max_examples=examples(15), deadline=None)
 @given(plans(), st.integers(1, 900), st.data())
-def test_before_by_hand_and_after_are_the_whole_mission(site, plan, at, data):
-    whole = simulation_of(spec_of(plan), site)
-    with whole, simulation_of(spec_of(plan), site) as first:
+def test_before_by_hand_and_after_are_the_whole_mission(site, how, plan, at, data):
+    """Of the mission as it was, or as it was edited meanwhile."""
+    edited = plan
+    if how == "edited":
+        last = waypoint("LAST", 5.05, 2.05)
+        edited = mission(*plan.tasks[1:], last, groups=plan.groups)
+    with simulation_of(spec_of(plan), site) as first:
         for _ in range(at):
             if not first.over:
                 first.step()
@@ -84,32 +89,41 @@ def test_before_by_hand_and_after_are_the_whole_mission(site, plan, at, data):
         first.handle(TakeOver())
         to_rest(first)
         assume(not first.over)
-        left = list(names_left(plan, first))
-        by_hand = (
-            data.draw(st.lists(st.sampled_from(left), max_size=3, unique=True)) if left else []
-        )
-        for name in by_hand:
-            first.handle(DoByHand(plan.task(name)))
-            to_rest(first)
-        skipped = data.draw(st.sampled_from(["", *(n for n in left if not n.startswith("M"))]))
-        done = [*first.done_by_hand]
-        if skipped and skipped not in by_hand:
-            done.append(ByHand(task=skipped, skipped=True))
-        before, spec = first.record(), first.going_on(plan, done)
-        assert spec.beginning.progress.elapsed == pytest.approx(first.now)
-        with simulation_of(RunSpec.model_validate_json(spec.model_dump_json()), site) as rest:
-            assert rest.pose == first.pose
-            assert rest.now == pytest.approx(first.now)
-            after = rest.run()
-            expected = whole.run()
-            assert ended(rest.machine.progress()) == ended(whole.machine.progress())
-            assert values(rest.machine.progress()) == values(whole.machine.progress())
-        assert after.result.success is expected.result.success is True
-        # Each visit was made once, by whomever.
-        made = Counter(t.task for r in (before, after) for t in r.tasks if t.outcome == "done")
-        made += Counter(done.task for done in done if done.skipped)
-        assert made == Counter(t.task for t in expected.tasks)
-        assert after.result.duration >= after.began == spec.beginning.at
+        done = done_and_skipped(data, plan, first)
+        if how == "given back":
+            first.handle(GiveBack(done))
+            records = (first.run(),)
+            last = first.machine.progress()
+        else:
+            assume(first.machine.progress().active is not None)
+            spec = first.going_on(edited, done)
+            assert spec.beginning.progress.elapsed == pytest.approx(first.now)
+            with simulation_of(RunSpec.model_validate_json(spec.model_dump_json()), site) as rest:
+                assert (rest.pose, rest.now) == (first.pose, pytest.approx(first.now))
+                records = (first.record(), rest.run())
+                last = rest.machine.progress()
+            assert records[1].result.duration >= records[1].began == spec.beginning.at
+    with simulation_of(spec_of(edited), site) as whole:
+        expected = whole.run()
+        assert ended(last) == ended(whole.machine.progress())
+        assert values(last) == values(whole.machine.progress())
+    assert records[-1].result.success is expected.result.success is True
+    # Each visit was made once, by whomever.
+    made = Counter(t.task for r in records for t in r.tasks if t.outcome == "done")
+    made += Counter(one.task for one in done if one.skipped)
+    assert made == Counter(t.task for t in expected.tasks)
+
+
+def done_and_skipped(data, plan, simulation):
+    """Some of the tasks that are left, done by hand in any order; one may be skipped."""
+    left = list(names_left(plan, simulation))
+    names = data.draw(st.lists(st.sampled_from(left), max_size=3, unique=True)) if left else []
+    for name in names:
+        simulation.handle(DoByHand(plan.task(name)))
+        to_rest(simulation)
+    skipped = data.draw(st.sampled_from(["", *(n for n in left if not n.startswith("M"))]))
+    more = [ByHand(task=skipped, skipped=True)] if skipped and skipped not in names else []
+    return (*simulation.done_by_hand, *more)
 
 
 def names_left(plan, simulation):
@@ -189,6 +203,34 @@ class TestEdited:
             spec = first.going_on(kept)
         record = simulate(spec, site)
         assert [t.task for t in record.tasks] == ["A", "MEASURE 3"]
+
+    def test_what_is_put_in_before_is_passed_over(self, site):
+        early = mission(waypoint("EARLY", 2.05, 2.05), *PLAN.tasks[1:])
+        with simulation_of(spec_of(PLAN), site) as first:
+            stopped_after(first, 2)
+            spec = first.going_on(early)
+        assert simulate(spec, site).result.verdict == (
+            "the plan was carried out; done before this run: MEASURE 1, A; it led past EARLY"
+        )
+
+    def test_nothing_is_left(self, site):
+        short = mission(measure(1))
+        with simulation_of(spec_of(short), site) as whole:
+            steps = 0
+            while not whole.over:
+                whole.step()
+                steps += 1
+        # It has looked already, and the value counts though a person takes over.
+        with simulation_of(spec_of(short), site) as first:
+            for _ in range(steps - 1):
+                first.step()
+            first.handle(TakeOver())
+            to_rest(first)
+            assert not first.over
+            with pytest.raises(Conflict, match="nothing is left"):
+                first.going_on(mission(measure(1), measure(2)))
+            first.handle(GiveBack())
+            assert first.run().result.success
 
     def test_what_does_not_fit_is_told(self, site):
         with simulation_of(spec_of(PLAN), site) as first:

@@ -171,6 +171,7 @@ class RunDriver:
                 "skipped": tuple(one.task for one in self._skipped),
                 "readings": tuple(self._teller.readings.values()),
                 "charge": self._charge(),
+                "silent_since": simulation.silent_since,
                 "entries": self._teller.count,
                 "requests": tuple(self._requests.values()),
                 "speed": self._pace.speed,

@@ -15,6 +15,7 @@ from argo_compiler.errors import ArgoError, Conflict, NotFound
 from argo_compiler.model import Model
 from argo_planner.service.rooms.mailbox import Mailbox, MailboxClosed
 from argo_planner.service.runs.folder import KeptRun, RunFolder
+from argo_planner.service.runs.pipe import RobotText
 from argo_planner.service.runs.requests import (
     EndRun,
     GoOnWithRun,
@@ -61,6 +62,7 @@ class RunHost:
         self._entries: list[str] = []
         self._requests: dict[str, RequestState] = {}
         self._followers: dict[str, Mailbox] = {}
+        self._robot: Mailbox | None = None
         self._ended = asyncio.Event()
 
     @property
@@ -177,6 +179,24 @@ class RunHost:
             mailbox.post(text)
         return mailbox
 
+    def connect_robot(self) -> Mailbox:
+        """A robot that is somewhere else has connected: the texts for it. One that was connected
+        before is let go."""
+        if self._robot is not None:
+            self._robot.close(MailboxClosed("the robot has connected again"))
+        self._robot = Mailbox()
+        return self._robot
+
+    def hear_robot(self, line: Mailbox, text: str) -> None:
+        """The robot on that line tells something. While no run is under way nobody hears it."""
+        if line is self._robot and self._worker is not None:
+            self._worker.send(RobotText(text=text))
+
+    def disconnect_robot(self, line: Mailbox) -> None:
+        """The robot's connection has ended."""
+        if line is self._robot:
+            self._robot = None
+
     def leave(self, client: str) -> None:
         """Somebody has gone."""
         self._followers.pop(client, None)
@@ -186,7 +206,7 @@ class RunHost:
         self._worker = None
         for worker in [*self._workers]:
             await asyncio.to_thread(worker.end)
-        for mailbox in self._followers.values():
+        for mailbox in (*self._followers.values(), *([self._robot] if self._robot else [])):
             mailbox.close(MailboxClosed("the service ends"))
 
     # ---- the process
@@ -218,6 +238,10 @@ class RunHost:
         match message:
             case StateTold(state=state) if state is not None:
                 self._take_state(state)
+                return
+            case RobotText(text=text):
+                if self._robot is not None:
+                    self._robot.post(text)
                 return
             case PoseTold():
                 text = message.model_dump_json()

@@ -92,6 +92,9 @@ class RunState(Model):
     """that are not over, and the last ones that are"""
     headline: Headline | None = None
     """how it went, once it has ended"""
+    silent_since: float | None = None
+    """s of the run, since when nothing was heard of a robot that is somewhere else; None: it is
+    heard"""
     problem: str | None = None
     """why it was interrupted or could not begin"""
 

@@ -7,10 +7,14 @@ from collections.abc import Sequence
 from contextlib import ExitStack
 from multiprocessing.connection import Connection
 from pathlib import Path
+from uuid import uuid4
 
 from argo_compiler.errors import ArgoError
 from argo_env.planning.opening import OpenedSite, open_site
+from argo_env.remote.channel import Channel
+from argo_env.remote.robot import RemoteRobot
 from argo_env.run.beginning import machine_of
+from argo_env.run.drives_and_sensors import ROUTE
 from argo_env.run.journal import Header, Journal, create_journal, open_journal
 from argo_env.run.log import Entry
 from argo_env.run.record import RunRecord
@@ -19,11 +23,16 @@ from argo_env.run.spec import RunSpec
 from argo_env.run.steering import StopRun
 from argo_planner.service.jobs.orphans import end_with_parent
 from argo_planner.service.runs.driver import RunDriver, RunTeller
+from argo_planner.service.runs.pipe import WorkerPipe
 from argo_planner.service.runs.requests import RequestState, RunOrder
 from argo_planner.service.runs.state import RunState, RunStatus, StateTold
 from argo_planner.service.world.obstacles import with_obstacles
 from argo_planner.use_cases.reporting import report_files
 
+REMOTE = "remote"
+"""the drive of a run that a robot somewhere else carries out"""
+SETTLED = 10.0
+"""s that it has to acknowledge that the run is over"""
 _JOURNAL = re.compile(r"run-(\d{4})\.journal")
 
 
@@ -48,7 +57,7 @@ def carry_out(pipe: Connection, folder: Path, order: RunOrder, first: RunState) 
     end_with_parent()
     try:
         site = with_obstacles(open_site(order.site).prepare(), order.obstacles)
-        record = _RunProcess(pipe, folder, order, first, site).carry_out()
+        record = _RunProcess(WorkerPipe(pipe), folder, order, first, site).carry_out()
     except ArgoError as error:
         broken = {"status": RunStatus.INTERRUPTED, "problem": str(error)}
         pipe.send(StateTold(state=first.model_copy(update=broken)))
@@ -62,27 +71,39 @@ class _RunProcess:
     is another one with a journal of its own."""
 
     def __init__(
-        self, pipe: Connection, folder: Path, order: RunOrder, first: RunState, site: OpenedSite
+        self, pipe: WorkerPipe, folder: Path, order: RunOrder, first: RunState, site: OpenedSite
     ) -> None:
         self._pipe = pipe
         self._folder = folder
         self._order = order
         self._state = first
         self._site = site
-        self._teller = RunTeller(first.id, pipe.send, entries_of(folder))
+        self._teller = RunTeller(first.id, pipe.tell, entries_of(folder))
+        self._robot = None if order.drive != REMOTE else self._remote_robot()
 
     def carry_out(self) -> RunRecord:
         """The record of the last simulation."""
         with ExitStack() as stack:
             driver, simulation = self._begin(self._journal(stack), stack)
             while not driver.over:
-                left = driver.turn()
-                if self._pipe.poll(max(0.0, left)):
-                    driver.ask(*self._pipe.recv())
-                if driver.following is not None:
-                    driver, simulation = self._exchange(driver, simulation, stack)
+                self._pipe.wait(driver.turn())
+                for request, by in self._pipe.requests():
+                    driver.ask(request, by)
+                    if driver.following is not None:
+                        driver, simulation = self._exchange(driver, simulation, stack)
             driver.tell_state()
+            if self._robot is not None and not self._robot.settle(SETTLED):
+                unheard = "the robot has not acknowledged yet that the run is over"
+                self._pipe.tell(
+                    StateTold(state=driver.state().model_copy(update={"problem": unheard}))
+                )
             return simulation.record()
+
+    def _remote_robot(self) -> RemoteRobot:
+        """Raises Unavailable if the robot does not tell where it is."""
+        channel = Channel(self._pipe, uuid4().hex, time.time)
+        navigator = self._site.navigator
+        return RemoteRobot(navigator, channel, self._state.id, time.time, time.sleep)
 
     def _journal(self, stack: ExitStack) -> Journal:
         """The last journal that there is, or a first one."""
@@ -94,7 +115,7 @@ class _RunProcess:
         spec = RunSpec(
             mission=order.mission,
             site=order.site,
-            drive=order.drive,
+            drive=ROUTE if order.drive == REMOTE else order.drive,
             sensor=order.sensor,
             seed=order.seed,
             values=order.values,
@@ -110,13 +131,14 @@ class _RunProcess:
     def _begin(
         self, journal: Journal, stack: ExitStack, requests: Sequence[RequestState] = ()
     ) -> tuple[RunDriver, Simulation]:
-        spec, tell = journal.header.spec, self._pipe.send
+        spec, tell = journal.header.spec, self._pipe.tell
         simulation = Simulation(
             machine_of(spec.mission, spec.beginning),
             self._site,
             spec,
             past=journal.entries,
             observers=[journal, self._teller],
+            robot=self._robot,
         )
         stack.enter_context(simulation)
         driver = RunDriver(simulation, self._state, self._teller, tell, time.monotonic, requests)

@@ -13,6 +13,7 @@ from argo_planner.service.core.commands import CommandId
 from argo_planner.service.core.refusals import StaleRevision
 from argo_planner.service.runs.requests import AskedOfRun, GoOnEdited, RequestState, RunOrder, Speed
 from argo_planner.service.runs.state import EntryList, RunState
+from argo_planner.service.web.access import AccessRole, Visitor
 from argo_planner.service.web.live import carry, require_socket, socket_client
 from argo_planner.service.web.missions import sound
 from argo_planner.service.web.problems import StaleCommand, answer, documented, problem_of
@@ -231,6 +232,25 @@ async def follow_robot(socket: WebSocket, since: Annotated[int | None, Query(ge=
         await carry(socket, mailbox, lambda _: None)
     finally:
         service.runs.leave(client)
+
+
+@socket_router.websocket("/api/robot/link")
+async def connect_robot(socket: WebSocket) -> None:
+    """The line of a robot that is somewhere else: it carries the messages of `argo_env.remote`."""
+    service: PlanningService = socket.app.state.service
+    visitor: Visitor = socket.scope["visitor"]
+    try:
+        visitor.require(AccessRole.OPERATE)
+        require_socket(socket)
+    except ArgoError as error:
+        await socket.send_denial_response(answer(problem_of(error)))
+        return
+    await socket.accept()
+    line = service.runs.connect_robot()
+    try:
+        await carry(socket, line, lambda text: service.runs.hear_robot(line, text))
+    finally:
+        service.runs.disconnect_robot(line)
 
 
 def _state(service: PlanningService, run: str) -> RunState:

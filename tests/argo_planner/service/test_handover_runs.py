@@ -87,8 +87,12 @@ def play(service: Served, site: OpenedSite, seed: int) -> str:
                 "under way",
             ):
                 time.sleep(0.02)
-            assert found["progress"] == "confirmed", found
-            assert state(service, run)["revision"] == 2
+            if found["progress"] == "refused":
+                assert "nothing" in found["reason"]  # is left that could go on
+                assert ask(service, run, "give_back")["progress"] == "confirmed"
+            else:
+                assert found["progress"] == "confirmed", found
+                assert state(service, run)["revision"] == 2
             played.append("edited")
         else:
             assert ask(service, run, "give_back")["progress"] == "confirmed"
@@ -108,6 +112,6 @@ def test_by_hand_and_by_edit(service: Served, site: OpenedSite) -> None:
 @pytest.mark.long
 def test_many_random_runs(service: Served, site: OpenedSite) -> None:
     played = Counter(
-        word for seed in range(examples(20)) for word in play(service, site, seed).split()
+        word for seed in range(examples(8)) for word in play(service, site, seed).split()
     )
     assert {"do_task", "skip", "edited", "given", "back"} <= played.keys()

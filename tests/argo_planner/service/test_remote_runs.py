@@ -1,0 +1,71 @@
+"""A robot in another process carries a mission out, and loses its connection now and then."""
+
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+from websockets.exceptions import InvalidStatus
+
+from tests.argo_planner.service.served import ALL, SECRETS, Served
+from tests.argo_planner.service.test_run_host import SCRIPT
+from tests.argo_planner.service.test_runs import ask, state, wait
+
+ROOT = Path(__file__).parents[3]
+FAKE = "tests.argo_planner.service.fake_robot"
+
+
+def imported(service: Served) -> str:
+    made = service.client.post(
+        "/api/imports", params={"filename": "m.txt", "start_area": 1}, content=SCRIPT
+    )
+    return made.json()["id"]
+
+
+def begin(service: Served, id: str) -> str:
+    begun = service.client.post(
+        f"/api/missions/{id}/runs", json={"drive": "remote"}, headers={"if-match": "*"}
+    )
+    assert begun.status_code == 201, begun.text
+    return begun.json()["id"]
+
+
+def test_a_robot_somewhere_else_carries_a_mission_out(service: Served) -> None:
+    dock = service.client.get("/api/world").json()["docks"][0]["pose"]
+    place = [str(dock[axis]) for axis in ("x", "y", "z", "yaw")]
+    robot = subprocess.Popen(
+        [sys.executable, "-m", FAKE, service.address, ALL, "1", *place],
+        cwd=ROOT,
+    )
+    try:
+        id = imported(service)
+        run = begin(service, id)
+        wait(service, run, moving=True)
+        assert ask(service, run, "take_over")["progress"] == "confirmed"
+        assert not state(service, run)["moving"]
+        assert ask(service, run, "measure", checkpoint="1")["progress"] == "confirmed"
+        assert ask(service, run, "give_back")["progress"] == "confirmed"
+        ended = wait(service, run, status="ended")
+        counts = {t["task"]: t["done"] + t["by_hand"] for t in ended["tasks"]}
+        tasks = service.client.get(f"/api/missions/{id}").json()["mission"]["tasks"]
+        assert counts == {t["name"]: 1 for t in tasks if t["action"] != "START"}
+        assert ended["headline"]["word"] in ("Success", "Done, 1 finding", "Done, 2 findings")
+        assert robot.poll() is None
+    finally:
+        robot.kill()
+        robot.wait()
+
+
+def test_without_a_robot_it_is_said(service: Served) -> None:
+    run = begin(service, imported(service))
+    while (found := state(service, run))["status"] == "preparing":
+        pass
+    assert found["status"] == "interrupted"
+    assert "robot" in found["problem"]
+    assert ask(service, run, "stop")["progress"] == "confirmed"
+    assert state(service, run)["status"] == "ended"
+
+
+def test_only_who_operates_may_be_the_robot(service: Served) -> None:
+    with pytest.raises(InvalidStatus, match="403"):
+        service.socket("/api/robot/link", {"authorization": f"Bearer {SECRETS['plan']}"})

@@ -2,10 +2,13 @@
 
     python -m benchmarks.service            # edits, and how soon others see them
     python -m benchmarks.service --tasks 2000 --edits 200
+    python -m benchmarks.service --poses   # and what it costs to tell where the robot is
 
 Prints, for missions of several sizes, how long a durable edit takes (ms, from the request to the
 answer, when it is on disk), and when the last of 50 subscribers has it; once more while one
-subscriber hears nothing. The times are medians and 95 % of the edits took no longer.
+subscriber hears nothing. The times are medians and 95 % of the edits took no longer. Of poses it
+prints how many a second each of 50 followers of a run gets, the gaps between them, and the share of
+a core that the service takes for that.
 """
 
 import argparse
@@ -102,6 +105,70 @@ def follow(address: str, id: str, revisions: int, count: int, times: Connection)
     times.send(asyncio.run(all_of_them()))
 
 
+def follow_poses(address: str, count: int, seconds: float, gaps: Connection) -> None:
+    """In a process of its own: that many followers of the robot for a time (s). Sends all gaps (s)
+    between the poses that one follower gets."""
+
+    async def one() -> list[float]:
+        url = f"ws://{address}/api/robot/live?since=1000000000"
+        found: list[float] = []
+        async with connect(url, additional_headers=HEADERS, max_size=None, proxy=None) as socket:
+            last, ends = None, time.perf_counter() + seconds
+            while (now := time.perf_counter()) < ends:
+                text = await socket.recv()
+                if text.startswith('{"kind":"pose"'):
+                    now = time.perf_counter()
+                    if last is not None:
+                        found.append(now - last)
+                    last = now
+        return found
+
+    async def all_of_them() -> list[float]:
+        return [
+            gap for gaps in await asyncio.gather(*(one() for _ in range(count))) for gap in gaps
+        ]
+
+    gaps.send(asyncio.run(all_of_them()))
+
+
+def measure_poses(address: str, process: int, followers: int, seconds: float = 20.0) -> None:
+    """Prints what it costs to tell many where the robot is."""
+    with httpx.Client(base_url=f"http://{address}", headers=HEADERS, timeout=60) as client:
+        made = client.post("/api/missions", json={"name": "poses", "mission": mission(200)})
+        id = made.raise_for_status().json()["id"]
+        # At three times real time each step of 0.1 s is told, so that there are 30 a second.
+        order = {"drive": "route", "speed": 3.0}
+        begun = client.post(f"/api/missions/{id}/runs", json=order, headers={"if-match": "*"})
+        run = begun.raise_for_status().json()["id"]
+        while client.get(f"/api/runs/{run}").json()["status"] != "running":
+            time.sleep(0.1)
+        for count in (0, followers):
+            here, there = Pipe()
+            listening = Process(target=follow_poses, args=(address, count, seconds, there))
+            listening.start()
+            time.sleep(1.0)
+            before, at = busy(process), time.perf_counter()
+            time.sleep(seconds - 2.0)
+            share = (busy(process) - before) / (time.perf_counter() - at)
+            gaps = here.recv()
+            listening.join()
+            text = f"  {count} followers of a run: {share:.1%} of a core"
+            if gaps:
+                cuts = quantiles(gaps, n=100)
+                text += (
+                    f", {1 / (sum(gaps) / len(gaps)):.0f} poses a second each, gaps "
+                    f"{median(gaps) * 1e3:.0f} ms, 99 % up to {cuts[-1] * 1e3:.0f} ms"
+                )
+            print(text, flush=True)
+        client.post(f"/api/runs/{run}/requests", json={"kind": "stop", "id": "stop"})
+
+
+def busy(process: int) -> float:
+    """s that a process has worked so far, without those that it has begun."""
+    fields = Path(f"/proc/{process}/stat").read_text().rpartition(")")[2].split()
+    return (int(fields[11]) + int(fields[12])) / os.sysconf("SC_CLK_TCK")
+
+
 def show(name: str, seconds: Sequence[float]) -> None:
     """Prints a median, and what 95 of a hundred did not exceed."""
     cuts = quantiles(seconds, n=20)
@@ -167,10 +234,12 @@ def main() -> None:
     parser.add_argument("--tasks", type=int, nargs="*", default=SIZES)
     parser.add_argument("--edits", type=int, default=200)
     parser.add_argument("--subscribers", type=int, default=50)
+    parser.add_argument("--poses", action="store_true", help="of poses only")
     options = parser.parse_args()
     print(f"  {'':52s}  median    95 %")
-    with tempfile.TemporaryDirectory() as folder, service(Path(folder)) as (address, _):
-        for size in options.tasks:
+    with tempfile.TemporaryDirectory() as folder, service(Path(folder)) as (address, process):
+        measure_poses(address, process, options.subscribers)
+        for size in () if options.poses else options.tasks:
             measure(address, size, options.edits, options.subscribers)
 
 

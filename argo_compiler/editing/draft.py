@@ -1,10 +1,11 @@
 """A mission while it is edited: tasks know their neighbours, and groups their tasks, not names."""
 
+from collections.abc import Collection
 from dataclasses import dataclass
 
 from argo_compiler.diagnostics.subject import subject_of
 from argo_compiler.editing.linked import Linked, LinkedList
-from argo_compiler.editing.refusals import EditConflict, conflict, unknown
+from argo_compiler.editing.refusals import EditConflict, ambiguous, conflict, unknown
 from argo_compiler.editing.ways import defaults, retargeted, with_default
 from argo_compiler.il import Action, Group, Mission, Task
 from argo_compiler.il.grouping import GroupNesting, GroupRange, group_ranges, parent_name
@@ -79,13 +80,16 @@ class MissionDraft:
     def find(self, name: str) -> DraftTask:
         """The task of this name. Raises EditNotFound, or EditConflict if several have it."""
         if name in self._repeated:
-            message = f"more than one task is named '{name}'"
-            hint = "write the mission with a name for each task first"
-            raise conflict("edit.ambiguous-task", message, hint, subject_of("tasks", name))
+            raise ambiguous(name)
         entry = self._found.get(name)
         if entry is None:
             raise unknown("task", name, self._found)
         return entry
+
+    @property
+    def names(self) -> Collection[str]:
+        """The names of all tasks."""
+        return self._found.keys()
 
     def has_task(self, name: str) -> bool:
         """Whether a task has this name."""

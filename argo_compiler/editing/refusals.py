@@ -2,9 +2,10 @@
 
 import re
 import reprlib
-from collections.abc import Collection, Iterable
+from collections.abc import Collection, Iterable, Sequence
 
 from argo_compiler.diagnostics import Diagnostic, Severity, to_text
+from argo_compiler.diagnostics.subject import subject_of
 from argo_compiler.errors import ArgoError, Conflict, Invalid, NotFound
 from argo_compiler.nearest_name import nearest_name
 
@@ -56,6 +57,23 @@ def unknown(kind: str, name: str, known: Collection[str]) -> EditNotFound:
             )
         ]
     )
+
+
+def ambiguous(name: str) -> EditConflict:
+    """The refusal of an edit of one task where several have its name."""
+    message = f"more than one task is named '{name}'"
+    hint = "write the mission with a name for each task first"
+    return conflict("edit.ambiguous-task", message, hint, subject_of("tasks", name))
+
+
+def only_one(name: str, places: Sequence[int], known: Collection[str]) -> int:
+    """The only one of the places at which tasks have a name; `known` are all names. Raises
+    EditNotFound if there is none, EditConflict if there are several."""
+    if not places:
+        raise unknown("task", name, known)
+    if len(places) > 1:
+        raise ambiguous(name)
+    return places[0]
 
 
 def name_taken(kind: str, name: str, subject: str) -> EditConflict:

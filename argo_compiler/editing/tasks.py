@@ -1,6 +1,7 @@
 """Edits of a mission's tasks: added, changed, replaced, moved, renamed. `removal` takes them
 out."""
 
+from collections.abc import Collection
 from typing import TypedDict, Unpack
 
 from pydantic import ValidationError
@@ -13,6 +14,7 @@ from argo_compiler.editing.refusals import (
     EditInvalid,
     invalid,
     name_taken,
+    only_one,
     require_kind,
     require_name,
     unknown,
@@ -66,7 +68,7 @@ def add_task(
     draft = MissionDraft(mission)
     if draft.has_task(task.name):
         raise name_taken("task", task.name, subject_of("tasks", task.name))
-    _require_targets(draft, task)
+    _require_targets(draft.names, task)
     entry = DraftTask(task, goes_on=not task.transitions, shown=draft.nested and not task.group)
     draft.put(entry, _place(draft, before, after, first), into)
     return edited(mission, draft.mission())
@@ -87,7 +89,7 @@ def replace_task(mission: Mission, name: str, task: Task) -> Edited:
         if draft.has_task(task.name):
             raise name_taken("task", task.name, subject_of("tasks", task.name))
         draft.rename(entry, task.name)
-    _require_targets(draft, task)
+    _require_targets(draft.names, task)
     if task.transitions:
         entry.goes_on = False
     else:
@@ -109,16 +111,21 @@ def change_task(mission: Mission, name: str, **fields: Unpack[TaskFields]) -> Ed
         EditInvalid: a value that the field can't have, or a field that can't be changed like this.
         EditConflict: the mission does not have what is needed, as a dock to return to.
     """
-    draft = MissionDraft(mission)
-    entry = draft.find(name)
+    # No draft: none of these fields changes where anything stands or leads on.
+    known = dict.fromkeys(task.name for task in mission.tasks)
+    places = [place for place, task in enumerate(mission.tasks) if task.name == name]
+    at = only_one(name, places, known)
+    task = mission.tasks[at]
     require_fields(fields, TaskFields.__annotations__, "a task")
     try:
-        values = Task.model_validate({"name": name, "action": entry.task.action, **fields})
+        values = Task.model_validate({"name": name, "action": task.action, **fields})
     except ValidationError as error:
         raise EditInvalid(wrong_values(error)) from None
-    entry.task = entry.task.model_copy(update={field: getattr(values, field) for field in fields})
-    _require_targets(draft, values)
-    return edited(mission, draft.mission(), asked=frozenset([subject_of("tasks", name)]))
+    _require_targets(known, values)
+    changed = task.model_copy(update={field: getattr(values, field) for field in fields})
+    tasks = (*mission.tasks[:at], changed, *mission.tasks[at + 1 :])
+    after = mission.model_copy(update={"tasks": tasks})
+    return edited(mission, after, asked=frozenset([subject_of("tasks", name)]))
 
 
 def move_task(
@@ -181,7 +188,7 @@ def _place(
     return draft.tasks.last
 
 
-def _require_targets(draft: MissionDraft, task: Task) -> None:
+def _require_targets(known: Collection[str], task: Task) -> None:
     for target in (*(way.target for way in task.transitions), *branches(task).values()):
-        if target != task.name and not draft.has_task(target):
-            raise unknown("task", target, [entry.task.name for entry in draft.tasks])
+        if target != task.name and target not in known:
+            raise unknown("task", target, known)

@@ -13,14 +13,14 @@ from argo_env.run.robot import RobotAction
 from argo_env.run.spec import RunSpec
 
 if TYPE_CHECKING:  # what the extra brings
-    from argo_env.recording.mcap_recorder import McapRecorder
+    from argo_env.recording.run_recorder import RunRecorder
 
 
 class BestEffort(Observer):
     """Tells a recorder of a run until the recording can't be written any further, as on a full
     disk; the run goes on without it. Holds the recorder, and why that ended."""
 
-    def __init__(self, recorder: "McapRecorder", warn: Callable[[str], None]) -> None:
+    def __init__(self, recorder: "RunRecorder", warn: Callable[[str], None]) -> None:
         """`warn` is told what is lost, when that happens."""
         self._recorder = recorder
         self._warn = warn

@@ -51,10 +51,11 @@ def recording_to(
     """
     check_recording(file)
     # What this needs is not there without the extra.
-    from argo_env.recording.mcap_recorder import McapRecorder
+    from argo_env.recording.run_recorder import RunRecorder
+    from argo_env.recording.writer import RecordingWriter
 
     with closing(RecordingFile(file)) as stream:
-        recorder = BestEffort(McapRecorder(stream, source, warn), warn)
+        recorder = BestEffort(RunRecorder(RecordingWriter(stream), source, warn), warn)
         try:
             yield recorder
         finally:

@@ -9,7 +9,7 @@ from foxglove_schemas_protobuf.PoseInFrame_pb2 import PoseInFrame
 
 from argo_env.recording.messages import BASE, WORLD, attitude, set_rotation, set_time, set_vector
 from argo_env.recording.robot_model import Joint, Quaternion, RobotModel
-from argo_env.recording.writer import RecordingWriter
+from argo_env.recording.topic_writer import TopicWriter
 from argo_env.robot.pose import BodyPose
 from argo_env.site.shapes import Vector
 
@@ -23,7 +23,7 @@ Limbs = Callable[[list[str]], list[float]]
 class MotionTopics:
     """Writes where the robot is and how its limbs stand. Holds its messages, to fill them anew."""
 
-    def __init__(self, writer: RecordingWriter, model: RobotModel, limbs: Limbs) -> None:
+    def __init__(self, writer: TopicWriter, model: RobotModel, limbs: Limbs) -> None:
         self._writer = writer
         self._limbs = limbs
         self._moving = [joint for joint in model.joints if joint.moves]

@@ -10,7 +10,7 @@ from PIL import Image
 from scipy.spatial.transform import Rotation
 
 from argo_env.recording.messages import WORLD, set_rotation, set_vector, timestamp
-from argo_env.recording.writer import RecordingWriter
+from argo_env.recording.topic_writer import TopicWriter
 from argo_env.world.world import Shot
 
 CAMERA = "camera"
@@ -18,7 +18,7 @@ CAMERA = "camera"
 _QUALITY = 90  # of JPEG: a tenth of the size of a PNG with the camera's noise
 
 
-def write_shot(writer: RecordingWriter, shot: Shot, t: float) -> None:
+def write_shot(writer: TopicWriter, shot: Shot, t: float) -> None:
     """Writes a picture that was taken at time t (s)."""
     x, y, z = shot.position.tolist()
     qx, qy, qz, qw = Rotation.from_matrix(shot.rotation).as_quat().tolist()

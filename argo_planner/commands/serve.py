@@ -12,6 +12,7 @@ from rich.console import Console
 from argo_compiler.errors import Invalid, Unavailable
 from argo_compiler.extras import install_line
 from argo_env.planning.opening import open_site
+from argo_env.recording.live import require_foxglove
 from argo_planner.terminal import completion
 from argo_planner.terminal.verbosity import is_quiet
 
@@ -59,6 +60,16 @@ def serve_plans(
             help="what becomes of a run that was under way when the service was killed",
         ),
     ] = "wait",
+    foxglove: Annotated[
+        int | None,
+        typer.Option(
+            "--foxglove",
+            metavar="PORT",
+            min=1,
+            max=65535,
+            help="show runs live in Foxglove, on this machine; it looks at 8765 by itself",
+        ),
+    ] = None,
     allow_host: Annotated[
         list[str] | None,
         typer.Option("--allow-host", metavar="NAME", help="a name under which it is asked for"),
@@ -85,6 +96,8 @@ def serve_plans(
         raise Unavailable(f"the service needs {error.name}: {install_line('planner')}") from None
     if after_restart not in list(AfterRestart):
         raise Invalid(f"--after-restart {after_restart}: choose from {', '.join(AfterRestart)}")
+    if foxglove is not None:
+        require_foxglove()
     own = _is_own(host)
     if token is None and token_file is None and not own:
         raise Invalid(f"--host {host}: others can reach this address: give --token or --token-file")
@@ -109,7 +122,9 @@ def serve_plans(
     console.print(f"Site {opened.name}, missions in {folder}. Open {address}")
     console.print("Ctrl-C ends the service; what was acknowledged is kept.")
     with suppress(KeyboardInterrupt):
-        order = ServiceOrder(plans, opened, TokenBook(tokens), doors, AfterRestart(after_restart))
+        order = ServiceOrder(
+            plans, opened, TokenBook(tokens), doors, AfterRestart(after_restart), foxglove
+        )
         serve(order, listening)
 
 

@@ -19,6 +19,11 @@ _EXTRAS: dict[str, tuple[str, tuple[str, ...]]] = {
         "recordings of runs",
         ("mcap", "mcap_protobuf", "foxglove_schemas_protobuf"),
     ),
+    "planner": (
+        "the planning service",
+        ("fastapi", "uvicorn", "uvloop", "httptools", "websockets"),
+    ),
+    "foxglove": ("runs live in Foxglove", ("foxglove",)),
     "ros": ("missions in bags of ROS", ("rosbags",)),
     "route": ("better routes", ("pyvrp", "numba")),
     "vision": ("reading gauges from pictures", ("cv2",)),

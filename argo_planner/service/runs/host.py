@@ -50,11 +50,17 @@ class RunHost:
     """The run of the service's robot. Holds its process and those who follow it."""
 
     def __init__(
-        self, folder: Path, after_restart: AfterRestart, clock: Callable[[], datetime]
+        self,
+        folder: Path,
+        after_restart: AfterRestart,
+        clock: Callable[[], datetime],
+        foxglove: int | None = None,
     ) -> None:
+        """`foxglove`: the port at which runs are shown live on this machine; None: they are not."""
         self._folder = RunFolder(folder)
         self._after_restart = after_restart
         self._clock = clock
+        self._foxglove = foxglove
         self._kept: KeptRun | None = None
         self._worker: _Worker | None = None
         self._workers: set[_Worker] = set()
@@ -219,7 +225,7 @@ class RunHost:
         )
         self._kept = self._kept.model_copy(update={"state": first})
         loop = asyncio.get_running_loop()
-        worker = _Worker(self._folder.path(first.id), self._kept.order, first)
+        worker = _Worker(self._folder.path(first.id), self._kept.order, first, self._foxglove)
         self._worker = worker
         self._workers.add(worker)
         self._tell_state()
@@ -342,9 +348,12 @@ class RunHost:
 class _Worker:
     """The process of a run, and the pipe to it."""
 
-    def __init__(self, folder: Path, order: RunOrder, first: RunState) -> None:
+    def __init__(
+        self, folder: Path, order: RunOrder, first: RunState, foxglove: int | None
+    ) -> None:
         self._pipe, there = _SPAWN.Pipe()
-        self._process = _SPAWN.Process(target=carry_out, args=(there, folder, order, first))
+        arguments = (there, folder, order, first, foxglove)
+        self._process = _SPAWN.Process(target=carry_out, args=arguments)
         self._process.daemon = True
         self._process.start()
         there.close()

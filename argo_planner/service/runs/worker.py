@@ -11,12 +11,14 @@ from uuid import uuid4
 
 from argo_compiler.errors import ArgoError
 from argo_env.planning.opening import OpenedSite, open_site
+from argo_env.recording.live import LiveWriter, served_live
 from argo_env.remote.channel import Channel
 from argo_env.remote.robot import RemoteRobot
 from argo_env.run.beginning import machine_of
 from argo_env.run.drives_and_sensors import ROUTE
 from argo_env.run.journal import Header, Journal, create_journal, open_journal
 from argo_env.run.log import Entry
+from argo_env.run.observer import Observer
 from argo_env.run.record import RunRecord
 from argo_env.run.simulation import Simulation
 from argo_env.run.spec import RunSpec
@@ -51,13 +53,23 @@ def entries_of(folder: Path) -> tuple[Entry, ...]:
     return tuple(entries)
 
 
-def carry_out(pipe: Connection, folder: Path, order: RunOrder, first: RunState) -> None:
+def carry_out(
+    pipe: Connection,
+    folder: Path,
+    order: RunOrder,
+    first: RunState,
+    foxglove: int | None = None,
+) -> None:
     """Carries a run out, or goes on with the last journal in its folder. Through the pipe come
-    requests with who sends them, and go all that is to be told."""
+    requests with who sends them, and go all that is to be told. At the port `foxglove`, if there is
+    one, the run is shown live."""
     end_with_parent()
     try:
         site = with_obstacles(open_site(order.site).prepare(), order.obstacles)
-        record = _RunProcess(WorkerPipe(pipe), folder, order, first, site).carry_out()
+        with ExitStack() as stack:
+            live = None if foxglove is None else stack.enter_context(served_live(foxglove))
+            process = _RunProcess(WorkerPipe(pipe), folder, order, first, site, live)
+            record = process.carry_out()
     except ArgoError as error:
         broken = {"status": RunStatus.INTERRUPTED, "problem": str(error)}
         pipe.send(StateTold(state=first.model_copy(update=broken)))
@@ -71,13 +83,20 @@ class _RunProcess:
     is another one with a journal of its own."""
 
     def __init__(
-        self, pipe: WorkerPipe, folder: Path, order: RunOrder, first: RunState, site: OpenedSite
+        self,
+        pipe: WorkerPipe,
+        folder: Path,
+        order: RunOrder,
+        first: RunState,
+        site: OpenedSite,
+        live: LiveWriter | None,
     ) -> None:
         self._pipe = pipe
         self._folder = folder
         self._order = order
         self._state = first
         self._site = site
+        self._live = live
         self._teller = RunTeller(first.id, pipe.tell, entries_of(folder))
         self._robot = None if order.drive != REMOTE else self._remote_robot()
 
@@ -137,13 +156,20 @@ class _RunProcess:
             self._site,
             spec,
             past=journal.entries,
-            observers=[journal, self._teller],
+            observers=[journal, self._teller, *self._viewers()],
             robot=self._robot,
         )
         stack.enter_context(simulation)
         driver = RunDriver(simulation, self._state, self._teller, tell, time.monotonic, requests)
         driver.tell_state()
         return driver, simulation
+
+    def _viewers(self) -> list[Observer]:
+        if self._live is None:
+            return []
+        from argo_env.recording.run_recorder import RunRecorder  # brings an extra
+
+        return [RunRecorder(self._live)]
 
     def _exchange(
         self, driver: RunDriver, simulation: Simulation, stack: ExitStack

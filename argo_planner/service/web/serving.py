@@ -37,6 +37,8 @@ class ServiceOrder:
     doors: Doors
     after_restart: AfterRestart = AfterRestart.WAIT
     """what becomes of a run that was under way when the service was killed"""
+    foxglove: int | None = None
+    """the port at which runs are shown live on this machine; None: they are not"""
 
 
 def open_folder(path: Path) -> PlanFolder:
@@ -45,7 +47,10 @@ def open_folder(path: Path) -> PlanFolder:
 
 
 def opened_service(
-    plans: PlanFolder, site: OpenedSite, after_restart: AfterRestart = AfterRestart.WAIT
+    plans: PlanFolder,
+    site: OpenedSite,
+    after_restart: AfterRestart = AfterRestart.WAIT,
+    foxglove: int | None = None,
 ) -> Opened:
     """What opens the service with the plans of a folder, and closes both again."""
 
@@ -60,7 +65,7 @@ def opened_service(
                     room.tell_of(job)
 
             jobs = Jobs(site.reference, partial(secrets.token_hex, 6), _now, tell)
-            runs = RunHost(plans.path / "runs", after_restart, _now)
+            runs = RunHost(plans.path / "runs", after_restart, _now, foxglove)
             obstacles = KeptObstacles(plans.path)
             await runs.open()
             thread = ThreadPoolExecutor(1)
@@ -93,7 +98,7 @@ def listen(host: str, port: int) -> socket.socket:
 def serve(order: ServiceOrder, listening: socket.socket) -> None:
     """Serves at a socket until a signal ends it."""
     raise_file_limit()
-    app = make_app(opened_service(order.plans, order.site, order.after_restart))
+    app = make_app(opened_service(order.plans, order.site, order.after_restart, order.foxglove))
     guard = guarded(app, order.tokens, order.doors)
     uvicorn.Server(uvicorn.Config(guard, **server_options())).run(sockets=[listening])
 

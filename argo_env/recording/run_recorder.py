@@ -15,11 +15,11 @@ from argo_env.navigation import Path as Way
 from argo_env.recording import messages, scene
 from argo_env.recording.files import VERSION
 from argo_env.recording.motion import Limbs, MotionTopics
-from argo_env.recording.output import RecordingFile
 from argo_env.recording.robot_model import read_model
 from argo_env.recording.shots import write_shot
+from argo_env.recording.topic_writer import TopicWriter
 from argo_env.recording.topics import BatteryState, MissionState, mission_state
-from argo_env.recording.writer import RecordingWriter, media_type
+from argo_env.recording.writer import media_type
 from argo_env.report.files import to_json
 from argo_env.robot.spec import robot_folder
 from argo_env.run.headline import Tone
@@ -40,17 +40,17 @@ SAMPLE_PERIOD = 0.1
 """s between recorded poses, at least; a drive with longer steps has one at each"""
 
 
-class McapRecorder(Observer):
-    """Writes one run to a file. Holds what was last written, to write what is new only."""
+class RunRecorder(Observer):
+    """Writes one run. Holds what was last written, to write what is new only."""
 
     def __init__(
         self,
-        stream: RecordingFile,
+        writer: TopicWriter,
         source: Path | None = None,
         warn: Callable[[str], None] = _log.warning,
     ) -> None:
         """`source`: the file that the mission was read from; `warn` is told if it is left out."""
-        self._writer = RecordingWriter(stream)
+        self._writer = writer
         self._source = source
         self._warn = warn
         self._begun = False

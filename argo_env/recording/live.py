@@ -1,0 +1,148 @@
+"""A run live in Foxglove: the topics of a recording, served to those who look on."""
+
+import json
+from collections.abc import Iterator, Mapping
+from contextlib import contextmanager
+from importlib.util import find_spec
+from threading import Lock
+from typing import TYPE_CHECKING, Any, cast
+
+from argo_compiler.errors import Unavailable
+from argo_compiler.extras import install_line
+from argo_compiler.model import Model
+from argo_env.recording.files import require_libraries
+from argo_env.recording.plain_schema import plain_schema
+
+if TYPE_CHECKING:  # what the extras bring
+    import foxglove
+    from foxglove.websocket import WebSocketServer
+    from google.protobuf.message import Message
+
+PORT = 8765
+"""where Foxglove looks by itself"""
+HOST = "127.0.0.1"
+"""this machine only: the server lets pages of any origin in"""
+
+
+class LiveWriter:
+    """Serves what a recorder writes. Holds the last message of each topic, which whoever begins to
+    look at it gets first. Nobody can send anything."""
+
+    def __init__(self, server: "WebSocketServer", context: "foxglove.Context") -> None:
+        self.server = server
+        self._context = context
+        self._lock = Lock()
+        self._channels: dict[str, foxglove.Channel] = {}
+        self._last: dict[int, tuple[foxglove.Channel, bytes, int]] = {}
+
+    @property
+    def until(self) -> float | None:
+        """Nothing is kept."""
+        return None
+
+    def put(self, topic: str, message: "Message", t: float) -> None:
+        """Tells a protobuf message at time t (s)."""
+        if topic not in self._channels:
+            from mcap_protobuf.schema import build_file_descriptor_set
+
+            descriptors = build_file_descriptor_set(type(message))
+            self._open(
+                topic, "protobuf", message.DESCRIPTOR.full_name, descriptors.SerializeToString()
+            )
+        self._tell(topic, message.SerializeToString(), t)
+
+    def put_json(self, topic: str, message: Model, t: float) -> None:
+        """Tells a model as JSON at time t (s)."""
+        if topic not in self._channels:
+            schema = json.dumps(plain_schema(type(message)), ensure_ascii=False).encode()
+            self._open(topic, "json", f"argo.{type(message).__name__}", schema)
+        self._tell(topic, message.model_dump_json(exclude_none=True).encode(), t)
+
+    def attach(self, name: str, media_type: str, content: str | bytes, t: float = 0.0) -> None:
+        """Files are for recordings."""
+
+    def describe(self, name: str, facts: Mapping[str, str]) -> None:
+        """Likewise."""
+
+    def flush_if_due(self, t: float) -> None:
+        """Nothing waits."""
+
+    def flush(self, t: float) -> None:
+        """Nothing waits."""
+
+    def close(self) -> None:
+        """The run is over; who looks on keeps what was told last."""
+
+    def tell_again(self, channel: int) -> None:
+        """Tells the last message of a channel once more, as somebody has begun to look at it."""
+        with self._lock:
+            known = self._last.get(channel)
+        if known is not None:
+            known[0].log(known[1], log_time=known[2])
+
+    def _open(self, topic: str, encoding: str, name: str, schema: bytes) -> None:
+        import foxglove
+
+        kind = "protobuf" if encoding == "protobuf" else "jsonschema"
+        self._channels[topic] = foxglove.Channel(
+            topic,
+            schema=foxglove.Schema(name=name, encoding=kind, data=schema),
+            message_encoding=encoding,
+            context=self._context,
+        )
+
+    def _tell(self, topic: str, data: bytes, t: float) -> None:
+        channel, at = self._channels[topic], round(t * 1e9)
+        with self._lock:
+            self._last[channel.id()] = channel, data, at
+        channel.log(data, log_time=at)
+
+
+class _Latch:
+    """Gives those who begin to look at a topic what was told last."""
+
+    def __init__(self) -> None:
+        self.writer: LiveWriter | None = None
+
+    def on_subscribe(self, client: Any, channel: Any) -> None:  # noqa: ARG002
+        if self.writer is not None:
+            self.writer.tell_again(channel.id)
+
+    def on_unsubscribe(self, client: Any, channel: Any) -> None:
+        """Nothing changes."""
+
+
+def require_foxglove() -> None:
+    """Raises Unavailable if an extra that this needs isn't installed."""
+    if find_spec("foxglove") is None:
+        raise Unavailable(f"a live view needs foxglove: {install_line('foxglove')}")
+    require_libraries()
+
+
+@contextmanager
+def served_live(port: int = PORT) -> Iterator[LiveWriter]:
+    """A writer for a `RunRecorder` that Foxglove shows live, on this machine at the port; 0: a free
+    one. It is read only.
+
+    Raises Unavailable if an extra is missing, or the port is taken.
+    """
+    require_foxglove()
+    import foxglove
+
+    context, latch = foxglove.Context(), _Latch()
+    try:
+        server = foxglove.start_server(
+            name="Argo",
+            host=HOST,
+            port=port,
+            capabilities=[],
+            server_listener=cast(Any, latch),
+            context=context,
+        )
+    except (RuntimeError, OSError) as error:
+        raise Unavailable(f"{HOST}:{port}: no live view can be served there: {error}") from None
+    latch.writer = writer = LiveWriter(server, context)
+    try:
+        yield writer
+    finally:
+        server.stop()

@@ -93,7 +93,7 @@ class ArgoCommands(LazyGroup):
             "serve",
             "serve",
             "serve_plans",
-            "Serve the missions of a folder to many people at once, for planning and for runs.",
+            "Serve the missions of a folder to many people at once.",
         ),
         _command(
             "schema",

@@ -1,11 +1,8 @@
 """The one run of the service's robot: begun, asked, followed, gone on with."""
 
 import asyncio
-import multiprocessing
 import secrets
-import threading
 from collections.abc import Callable
-from contextlib import suppress
 from datetime import datetime
 from enum import StrEnum
 from pathlib import Path
@@ -16,6 +13,7 @@ from argo_compiler.model import Model
 from argo_planner.service.rooms.mailbox import Mailbox, MailboxClosed
 from argo_planner.service.runs.folder import KeptRun, RunFolder
 from argo_planner.service.runs.pipe import RobotText
+from argo_planner.service.runs.process import RunProcess
 from argo_planner.service.runs.requests import (
     EndRun,
     GoOnWithRun,
@@ -33,9 +31,6 @@ from argo_planner.service.runs.state import (
     RunStatus,
     StateTold,
 )
-from argo_planner.service.runs.worker import carry_out
-
-_SPAWN = multiprocessing.get_context("spawn")
 
 
 class AfterRestart(StrEnum):
@@ -62,8 +57,8 @@ class RunHost:
         self._clock = clock
         self._foxglove = foxglove
         self._kept: KeptRun | None = None
-        self._worker: _Worker | None = None
-        self._workers: set[_Worker] = set()
+        self._worker: RunProcess | None = None
+        self._workers: set[RunProcess] = set()
         """this one, and those that still write the report of a run before"""
         self._entries: list[str] = []
         self._requests: dict[str, RequestState] = {}
@@ -225,7 +220,7 @@ class RunHost:
         )
         self._kept = self._kept.model_copy(update={"state": first})
         loop = asyncio.get_running_loop()
-        worker = _Worker(self._folder.path(first.id), self._kept.order, first, self._foxglove)
+        worker = RunProcess(self._folder.path(first.id), self._kept.order, first, self._foxglove)
         self._worker = worker
         self._workers.add(worker)
         self._tell_state()
@@ -234,7 +229,7 @@ class RunHost:
             lambda: loop.call_soon_threadsafe(self._died, worker),
         )
 
-    def _hear_of(self, worker: "_Worker", message: Model) -> None:
+    def _hear_of(self, worker: "RunProcess", message: Model) -> None:
         if worker is self._worker:
             self._hear(message)
 
@@ -279,7 +274,7 @@ class RunHost:
         for mailbox in self._followers.values():
             mailbox.post_newest("state", text)
 
-    def _died(self, worker: "_Worker") -> None:
+    def _died(self, worker: "RunProcess") -> None:
         """The process has ended: with the run, or before."""
         self._workers.discard(worker)
         if worker is not self._worker:
@@ -343,46 +338,3 @@ class RunHost:
         if state is None or state.id != run:
             raise NotFound(f"run {run[:40]!r} is not the present one")
         return state
-
-
-class _Worker:
-    """The process of a run, and the pipe to it."""
-
-    def __init__(
-        self, folder: Path, order: RunOrder, first: RunState, foxglove: int | None
-    ) -> None:
-        self._pipe, there = _SPAWN.Pipe()
-        arguments = (there, folder, order, first, foxglove)
-        self._process = _SPAWN.Process(target=carry_out, args=arguments)
-        self._process.daemon = True
-        self._process.start()
-        there.close()
-
-    def send(self, message: object) -> None:
-        try:
-            self._pipe.send(message)
-        except OSError:
-            return  # it has ended, and whoever reads from it hears of that
-
-    def read(self, heard: Callable[[Model], object], ended: Callable[[], object]) -> None:
-        """From now on tells what comes from the process, from a thread of its own, and its end."""
-
-        def reading() -> None:
-            with suppress(EOFError, OSError):
-                while True:
-                    heard(self._pipe.recv())
-            self._process.join()
-            ended()
-
-        self._reader = threading.Thread(target=reading, daemon=True)
-        self._reader.start()
-
-    def end(self) -> None:
-        """Ends the process; the loop that is told of it still runs."""
-        self._process.kill()
-        self._reader.join()
-        self._pipe.close()
-
-    def how_it_ended(self) -> str:
-        status = self._process.exitcode
-        return f"signal {-status}" if status is not None and status < 0 else f"status {status}"

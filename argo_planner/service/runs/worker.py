@@ -68,7 +68,7 @@ def carry_out(
         site = with_obstacles(open_site(order.site).prepare(), order.obstacles)
         with ExitStack() as stack:
             live = None if foxglove is None else stack.enter_context(served_live(foxglove))
-            process = _RunProcess(WorkerPipe(pipe), folder, order, first, site, live)
+            process = _Segments(WorkerPipe(pipe), folder, order, first, site, live)
             record = process.carry_out()
     except ArgoError as error:
         broken = {"status": RunStatus.INTERRUPTED, "problem": str(error)}
@@ -78,7 +78,7 @@ def carry_out(
         (folder / name).write_bytes(content)
 
 
-class _RunProcess:
+class _Segments:
     """A run, one simulation after the other: each time that it goes on with an edited plan, there
     is another one with a journal of its own."""
 

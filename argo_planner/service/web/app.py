@@ -11,7 +11,7 @@ from fastapi.responses import HTMLResponse
 
 from argo_compiler import __version__
 from argo_compiler.model import Model
-from argo_planner.service.web import commands, jobs, live, missions, runs, world
+from argo_planner.service.web import commands, jobs, live, missions, runs, versions, world
 from argo_planner.service.web.access import AccessRole, TokenBook
 from argo_planner.service.web.guard import Doors, Guard
 from argo_planner.service.web.problems import MEDIA, answer_problems, documented
@@ -77,7 +77,7 @@ def make_app(opened: Opened) -> FastAPI:
     )
     answer_problems(app)
     app.openapi = partial(_document_of, app)  # type: ignore[method-assign]
-    parts = (missions, commands, jobs, world, runs, live)
+    parts = (missions, versions, commands, jobs, world, runs, live)
     for part in (page, router, *(one.router for one in parts), runs.socket_router):
         app.include_router(part)
     return app

@@ -19,15 +19,14 @@ from argo_compiler.il import Mission
 from argo_compiler.model import Model
 from argo_env.planning.opening import OpenedSite
 from argo_planner.service.core.change import difference
-from argo_planner.service.core.commands import CommandId, ReplacePlan, Revision
-from argo_planner.service.core.document import PlanDocument, PlanVersion
+from argo_planner.service.core.commands import Revision
+from argo_planner.service.core.document import PlanDocument
 from argo_planner.service.core.limits import require_fitting
-from argo_planner.service.rooms.messages import CommandDone, PlanState, VersionSummary
+from argo_planner.service.rooms.messages import PlanState
 from argo_planner.service.storage.folder import PlanSummary, summary_of
 from argo_planner.service.web.problems import documented
 from argo_planner.service.web.requests import (
     KEYS,
-    MadeOn,
     NameGiven,
     PlanId,
     Planner,
@@ -83,18 +82,6 @@ class NewMission(Model):
 
     name: str = Field(max_length=1_000)
     mission: Mission | None = None
-
-
-class RestoredVersion(Model):
-    """A command that makes a version the mission again."""
-
-    id: CommandId
-
-
-class VersionList(Model):
-    """Versions in the order in which they were kept."""
-
-    versions: tuple[VersionSummary, ...]
 
 
 class RevisionList(Model):
@@ -267,80 +254,6 @@ async def list_revisions(
             f"revision {plan.revision}"
         )
     return said(RevisionList.model_construct(revisions=found), revision=plan.revision)
-
-
-@router.get("/missions/{id}/versions", operation_id="list_versions", response_model=VersionList)
-async def list_versions(service: Service, _: Viewer, id: PlanId) -> Response:
-    """The versions that were kept of a mission."""
-    document = (await service.rooms.open(id)).document
-    return said(VersionList(versions=tuple(map(VersionSummary.of, document.versions))))
-
-
-@router.post(
-    "/missions/{id}/versions",
-    operation_id="keep_version",
-    status_code=201,
-    response_model=VersionSummary,
-    responses=documented(412, 428)
-    | {
-        201: created(
-            VersionSummary,
-            {
-                name: link(name, id="$request.path.id", number="$response.body#/number")
-                for name in ("read_version", "restore_version", "drop_version")
-            },
-        )
-    },
-)
-async def keep_version(
-    service: Service, visitor: Planner, id: PlanId, given: NameGiven, made_on: MadeOn
-) -> Response:
-    """Keeps the mission as it stands under a name."""
-    room = await service.rooms.open(id)
-    version = await room.keep_version(given.name, visitor.author, made_on)
-    return said(version, 201, location=f"/api/missions/{id}/versions/{version.number}")
-
-
-VersionNumber = Annotated[int, Path(ge=1, le=10**9, description="of the version")]
-
-
-@router.get(
-    "/missions/{id}/versions/{number}", operation_id="read_version", response_model=PlanVersion
-)
-async def read_version(service: Service, _: Viewer, id: PlanId, number: VersionNumber) -> Response:
-    """A version with its mission."""
-    return said((await service.rooms.open(id)).document.version(number))
-
-
-@router.delete("/missions/{id}/versions/{number}", operation_id="drop_version", status_code=204)
-async def drop_version(service: Service, _: Planner, id: PlanId, number: VersionNumber) -> Response:
-    """Keeps a version no longer."""
-    await (await service.rooms.open(id)).drop_version(number)
-    return Response(status_code=204)
-
-
-@router.post(
-    "/missions/{id}/versions/{number}/restore",
-    operation_id="restore_version",
-    response_model=CommandDone,
-    responses=documented(412, 428),
-)
-async def restore_version(
-    service: Service,
-    visitor: Planner,
-    id: PlanId,
-    number: VersionNumber,
-    command: RestoredVersion,
-    made_on: MadeOn,
-) -> Response:
-    """Makes a version the mission again, as a command that can be undone."""
-    room = await service.rooms.open(id)
-    version = room.document.version(number)
-    replaced = ReplacePlan.model_construct(
-        id=command.id, mission=version.mission, about=f"version {version.name}"
-    )
-    done = await room.carry_out(replaced, visitor.author, made_on)
-    return said(done, revision=done.newest)
 
 
 def as_it_is(document: PlanDocument) -> ImportedMission:

@@ -4,7 +4,7 @@ import json
 from collections.abc import Iterator, Mapping
 from contextlib import contextmanager
 from importlib.util import find_spec
-from threading import Lock
+from threading import Lock, Thread
 from typing import TYPE_CHECKING, Any, cast
 
 from argo_compiler.errors import Unavailable
@@ -22,6 +22,9 @@ PORT = 8765
 """where Foxglove looks by itself"""
 HOST = "127.0.0.1"
 """this machine only: the server lets pages of any origin in"""
+
+_PATIENCE = 1.0
+"""s that clients have at the end to read what they were sent"""
 
 
 class LiveWriter:
@@ -145,4 +148,7 @@ def served_live(port: int = PORT) -> Iterator[LiveWriter]:
     try:
         yield writer
     finally:
-        server.stop()
+        # The library waits for clients that read nothing, for as long as they stay.
+        stopping = Thread(target=server.stop, daemon=True)
+        stopping.start()
+        stopping.join(_PATIENCE)

@@ -20,6 +20,16 @@ from argo_compiler.errors import (
 )
 from argo_compiler.files.reading import FileError, FileProblem, NoFile, UnreadableFile
 from argo_env.recording.output import UnwritableRecording
+from argo_planner.service.core.refusals import (
+    ChangedSince,
+    CommandIdTaken,
+    EditRefused,
+    NothingToUndo,
+    PlanTooLarge,
+    StaleRevision,
+)
+from argo_planner.service.web.access import AccessDenied, TokenMissing
+from argo_planner.service.web.problems import RevisionMissing, StaleCommand, TooLarge
 
 FINDINGS = (
     Diagnostic(
@@ -43,6 +53,12 @@ MADE = [
     *(kind(FINDINGS) for kind in (EditError, EditNotFound, EditInvalid, EditConflict)),
     *(kind(*FILE) for kind in (FileError, NoFile, UnreadableFile)),
     UnwritableRecording(Path("a.mcap"), "No space left on device"),
+    *(kind("no") for kind in (CommandIdTaken, NothingToUndo, PlanTooLarge)),
+    *(kind("no") for kind in (AccessDenied, TokenMissing, RevisionMissing, TooLarge)),
+    StaleRevision(3, 5),
+    StaleCommand(StaleRevision(3, 5), ()),
+    ChangedSince("by bob", FINDINGS),
+    EditRefused("no such place", 1, FINDINGS),
 ]
 
 

@@ -19,7 +19,7 @@ class StaleRevision(Conflict):
         )
 
     def __reduce__(self) -> tuple[object, ...]:
-        return type(self), (self.made_on, self.newest)
+        return type(self), (self.made_on, self.newest), vars(self)
 
 
 class CommandIdTaken(Conflict):
@@ -43,6 +43,9 @@ class ChangedSince(Conflict):
         self.diagnostics = tuple(diagnostics)
         super().__init__(message)
 
+    def __reduce__(self) -> tuple[object, ...]:
+        return type(self), (str(self), self.diagnostics), vars(self)
+
 
 class EditRefused(ArgoError):
     """An edit can't be made; `diagnostics` tell what is in the way."""
@@ -54,6 +57,9 @@ class EditRefused(ArgoError):
         """of the edit in its command, from 0"""
         self.diagnostics = tuple(diagnostics)
         super().__init__(message)
+
+    def __reduce__(self) -> tuple[object, ...]:
+        return type(self), (str(self), self.place, self.diagnostics), vars(self)
 
 
 class PlanTooLarge(Invalid):

@@ -48,8 +48,12 @@ class StaleCommand(ArgoError):
     code = StaleRevision.code
 
     def __init__(self, stale: StaleRevision, since: tuple[Revision, ...] | None) -> None:
-        self.newest, self.since = stale.newest, since
+        self.made_on, self.newest, self.since = stale.made_on, stale.newest, since
         super().__init__(str(stale))
+
+    def __reduce__(self) -> tuple[object, ...]:
+        stale = StaleRevision(self.made_on, self.newest)
+        return type(self), (stale, self.since), vars(self)
 
 
 class RevisionMissing(ArgoError):

@@ -5,13 +5,15 @@ another one if and only if its name says so.
 """
 
 from bisect import bisect_left
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 
 from argo_compiler.checks.diagnostic import diagnostic_about
 from argo_compiler.checks.instant_loops import MIN_TIME_S
+from argo_compiler.checks.timing import has_timing_or_branch
 from argo_compiler.diagnostics import Diagnostic, Severity
 from argo_compiler.il import Action, Group, Mission, Stop, Task
 from argo_compiler.il.grouping import GroupNesting, GroupRange, group_ranges, parent_name
+from argo_compiler.il.positions import task_positions
 from argo_compiler.il.subjects import Subjects
 from argo_compiler.il.ways import branches, default_target
 from argo_compiler.nearest_name import nearest_name
@@ -95,9 +97,7 @@ def _check_names(groups: tuple[Group, ...], subjects: Subjects) -> Iterator[Diag
 
 
 def _check_ends(mission: Mission, subjects: Subjects) -> Iterator[Diagnostic]:
-    position: dict[str, int] = {}
-    for i, task in enumerate(mission.tasks):
-        position.setdefault(task.name, i)
+    position = task_positions(mission)
     hints = 0
     for i, group in enumerate(mission.groups):
         unknown = {group.end: ".end", group.start: ".start"}
@@ -226,13 +226,15 @@ def _check_leaving(
 
     Endless groups have no other way out, and groups of one round nothing to lose.
     """
-    position = {task.name: i for i, task in enumerate(mission.tasks)}
+    position = task_positions(mission)
     for i, task in enumerate(mission.tasks):
-        if layout.innermost[i] is None:
+        innermost = layout.innermost[i]
+        if innermost is None or _stays(task, layout.ranges[innermost], position):
             continue
         for field, target in _ways_out(task):
             to = position.get(target)
-            inside, left = layout.innermost[i], None
+            inside: int | None = innermost
+            left = None
             unconditional = field is None
             while inside is not None and to is not None and not layout.ranges[inside].contains(to):
                 r = layout.ranges[inside]
@@ -252,6 +254,14 @@ def _check_leaving(
                 Severity.WARNING,
                 field or ".transitions",
             )
+
+
+def _stays(task: Task, around: GroupRange, position: Mapping[str, int]) -> bool:
+    """Whether it is seen at a glance that all ways from a task lead to the range around it."""
+    if len(task.transitions) != 1 or has_timing_or_branch(task):
+        return False
+    to = position.get(task.transitions[0].target)
+    return to is not None and around.contains(to)
 
 
 def _ways_out(task: Task) -> Iterator[tuple[str | None, str]]:
@@ -278,6 +288,8 @@ def _check_endless(
     A transition leaves a group if its target lies outside the group's range. So the lowest and the
     highest target of all members decide; they are gathered from the innermost groups outward.
     """
+    if not any(_endless(r.group) for r in layout.ranges):
+        return
     lowest, highest = _target_bounds(mission, layout)
     bounded = [False] * len(layout.ranges)
     for i, r in enumerate(layout.ranges):
@@ -307,7 +319,7 @@ def _target_bounds(mission: Mission, layout: GroupNesting) -> tuple[list[int], l
 
     The end of the mission counts as a target behind the last task.
     """
-    position = {task.name: i for i, task in enumerate(mission.tasks)}
+    position = task_positions(mission)
     end = len(mission.tasks)
     lowest = [end] * len(layout.ranges)
     highest = [-1] * len(layout.ranges)

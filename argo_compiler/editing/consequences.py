@@ -112,10 +112,13 @@ def _of_tasks(
 ) -> Iterator[Consequence]:
     first = beginning(after)
     former = beginning(before)
-    known = {renamed.get(task.name, task.name): task for task in before.tasks}
+    if renamed:
+        known = {renamed.get(task.name, task.name): task for task in before.tasks}
+    else:
+        known = {task.name: task for task in before.tasks}
+    same = set(map(id, before.tasks))
     for task in after.tasks:
-        old = known.get(task.name)
-        if old is None or old is task:
+        if id(task) in same or (old := known.get(task.name)) is None:
             continue
         at = subject_of("tasks", task.name)
         if at in asked:

@@ -3,6 +3,7 @@
 from dataclasses import dataclass
 
 from argo_compiler.il import Group, Mission
+from argo_compiler.il.positions import task_positions
 from argo_compiler.remembering import remembering
 
 
@@ -31,9 +32,7 @@ def group_ranges(mission: Mission) -> tuple[GroupRange, ...]:
 
     By start, longest first; of two with the same range the one with the shorter path first.
     """
-    position: dict[str, int] = {}
-    for i, task in enumerate(mission.tasks):
-        position.setdefault(task.name, i)
+    position = task_positions(mission)
     ranges = [
         GroupRange(group, position[group.start], position[group.end], index)
         for index, group in enumerate(mission.groups)

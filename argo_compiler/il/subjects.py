@@ -64,10 +64,8 @@ _Names = tuple[list[str], dict[str, int]]
 
 def _names(names: Iterable[str]) -> _Names:
     ordered = list(names)
-    first: dict[str, int] = {}
-    for position, name in enumerate(ordered):
-        first.setdefault(name, position)
-    return ordered, first
+    # The first of several with one name is the last that is put in.
+    return ordered, dict(zip(reversed(ordered), range(len(ordered) - 1, -1, -1), strict=True))
 
 
 def _named(field: str, position: int, names: _Names, rest: str) -> str:

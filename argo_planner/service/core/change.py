@@ -71,6 +71,12 @@ def difference(before: Mission, after: Mission) -> MissionChange:
 def _of_lists(before: Sequence[Item], after: Sequence[Item]) -> ListChange[Item] | None:
     if before is after:
         return None
+    if len(before) == len(after):
+        # Most edits change an item or two where they stand.
+        pairs = [(old, new) for old, new in zip(before, after, strict=True) if old is not new]
+        if all(name_of(old) == name_of(new) for old, new in pairs):
+            changed = tuple(new for old, new in pairs if old != new)
+            return ListChange.model_construct(put=changed) if changed else None
     old: dict[str, Item] = {name_of(item): item for item in before}
     new: dict[str, Item] = {name_of(item): item for item in after}
     put = tuple(i for n, i in new.items() if old.get(n) is not i and old.get(n) != i)

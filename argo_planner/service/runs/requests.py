@@ -3,7 +3,7 @@
 from enum import StrEnum
 from typing import Annotated, Literal
 
-from pydantic import Field
+from pydantic import Discriminator, Field
 
 from argo_compiler.il import EventKind, Mission
 from argo_compiler.model import Model, Pose
@@ -199,7 +199,7 @@ AskedOfRun = Annotated[
     | TellEvent
     | TellReading
     | BeginFault,
-    Field(discriminator="kind"),
+    Discriminator("kind"),
 ]
 """what clients can ask of a run, told apart by `kind`"""
 

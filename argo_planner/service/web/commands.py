@@ -3,8 +3,8 @@
 import asyncio
 from typing import Annotated
 
-from fastapi import APIRouter, Body, Response
-from pydantic import Field
+from fastapi import APIRouter, Response
+from pydantic import Discriminator, Field
 
 from argo_compiler.errors import NotFound
 from argo_compiler.model import Model
@@ -21,6 +21,7 @@ from argo_planner.service.core.refusals import StaleRevision
 from argo_planner.service.jobs.analysis import AnalysisFound
 from argo_planner.service.rooms.messages import CommandDone
 from argo_planner.service.rooms.room import PlanRoom
+from argo_planner.service.web.bodies import Sent
 from argo_planner.service.web.missions import sound
 from argo_planner.service.web.problems import StaleCommand, documented
 from argo_planner.service.web.requests import (
@@ -45,7 +46,7 @@ router = APIRouter(
     responses=documented(400, 401, 403, 404, 409, 413, 422, 503),
 )
 
-AnyCommand = Annotated[EditPlan | UndoEdit | RedoEdit | ReplacePlan, Body(discriminator="kind")]
+AnyCommand = Annotated[EditPlan | UndoEdit | RedoEdit | ReplacePlan, Discriminator("kind")]
 
 
 class ScriptGiven(Model):
@@ -62,7 +63,7 @@ class ScriptGiven(Model):
     responses=documented(412, 428),
 )
 async def carry_out_command(
-    service: Service, visitor: Planner, id: PlanId, command: AnyCommand, made_on: MadeOn
+    service: Service, visitor: Planner, id: PlanId, command: Sent[AnyCommand], made_on: MadeOn
 ) -> Response:
     """Carries out a command. Sent again with the same id it does nothing twice."""
     room = await service.rooms.open(id)
@@ -76,7 +77,11 @@ async def carry_out_command(
     responses=documented(412, 428),
 )
 async def write_script(
-    service: Service, visitor: Planner, id: PlanId, given: ScriptGiven, made_on: MadeOn
+    service: Service,
+    visitor: Planner,
+    id: PlanId,
+    given: Sent[ScriptGiven],
+    made_on: MadeOn,
 ) -> Response:
     """Puts what a script says in place of the mission, as a command that can be undone."""
     room = await service.rooms.open(id)

@@ -12,6 +12,7 @@ from argo_planner.service.core.commands import CommandId, ReplacePlan
 from argo_planner.service.core.refusals import StaleRevision
 from argo_planner.service.jobs.jobs import OrderJob
 from argo_planner.service.rooms.messages import CommandDone
+from argo_planner.service.web.bodies import Sent
 from argo_planner.service.web.commands import carried_out
 from argo_planner.service.web.missions import sound
 from argo_planner.service.web.problems import StaleCommand, documented
@@ -71,7 +72,7 @@ class JobList(Model):
     responses={202: created(OrderJob, _JOB)},
 )
 async def suggest_order(
-    service: Service, visitor: Planner, id: PlanId, asked: OrderAsked
+    service: Service, visitor: Planner, id: PlanId, asked: Sent[OrderAsked]
 ) -> Response:
     """Begins to search for the mission's best order."""
     document = (await service.rooms.open(id)).document
@@ -110,7 +111,11 @@ async def cancel_job(service: Service, _: Planner, id: JobId) -> Response:
     responses=documented(412, 428),
 )
 async def accept_order(
-    service: Service, visitor: Planner, id: JobId, accepted: OrderAccepted, made_on: MadeOn
+    service: Service,
+    visitor: Planner,
+    id: JobId,
+    accepted: Sent[OrderAccepted],
+    made_on: MadeOn,
 ) -> Response:
     """Puts the mission into the order that was found, as a command that can be undone; 412 where
     the mission has changed since the search began."""

@@ -24,6 +24,7 @@ from argo_planner.service.core.document import PlanDocument
 from argo_planner.service.core.limits import require_fitting
 from argo_planner.service.rooms.messages import PlanState
 from argo_planner.service.storage.folder import PlanSummary, summary_of
+from argo_planner.service.web.bodies import Sent
 from argo_planner.service.web.problems import documented
 from argo_planner.service.web.requests import (
     KEYS,
@@ -103,7 +104,7 @@ async def list_missions(service: Service, _: Viewer) -> Response:
     response_model=PlanSummary,
     responses={201: created(PlanSummary, OF_MISSION)},
 )
-async def create_mission(service: Service, _: Planner, new: NewMission) -> Response:
+async def create_mission(service: Service, _: Planner, new: Sent[NewMission]) -> Response:
     """Makes a mission."""
     if new.mission is not None and has_errors(found := check(new.mission, service.site.catalog)):
         raise DiagnosticError(new.name, found)
@@ -150,7 +151,7 @@ async def read_mission(service: Service, visitor: Viewer, id: PlanId) -> Respons
 
 @router.put("/missions/{id}/name", operation_id="rename_mission", response_model=PlanSummary)
 async def rename_mission(
-    service: Service, visitor: Planner, id: PlanId, given: NameGiven
+    service: Service, visitor: Planner, id: PlanId, given: Sent[NameGiven]
 ) -> Response:
     """Gives a mission another name."""
     room = await service.rooms.open(id)
@@ -165,7 +166,9 @@ async def rename_mission(
     response_model=PlanSummary,
     responses={201: created(PlanSummary, OF_MISSION)},
 )
-async def duplicate_mission(service: Service, _: Planner, id: PlanId, given: NameGiven) -> Response:
+async def duplicate_mission(
+    service: Service, _: Planner, id: PlanId, given: Sent[NameGiven]
+) -> Response:
     """Makes another mission of the same tasks."""
     room = await service.rooms.open(id)
     return await _create(service, given.name, room.document.plan.mission)

@@ -14,6 +14,7 @@ from argo_planner.service.core.refusals import StaleRevision
 from argo_planner.service.runs.requests import AskedOfRun, GoOnEdited, RequestState, RunOrder, Speed
 from argo_planner.service.runs.state import EntryList, RunState
 from argo_planner.service.web.access import AccessRole, Visitor
+from argo_planner.service.web.bodies import Sent
 from argo_planner.service.web.live import carry, require_socket, socket_client
 from argo_planner.service.web.missions import sound
 from argo_planner.service.web.problems import StaleCommand, answer, documented, problem_of
@@ -78,7 +79,7 @@ class RunList(Model):
     responses=documented(412, 428) | {201: created(RunState, _RUN)},
 )
 async def start_run(
-    service: Service, visitor: Operator, id: PlanId, run: RunAsked, made_on: MadeOn
+    service: Service, visitor: Operator, id: PlanId, run: Sent[RunAsked], made_on: MadeOn
 ) -> Response:
     """Begins a run of the mission as it stands; 409 with who has the robot if there is one."""
     document = (await service.rooms.open(id)).document
@@ -129,7 +130,9 @@ async def read_run(service: Service, _: Viewer, run: RunId) -> Response:
         )
     },
 )
-async def ask_run(service: Service, visitor: Operator, run: RunId, request: AskedOfRun) -> Response:
+async def ask_run(
+    service: Service, visitor: Operator, run: RunId, request: Sent[AskedOfRun]
+) -> Response:
     """Asks something of the present run. That it was accepted does not say that it is so: follow
     how far it is."""
     state = await service.runs.ask(run, request, visitor.author)
@@ -144,7 +147,11 @@ async def ask_run(service: Service, visitor: Operator, run: RunId, request: Aske
     responses=documented(412, 428),
 )
 async def go_on_edited(
-    service: Service, visitor: Operator, run: RunId, given: PlanGiven, made_on: MadeOn
+    service: Service,
+    visitor: Operator,
+    run: RunId,
+    given: Sent[PlanGiven],
+    made_on: MadeOn,
 ) -> Response:
     """Gives the robot back, and lets the run go on with its mission as it was edited since."""
     state = service.runs.of(run)

@@ -8,6 +8,7 @@ from argo_compiler.model import Model
 from argo_planner.service.core.commands import CommandId, ReplacePlan
 from argo_planner.service.core.document import PlanVersion
 from argo_planner.service.rooms.messages import CommandDone, VersionSummary
+from argo_planner.service.web.bodies import Sent
 from argo_planner.service.web.commands import carried_out
 from argo_planner.service.web.problems import documented
 from argo_planner.service.web.requests import (
@@ -67,7 +68,11 @@ async def list_versions(service: Service, _: Viewer, id: PlanId) -> Response:
     },
 )
 async def keep_version(
-    service: Service, visitor: Planner, id: PlanId, given: NameGiven, made_on: MadeOn
+    service: Service,
+    visitor: Planner,
+    id: PlanId,
+    given: Sent[NameGiven],
+    made_on: MadeOn,
 ) -> Response:
     """Keeps the mission as it stands under a name."""
     room = await service.rooms.open(id)
@@ -104,7 +109,7 @@ async def restore_version(
     visitor: Planner,
     id: PlanId,
     number: VersionNumber,
-    command: RestoredVersion,
+    command: Sent[RestoredVersion],
     made_on: MadeOn,
 ) -> Response:
     """Makes a version the mission again, as a command that can be undone."""

@@ -11,6 +11,7 @@ from argo_compiler.catalog import CheckpointKind
 from argo_compiler.errors import NotFound
 from argo_compiler.il import Task
 from argo_compiler.model import Model, Pose
+from argo_planner.service.web.bodies import Sent
 from argo_planner.service.web.missions import sound
 from argo_planner.service.web.problems import documented
 from argo_planner.service.web.requests import (
@@ -139,7 +140,7 @@ async def list_obstacles(service: Service, _: Viewer) -> Response:
     responses=documented(412, 428),
 )
 async def put_obstacles(
-    service: Service, _: Planner, given: ObstaclesGiven, made_on: MadeOn
+    service: Service, _: Planner, given: Sent[ObstaclesGiven], made_on: MadeOn
 ) -> Response:
     """Puts these obstacles in the place of all that there are. Plans and runs go round them."""
     obstacles = given.obstacles
@@ -150,7 +151,7 @@ async def put_obstacles(
 
 
 @router.post("/world/way", operation_id="preview_way", response_model=PreviewedWay)
-async def preview_a_way(service: Service, _: Viewer, asked: WayAsked) -> Response:
+async def preview_a_way(service: Service, _: Viewer, asked: Sent[WayAsked]) -> Response:
     """The way that the robot would take, with its time, climb and energy."""
     goal = asked.task or asked.goal
     if goal is None:

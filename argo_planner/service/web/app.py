@@ -7,17 +7,16 @@ from functools import partial
 from typing import Any
 
 from fastapi import APIRouter, FastAPI, Response
-from fastapi.responses import HTMLResponse
 
 from argo_compiler import __version__
 from argo_compiler.model import Model
-from argo_planner.service.web import commands, jobs, live, missions, runs, versions, world
+from argo_planner.service.web import commands, jobs, live, missions, page, runs, versions, world
 from argo_planner.service.web.access import AccessRole, TokenBook
 from argo_planner.service.web.guard import Doors, Guard
 from argo_planner.service.web.problems import MEDIA, answer_problems, documented
 from argo_planner.service.web.requests import KEYS, PlanningService, Service, Viewer, said
+from argo_planner.service.web.told import webhooks
 
-page = APIRouter()
 Opened = Callable[[], AbstractAsyncContextManager[PlanningService]]
 """opens the service when the app begins, and closes it when it ends"""
 
@@ -46,16 +45,6 @@ async def read_service(service: Service, visitor: Viewer) -> Response:
     )
 
 
-@page.get("/", include_in_schema=False)
-async def show_page() -> Response:
-    """What a browser shows that opens the service's address."""
-    return HTMLResponse(
-        "<!doctype html><html lang=en><meta charset=utf-8><title>Argo</title>"
-        "<h1>The Argo planning service is running</h1>"
-        "<p>Programs use its <a href=/api/openapi.json>interface</a>.</p></html>"
-    )
-
-
 def make_app(opened: Opened) -> FastAPI:
     """The app without its guard, as the OpenAPI document is made from it."""
 
@@ -74,11 +63,12 @@ def make_app(opened: Opened) -> FastAPI:
         docs_url=None,
         redoc_url=None,
         swagger_ui_oauth2_redirect_url=None,
+        webhooks=webhooks,
     )
     answer_problems(app)
     app.openapi = partial(_document_of, app)  # type: ignore[method-assign]
-    parts = (missions, versions, commands, jobs, world, runs, live)
-    for part in (page, router, *(one.router for one in parts), runs.socket_router):
+    parts = (page, missions, versions, commands, jobs, world, runs, live)
+    for part in (router, *(one.router for one in parts), runs.socket_router):
         app.include_router(part)
     return app
 

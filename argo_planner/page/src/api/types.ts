@@ -1,0 +1,53 @@
+/** Short names for what the service's document describes. */
+
+import type { components, webhooks } from "./schema";
+
+type Schemas = components["schemas"];
+
+export type Mission = Schemas["Mission"];
+export type Task = Schemas["Task"];
+export type Group = Schemas["Group"];
+export type Reaction = Schemas["Reaction"];
+export type Condition = Schemas["Condition"];
+export type Transition = Schemas["Transition"];
+export type WaitRule = Schemas["WaitRule"];
+export type TimeWindow = Schemas["TimeWindow"];
+export type Pose = Schemas["Pose"];
+export type EventKind = Schemas["EventKind"];
+export type Action = Schemas["Action"];
+
+export type PlanSummary = Schemas["PlanSummary"];
+export type PlanState = Schemas["PlanState"];
+export type Findings = Schemas["Findings"];
+export type Diagnostic = Schemas["Diagnostic"];
+export type AnalysisFound = Schemas["AnalysisFound"];
+export type Revision = Schemas["Revision"];
+export type MissionChange = Schemas["MissionChange"];
+export type CommandDone = Schemas["CommandDone"];
+export type VersionSummary = Schemas["VersionSummary"];
+export type Member = Schemas["Member"];
+export type OrderJob = Schemas["OrderJob"];
+export type Problem = Schemas["Problem"];
+export type Edit = Schemas["EditPlan"]["edits"][number];
+export type ServiceSummary = Schemas["ServiceSummary"];
+
+export type World = Schemas["WorldDescription"];
+export type WorldFloor = Schemas["DescribedFloor"];
+export type WorldCheckpoint = Schemas["DescribedCheckpoint"];
+export type Obstacle = Schemas["Obstacle"];
+export type PreviewedMission = Schemas["PreviewedMission"];
+export type MissionWay = Schemas["MissionWay"];
+export type PreviewedWay = Schemas["PreviewedWay"];
+export type MissionReading = Schemas["MissionReading"];
+
+export type RunState = Schemas["RunState"];
+export type RunAsked = Schemas["RunAsked"];
+export type RequestState = Schemas["RequestState"];
+export type Entry = Schemas["EntryTold"]["entry"];
+export type RunQuestion =
+  import("./schema").operations["ask_run"]["requestBody"]["content"]["application/json"];
+
+type Told<name extends keyof webhooks> =
+  webhooks[name]["get"]["responses"][200]["content"]["application/json"];
+export type RoomMessage = Told<"mission">;
+export type RunMessage = Told<"robot">;

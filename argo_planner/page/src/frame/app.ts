@@ -1,0 +1,218 @@
+/** The page as a whole: which mission is open, and where its parts stand. */
+
+import { effect } from "@preact/signals-core";
+
+import "../forms/properties";
+import "../list/list";
+import "../route/route";
+import "../run/run";
+import "../scene/scene";
+import "../script/script";
+import "../strip/strip";
+import { closePlan, openPlan, planId, planName } from "../state/plan";
+import { followRobot } from "../state/run";
+import { beginSession, readService, service } from "../state/session";
+import { tellError } from "../state/notices";
+import { panel, type Panel } from "../state/view";
+import { readWorld, world } from "../state/world";
+import { css, customElement, html, look, PageElement } from "../ui/element";
+import { icon, type Icon } from "../ui/icons";
+import { t } from "../texts";
+import "./home";
+import "./keys";
+import "./notices";
+import "./topbar";
+
+const RETRY_MS = 1_000;
+const PANELS: readonly (readonly [Panel, Icon])[] = [
+  ["properties", "settings"],
+  ["script", "script"],
+  ["route", "route"],
+  ["run", "play"],
+];
+
+@customElement("argo-app")
+export class ArgoApp extends PageElement {
+  static override styles = [
+    look,
+    css`
+      :host {
+        display: grid;
+        grid-template-rows: auto 1fr;
+        height: 100%;
+      }
+      main {
+        display: grid;
+        grid-template-columns: minmax(260px, 340px) minmax(0, 1fr) minmax(300px, 380px);
+        grid-template-rows: minmax(0, 1fr) auto;
+        min-height: 0;
+      }
+      argo-list {
+        grid-row: 1 / 3;
+        min-height: 0;
+        border-right: 1px solid var(--line);
+        background: var(--surface);
+      }
+      argo-scene {
+        min-height: 0;
+        min-width: 0;
+      }
+      argo-strip {
+        grid-column: 2;
+        min-width: 0;
+        border-top: 1px solid var(--line);
+        background: var(--surface);
+      }
+      aside {
+        grid-column: 3;
+        grid-row: 1 / 3;
+        display: grid;
+        grid-template-rows: auto minmax(0, 1fr);
+        min-height: 0;
+        border-left: 1px solid var(--line);
+        background: var(--surface);
+      }
+      [role="tablist"] {
+        display: flex;
+        gap: 2px;
+        padding: 6px 6px 0;
+        border-bottom: 1px solid var(--line);
+      }
+      [role="tab"] {
+        flex: 1;
+        border: 0;
+        border-bottom: 3px solid transparent;
+        border-radius: 6px 6px 0 0;
+        background: none;
+      }
+      [role="tab"][aria-selected="true"] {
+        border-bottom-color: var(--accent);
+        color: var(--accent);
+        font-weight: 600;
+      }
+      [role="tabpanel"] {
+        min-height: 0;
+        overflow: auto;
+      }
+      .still {
+        display: grid;
+        place-content: center;
+      }
+      @media (max-width: 800px) {
+        main {
+          grid-template-columns: minmax(0, 1fr);
+          grid-template-rows: 42vh auto minmax(0, 1fr);
+        }
+        argo-list {
+          display: none;
+        }
+        argo-scene,
+        argo-strip {
+          grid-column: 1;
+        }
+        aside {
+          grid-column: 1;
+          grid-row: 3;
+          border-left: 0;
+          border-top: 1px solid var(--line);
+        }
+      }
+    `,
+  ];
+
+  private readonly stop: (() => void)[] = [];
+
+  override connectedCallback(): void {
+    super.connectedCallback();
+    beginSession();
+    addEventListener("hashchange", this.followAddress);
+    const named = effect(() => {
+      document.title = planName.value ? `${planName.value} – Argo` : "Argo";
+    });
+    this.stop.push(named);
+    void this.begin();
+  }
+
+  override disconnectedCallback(): void {
+    super.disconnectedCallback();
+    removeEventListener("hashchange", this.followAddress);
+    for (const one of this.stop) one();
+  }
+
+  /** Reads what does not depend on the mission; tries again until the service is there. */
+  private async begin(): Promise<void> {
+    this.followAddress();
+    followRobot();
+    while (service.value === null || world.value === null) {
+      try {
+        await Promise.all([readService(), readWorld()]);
+      } catch (error) {
+        tellError(error);
+        await new Promise((resolve) => setTimeout(resolve, RETRY_MS));
+      }
+    }
+  }
+
+  private readonly followAddress = (): void => {
+    const id = /^#\/missions\/([0-9a-f]+)$/.exec(location.hash)?.[1];
+    if (id === undefined) closePlan();
+    else if (id !== planId.value)
+      openPlan(id).catch((error: unknown) => {
+        location.hash = "";
+        tellError(error);
+      });
+  };
+
+  override render() {
+    const open = planId.value !== null;
+    return html`
+      <argo-topbar></argo-topbar>
+      ${open ? this.planning() : html`<argo-home></argo-home>`}
+      <argo-notices></argo-notices>
+      <argo-keys></argo-keys>
+    `;
+  }
+
+  private planning() {
+    const shown = panel.value;
+    return html`<main>
+      <argo-list></argo-list>
+      <argo-scene></argo-scene>
+      <argo-strip></argo-strip>
+      <aside>
+        <div role="tablist" @keydown=${this.onTabKey}>
+          ${PANELS.map(
+            ([name, sign]) =>
+              html`<button
+                role="tab"
+                id=${`tab-${name}`}
+                aria-selected=${shown === name}
+                aria-controls="panel"
+                tabindex=${shown === name ? 0 : -1}
+                @click=${() => (panel.value = name)}
+              >
+                ${icon(sign, 16)} ${t().frame.panels[name]}
+              </button>`,
+          )}
+        </div>
+        <div role="tabpanel" id="panel" aria-labelledby=${`tab-${shown}`} tabindex="-1">
+          ${shown === "properties" ? html`<argo-properties></argo-properties>` : null}
+          ${shown === "script" ? html`<argo-script></argo-script>` : null}
+          ${shown === "route" ? html`<argo-route></argo-route>` : null}
+          ${shown === "run" ? html`<argo-run></argo-run>` : null}
+        </div>
+      </aside>
+    </main>`;
+  }
+
+  private onTabKey(event: KeyboardEvent): void {
+    const step = { ArrowLeft: -1, ArrowRight: 1 }[event.key];
+    if (step === undefined) return;
+    const names = PANELS.map(([name]) => name);
+    const next = names[(names.indexOf(panel.value) + step + names.length) % names.length];
+    if (next === undefined) return;
+    panel.value = next;
+    this.renderRoot.querySelector<HTMLElement>(`#tab-${next}`)?.focus();
+    event.preventDefault();
+  }
+}

@@ -1,0 +1,91 @@
+/** The tasks of a mission in their nested groups, as the list shows them. */
+
+import type { Group, Mission, Task } from "../api/types";
+
+export interface TaskRow {
+  readonly kind: "task";
+  readonly key: string;
+  readonly task: Task;
+  /** In how many groups it lies. */
+  readonly depth: number;
+  /** From 1 on, in the order of the mission. */
+  readonly number: number;
+}
+
+export interface GroupRow {
+  readonly kind: "group";
+  readonly key: string;
+  readonly group: Group;
+  readonly depth: number;
+  /** How many tasks lie in it, in whatever depth. */
+  readonly count: number;
+}
+
+export type Row = TaskRow | GroupRow;
+
+/** What a task or a group is called in a selection. */
+export function taskKey(name: string): string {
+  return `task:${name}`;
+}
+export function groupKey(name: string): string {
+  return `group:${name}`;
+}
+
+/** The name behind a key. */
+export function nameOfKey(key: string): string {
+  return key.slice(key.indexOf(":") + 1);
+}
+export function isTaskKey(key: string): boolean {
+  return key.startsWith("task:");
+}
+
+/** All rows in their order, a group before what lies in it. */
+export function outline(mission: Mission): Row[] {
+  const at = new Map(mission.tasks.map((task, index) => [task.name, index]));
+  const starting = new Map<number, { group: Group; last: number }[]>();
+  for (const group of mission.groups) {
+    const first = at.get(group.start);
+    const last = at.get(group.end);
+    if (first === undefined || last === undefined || last < first) continue;
+    const there = starting.get(first) ?? [];
+    there.push({ group, last });
+    starting.set(first, there);
+  }
+  const rows: Row[] = [];
+  const open: number[] = [];
+  mission.tasks.forEach((task, index) => {
+    const begun = starting.get(index) ?? [];
+    begun.sort((a, b) => b.last - a.last || depthOf(a.group) - depthOf(b.group));
+    for (const { group, last } of begun) {
+      const key = groupKey(group.name);
+      rows.push({ kind: "group", key, group, depth: open.length, count: last - index + 1 });
+      open.push(last);
+    }
+    const number = index + 1;
+    rows.push({ kind: "task", key: taskKey(task.name), task, depth: open.length, number });
+    while (open.length > 0 && open[open.length - 1] === index) open.pop();
+  });
+  return rows;
+}
+
+/** Rows that show when these groups are folded. */
+export function unfolded(rows: readonly Row[], folded: ReadonlySet<string>): Row[] {
+  const shown: Row[] = [];
+  let below = Infinity;
+  for (const row of rows) {
+    if (row.depth > below) continue;
+    below = Infinity;
+    shown.push(row);
+    if (row.kind === "group" && folded.has(row.key)) below = row.depth;
+  }
+  return shown;
+}
+
+/** The name of a group without those that it lies in. */
+export function ownName(group: string): string {
+  return group.slice(group.lastIndexOf("/") + 1);
+}
+
+function depthOf(group: Group): number {
+  return group.name.split("/").length;
+}

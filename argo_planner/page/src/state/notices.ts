@@ -1,0 +1,49 @@
+/** What the page tells whoever looks: short messages, some with a way out. */
+
+import { signal } from "@preact/signals-core";
+
+import { Refusal, Unreached } from "../api/client";
+import { t } from "../texts";
+
+export interface Notice {
+  readonly id: number;
+  readonly tone: "info" | "warn" | "bad";
+  readonly text: string;
+  readonly details: readonly string[];
+  readonly actions: readonly { readonly label: string; readonly act: () => void }[];
+}
+
+export const notices = signal<readonly Notice[]>([]);
+const INFO_MS = 5_000;
+const MOST = 4;
+let count = 0;
+
+export function tell(
+  tone: Notice["tone"],
+  text: string,
+  more: { details?: readonly string[]; actions?: Notice["actions"] } = {},
+): void {
+  const id = ++count;
+  const notice = { id, tone, text, details: more.details ?? [], actions: more.actions ?? [] };
+  const others = notices.value.filter((one) => one.text !== text);
+  notices.value = [...others, notice].slice(-MOST);
+  if (tone === "info") setTimeout(() => dismiss(id), INFO_MS);
+}
+
+export function dismiss(id: number): void {
+  notices.value = notices.value.filter((one) => one.id !== id);
+}
+
+/** Tells of an error; anything that is no answer of the service is thrown on. */
+export function tellError(error: unknown): void {
+  if (error instanceof Refusal) {
+    const { problem } = error;
+    const details = [
+      ...problem.diagnostics.map((found) => found.message).filter((said) => said !== error.message),
+      ...problem.remedies,
+    ];
+    tell("bad", problem.detail, { details: details.slice(0, 5) });
+  } else if (error instanceof Unreached) {
+    tell("warn", t().frame.notReached);
+  } else throw error;
+}

@@ -1,0 +1,25 @@
+/** What of the site is shown and how, and what the pointer does there. */
+
+import { signal } from "@preact/signals-core";
+
+import type { Pose } from "../api/types";
+
+/** What a click in the scene does: choose, place the robot's next task, or put an obstacle up. */
+export type Tool = "select" | "navigate" | "obstacle";
+
+export const tool = signal<Tool>("select");
+/** Number of the floor that is shown with all below it; null: all floors. */
+export const shownFloor = signal<number | null>(null);
+/** How the camera follows the robot of the run that is shown. */
+export const following = signal<"off" | "behind" | "above">("off");
+
+/** A wish to see something, which the scene fulfils. */
+export type Look =
+  | { readonly kind: "pose"; readonly pose: Pose }
+  | { readonly kind: "checkpoint"; readonly id: string }
+  | { readonly kind: "all" };
+export const look = signal<Look | null>(null);
+
+/** The part of the page at the right that is open; on narrow screens the only one. */
+export type Panel = "properties" | "script" | "route" | "run";
+export const panel = signal<Panel>("properties");

@@ -1,0 +1,33 @@
+/** All that the page says, in both languages. Each area has a file of its own. */
+
+import { signal } from "@preact/signals-core";
+
+import { forms } from "./forms";
+import { frame } from "./frame";
+import { list } from "./list";
+import { route } from "./route";
+import { run } from "./run";
+import { scene } from "./scene";
+import { script } from "./script";
+import { strip } from "./strip";
+import { words } from "./words";
+
+export type Language = "en" | "de";
+
+const AREAS = { forms, frame, list, route, run, scene, script, strip, words };
+type Areas = typeof AREAS;
+export type Texts = { readonly [area in keyof Areas]: Areas[area]["en"] };
+
+function texts(language: Language): Texts {
+  const entries = Object.entries(AREAS).map(([area, both]) => [area, both[language]]);
+  return Object.fromEntries(entries) as Texts;
+}
+
+const ALL: Record<Language, Texts> = { en: texts("en"), de: texts("de") };
+
+export const language = signal<Language>("en");
+
+/** The texts in the language that is chosen. */
+export function t(): Texts {
+  return ALL[language.value];
+}

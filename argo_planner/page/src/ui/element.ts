@@ -1,0 +1,142 @@
+/** What all parts of the page are made of: Lit elements that are drawn anew when a signal changes
+ * which they have read, with the same look of buttons and fields. */
+
+import { SignalWatcher } from "@lit-labs/preact-signals";
+import { css, LitElement } from "lit";
+
+export { css, html, nothing } from "lit";
+export { customElement, property, query, state } from "lit/decorators.js";
+
+export const look = css`
+  :host {
+    display: block;
+    box-sizing: border-box;
+    color: var(--text);
+  }
+  :host([hidden]) {
+    display: none;
+  }
+  *,
+  *::before,
+  *::after {
+    box-sizing: border-box;
+  }
+  h1,
+  h2,
+  h3 {
+    margin: 0;
+    line-height: 1.25;
+    font-weight: 600;
+  }
+  h1 {
+    font-size: 20px;
+  }
+  h2 {
+    font-size: 15px;
+  }
+  h3 {
+    font-size: 13px;
+  }
+  p {
+    margin: 0;
+  }
+  button,
+  input,
+  select,
+  textarea {
+    font: inherit;
+    color: inherit;
+  }
+  button {
+    display: inline-flex;
+    align-items: center;
+    justify-content: center;
+    gap: 6px;
+    min-height: 30px;
+    padding: 3px 10px;
+    border: 1px solid var(--line);
+    border-radius: 6px;
+    background: var(--raised);
+    cursor: pointer;
+  }
+  button:hover:not(:disabled) {
+    border-color: var(--accent);
+  }
+  button:disabled {
+    color: var(--dim);
+    background: var(--sunken);
+    cursor: default;
+  }
+  button.main {
+    border-color: var(--accent);
+    background: var(--accent);
+    color: var(--on-accent);
+  }
+  button.main:disabled {
+    border-color: var(--line);
+    background: var(--sunken);
+    color: var(--dim);
+  }
+  button.danger {
+    color: var(--bad);
+  }
+  button.bare {
+    border-color: transparent;
+    background: none;
+  }
+  button.icon {
+    width: 30px;
+    padding: 0;
+  }
+  button[aria-pressed="true"] {
+    border-color: var(--accent);
+    background: var(--chosen);
+  }
+  input:not([type="checkbox"], [type="radio"], [type="range"]),
+  select,
+  textarea {
+    min-height: 30px;
+    padding: 3px 8px;
+    border: 1px solid var(--line);
+    border-radius: 6px;
+    background: var(--surface);
+  }
+  input[type="checkbox"],
+  input[type="radio"],
+  input[type="range"] {
+    accent-color: var(--accent);
+  }
+  input:user-invalid {
+    border-color: var(--bad);
+  }
+  :focus-visible {
+    outline: 2px solid var(--accent);
+    outline-offset: 1px;
+  }
+  .dim {
+    color: var(--dim);
+  }
+  .row {
+    display: flex;
+    align-items: center;
+    gap: var(--gap);
+  }
+  .grow {
+    flex: 1;
+    min-width: 0;
+  }
+  .unseen {
+    position: absolute;
+    width: 1px;
+    height: 1px;
+    margin: -1px;
+    overflow: hidden;
+    clip-path: inset(50%);
+    white-space: nowrap;
+  }
+`;
+
+/** An element of the page. */
+export class PageElement extends SignalWatcher(LitElement) {
+  static override styles = [look];
+}

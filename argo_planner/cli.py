@@ -90,6 +90,12 @@ class ArgoCommands(LazyGroup):
             "List the sites, or check one; exits with status 2 if it can't be driven.",
         ),
         _command(
+            "plan",
+            "plan",
+            "plan_mission",
+            "Plan a mission in the browser, on a 3D model of the site, and watch it run.",
+        ),
+        _command(
             "serve",
             "serve",
             "serve_plans",

@@ -1,7 +1,6 @@
 """`argo serve`: the planning service."""
 
 import ipaddress
-import os
 from contextlib import suppress
 from pathlib import Path
 from typing import Annotated
@@ -15,8 +14,6 @@ from argo_env.planning.opening import open_site
 from argo_env.recording.live import require_foxglove
 from argo_planner.terminal import completion
 from argo_planner.terminal.verbosity import is_quiet
-
-_SECRET = ".token"
 
 
 def serve_plans(
@@ -91,6 +88,7 @@ def serve_plans(
             read_tokens,
         )
         from argo_planner.service.web.guard import LOOPBACK, Doors
+        from argo_planner.service.web.kept_secret import kept_secret
         from argo_planner.service.web.serving import ServiceOrder, listen, open_folder, serve
     except ImportError as error:
         raise Unavailable(f"the service needs {error.name}: {install_line('planner')}") from None
@@ -106,7 +104,7 @@ def serve_plans(
     if token_file is not None:
         tokens = read_tokens(token_file)
     else:
-        secret = checked_secret(token, "--token") if token else _kept_secret(folder)
+        secret = checked_secret(token, "--token") if token else kept_secret(folder)
         tokens = (AccessToken(secret),)
     names = {*LOOPBACK, *(allow_host or ()), *([] if _is_any(host) else [_in_address(host)])}
     listening = listen(host, port)
@@ -144,23 +142,3 @@ def _is_any(host: str) -> bool:
 
 def _in_address(host: str) -> str:
     return f"[{host}]" if ":" in host else host
-
-
-def _kept_secret(folder: Path) -> str:
-    """The token of the folder, made where there is none: a service that begins again has the same,
-    so that open pages go on."""
-    from argo_planner.service.web.access import checked_secret, new_secret
-
-    path = folder / _SECRET
-    try:
-        folder.mkdir(parents=True, exist_ok=True)
-        with suppress(FileExistsError):
-            flags = os.O_WRONLY | os.O_CREAT | os.O_EXCL | os.O_NOFOLLOW
-            file = os.open(path, flags, 0o600)
-            with open(file, "w", encoding="ascii") as new:
-                new.write(new_secret())
-        file = os.open(path, os.O_RDONLY | os.O_NOFOLLOW)
-        with open(file, encoding="ascii") as kept:
-            return checked_secret(kept.read().strip(), str(path))
-    except (OSError, UnicodeDecodeError) as error:
-        raise Unavailable(f"{path}: can't be kept: {error}; choose another folder") from None

@@ -1,0 +1,109 @@
+"""`argo plan`: the planner page, with a service of its own."""
+
+import webbrowser
+from contextlib import suppress
+from datetime import UTC, datetime
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated
+
+import typer
+from rich.console import Console
+
+from argo_compiler.errors import Unavailable
+from argo_compiler.extras import install_line
+from argo_compiler.il import Mission
+from argo_env.planning.opening import open_site
+from argo_planner.terminal import completion
+from argo_planner.terminal.files import read_upload
+from argo_planner.terminal.importing import import_shown
+from argo_planner.terminal.options import EndArea, StartArea
+from argo_planner.terminal.verbosity import is_quiet
+
+if TYPE_CHECKING:
+    from argo_planner.service.storage.folder import PlanFolder
+
+_PORT = 8310
+"""tried first, as a browser keeps what it knows of a page by its address"""
+
+
+def plan_mission(
+    source: Annotated[
+        Path | None,
+        typer.Argument(
+            metavar="[MISSION|SCRIPT]", help="is put into the folder and opened; else the list is"
+        ),
+    ] = None,
+    folder: Annotated[Path, typer.Option("--folder", help="where the missions are kept")] = Path(
+        "missions"
+    ),
+    site: Annotated[
+        str,
+        typer.Option(
+            "--site",
+            help="a site's name, its .yaml, or generated:…",
+            autocompletion=completion.sites,
+        ),
+    ] = "umad",
+    port: Annotated[
+        int | None,
+        typer.Option(
+            "--port", min=0, max=65535, help=f"{_PORT} or, where that is taken, a free one"
+        ),
+    ] = None,
+    browser: Annotated[
+        bool, typer.Option("--browser/--no-browser", help="open the page in a browser")
+    ] = True,
+    start_area: StartArea = None,
+    end_area: EndArea = None,
+) -> None:
+    """Plan a mission in the browser, on a 3D model of the site, and watch it run."""
+    try:
+        from argo_planner.service.runs.host import AfterRestart
+        from argo_planner.service.web.access import AccessToken, TokenBook
+        from argo_planner.service.web.guard import LOOPBACK, Doors
+        from argo_planner.service.web.kept_secret import kept_secret
+        from argo_planner.service.web.serving import ServiceOrder, listen, open_folder, serve
+    except ImportError as error:
+        raise Unavailable(f"the page needs {error.name}: {install_line('planner')}") from None
+    opened = open_site(site).prepare()
+    imported = None
+    if source is not None:
+        imported = import_shown(read_upload(source), opened, start_area, end_area).mission
+    token = AccessToken(kept_secret(folder))
+    try:
+        listening = listen("127.0.0.1", _PORT if port is None else port)
+    except Unavailable:
+        if port is not None:
+            raise
+        listening = listen("127.0.0.1", 0)
+    port = listening.getsockname()[1]
+    plans = open_folder(folder)
+    place = ""
+    if source is not None and imported is not None:
+        place = f"#/missions/{_placed(plans, source.stem, imported)}"
+    address = f"http://127.0.0.1:{port}/?token={token.secret}{place}"
+    console = Console(stderr=True, highlight=False, quiet=is_quiet(), soft_wrap=True)
+    shown = browser and webbrowser.open(address)
+    console.print(f"Site {opened.name}, missions in {folder}.")
+    console.print(f"The page is {'open: ' if shown else 'at '}{address}")
+    console.print("Ctrl-C ends it; all that was done is kept.")
+    doors = Doors(frozenset(LOOPBACK), cookie=f"argo-{port}")
+    order = ServiceOrder(plans, opened, TokenBook((token,)), doors, AfterRestart.WAIT)
+    with suppress(KeyboardInterrupt):
+        serve(order, listening)
+
+
+def _placed(plans: "PlanFolder", name: str, mission: Mission) -> str:
+    """Id of the mission in the folder: of the one that is just like it, or of a new one."""
+    known = plans.plans()
+    for summary in known:
+        if summary.problem is None and summary.tasks == len(mission.tasks):
+            with plans.open(summary.id) as file:
+                if file.document.plan.mission == mission:
+                    return summary.id
+    taken = {summary.name for summary in known}
+    number = 1
+    while (free := name if number == 1 else f"{name} ({number})") in taken:
+        number += 1
+    with plans.create(free, mission, datetime.now(UTC)) as file:
+        return file.document.id

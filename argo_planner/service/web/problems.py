@@ -12,7 +12,15 @@ from pydantic import Field
 from starlette.exceptions import HTTPException
 
 from argo_compiler.diagnostics import Diagnostic, DiagnosticError
-from argo_compiler.errors import ArgoError, Conflict, Invalid, NotFound, Unavailable, Unreachable
+from argo_compiler.errors import (
+    ArgoError,
+    Conflict,
+    Invalid,
+    NotFound,
+    Remedy,
+    Unavailable,
+    Unreachable,
+)
 from argo_compiler.model import Model
 from argo_planner.service.core.commands import Revision
 from argo_planner.service.core.refusals import ChangedSince, EditRefused, StaleRevision
@@ -85,6 +93,10 @@ _STATUS: tuple[tuple[type[ArgoError], HTTPStatus], ...] = (
 )
 
 
+def _remedies(error: ArgoError, diagnostics: tuple[Diagnostic, ...]) -> list[Remedy]:
+    return [*error.remedies, *(remedy for found in diagnostics for remedy in found.remedies)]
+
+
 def problem_of(error: ArgoError) -> Problem:
     """The answer to an error of Argo."""
     status = next(status for kind, status in _STATUS if isinstance(error, kind))
@@ -96,7 +108,7 @@ def problem_of(error: ArgoError) -> Problem:
         code=error.code,
         detail=str(error)[:_LONGEST],
         diagnostics=diagnostics,
-        remedies=tuple(map(str, error.remedies)),
+        remedies=tuple(dict.fromkeys(map(str, _remedies(error, diagnostics)))),
         place=error.place if isinstance(error, EditRefused) else None,
         newest=error.newest if isinstance(error, StaleCommand) else None,
         since=error.since if isinstance(error, StaleCommand) else None,

@@ -1,8 +1,133 @@
-import { customElement, html, PageElement } from "../ui/element";
+/** The sheet of keys, which `?` opens, and the keys that work wherever the focus is. */
+
+import { signal } from "@preact/signals-core";
+
+import { redo, select, selection, undo } from "../state/plan";
+import { mayPlan } from "../state/session";
+import { tool } from "../state/view";
+import { t } from "../texts";
+import { css, customElement, html, look, PageElement, query } from "../ui/element";
+
+/** Whether the sheet is open. */
+export const keysShown = signal(false);
 
 @customElement("argo-keys")
 export class PageKeys extends PageElement {
-  override render() {
-    return html``;
+  static override styles = [
+    look,
+    css`
+      dialog {
+        width: min(760px, calc(100vw - 24px));
+        max-height: calc(100vh - 48px);
+        padding: 16px 20px 20px;
+        border: 1px solid var(--line);
+        border-radius: 10px;
+        background: var(--raised);
+        color: var(--text);
+        box-shadow: var(--shadow);
+      }
+      dialog::backdrop {
+        background: rgb(0 0 0 / 40%);
+      }
+      .groups {
+        columns: 2;
+        column-gap: 28px;
+        margin-top: 12px;
+      }
+      section {
+        break-inside: avoid;
+        margin-bottom: 14px;
+      }
+      dl {
+        display: grid;
+        grid-template-columns: max-content 1fr;
+        gap: 4px 12px;
+        margin: 6px 0 0;
+      }
+      dd {
+        margin: 0;
+      }
+      kbd {
+        padding: 1px 5px;
+        border: 1px solid var(--line);
+        border-radius: 4px;
+        background: var(--sunken);
+        font: inherit;
+        font-size: 12px;
+      }
+      @media (max-width: 600px) {
+        .groups {
+          columns: 1;
+        }
+      }
+    `,
+  ];
+
+  @query("dialog") private readonly dialog!: HTMLDialogElement;
+
+  override connectedCallback(): void {
+    super.connectedCallback();
+    addEventListener("keydown", this.onKey);
   }
+
+  override disconnectedCallback(): void {
+    super.disconnectedCallback();
+    removeEventListener("keydown", this.onKey);
+  }
+
+  override updated(): void {
+    if (keysShown.value && !this.dialog.open) this.dialog.showModal();
+    if (!keysShown.value && this.dialog.open) this.dialog.close();
+  }
+
+  private readonly onKey = (event: KeyboardEvent): void => {
+    if (event.defaultPrevented || isTyping(event)) return;
+    const key = event.key.toLowerCase();
+    const command = event.ctrlKey || event.metaKey;
+    if (key === "?" && !command) keysShown.value = true;
+    else if (command && mayPlan() && key === "z") void (event.shiftKey ? redo() : undo());
+    else if (command && mayPlan() && key === "y") void redo();
+    else if (key === "escape" && tool.value !== "select") tool.value = "select";
+    else if (key === "escape" && selection.value.length > 0) select([]);
+    else return;
+    event.preventDefault();
+  };
+
+  override render() {
+    const groups = keysShown.value ? Object.values(t().keys) : [];
+    return html`<dialog
+      aria-labelledby="title"
+      @close=${() => (keysShown.value = false)}
+      @click=${(event: Event) => event.target === this.dialog && this.dialog.close()}
+    >
+      <div class="row">
+        <h1 id="title" class="grow">${t().frame.keysTitle}</h1>
+        <button @click=${() => this.dialog.close()}>${t().frame.close}</button>
+      </div>
+      <div class="groups">
+        ${groups.map(
+          ({ title, keys }) =>
+            html`<section>
+              <h2>${title}</h2>
+              <dl>
+                ${keys.map(
+                  ([key, what]) =>
+                    html`<dt>${key.split(" ").map((one) => html`<kbd>${one}</kbd> `)}</dt>
+                      <dd>${what}</dd>`,
+                )}
+              </dl>
+            </section>`,
+        )}
+      </div>
+    </dialog>`;
+  }
+}
+
+/** Whether a key is meant for a field or a dialog. */
+export function isTyping(event: KeyboardEvent): boolean {
+  return event.composedPath().some(
+    (target) =>
+      target instanceof HTMLElement &&
+      (target.isContentEditable || target.matches("input:not([type=checkbox]), textarea, select, dialog")),
+  );
 }

@@ -4,6 +4,7 @@ import { signal } from "@preact/signals-core";
 
 import { forms } from "./forms";
 import { frame } from "./frame";
+import { keys } from "./keys";
 import { list } from "./list";
 import { route } from "./route";
 import { run } from "./run";
@@ -14,7 +15,7 @@ import { words } from "./words";
 
 export type Language = "en" | "de";
 
-const AREAS = { forms, frame, list, route, run, scene, script, strip, words };
+const AREAS = { forms, frame, keys, list, route, run, scene, script, strip, words };
 type Areas = typeof AREAS;
 export type Texts = { readonly [area in keyof Areas]: Areas[area]["en"] };
 

@@ -1,0 +1,146 @@
+/** What can be done with the mission as a whole: exported, kept as a version, copied. */
+
+import { answered, client, newId } from "../api/client";
+import { tell, tellError } from "../state/notices";
+import { planId, planName, revision, versions } from "../state/plan";
+import { t } from "../texts";
+import { css, customElement, html, look, nothing, PageElement } from "../ui/element";
+import { icon } from "../ui/icons";
+
+const FORMATS = ["script", "json", "scxml", "btcpp", "flexbe", "mermaid", "dot", "isar"] as const;
+
+@customElement("argo-mission-menu")
+export class MissionMenu extends PageElement {
+  static override styles = [
+    look,
+    css`
+      [popover] {
+        position: fixed;
+        inset: 48px auto auto 12vw;
+        width: 300px;
+        max-height: 80vh;
+        margin: 0;
+        padding: 12px;
+        overflow: auto;
+        border: 1px solid var(--line);
+        border-radius: var(--round);
+        background: var(--raised);
+        color: var(--text);
+        box-shadow: var(--shadow);
+      }
+      h2 {
+        margin: 12px 0 4px;
+      }
+      a {
+        color: var(--accent);
+        margin-right: 10px;
+      }
+      form {
+        display: flex;
+        gap: 6px;
+      }
+      ul {
+        margin: 6px 0 0;
+        padding: 0;
+        list-style: none;
+      }
+      li {
+        display: flex;
+        align-items: center;
+        gap: 4px;
+      }
+    `,
+  ];
+
+  override render() {
+    const texts = t().frame;
+    const id = planId.value ?? "";
+    return html`<button
+        class="bare icon"
+        aria-label=${texts.missionMenu}
+        title=${texts.missionMenu}
+        popovertarget="menu"
+      >
+        ${icon("more")}
+      </button>
+      <div id="menu" popover>
+        <button @click=${this.duplicate}>${icon("copy")} ${texts.duplicate}</button>
+        <h2>${texts.exportAs}</h2>
+        ${FORMATS.map(
+          (format) => html`<a href=${`/api/missions/${id}/export/${format}`} download>${format}</a>`,
+        )}
+        <h2>${texts.versions}</h2>
+        <form @submit=${this.keepVersion}>
+          <input
+            class="grow"
+            name="name"
+            required
+            maxlength="200"
+            aria-label=${texts.versionName}
+            placeholder=${texts.versionName}
+          />
+          <button>${texts.keepVersion}</button>
+        </form>
+        ${versions.value.length > 0
+          ? html`<ul>
+              ${[...versions.value].reverse().map(
+                (version) =>
+                  html`<li>
+                    <span class="grow">${version.name} <span class="dim">${version.author}</span></span>
+                    <button @click=${() => this.restore(version.number)}>${texts.restore}</button>
+                  </li>`,
+              )}
+            </ul>`
+          : nothing}
+      </div>`;
+  }
+
+  private async duplicate(): Promise<void> {
+    const id = planId.value;
+    if (id === null) return;
+    try {
+      const name = t().frame.copyOf(planName.value).slice(0, 200);
+      const made = await answered(
+        client.POST("/api/missions/{id}/duplicate", { params: { path: { id } }, body: { name } }),
+      );
+      location.hash = `#/missions/${made.id}`;
+    } catch (error) {
+      tellError(error);
+    }
+  }
+
+  private async keepVersion(event: SubmitEvent): Promise<void> {
+    event.preventDefault();
+    const form = event.target as HTMLFormElement;
+    const name = (new FormData(form).get("name") as string).trim();
+    const id = planId.value;
+    if (id === null || name === "") return;
+    try {
+      await answered(
+        client.POST("/api/missions/{id}/versions", {
+          params: { path: { id }, header: { "If-Match": `"${revision.value}"` } },
+          body: { name },
+        }),
+      );
+      form.reset();
+      tell("info", t().frame.versionKept(name));
+    } catch (error) {
+      tellError(error);
+    }
+  }
+
+  private async restore(number: number): Promise<void> {
+    const id = planId.value;
+    if (id === null) return;
+    try {
+      await answered(
+        client.POST("/api/missions/{id}/versions/{number}/restore", {
+          params: { path: { id, number }, header: { "If-Match": `"${revision.value}"` } },
+          body: { id: newId() },
+        }),
+      );
+    } catch (error) {
+      tellError(error);
+    }
+  }
+}

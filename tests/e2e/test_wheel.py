@@ -45,5 +45,8 @@ def test_a_mission_runs_from_the_wheel(tmp_path: Path, missions: Path) -> None:
     )  # fmt: skip
     assert "Success" in output
     assert (away / "report" / "report.html").is_file()
+    built = "from argo_planner.service.web.page import page_folder as f; print(*f().glob('*'))"
+    call(*pip, "--constraint", ROOT / "constraints.txt", f"{wheel}[planner]", cwd=tmp_path)
+    assert "index.html" in call(python, "-c", built, cwd=away)
     location = call(python, "-c", "import argo_env; print(argo_env.__file__)", cwd=away)
     assert str(tmp_path) in location

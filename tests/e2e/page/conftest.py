@@ -1,0 +1,46 @@
+"""What the tests of the page share: a service with the built page, and browsers."""
+
+from collections.abc import Iterator
+
+import pytest
+
+from argo_env.planning.opening import OpenedSite, open_site
+from argo_planner.service.web.page import page_folder
+from tests.argo_planner.service.served import ALL, Served, served
+from tests.e2e.page.person import CHROMIUM, NO_CHROMIUM, Browsers
+
+
+@pytest.fixture(scope="session")
+def umad() -> OpenedSite:
+    return open_site("umad").prepare()
+
+
+@pytest.fixture(scope="module")
+def service(tmp_path_factory, umad) -> Iterator[Served]:
+    """One for all tests of a file."""
+    if not (page_folder() / "index.html").is_file():
+        pytest.skip("the page is not built: `make page` builds it")
+    with served(tmp_path_factory.mktemp("missions"), umad) as found:
+        yield found
+
+
+@pytest.fixture(scope="module")
+def chromium() -> Iterator[Browsers]:
+    if CHROMIUM is None:
+        pytest.skip(NO_CHROMIUM)
+    found = Browsers()
+    yield found
+    found.close()
+
+
+@pytest.fixture
+def browsers(chromium: Browsers) -> Iterator[Browsers]:
+    """Browsers in which nothing went wrong by the end of the test."""
+    yield chromium
+    chromium.leave()
+
+
+@pytest.fixture
+def address(service: Served) -> str:
+    """Where the page is, with the token."""
+    return f"http://{service.address}/?token={ALL}"

@@ -1,0 +1,99 @@
+"""Around the mission: the list of missions, import, names, the bin, people without the right."""
+
+import json
+from pathlib import Path
+
+import pytest
+from playwright.sync_api import expect
+
+from tests.argo_planner.service.served import SECRETS
+from tests.e2e.page.person import Person
+
+HOSTILE = '"><img src=x onerror=alert(1)>{{7*7}}${7*7}'
+SCRIPT = Path(__file__).parents[3] / "scenarios" / "umad" / "missions" / "mission_1.txt"
+
+
+@pytest.fixture
+def ann(browsers, address) -> Person:
+    ann = browsers.person(address)
+    ann.open()
+    return ann
+
+
+def test_a_mission_is_made_named_deleted_and_taken_back(ann, service) -> None:
+    ann.click(ann.button("New mission"))
+    expect(ann.page.get_by_role("status")).to_have_text("Saved")
+    ann.click(ann.page.get_by_title("Rename the mission"))
+    ann.page.keyboard.type("Night round")
+    ann.key("Enter")
+    expect(ann.page.get_by_title("Rename the mission")).to_have_text("Night round")
+    ann.click(ann.button("All missions"))
+    ann.click(ann.button("Delete Night round"))
+    expect(ann.page.get_by_role("link", name="Night round")).to_have_count(0)
+    ann.click(ann.button("Undo"))
+    expect(ann.page.get_by_role("link", name="Night round")).to_have_count(1)
+    names = [one["name"] for one in service.client.get("/api/missions").json()["missions"]]
+    assert "Night round" in names
+
+
+def test_a_script_that_leaves_its_areas_open_asks_for_them(ann, service) -> None:
+    ann.page.set_input_files("#file", SCRIPT)
+    ann.page.get_by_label("It begins in area").select_option("1")
+    ann.page.get_by_label("It ends in area").select_option("2")
+    ann.click(ann.button("Import"))
+    expect(ann.page.get_by_role("status")).to_have_text("Saved")
+    id = ann.page.url.rpartition("/")[2]
+    mission = service.client.get(f"/api/missions/{id}").json()["mission"]
+    assert (mission["start_area"], mission["end_area"]) == (1, 2)
+
+
+def test_a_script_that_is_wrong_says_where(ann, tmp_path) -> None:
+    wrong = tmp_path / "wrong.txt"
+    wrong.write_text("Steps\n1. Measure checkpoint 4711\n", encoding="utf-8")
+    ann.page.set_input_files("#file", wrong)
+    log = ann.page.get_by_role("log")
+    expect(log).to_contain_text("wrong.txt can't be imported")
+    expect(log).to_contain_text("4711")
+    assert ann.page.url.endswith("/")
+
+
+def test_hostile_names_are_text(ann, service) -> None:
+    id = service.create(HOSTILE)
+    task = {"kind": "add_task", "task": {"name": HOSTILE, "action": "WAYPOINT", "pose": POSE}}
+    assert service.command(id, 1, task).status_code == 200
+    ann.open(f"/missions/{id}")
+    expect(ann.page.get_by_title("Rename the mission")).to_have_text(HOSTILE)
+    expect(ann.page.get_by_role("treeitem").filter(has_text=HOSTILE)).to_have_count(1)
+    assert ann.page.locator("img[src=x]").count() == 0
+
+
+def test_who_may_only_look_can_change_nothing(browsers, service) -> None:
+    id = service.create("For looking")
+    viewer = browsers.person(f"http://{service.address}/?token={SECRETS['view']}")
+    viewer.open(f"/missions/{id}")
+    expect(viewer.page.get_by_title("Rename the mission")).to_be_disabled()
+    viewer.key("m")
+    expect(viewer.page.get_by_role("combobox")).to_have_count(0)
+
+
+def test_the_policy_of_the_page_lets_nothing_in(ann) -> None:
+    response = ann.page.request.get(ann.address)
+    policy = response.headers["content-security-policy"]
+    assert "unsafe-eval" not in policy
+    assert "unsafe-inline" not in policy.partition("script-src")[2].partition(";")[0]
+
+
+def test_the_sheet_of_keys_opens_and_closes(ann) -> None:
+    ann.key("?")
+    expect(ann.page.get_by_role("dialog")).to_contain_text("navigation tool")
+    ann.key("Escape")
+    expect(ann.page.get_by_role("dialog")).to_have_count(0)
+
+
+def test_german_is_spoken_where_the_browser_does(browsers, address) -> None:
+    otto = browsers.person(address, "otto", locale="de-DE")
+    otto.open()
+    expect(otto.button("Neue Mission")).to_be_visible()
+
+
+POSE = json.loads('{"x": 3.05, "y": 1.55, "z": 0.0, "yaw": 0.0}')

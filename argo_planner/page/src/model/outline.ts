@@ -10,6 +10,8 @@ export interface TaskRow {
   readonly depth: number;
   /** From 1 on, in the order of the mission. */
   readonly number: number;
+  /** Name of the innermost group that it lies in. */
+  readonly inside: string | null;
 }
 
 export interface GroupRow {
@@ -19,6 +21,8 @@ export interface GroupRow {
   readonly depth: number;
   /** How many tasks lie in it, in whatever depth. */
   readonly count: number;
+  /** Name of the group that it lies in. */
+  readonly inside: string | null;
 }
 
 export type Row = TaskRow | GroupRow;
@@ -52,18 +56,21 @@ export function outline(mission: Mission): Row[] {
     starting.set(first, there);
   }
   const rows: Row[] = [];
-  const open: number[] = [];
+  const open: { name: string; last: number }[] = [];
+  const inside = () => open.at(-1)?.name ?? null;
   mission.tasks.forEach((task, index) => {
     const begun = starting.get(index) ?? [];
     begun.sort((a, b) => b.last - a.last || depthOf(a.group) - depthOf(b.group));
     for (const { group, last } of begun) {
       const key = groupKey(group.name);
-      rows.push({ kind: "group", key, group, depth: open.length, count: last - index + 1 });
-      open.push(last);
+      const count = last - index + 1;
+      rows.push({ kind: "group", key, group, depth: open.length, count, inside: inside() });
+      open.push({ name: group.name, last });
     }
     const number = index + 1;
-    rows.push({ kind: "task", key: taskKey(task.name), task, depth: open.length, number });
-    while (open.length > 0 && open[open.length - 1] === index) open.pop();
+    const key = taskKey(task.name);
+    rows.push({ kind: "task", key, task, depth: open.length, number, inside: inside() });
+    while (open.at(-1)?.last === index) open.pop();
   });
   return rows;
 }

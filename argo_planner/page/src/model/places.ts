@@ -1,0 +1,156 @@
+/** Where tasks can be put, and the edits that put them there. */
+
+import type { Group, Mission, Task } from "../api/types";
+import type { LooseEdit } from "../state/plan";
+import { isTaskKey, nameOfKey, ownName, type Row } from "./outline";
+
+/** A place between tasks: behind or before one, in a group or in none. */
+export interface Place {
+  readonly after?: string;
+  readonly before?: string;
+  readonly into?: string;
+}
+
+export type Side = "before" | "after" | "into";
+
+/** The place beside a row. `into` is the beginning of a group. */
+export function placeAt(row: Row, side: Side): Place {
+  const container = row.inside === null ? {} : { into: row.inside };
+  if (row.kind === "task")
+    return side === "before"
+      ? { before: row.task.name, ...container }
+      : { after: row.task.name, ...container };
+  if (side === "into") return { before: row.group.start, into: row.group.name };
+  if (side === "before") return { before: row.group.start, ...container };
+  return { after: row.group.end, ...container };
+}
+
+/** Where a new task goes: behind what was selected last, else to the end. */
+export function placeForNew(rows: readonly Row[], selection: readonly string[]): Place {
+  const last = selection.at(-1);
+  const row = rows.find((one) => one.key === last);
+  if (!row) return {};
+  // A new task after a group that is selected belongs to it: that is what one is working on.
+  if (row.kind === "group") return { after: row.group.end, into: row.group.name };
+  return placeAt(row, "after");
+}
+
+/** Edits that move what is selected to a place beside a row, in its order. None where it would
+ * stay as it is. */
+export function moves(
+  mission: Mission,
+  rows: readonly Row[],
+  selection: readonly string[],
+  target: Row,
+  side: Side,
+): LooseEdit[] {
+  const groups = rootGroups(mission, selection);
+  const moved = tasksOf(mission, rows, selection);
+  if (moved.length === 0 || inSelection(rows, target, selection)) return [];
+  let place = anchored(mission, moved, placeAt(target, side));
+  if (place === null) return [];
+  const taken = groups.flatMap((group) => withInner(mission, group));
+  const edits: LooseEdit[] = [];
+  // Inner groups go first and come back first: their names follow from what they lie in.
+  for (const { name } of [...taken].reverse()) edits.push({ kind: "dissolve_group", name });
+  for (const task of moved) {
+    edits.push({ kind: "move_task", name: task.name, ...place });
+    place = place.into === undefined ? { after: task.name } : { after: task.name, into: place.into };
+  }
+  for (const group of [...taken].reverse())
+    edits.push({ kind: "wrap_tasks", group: { ...group, name: ownName(group.name) } });
+  return edits;
+}
+
+/** All tasks of a selection, those of its groups included, in the order of the mission. */
+export function tasksOf(
+  mission: Mission,
+  rows: readonly Row[],
+  selection: readonly string[],
+): Task[] {
+  const chosen = new Set(selection);
+  const names = new Set<string>();
+  let open = -1;
+  for (const row of rows) {
+    if (row.depth <= open) open = -1;
+    if (open < 0 && row.kind === "group" && chosen.has(row.key)) open = row.depth;
+    if (row.kind === "task" && (open >= 0 || chosen.has(row.key))) names.add(row.task.name);
+  }
+  return mission.tasks.filter((task) => names.has(task.name));
+}
+
+/** Where one step up or down leads to for what is selected, among the rows that show; null:
+ * nowhere. */
+export function step(
+  rows: readonly Row[],
+  selection: readonly string[],
+  direction: "up" | "down",
+): { readonly target: Row; readonly side: Side } | null {
+  const chosen = rows.map((row) => inSelection(rows, row, selection));
+  const first = chosen.indexOf(true);
+  const last = chosen.lastIndexOf(true);
+  if (first < 0) return null;
+  if (direction === "up") {
+    const above = rows[first - 1];
+    if (!above) return null;
+    const deeper = above.kind === "task" && above.depth > depth(rows, first);
+    return { target: above, side: deeper ? "after" : "before" };
+  }
+  const below = rows[last + 1];
+  const end = rows[last];
+  if (end && (below === undefined || below.depth < end.depth)) {
+    // The last one of a group leaves it.
+    const group = rows.find((row) => row.kind === "group" && row.group.name === end.inside);
+    const root = chosen[rows.indexOf(group as Row)] === true;
+    if (group && !root) return { target: group, side: "after" };
+  }
+  if (!below) return null;
+  const open = depth(rows, last + 2) > below.depth;
+  return { target: below, side: below.kind === "group" && open ? "into" : "after" };
+}
+
+function depth(rows: readonly Row[], index: number): number {
+  return rows[index]?.depth ?? 0;
+}
+
+/** Whether a row is selected, or lies in a group that is. */
+function inSelection(rows: readonly Row[], row: Row, selection: readonly string[]): boolean {
+  if (selection.includes(row.key)) return true;
+  const around = rows.find((one) => one.kind === "group" && one.group.name === row.inside);
+  return around !== undefined && inSelection(rows, around, selection);
+}
+
+/** The groups of a selection that lie in no other one of it. */
+function rootGroups(mission: Mission, selection: readonly string[]): Group[] {
+  const names = new Set(selection.filter((key) => !isTaskKey(key)).map(nameOfKey));
+  return mission.groups.filter(
+    (group) =>
+      names.has(group.name) &&
+      ![...names].some((other) => other !== group.name && group.name.startsWith(`${other}/`)),
+  );
+}
+
+/** A group and those in it, the outer ones first. */
+function withInner(mission: Mission, group: Group): Group[] {
+  const inner = mission.groups.filter((one) => one.name.startsWith(`${group.name}/`));
+  inner.sort((a, b) => a.name.split("/").length - b.name.split("/").length);
+  return [group, ...inner];
+}
+
+/** The place, beside a task that is not itself moved; null if there is none. */
+function anchored(mission: Mission, moved: readonly Task[], place: Place): Place | null {
+  const names = new Set(moved.map((task) => task.name));
+  const anchor = place.after ?? place.before;
+  if (anchor === undefined || !names.has(anchor)) return place;
+  const at = mission.tasks.findIndex((task) => task.name === anchor);
+  const into = place.into === undefined ? {} : { into: place.into };
+  for (let index = at + 1; index < mission.tasks.length; index++) {
+    const name = mission.tasks[index]?.name;
+    if (name !== undefined && !names.has(name)) return { before: name, ...into };
+  }
+  for (let index = at - 1; index >= 0; index--) {
+    const name = mission.tasks[index]?.name;
+    if (name !== undefined && !names.has(name)) return { after: name, ...into };
+  }
+  return null;
+}

@@ -2,6 +2,7 @@
 
 import asyncio
 from collections import deque
+from collections.abc import Iterable
 
 MOST_MESSAGES = 2_000
 MOST_CHARACTERS = 16_000_000
@@ -19,8 +20,11 @@ class Mailbox:
     """Messages for one client, in order. Of poses only the newest one waits; nothing else is ever
     dropped: a client for which too much waits is let go, and resumes."""
 
-    def __init__(self) -> None:
-        self._messages: deque[str] = deque()
+    def __init__(self, past: Iterable[str] = ()) -> None:
+        """`past`: what the client is told first, however much it is. Whoever has just come is not
+        slow, and these texts are kept anyway."""
+        self._messages: deque[str] = deque(past)
+        self._past = len(self._messages)
         self._characters = 0
         self._newest: dict[str, str] = {}
         self._there = asyncio.Event()
@@ -32,8 +36,9 @@ class Mailbox:
             return
         self._messages.append(message)
         self._characters += len(message)
-        if len(self._messages) > MOST_MESSAGES or self._characters > MOST_CHARACTERS:
+        if len(self._messages) - self._past > MOST_MESSAGES or self._characters > MOST_CHARACTERS:
             self._messages.clear()
+            self._past = 0
             self._newest.clear()
             self.close(MailboxClosed("too slow: connect again and resume", too_slow=True))
         self._there.set()
@@ -54,7 +59,10 @@ class Mailbox:
         while True:
             if self._messages:
                 message = self._messages.popleft()
-                self._characters -= len(message)
+                if self._past > 0:
+                    self._past -= 1
+                else:
+                    self._characters -= len(message)
                 return message
             if self._newest:
                 return self._newest.pop(next(iter(self._newest)))

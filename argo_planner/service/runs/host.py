@@ -173,11 +173,9 @@ class RunHost:
     def follow(self, client: str, since: int | None = None) -> Mailbox:
         """Somebody follows the robot's runs: first how it stands, then the entries after that
         number of the present run, then all that happens."""
-        mailbox = Mailbox()
+        state = StateTold.model_construct(state=self.state).model_dump_json()
+        mailbox = Mailbox([state, *self._entries[since or 0 :]])
         self._followers[client] = mailbox
-        mailbox.post(StateTold.model_construct(state=self.state).model_dump_json())
-        for text in self._entries[since or 0 :]:
-            mailbox.post(text)
         return mailbox
 
     def connect_robot(self) -> Mailbox:

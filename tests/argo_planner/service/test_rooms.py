@@ -86,6 +86,24 @@ def test_who_is_too_slow_is_let_go_delays_nobody_and_resumes(rooms, monkeypatch)
     asyncio.run(play())
 
 
+def test_who_has_just_come_is_told_much_without_being_let_go(monkeypatch) -> None:
+    monkeypatch.setattr(mailboxes, "MOST_MESSAGES", 2)
+
+    async def play() -> None:
+        mailbox = Mailbox(f"past {k}" for k in range(5))
+        mailbox.post("event 0")
+        mailbox.post("event 1")
+        heard = [await mailbox.take() for _ in range(6)]
+        assert heard == [*(f"past {k}" for k in range(5)), "event 0"]
+        mailbox.post("event 2")
+        mailbox.post("event 3")
+        with pytest.raises(MailboxClosed) as closed:
+            await mailbox.take()
+        assert closed.value.too_slow
+
+    asyncio.run(play())
+
+
 def test_a_command_is_carried_out_to_its_end_where_nobody_waits(rooms) -> None:
     async def play() -> None:
         room = await rooms.create("Round", mission("a", "b"))

@@ -12,6 +12,7 @@ import type {
   RunQuestion,
   RunState,
 } from "../api/types";
+import { momentAt, type Moment } from "../model/replay";
 import { tell, tellError } from "./notices";
 import { planId, revision } from "./plan";
 
@@ -30,8 +31,60 @@ export const entries = signal<readonly Entry[]>([]);
 export const runIsOn = computed(() => run.value !== null && run.value.status !== "ended");
 export const robotConnected = signal(false);
 
+/** A run that was, which is shown in place of the one of the robot; null: that one is. */
+export const pastRun = signal<{ readonly state: RunState; readonly entries: readonly Entry[] } | null>(null);
+/** s of the run that is shown, to which the page goes back; null: its newest moment. */
+export const shownTime = signal<number | null>(null);
+/** The run that is shown: a past one, or the robot's. */
+export const shownRunState = computed(() => pastRun.value?.state ?? run.value);
+export const shownEntries = computed(() => pastRun.value?.entries ?? entries.value);
+
+/** What the run that is shown is or was like at the time that is shown: where the robot is, what is
+ * done and read. For the scene and the list, in place of the live values. */
+export interface ShownRun extends Moment {
+  readonly id: string;
+  /** id of the mission, and the revision that is driven */
+  readonly plan: string;
+  readonly revision: number;
+  /** Whether it is the robot as it is now. */
+  readonly live: boolean;
+}
+export const shownRun = computed<ShownRun | null>(() => {
+  const state = shownRunState.value;
+  if (state === null) return null;
+  const { id, plan, revision: driven } = state;
+  const back = shownTime.value;
+  const past = pastRun.value !== null;
+  const moment = momentAt(shownEntries.value, back ?? Infinity);
+  if (past || back !== null)
+    return moment && { ...moment, id, plan, revision: driven, live: false };
+  const now = robotPose.value;
+  const pose = now?.pose ?? moment?.pose;
+  if (pose === undefined) return null;
+  return {
+    t: Math.max(state.t, now?.t ?? 0),
+    pose,
+    charge: now?.charge ?? state.charge ?? null,
+    distance: moment?.distance ?? 0,
+    climbed: moment?.climbed ?? 0,
+    task: state.task ?? null,
+    outcomes: moment?.outcomes ?? new Map(),
+    readings: state.readings,
+    entries: entries.value.length,
+    id,
+    plan,
+    revision: driven,
+    live: true,
+  };
+});
+
 const RETRY_MS = 1_000;
+/** Entries come one by one, and many at once when the page opens; they are shown together. */
+const ENTRIES_MS = 40;
 let live: LiveConnection<RunMessage> | null = null;
+let comeIn: Entry[] = [];
+let showing: ReturnType<typeof setTimeout> | undefined;
+let catchingUp = false;
 
 /** Follows whatever the robot does, from now on. */
 export function followRobot(): void {
@@ -43,7 +96,38 @@ export function followRobot(): void {
 }
 
 function since(): string {
-  return entries.value.length > 0 ? `since=${entries.value.length}` : "";
+  const known = entries.value.length + comeIn.length;
+  return known > 0 ? `since=${known}` : "";
+}
+
+/** Shows a run that was; null: the robot's. Throws `Refusal` or `Unreached`. */
+export async function showRun(id: string | null): Promise<void> {
+  if (id === null || id === run.value?.id) {
+    batch(() => {
+      pastRun.value = null;
+      shownTime.value = null;
+    });
+    return;
+  }
+  const state = await answered(client.GET("/api/runs/{run}", { params: { path: { run: id } } }));
+  const found = await entriesOf(id, 0);
+  batch(() => {
+    pastRun.value = { state, entries: found };
+    shownTime.value = null;
+  });
+}
+
+/** The entries of a run after the first `since`. Throws `Refusal` or `Unreached`. */
+async function entriesOf(id: string, since: number): Promise<Entry[]> {
+  const found: Entry[] = [];
+  for (;;) {
+    const query = { since: since + found.length };
+    const part = await answered(
+      client.GET("/api/runs/{run}/entries", { params: { path: { run: id }, query } }),
+    );
+    found.push(...part.entries);
+    if (part.entries.length === 0 || query.since + part.entries.length >= part.count) return found;
+  }
 }
 
 /** Begins a run of the mission as it is. Whether it has begun; a notice says why not. */
@@ -115,7 +199,11 @@ function takeState(state: RunState | null): void {
   batch(() => {
     if (state?.id !== run.value?.id) {
       entries.value = [];
+      comeIn = [];
       robotPose.value = null;
+      shownTime.value = null;
+      // Whoever has begun another run wants to see it.
+      if (state?.status !== "ended") pastRun.value = null;
     }
     run.value = state;
   });
@@ -131,12 +219,41 @@ function heard(message: RunMessage): void {
         robotPose.value = { t: message.t, pose: message.pose, charge: message.charge };
       break;
     case "entry":
-      if (message.number === entries.value.length + 1)
-        entries.value = [...entries.value, message.entry];
+      takeEntry(message.run, message.number, message.entry);
       break;
     case "request":
       if (message.request.reason && message.request.progress !== "confirmed")
         tell("warn", message.request.reason);
       break;
+  }
+}
+
+function takeEntry(id: string, number: number, entry: Entry): void {
+  if (id !== run.value?.id) return;
+  const next = entries.value.length + comeIn.length + 1;
+  if (number > next) void catchUp(id);
+  if (number !== next || catchingUp) return;
+  comeIn.push(entry);
+  showing ??= setTimeout(showComeIn, ENTRIES_MS);
+}
+
+function showComeIn(): void {
+  showing = undefined;
+  if (comeIn.length > 0) entries.value = [...entries.value, ...comeIn];
+  comeIn = [];
+}
+
+/** Reads the entries that were not told here, as another run was known when it began. */
+async function catchUp(id: string): Promise<void> {
+  if (catchingUp) return;
+  catchingUp = true;
+  try {
+    showComeIn();
+    const missed = await entriesOf(id, entries.value.length);
+    if (run.value?.id === id) entries.value = [...entries.value, ...missed];
+  } catch (error) {
+    if (!(error instanceof Unreached)) tellError(error);
+  } finally {
+    catchingUp = false;
   }
 }

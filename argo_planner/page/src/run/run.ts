@@ -1,8 +1,124 @@
-import { customElement, html, PageElement } from "../ui/element";
+/** The run: begun, watched, steered, and gone back over. */
+
+import { client, answered } from "../api/client";
+import type { RunState } from "../api/types";
+import { tellError } from "../state/notices";
+import { planId } from "../state/plan";
+import { pastRun, run, runIsOn, showRun, shownRunState } from "../state/run";
+import { language, t } from "../texts";
+import { css, customElement, html, look, nothing, PageElement, state } from "../ui/element";
+import { icon } from "../ui/icons";
+import "./band";
+import "./controls";
+import { parts } from "./parts";
+import "./start";
 
 @customElement("argo-run")
 export class RunPanel extends PageElement {
+  static override styles = [
+    look,
+    parts,
+    css`
+      :host {
+        padding: 12px;
+      }
+      .all {
+        display: grid;
+        gap: 14px;
+      }
+      a {
+        color: var(--accent);
+      }
+      .busy {
+        padding: 8px 10px;
+        border-radius: var(--round);
+        background: var(--warn-ground);
+        color: var(--warn);
+      }
+      .busy a {
+        color: inherit;
+      }
+    `,
+  ];
+
+  @state() private past: readonly RunState[] = [];
+  private listed = "";
+
   override render() {
-    return html``;
+    const texts = t().run;
+    const shown = shownRunState.value;
+    const here = shown !== null && shown.plan === planId.value;
+    const other = run.value !== null && runIsOn.value && run.value.plan !== planId.value;
+    void this.list();
+    return html`<div class="all">
+      ${other && run.value !== null
+        ? html`<p class="busy">
+            ${texts.robotBusy(run.value.by, run.value.name)}
+            <a href=${`#/missions/${run.value.plan}`}>${texts.openThat}</a>
+          </p>`
+        : nothing}
+      ${!runIsOn.value && pastRun.value === null ? html`<argo-run-start></argo-run-start>` : nothing}
+      ${this.choice()}
+      ${here || other
+        ? html`<argo-run-band></argo-run-band>
+            ${shown?.status === "ended" ? this.report(shown) : nothing}
+            ${pastRun.value === null ? html`<argo-run-controls></argo-run-controls>` : nothing}`
+        : nothing}
+    </div>`;
+  }
+
+  /** Which run of this mission is shown. */
+  private choice() {
+    const texts = t().run;
+    const others = this.past.filter((one) => one.id !== run.value?.id);
+    if (others.length === 0) return nothing;
+    const shown = pastRun.value?.state.id ?? "";
+    return html`<label>
+      ${texts.shownRun}
+      <select id="past" @change=${this.choose}>
+        <option value="" .selected=${shown === ""}>${texts.robotsRun}</option>
+        ${others.map(
+          (one) =>
+            html`<option value=${one.id} .selected=${one.id === shown}>${this.named(one)}</option>`,
+        )}
+      </select>
+    </label>`;
+  }
+
+  private named(one: RunState): string {
+    const when = new Date(one.begun).toLocaleString(language.value, {
+      dateStyle: "medium",
+      timeStyle: "short",
+    });
+    return t().run.pastRunOf(when, one.headline?.word ?? one.status);
+  }
+
+  private report(shown: RunState) {
+    return html`<a href=${`/api/runs/${shown.id}/report/report.html`} target="_blank" rel="noopener">
+      ${icon("flag", 14)} ${t().run.report}
+    </a>`;
+  }
+
+  private async choose(event: Event): Promise<void> {
+    const id = (event.target as HTMLSelectElement).value;
+    try {
+      await showRun(id === "" ? null : id);
+    } catch (error) {
+      tellError(error);
+    }
+  }
+
+  /** The runs of this mission, asked for again when a run begins or ends. */
+  private async list(): Promise<void> {
+    const about = `${planId.value ?? ""} ${run.value?.id ?? ""} ${run.value?.status ?? ""}`;
+    if (about === this.listed) return;
+    this.listed = about;
+    const plan = planId.value;
+    try {
+      const { runs } = await answered(client.GET("/api/runs"));
+      this.past = runs.filter((one) => one.plan === plan);
+    } catch (error) {
+      tellError(error);
+    }
   }
 }

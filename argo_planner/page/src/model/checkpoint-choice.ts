@@ -1,0 +1,21 @@
+/** Checkpoints as they are chosen by typing: `#4 valve R25`. */
+
+import type { WorldCheckpoint } from "../api/types";
+
+export function choiceOf(checkpoint: WorldCheckpoint): string {
+  return `#${checkpoint.id} ${checkpoint.name}`;
+}
+
+/** The checkpoint that is meant: by its choice, its number or its name; null: none or several. */
+export function chosenCheckpoint(
+  typed: string,
+  checkpoints: readonly WorldCheckpoint[],
+): WorldCheckpoint | null {
+  const meant = typed.trim().toLowerCase();
+  if (meant === "") return null;
+  const number = /^#?\s*(\d+)(\s|$)/.exec(meant)?.[1];
+  if (number !== undefined) return checkpoints.find((one) => one.id === Number(number)) ?? null;
+  const named = checkpoints.filter((one) => one.name.toLowerCase() === meant);
+  const found = named.length > 0 ? named : checkpoints.filter((one) => one.name.toLowerCase().includes(meant));
+  return found.length === 1 ? (found[0] ?? null) : null;
+}

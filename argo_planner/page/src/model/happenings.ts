@@ -1,0 +1,91 @@
+/** What is worth telling of a run, out of its many entries. */
+
+import type { Entry } from "../api/types";
+
+export type Happening =
+  | { readonly kind: "done" | "by hand"; readonly task: string }
+  | { readonly kind: "failed" | "stopped"; readonly task: string; readonly why: string }
+  | { readonly kind: "read" | "given"; readonly checkpoint: string; readonly value: number; readonly unit: string; readonly normal: boolean | null }
+  | { readonly kind: "found"; readonly event: string; readonly detail: string }
+  | { readonly kind: "steered"; readonly how: "pause" | "resume" | "take_over" | "give_back" | "cancel" }
+  | { readonly kind: "fault"; readonly fault: string }
+  | { readonly kind: "mishap"; readonly trouble: string; readonly detail: string }
+  | { readonly kind: "contact"; readonly link: string; readonly element: string }
+  | { readonly kind: "resumed" }
+  | { readonly kind: "ended"; readonly stopped: string | null };
+
+export interface Told {
+  /** s */
+  readonly t: number;
+  /** number of the entry, from 0 on */
+  readonly entry: number;
+  readonly what: Happening;
+  readonly tone: "plain" | "good" | "warn" | "bad";
+}
+
+/** All happenings of the entries from one number to another, in order. */
+export function happenings(entries: readonly Entry[], from = 0, to = entries.length): Told[] {
+  const found: Told[] = [];
+  for (let at = from; at < to; at++) {
+    const entry = entries[at] as Entry;
+    if (!isPlain(entry))
+      for (const [what, tone] of of(entry)) found.push({ t: entry.t, entry: at, what, tone });
+  }
+  return found;
+}
+
+/** Most entries tell only where the robot was. */
+function isPlain(entry: Entry): boolean {
+  return (
+    entry.events.length === 0 &&
+    entry.faults.length === 0 &&
+    entry.mishaps.length === 0 &&
+    entry.contacts.length === 0 &&
+    !entry.task &&
+    !entry.reading &&
+    !entry.resumed &&
+    !entry.ended
+  );
+}
+
+function* of(entry: Entry): Generator<[Happening, Told["tone"]]> {
+  if (entry.resumed) yield [{ kind: "resumed" }, "warn"];
+  for (const fault of entry.faults) yield [{ kind: "fault", fault: fault.kind }, "warn"];
+  const { reading, task } = entry;
+  if (reading) {
+    const { name, value, unit, normal } = reading;
+    yield [{ kind: "read", checkpoint: name, value, unit, normal }, normal ? "plain" : "bad"];
+  }
+  for (const event of entry.events) {
+    if (event.event && !(reading && event.event === "abnormal_reading"))
+      yield [{ kind: "found", event: event.event, detail: event.detail ?? "" }, goodNews(event.event) ? "good" : "bad"];
+    if (event.kind === "reading_given" && !reading)
+      yield [
+        { kind: "given", checkpoint: `#${event.object_id ?? ""}`, value: event.value ?? NaN, unit: "", normal: null },
+        "plain",
+      ];
+    if (isSteering(event.kind)) yield [{ kind: "steered", how: event.kind }, "warn"];
+  }
+  for (const mishap of entry.mishaps)
+    yield [{ kind: "mishap", trouble: mishap.trouble, detail: mishap.detail }, "bad"];
+  for (const contact of entry.contacts)
+    yield [{ kind: "contact", link: contact.link, element: contact.element }, "bad"];
+  if (task) {
+    const why = task.reason ?? "";
+    if (task.outcome === "done")
+      yield [{ kind: task.by_hand ? "by hand" : "done", task: task.task }, "good"];
+    else if (task.outcome === "failed") yield [{ kind: "failed", task: task.task, why }, "bad"];
+    else yield [{ kind: "stopped", task: task.task, why }, "warn"];
+  }
+  if (entry.ended) yield [{ kind: "ended", stopped: entry.stopped ?? null }, "plain"];
+}
+
+type Steering = Extract<Happening, { kind: "steered" }>["how"];
+
+function isSteering(kind: string): kind is Steering {
+  return ["pause", "resume", "take_over", "give_back", "cancel"].includes(kind);
+}
+
+function goodNews(event: string): boolean {
+  return ["all_clear", "battery_charged", "connection_restored"].includes(event);
+}

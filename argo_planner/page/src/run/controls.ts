@@ -1,0 +1,168 @@
+/** What can be asked of a run as a whole. */
+
+import { isOver, isUnderWay, shownRequests } from "../model/run-mode";
+import { revision } from "../state/plan";
+import { ask, giveBackEdited, run } from "../state/run";
+import { mayOperate } from "../state/session";
+import { t } from "../texts";
+import { css, customElement, html, look, nothing, PageElement } from "../ui/element";
+import { icon, type Icon } from "../ui/icons";
+import { parts, SPEEDS, speedName } from "./parts";
+
+const PAST_REQUESTS = 3;
+type Simple = "pause" | "go_on" | "stop" | "cancel" | "take_over" | "give_back";
+const SIGNS: Record<Simple, Icon> = {
+  pause: "pause",
+  go_on: "play",
+  stop: "stop",
+  cancel: "close",
+  take_over: "hand",
+  give_back: "play",
+};
+
+@customElement("argo-run-controls")
+export class RunControls extends PageElement {
+  static override styles = [
+    look,
+    parts,
+    css`
+      .buttons {
+        display: grid;
+        grid-template-columns: 1fr 1fr;
+        gap: var(--gap);
+      }
+      .buttons button {
+        min-height: 40px;
+      }
+      .wide {
+        grid-column: 1 / 3;
+      }
+      button.main {
+        font-weight: 600;
+      }
+      button[aria-busy="true"] {
+        border-style: dashed;
+      }
+      .asked {
+        margin-top: 8px;
+        font-size: 12px;
+      }
+      .asked li {
+        display: flex;
+        gap: 6px;
+        padding: 1px 0;
+      }
+      .asked .how {
+        font-weight: 600;
+      }
+      .how.refused,
+      .how.failed {
+        color: var(--bad);
+      }
+      .how.confirmed {
+        color: var(--good);
+      }
+      .how.accepted,
+      .how.under {
+        color: var(--warn);
+      }
+    `,
+  ];
+
+  override render() {
+    const state = run.value;
+    if (state === null || state.status === "ended") return nothing;
+    return html`<div class="buttons">${this.buttons()}</div>
+      ${mayOperate() ? nothing : html`<p class="reason">${t().run.mayNotOperate}</p>`} ${this.asked()}`;
+  }
+
+  private buttons() {
+    const state = run.value;
+    if (state === null) return nothing;
+    if (state.status === "interrupted") return [this.simple("go_on", "main"), this.simple("stop", "danger")];
+    if (state.status === "preparing") return nothing;
+    const rest = [this.simple("cancel", "danger"), this.simple("stop", "danger"), this.speed()];
+    switch (state.mode) {
+      case "supervised":
+        return [this.simple("give_back", "main"), this.giveBackEdited(), ...rest];
+      case "paused":
+        return [this.simple("go_on", "main"), this.simple("take_over"), ...rest];
+      default:
+        return [this.simple("pause", "main"), this.simple("take_over"), ...rest];
+    }
+  }
+
+  private simple(kind: Simple, look = "") {
+    const state = run.value;
+    const busy = state !== null && isUnderWay(state, kind);
+    return html`<button
+      id=${kind}
+      class=${look}
+      aria-busy=${busy}
+      title=${{ cancel: t().run.cancelMeans, stop: t().run.stopMeans }[kind as string] ?? nothing}
+      ?disabled=${!mayOperate() || busy}
+      @click=${() => ask({ kind })}
+    >
+      ${icon(SIGNS[kind])} ${t().run.requests[kind]}
+    </button>`;
+  }
+
+  private giveBackEdited() {
+    const state = run.value;
+    const edited = state !== null && state.revision !== revision.value;
+    return html`<button
+      id="give_back_edited"
+      ?disabled=${!mayOperate() || !edited}
+      title=${t().run.edited}
+      @click=${() => giveBackEdited()}
+    >
+      ${icon("script")} ${t().run.requests["go_on_edited"]}
+    </button>`;
+  }
+
+  private speed() {
+    const now = run.value?.speed ?? null;
+    const known = SPEEDS.includes(now) ? SPEEDS : [...SPEEDS, now];
+    return html`<label class="wide">
+      <span class="unseen">${t().run.speed}</span>
+      <select
+        id="speed"
+        ?disabled=${!mayOperate()}
+        @change=${(event: Event) => {
+          const { value } = event.target as HTMLSelectElement;
+          void ask({ kind: "speed", speed: value === "null" ? null : Number(value) });
+        }}
+      >
+        ${known.map(
+          (speed) =>
+            html`<option value=${String(speed)} .selected=${speed === now}>
+              ${t().run.speed}: ${speedName(speed)}
+            </option>`,
+        )}
+      </select>
+    </label>`;
+  }
+
+  /** What was asked, and how far that is. */
+  private asked() {
+    const shown = shownRequests(run.value?.requests ?? [], PAST_REQUESTS);
+    const texts = t().run;
+    if (shown.length === 0) return nothing;
+    return html`<ul class="asked" aria-label=${texts.asked}>
+      ${shown.map(
+        (one) =>
+          html`<li>
+            <span class="how ${one.progress}">
+              ${icon(isOver(one) ? (one.progress === "confirmed" ? "check" : "warning") : "clock", 13)}
+              ${texts.progress[one.progress]}
+            </span>
+            <span class="grow">
+              ${texts.requests[one.kind] ?? one.kind}
+              <span class="dim">${texts.byWhom(one.by)}</span>
+              ${one.reason ? html`<br /><span>${one.reason}</span>` : nothing}
+            </span>
+          </li>`,
+      )}
+    </ul>`;
+  }
+}

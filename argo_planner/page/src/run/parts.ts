@@ -1,0 +1,63 @@
+/** What the parts of the run panel share: their look, speeds, and numbers as people write them. */
+
+import { css } from "../ui/element";
+import { language, t } from "../texts";
+
+/** Simulated seconds a second. */
+export const SPEEDS: readonly (number | null)[] = [0.5, 1, 2, 5, 10, 30, null];
+
+export function speedName(speed: number | null): string {
+  return speed === null ? t().run.fullSpeed : t().run.times(speed);
+}
+
+/** A number as it is written in the language of the page. */
+export function figure(value: number, digits = 2): string {
+  return value.toLocaleString(language.value, { maximumFractionDigits: digits });
+}
+
+export function percent(part: number): string {
+  return `${figure(100 * part, 0)} %`;
+}
+
+export const parts = css`
+  :host {
+    container-type: inline-size;
+  }
+  h2 {
+    margin-bottom: 4px;
+    font-size: 13px;
+    text-transform: none;
+  }
+  label {
+    display: grid;
+    gap: 2px;
+    font-size: 12px;
+    color: var(--dim);
+  }
+  label > input,
+  label > select {
+    font-size: 14px;
+    color: var(--text);
+    min-width: 0;
+    width: 100%;
+  }
+  .pair {
+    display: grid;
+    grid-template-columns: 1fr 1fr;
+    gap: var(--gap);
+  }
+  .reason {
+    color: var(--dim);
+    font-size: 12px;
+  }
+  ul,
+  ol {
+    margin: 0;
+    padding: 0;
+    list-style: none;
+  }
+  details > summary {
+    padding: 4px 0;
+    cursor: pointer;
+  }
+`;

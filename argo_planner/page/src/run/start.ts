@@ -1,0 +1,259 @@
+/** Before a run: how the mission is to be driven. */
+
+import type { RunAsked } from "../api/types";
+import { choiceOf, chosenCheckpoint } from "../model/checkpoint-choice";
+import { keep, kept, mayOperate } from "../state/session";
+import { findings, mission } from "../state/plan";
+import { startRun } from "../state/run";
+import { world } from "../state/world";
+import { t } from "../texts";
+import { css, customElement, html, look, nothing, PageElement, state } from "../ui/element";
+import { icon } from "../ui/icons";
+import { figure, parts, SPEEDS, speedName } from "./parts";
+
+export const FAULTS = [
+  "abnormal_value",
+  "gas_leak",
+  "hot_spot",
+  "abnormal_pump",
+  "platform_alarm",
+  "brick",
+  "missing_plate",
+  "blocked_stairs",
+  "low_battery",
+  "worn_battery",
+  "connection_loss",
+  "emergency_stop",
+  "sensor_dysfunction",
+  "drive_dysfunction",
+  "displaced_checkpoint",
+] as const;
+export type FaultKind = (typeof FAULTS)[number];
+const DRIVES = ["kinematic", "tracked", "route", "remote"] as const;
+const SENSORS = ["ideal", "camera"] as const;
+
+@customElement("argo-run-start")
+export class RunStart extends PageElement {
+  static override styles = [
+    look,
+    parts,
+    css`
+      form {
+        display: grid;
+        gap: 10px;
+      }
+      .begin {
+        display: grid;
+        grid-template-columns: 1fr minmax(110px, auto);
+        align-items: end;
+        gap: var(--gap);
+      }
+      .begin button {
+        min-height: 44px;
+        font-size: 16px;
+        font-weight: 600;
+      }
+      .begin select {
+        min-height: 44px;
+      }
+      .inner {
+        display: grid;
+        gap: 10px;
+        padding: 4px 0 4px 10px;
+        border-left: 2px solid var(--line);
+      }
+      .value {
+        display: grid;
+        grid-template-columns: 1fr 90px auto;
+        gap: 6px;
+      }
+      li {
+        display: flex;
+        align-items: center;
+        gap: 6px;
+      }
+    `,
+  ];
+
+  @state() private starting = false;
+  @state() private values: ReadonlyMap<number, number> = new Map();
+  @state() private faults: readonly FaultKind[] = [];
+
+  override render() {
+    const texts = t().run;
+    const reason = this.whyNot();
+    return html`<form @submit=${this.start}>
+      <div class="begin">
+        <button
+          class="main"
+          id="start"
+          ?disabled=${reason !== null || this.starting}
+          aria-describedby=${reason === null ? nothing : "reason"}
+        >
+          ${icon("play", 20)} ${this.starting ? texts.starting : texts.start}
+        </button>
+        <label>
+          ${texts.speed}
+          <select name="speed">
+            ${SPEEDS.map(
+              (speed) =>
+                html`<option value=${String(speed)} ?selected=${String(speed) === (kept("speed") ?? "1")}>
+                  ${speedName(speed)}
+                </option>`,
+            )}
+          </select>
+        </label>
+      </div>
+      ${reason === null ? nothing : html`<p class="reason" id="reason">${reason}</p>`}
+      <details>
+        <summary>${texts.how}</summary>
+        <div class="inner">
+          <label>
+            ${texts.drive}
+            <select name="drive">
+              ${DRIVES.map((drive) => html`<option value=${drive}>${texts.drives[drive]}</option>`)}
+            </select>
+          </label>
+          <div class="pair">
+            <label>
+              ${texts.sensor}
+              <select name="sensor">
+                ${SENSORS.map((one) => html`<option value=${one}>${texts.sensors[one]}</option>`)}
+              </select>
+            </label>
+            <label>
+              ${texts.seed}
+              <input name="seed" type="number" min="0" max="2147483648" step="1" value="0" required />
+            </label>
+          </div>
+          ${this.valueList()} ${this.faultList()}
+        </div>
+      </details>
+    </form>`;
+  }
+
+  private valueList() {
+    const texts = t().run;
+    const checkpoints = world.value?.checkpoints ?? [];
+    return html`<section>
+      <h2>${texts.values}</h2>
+      <ul>
+        ${[...this.values].map(([id, value]) => {
+          const checkpoint = checkpoints.find((one) => one.id === id);
+          const name = checkpoint === undefined ? `#${id}` : choiceOf(checkpoint);
+          return html`<li>
+            <span class="grow">${name}: ${figure(value)} ${checkpoint?.unit ?? ""}</span>
+            ${this.removeButton(name, () => {
+              const left = new Map(this.values);
+              left.delete(id);
+              this.values = left;
+            })}
+          </li>`;
+        })}
+      </ul>
+      <div class="value">
+        <input
+          id="value-of"
+          list="checkpoints"
+          aria-label=${texts.checkpoint}
+          placeholder=${texts.checkpoint}
+          @keydown=${this.onValueKey}
+        />
+        <input
+          id="value"
+          type="number"
+          step="any"
+          aria-label=${texts.value}
+          placeholder=${texts.value}
+          @keydown=${this.onValueKey}
+        />
+        <button type="button" class="icon" aria-label=${texts.addValue} title=${texts.addValue} @click=${this.addValue}>
+          ${icon("add")}
+        </button>
+      </div>
+      <datalist id="checkpoints">
+        ${checkpoints.map((one) => html`<option value=${choiceOf(one)}></option>`)}
+      </datalist>
+    </section>`;
+  }
+
+  private faultList() {
+    const texts = t().run;
+    return html`<section>
+      <h2>${texts.faults}</h2>
+      <ul>
+        ${this.faults.map(
+          (kind, at) =>
+            html`<li>
+              <span class="grow">${texts.fault[kind]}</span>
+              ${this.removeButton(texts.fault[kind], () => {
+                this.faults = this.faults.filter((_, other) => other !== at);
+              })}
+            </li>`,
+        )}
+      </ul>
+      <select aria-label=${texts.addFault} @change=${this.addFault}>
+        <option value="">${texts.addFault}…</option>
+        ${FAULTS.map((kind) => html`<option value=${kind}>${texts.fault[kind]}</option>`)}
+      </select>
+    </section>`;
+  }
+
+  private removeButton(what: string, act: () => void) {
+    const said = t().run.remove(what);
+    return html`<button type="button" class="bare icon" aria-label=${said} title=${said} @click=${act}>
+      ${icon("close", 16)}
+    </button>`;
+  }
+
+  private whyNot(): string | null {
+    const texts = t().run;
+    if (!mayOperate()) return texts.mayNotOperate;
+    if ((mission.value?.tasks.length ?? 0) === 0) return texts.noTasks;
+    const broken = findings.value.diagnostics.some((one) => one.severity === "error");
+    return broken ? texts.hasErrors : null;
+  }
+
+  private onValueKey(event: KeyboardEvent): void {
+    if (event.key !== "Enter") return;
+    event.preventDefault();
+    this.addValue();
+  }
+
+  private addValue(): void {
+    const of = this.renderRoot.querySelector<HTMLInputElement>("#value-of");
+    const field = this.renderRoot.querySelector<HTMLInputElement>("#value");
+    const checkpoint = chosenCheckpoint(of?.value ?? "", world.value?.checkpoints ?? []);
+    if (!of || !field) return;
+    if (checkpoint === null) return of.focus();
+    if (field.value === "" || !Number.isFinite(field.valueAsNumber)) return field.focus();
+    this.values = new Map(this.values).set(checkpoint.id, field.valueAsNumber);
+    of.value = field.value = "";
+    of.focus();
+  }
+
+  private addFault(event: Event): void {
+    const field = event.target as HTMLSelectElement;
+    const kind = FAULTS.find((one) => one === field.value);
+    if (kind !== undefined) this.faults = [...this.faults, kind];
+    field.value = "";
+  }
+
+  private async start(event: SubmitEvent): Promise<void> {
+    event.preventDefault();
+    const form = new FormData(event.target as HTMLFormElement);
+    const speed = form.get("speed") as string;
+    keep("speed", speed);
+    const asked: Partial<RunAsked> = {
+      speed: speed === "null" ? null : Number(speed),
+      drive: form.get("drive") as string,
+      sensor: form.get("sensor") as string,
+      seed: Number(form.get("seed")),
+      values: Object.fromEntries(this.values),
+      faults: this.faults.map((kind) => ({ kind })) as unknown as RunAsked["faults"],
+    };
+    this.starting = true;
+    await startRun(asked);
+    this.starting = false;
+  }
+}

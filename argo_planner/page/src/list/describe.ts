@@ -13,7 +13,7 @@ export function describeTask(task: Task, world: World | null): string {
   }
   if (task.action === "WAIT") {
     const wait = task.wait;
-    if (wait?.duration != null) return texts.waits(t().words.seconds(wait.duration));
+    if (typeof wait?.duration === "number") return texts.waits(t().words.seconds(wait.duration));
     return wait?.event ? texts.waitsFor(t().words.event[wait.event]) : texts.waitsUntil;
   }
   if (!task.pose) return t().words.action[task.action];

@@ -1,8 +1,564 @@
-import { customElement, html, PageElement } from "../ui/element";
+/** The mission as a list: nested groups that fold, reordered by hand or by keys. Only the rows that
+ * are in view are in the page, so that thousands of tasks open and scroll as fast as ten. */
+
+import { effect, signal } from "@preact/signals-core";
+import { repeat } from "lit/directives/repeat.js";
+
+import type { Reaction } from "../api/types";
+import { isTyping } from "../frame/keys";
+import { copied, pasting, readCopied } from "../model/clipboard";
+import {
+  groupKey,
+  nameOfKey,
+  outline,
+  ownName,
+  reactionKey,
+  taskKey,
+  unfolded,
+  type Row,
+} from "../model/outline";
+import { moves, placeForNew, step, tasksOf, type Side } from "../model/places";
+import { tell } from "../state/notices";
+import { edit, inTurn, mission, planId, select, selection } from "../state/plan";
+import { mayPlan } from "../state/session";
+import { panel, tool } from "../state/view";
+import { t } from "../texts";
+import { css, customElement, html, look, nothing, PageElement, query, state } from "../ui/element";
+import { styled } from "../ui/style";
+import { icon } from "../ui/icons";
+import "./add";
+import type { AddTasks } from "./add";
+import "./problems";
+import { marksOf } from "./marks";
+import { rowView, ROW_HEIGHT, rowStyles } from "./row";
+
+const BEYOND = 12;
 
 @customElement("argo-list")
-export class ListPanel extends PageElement {
-  override render() {
-    return html``;
+export class MissionList extends PageElement {
+  static override styles = [
+    look,
+    rowStyles,
+    css`
+      :host {
+        display: grid;
+        grid-template-rows: auto auto minmax(0, 1fr) auto;
+      }
+      .tools {
+        display: flex;
+        gap: 2px;
+        padding: 6px;
+        border-bottom: 1px solid var(--line);
+      }
+      .tree {
+        position: relative;
+        overflow: auto;
+        outline-offset: -2px;
+      }
+      .all {
+        position: relative;
+      }
+      .drop {
+        position: absolute;
+        right: 4px;
+        z-index: 2;
+        height: 3px;
+        border-radius: 2px;
+        background: var(--accent);
+        pointer-events: none;
+      }
+      .drop.into {
+        height: ${ROW_HEIGHT}px;
+        border: 2px solid var(--accent);
+        background: none;
+      }
+      .reactions {
+        max-height: 30%;
+        overflow: auto;
+        border-top: 1px solid var(--line);
+      }
+      .reactions h2 {
+        padding: 6px 10px 2px;
+      }
+      .reactions button {
+        justify-content: start;
+        width: 100%;
+        text-align: left;
+      }
+      .empty {
+        padding: 16px;
+      }
+    `,
+  ];
+
+  @query(".tree") private readonly tree!: HTMLElement;
+  @query("argo-add") private readonly adding!: AddTasks;
+  @state() private top = 0;
+  @state() private height = 800;
+  @state() private renaming: string | null = null;
+  @state() private drop: { row: Row; side: Side } | null = null;
+  private readonly folded = signal<ReadonlySet<string>>(new Set());
+  private readonly stop: (() => void)[] = [];
+  /** Where Shift extends the selection from. */
+  private anchor: string | null = null;
+  private resized = new ResizeObserver(([entry]) => {
+    if (entry) this.height = entry.contentRect.height;
+  });
+
+  override connectedCallback(): void {
+    super.connectedCallback();
+    addEventListener("keydown", this.onGlobalKey);
+    addEventListener("paste", this.onPaste);
+    addEventListener("copy", this.onCopy);
+    this.stop.push(effect(() => this.reveal(selection.value.at(-1))));
   }
+
+  override disconnectedCallback(): void {
+    super.disconnectedCallback();
+    removeEventListener("keydown", this.onGlobalKey);
+    removeEventListener("paste", this.onPaste);
+    removeEventListener("copy", this.onCopy);
+    this.resized.disconnect();
+    for (const one of this.stop.splice(0)) one();
+  }
+
+  override firstUpdated(): void {
+    this.resized.observe(this.tree);
+  }
+
+  /** All rows, and those that show as groups are folded. */
+  private rows(): { all: Row[]; shown: Row[] } {
+    const open = mission.value;
+    if (open === null) return { all: [], shown: [] };
+    if (this.known?.mission !== open || this.known.folded !== this.folded.value) {
+      const all = outline(open);
+      const shown = unfolded(all, this.folded.value);
+      this.known = { mission: open, folded: this.folded.value, all, shown };
+    }
+    return this.known;
+  }
+  private known: {
+    mission: object;
+    folded: ReadonlySet<string>;
+    all: Row[];
+    shown: Row[];
+  } | null = null;
+
+  override render() {
+    const texts = t().list;
+    const { shown } = this.rows();
+    const chosen = new Set(selection.value);
+    const may = mayPlan();
+    const first = Math.max(0, Math.floor(this.top / ROW_HEIGHT) - BEYOND);
+    const last = Math.min(shown.length, Math.ceil((this.top + this.height) / ROW_HEIGHT) + BEYOND);
+    const active = selection.value.at(-1);
+    const at = shown.findIndex((row) => row.key === active);
+    return html`
+      <div class="tools" role="toolbar" aria-label=${texts.tasks}>
+        <argo-add @focus-list=${() => this.tree.focus()}></argo-add>
+        <span class="grow"></span>
+        <button
+          class="bare icon"
+          aria-label=${texts.group}
+          title=${`${texts.group} (g)`}
+          ?disabled=${!may || chosen.size === 0}
+          @click=${this.wrap}
+        >
+          ${icon("group")}
+        </button>
+        <button
+          class="bare icon"
+          aria-label=${texts.delete}
+          title=${`${texts.delete} (Del)`}
+          ?disabled=${!may || chosen.size === 0}
+          @click=${this.removeChosen}
+        >
+          ${icon("bin")}
+        </button>
+      </div>
+      <argo-problems></argo-problems>
+      <div
+        class="tree"
+        role="tree"
+        tabindex="0"
+        aria-label=${texts.tasks}
+        aria-multiselectable="true"
+        aria-activedescendant=${at >= first && at < last ? `row-${at}` : nothing}
+        @scroll=${() => (this.top = this.tree.scrollTop)}
+        @keydown=${this.onKey}
+        @click=${this.onClick}
+        @dblclick=${this.onDoubleClick}
+        @dragstart=${this.onDragStart}
+        @dragover=${this.onDragOver}
+        @dragleave=${() => (this.drop = null)}
+        @dragend=${() => (this.drop = null)}
+        @drop=${this.onDrop}
+      >
+        ${shown.length === 0 ? html`<p class="empty dim">${texts.empty}</p>` : nothing}
+        <div
+          class="all"
+          role="presentation"
+          ${styled({ height: `${shown.length * ROW_HEIGHT}px` })}
+        >
+          ${repeat(
+            shown.slice(first, last),
+            (row) => row.key,
+            (row, index) =>
+              rowView(row, first + index, {
+                chosen: chosen.has(row.key),
+                folded: this.folded.value.has(row.key),
+                renaming: this.renaming === row.key,
+                of: shown.length,
+                marks: marksOf(row),
+                may,
+                onRename: this.onRename,
+              }),
+          )}
+          ${this.drop ? this.dropMark(this.drop, shown) : nothing}
+        </div>
+      </div>
+      ${this.reactions()}
+    `;
+  }
+
+  private dropMark({ row, side }: { row: Row; side: Side }, shown: readonly Row[]) {
+    const index = shown.indexOf(row);
+    const top = (side === "after" ? index + 1 : index) * ROW_HEIGHT - (side === "into" ? 0 : 2);
+    const place = { top: `${top}px`, left: `${8 + 16 * row.depth}px` };
+    return html`<div class=${side === "into" ? "drop into" : "drop"} ${styled(place)}></div>`;
+  }
+
+  private reactions() {
+    const found = mission.value?.reactions ?? [];
+    if (found.length === 0) return html`<span></span>`;
+    const chosen = selection.value.at(-1);
+    return html`<section class="reactions">
+      <h2>${t().list.reactions}</h2>
+      ${found.map((reaction) => {
+        const key = reactionKey(reaction.event);
+        return html`<button
+          class="bare"
+          aria-pressed=${chosen === key}
+          @click=${() => {
+            select([key]);
+            panel.value = "properties";
+          }}
+        >
+          ${icon("reaction", 16)}
+          <span class="grow"
+            >${t().list.when(t().words.event[reaction.event])}
+            <span class="dim">${t().words.response[reaction.response]}</span></span
+          >
+        </button>`;
+      })}
+    </section>`;
+  }
+
+  /** Brings a row into view, and opens the groups that it lies in. */
+  private reveal(key: string | undefined): void {
+    if (key === undefined || !this.hasUpdated) return;
+    const { all, shown } = this.rows();
+    if (!shown.some((row) => row.key === key)) {
+      const row = all.find((one) => one.key === key);
+      if (!row) return;
+      const around = new Set<string>();
+      for (const one of all)
+        if (one.kind === "group" && (row.inside === one.group.name || row.inside?.startsWith(`${one.group.name}/`)))
+          around.add(one.key);
+      this.folded.value = new Set([...this.folded.value].filter((one) => !around.has(one)));
+    }
+    const at = this.rows().shown.findIndex((row) => row.key === key) * ROW_HEIGHT;
+    void this.updateComplete.then(() => {
+      if (at < this.tree.scrollTop) this.tree.scrollTop = at;
+      else if (at + ROW_HEIGHT > this.tree.scrollTop + this.height)
+        this.tree.scrollTop = at + ROW_HEIGHT - this.height;
+    });
+  }
+
+  private rowAt(event: Event): Row | null {
+    const found = (event.target as HTMLElement).closest<HTMLElement>("[role=treeitem]");
+    return found ? (this.rows().shown[Number(found.dataset["index"])] ?? null) : null;
+  }
+
+  private onClick(event: MouseEvent): void {
+    const row = this.rowAt(event);
+    if (!row) return;
+    if ((event.target as HTMLElement).closest(".fold")) this.fold(row);
+    else this.choose(row, event.shiftKey, event.ctrlKey || event.metaKey);
+  }
+
+  private choose(row: Row, extend: boolean, toggle: boolean): void {
+    const { shown } = this.rows();
+    if (extend && this.anchor !== null) {
+      const from = shown.findIndex((one) => one.key === this.anchor);
+      const to = shown.indexOf(row);
+      const between = shown.slice(Math.min(from, to), Math.max(from, to) + 1).map((one) => one.key);
+      select([...between.filter((key) => key !== row.key), row.key]);
+      return;
+    }
+    this.anchor = row.key;
+    if (!toggle) select([row.key]);
+    else if (selection.value.includes(row.key)) select(selection.value.filter((k) => k !== row.key));
+    else select([...selection.value, row.key]);
+  }
+
+  private fold(row: Row, closed = !this.folded.value.has(row.key)): void {
+    const folded = new Set(this.folded.value);
+    if (closed) folded.add(row.key);
+    else folded.delete(row.key);
+    this.folded.value = folded;
+  }
+
+  private onDoubleClick(event: MouseEvent): void {
+    const row = this.rowAt(event);
+    if (row && mayPlan()) this.renaming = row.key;
+  }
+
+  /** Keys that work wherever the focus is, but in fields. */
+  private readonly onGlobalKey = (event: KeyboardEvent): void => {
+    if (event.defaultPrevented || isTyping(event) || planId.value === null) return;
+    if (event.ctrlKey || event.metaKey || event.altKey || !mayPlan()) return;
+    const act = {
+      m: () => this.adding.openMeasure(),
+      g: () => void this.wrap(),
+      n: () => (tool.value = tool.value === "navigate" ? "select" : "navigate"),
+      o: () => (tool.value = tool.value === "obstacle" ? "select" : "obstacle"),
+      w: () => this.adding.addAtPlace(),
+    }[event.key];
+    if (!act) return;
+    act();
+    event.preventDefault();
+  };
+
+  private onKey(event: KeyboardEvent): void {
+    if (isTyping(event)) return;
+    const { shown } = this.rows();
+    const at = shown.findIndex((row) => row.key === selection.value.at(-1));
+    const row = shown[at];
+    const command = event.ctrlKey || event.metaKey;
+    const go = (index: number) => {
+      const next = shown[Math.max(0, Math.min(shown.length - 1, index))];
+      if (next) this.choose(next, event.shiftKey, false);
+    };
+    const key = event.altKey ? `Alt+${event.key}` : command ? `Ctrl+${event.key.toLowerCase()}` : event.key;
+    const page = Math.max(1, Math.floor(this.height / ROW_HEIGHT) - 1);
+    switch (key) {
+      case "ArrowDown":
+        go(at + 1);
+        break;
+      case "ArrowUp":
+        go(at < 0 ? shown.length - 1 : at - 1);
+        break;
+      case "Home":
+        go(0);
+        break;
+      case "End":
+        go(shown.length - 1);
+        break;
+      case "PageDown":
+        go(at + page);
+        break;
+      case "PageUp":
+        go(at - page);
+        break;
+      case "ArrowRight":
+        if (row?.kind === "group" && this.folded.value.has(row.key)) this.fold(row, false);
+        else if (row?.kind === "group") go(at + 1);
+        break;
+      case "ArrowLeft":
+        if (row?.kind === "group" && !this.folded.value.has(row.key)) this.fold(row, true);
+        else if (row?.inside) select([groupKey(row.inside)]);
+        break;
+      case "Ctrl+a":
+        select(shown.map((one) => one.key));
+        break;
+      case "Enter":
+        panel.value = "properties";
+        this.dispatchEvent(new CustomEvent("open-details", { bubbles: true, composed: true }));
+        break;
+      case "F2":
+        if (row && mayPlan()) this.renaming = row.key;
+        break;
+      case "Delete":
+      case "Backspace":
+        if (mayPlan()) void this.removeChosen();
+        break;
+      case "Alt+ArrowUp":
+        if (mayPlan()) void this.shift("up");
+        break;
+      case "Alt+ArrowDown":
+        if (mayPlan()) void this.shift("down");
+        break;
+      case "Alt+ArrowLeft":
+        if (mayPlan()) void this.leaveGroup();
+        break;
+      case "Alt+ArrowRight":
+        if (mayPlan()) void this.enterGroup();
+        break;
+      default:
+        return;
+    }
+    event.preventDefault();
+  }
+
+  private shift(direction: "up" | "down"): Promise<boolean> {
+    return this.inTurn(() => step(this.rows().shown, selection.value, direction));
+  }
+
+  /** Out of the group that the selection lies in, behind it. */
+  private leaveGroup(): Promise<boolean> {
+    return this.inTurn(() => {
+      const { all } = this.rows();
+      const row = all.find((one) => one.key === selection.value.at(-1));
+      const target = all.find((one) => one.kind === "group" && one.group.name === row?.inside);
+      return target ? { target, side: "after" } : null;
+    });
+  }
+
+  /** Into the group that stands right above, to its end, or the one right below. */
+  private enterGroup(): Promise<boolean> {
+    return this.inTurn(() => {
+      const { all } = this.rows();
+      const first = all.findIndex((one) => selection.value.includes(one.key));
+      const last = all.findLastIndex((one) => selection.value.includes(one.key));
+      const [above, here, below] = [all[first - 1], all[first], all[last + 1]];
+      if (above && here && above.depth > here.depth) return { target: above, side: "after" };
+      return below?.kind === "group" ? { target: below, side: "into" } : null;
+    });
+  }
+
+  private moveTo(target: Row, side: Side): Promise<boolean> {
+    return this.inTurn(() => ({ target, side }));
+  }
+
+  /** Moves what is selected beside the row that is found when its turn comes. */
+  private inTurn(find: () => { readonly target: Row; readonly side: Side } | null): Promise<boolean> {
+    return inTurn(async (make) => {
+      const open = mission.value;
+      const found = find();
+      if (open === null || found === null) return false;
+      const kept = selection.value;
+      const { all } = this.rows();
+      const target = all.find((row) => row.key === found.target.key);
+      if (!target) return false;
+      const done = await make(...moves(open, all, kept, target, found.side));
+      this.reveal(kept.at(-1));
+      return done;
+    });
+  }
+
+  private readonly wrap = async (): Promise<void> => {
+    const open = mission.value;
+    if (open === null || !mayPlan() || selection.value.length === 0) return;
+    const { all } = this.rows();
+    const tasks = tasksOf(open, all, selection.value);
+    const [first, last] = [tasks[0], tasks.at(-1)];
+    if (!first || !last) return;
+    const from = open.tasks.indexOf(first);
+    if (open.tasks.indexOf(last) - from + 1 !== tasks.length) {
+      tell("warn", t().list.notTogether);
+      return;
+    }
+    const row = all.find((one) => one.key === selection.value[0]);
+    const inside = row?.inside ? `${row.inside}/` : "";
+    const taken = new Set(open.groups.map((group) => group.name));
+    let name = t().list.newGroup;
+    for (let number = 2; taken.has(inside + name); number++) name = `${t().list.newGroup} ${number}`;
+    const group = { name, start: first.name, end: last.name, max_repeat_count: 1 };
+    if (await edit({ kind: "wrap_tasks", group })) {
+      select([groupKey(inside + name)]);
+      panel.value = "properties";
+    }
+  };
+
+  private readonly removeChosen = async (): Promise<void> => {
+    const open = mission.value;
+    if (open === null || selection.value.length === 0) return;
+    const { shown } = this.rows();
+    const reactions = selection.value.filter((key) => key.startsWith("reaction:")).map(nameOfKey);
+    const tasks = tasksOf(open, this.rows().all, selection.value).map((task) => task.name);
+    const first = shown.findIndex((row) => selection.value.includes(row.key));
+    const last = shown.findLastIndex((row) => selection.value.includes(row.key));
+    const next = shown.slice(last + 1).find((row) => row.kind === "task") ?? shown[first - 1];
+    const done = await edit(
+      ...tasks.map((name) => ({ kind: "remove_task", name }) as const),
+      ...reactions.map((event) => ({ kind: "remove_reaction", event: event as Reaction["event"] }) as const),
+    );
+    if (done && next) select([next.key]);
+  };
+
+  private readonly onRename = (row: Row, name: string): void => {
+    this.renaming = null;
+    this.tree.focus();
+    void this.rename(row, name);
+  };
+
+  private async rename(row: Row, name: string): Promise<void> {
+    const old = row.kind === "task" ? row.task.name : ownName(row.group.name);
+    if (name === "" || name === old) return;
+    if (row.kind === "task") {
+      if (await edit({ kind: "rename_task", name: old, new_name: name })) select([taskKey(name)]);
+    } else {
+      const whole = row.group.name;
+      const renamed = whole.slice(0, whole.length - old.length) + name;
+      if (await edit({ kind: "rename_group", name: whole, own_name: name }))
+        select([groupKey(renamed)]);
+    }
+  }
+
+  private readonly onCopy = (event: ClipboardEvent): void => {
+    const open = mission.value;
+    if (open === null || typing() || getSelection()?.toString()) return;
+    const tasks = tasksOf(open, this.rows().all, selection.value);
+    if (tasks.length === 0) return;
+    event.clipboardData?.setData("text/plain", copied(tasks));
+    tell("info", t().list.copiedCount(tasks.length));
+    event.preventDefault();
+  };
+
+  private readonly onPaste = (event: ClipboardEvent): void => {
+    const open = mission.value;
+    if (open === null || typing() || !mayPlan()) return;
+    event.preventDefault();
+    const tasks = readCopied(event.clipboardData?.getData("text/plain") ?? "");
+    if (tasks === null) {
+      tell("info", t().list.nothingToPaste);
+      return;
+    }
+    const place = placeForNew(this.rows().all, selection.value);
+    const { edits, names } = pasting(open, tasks, place);
+    void edit(...edits).then((done) => done && select(names.map(taskKey)));
+  };
+
+  private onDragStart(event: DragEvent): void {
+    const row = this.rowAt(event);
+    if (!row || !mayPlan()) return event.preventDefault();
+    if (!selection.value.includes(row.key)) select([row.key]);
+    event.dataTransfer?.setData("text/plain", row.key);
+  }
+
+  private onDragOver(event: DragEvent): void {
+    const row = this.rowAt(event);
+    if (!row) return;
+    event.preventDefault();
+    const box = (event.target as HTMLElement).closest("[role=treeitem]")?.getBoundingClientRect();
+    const share = box ? (event.clientY - box.top) / box.height : 0;
+    const folded = this.folded.value.has(row.key);
+    let side: Side = share < 0.5 ? "before" : "after";
+    if (row.kind === "group" && share > 0.3 && !(folded && share > 0.8)) side = "into";
+    if (this.drop?.row !== row || this.drop.side !== side) this.drop = { row, side };
+  }
+
+  private onDrop(event: DragEvent): void {
+    event.preventDefault();
+    const drop = this.drop;
+    this.drop = null;
+    if (drop) void this.moveTo(drop.row, drop.side);
+  }
+}
+
+function typing(): boolean {
+  let active = document.activeElement;
+  while (active?.shadowRoot?.activeElement) active = active.shadowRoot.activeElement;
+  return active !== null && active.matches("input, textarea, select");
 }

@@ -1,6 +1,6 @@
 /** The tasks of a mission in their nested groups, as the list shows them. */
 
-import type { Group, Mission, Task } from "../api/types";
+import type { EventKind, Group, Mission, Task } from "../api/types";
 
 export interface TaskRow {
   readonly kind: "task";
@@ -33,6 +33,9 @@ export function taskKey(name: string): string {
 }
 export function groupKey(name: string): string {
   return `group:${name}`;
+}
+export function reactionKey(event: EventKind): string {
+  return `reaction:${event}`;
 }
 
 /** The name behind a key. */

@@ -37,13 +37,16 @@ export function dismiss(id: number): void {
 /** Tells of an error; anything that is no answer of the service is thrown on. */
 export function tellError(error: unknown): void {
   if (error instanceof Refusal) {
-    const { problem } = error;
-    const details = [
-      ...problem.diagnostics.map((found) => found.message).filter((said) => said !== error.message),
-      ...problem.remedies,
-    ];
-    tell("bad", problem.detail, { details: details.slice(0, 5) });
+    const { diagnostics } = error.problem;
+    const details = diagnostics.flatMap((one) => (one.hint ? [one.hint] : []));
+    tell("bad", messageOf(error), { details: [...new Set(details)].slice(0, 5) });
   } else if (error instanceof Unreached) {
     tell("warn", t().frame.notReached);
   } else throw error;
+}
+
+/** Why something was refused, in a sentence. */
+export function messageOf(refusal: Refusal): string {
+  const errors = refusal.problem.diagnostics.filter((one) => one.severity === "error");
+  return errors.length > 0 ? errors.map((one) => one.message).join("; ") : refusal.problem.detail;
 }

@@ -18,9 +18,9 @@ import type {
   VersionSummary,
 } from "../api/types";
 import { changed, touched } from "../model/change";
-import { isTaskKey, nameOfKey } from "../model/outline";
+import { groupKey, isTaskKey, nameOfKey, reactionKey, taskKey } from "../model/outline";
 import { t } from "../texts";
-import { tell, tellError } from "./notices";
+import { messageOf, tell, tellError } from "./notices";
 import { author } from "./session";
 import { obstaclesChanged } from "./world";
 
@@ -57,7 +57,7 @@ export const jobs = signal<ReadonlyMap<string, OrderJob>>(new Map());
 export const connected = signal(false);
 /** How many commands wait for an answer. */
 export const waiting = signal(0);
-/** Keys of what is selected (`taskKey`, `groupKey`), the last one last. */
+/** Keys of what is selected (`taskKey`, `groupKey`, `reactionKey`), the last one last. */
 export const selection = signal<readonly string[]>([]);
 /** What was done last, by whomever: to flash what others have changed. */
 export const lastRevision = signal<Revision | null>(null);
@@ -122,29 +122,47 @@ export function select(keys: readonly string[]): void {
 
 /** Makes edits, all of them or none. Whether they were made; if not, a notice says why. */
 export function edit(...edits: LooseEdit[]): Promise<boolean> {
-  return edits.length === 0 ? Promise.resolve(true) : command({ kind: "edit", edits });
+  return inTurn((make) => make(...edits));
+}
+
+/** Edits that depend on how the mission is when their turn comes: keys may be pressed faster than
+ * the service answers. `work` is called when all edits before it are done. */
+export function inTurn<T>(work: (make: typeof edit) => Promise<T>): Promise<T> {
+  return queued(() => work((...edits) => carriedOut({ kind: "edit", edits }, tellError)));
+}
+
+/** Makes edits for a form, which shows at the field why they were refused; null: they were made. */
+export async function editHere(...edits: LooseEdit[]): Promise<string | null> {
+  let said = "";
+  const refused = (error: unknown) => {
+    if (error instanceof Refusal) said = messageOf(error);
+    else tellError(error);
+  };
+  const done = await queued(() => carriedOut({ kind: "edit", edits }, refused));
+  return done ? null : said;
 }
 export function undo(): Promise<boolean> {
-  return command({ kind: "undo" });
+  return queued(() => carriedOut({ kind: "undo" }, tellError));
 }
 export function redo(): Promise<boolean> {
-  return command({ kind: "redo" });
+  return queued(() => carriedOut({ kind: "redo" }, tellError));
 }
 export function replaceMission(newMission: Mission, about: string): Promise<boolean> {
-  return command({ kind: "replace", mission: newMission, about });
+  return queued(() => carriedOut({ kind: "replace", mission: newMission, about }, tellError));
 }
 
 /** Commands are sent one after the other, each on the revision that the one before has made. */
-function command(asked: Command): Promise<boolean> {
-  const id = planId.value;
-  if (id === null) return Promise.resolve(false);
+function queued<T>(work: () => Promise<T>): Promise<T> {
   waiting.value++;
-  const done = queue.then(() => carriedOut(id, asked)).finally(() => waiting.value--);
+  const done = queue.then(work).finally(() => waiting.value--);
   queue = done.catch(() => undefined);
   return done;
 }
 
-async function carriedOut(plan: string, asked: Command): Promise<boolean> {
+async function carriedOut(asked: Command, refused: (error: unknown) => void): Promise<boolean> {
+  const plan = planId.value;
+  if (plan === null) return false;
+  if (asked.kind === "edit" && asked.edits.length === 0) return true;
   const commandId = newId();
   for (let stale = 0; planId.value === plan; ) {
     try {
@@ -161,7 +179,7 @@ async function carriedOut(plan: string, asked: Command): Promise<boolean> {
         tellStale(asked, since ?? []);
         return false;
       } else {
-        tellError(error);
+        refused(error);
         return false;
       }
     }
@@ -198,7 +216,8 @@ function tellStale(asked: Command, since: readonly Revision[]): void {
   const details = since
     .slice(-4)
     .map((one) => t().frame.changedBy(one.author, [...touched(one.change)].slice(0, 5)));
-  const again = { label: t().frame.doItAnyway, act: () => void command(asked) };
+  const act = () => void queued(() => carriedOut(asked, tellError));
+  const again = { label: t().frame.doItAnyway, act };
   tell("warn", t().frame.stale, { details, actions: [again] });
 }
 
@@ -286,11 +305,13 @@ function takeMembers(members: readonly Member[]): void {
 
 /** Takes out of the selection what is not there any more. */
 function keepSelection(): void {
-  const groups = new Set(mission.value?.groups.map((group) => group.name));
-  const tasks = tasksByName.value;
-  const there = selection.value.filter((key) =>
-    isTaskKey(key) ? tasks.has(nameOfKey(key)) : groups.has(nameOfKey(key)),
-  );
+  const open = mission.value;
+  const keys = new Set([
+    ...(open?.tasks ?? []).map((task) => taskKey(task.name)),
+    ...(open?.groups ?? []).map((group) => groupKey(group.name)),
+    ...(open?.reactions ?? []).map((reaction) => reactionKey(reaction.event)),
+  ]);
+  const there = selection.value.filter((key) => keys.has(key));
   if (there.length < selection.value.length) select(there);
 }
 

@@ -1,0 +1,191 @@
+/** A field of a form. What is typed is kept until it is right: a refusal is said beside it, and what
+ * others do meanwhile does not overwrite it. */
+
+import { t } from "../texts";
+import { css, customElement, html, look, nothing, PageElement, property, state } from "../ui/element";
+
+export interface Option {
+  readonly value: string;
+  readonly label: string;
+}
+
+/** Takes what was typed or chosen; why it was refused, null if it was not. */
+export type Commit = (value: string) => Promise<string | null> | string | null;
+
+let count = 0;
+
+@customElement("argo-field")
+export class FormField extends PageElement {
+  static override styles = [
+    look,
+    css`
+      :host {
+        margin-bottom: 8px;
+      }
+      label {
+        display: block;
+        margin-bottom: 2px;
+        color: var(--dim);
+        font-size: 12px;
+      }
+      .line {
+        display: flex;
+        align-items: center;
+        gap: 6px;
+      }
+      input,
+      select,
+      textarea {
+        width: 100%;
+        min-width: 0;
+      }
+      textarea {
+        min-height: 52px;
+        resize: vertical;
+      }
+      :host([kind="check"]) .line {
+        justify-content: start;
+      }
+      :host([kind="check"]) input {
+        width: auto;
+      }
+      :host([kind="check"]) label {
+        margin: 0;
+        color: inherit;
+        font-size: inherit;
+      }
+      .wrong {
+        margin-top: 2px;
+        color: var(--bad);
+        font-size: 12px;
+      }
+      .note {
+        flex: none;
+        color: var(--dim);
+        font-size: 12px;
+      }
+    `,
+  ];
+
+  @property() label = "";
+  @property({ reflect: true }) kind: "text" | "long" | "select" | "check" = "text";
+  /** What it is now; for a box `true` or `false`. */
+  @property() value = "";
+  /** The unit, or what is normal. */
+  @property() note = "";
+  @property() placeholder = "";
+  @property({ attribute: false }) options: readonly Option[] = [];
+  @property({ attribute: false }) commit: Commit = () => null;
+  @property({ type: Boolean }) disabled = false;
+  @state() private typed: string | null = null;
+  @state() private wrong: string | null = null;
+  @state() private overtaken = false;
+  private readonly id_ = `field-${++count}`;
+
+  override willUpdate(changes: Map<string, unknown>): void {
+    if (changes.has("value") && this.typed !== null && changes.get("value") !== undefined) {
+      this.overtaken = this.typed !== this.value;
+      if (!this.overtaken) this.typed = null;
+    }
+  }
+
+  override render() {
+    const shown = this.typed ?? this.value;
+    const label = html`<label for=${this.id_}>${this.label}</label>`;
+    const described = this.wrong || this.overtaken ? `${this.id_}-wrong` : nothing;
+    let field;
+    if (this.kind === "check")
+      field = html`<input
+        id=${this.id_}
+        type="checkbox"
+        .checked=${shown === "true"}
+        ?disabled=${this.disabled}
+        @change=${(event: Event) => this.take(String((event.target as HTMLInputElement).checked))}
+      />`;
+    else if (this.kind === "select")
+      field = html`<select
+        id=${this.id_}
+        aria-describedby=${described}
+        ?disabled=${this.disabled}
+        @change=${(event: Event) => this.take((event.target as HTMLSelectElement).value)}
+      >
+        ${this.options.map(
+          (option) =>
+            html`<option value=${option.value} ?selected=${option.value === shown} .selected=${option.value === shown}>
+              ${option.label}
+            </option>`,
+        )}
+      </select>`;
+    else if (this.kind === "long")
+      field = html`<textarea
+        id=${this.id_}
+        aria-describedby=${described}
+        .value=${shown}
+        ?disabled=${this.disabled}
+        @input=${this.onInput}
+        @change=${this.onChange}
+      ></textarea>`;
+    else
+      field = html`<input
+        id=${this.id_}
+        autocomplete="off"
+        aria-describedby=${described}
+        aria-invalid=${this.wrong !== null}
+        placeholder=${this.placeholder}
+        .value=${shown}
+        ?disabled=${this.disabled}
+        @input=${this.onInput}
+        @change=${this.onChange}
+        @keydown=${this.onKey}
+      />`;
+    return html`${this.kind === "check" ? nothing : label}
+      <div class="line">
+        ${field}${this.kind === "check" ? label : nothing}
+        ${this.note ? html`<span class="note">${this.note}</span>` : nothing}
+      </div>
+      ${this.wrong !== null
+        ? html`<p class="wrong" role="alert" id=${`${this.id_}-wrong`}>${this.wrong}</p>`
+        : this.overtaken
+          ? html`<p class="wrong" role="alert" id=${`${this.id_}-wrong`}>
+              ${t().forms.overtaken(this.value)}
+              <button @click=${this.forget}>${t().forms.takeTheirs}</button>
+            </p>`
+          : nothing}`;
+  }
+
+  override focus(): void {
+    this.renderRoot.querySelector<HTMLElement>("input, select, textarea")?.focus();
+  }
+
+  private onInput(event: Event): void {
+    this.typed = (event.target as HTMLInputElement).value;
+  }
+
+  private onChange(event: Event): void {
+    void this.take((event.target as HTMLInputElement).value);
+  }
+
+  private onKey(event: KeyboardEvent): void {
+    if (event.key === "Enter") void this.take((event.target as HTMLInputElement).value);
+    else if (event.key === "Escape" && this.typed !== null) this.forget();
+    else return;
+    event.preventDefault();
+    event.stopPropagation();
+  }
+
+  private readonly forget = (): void => {
+    this.typed = null;
+    this.wrong = null;
+    this.overtaken = false;
+  };
+
+  private async take(typed: string): Promise<void> {
+    if (typed === this.value) return this.forget();
+    this.typed = typed;
+    this.overtaken = false;
+    const wrong = await this.commit(typed);
+    if (this.typed !== typed) return;
+    this.wrong = wrong;
+    if (wrong === null) this.typed = null;
+  }
+}

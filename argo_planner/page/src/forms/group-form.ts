@@ -1,0 +1,55 @@
+/** The form of a group: a round, and what ends it. */
+
+import type { Group } from "../api/types";
+import { groupKey, ownName } from "../model/outline";
+import { edit, editHere, mission, select } from "../state/plan";
+import { mayPlan } from "../state/session";
+import { t } from "../texts";
+import { html } from "../ui/element";
+import { conditionList } from "./conditions";
+import { checkField, numberField, optionsOf, selectField, textField, timeField } from "./parts";
+
+type Fields = Partial<Omit<Group, "name" | "source">>;
+
+export function groupForm(group: Group) {
+  const texts = t().forms;
+  const set = (fields: Fields) => editHere({ kind: "change_group", name: group.name, ...fields });
+  const tasks = (mission.value?.tasks ?? []).map(({ name }) => ({ value: name, label: name }));
+  const rename = async (name: string) => {
+    const own_name = name.trim();
+    const wrong = await editHere({ kind: "rename_group", name: group.name, own_name });
+    const outer = group.name.slice(0, group.name.length - ownName(group.name).length);
+    if (wrong === null) select([groupKey(outer + own_name)]);
+    return wrong;
+  };
+  return html`<h2>${texts.group}</h2>
+    ${textField(texts.name, ownName(group.name), rename)}
+    ${numberField(texts.rounds, group.max_repeat_count || null, (count) =>
+      set({ max_repeat_count: count ?? 0 }),
+    )}
+    ${timeField(texts.duration, group.max_repeat_duration || null, (time) =>
+      set({ max_repeat_duration: time ?? 0 }),
+    )}
+    ${group.max_repeat_duration > 0
+      ? html`${selectField(texts.stop, group.stop, optionsOf(texts.stops), (stop) =>
+            set({ stop: stop as Group["stop"] }),
+          )}
+          ${checkField(texts.countInterruptions, group.count_interruptions, (counted) =>
+            set({ count_interruptions: counted }),
+          )}`
+      : null}
+    ${timeField(texts.every, group.every || null, (every) => set({ every: every ?? 0 }))}
+    <h3>${texts.until}</h3>
+    ${conditionList(group.until, (until) => set({ until }), texts.addCondition)}
+    <details>
+      <summary>${texts.extent}</summary>
+      ${selectField(texts.first, group.start, tasks, (start) => set({ start }))}
+      ${selectField(texts.last, group.end, tasks, (end) => set({ end }))}
+    </details>
+    <button
+      ?disabled=${!mayPlan()}
+      @click=${() => edit({ kind: "dissolve_group", name: group.name })}
+    >
+      ${t().list.ungroup}
+    </button>`;
+}

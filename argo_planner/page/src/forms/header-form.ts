@@ -1,0 +1,73 @@
+/** The form of the mission as a whole. */
+
+import type { Mission } from "../api/types";
+import { edit, editHere } from "../state/plan";
+import { mayPlan } from "../state/session";
+import { world } from "../state/world";
+import { t } from "../texts";
+import { html, nothing } from "../ui/element";
+import { optionsOf, poseFields, selectField, textField, timeField } from "./parts";
+
+type Fields = Partial<Omit<Mission, "version" | "tasks" | "groups" | "reactions">>;
+
+export function headerForm(mission: Mission) {
+  const texts = t().forms;
+  const set = (fields: Fields) => editHere({ kind: "set_header", ...fields } as never);
+  const areas = (world.value?.docks ?? []).map((dock) => ({
+    value: String(dock.area),
+    label: texts.area(dock.area),
+  }));
+  const area = (value: string) => (value === "" ? null : Number(value));
+  const open = [{ value: "", label: texts.notSaid }, ...areas];
+  return html`<h2>${texts.mission}</h2>
+    <p class="dim">${texts.chooseSomething}</p>
+    ${textField(texts.designation, mission.designation, (designation) => set({ designation }))}
+    ${timeField(texts.maxDuration, mission.max_duration, (max_duration) => set({ max_duration }))}
+    ${selectField(texts.mode, mission.mode, optionsOf(texts.modes), (mode) =>
+      set({ mode: mode as Mission["mode"] }),
+    )}
+    ${selectField(texts.order, mission.order, optionsOf(texts.orders), (order) =>
+      set({ order: order as Mission["order"] }),
+    )}
+    <div class="two">
+      ${selectField(texts.startArea, String(mission.start_area ?? ""), open, (value) =>
+        set({ start_area: area(value) }),
+      )}
+      ${selectField(texts.endArea, String(mission.end_area ?? ""), open, (value) =>
+        set({ end_area: area(value) }),
+      )}
+    </div>
+    ${poseFields(texts.homeDock, mission.dock, (dock) => set({ dock }), texts.none)}
+    ${textField(texts.anomalies, mission.anomaly_specification, (anomaly_specification) =>
+      set({ anomaly_specification }), "long")}
+    ${textField(texts.reporting, mission.real_time_reporting, (real_time_reporting) =>
+      set({ real_time_reporting }), "long")}
+    ${textField(texts.report, mission.after_mission_report, (after_mission_report) =>
+      set({ after_mission_report }), "long")}
+    ${mission.before.length > 0
+      ? html`<h3>${texts.before}</h3>
+          <ul>
+            ${mission.before.map(
+              ([first, second], index) =>
+                html`<li>
+                  ${texts.comesBefore(first, second)}
+                  <button
+                    class="bare"
+                    ?disabled=${!mayPlan()}
+                    @click=${() =>
+                      edit({
+                        kind: "set_header",
+                        before: mission.before.filter((_, at) => at !== index),
+                      })}
+                  >
+                    ${texts.remove}
+                  </button>
+                </li>`,
+            )}
+          </ul>`
+      : nothing}
+    ${mission.left_out.length > 0
+      ? html`<h3>${texts.leftOut}</h3>
+          <p>${mission.left_out.join(", ")}</p>`
+      : nothing}`;
+}

@@ -1,0 +1,163 @@
+/** Fields of the kinds that forms are made of: numbers, times, choices, places. */
+
+import type { Pose } from "../api/types";
+import { mayPlan } from "../state/session";
+import { world } from "../state/world";
+import { t } from "../texts";
+import { html } from "../ui/element";
+import type { Commit, Option } from "./field";
+import "./field";
+import { readTime, writeTime } from "./times";
+
+export interface FieldOptions {
+  readonly note?: string | undefined;
+  readonly placeholder?: string | undefined;
+}
+
+export function textField(label: string, value: string, commit: Commit, kind: "text" | "long" = "text") {
+  return html`<argo-field
+    .label=${label}
+    .kind=${kind}
+    .value=${value}
+    .commit=${commit}
+    ?disabled=${!mayPlan()}
+  ></argo-field>`;
+}
+
+export function checkField(label: string, value: boolean, commit: (value: boolean) => ReturnType<Commit>) {
+  return html`<argo-field
+    .label=${label}
+    kind="check"
+    .value=${String(value)}
+    .commit=${(text: string) => commit(text === "true")}
+    ?disabled=${!mayPlan()}
+  ></argo-field>`;
+}
+
+export function selectField(
+  label: string,
+  value: string,
+  options: readonly Option[],
+  commit: Commit,
+) {
+  const known = options.some((option) => option.value === value);
+  const all = known ? options : [{ value, label: value === "" ? "–" : `${value}?` }, ...options];
+  return html`<argo-field
+    .label=${label}
+    kind="select"
+    .value=${value}
+    .options=${all}
+    .commit=${commit}
+    ?disabled=${!mayPlan()}
+  ></argo-field>`;
+}
+
+/** A number; empty is null. */
+export function numberField(
+  label: string,
+  value: number | null | undefined,
+  commit: (value: number | null) => ReturnType<Commit>,
+  options: FieldOptions = {},
+) {
+  const take = (text: string) => {
+    if (text.trim() === "") return commit(null);
+    const number = Number(text.trim().replace(",", "."));
+    return Number.isFinite(number) ? commit(number) : t().forms.noNumber;
+  };
+  return plain(label, value === null || value === undefined ? "" : String(value), take, options);
+}
+
+/** A time, held in s; empty is null. */
+export function timeField(
+  label: string,
+  value: number | null | undefined,
+  commit: (value: number | null) => ReturnType<Commit>,
+  options: FieldOptions = {},
+) {
+  const take = (text: string) => {
+    if (text.trim() === "") return commit(null);
+    const time = readTime(text);
+    return time === null ? t().forms.noTime : commit(time);
+  };
+  const shown = value === null || value === undefined ? "" : writeTime(value);
+  return plain(label, shown, take, { placeholder: t().forms.likeTime, ...options });
+}
+
+function plain(label: string, value: string, commit: Commit, options: FieldOptions) {
+  return html`<argo-field
+    .label=${label}
+    .value=${value}
+    .note=${options.note ?? ""}
+    .placeholder=${options.placeholder ?? ""}
+    .commit=${commit}
+    ?disabled=${!mayPlan()}
+  ></argo-field>`;
+}
+
+/** Choices out of words of the field. */
+export function optionsOf(words: Readonly<Record<string, string>>): Option[] {
+  return Object.entries(words).map(([value, label]) => ({ value, label }));
+}
+
+export function checkpointOptions(): Option[] {
+  return (world.value?.checkpoints ?? []).map((one) => ({
+    value: String(one.id),
+    label: `${one.id} ${one.name}`,
+  }));
+}
+
+/** A place on the site: a named one, or where exactly. */
+export function poseFields(
+  label: string,
+  pose: Pose | null | undefined,
+  commit: (pose: Pose | null) => ReturnType<Commit>,
+  none: string | null,
+) {
+  const texts = t().forms;
+  const site = world.value;
+  const named = [
+    ...(site?.docks ?? []).map((dock) => ({ name: texts.dock(dock.area), pose: dock.pose })),
+    ...(site?.places ?? []),
+  ];
+  const at = named.findIndex((one) => pose && same(one.pose, pose));
+  const own = pose && at < 0 ? [{ value: "own", label: texts.exactly }] : [];
+  const options = [
+    ...(none === null ? [] : [{ value: "", label: none }]),
+    ...own,
+    ...named.map((one, index) => ({ value: String(index), label: one.name })),
+  ];
+  const choose = (value: string) => {
+    if (value === "own") return null;
+    return commit(value === "" ? null : (named[Number(value)]?.pose ?? null));
+  };
+  const value = !pose ? "" : at < 0 ? "own" : String(at);
+  const part = (name: string, key: "x" | "y" | "z", digits: number) =>
+    numberField(
+      name,
+      pose ? round(pose[key], digits) : null,
+      (number) => (pose && number !== null ? commit({ ...pose, [key]: number }) : texts.noNumber),
+      { note: "m" },
+    );
+  return html`${selectField(label, value, options, choose)}
+  ${pose
+    ? html`<div class="four">
+        ${part("x", "x", 3)} ${part("y", "y", 3)} ${part("z", "z", 3)}
+        ${numberField(
+          texts.heading,
+          round((pose.yaw * 180) / Math.PI, 1),
+          (degrees) =>
+            degrees === null ? texts.noNumber : commit({ ...pose, yaw: (degrees * Math.PI) / 180 }),
+          { note: "°" },
+        )}
+      </div>`
+    : null}`;
+}
+
+function same(a: Pose, b: Pose): boolean {
+  const near = (x: number, y: number) => Math.abs(x - y) < 1e-6;
+  return near(a.x, b.x) && near(a.y, b.y) && near(a.z, b.z) && near(a.yaw, b.yaw);
+}
+
+function round(value: number, digits: number): number {
+  return Number(value.toFixed(digits));
+}

@@ -1,0 +1,106 @@
+/** The form of a reaction: the event, the response, and what then. */
+
+import type { EventKind, Reaction } from "../api/types";
+import { reactionKey } from "../model/outline";
+import { edit, editHere, mission, select } from "../state/plan";
+import { mayPlan } from "../state/session";
+import { world } from "../state/world";
+import { t } from "../texts";
+import { html, nothing } from "../ui/element";
+import { numberField, optionsOf, poseFields, selectField, timeField } from "./parts";
+
+export function reactionForm(reaction: Reaction) {
+  const texts = t().forms;
+  const save = async (change: Partial<Reaction>) => {
+    const changed = { ...reaction, ...change, source: null };
+    const wrong = await editHere({
+      kind: "change_reaction",
+      event: reaction.event,
+      reaction: changed,
+    });
+    if (wrong === null) select([reactionKey(changed.event)]);
+    return wrong;
+  };
+  const had = new Set(mission.value?.reactions.map((one) => one.event));
+  const events = optionsOf(t().words.event).filter(
+    ({ value }) => value === reaction.event || !had.has(value as EventKind),
+  );
+  const drives = reaction.response === "return" || reaction.response === "safe_area";
+  const holds = drives || reaction.response === "pause";
+  return html`<h2>${texts.reaction}</h2>
+    ${selectField(texts.event, reaction.event, events, (event) =>
+      save({ event: event as EventKind, battery_below: null }),
+    )}
+    ${reaction.event === "low_battery"
+      ? numberField(
+          texts.batteryBelow,
+          percent(reaction.battery_below),
+          (share) => save({ battery_below: share === null ? null : share / 100 }),
+          { note: "%" },
+        )
+      : nothing}
+    ${selectField(texts.response, reaction.response, optionsOf(t().words.response), (response) =>
+      save(responding(reaction, response as Reaction["response"])),
+    )}
+    ${drives
+      ? poseFields(
+          texts.where,
+          reaction.pose,
+          (pose) => save({ pose, area: areaOf(pose) }),
+          reaction.response === "return" ? texts.ownDock : null,
+        )
+      : nothing}
+    ${holds
+      ? html`${selectField(
+            texts.waitUntil,
+            reaction.until ?? "",
+            [{ value: "", label: texts.noEvent }, ...optionsOf(t().words.event)],
+            (until) => save({ until: until === "" ? null : (until as EventKind) }),
+          )}
+          ${timeField(texts.holdLimit, reaction.hold_limit, (hold_limit) => save({ hold_limit }))}
+          ${reaction.hold_limit
+            ? selectField(texts.onLimit, reaction.on_limit, optionsOf(t().words.afterwards), (value) =>
+                save({ on_limit: value as Reaction["on_limit"] }),
+              )
+            : nothing}`
+      : nothing}
+    ${drives
+      ? selectField(texts.whatThen, reaction.afterwards, optionsOf(t().words.afterwards), (value) =>
+          save({ afterwards: value as Reaction["afterwards"] }),
+        )
+      : nothing}
+    ${numberField(texts.rank, reaction.priority, (priority) => save({ priority }), {
+      placeholder: texts.byEvent,
+    })}
+    <button
+      class="danger"
+      ?disabled=${!mayPlan()}
+      @click=${() => edit({ kind: "remove_reaction", event: reaction.event })}
+    >
+      ${t().list.delete}
+    </button>`;
+}
+
+/** What changes with the response: fields that would have no effect go. */
+function responding(reaction: Reaction, response: Reaction["response"]): Partial<Reaction> {
+  const place = world.value?.places[0]?.pose ?? world.value?.docks[0]?.pose ?? null;
+  const holds = response !== "report" && response !== "abort";
+  return {
+    response,
+    pose: response === "safe_area" ? (reaction.pose ?? place) : null,
+    area: null,
+    until: holds ? (reaction.until ?? null) : null,
+    hold_limit: holds ? (reaction.hold_limit ?? null) : null,
+    on_limit: holds && reaction.hold_limit ? reaction.on_limit : "wait",
+    afterwards: response === "return" || response === "safe_area" ? reaction.afterwards : "end",
+  };
+}
+
+function areaOf(pose: Reaction["pose"]): number | null {
+  const found = world.value?.docks.find((dock) => dock.pose.x === pose?.x && dock.pose.y === pose.y);
+  return found?.area ?? null;
+}
+
+function percent(share: number | null | undefined): number | null {
+  return share === null || share === undefined ? null : Math.round(1000 * share) / 10;
+}

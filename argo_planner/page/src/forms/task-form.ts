@@ -1,0 +1,220 @@
+/** The form of a task. */
+
+import type { Task, TimeWindow, Transition, WaitRule } from "../api/types";
+import { taskKey } from "../model/outline";
+import { edit, editHere, mission, select } from "../state/plan";
+import { mayPlan } from "../state/session";
+import { checkpointsById, world } from "../state/world";
+import { t } from "../texts";
+import { html, nothing } from "../ui/element";
+import { icon } from "../ui/icons";
+import { conditionList } from "./conditions";
+import {
+  checkField,
+  checkpointOptions,
+  numberField,
+  optionsOf,
+  poseFields,
+  selectField,
+  textField,
+  timeField,
+} from "./parts";
+
+type Fields = Partial<Omit<Task, "name" | "action" | "transitions" | "source" | "group">>;
+
+export function taskForm(task: Task) {
+  const texts = t().forms;
+  const set = (fields: Fields) => editHere({ kind: "change_task", name: task.name, ...fields });
+  const rename = async (name: string) => {
+    const wrong = await editHere({ kind: "rename_task", name: task.name, new_name: name.trim() });
+    if (wrong === null) select([taskKey(name.trim())]);
+    return wrong;
+  };
+  return html`<h2>${t().words.action[task.action]}</h2>
+    ${textField(texts.name, task.name, rename)}
+    ${task.action === "MEASURE" ? measuring(task, set) : nothing}
+    ${task.action === "WAIT" ? waiting(task.wait ?? null, set) : nothing}
+    ${task.action === "WAYPOINT" || task.action === "START"
+      ? poseFields(texts.place, task.pose, (pose) => set({ pose }), null)
+      : nothing}
+    ${task.action === "START" ? ways(task) : rest(task, set)}`;
+}
+
+function rest(task: Task, set: (fields: Fields) => Promise<string | null>) {
+  const texts = t().forms;
+  const robot = world.value?.robot;
+  const moves = task.action !== "WAIT";
+  return html`${moves
+      ? numberField(texts.speed, task.velocity, (velocity) => set({ velocity }), {
+          note: "m/s",
+          placeholder: robot ? String(robot.speed) : "",
+        })
+      : nothing}
+    ${ways(task)}
+    <details ?open=${task.on_failure !== "continue" || task.retries > 0}>
+      <summary>${texts.failure}</summary>
+      ${numberField(texts.retries, task.retries, (retries) => set({ retries: retries ?? 0 }))}
+      ${timeField(texts.timeLimit, task.time_limit, (time_limit) => set({ time_limit }))}
+      ${task.action === "MEASURE"
+        ? timeField(texts.readingLimit, task.reading_limit, (reading_limit) =>
+            set({ reading_limit }),
+          )
+        : nothing}
+      ${selectField(texts.onFailure, task.on_failure, optionsOf(texts.failures), (value) => {
+        const on_failure = value as Task["on_failure"];
+        if (on_failure !== "branch") return set({ on_failure, failure_target: null });
+        const failure_target = task.failure_target ?? followers(task)[0]?.value ?? null;
+        return set({ on_failure, failure_target });
+      })}
+      ${task.on_failure === "branch"
+        ? selectField(texts.goOnWith, task.failure_target ?? "", followers(task), (failure_target) =>
+            set({ failure_target }),
+          )
+        : nothing}
+    </details>
+    <details ?open=${task.optional || task.window !== null}>
+      <summary>${texts.when}</summary>
+      ${checkField(texts.optional, task.optional, (optional) => set({ optional }))}
+      ${numberField(texts.priority, task.priority, (priority) => set({ priority: priority ?? 1 }))}
+      ${windowFields(task, set)}
+    </details>
+    ${task.joint_states
+      ? html`<details>
+          <summary>${texts.joints}</summary>
+          <ul>
+            ${task.joint_states.names.map(
+              (name, index) => html`<li>${name}: ${task.joint_states?.positions[index] ?? "–"}</li>`,
+            )}
+          </ul>
+        </details>`
+      : nothing}`;
+}
+
+function measuring(task: Task, set: (fields: Fields) => Promise<string | null>) {
+  const texts = t().forms;
+  const checkpoint = checkpointsById.value.get(task.object_id ?? "");
+  return html`${selectField(texts.checkpoint, task.object_id ?? "", checkpointOptions(), (object_id) =>
+      set({ object_id }),
+    )}
+    ${checkpoint
+      ? html`<p class="dim">
+            ${t().words.checkpoint[checkpoint.kind]},
+            ${texts.nominal(checkpoint.nominal.low, checkpoint.nominal.high, checkpoint.unit)}
+          </p>
+          ${checkpoint.problem ? html`<p class="error">${checkpoint.problem}</p>` : nothing}`
+      : nothing}
+    ${poseFields(texts.standing, task.pose, (pose) => set({ pose }), texts.anywhere)}`;
+}
+
+function waiting(wait: WaitRule | null, set: (fields: Fields) => Promise<string | null>) {
+  const texts = t().forms;
+  const save = (change: Partial<WaitRule>) =>
+    set({ wait: { conditions: [], ...wait, ...change } });
+  const timed = wait === null || typeof wait.duration === "number";
+  const kind = timed ? "time" : "event";
+  return html`${selectField(texts.waitFor, kind, optionsOf(texts.waits), (value) =>
+      value === "time"
+        ? set({ wait: { duration: 60, conditions: [] } })
+        : set({ wait: { event: "all_clear", conditions: [] } }),
+    )}
+    ${timed
+      ? timeField(texts.duration, wait?.duration, (duration) => save({ duration: duration ?? 0 }))
+      : html`${selectField(
+            texts.event,
+            wait.event ?? "",
+            [{ value: "", label: texts.noEvent }, ...optionsOf(t().words.event)],
+            (value) => save({ event: value === "" ? null : (value as WaitRule["event"]) }),
+          )}
+          ${conditionList(wait.conditions, (conditions) => save({ conditions }), texts.orCondition)}
+          ${timeField(texts.waitLimit, wait.limit, (limit) => save({ limit }))}`}`;
+}
+
+function windowFields(task: Task, set: (fields: Fields) => Promise<string | null>) {
+  const texts = t().forms;
+  const window = task.window ?? null;
+  const save = (change: Partial<TimeWindow>) => {
+    const next = { earliest: 0, latest: null, hard: true, ...window, ...change } as TimeWindow;
+    return set({ window: next.earliest === 0 && next.latest === null ? null : next });
+  };
+  return html`<div class="two">
+      ${timeField(texts.earliest, window?.earliest ?? null, (earliest) =>
+        save({ earliest: earliest ?? 0 }),
+      )}
+      ${timeField(texts.latest, window?.latest, (latest) => save({ latest }))}
+    </div>
+    ${window?.latest
+      ? html`${checkField(texts.hard, window.hard, (hard) => save({ hard }))}
+        ${selectField(
+          texts.missed,
+          window.missed_target ?? "",
+          [{ value: "", label: texts.likeFailure }, ...followers(task)],
+          (value) => save({ missed_target: value === "" ? null : value }),
+        )}`
+      : nothing}`;
+}
+
+/** Where the mission goes on after the task. */
+function ways(task: Task) {
+  const texts = t().forms;
+  const save = (transitions: readonly Transition[]) =>
+    editHere({ kind: "set_transitions", task: task.name, transitions });
+  const conditional = task.transitions.filter((way) => way.conditions.length > 0);
+  const onward = task.transitions.find((way) => way.conditions.length === 0);
+  const all = (changed: readonly Transition[]) => (onward ? [...changed, onward] : changed);
+  const add = () => {
+    const target = followers(task)[0]?.value;
+    if (target === undefined) return;
+    const object_id = task.object_id ?? checkpointOptions()[0]?.value ?? "1";
+    const nominal = checkpointsById.value.get(object_id)?.nominal;
+    const condition = {
+      type: "MEASURED_VALUE_GREATER",
+      id: "",
+      object_id,
+      param1: nominal?.high ?? 0,
+      inclusive: false,
+    } as const;
+    const transition = { target, conditions: [condition] };
+    void edit({ kind: "add_transition", task: task.name, transition, at: conditional.length });
+  };
+  return html`<h3>${texts.afterwards}</h3>
+    ${task.action === "START"
+      ? nothing
+      : conditional.map(
+          (way, index) =>
+            html`<div class="way">
+              ${conditionList(
+                way.conditions,
+                (conditions) =>
+                  save(
+                    all(
+                      conditions.length === 0
+                        ? conditional.filter((_, at) => at !== index)
+                        : conditional.map((one, at) => (at === index ? { ...one, conditions } : one)),
+                    ),
+                  ),
+                texts.addCondition,
+              )}
+              ${selectField(texts.then, way.target, followers(task), (target) =>
+                save(all(conditional.map((one, at) => (at === index ? { ...one, target } : one)))),
+              )}
+            </div>`,
+        )}
+    ${selectField(
+      conditional.length > 0 ? texts.otherwise : texts.then,
+      onward?.target ?? "",
+      [{ value: "", label: texts.endsHere }, ...followers(task)],
+      (target) => save(target === "" ? conditional : [...conditional, { target, conditions: [] }]),
+    )}
+    ${task.action === "START"
+      ? nothing
+      : html`<button class="bare" ?disabled=${!mayPlan()} @click=${add}>
+          ${icon("add", 16)} ${texts.addWay}
+        </button>`}`;
+}
+
+/** Tasks that may follow. */
+function followers(task: Task) {
+  return (mission.value?.tasks ?? [])
+    .filter((one) => one.action !== "START" && one.name !== task.name)
+    .map((one) => ({ value: one.name, label: one.name }));
+}

@@ -1,0 +1,63 @@
+/** What can be typed to name a checkpoint or a place. */
+
+import type { Pose, World } from "../api/types";
+import { t } from "../texts";
+
+export interface Choice {
+  /** What is typed to find it. */
+  readonly label: string;
+  readonly detail: string;
+  /** The number of a checkpoint. */
+  readonly checkpoint?: string;
+  readonly pose?: Pose;
+  /** What a task there is called. */
+  readonly name?: string;
+}
+
+export function checkpointChoices(site: World): Choice[] {
+  return site.checkpoints.map((one) => ({
+    label: `${one.id} ${one.name}`,
+    detail: t().list.onFloor(t().words.checkpoint[one.kind], one.floor),
+    checkpoint: String(one.id),
+  }));
+}
+
+/** Docks and places by name. */
+export function placeChoices(site: World): Choice[] {
+  return [
+    ...site.docks.map((dock) => ({
+      label: t().list.dock(dock.area),
+      detail: coordinates(dock.pose),
+      pose: dock.pose,
+      name: "DOCK",
+    })),
+    ...site.places.map((place) => ({
+      label: place.name,
+      detail: coordinates(place.pose),
+      pose: place.pose,
+      name: place.name,
+    })),
+  ];
+}
+
+/** The choices that fit what was typed, the best ones first: a number means that checkpoint. */
+export function matching(choices: readonly Choice[], typed: string): Choice[] {
+  const text = typed.trim().toLowerCase().replace(/^#\s*/, "");
+  if (text === "") return [...choices];
+  const rank = (choice: Choice) => {
+    const label = choice.label.toLowerCase();
+    if (choice.checkpoint === text) return 0;
+    if (label.startsWith(text)) return 1;
+    if (label.split(/[\s_-]+/).some((word) => word.startsWith(text))) return 2;
+    return label.includes(text) ? 3 : 4;
+  };
+  return choices
+    .map((choice, index) => ({ choice, index, rank: rank(choice) }))
+    .filter((one) => one.rank < 4)
+    .sort((a, b) => a.rank - b.rank || a.index - b.index)
+    .map((one) => one.choice);
+}
+
+function coordinates(pose: Pose): string {
+  return `${pose.x.toFixed(1)}, ${pose.y.toFixed(1)}`;
+}

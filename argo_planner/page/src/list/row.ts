@@ -1,0 +1,207 @@
+/** A row of the list: a task or a group. */
+
+import { classMap } from "lit/directives/class-map.js";
+
+import type { Action } from "../api/types";
+import { ownName, type Row } from "../model/outline";
+import { t } from "../texts";
+import { css, html, nothing } from "../ui/element";
+import { styled } from "../ui/style";
+import { icon, type Icon } from "../ui/icons";
+import { type Marks, sentenceOf } from "./marks";
+
+/** px */
+export const ROW_HEIGHT = 46;
+
+const SIGNS: Record<Action, Icon> = {
+  START: "flag",
+  WAYPOINT: "drive",
+  MEASURE: "gauge",
+  WAIT: "wait",
+};
+
+export const rowStyles = css`
+  [role="treeitem"] {
+    position: absolute;
+    right: 0;
+    left: 0;
+    display: grid;
+    grid-template-columns: 30px minmax(0, 1fr) auto;
+    align-items: center;
+    gap: 4px;
+    height: ${ROW_HEIGHT}px;
+    padding: 2px 6px 2px 4px;
+    border-bottom: 1px solid var(--sunken);
+    cursor: default;
+  }
+  [role="treeitem"]:hover {
+    background: var(--sunken);
+  }
+  [role="treeitem"][aria-selected="true"] {
+    background: var(--chosen);
+  }
+  [role="treeitem"].group {
+    font-weight: 600;
+  }
+  [role="treeitem"].active {
+    box-shadow: inset 3px 0 var(--accent);
+  }
+  .flash {
+    animation: flash 1.6s;
+  }
+  @keyframes flash {
+    from {
+      background: var(--person-ground);
+    }
+  }
+  .sign {
+    display: grid;
+    place-content: center;
+    width: 26px;
+    height: 26px;
+    border-radius: 50%;
+    color: var(--dim);
+  }
+  .fold {
+    width: 26px;
+    min-height: 26px;
+    padding: 0;
+    border: 0;
+    background: none;
+  }
+  .names {
+    min-width: 0;
+  }
+  .names > * {
+    display: block;
+    overflow: hidden;
+    text-overflow: ellipsis;
+    white-space: nowrap;
+  }
+  .said {
+    color: var(--dim);
+    font-size: 12px;
+    font-weight: 400;
+  }
+  .names input {
+    width: 100%;
+    min-height: 26px;
+  }
+  .marks {
+    display: flex;
+    align-items: center;
+    gap: 3px;
+  }
+  .error {
+    color: var(--bad);
+  }
+  .warning {
+    color: var(--warn);
+  }
+  .good {
+    color: var(--good);
+  }
+  .who {
+    display: inline-block;
+    width: 10px;
+    height: 10px;
+    border-radius: 50%;
+    background: var(--person);
+  }
+`;
+
+export interface RowState {
+  readonly chosen: boolean;
+  readonly folded: boolean;
+  readonly renaming: boolean;
+  /** How many rows there are. */
+  readonly of: number;
+  readonly marks: Marks;
+  readonly may: boolean;
+  readonly onRename: (row: Row, name: string) => void;
+}
+
+export function rowView(row: Row, index: number, shown: RowState) {
+  const group = row.kind === "group";
+  const { marks } = shown;
+  const place = {
+    top: `${index * ROW_HEIGHT}px`,
+    "padding-left": `${4 + 16 * Math.min(row.depth, 8)}px`,
+  };
+  return html`<div
+    role="treeitem"
+    id=${`row-${index}`}
+    data-index=${index}
+    class=${classMap({ group, active: marks.run === "active", flash: marks.changed })}
+    ${styled(place)}
+    draggable=${shown.may && !shown.renaming ? "true" : "false"}
+    aria-level=${row.depth + 1}
+    aria-setsize=${shown.of}
+    aria-posinset=${index + 1}
+    aria-selected=${shown.chosen}
+    aria-expanded=${group ? !shown.folded : nothing}
+  >
+    ${group
+      ? html`<span class="fold sign" title=${shown.folded ? t().list.unfold : t().list.fold}
+          >${icon(shown.folded ? "right" : "down", 16)}</span
+        >`
+      : html`<span class="sign" title=${t().words.action[row.task.action]}
+          >${icon(SIGNS[row.task.action], 18)}</span
+        >`}
+    <span class="names">
+      ${shown.renaming ? nameField(row, shown) : html`<span>${nameOf(row)}</span>`}
+      <span class="said" title=${sentenceOf(row)}>${sentenceOf(row)}</span>
+    </span>
+    <span class="marks">
+      ${group ? html`<span class="dim">${t().list.count(row.count)}</span>` : nothing}
+      ${marks.people.map(
+        (name) => html`<span class="who" role="img" title=${t().list.selectedBy(name)} aria-label=${t().list.selectedBy(name)}></span>`,
+      )}
+      ${marks.run ? runMark(marks.run) : nothing}
+      ${marks.problem
+        ? html`<span class=${marks.problem.severity} role="img" title=${marks.problem.message} aria-label=${marks.problem.message}
+            >${icon("warning", 18)}</span
+          >`
+        : nothing}
+    </span>
+  </div>`;
+}
+
+function nameOf(row: Row): string {
+  return row.kind === "task" ? row.task.name : ownName(row.group.name);
+}
+
+function nameField(row: Row, shown: RowState) {
+  const onKey = (event: KeyboardEvent) => {
+    event.stopPropagation();
+    const field = event.target as HTMLInputElement;
+    if (event.key === "Escape") field.value = nameOf(row);
+    if (event.key === "Enter" || event.key === "Escape") shown.onRename(row, field.value.trim());
+  };
+  const onBlur = (event: FocusEvent) => {
+    const field = event.target as HTMLInputElement;
+    if (field.isConnected) shown.onRename(row, field.value.trim());
+  };
+  return html`<input
+    aria-label=${t().list.renameTask}
+    maxlength="200"
+    .value=${nameOf(row)}
+    autofocus
+    @keydown=${onKey}
+    @blur=${onBlur}
+    @dblclick=${(event: Event) => event.stopPropagation()}
+  />`;
+}
+
+function runMark(state: NonNullable<Marks["run"]>) {
+  const signs: Record<typeof state, readonly [Icon, string]> = {
+    done: ["check", "good"],
+    failed: ["close", "error"],
+    byHand: ["hand", "good"],
+    active: ["play", ""],
+    skipped: ["skip", "dim"],
+  };
+  const [sign, tone] = signs[state];
+  const said = t().list.states[state];
+  return html`<span class=${tone} role="img" title=${said} aria-label=${said}>${icon(sign, 18)}</span>`;
+}

@@ -25,6 +25,7 @@ from argo_env.run.spec import RunSpec
 from argo_env.run.steering import StopRun
 from argo_planner.service.jobs.orphans import end_with_parent
 from argo_planner.service.runs.driver import RunDriver, RunTeller
+from argo_planner.service.runs.pictures import PictureKeeper
 from argo_planner.service.runs.pipe import WorkerPipe
 from argo_planner.service.runs.requests import RequestState, RunOrder
 from argo_planner.service.runs.state import RunState, RunStatus, StateTold
@@ -156,7 +157,7 @@ class _Segments:
             self._site,
             spec,
             past=journal.entries,
-            observers=[journal, self._teller, *self._viewers()],
+            observers=[journal, self._teller, *self._viewers(), PictureKeeper(self._folder)],
             robot=self._robot,
         )
         stack.enter_context(simulation)

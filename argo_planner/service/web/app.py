@@ -10,7 +10,17 @@ from fastapi import APIRouter, FastAPI, Response
 
 from argo_compiler import __version__
 from argo_compiler.model import Model
-from argo_planner.service.web import commands, jobs, live, missions, page, runs, versions, world
+from argo_planner.service.web import (
+    commands,
+    jobs,
+    live,
+    looks,
+    missions,
+    page,
+    runs,
+    versions,
+    world,
+)
 from argo_planner.service.web.access import AccessRole, TokenBook
 from argo_planner.service.web.guard import Doors, Guard
 from argo_planner.service.web.problems import MEDIA, answer_problems, documented
@@ -67,7 +77,7 @@ def make_app(opened: Opened) -> FastAPI:
     )
     answer_problems(app)
     app.openapi = partial(_document_of, app)  # type: ignore[method-assign]
-    parts = (page, missions, versions, commands, jobs, world, runs, live)
+    parts = (page, missions, versions, commands, jobs, world, runs, looks, live)
     for part in (router, *(one.router for one in parts), runs.socket_router):
         app.include_router(part)
     return app

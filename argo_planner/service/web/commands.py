@@ -21,6 +21,7 @@ from argo_planner.service.core.refusals import StaleRevision
 from argo_planner.service.jobs.analysis import AnalysisFound
 from argo_planner.service.rooms.messages import CommandDone
 from argo_planner.service.rooms.room import PlanRoom
+from argo_planner.service.storage.notes import keep_notes
 from argo_planner.service.web.bodies import Sent
 from argo_planner.service.web.missions import sound
 from argo_planner.service.web.problems import StaleCommand, documented
@@ -88,7 +89,10 @@ async def write_script(
     upload = Upload("script", given.script.encode(errors="replace"))
     imported = await asyncio.to_thread(import_mission, upload, service.site)
     command = ReplacePlan.model_construct(id=given.id, mission=imported.mission, about="a script")
-    return await carried_out(room, command, visitor.author, made_on)
+    answer = await carried_out(room, command, visitor.author, made_on)
+    revision = room.document.plan.revision
+    await asyncio.to_thread(keep_notes, service.folder, id, revision, imported.diagnostics)
+    return answer
 
 
 @router.get("/reading", operation_id="read_back", response_model=MissionReading)

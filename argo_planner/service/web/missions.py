@@ -13,7 +13,7 @@ from fastapi import APIRouter, Path, Query, Request, Response
 from pydantic import Field
 
 from argo_compiler.checks import check
-from argo_compiler.diagnostics import DiagnosticError, has_errors
+from argo_compiler.diagnostics import Diagnostic, DiagnosticError, has_errors
 from argo_compiler.errors import NotFound
 from argo_compiler.il import Mission
 from argo_compiler.model import Model
@@ -24,6 +24,7 @@ from argo_planner.service.core.document import PlanDocument
 from argo_planner.service.core.limits import require_fitting
 from argo_planner.service.rooms.messages import PlanState
 from argo_planner.service.storage.folder import PlanSummary, summary_of
+from argo_planner.service.storage.notes import drop_notes, keep_notes
 from argo_planner.service.web.bodies import Sent
 from argo_planner.service.web.problems import documented
 from argo_planner.service.web.requests import (
@@ -139,7 +140,8 @@ async def import_a_mission(
     """Makes a mission of a script, a mission in JSON, a ROS bag or an isar mission: the body."""
     upload = Upload(os.path.basename(filename) or "mission", await request.body())
     imported = await asyncio.to_thread(import_mission, upload, service.site, start_area, end_area)
-    return await _create(service, name or os.path.splitext(upload.name)[0], imported.mission)
+    name = name or os.path.splitext(upload.name)[0]
+    return await _create(service, name, imported.mission, imported.diagnostics)
 
 
 @router.get("/missions/{id}", operation_id="read_mission", response_model=PlanState)
@@ -208,6 +210,7 @@ async def restore_mission(service: Service, _: Planner, id: PlanId) -> Response:
 async def destroy_mission(service: Service, _: Planner, id: PlanId) -> Response:
     """Deletes a mission in the bin for good."""
     await service.rooms.destroy(id)
+    drop_notes(service.folder, id)
     return Response(status_code=204)
 
 
@@ -271,10 +274,15 @@ def sound(document: PlanDocument, site: OpenedSite) -> ImportedMission:
     return as_it_is(document)
 
 
-async def _create(service: Service, name: str, mission: Mission) -> Response:
+async def _create(
+    service: Service, name: str, mission: Mission, notes: tuple[Diagnostic, ...] = ()
+) -> Response:
     require_fitting(mission, difference(Mission(tasks=()), mission))
     room = await service.rooms.create(name, mission)
     document = room.document
+    if notes:
+        revision = document.plan.revision
+        await asyncio.to_thread(keep_notes, service.folder, document.id, revision, notes)
     return said(
         summary_of(document),
         201,

@@ -24,7 +24,7 @@ import { mayPlan } from "../state/session";
 import { panel, tool } from "../state/view";
 import { t } from "../texts";
 import { css, customElement, html, look, nothing, PageElement, query, state } from "../ui/element";
-import { styled } from "../ui/style";
+import { styled } from "../ui/styled";
 import { icon } from "../ui/icons";
 import "./add";
 import type { AddTasks } from "./add";

@@ -6,7 +6,7 @@ import type { Action } from "../api/types";
 import { ownName, type Row } from "../model/outline";
 import { t } from "../texts";
 import { css, html, nothing } from "../ui/element";
-import { styled } from "../ui/style";
+import { styled } from "../ui/styled";
 import { icon, type Icon } from "../ui/icons";
 import { type Marks, sentenceOf } from "./marks";
 

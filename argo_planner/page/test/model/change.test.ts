@@ -1,0 +1,37 @@
+import { expect, test } from "vitest";
+
+import type { Mission, MissionChange } from "../../src/api/types";
+import { changed } from "../../src/model/change";
+import { mission, task } from "./missions";
+
+function names(found: Mission): string {
+  return found.tasks.map((one) => one.name).join(" ");
+}
+
+function tasksChange(put: string[], gone: string[], placed: [string, string | null][]): MissionChange {
+  return { tasks: { put: put.map((name) => task(name)), gone, placed } };
+}
+
+test("what is gone goes, what is placed stands behind what is named", () => {
+  const change = tasksChange(["x", "y"], ["b"], [["x", null], ["y", "c"]]);
+  expect(names(changed(mission("a b c d"), change))).toBe("x a c y d");
+});
+
+test("placed ones are put one after the other", () => {
+  const change = tasksChange([], [], [["d", null], ["c", "d"]]);
+  expect(names(changed(mission("a b c d"), change))).toBe("d c a b");
+});
+
+test("what is only exchanged stays where it is", () => {
+  const change: MissionChange = {
+    tasks: { put: [task("b", { retries: 3 })], gone: [], placed: [] },
+  };
+  const after = changed(mission("a b c"), change);
+  expect(names(after)).toBe("a b c");
+  expect(after.tasks[1]?.retries).toBe(3);
+});
+
+test("fields of the header take their new values", () => {
+  const change = { header: { kind: "set_header", designation: "Night" } } as MissionChange;
+  expect(changed(mission("a"), change).designation).toBe("Night");
+});

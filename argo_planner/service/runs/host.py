@@ -110,6 +110,7 @@ class RunHost:
             begun=now,
             status=RunStatus.PREPARING,
             drive=order.drive,
+            sensor=order.sensor,
             seed=order.seed,
             speed=order.speed,
             max_duration=order.mission.max_duration,

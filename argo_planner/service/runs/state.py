@@ -61,6 +61,7 @@ class RunState(Model):
     begun: datetime
     status: RunStatus
     drive: str
+    sensor: str = "ideal"
     seed: int
     speed: float | None
     """simulated seconds a second; None: as fast as possible"""

@@ -3831,6 +3831,11 @@ export interface components {
             readonly status: components["schemas"]["RunStatus"];
             /** Drive */
             readonly drive: string;
+            /**
+             * Sensor
+             * @default ideal
+             */
+            readonly sensor: string;
             /** Seed */
             readonly seed: number;
             /** Speed */

@@ -50,7 +50,8 @@ export class RunBand extends PageElement {
       .what {
         overflow-wrap: anywhere;
       }
-      .preparing {
+      .preparing,
+      .past {
         --tone: var(--dim);
       }
       .autonomous {
@@ -126,10 +127,10 @@ export class RunBand extends PageElement {
     const now = shownRun.value;
     const mode = shownMode(run);
     const past = shownTime.value !== null;
-    return html`<div class="band ${mode}" id="mode" data-mode=${mode} role="status">
-        ${icon(SIGNS[mode], 26)}
+    return html`<div class="band ${past ? "past" : mode}" id="mode" data-mode=${mode} role="status">
+        ${icon(past ? "clock" : SIGNS[mode], 26)}
         <div class="grow">
-          <p class="word">${texts.modes[mode]}${past ? ` · ${texts.pastShown}` : ""}</p>
+          <p class="word">${past ? texts.pastShown : texts.modes[mode]}</p>
           <p class="what">${this.doing()}</p>
         </div>
       </div>

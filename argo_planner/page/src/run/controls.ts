@@ -1,5 +1,6 @@
 /** What can be asked of a run as a whole. */
 
+import type { RequestState } from "../api/types";
 import { isOver, isUnderWay, shownRequests } from "../model/run-mode";
 import { revision } from "../state/plan";
 import { ask, giveBackEdited, run } from "../state/run";
@@ -145,7 +146,8 @@ export class RunControls extends PageElement {
 
   /** What was asked, and how far that is. */
   private asked() {
-    const shown = shownRequests(run.value?.requests ?? [], PAST_REQUESTS);
+    const all = (run.value?.requests ?? []).filter((one) => !isStep(one));
+    const shown = shownRequests(all, PAST_REQUESTS);
     const texts = t().run;
     if (shown.length === 0) return nothing;
     return html`<ul class="asked" aria-label=${texts.asked}>
@@ -165,4 +167,9 @@ export class RunControls extends PageElement {
       )}
     </ul>`;
   }
+}
+
+/** Driving with the keys asks for many small things; the robot itself shows that they are done. */
+function isStep(request: RequestState): boolean {
+  return isOver(request) && (request.kind === "drive_to" || request.kind === "stop_by_hand");
 }

@@ -10,8 +10,13 @@ import { css, customElement, html, look, nothing, PageElement, state } from "../
 import { icon } from "../ui/icons";
 import "./band";
 import "./controls";
+import "./events";
+import "./hand";
 import { parts } from "./parts";
+import "./readings";
 import "./start";
+import "./tell";
+import "./time";
 
 @customElement("argo-run")
 export class RunPanel extends PageElement {
@@ -58,13 +63,27 @@ export class RunPanel extends PageElement {
           </p>`
         : nothing}
       ${!runIsOn.value && pastRun.value === null ? html`<argo-run-start></argo-run-start>` : nothing}
-      ${this.choice()}
       ${here || other
         ? html`<argo-run-band></argo-run-band>
             ${shown?.status === "ended" ? this.report(shown) : nothing}
-            ${pastRun.value === null ? html`<argo-run-controls></argo-run-controls>` : nothing}`
-        : nothing}
+            ${this.steering()} ${this.choice()}
+            <argo-run-time></argo-run-time>
+            <argo-run-readings></argo-run-readings>
+            <argo-run-events></argo-run-events>
+            ${this.isSteered() ? html`<argo-run-tell></argo-run-tell>` : nothing}`
+        : this.choice()}
     </div>`;
+  }
+
+  private isSteered(): boolean {
+    return pastRun.value === null && runIsOn.value;
+  }
+
+  private steering() {
+    if (!this.isSteered()) return nothing;
+    const byHand = run.value?.mode === "supervised" && run.value.status === "running";
+    return html`<argo-run-controls></argo-run-controls>
+      ${byHand ? html`<argo-run-hand></argo-run-hand>` : nothing}`;
   }
 
   /** Which run of this mission is shown. */

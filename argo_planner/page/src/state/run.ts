@@ -15,6 +15,7 @@ import type {
 import { momentAt, type Moment } from "../model/replay";
 import { tell, tellError } from "./notices";
 import { planId, revision } from "./plan";
+import { author, service } from "./session";
 
 export interface RobotPose {
   readonly t: number;
@@ -81,6 +82,7 @@ export const shownRun = computed<ShownRun | null>(() => {
 const RETRY_MS = 1_000;
 /** Entries come one by one, and many at once when the page opens; they are shown together. */
 const ENTRIES_MS = 40;
+const quiet = new Set<string>();
 let live: LiveConnection<RunMessage> | null = null;
 let comeIn: Entry[] = [];
 let showing: ReturnType<typeof setTimeout> | undefined;
@@ -156,9 +158,11 @@ export type Question = RunQuestion extends infer One
     : never
   : never;
 
-/** Asks something of the run. What became of it so far; null if it was refused at once. */
-export function ask(question: Question): Promise<RequestState | null> {
+/** Asks something of the run. What became of it so far; null if it was refused at once. `quietly`:
+ * no notice says so if nothing comes of it. */
+export function ask(question: Question, quietly = false): Promise<RequestState | null> {
   const body = { id: newId(), ...question } as unknown as RunQuestion;
+  if (quietly) quiet.add(body.id);
   return asked((id) =>
     answered(client.POST("/api/runs/{run}/requests", { params: { path: { run: id } }, body })),
   );
@@ -222,10 +226,21 @@ function heard(message: RunMessage): void {
       takeEntry(message.run, message.number, message.entry);
       break;
     case "request":
-      if (message.request.reason && message.request.progress !== "confirmed")
-        tell("warn", message.request.reason);
+      takeRequest(message.run, message.request);
       break;
   }
+}
+
+/** Requests come before the state that has them, so that whoever has asked hears at once. */
+function takeRequest(id: string, request: RequestState): void {
+  const now = run.value;
+  if (now?.id === id) {
+    const others = now.requests.filter((one) => one.id !== request.id);
+    run.value = { ...now, requests: [...others, request] };
+  }
+  const mine = request.by === (service.value?.author ?? "") || request.by === author.value;
+  if (request.reason && request.progress !== "confirmed" && mine && !quiet.has(request.id))
+    tell("warn", request.reason);
 }
 
 function takeEntry(id: string, number: number, entry: Entry): void {

@@ -1,0 +1,110 @@
+/** What has happened in the run, newest first. A click goes back to that time. */
+
+import { happenings, type Happening, type Told } from "../model/happenings";
+import { shownEntries, shownRun, shownTime } from "../state/run";
+import { t } from "../texts";
+import { css, customElement, html, look, nothing, PageElement } from "../ui/element";
+import { icon, type Icon } from "../ui/icons";
+import { figure, parts } from "./parts";
+
+const MOST = 100;
+const SIGNS: Record<Told["tone"], Icon> = { plain: "right", good: "check", warn: "hand", bad: "warning" };
+
+/** A happening in words. */
+export function inWords(what: Happening): string {
+  const told = t().run.told;
+  switch (what.kind) {
+    case "done":
+      return told.done(what.task);
+    case "by hand":
+      return told.byHand(what.task);
+    case "failed":
+      return told.failed(what.task, what.why);
+    case "stopped":
+      return told.stopped(what.task, what.why);
+    case "read":
+      return told.read(what.checkpoint, `${figure(what.value)} ${what.unit}`);
+    case "given":
+      return told.given(what.checkpoint, figure(what.value));
+    case "found": {
+      const name = t().words.event[what.event as keyof ReturnType<typeof t>["words"]["event"]];
+      return what.detail === "" ? name : `${name}: ${what.detail}`;
+    }
+    case "steered":
+      return told[what.how];
+    case "fault":
+      return told.fault(t().run.fault[what.fault as keyof ReturnType<typeof t>["run"]["fault"]]);
+    case "mishap":
+      return what.detail === "" ? what.trouble : `${what.trouble}: ${what.detail}`;
+    case "contact":
+      return told.contact(what.link, what.element);
+    case "resumed":
+      return told.resumed;
+    case "ended":
+      return what.stopped === null ? told.ended : told.stoppedRun(what.stopped);
+  }
+}
+
+@customElement("argo-run-events")
+export class RunEvents extends PageElement {
+  static override styles = [
+    look,
+    parts,
+    css`
+      li button {
+        display: grid;
+        grid-template-columns: auto auto minmax(0, 1fr);
+        align-items: baseline;
+        gap: 6px;
+        width: 100%;
+        min-height: 26px;
+        padding: 2px 4px;
+        text-align: left;
+        overflow-wrap: anywhere;
+      }
+      svg {
+        align-self: center;
+      }
+      time {
+        color: var(--dim);
+        font-size: 12px;
+        font-variant-numeric: tabular-nums;
+      }
+      .good svg {
+        color: var(--good);
+      }
+      .warn svg {
+        color: var(--warn);
+      }
+      .bad {
+        color: var(--bad);
+      }
+    `,
+  ];
+
+  override render() {
+    const now = shownRun.value;
+    if (now === null) return nothing;
+    const texts = t().run;
+    const told = happenings(shownEntries.value, 0, now.entries);
+    return html`<section aria-label=${texts.events}>
+      <h2>${texts.events}</h2>
+      ${told.length === 0
+        ? html`<p class="reason">${texts.noEvents}</p>`
+        : html`<ol reversed>
+            ${told
+              .slice(-MOST)
+              .reverse()
+              .map(
+                (one) =>
+                  html`<li class=${one.tone}>
+                    <button class="bare" title=${texts.backInTime} @click=${() => (shownTime.value = one.t)}>
+                      ${icon(SIGNS[one.tone], 14)} <time>${t().words.seconds(one.t)}</time>
+                      <span>${inWords(one.what)}</span>
+                    </button>
+                  </li>`,
+              )}
+          </ol>`}
+    </section>`;
+  }
+}

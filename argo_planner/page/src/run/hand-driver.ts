@@ -1,0 +1,108 @@
+/** Drives the robot as long as a key is held: asks for a place ahead, and stops it when the key is
+ * let go. */
+
+import { effect, signal } from "@preact/signals-core";
+
+import { answered, client, Refusal, Unreached } from "../api/client";
+import type { Pose } from "../api/types";
+import { goalOf, isStraight, reachesOf, type Direction } from "../model/hand-driving";
+import { isOver } from "../model/run-mode";
+import { ask, robotPose, run } from "../state/run";
+
+/** Where somebody wants to drive now; null: nowhere. */
+export const wanted = signal<Direction | null>(null);
+/** Whether the way there can't be driven. */
+export const blocked = signal(false);
+
+let driving = false;
+
+/** From now on the robot drives there; null: it stops. */
+export function drive(direction: Direction | null): void {
+  if (wanted.value === direction) return;
+  wanted.value = direction;
+  blocked.value = false;
+  if (direction !== null && !driving) {
+    driving = true;
+    void driveOn().finally(() => (driving = false));
+  }
+}
+
+async function driveOn(): Promise<void> {
+  for (;;) {
+    const direction = wanted.value;
+    if (direction === null || run.value?.mode !== "supervised") break;
+    blocked.value = !(await step(direction));
+    if (blocked.value) await changed(direction);
+  }
+  wanted.value = null;
+}
+
+/** Drives in a direction until it is not wanted any more or the place ahead is reached. Whether
+ * there was a way. */
+async function step(direction: Direction): Promise<boolean> {
+  for (const reach of reachesOf(direction)) {
+    const from = robotPose.value;
+    if (from === null) return false;
+    const goal = goalOf(from.pose, direction, reach);
+    if (!(await isFree(from.pose, goal, direction, reach))) continue;
+    if (wanted.value !== direction) return true;
+    const asked = await ask({ kind: "drive_to", pose: goal }, true);
+    if (asked === null) return false;
+    const how = await over(asked.id, direction);
+    if (wanted.value !== direction) {
+      const stop = await ask({ kind: "stop_by_hand" }, true);
+      if (stop !== null) await over(stop.id, null);
+      return true;
+    }
+    if (how === null) return false;
+    if (how === "confirmed") return true;
+  }
+  return false;
+}
+
+/** Whether the robot would drive straight there. It finds its way round things by itself, which
+ * nobody wants who holds a key. */
+async function isFree(
+  from: readonly [number, number, number, number, number],
+  goal: Pose,
+  direction: Direction,
+  reach: number,
+): Promise<boolean> {
+  const [x, y, z, yaw] = from;
+  try {
+    const body = { start: { x, y, z, yaw }, goal };
+    const way = await answered(client.POST("/api/world/way", { body }));
+    return isStraight(way, direction, reach);
+  } catch (error) {
+    if (error instanceof Refusal || error instanceof Unreached) return false;
+    throw error;
+  }
+}
+
+/** How a request has ended; null: something else is wanted by now, or the run is over. */
+function over(id: string, direction: Direction | null): Promise<string | null> {
+  return until(() => {
+    const found = run.value?.requests.find((one) => one.id === id);
+    if (found && isOver(found)) return { value: found.progress };
+    if (direction !== null && wanted.value !== direction) return { value: null };
+    return run.value === null || run.value.status !== "running" ? { value: null } : null;
+  });
+}
+
+function changed(direction: Direction): Promise<null> {
+  return until(() => (wanted.value === direction ? null : { value: null }));
+}
+
+/** What comes of it, as soon as something does. */
+function until<T>(found: () => { readonly value: T } | null): Promise<T> {
+  return new Promise((resolve) => {
+    let done = false;
+    const stop = effect(() => {
+      const one = found();
+      if (one === null || done) return;
+      done = true;
+      resolve(one.value);
+      queueMicrotask(() => stop());
+    });
+  });
+}

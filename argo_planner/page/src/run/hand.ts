@@ -1,0 +1,229 @@
+/** A person has the robot: what they let it do. */
+
+import { isTyping } from "../frame/keys";
+import { choiceOf, chosenCheckpoint } from "../model/checkpoint-choice";
+import { directionOf, type Direction } from "../model/hand-driving";
+import { chosenTask, mission } from "../state/plan";
+import { ask, run } from "../state/run";
+import { mayOperate } from "../state/session";
+import { world } from "../state/world";
+import { t } from "../texts";
+import { css, customElement, html, look, nothing, PageElement, state } from "../ui/element";
+import { icon, type Icon } from "../ui/icons";
+import { blocked, drive, wanted } from "./hand-driver";
+import { parts } from "./parts";
+
+const PAD: readonly (readonly [Direction, Icon, string])[] = [
+  ["left", "turn-left", "left"],
+  ["forward", "up", "forward"],
+  ["right", "turn-right", "right"],
+  ["backward", "down", "backward"],
+];
+
+@customElement("argo-run-hand")
+export class RunHand extends PageElement {
+  static override styles = [
+    look,
+    parts,
+    css`
+      section {
+        display: grid;
+        gap: 10px;
+        padding: 10px;
+        border: 1px solid var(--person);
+        border-radius: var(--round);
+      }
+      .pad {
+        display: grid;
+        grid-template: "left forward right" 44px "stop backward stop2" 44px / 1fr 1fr 1fr;
+        gap: 6px;
+        touch-action: none;
+      }
+      .pad button {
+        min-height: 44px;
+        user-select: none;
+      }
+      .pad .stop {
+        grid-area: stop;
+      }
+      .forward {
+        grid-area: forward;
+      }
+      .backward {
+        grid-area: backward;
+      }
+      .left {
+        grid-area: left;
+      }
+      .right {
+        grid-area: right;
+      }
+      .line {
+        display: grid;
+        grid-template-columns: minmax(0, 1fr) auto auto;
+        gap: 6px;
+      }
+      .blocked {
+        color: var(--bad);
+      }
+    `,
+  ];
+
+  @state() private withKeys = false;
+  private speedBefore: number | null | undefined;
+
+  override connectedCallback(): void {
+    super.connectedCallback();
+    addEventListener("keydown", this.onKey, { capture: true });
+    addEventListener("keyup", this.onKeyUp, { capture: true });
+    addEventListener("blur", this.halt);
+    addEventListener("visibilitychange", this.halt);
+  }
+
+  override disconnectedCallback(): void {
+    super.disconnectedCallback();
+    removeEventListener("keydown", this.onKey, { capture: true });
+    removeEventListener("keyup", this.onKeyUp, { capture: true });
+    removeEventListener("blur", this.halt);
+    removeEventListener("visibilitychange", this.halt);
+    this.halt();
+  }
+
+  override render() {
+    const state = run.value;
+    if (state === null) return nothing;
+    const texts = t().run;
+    const off = !mayOperate();
+    const busy = off || state.moving;
+    return html`<section aria-label=${texts.byHand}>
+      <button
+        id="drive"
+        aria-pressed=${this.withKeys}
+        ?disabled=${off}
+        @click=${() => this.driveWithKeys(!this.withKeys)}
+      >
+        ${icon("drive")} ${texts.driveWithKeys}
+      </button>
+      ${this.withKeys ? html`<p class="reason">${texts.drivingOn}</p>` : nothing}
+      <div class="pad">
+        ${PAD.map(([direction, sign, name]) => this.arrow(direction, sign, name))}
+        <button class="stop" id="stand" ?disabled=${off} @click=${this.stand}>
+          ${icon("stop")} <span>${texts.standStill}</span>
+        </button>
+      </div>
+      ${blocked.value ? html`<p class="blocked" role="status">${texts.noWay}</p>` : nothing}
+      <form class="line" @submit=${this.measure}>
+        <input
+          id="measure-at"
+          list="to-measure"
+          aria-label=${texts.measureWhat}
+          placeholder=${texts.measureWhat}
+          autocomplete="off"
+        />
+        <datalist id="to-measure">
+          ${(world.value?.checkpoints ?? []).map((one) => html`<option value=${choiceOf(one)}></option>`)}
+        </datalist>
+        <button id="measure" ?disabled=${busy}>${icon("gauge", 16)} ${texts.measureHere}</button>
+      </form>
+      <div class="line">
+        <select id="task" aria-label=${texts.whichTask}>
+          ${this.tasks().map(
+            (name) =>
+              html`<option value=${name} .selected=${chosenTask.value?.name === name}>${name}</option>`,
+          )}
+        </select>
+        <button id="do" ?disabled=${busy} @click=${() => this.withTask("do_task")}>${texts.doTask}</button>
+        <button id="skip" ?disabled=${off} @click=${() => this.withTask("skip")}>
+          ${icon("skip", 16)} ${texts.skip}
+        </button>
+      </div>
+      ${state.skipped.length > 0 ? html`<p>${texts.skipped(state.skipped)}</p>` : nothing}
+      <p class="reason">${texts.edited}</p>
+    </section>`;
+  }
+
+  private arrow(direction: Direction, sign: Icon, name: string) {
+    const label = t().run[name as "forward"];
+    return html`<button
+      class=${direction}
+      aria-label=${label}
+      title=${label}
+      aria-pressed=${wanted.value === direction}
+      ?disabled=${!mayOperate()}
+      @pointerdown=${(event: PointerEvent) => {
+        (event.target as Element).setPointerCapture(event.pointerId);
+        drive(direction);
+      }}
+      @pointerup=${this.halt}
+      @pointercancel=${this.halt}
+      @contextmenu=${(event: Event) => event.preventDefault()}
+      @keydown=${(event: KeyboardEvent) => this.onPadKey(event, direction)}
+      @keyup=${this.halt}
+    >
+      ${icon(sign, 22)}
+    </button>`;
+  }
+
+  private onPadKey(event: KeyboardEvent, direction: Direction): void {
+    if (event.key !== "Enter" && event.key !== " ") return;
+    event.preventDefault();
+    if (!event.repeat) drive(direction);
+  }
+
+  private tasks(): string[] {
+    const tasks = mission.value?.tasks ?? [];
+    return tasks.filter((task) => task.action !== "START").map((task) => task.name);
+  }
+
+  /** Nobody can steer what moves many times as fast as it really would: meanwhile it is real time. */
+  private driveWithKeys(on: boolean): void {
+    this.withKeys = on;
+    if (!on) drive(null);
+    const now = run.value?.speed ?? null;
+    if (on && (now === null || now > 1)) {
+      this.speedBefore = now;
+      void ask({ kind: "speed", speed: 1 }, true);
+    } else if (!on && this.speedBefore !== undefined) {
+      void ask({ kind: "speed", speed: this.speedBefore }, true);
+      this.speedBefore = undefined;
+    }
+  }
+
+  private readonly halt = (): void => drive(null);
+
+  private readonly stand = (): void => {
+    drive(null);
+    if (run.value?.moving) void ask({ kind: "stop_by_hand" }, true);
+  };
+
+  private readonly onKey = (event: KeyboardEvent): void => {
+    if (!this.withKeys || isTyping(event) || event.ctrlKey || event.metaKey || event.altKey) return;
+    const direction = directionOf(event.code);
+    if (direction !== null) {
+      if (!event.repeat) drive(direction);
+    } else if (event.code === "Space") this.stand();
+    else if (event.code === "Escape") {
+      this.driveWithKeys(false);
+    } else return;
+    event.preventDefault();
+    event.stopImmediatePropagation();
+  };
+
+  private readonly onKeyUp = (event: KeyboardEvent): void => {
+    if (this.withKeys && directionOf(event.code) !== null && directionOf(event.code) === wanted.value)
+      this.halt();
+  };
+
+  private async measure(event: SubmitEvent): Promise<void> {
+    event.preventDefault();
+    const field = this.renderRoot.querySelector<HTMLInputElement>("#measure-at");
+    const checkpoint = chosenCheckpoint(field?.value ?? "", world.value?.checkpoints ?? []);
+    if (checkpoint === null) return field?.focus();
+    await ask({ kind: "measure", checkpoint: String(checkpoint.id) });
+  }
+
+  private async withTask(kind: "do_task" | "skip"): Promise<void> {
+    const task = this.renderRoot.querySelector<HTMLSelectElement>("#task")?.value;
+    if (task) await ask({ kind, task });
+  }
+}

@@ -1,0 +1,92 @@
+/** What a person tells the run: something has happened, somebody has read a value, or something is to
+ * go wrong in the simulation. */
+
+import type { EventKind } from "../api/types";
+import { choiceOf, chosenCheckpoint } from "../model/checkpoint-choice";
+import { ask, run, type Question } from "../state/run";
+import { mayOperate } from "../state/session";
+import { world } from "../state/world";
+import { t } from "../texts";
+import { css, customElement, html, look, nothing, PageElement } from "../ui/element";
+import { parts } from "./parts";
+import { FAULTS, type FaultKind } from "./start";
+
+const OWN: readonly string[] = ["time_up"]; // that occur by themselves only
+
+@customElement("argo-run-tell")
+export class RunTell extends PageElement {
+  static override styles = [
+    look,
+    parts,
+    css`
+      .inner {
+        display: grid;
+        gap: 8px;
+      }
+      form {
+        display: grid;
+        grid-template-columns: minmax(0, 1fr) auto;
+        gap: 6px;
+      }
+      form.reading {
+        grid-template-columns: minmax(0, 1fr) 80px auto;
+      }
+    `,
+  ];
+
+  override render() {
+    const state = run.value;
+    if (state?.status !== "running") return nothing;
+    const texts = t().run;
+    const off = !mayOperate();
+    const events = Object.entries(t().words.event).filter(([kind]) => !OWN.includes(kind));
+    return html`<details>
+      <summary>${texts.tell}</summary>
+      <div class="inner">
+        <form @submit=${this.tellEvent}>
+          <select name="event" aria-label=${texts.event}>
+            ${events.map(([kind, name]) => html`<option value=${kind}>${name}</option>`)}
+          </select>
+          <button id="tell-event" ?disabled=${off}>${texts.tellEvent}</button>
+        </form>
+        <form class="reading" @submit=${this.tellReading}>
+          <input name="of" list="known" aria-label=${texts.checkpoint} placeholder=${texts.checkpoint} />
+          <datalist id="known">
+            ${(world.value?.checkpoints ?? []).map((one) => html`<option value=${choiceOf(one)}></option>`)}
+          </datalist>
+          <input name="value" type="number" step="any" required aria-label=${texts.value} placeholder=${texts.value} />
+          <button ?disabled=${off}>${texts.tellEvent}</button>
+        </form>
+        <form @submit=${this.beginFault}>
+          <select name="fault" aria-label=${texts.beginFault}>
+            ${FAULTS.map((kind) => html`<option value=${kind}>${texts.fault[kind]}</option>`)}
+          </select>
+          <button id="begin-fault" ?disabled=${off || state.drive === "remote"}>${texts.begin}</button>
+        </form>
+      </div>
+    </details>`;
+  }
+
+  private tellEvent(event: SubmitEvent): void {
+    const kind = this.field(event, "event").value as EventKind;
+    void ask({ kind: "event", event: kind });
+  }
+
+  private tellReading(event: SubmitEvent): void {
+    const of = this.field(event, "of");
+    const checkpoint = chosenCheckpoint(of.value, world.value?.checkpoints ?? []);
+    if (checkpoint === null) return of.focus();
+    const value = Number(this.field(event, "value").value);
+    void ask({ kind: "reading", checkpoint: String(checkpoint.id), value });
+  }
+
+  private beginFault(event: SubmitEvent): void {
+    const kind = this.field(event, "fault").value as FaultKind;
+    void ask({ kind: "fault", fault: { kind } } as unknown as Question);
+  }
+
+  private field(event: SubmitEvent, name: string): HTMLInputElement {
+    event.preventDefault();
+    return (event.target as HTMLFormElement).elements.namedItem(name) as HTMLInputElement;
+  }
+}

@@ -73,7 +73,8 @@ def test_who_may_only_look_can_change_nothing(browsers, service) -> None:
     viewer.open(f"/missions/{id}")
     expect(viewer.page.get_by_title("Rename the mission")).to_be_disabled()
     viewer.key("m")
-    expect(viewer.page.get_by_role("combobox")).to_have_count(0)
+    expect(viewer.page.locator("argo-add [role=combobox]")).to_have_count(0)
+    expect(viewer.page.get_by_label("Designation")).to_be_disabled()
 
 
 def test_the_policy_of_the_page_lets_nothing_in(ann) -> None:

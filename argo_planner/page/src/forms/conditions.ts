@@ -9,26 +9,24 @@ import { icon } from "../ui/icons";
 import type { Commit } from "./field";
 import { checkField, checkpointOptions, numberField, optionsOf, selectField, timeField } from "./parts";
 
-type Save = (conditions: readonly Condition[]) => ReturnType<Commit>;
+type Conditions = readonly Condition[];
+/** Takes what the conditions become, of what they are by then. */
+type Save = (change: (was: Conditions) => Conditions) => ReturnType<Commit>;
+
+/** The condition that a reading is above what is normal, to begin with. */
+export function aboveNormal(object_id: string): Condition {
+  const param1 = checkpointsById.value.get(object_id)?.nominal.high ?? 0;
+  return { type: "MEASURED_VALUE_GREATER", id: "", object_id, param1, inclusive: false };
+}
 
 /** The conditions, each with its fields, and a button for one more. */
-export function conditionList(conditions: readonly Condition[], save: Save, label: string) {
+export function conditionList(conditions: Conditions, save: Save, label: string) {
   const texts = t().forms;
-  const add = () => {
-    const object_id = checkpointOptions()[0]?.value ?? "1";
-    const nominal = checkpointsById.value.get(object_id)?.nominal;
-    const added: Condition = {
-      type: "MEASURED_VALUE_GREATER",
-      id: "",
-      object_id,
-      param1: nominal?.high ?? 0,
-      inclusive: false,
-    };
-    void save([...conditions, added]);
-  };
+  const add = () =>
+    save((was) => [...was, aboveNormal(was[0]?.object_id ?? checkpointOptions()[0]?.value ?? "1")]);
   return html`<div class="conditions">
     ${conditions.map((condition, index) =>
-      conditionForm(condition, index, conditions, save),
+      conditionForm(condition, index, save),
     )}
     <button class="bare" ?disabled=${!mayPlan()} @click=${add}>
       ${icon("add", 16)} ${conditions.length === 0 ? label : texts.andCondition}
@@ -39,12 +37,11 @@ export function conditionList(conditions: readonly Condition[], save: Save, labe
 function conditionForm(
   condition: Condition,
   index: number,
-  all: readonly Condition[],
   save: Save,
 ) {
   const texts = t().forms;
   const set = (change: Partial<Condition>) =>
-    save(all.map((one, at) => (at === index ? { ...one, ...change } : one)));
+    save((was) => was.map((one, at) => (at === index ? { ...one, ...change } : one)));
   const checkpoint = checkpointsById.value.get(condition.object_id);
   const unit = checkpoint?.unit ?? "";
   const compares = condition.type.startsWith("MEASURED");
@@ -82,7 +79,7 @@ function conditionForm(
     <button
       class="bare danger"
       ?disabled=${!mayPlan()}
-      @click=${() => save(all.filter((_, at) => at !== index))}
+      @click=${() => save((was) => was.filter((_, at) => at !== index))}
     >
       ${icon("bin", 16)} ${texts.removeCondition}
     </button>

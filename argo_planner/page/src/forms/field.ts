@@ -185,7 +185,7 @@ export class FormField extends PageElement {
     this.overtaken = false;
     const wrong = await this.commit(typed);
     if (this.typed !== typed) return;
-    this.wrong = wrong;
-    if (wrong === null) this.typed = null;
+    if (wrong === null) this.forget();
+    else this.wrong = wrong;
   }
 }

@@ -13,11 +13,16 @@ type Fields = Partial<Omit<Group, "name" | "source">>;
 
 export function groupForm(group: Group) {
   const texts = t().forms;
-  const set = (fields: Fields) => editHere({ kind: "change_group", name: group.name, ...fields });
+  const set = (fields: Fields) => editHere(() => [{ kind: "change_group", name: group.name, ...fields }]);
+  const saveUntil = (change: (was: Group["until"]) => Group["until"]) =>
+    editHere(() => {
+      const now = mission.value?.groups.find((one) => one.name === group.name) ?? group;
+      return [{ kind: "change_group", name: group.name, until: change(now.until) }];
+    });
   const tasks = (mission.value?.tasks ?? []).map(({ name }) => ({ value: name, label: name }));
   const rename = async (name: string) => {
     const own_name = name.trim();
-    const wrong = await editHere({ kind: "rename_group", name: group.name, own_name });
+    const wrong = await editHere(() => [{ kind: "rename_group", name: group.name, own_name }]);
     const outer = group.name.slice(0, group.name.length - ownName(group.name).length);
     if (wrong === null) select([groupKey(outer + own_name)]);
     return wrong;
@@ -40,7 +45,7 @@ export function groupForm(group: Group) {
       : null}
     ${timeField(texts.every, group.every || null, (every) => set({ every: every ?? 0 }))}
     <h3>${texts.until}</h3>
-    ${conditionList(group.until, (until) => set({ until }), texts.addCondition)}
+    ${conditionList(group.until, saveUntil, texts.addCondition)}
     <details>
       <summary>${texts.extent}</summary>
       ${selectField(texts.first, group.start, tasks, (start) => set({ start }))}

@@ -12,7 +12,7 @@ type Fields = Partial<Omit<Mission, "version" | "tasks" | "groups" | "reactions"
 
 export function headerForm(mission: Mission) {
   const texts = t().forms;
-  const set = (fields: Fields) => editHere({ kind: "set_header", ...fields } as never);
+  const set = (fields: Fields) => editHere(() => [{ kind: "set_header", ...fields }]);
   const areas = (world.value?.docks ?? []).map((dock) => ({
     value: String(dock.area),
     label: texts.area(dock.area),

@@ -95,7 +95,7 @@ export class PropertiesPanel extends PageElement {
 function severalForm(tasks: readonly Task[]) {
   const texts = t().forms;
   const set = (fields: Partial<Task>) =>
-    editHere(...tasks.map(({ name }) => ({ kind: "change_task", name, ...fields }) as const));
+    editHere(() => tasks.map(({ name }) => ({ kind: "change_task", name, ...fields }) as const));
   const shared = <Key extends keyof Task>(key: Key): Task[Key] | null => {
     const [first] = tasks;
     return first && tasks.every((one) => one[key] === first[key]) ? first[key] : null;

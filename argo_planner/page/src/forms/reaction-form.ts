@@ -12,13 +12,12 @@ import { numberField, optionsOf, poseFields, selectField, timeField } from "./pa
 export function reactionForm(reaction: Reaction) {
   const texts = t().forms;
   const save = async (change: Partial<Reaction>) => {
-    const changed = { ...reaction, ...change, source: null };
-    const wrong = await editHere({
-      kind: "change_reaction",
-      event: reaction.event,
-      reaction: changed,
+    const { event } = reaction;
+    const wrong = await editHere(() => {
+      const now = mission.value?.reactions.find((one) => one.event === event) ?? reaction;
+      return [{ kind: "change_reaction", event, reaction: { ...now, ...change, source: null } }];
     });
-    if (wrong === null) select([reactionKey(changed.event)]);
+    if (wrong === null) select([reactionKey(change.event ?? event)]);
     return wrong;
   };
   const had = new Set(mission.value?.reactions.map((one) => one.event));

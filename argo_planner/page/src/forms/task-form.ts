@@ -2,13 +2,13 @@
 
 import type { Task, TimeWindow, Transition, WaitRule } from "../api/types";
 import { taskKey } from "../model/outline";
-import { edit, editHere, mission, select } from "../state/plan";
+import { edit, editHere, mission, select, tasksByName } from "../state/plan";
 import { mayPlan } from "../state/session";
 import { checkpointsById, world } from "../state/world";
 import { t } from "../texts";
 import { html, nothing } from "../ui/element";
 import { icon } from "../ui/icons";
-import { conditionList } from "./conditions";
+import { aboveNormal, conditionList } from "./conditions";
 import {
   checkField,
   checkpointOptions,
@@ -20,13 +20,24 @@ import {
   timeField,
 } from "./parts";
 
+/** Fields that are to change; of a function, what it says of the task as it is by then. */
+type Save = (fields: Fields | ((task: Task) => Fields)) => Promise<string | null>;
 type Fields = Partial<Omit<Task, "name" | "action" | "transitions" | "source" | "group">>;
 
 export function taskForm(task: Task) {
   const texts = t().forms;
-  const set = (fields: Fields) => editHere({ kind: "change_task", name: task.name, ...fields });
+  const set: Save = (fields) =>
+    editHere(() => [
+      {
+        kind: "change_task",
+        name: task.name,
+        ...(typeof fields === "function" ? fields(now(task)) : fields),
+      },
+    ]);
   const rename = async (name: string) => {
-    const wrong = await editHere({ kind: "rename_task", name: task.name, new_name: name.trim() });
+    const wrong = await editHere(() => [
+      { kind: "rename_task", name: task.name, new_name: name.trim() },
+    ]);
     if (wrong === null) select([taskKey(name.trim())]);
     return wrong;
   };
@@ -40,7 +51,7 @@ export function taskForm(task: Task) {
     ${task.action === "START" ? ways(task) : rest(task, set)}`;
 }
 
-function rest(task: Task, set: (fields: Fields) => Promise<string | null>) {
+function rest(task: Task, set: Save) {
   const texts = t().forms;
   const robot = world.value?.robot;
   const moves = task.action !== "WAIT";
@@ -90,7 +101,7 @@ function rest(task: Task, set: (fields: Fields) => Promise<string | null>) {
       : nothing}`;
 }
 
-function measuring(task: Task, set: (fields: Fields) => Promise<string | null>) {
+function measuring(task: Task, set: Save) {
   const texts = t().forms;
   const checkpoint = checkpointsById.value.get(task.object_id ?? "");
   return html`${selectField(texts.checkpoint, task.object_id ?? "", checkpointOptions(), (object_id) =>
@@ -106,10 +117,13 @@ function measuring(task: Task, set: (fields: Fields) => Promise<string | null>) 
     ${poseFields(texts.standing, task.pose, (pose) => set({ pose }), texts.anywhere)}`;
 }
 
-function waiting(wait: WaitRule | null, set: (fields: Fields) => Promise<string | null>) {
+function waiting(wait: WaitRule | null, set: Save) {
   const texts = t().forms;
-  const save = (change: Partial<WaitRule>) =>
-    set({ wait: { conditions: [], ...wait, ...change } });
+  const save = (change: (wait: WaitRule) => Partial<WaitRule>) =>
+    set((task) => {
+      const was = { conditions: [], ...task.wait };
+      return { wait: { ...was, ...change(was) } };
+    });
   const timed = wait === null || typeof wait.duration === "number";
   const kind = timed ? "time" : "event";
   return html`${selectField(texts.waitFor, kind, optionsOf(texts.waits), (value) =>
@@ -118,24 +132,25 @@ function waiting(wait: WaitRule | null, set: (fields: Fields) => Promise<string 
         : set({ wait: { event: "all_clear", conditions: [] } }),
     )}
     ${timed
-      ? timeField(texts.duration, wait?.duration, (duration) => save({ duration: duration ?? 0 }))
+      ? timeField(texts.duration, wait?.duration, (duration) => save(() => ({ duration: duration ?? 0 })))
       : html`${selectField(
             texts.event,
             wait.event ?? "",
             [{ value: "", label: texts.noEvent }, ...optionsOf(t().words.event)],
-            (value) => save({ event: value === "" ? null : (value as WaitRule["event"]) }),
+            (value) => save(() => ({ event: value === "" ? null : (value as WaitRule["event"]) })),
           )}
-          ${conditionList(wait.conditions, (conditions) => save({ conditions }), texts.orCondition)}
-          ${timeField(texts.waitLimit, wait.limit, (limit) => save({ limit }))}`}`;
+          ${conditionList(wait.conditions, (change) => save((was) => ({ conditions: change(was.conditions) })), texts.orCondition)}
+          ${timeField(texts.waitLimit, wait.limit, (limit) => save(() => ({ limit })))}`}`;
 }
 
-function windowFields(task: Task, set: (fields: Fields) => Promise<string | null>) {
+function windowFields(task: Task, set: Save) {
   const texts = t().forms;
   const window = task.window ?? null;
-  const save = (change: Partial<TimeWindow>) => {
-    const next = { earliest: 0, latest: null, hard: true, ...window, ...change } as TimeWindow;
-    return set({ window: next.earliest === 0 && next.latest === null ? null : next });
-  };
+  const save = (change: Partial<TimeWindow>) =>
+    set((task) => {
+      const next = { earliest: 0, latest: null, hard: true, ...task.window, ...change };
+      return { window: next.earliest === 0 && next.latest === null ? null : next };
+    });
   return html`<div class="two">
       ${timeField(texts.earliest, window?.earliest ?? null, (earliest) =>
         save({ earliest: earliest ?? 0 }),
@@ -156,46 +171,43 @@ function windowFields(task: Task, set: (fields: Fields) => Promise<string | null
 /** Where the mission goes on after the task. */
 function ways(task: Task) {
   const texts = t().forms;
-  const save = (transitions: readonly Transition[]) =>
-    editHere({ kind: "set_transitions", task: task.name, transitions });
-  const conditional = task.transitions.filter((way) => way.conditions.length > 0);
-  const onward = task.transitions.find((way) => way.conditions.length === 0);
-  const all = (changed: readonly Transition[]) => (onward ? [...changed, onward] : changed);
+  const { conditional, onward } = parted(task);
+  const save = (change: (ways: Ways) => Partial<Ways>) =>
+    editHere(() => {
+      const was = parted(now(task));
+      const next = { ...was, ...change(was) };
+      const transitions = next.onward ? [...next.conditional, next.onward] : next.conditional;
+      return [{ kind: "set_transitions", task: task.name, transitions }];
+    });
+  const saveWay = (index: number, change: (way: Transition) => Transition | null) =>
+    save((was) => ({
+      conditional: was.conditional.flatMap((way, at) => (at === index ? (change(way) ?? []) : way)),
+    }));
   const add = () => {
     const target = followers(task)[0]?.value;
     if (target === undefined) return;
-    const object_id = task.object_id ?? checkpointOptions()[0]?.value ?? "1";
-    const nominal = checkpointsById.value.get(object_id)?.nominal;
-    const condition = {
-      type: "MEASURED_VALUE_GREATER",
-      id: "",
-      object_id,
-      param1: nominal?.high ?? 0,
-      inclusive: false,
-    } as const;
+    const condition = aboveNormal(task.object_id ?? checkpointOptions()[0]?.value ?? "1");
     const transition = { target, conditions: [condition] };
     void edit({ kind: "add_transition", task: task.name, transition, at: conditional.length });
   };
+  const start = task.action === "START";
   return html`<h3>${texts.afterwards}</h3>
-    ${task.action === "START"
+    ${start
       ? nothing
       : conditional.map(
           (way, index) =>
             html`<div class="way">
               ${conditionList(
                 way.conditions,
-                (conditions) =>
-                  save(
-                    all(
-                      conditions.length === 0
-                        ? conditional.filter((_, at) => at !== index)
-                        : conditional.map((one, at) => (at === index ? { ...one, conditions } : one)),
-                    ),
-                  ),
+                (change) =>
+                  saveWay(index, (was) => {
+                    const conditions = change(was.conditions);
+                    return conditions.length === 0 ? null : { ...was, conditions };
+                  }),
                 texts.addCondition,
               )}
               ${selectField(texts.then, way.target, followers(task), (target) =>
-                save(all(conditional.map((one, at) => (at === index ? { ...one, target } : one)))),
+                saveWay(index, (was) => ({ ...was, target })),
               )}
             </div>`,
         )}
@@ -203,13 +215,31 @@ function ways(task: Task) {
       conditional.length > 0 ? texts.otherwise : texts.then,
       onward?.target ?? "",
       [{ value: "", label: texts.endsHere }, ...followers(task)],
-      (target) => save(target === "" ? conditional : [...conditional, { target, conditions: [] }]),
+      (target) => save(() => ({ onward: target === "" ? null : { target, conditions: [] } })),
     )}
-    ${task.action === "START"
+    ${start
       ? nothing
       : html`<button class="bare" ?disabled=${!mayPlan()} @click=${add}>
           ${icon("add", 16)} ${texts.addWay}
         </button>`}`;
+}
+
+interface Ways {
+  readonly conditional: readonly Transition[];
+  /** Where it goes on where no condition holds; null: the mission ends there. */
+  readonly onward: Transition | null;
+}
+
+function parted(task: Task): Ways {
+  return {
+    conditional: task.transitions.filter((way) => way.conditions.length > 0),
+    onward: task.transitions.find((way) => way.conditions.length === 0) ?? null,
+  };
+}
+
+/** The task as it is by now. */
+function now(task: Task): Task {
+  return tasksByName.value.get(task.name) ?? task;
 }
 
 /** Tasks that may follow. */

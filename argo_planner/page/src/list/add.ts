@@ -109,6 +109,7 @@ export class AddTasks extends PageElement {
   }
 
   private async openField(which: "measure" | "place"): Promise<void> {
+    if (world.value === null) return; // the site is being read: there is nothing to choose from yet
     this.open = which;
     this.text = "";
     this.at = 0;
@@ -131,7 +132,7 @@ export class AddTasks extends PageElement {
   override render() {
     const texts = t().list;
     return html`<button
-        ?disabled=${!mayPlan()}
+        ?disabled=${!mayPlan() || world.value === null}
         title=${mayPlan() ? "" : texts.mayNot}
         aria-haspopup="menu"
         aria-expanded=${this.open === "menu"}

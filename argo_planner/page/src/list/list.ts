@@ -126,6 +126,11 @@ export class MissionList extends PageElement {
     this.resized.observe(this.tree);
   }
 
+  override updated(changes: Map<string, unknown>): void {
+    if (!changes.has("renaming") || this.renaming === null) return;
+    this.renderRoot.querySelector<HTMLInputElement>(".names input")?.select();
+  }
+
   /** All rows, and those that show as groups are folded. */
   private rows(): { all: Row[]; shown: Row[] } {
     const open = mission.value;

@@ -186,7 +186,6 @@ function nameField(row: Row, shown: RowState) {
     aria-label=${t().list.renameTask}
     maxlength="200"
     .value=${nameOf(row)}
-    autofocus
     @keydown=${onKey}
     @blur=${onBlur}
     @dblclick=${(event: Event) => event.stopPropagation()}

@@ -38,7 +38,7 @@ type Command =
   | { readonly kind: "replace"; readonly mission: Mission; readonly about: string };
 
 const RETRY_MS = 1_000;
-const MOST_TRIES_STALE = 4;
+const MOST_RECENT = 500;
 
 export const planId = signal<string | null>(null);
 export const planName = signal("");
@@ -75,6 +75,10 @@ export const chosenTask = computed(() => {
 let live: LiveConnection<RoomMessage> | null = null;
 let client_ = "";
 let queue: Promise<unknown> = Promise.resolve();
+/** Ids of the commands that were asked for here. */
+const own = new Set<string>();
+/** The last revisions in order, by whomever. */
+const recent: Revision[] = [];
 
 /** Opens a mission; the first snapshot resolves it. Throws `Refusal` or `Unreached`. */
 export async function openPlan(id: string): Promise<void> {
@@ -128,43 +132,63 @@ export function edit(...edits: LooseEdit[]): Promise<boolean> {
 /** Edits that depend on how the mission is when their turn comes: keys may be pressed faster than
  * the service answers. `work` is called when all edits before it are done. */
 export function inTurn<T>(work: (make: typeof edit) => Promise<T>): Promise<T> {
-  return queued(() => work((...edits) => carriedOut({ kind: "edit", edits }, tellError)));
+  return queued((seen) =>
+    work((...edits) => carriedOut({ kind: "edit", edits }, tellError, seen)),
+  );
 }
 
-/** Makes edits for a form, which shows at the field why they were refused; null: they were made. */
-export async function editHere(...edits: LooseEdit[]): Promise<string | null> {
+/** Makes the edits of a form, which says at the field why they were refused; null: they were made.
+ * They are asked for when all edits before them are done. */
+export async function editHere(edits: () => readonly LooseEdit[]): Promise<string | null> {
   let said = "";
   const refused = (error: unknown) => {
     if (error instanceof Refusal) said = messageOf(error);
     else tellError(error);
   };
-  const done = await queued(() => carriedOut({ kind: "edit", edits }, refused));
+  const done = await queued((seen) =>
+    carriedOut({ kind: "edit", edits: edits() }, refused, seen),
+  );
   return done ? null : said;
 }
 export function undo(): Promise<boolean> {
-  return queued(() => carriedOut({ kind: "undo" }, tellError));
+  return queued((seen) => carriedOut({ kind: "undo" }, tellError, seen));
 }
 export function redo(): Promise<boolean> {
-  return queued(() => carriedOut({ kind: "redo" }, tellError));
+  return queued((seen) => carriedOut({ kind: "redo" }, tellError, seen));
 }
 export function replaceMission(newMission: Mission, about: string): Promise<boolean> {
-  return queued(() => carriedOut({ kind: "replace", mission: newMission, about }, tellError));
+  const asked = { kind: "replace", mission: newMission, about } as const;
+  return queued((seen) => carriedOut(asked, tellError, seen));
 }
 
-/** Commands are sent one after the other, each on the revision that the one before has made. */
-function queued<T>(work: () => Promise<T>): Promise<T> {
+/** Commands are sent one after the other. Each is told the revision that was seen when it was asked
+ * for. */
+function queued<T>(work: (seen: number) => Promise<T>): Promise<T> {
+  const seen = revision.value;
   waiting.value++;
-  const done = queue.then(work).finally(() => waiting.value--);
+  const done = queue.then(() => work(seen)).finally(() => waiting.value--);
   queue = done.catch(() => undefined);
   return done;
 }
 
-async function carriedOut(asked: Command, refused: (error: unknown) => void): Promise<boolean> {
+async function carriedOut(
+  asked: Command,
+  refused: (error: unknown) => void,
+  seen: number,
+): Promise<boolean> {
   const plan = planId.value;
   if (plan === null) return false;
   if (asked.kind === "edit" && asked.edits.length === 0) return true;
   const commandId = newId();
-  for (let stale = 0; planId.value === plan; ) {
+  own.add(commandId);
+  let known = seen;
+  while (planId.value === plan) {
+    const meanwhile = othersSince(known);
+    if (!apart(asked, meanwhile)) {
+      tellStale(asked, meanwhile ?? []);
+      return false;
+    }
+    known = revision.value;
     try {
       take(await sent(plan, commandId, asked, `"${revision.value}"`));
       return true;
@@ -173,11 +197,7 @@ async function carriedOut(asked: Command, refused: (error: unknown) => void): Pr
         // It may have been carried out: the same id makes sending it again harmless.
         await new Promise((resolve) => setTimeout(resolve, RETRY_MS));
       } else if (error instanceof Refusal && error.problem.code === "stale-revision") {
-        const since = error.problem.since ?? null;
-        await caughtUp(plan, since);
-        if (asked.kind !== "replace" && apart(asked, since) && ++stale < MOST_TRIES_STALE) continue;
-        tellStale(asked, since ?? []);
-        return false;
+        await caughtUp(plan, error.problem.since ?? null);
       } else {
         refused(error);
         return false;
@@ -202,9 +222,17 @@ async function caughtUp(plan: string, since: readonly Revision[] | null): Promis
   else take(await answered(client.GET("/api/missions/{id}", { params: { path: { id: plan } } })));
 }
 
+/** What others have done since a revision; null: that is not known any more. */
+function othersSince(known: number): readonly Revision[] | null {
+  if (known === revision.value) return [];
+  if ((recent[0]?.number ?? Infinity) > known + 1) return null;
+  return recent.filter((one) => one.number > known && !own.has(one.id));
+}
+
 /** Whether what others did touches nothing that the command is about. */
 function apart(asked: Command, since: readonly Revision[] | null): boolean {
   if (since === null) return false;
+  if (asked.kind === "replace") return since.length === 0;
   if (asked.kind !== "edit") return true;
   const about = new Set<unknown>();
   for (const one of asked.edits)
@@ -216,7 +244,7 @@ function tellStale(asked: Command, since: readonly Revision[]): void {
   const details = since
     .slice(-4)
     .map((one) => t().frame.changedBy(one.author, [...touched(one.change)].slice(0, 5)));
-  const act = () => void queued(() => carriedOut(asked, tellError));
+  const act = () => void queued((seen) => carriedOut(asked, tellError, seen));
   const again = { label: t().frame.doItAnyway, act };
   tell("warn", t().frame.stale, { details, actions: [again] });
 }
@@ -229,6 +257,7 @@ function take(told: PlanState | CommandDone): void {
       planName.value = told.name;
       analysis.value = told.analysis ?? null;
       versions.value = told.versions;
+      recent.length = 0;
       if (told.recovered) tell("warn", told.recovered);
       keepSelection();
     } else takeRevision(told.revision);
@@ -241,6 +270,8 @@ function take(told: PlanState | CommandDone): void {
 function takeRevision(made: Revision): void {
   if (mission.value === null || made.number !== revision.value + 1) return;
   const before = mission.value;
+  recent.push(made);
+  if (recent.length > MOST_RECENT) recent.shift();
   batch(() => {
     mission.value = changed(before, made.change);
     revision.value = made.number;

@@ -1,0 +1,216 @@
+"""The list of tasks and its forms, by mouse and by keys."""
+
+import re
+from itertools import pairwise
+from typing import Any
+
+import pytest
+from playwright.sync_api import expect
+
+from tests.argo_planner.service.served import Served
+from tests.e2e.page.person import Person
+
+DOCK = {"x": 3.05, "y": -2.55, "z": -0.03, "yaw": 3.141592653589793}
+
+
+@pytest.fixture
+def plan(service: Served) -> str:
+    """A mission with a start and three tasks."""
+    id = service.create("Round")
+    tasks: list[dict[str, Any]] = [{"name": "START", "action": "START", "pose": DOCK}]
+    tasks += [{"name": n, "action": "MEASURE", "object_id": n[-1]} for n in ("A1", "B2", "C4")]
+    edits = [{"kind": "add_task", "task": task} for task in tasks]
+    assert service.command(id, 1, *edits).status_code == 200
+    return id
+
+
+@pytest.fixture
+def ann(browsers, address, plan) -> Person:
+    ann = browsers.person(address)
+    ann.open(f"/missions/{plan}")
+    expect(ann.page.get_by_role("treeitem")).to_have_count(4)
+    expect(ann.button("Add")).to_be_enabled()
+    return ann
+
+
+def tasks(service: Served, plan: str) -> list[str]:
+    return [task["name"] for task in mission(service, plan)["tasks"]]
+
+
+def mission(service: Served, plan: str) -> dict[str, Any]:
+    found: dict[str, Any] = service.client.get(f"/api/missions/{plan}").json()["mission"]
+    return found
+
+
+def row(person: Person, name: str) -> Any:
+    return person.page.get_by_role("treeitem").filter(has_text=re.compile(rf"^\s*{name}"))
+
+
+def order(person: Person, *names: str) -> None:
+    """Waits until the list shows these rows."""
+    expect(person.page.locator("argo-list [role=treeitem] .names > :first-child")).to_have_text(
+        list(names)
+    )
+
+
+def test_checkpoints_are_added_by_keys_one_after_the_other(ann, service, plan) -> None:
+    ann.page.get_by_role("tree").focus()
+    ann.key("End")
+    for number in ("14", "2"):
+        ann.key("m")
+        ann.type(number)
+        ann.key("Enter")
+    order(ann, "START", "A1", "B2", "C4", "MEASURE 14", "MEASURE 2")
+    assert ann.inputs == 1 + 4 + 3
+    objects = [task["object_id"] for task in mission(service, plan)["tasks"][-2:]]
+    assert objects == ["14", "2"]
+
+
+def test_tasks_are_moved_by_keys_even_when_they_are_pressed_fast(ann, service, plan) -> None:
+    ann.click(row(ann, "C4"))
+    ann.key("Alt+ArrowUp", "Alt+ArrowUp")
+    order(ann, "START", "C4", "A1", "B2")
+    ann.key("Alt+ArrowDown")
+    order(ann, "START", "A1", "C4", "B2")
+    assert tasks(service, plan) == ["START", "A1", "C4", "B2"]
+
+
+def test_a_group_is_made_left_entered_and_moved_as_a_whole(ann, service, plan) -> None:
+    ann.click(row(ann, "A1"))
+    ann.click(row(ann, "B2"), modifiers=["Shift"])
+    ann.key("g")
+    order(ann, "START", "Round", "A1", "B2", "C4")
+    ann.click(row(ann, "C4"))
+    ann.key("Alt+ArrowRight")
+    group = expect(row(ann, "Round"))
+    group.to_contain_text("3 tasks")
+    ann.key("Alt+ArrowLeft")
+    group.to_contain_text("2 tasks")
+    ann.click(row(ann, "Round"))
+    ann.key("Alt+ArrowDown")
+    order(ann, "START", "C4", "Round", "A1", "B2")
+    found = mission(service, plan)["groups"]
+    assert [(g["name"], g["start"], g["end"]) for g in found] == [("Round", "A1", "B2")]
+    ann.key("ArrowLeft")
+    order(ann, "START", "C4", "Round")
+    ann.key("ArrowRight")
+    order(ann, "START", "C4", "Round", "A1", "B2")
+
+
+def test_several_tasks_are_dragged_at_once_into_a_group(ann, service, plan) -> None:
+    ann.click(row(ann, "C4"))
+    ann.key("g")
+    order(ann, "START", "A1", "B2", "Round", "C4")
+    ann.click(row(ann, "A1"))
+    ann.click(row(ann, "B2"), modifiers=["Shift"])
+    row(ann, "A1").drag_to(row(ann, "C4"), target_position={"x": 80, "y": 40})
+    order(ann, "START", "Round", "C4", "A1", "B2")
+    (group,) = mission(service, plan)["groups"]
+    assert (group["start"], group["end"]) == ("C4", "B2")
+
+
+def test_what_was_done_is_undone_and_done_again(ann) -> None:
+    ann.click(row(ann, "B2"))
+    ann.key("Delete")
+    order(ann, "START", "A1", "C4")
+    ann.key("Control+z")
+    order(ann, "START", "A1", "B2", "C4")
+    ann.key("Control+y")
+    order(ann, "START", "A1", "C4")
+    ann.click(ann.button("Undo"))
+    order(ann, "START", "A1", "B2", "C4")
+
+
+def test_tasks_are_copied_and_pasted(ann) -> None:
+    ann.context.grant_permissions(["clipboard-read", "clipboard-write"])
+    ann.click(row(ann, "A1"))
+    ann.key("Control+c", "End", "Control+v")
+    order(ann, "START", "A1", "B2", "C4", "A1 (2)")
+
+
+def test_a_task_is_renamed_in_its_place(ann) -> None:
+    ann.click(row(ann, "B2"))
+    ann.key("F2", "Control+a")
+    ann.type("Pump")
+    ann.key("Enter")
+    order(ann, "START", "A1", "Pump", "C4")
+    assert ann.ask("() => document.activeElement.tagName") == "ARGO-APP"
+    ann.key("ArrowDown")
+    expect(row(ann, "C4")).to_have_attribute("aria-selected", "true")
+
+
+def test_a_form_takes_times_as_people_write_them(ann, service, plan) -> None:
+    ann.key("Escape")
+    field = ann.page.get_by_label("Maximum duration")
+    field.fill("soon")
+    field.press("Enter")
+    expect(ann.page.get_by_role("alert")).to_contain_text("1:30 or 10 min")
+    expect(field).to_have_value("soon")
+    field.fill("12 min 30")
+    field.press("Enter")
+    expect(ann.page.get_by_role("alert")).to_have_count(0)
+    expect(field).to_have_value("12 min 30 s")
+    assert mission(service, plan)["max_duration"] == 750
+
+
+def test_a_condition_is_made_in_the_form(ann, service, plan) -> None:
+    ann.click(row(ann, "A1"))
+    ann.click(ann.button("Another way on a condition"))
+    ann.page.get_by_label("is", exact=True).select_option("MEASURED_VALUE_LESS")
+    bound = ann.page.get_by_label("Value", exact=True)
+    bound.fill("2,5")
+    bound.press("Enter")
+    then = ann.page.get_by_label("Go on with", exact=True).first
+    then.select_option("C4")
+    expect(row(ann, "A1")).to_contain_text("is below 2.5")
+    way = mission(service, plan)["tasks"][1]["transitions"][0]
+    assert way["target"] == "C4"
+    assert (way["conditions"][0]["type"], way["conditions"][0]["param1"]) == (
+        "MEASURED_VALUE_LESS",
+        2.5,
+    )
+
+
+def test_what_is_refused_is_said_at_the_field(ann, service, plan) -> None:
+    ann.click(row(ann, "A1"))
+    name = ann.page.get_by_label("Name", exact=True)
+    name.fill("B2")
+    name.press("Enter")
+    expect(ann.page.get_by_role("alert")).to_contain_text("B2")
+    expect(name).to_have_value("B2")
+    assert tasks(service, plan) == ["START", "A1", "B2", "C4"]
+
+
+def test_a_problem_leads_to_its_task_and_has_its_way_out(ann, service, plan) -> None:
+    way = {
+        "kind": "add_transition",
+        "task": "A1",
+        "at": 0,
+        "transition": {
+            "target": "C4",
+            "conditions": [{"type": "MEASURED_VALUE_LESS", "object_id": "20", "param1": 1}],
+        },
+    }
+    assert service.command(plan, "*", way).status_code == 200
+    summary = ann.page.locator("argo-problems summary")
+    expect(summary).to_contain_text("problem")
+    ann.click(summary)
+    ann.click(ann.button("Measure 20 first"))
+    expect(row(ann, "MEASURE 20")).to_have_count(1)
+    expect(ann.button("Measure 20 first")).to_have_count(0)
+
+
+def test_two_thousand_tasks_open_and_scroll(browsers, address, service) -> None:
+    many = [{"name": f"T{n}", "action": "MEASURE", "object_id": "1"} for n in range(2000)]
+    for task, after in pairwise(many):
+        task["transitions"] = [{"target": after["name"]}]
+    id = service.create("Long", {"version": 3, "site": "umad", "tasks": many})
+    ann = browsers.person(address)
+    ann.open(f"/missions/{id}")
+    expect(row(ann, "T0")).to_be_visible()
+    assert ann.page.get_by_role("treeitem").count() < 100
+    ann.page.get_by_role("tree").focus()
+    ann.key("End")
+    expect(row(ann, "T1999")).to_be_visible()
+    ann.key("Delete")
+    expect(row(ann, "T1998")).to_have_attribute("aria-selected", "true")

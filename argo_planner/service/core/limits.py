@@ -1,6 +1,7 @@
 """How large plans may be, and which texts names may be."""
 
 import re
+import unicodedata
 from collections.abc import Iterator
 
 from argo_compiler.errors import Invalid
@@ -16,14 +17,20 @@ LONGEST_NAME = 200
 LONGEST_TEXT = 20_000
 """characters of each text in the header"""
 
+_BLANK = "\u115f\u1160\u2800\u3164\uffa0"
+"""letters and signs that nothing is drawn of"""
 _UNSEEN = re.compile("[\x00-\x1f\x7f-\x9f\u2028\u2029\u202a-\u202e\u2066-\u2069\ud800-\udfff]")
 """control characters, those that turn the direction of what follows, and halves of characters"""
 
 
+def _seen(character: str) -> bool:
+    return unicodedata.category(character)[0] in "LNPSM" and character not in _BLANK
+
+
 def require_name(name: str, what: str) -> None:
     """Raises Invalid for what can't be shown to people as a name; any other text can be one."""
-    if not name.strip():
-        raise Invalid(f"{what} needs a name: give it one")
+    if not any(map(_seen, name)):
+        raise Invalid(f"{what} needs a name that can be seen: give it one")
     if len(name) > LONGEST_NAME:
         raise Invalid(
             f"{what} has a name of {len(name)} characters: give it one of at most {LONGEST_NAME}"

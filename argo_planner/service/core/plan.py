@@ -71,6 +71,11 @@ class MissionPlan:
             )
         return known
 
+    def replaced(self, id: str, author: str) -> Revision | None:
+        """What came of the author's command of that id, if it has put another mission here."""
+        mine = (r for r in self.history if r.id == id and r.author == author)
+        return next((r for r in mine if r.kind == "replace"), None)
+
     def carried_out(
         self, command: PlanCommand, author: str, made_on: int, at: datetime
     ) -> "MissionPlan":

@@ -106,7 +106,7 @@ class PlanRoom:
             plan = self.document.plan
             known = plan.repeated(command, author)
             if known is not None:
-                return self._done(known, author)
+                return self.done(known, author)
             on = plan.revision if made_on is None else made_on
             changed, record = self.document.made(
                 plan.carried_out(command, author, on, self._clock())
@@ -116,7 +116,7 @@ class PlanRoom:
             findings = None if self._findings == before else self._findings
             self._tell(RevisionTold.model_construct(revision=record.revision, findings=findings))
             self._analyse_soon()
-            return self._done(record.revision, author)
+            return self.done(record.revision, author)
 
     async def rename(self, name: str, author: str) -> None:
         """Gives the plan another name. Raises Invalid, Unavailable."""
@@ -160,23 +160,25 @@ class PlanRoom:
         """Somebody opens the plan. Their first message is the whole state, or, where the revision
         that they know is known here, what happened since then."""
         self._require_open()
-        mailbox = Mailbox()
-        self._members[client] = (Member(client=client, author=author), mailbox)
-        members = self._present()
+        member = Member(client=client, author=author)
+        members = (*self._present(), member)
         missed = None if since is None else self.document.plan.since(since)
+        past: list[Model] = []
         if since is None or missed is None:
             state = self.state(author)
-            first: Model = SnapshotTold.model_construct(client=client, state=state, members=members)
-            mailbox.post(first.model_dump_json())
+            told = SnapshotTold.model_construct(client=client, state=state, members=members)
+            past.append(told)
         else:
-            first = ResumedTold.model_construct(client=client, revision=since, members=members)
-            mailbox.post(first.model_dump_json())
-            for revision in missed:
-                told = RevisionTold.model_construct(revision=revision, findings=self._findings)
-                mailbox.post(told.model_dump_json())
+            past.append(ResumedTold.model_construct(client=client, revision=since, members=members))
+            past += [RevisionTold.model_construct(revision=revision) for revision in missed]
+            if missed:
+                newest = RevisionTold.model_construct(revision=missed[-1], findings=self._findings)
+                past[-1] = newest
             if self._analysis is not None:
-                mailbox.post(AnalysisTold(analysis=self._analysis).model_dump_json())
-        self._tell(MembersTold(members=members), but=client)
+                past.append(AnalysisTold.model_construct(analysis=self._analysis))
+        mailbox = Mailbox(told.model_dump_json() for told in past)
+        self._tell(MembersTold(members=members))
+        self._members[client] = (member, mailbox)
         return mailbox
 
     def select(self, client: str, names: tuple[str, ...]) -> None:
@@ -202,12 +204,14 @@ class PlanRoom:
         if self._members.pop(client, None) is not None:
             self._tell(MembersTold(members=self._present()))
 
-    async def close(self, deleted: bool = False) -> None:
-        """Lets everybody go, and closes the file once nothing is being done."""
+    async def close(self, deleting: Callable[[], None] | None = None) -> None:
+        """Lets everybody go, and closes the file once nothing is being done. `deleting` moves the
+        file away before; raises what it raises, and goes on as before then."""
         async with self._turn:
             if self._closed:
                 return
-            if deleted:
+            if deleting is not None:
+                await asyncio.to_thread(deleting)
                 self._tell(DeletedTold())
             self.close_idle()
 
@@ -242,7 +246,8 @@ class PlanRoom:
         # Not before, so that whoever joins meanwhile is told of it like all others.
         self._document = document
 
-    def _done(self, revision: Revision, author: str) -> CommandDone:
+    def done(self, revision: Revision, author: str) -> CommandDone:
+        """The answer to the command that made a revision."""
         plan = self.document.plan
         return CommandDone.model_construct(
             revision=revision,

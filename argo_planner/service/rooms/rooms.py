@@ -3,13 +3,14 @@
 import asyncio
 from collections.abc import Callable
 from datetime import datetime
+from functools import partial
 
 from argo_compiler.catalog import Catalog
-from argo_compiler.errors import Conflict
 from argo_compiler.il import Mission
 from argo_planner.service.jobs.analysis import Analyst
 from argo_planner.service.rooms.room import PlanRoom
-from argo_planner.service.storage.folder import PlanFolder, PlanSummary, summary_of
+from argo_planner.service.storage.folder import PlanFolder, summary_of
+from argo_planner.service.storage.outline import PlanSummary
 
 MOST_OPEN = 50
 """rooms without anybody in them that stay open"""
@@ -31,17 +32,18 @@ class PlanRooms:
         self._clock = clock
         self._rooms: dict[str, PlanRoom] = {}
         self._turn = asyncio.Lock()
+        self._listing = asyncio.Lock()  # lists are only read: nobody's edits wait for them
 
     async def plans(self) -> list[PlanSummary]:
         """All plans, the newest ones first."""
-        async with self._turn:
+        async with self._listing:
             listed = await asyncio.to_thread(self._folder.plans)
         opened = {id: summary_of(room.document) for id, room in self._rooms.items()}
         return [opened.get(plan.id, plan) for plan in listed]
 
     async def deleted(self) -> list[PlanSummary]:
         """Those in the bin."""
-        async with self._turn:
+        async with self._listing:
             return await asyncio.to_thread(self._folder.deleted)
 
     async def create(self, name: str, mission: Mission) -> PlanRoom:
@@ -71,11 +73,13 @@ class PlanRooms:
 
     async def delete(self, id: str) -> None:
         """Moves a plan to the bin; whoever has it open is told. Raises NotFound, Conflict."""
-        await self._closed(id, deleted=True)
         async with self._turn:
-            if id in self._rooms:
-                raise Conflict(f"mission {id} was opened meanwhile: delete it again")
-            await asyncio.to_thread(self._folder.delete, id)
+            deleting = partial(self._folder.delete, id)
+            if (room := self._rooms.get(id)) is None:
+                await asyncio.to_thread(deleting)
+            else:
+                await room.close(deleting)
+                self._rooms.pop(id, None)
 
     async def restore(self, id: str) -> PlanRoom:
         """Takes a plan out of the bin. Raises NotFound."""
@@ -90,8 +94,9 @@ class PlanRooms:
 
     async def close(self) -> None:
         """Closes all of them, and the folder."""
-        for id in [*self._rooms]:
-            await self._closed(id)
+        for id, room in [*self._rooms.items()]:
+            await room.close()
+            self._rooms.pop(id, None)
         self._folder.close()
 
     def _opened(self, room: PlanRoom) -> PlanRoom:
@@ -100,8 +105,3 @@ class PlanRooms:
         for id in idle[: max(0, len(idle) - MOST_OPEN)]:
             self._rooms.pop(id).close_idle()
         return room
-
-    async def _closed(self, id: str, deleted: bool = False) -> None:
-        if (room := self._rooms.get(id)) is not None:
-            await room.close(deleted)
-            self._rooms.pop(id, None)

@@ -9,14 +9,14 @@ from dataclasses import dataclass
 from datetime import datetime
 from pathlib import Path
 
-from argo_compiler.errors import ArgoError, Conflict, NotFound, Unavailable
+from argo_compiler.errors import Conflict, NotFound, Unavailable
 from argo_compiler.il import Mission
-from argo_compiler.model import Model
 from argo_env.closing import Closing
 from argo_env.files.checked_lines import sync_folder
 from argo_planner.service.core.document import PlanDocument
 from argo_planner.service.core.limits import require_name
 from argo_planner.service.core.plan import MissionPlan
+from argo_planner.service.storage.outline import PlanSummary, read_outline
 from argo_planner.service.storage.plan_file import PlanFile, create_plan_file, open_plan_file
 
 MOST_PLANS = 2_000
@@ -25,19 +25,6 @@ PLAN_ID = r"[0-9a-f]{12}"
 """what a plan's id looks like, as a regular expression"""
 _BIN = "bin"
 _SUFFIX = ".plan"
-
-
-class PlanSummary(Model):
-    """What a list of plans shows of each."""
-
-    id: str
-    name: str
-    created: datetime | None = None
-    changed: datetime | None = None
-    revision: int = 0
-    tasks: int = 0
-    problem: str | None = None
-    """why it can't be opened, if it can't"""
 
 
 @dataclass(frozen=True)
@@ -102,7 +89,7 @@ class PlanFolder(Closing):
         return open_plan_file(path)
 
     def delete(self, id: str) -> None:
-        """Moves a plan to the bin, once its file is closed. Raises NotFound, Conflict if the bin
+        """Moves a plan to the bin. Raises NotFound, Conflict if the bin
         is full."""
         if sum(1 for _ in _files(self.path / _BIN)) >= MOST_PLANS:
             raise Conflict(f"there are {MOST_PLANS} missions in the bin: empty it first")
@@ -137,15 +124,19 @@ class PlanFolder(Closing):
             for path, known in self._known.items()
             if path.parent != folder or path in {*paths}
         }
-        found = [self._summary(path) for path in paths]
+        found = [summary for path in paths if (summary := self._summary(path)) is not None]
         return sorted(found, key=lambda s: (s.changed is not None, s.changed, s.id), reverse=True)
 
-    def _summary(self, path: Path) -> PlanSummary:
-        status = path.lstat()
+    def _summary(self, path: Path) -> PlanSummary | None:
+        """None: it has gone meanwhile."""
+        try:
+            status = path.lstat()
+        except FileNotFoundError:
+            return None
         state = (status.st_mtime_ns, status.st_size, status.st_ino)
         known = self._known.get(path)
         if known is None or known.state != state:
-            known = _Known(state, _read_summary(path))
+            known = _Known(state, read_outline(path))
             self._known[path] = known
         return known.summary
 
@@ -172,14 +163,6 @@ def summary_of(document: PlanDocument) -> PlanSummary:
         revision=document.plan.revision,
         tasks=len(document.plan.mission.tasks),
     )
-
-
-def _read_summary(path: Path) -> PlanSummary:
-    try:
-        with open_plan_file(path) as file:
-            return summary_of(file.document)
-    except ArgoError as error:
-        return PlanSummary(id=path.stem, name=path.stem, problem=str(error))
 
 
 def _files(folder: Path) -> Iterator[Path]:

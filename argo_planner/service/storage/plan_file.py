@@ -36,7 +36,9 @@ VERSION = 1
 """of the file's format"""
 MAX_BYTES = 1_000_000_000
 MOST_RECORDS = 400
-"""after which the file is written anew"""
+"""after which the file is written anew, and after as many bytes as the limit below"""
+MOST_GROWN = 16_000_000
+"""bytes that have come since, or as many as there were then, where those are more"""
 KEPT_RECORDS = 100
 """revisions that can still be undone then"""
 _FLAGS = os.O_RDWR | os.O_APPEND | os.O_CLOEXEC | os.O_NOFOLLOW
@@ -81,6 +83,7 @@ class PlanFile(Closing):
         self._file = file
         self._size = size
         self._lines = lines
+        self._begun = size
 
     def append(self, document: PlanDocument, record: PlanRecord) -> None:
         """Writes a record, after which the plan is the document. When this returns, it is on disk.
@@ -98,7 +101,8 @@ class PlanFile(Closing):
         self._size += len(line)
         self._lines += 1
         self.document = document
-        if self._lines > MOST_RECORDS:
+        grown = self._size - self._begun
+        if self._lines > MOST_RECORDS or grown > max(MOST_GROWN, self._begun):
             self._write_anew()
 
     def close(self) -> None:
@@ -114,6 +118,7 @@ class PlanFile(Closing):
             return  # all is in the file that there is
         os.close(self._file)
         self._file, self._size, self._lines = written
+        self._begun = self._size
 
 
 def create_plan_file(path: Path, document: PlanDocument) -> PlanFile:
@@ -131,11 +136,11 @@ def open_plan_file(path: Path) -> PlanFile:
         Invalid: nothing of it can be read.
         Unavailable: it can't be opened or written.
     """
-    content = _content(path)
+    content = plan_content(path)
     read = _read(content)
-    earlier = _earlier(path)
+    earlier = earlier_file(path)
     if read is None and os.path.exists(earlier):
-        before = _read(_content(earlier))
+        before = _read(plan_content(earlier))
         if before is not None:
             lost = "its first line is damaged: this is how the mission was some time before"
             return _recovered(path, before, lost)
@@ -263,8 +268,8 @@ def _written(
         write_all(file, content)
         os.fsync(file)
         if keep_before and os.path.exists(path):
-            _earlier(path).unlink(missing_ok=True)
-            os.link(path, _earlier(path), follow_symlinks=False)
+            earlier_file(path).unlink(missing_ok=True)
+            os.link(path, earlier_file(path), follow_symlinks=False)
         draft.replace(path)
         sync_folder(path.parent)
     except OSError as error:
@@ -274,21 +279,23 @@ def _written(
     return file, len(content), len(lines)
 
 
-def _earlier(path: Path) -> Path:
+def earlier_file(path: Path) -> Path:
+    """Where the file is kept that a plan's file took the place of."""
     return path.with_name(f"{path.name}.before")
 
 
-def _open(path: Path) -> int:
+def _open(path: Path, flags: int = _FLAGS) -> int:
     try:
-        return os.open(path, _FLAGS)
+        return os.open(path, flags)
     except FileNotFoundError:
         raise NotFound(f"{path.name}: there is no such mission") from None
     except OSError as error:
         raise Unavailable(f"{path.name}: can't be opened: {error.strerror}") from error
 
 
-def _content(path: Path) -> bytes:
-    file = _open(path)
+def plan_content(path: Path) -> bytes:
+    """The bytes of a plan's file. Raises NotFound, Unavailable, Invalid if it is too large."""
+    file = _open(path, os.O_RDONLY | os.O_CLOEXEC | os.O_NOFOLLOW)
     try:
         if os.fstat(file).st_size > MAX_BYTES:
             raise Invalid(f"{path.name}: is larger than {MAX_BYTES // 1_000_000} MB: no plan is")

@@ -2,6 +2,7 @@
 
 import json
 from collections.abc import Callable
+from dataclasses import dataclass
 from typing import Annotated, Any, TypeVar
 
 from fastapi.exceptions import RequestValidationError
@@ -11,6 +12,7 @@ from pydantic_core import core_schema
 T = TypeVar("T")
 
 
+@dataclass(frozen=True)
 class StrictJson:
     """Marks the type of a body in which a text such as "1.5" is no number.
 
@@ -18,10 +20,14 @@ class StrictJson:
     tuples and members of enumerations, which no JSON has; so the body is validated as JSON again.
     """
 
+    whole: Any = None
+    """the type with what tells the kinds of a union apart, which pydantic takes off before it asks
+    here; None: it is no union"""
+
     def __get_pydantic_core_schema__(
         self, source: Any, handler: GetCoreSchemaHandler
     ) -> core_schema.CoreSchema:
-        adapter = TypeAdapter[Any](source)
+        adapter = TypeAdapter[Any](source if self.whole is None else self.whole)
 
         def validated(given: Any, leniently: Callable[[Any], Any]) -> Any:
             if isinstance(given, bytes):  # by its header it is no JSON

@@ -4,7 +4,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from http import HTTPStatus
 from http.cookies import CookieError, SimpleCookie
-from urllib.parse import parse_qsl, quote, urlencode, urlsplit
+from urllib.parse import parse_qsl, quote, urlencode
 
 from starlette.datastructures import Headers, MutableHeaders
 from starlette.responses import RedirectResponse, Response
@@ -87,7 +87,10 @@ class Guard:
         if scope["type"] == "websocket":
             await self._app(scope, receive, send)
         else:
-            await self._app(scope, _limited(scope, receive), _protected(scope, send))
+            arriving = _Arriving(scope, receive)
+            await self._app(scope, arriving.receive, _protected(scope, arriving.answered(send)))
+            if arriving.too_large:
+                await _refuse(problem_of(_too_much(scope)), scope, receive, send)
 
     def _refused(self, scope: Scope, headers: Headers) -> Problem | None:
         """Why a request from there is not let in, if it is not."""
@@ -98,8 +101,7 @@ class Guard:
             return plain(HTTPStatus.FORBIDDEN, "foreign-host", said)
         origin = headers.get("origin")
         if origin is not None and origin not in self._doors.origins:
-            parts = urlsplit(origin)
-            if parts.netloc.lower() != hosts[0].lower() or parts.scheme not in ("http", "https"):
+            if origin.lower() not in (f"http://{hosts[0].lower()}", f"https://{hosts[0].lower()}"):
                 said = "pages of another origin may not use the service (`Origin`)"
                 return plain(HTTPStatus.FORBIDDEN, "foreign-origin", said)
         elif origin is None and headers.get("sec-fetch-site") in ("cross-site", "same-site"):
@@ -164,19 +166,35 @@ def _too_much(scope: Scope) -> TooLarge:
     return TooLarge(f"more than {_most(scope) // 1_000_000} MB were sent: that is not taken")
 
 
-def _limited(scope: Scope, receive: Receive) -> Receive:
-    """Raises TooLarge when more arrives than is taken, whatever was said before."""
-    arrived = 0
+class _Arriving:
+    """A request's body as it arrives. Counts it: what is too large is no longer read, whatever was
+    said of its size before."""
 
-    async def receiving() -> Message:
-        nonlocal arrived
-        message = await receive()
-        arrived += len(message.get("body", b""))
-        if arrived > _most(scope):
-            raise _too_much(scope)
+    def __init__(self, scope: Scope, receive: Receive) -> None:
+        self._scope, self._receive = scope, receive
+        self._arrived = 0
+        self._begun = False
+        self.too_large = False
+        """and nothing has been answered yet"""
+
+    async def receive(self) -> Message:
+        message = await self._receive()
+        self._arrived += len(message.get("body", b""))
+        if self._arrived > _most(self._scope):
+            self.too_large = not self._begun
+            raise _too_much(self._scope)
         return message
 
-    return receiving
+    def answered(self, send: Send) -> Send:
+        """Sends an answer, unless it is one to a body that was too large: the frameworks between
+        here and the routes call that a bad request."""
+
+        async def sending(message: Message) -> None:
+            self._begun = True
+            if not self.too_large:
+                await send(message)
+
+        return sending
 
 
 def _protected(scope: Scope, send: Send) -> Send:

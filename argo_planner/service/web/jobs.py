@@ -7,6 +7,7 @@ from pydantic import Field
 
 from argo_compiler.errors import Conflict
 from argo_compiler.model import Model
+from argo_compiler.reorder.precedences import require_known
 from argo_compiler.reorder.requirements import Requirements
 from argo_planner.service.core.commands import CommandId, ReplacePlan
 from argo_planner.service.core.refusals import StaleRevision
@@ -78,6 +79,7 @@ async def suggest_order(
     document = (await service.rooms.open(id)).document
     sound(document, service.site)
     plan = document.plan
+    require_known(plan.mission, asked.requirements)
     job = service.jobs.suggest_order(
         id, plan.revision, plan.mission, asked.requirements, asked.time_limit, visitor.author
     )

@@ -23,8 +23,9 @@ from argo_planner.service.core.commands import Revision
 from argo_planner.service.core.document import PlanDocument
 from argo_planner.service.core.limits import require_fitting
 from argo_planner.service.rooms.messages import PlanState
-from argo_planner.service.storage.folder import PlanSummary, summary_of
+from argo_planner.service.storage.folder import summary_of
 from argo_planner.service.storage.notes import drop_notes, keep_notes
+from argo_planner.service.storage.outline import PlanSummary
 from argo_planner.service.web.bodies import Sent
 from argo_planner.service.web.problems import documented
 from argo_planner.service.web.requests import (

@@ -110,7 +110,7 @@ def problem_of(error: ArgoError) -> Problem:
         diagnostics=diagnostics,
         remedies=tuple(dict.fromkeys(map(str, _remedies(error, diagnostics)))),
         place=error.place if isinstance(error, EditRefused) else None,
-        newest=error.newest if isinstance(error, StaleCommand) else None,
+        newest=error.newest if isinstance(error, StaleCommand | StaleRevision) else None,
         since=error.since if isinstance(error, StaleCommand) else None,
     )
 

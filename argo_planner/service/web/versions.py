@@ -4,13 +4,15 @@ from typing import Annotated
 
 from fastapi import APIRouter, Path, Response
 
+from argo_compiler.errors import NotFound
 from argo_compiler.model import Model
 from argo_planner.service.core.commands import CommandId, ReplacePlan
 from argo_planner.service.core.document import PlanVersion
+from argo_planner.service.core.refusals import StaleRevision
 from argo_planner.service.rooms.messages import CommandDone, VersionSummary
 from argo_planner.service.web.bodies import Sent
 from argo_planner.service.web.commands import carried_out
-from argo_planner.service.web.problems import documented
+from argo_planner.service.web.problems import StaleCommand, documented
 from argo_planner.service.web.requests import (
     KEYS,
     MadeOn,
@@ -76,7 +78,10 @@ async def keep_version(
 ) -> Response:
     """Keeps the mission as it stands under a name."""
     room = await service.rooms.open(id)
-    version = await room.keep_version(given.name, visitor.author, made_on)
+    try:
+        version = await room.keep_version(given.name, visitor.author, made_on)
+    except StaleRevision as stale:
+        raise StaleCommand(stale, room.document.plan.since(stale.made_on)) from None
     return said(version, 201, location=f"/api/missions/{id}/versions/{version.number}")
 
 
@@ -114,7 +119,14 @@ async def restore_version(
 ) -> Response:
     """Makes a version the mission again, as a command that can be undone."""
     room = await service.rooms.open(id)
-    version = room.document.version(number)
+    try:
+        version = room.document.version(number)
+    except NotFound:
+        # Dropped since, maybe: who sends a command again gets its answer all the same.
+        plan = room.document.plan
+        if (again := plan.replaced(command.id, visitor.author)) is None:
+            raise
+        return said(room.done(again, visitor.author), revision=plan.revision)
     replaced = ReplacePlan.model_construct(
         id=command.id, mission=version.mission, about=f"version {version.name}"
     )

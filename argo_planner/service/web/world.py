@@ -8,7 +8,7 @@ from fastapi import APIRouter, Path, Request, Response
 from pydantic import Field
 
 from argo_compiler.catalog import CheckpointKind
-from argo_compiler.errors import NotFound
+from argo_compiler.errors import Invalid
 from argo_compiler.il import Task
 from argo_compiler.model import Model, Pose
 from argo_planner.service.web.bodies import Sent
@@ -154,8 +154,8 @@ async def put_obstacles(
 async def preview_a_way(service: Service, _: Viewer, asked: Sent[WayAsked]) -> Response:
     """The way that the robot would take, with its time, climb and energy."""
     goal = asked.task or asked.goal
-    if goal is None:
-        raise NotFound("say where the way leads: give a `goal` or a `task`")
+    if goal is None or (asked.task and asked.goal):
+        raise Invalid("say where the way leads: give either a `goal` or a `task`")
     obstacles = service.obstacles.present.obstacles
     return said(await service.on_site(preview_way, service.site, asked.start, goal, obstacles))
 

@@ -9,7 +9,7 @@ from typing import Annotated
 
 import numpy as np
 from numpy.typing import NDArray
-from pydantic import Field
+from pydantic import Field, field_validator
 
 from argo_compiler.errors import Invalid
 from argo_compiler.model import Model, Pose
@@ -19,12 +19,15 @@ from argo_env.navigation.raster import CELL
 from argo_env.planning.opening import OpenedSite
 from argo_env.site.shapes import Box, Element, Role
 from argo_env.site.spec import Rect
+from argo_planner.service.core.limits import require_name
 
 MOST_OBSTACLES = 200
 _SLABS = 32  # rectangles at most that stand for an obstacle which is turned
 _STRAIGHT = 1e-6  # rad
 
 _Edge = Annotated[float, Field(gt=0, le=20)]
+FARTHEST = 10_000.0
+"""m from the middle of the site's frame"""
 
 
 class Obstacle(Model):
@@ -37,6 +40,13 @@ class Obstacle(Model):
     size: tuple[_Edge, _Edge, _Edge]
     """m, along its own axes: x, y and upwards"""
 
+    @field_validator("pose")
+    @classmethod
+    def _near(cls, pose: Pose) -> Pose:
+        if max(abs(pose.x), abs(pose.y), abs(pose.z)) > FARTHEST:
+            raise ValueError(f"stands farther away than {FARTHEST:g} m, on no site")
+        return pose
+
     def body(self) -> Box:
         """It as a solid."""
         x, y, z = self.pose.x, self.pose.y, self.pose.z + self.size[2] / 2
@@ -48,11 +58,15 @@ def with_obstacles(site: OpenedSite, obstacles: Sequence[Obstacle]) -> OpenedSit
     them, and in the worlds of runs on it they are solid. Its catalogue is that of the site.
 
     It can't be sent to another process: who wants it there makes it there. Raises Invalid for two
-    obstacles with one id, or too many.
+    obstacles with one id, for too many, or for names that can't be seen.
     """
     if len(obstacles) > MOST_OBSTACLES:
         raise Invalid(f"{len(obstacles)} obstacles are too many: at most {MOST_OBSTACLES}")
     ids = [obstacle.id for obstacle in obstacles]
+    for obstacle in obstacles:
+        require_name(obstacle.id, "an obstacle")
+        if obstacle.name:
+            require_name(obstacle.name, f"obstacle `{obstacle.id}`")
     if twice := next((id for id in ids if ids.count(id) > 1), None):
         raise Invalid(f"two obstacles have the id `{twice}`: give each one of its own")
     return _with_obstacles(site, tuple(obstacles)) if obstacles else site

@@ -122,6 +122,6 @@ def test_a_way_is_previewed(service: Served) -> None:
     assert way["problem"] is None
     nowhere = {"start": dock, "goal": {"x": 1e3, "y": 1e3, "z": 0}}
     assert client.post("/api/world/way", json=nowhere).json()["problem"]
-    problem(client.post("/api/world/way", json={"start": dock}), 404, "not-found")
+    problem(client.post("/api/world/way", json={"start": dock}), 422, "invalid")
     words = {"start": dock, "goal": dock | {"x": "1.5"}}
     assert "goal.x" in problem(client.post("/api/world/way", json=words), 422, "invalid")["detail"]

@@ -1,0 +1,184 @@
+"""What strangers send: each gets one clear answer, and nothing is lost."""
+
+import os
+from collections.abc import Iterator
+from pathlib import Path
+
+import pytest
+from websockets.exceptions import InvalidStatus
+
+from argo_planner.service.rooms import mailbox
+from argo_planner.service.storage import folder, plan_file
+from tests.argo_planner.service.served import Served
+
+TASK = {"name": "a", "action": "WAYPOINT", "pose": {"x": 3.05, "y": 1.55, "z": 0.0}}
+CHANGE = {"kind": "change_task", "name": "a", "retries": 3}
+ADD = {"kind": "add_task", "task": TASK}
+
+
+@pytest.fixture
+def plan(service: Served) -> str:
+    id = service.create("Round")
+    assert service.command(id, 1, ADD).status_code == 200
+    return id
+
+
+def test_whoever_missed_more_than_waits_for_anybody_resumes(service, plan, monkeypatch) -> None:
+    for k in range(2, 14):
+        edit = {"kind": "change_task", "name": "a", "retries": k}
+        assert service.command(plan, k, edit).status_code == 200
+    monkeypatch.setattr(mailbox, "MOST_MESSAGES", 3)
+    monkeypatch.setattr(mailbox, "MOST_CHARACTERS", 100)
+    following = service.follow(plan, since=2)
+    told = [following.recv(timeout=10) for _ in range(13)]
+    assert '"resumed"' in told[0]
+    assert all('"revision"' in text for text in told[1:])
+
+
+def test_listing_missions_writes_nothing(service, plan) -> None:
+    folder: Path = service.folder
+    (folder / "aaaaaaaaaaaa.plan").write_bytes(b"no plan\n")
+    torn = (folder / f"{plan}.plan").read_bytes()[:-20]
+    (folder / "bbbbbbbbbbbb.plan").write_bytes(torn)
+    before = {path.name: path.stat().st_mtime_ns for path in folder.iterdir()}
+    listed = service.client.get("/api/missions").json()["missions"]
+    assert {path.name: path.stat().st_mtime_ns for path in folder.iterdir()} == before
+    found = {one["id"]: one for one in listed}
+    assert "damaged" in found["aaaaaaaaaaaa"]["problem"]
+    assert found[plan]["tasks"] == 1
+    assert [one["tasks"] for one in listed if one["revision"] == 1 and not one["problem"]] == [0]
+
+
+def test_the_list_says_what_the_mission_is(service, plan) -> None:
+    other = {**TASK, "name": "b"}
+    assert service.command(plan, 2, {"kind": "add_task", "task": other}).status_code == 200
+    assert service.command(plan, 3, {"kind": "remove_task", "name": "a"}).status_code == 200
+    renamed = service.client.put(f"/api/missions/{plan}/name", json={"name": "Night"})
+    assert renamed.status_code == 200
+    service.client.delete(f"/api/missions/{plan}")
+    (listed,) = service.client.get("/api/bin").json()["missions"]
+    assert (listed["name"], listed["tasks"], listed["revision"]) == ("Night", 1, 4)
+    service.client.delete(f"/api/bin/{plan}")
+
+
+@pytest.mark.parametrize(
+    "origin", ["http://[::1", "http://a:99999", "null", "//", "http://ä", "https://example.org"]
+)
+def test_odd_origins_are_refused(service, origin) -> None:
+    answer = service.client.get("/api/service", headers={b"origin": origin.encode()})
+    assert (answer.status_code, answer.json()["code"]) == (403, "foreign-origin")
+
+
+def test_a_body_of_unsaid_size_that_is_too_large_is_called_so(service) -> None:
+    def parts() -> Iterator[bytes]:
+        for _ in range(30):
+            yield b" " * 100_000
+
+    json = {"content-type": "application/json"}
+    answer = service.client.post("/api/missions", content=parts(), headers=json)
+    assert (answer.status_code, answer.json()["code"]) == (413, "too-large")
+
+
+def test_what_is_wrong_with_an_edit_is_said_of_that_kind_of_edit(service, plan) -> None:
+    wrong = {"kind": "add_task", "task": {**TASK, "pose": {"x": "1", "y": 0, "z": 0}}}
+    detail = service.command(plan, 2, wrong).json()["detail"]
+    assert "edits.0.add_task.task.pose.x" in detail
+    assert "UndoEdit" not in detail
+    unknown = {"kind": "edt", "id": "x"}
+    answer = service.client.post(
+        f"/api/missions/{plan}/commands", json=unknown, headers={"if-match": "*"}
+    )
+    assert "'edit', 'undo', 'redo', 'replace'" in answer.json()["detail"]
+
+
+@pytest.mark.parametrize("since", ["abc", "-1", "0", "1.5", "9" * 30])
+def test_a_socket_asked_for_since_no_number_says_so(service, plan, since) -> None:
+    with pytest.raises(InvalidStatus) as refused:
+        service.follow(plan, since=since)
+    assert refused.value.response.status_code == 422
+    assert b"since=" in refused.value.response.body
+
+
+def test_a_stale_version_says_what_was_done_since(service, plan) -> None:
+    url = f"/api/missions/{plan}/versions"
+    answer = service.client.post(url, json={"name": "v"}, headers={"if-match": '"1"'})
+    problem = answer.json()
+    assert (answer.status_code, problem["newest"]) == (412, 2)
+    assert [made["number"] for made in problem["since"]] == [2]
+
+
+def test_putting_a_version_back_is_answered_again_when_the_version_is_gone(service, plan) -> None:
+    url = f"/api/missions/{plan}/versions"
+    kept = service.client.post(url, json={"name": "v"}, headers={"if-match": "*"}).json()
+    assert service.command(plan, 2, CHANGE).status_code == 200
+    restore = f"{url}/{kept['number']}/restore"
+    body, made_on = {"id": "once-more"}, {"if-match": '"3"'}
+    first = service.client.post(restore, json=body, headers=made_on)
+    assert first.status_code == 200
+    service.client.delete(f"{url}/{kept['number']}")
+    again = service.client.post(restore, json=body, headers=made_on)
+    assert again.status_code == 200
+    assert again.json()["revision"] == first.json()["revision"]
+    other = service.client.post(restore, json={"id": "another"}, headers=made_on)
+    assert other.status_code == 404
+
+
+@pytest.mark.parametrize(
+    ("change", "said"),
+    [
+        ({"name": "\u200b\u200b"}, "can be seen"),
+        ({"name": "  "}, "can be seen"),
+        ({"name": "a\nb"}, "U+000A"),
+        ({"pose": {"x": 1e9, "y": 0, "z": 0}}, "farther away"),
+        ({"size": [0, 1, 1]}, "greater than 0"),
+        ({"size": [1, 1, 1e6]}, "less than or equal to 20"),
+    ],
+)
+def test_odd_obstacles_are_refused(service, change, said) -> None:
+    box = {"id": "1", "name": "box", "pose": {"x": 3, "y": 3, "z": 0}, "size": [1, 1, 1]}
+    answer = service.client.put(
+        "/api/world/obstacles", json={"obstacles": [box | change]}, headers={"if-match": "*"}
+    )
+    assert answer.status_code == 422
+    assert said in answer.json()["detail"]
+
+
+def test_a_way_leads_to_one_thing(service) -> None:
+    start = TASK["pose"]
+    for ends in ({}, {"goal": start, "task": TASK}):
+        answer = service.client.post("/api/world/way", json={"start": start, **ends})
+        assert answer.status_code == 422
+        assert "either" in answer.json()["detail"]
+
+
+def test_an_order_of_what_is_not_there_is_refused_at_once(service, plan) -> None:
+    url = f"/api/missions/{plan}/orders"
+    answer = service.client.post(url, json={"requirements": {"mandatory": ["nothing"]}})
+    assert answer.status_code in (404, 422)
+    assert "nothing" in answer.json()["detail"]
+
+
+def test_a_file_of_few_large_records_does_not_grow_without_end(service, plan, monkeypatch) -> None:
+    monkeypatch.setattr(plan_file, "MOST_GROWN", 100_000)
+    monkeypatch.setattr(plan_file, "KEPT_RECORDS", 5)
+    path = service.folder / f"{plan}.plan"
+    sizes = []
+    for k in range(60):
+        edit = {"kind": "set_header", "anomaly_specification": f"{k}" + "x" * 9_000}
+        assert service.command(plan, "*", edit).status_code == 200
+        sizes.append(os.path.getsize(path))
+    assert max(sizes) < 400_000
+    assert service.client.get(f"/api/missions/{plan}").json()["revision"] == 62
+
+
+def test_a_mission_that_can_not_be_binned_stays_open(service, plan, monkeypatch) -> None:
+    following = service.follow(plan)
+    following.recv(timeout=10)
+    monkeypatch.setattr(folder, "MOST_PLANS", 0)
+    assert service.client.delete(f"/api/missions/{plan}").status_code == 409
+    monkeypatch.undo()
+    assert service.command(plan, "*", CHANGE).status_code == 200
+    told = ""
+    while '"revision"' not in told.partition(",")[0]:
+        told = following.recv(timeout=10)
+    assert service.client.delete(f"/api/missions/{plan}").status_code == 204

@@ -27,7 +27,7 @@ def test_the_document_is_served(service: Served) -> None:
     assert served.json()["paths"].keys() >= {"/api/missions/{id}/commands"}
 
 
-def asked(service: Served, count: int, phases: str) -> int:
+def asked(service: Served, count: int, phases: str, folder: Path) -> int:
     """Lets schemathesis ask the service; how many cases it has made."""
     answer = subprocess.run(
         [
@@ -41,6 +41,7 @@ def asked(service: Served, count: int, phases: str) -> int:
         capture_output=True,
         text=True,
         check=False,
+        cwd=folder,  # it leaves files behind
     )
     assert answer.returncode == 0, answer.stdout[-20_000:] + answer.stderr[-2_000:]
     found = re.search(r"(\d+) generated", answer.stdout)
@@ -48,11 +49,13 @@ def asked(service: Served, count: int, phases: str) -> int:
     return int(found[1])
 
 
-def test_no_answer_is_against_the_document(service: Served) -> None:
-    assert asked(service, 3, "fuzzing") > 100
+def test_no_answer_is_against_the_document(service: Served, tmp_path: Path) -> None:
+    assert asked(service, 3, "fuzzing", tmp_path) > 100
 
 
 @pytest.mark.long
-def test_ten_thousand_cases_with_links_are_answered_as_documented(service: Served) -> None:
-    count = asked(service, 60, "coverage,fuzzing,stateful")
+def test_ten_thousand_cases_with_links_are_answered_as_documented(
+    service: Served, tmp_path: Path
+) -> None:
+    count = asked(service, 60, "coverage,fuzzing,stateful", tmp_path)
     assert count >= 10_000

@@ -1,8 +1,244 @@
-import { customElement, html, PageElement } from "../ui/element";
+/** The site, drawn: the floors, the checkpoints, the mission on them, and the robot. */
+
+import { effect, signal } from "@preact/signals-core";
+
+import { tell } from "../state/notices";
+import { mayPlan } from "../state/session";
+import { shownFloor, tool } from "../state/view";
+import { world } from "../state/world";
+import { t } from "../texts";
+import { customElement, html, look, nothing, PageElement, query } from "../ui/element";
+import "./bar";
+import "./card";
+import "./compass";
+import "./floors";
+import { heed } from "./heed";
+import { type Keyed, onSceneKey } from "./keys";
+import { ghost, ghostWords, hideGhost, hover, placeGhost, setsStart, takeGhost, turnGhost, verdictWords } from "./navigate";
+import { clickCorner, corners, hideCorners, pointCorner } from "./obstacle-tool";
+import "./obstacle-form";
+import { PointerWatch } from "./pointer";
+import { edgesMove } from "./settings";
+import { sceneStyle } from "./style";
+import { RobotView } from "./robot-view";
+import { SceneView } from "./view";
+import { opened } from "./marks";
+import { ObstacleView } from "./obstacle-view";
+import { PathsView } from "./paths-view";
+
+/** px from an edge of the picture at which the pointer moves the camera */
+const EDGE_PX = 14;
+const SAID_AFTER_MS = 350;
+const MOST_TIMES = 500;
 
 @customElement("argo-scene")
 export class ScenePanel extends PageElement {
+  static override styles = [look, sceneStyle];
+
+  @query("canvas") private readonly canvas!: HTMLCanvasElement;
+  @query("#labels") private readonly labels!: HTMLElement;
+  @query("#picture") private readonly picture!: HTMLElement;
+  @query("#verdict") private readonly verdict!: HTMLElement | null;
+
+  private readonly view = signal<SceneView | null>(null);
+  private readonly broken = signal(false);
+  private readonly said = signal("");
+  private parts: { dispose(): void }[] = [];
+  private stops: (() => void)[] = [];
+  private saying: ReturnType<typeof setTimeout> | undefined;
+  /** Whether the ghost was moved by keys last. */
+  private keyed = false;
+
+  override connectedCallback(): void {
+    super.connectedCallback();
+    if (this.hasUpdated) this.begin();
+    addEventListener("contextmenu", this.onMenu);
+  }
+
+  override firstUpdated(): void {
+    this.begin();
+  }
+
+  override disconnectedCallback(): void {
+    super.disconnectedCallback();
+    removeEventListener("contextmenu", this.onMenu);
+    clearTimeout(this.saying);
+    for (const stop of this.stops) stop();
+    for (const part of this.parts.reverse()) part.dispose();
+    this.parts = [];
+    this.stops = [];
+    this.view.value = null;
+    hideGhost();
+    hideCorners();
+    opened.value = null;
+  }
+
+  private begin(): void {
+    let view: SceneView;
+    try {
+      view = new SceneView(this.canvas, this.labels);
+    } catch {
+      this.broken.value = true; // without WebGL
+      return;
+    }
+    const sizes = new ResizeObserver(() => view.resize(this.picture.clientWidth, this.picture.clientHeight));
+    sizes.observe(this.picture);
+    view.resize(this.picture.clientWidth, this.picture.clientHeight);
+    this.parts = [
+      view,
+      new RobotView(view),
+      new PathsView(view),
+      new ObstacleView(view),
+      new PointerWatch(this.canvas, this.told(view)),
+      { dispose: () => sizes.disconnect() },
+    ];
+    this.stops = [
+      effect(() => this.take(view)),
+      effect(() => this.announce()),
+      effect(() => this.placeVerdict(view)),
+    ];
+    this.view.value = view;
+  }
+
+  /** What the tool in hand needs. */
+  private take(view: SceneView): void {
+    const now = tool.value;
+    view.camera.wheel = now !== "navigate";
+    if (now === "navigate" && world.value !== null) takeGhost();
+    if (now !== "select") opened.value = null;
+    if (now !== "navigate") hideGhost();
+    if (now !== "obstacle") hideCorners();
+  }
+
+  private told(view: SceneView) {
+    return {
+      pointed: (x: number, y: number) => {
+        this.keyed = false;
+        this.pushAtEdge(view, x, y);
+        if (tool.value === "navigate") this.timed(view, () => hover(view.rayAt(x, y), view.site));
+        else if (tool.value === "obstacle") pointCorner(view.site.hitWays(view.rayAt(x, y)));
+        else this.canvas.classList.toggle("over", view.markAt(x, y) !== null);
+      },
+      left: () => {
+        view.camera.edge(0, 0);
+        if (!this.keyed) hideGhost();
+      },
+      clicked: (x: number, y: number, add: boolean) => {
+        this.picture.focus({ preventScroll: true });
+        if (tool.value !== "select" && !mayPlan()) tell("warn", t().scene.mayNot);
+        else if (tool.value === "navigate") {
+          hover(view.rayAt(x, y), view.site);
+          this.place();
+        } else if (tool.value === "obstacle") clickCorner(view.site.hitWays(view.rayAt(x, y)));
+        else view.choose(view.markAt(x, y), add);
+      },
+      clickedRight: () => (tool.value = "select"),
+      wheeled: (steps: number) => {
+        if (tool.value !== "navigate") return false;
+        turnGhost(-steps);
+        return true;
+      },
+    };
+  }
+
+  /** Notes how long a verdict takes, for those who measure it. */
+  private timed(view: SceneView, work: () => void): void {
+    const begun = performance.now();
+    work();
+    heed(ghost);
+    view.hoverTimes = [...view.hoverTimes.slice(-MOST_TIMES), performance.now() - begun];
+  }
+
+  private pushAtEdge(view: SceneView, x: number, y: number): void {
+    const { width, height } = view.stage.size;
+    const side = (at: number, all: number) => (at < EDGE_PX ? -1 : at > all - EDGE_PX ? 1 : 0);
+    if (edgesMove.value) view.camera.edge(side(x, width), side(y, height));
+  }
+
+  private place(): void {
+    const at = ghost.value;
+    if (at?.verdict?.ground === "reached") void placeGhost();
+    else this.said.value = `${verdictWords(at)} `;
+  }
+
+  private readonly onMenu = (event: MouseEvent): void => {
+    const inList = event.composedPath().some((one) => one instanceof HTMLElement && one.localName === "argo-list");
+    if (!inList || tool.value === "select") return;
+    tool.value = "select";
+    event.preventDefault();
+  };
+
+  private readonly onKey = (event: KeyboardEvent): void => {
+    const view = this.view.value;
+    if (view === null || event.defaultPrevented) return;
+    const keyed: Keyed = { view, place: () => this.place() };
+    if (!onSceneKey(event, keyed)) return;
+    this.keyed = true;
+    event.preventDefault();
+    event.stopPropagation();
+  };
+
+  /** Says what holds at the ghost, once it rests. */
+  private announce(): void {
+    const at = ghost.value;
+    clearTimeout(this.saying);
+    if (at === null) return;
+    const words = `${verdictWords(at)}. ${ghostWords(at)}`;
+    this.saying = setTimeout(() => (this.said.value = words), SAID_AFTER_MS);
+  }
+
+  /** The reason stands beside the ghost. */
+  private placeVerdict(view: SceneView): void {
+    const at = ghost.value;
+    heed(view.frames);
+    const beside = this.verdict;
+    if (beside === null) return;
+    const seen = at === null ? null : view.project(at);
+    beside.hidden = seen === null;
+    if (seen === null) return;
+    beside.textContent = verdictWords(at);
+    beside.classList.toggle("bad", at?.verdict !== null && at?.verdict.ground !== "reached");
+    beside.style.setProperty("transform", `translate(${Math.round(seen.x + 22)}px, ${Math.round(seen.y + 14)}px)`);
+  }
+
   override render() {
-    return html``;
+    const texts = t().scene;
+    const view = this.view.value;
+    if (this.broken.value) return html`<p class="nothing" role="status">${texts.noPicture}</p>`;
+    const loading = view?.loading.value ?? "loading";
+    const navigates = tool.value === "navigate";
+    return html`
+      <div
+        id="picture"
+        role="application"
+        tabindex="0"
+        aria-label=${texts.site}
+        aria-describedby="help"
+        @keydown=${this.onKey}
+        @keyup=${(event: KeyboardEvent) => view?.camera.key(event.key, false, event.shiftKey)}
+        @blur=${() => view?.camera.letGo()}
+      >
+        <canvas class=${tool.value}></canvas>
+        <div id="labels" aria-hidden="true"></div>
+        <div id="verdict" aria-hidden="true" hidden></div>
+      </div>
+      <p id="help" class="unseen">${navigates ? texts.helpNavigate : texts.help}</p>
+      <p class="unseen" aria-live="polite" id="said">${this.said.value}</p>
+      ${loading === "there"
+        ? nothing
+        : html`<p class="loading" role="status">${loading === "failed" ? texts.notLoaded : texts.loading}</p>`}
+      ${view === null
+        ? nothing
+        : html`<argo-scene-floors .view=${view}></argo-scene-floors>
+            <argo-scene-bar .view=${view}></argo-scene-bar>
+            <argo-scene-compass .view=${view}></argo-scene-compass>
+            <argo-scene-card .view=${view}></argo-scene-card>`}
+      ${navigates ? html`<p class="hint">${setsStart.value ? texts.hintStart : texts.hintWaypoint}</p>` : nothing}
+      ${tool.value === "obstacle" && (corners.value?.second ?? null) === null
+        ? html`<p class="hint">${texts.hintObstacle}</p>`
+        : nothing}
+      ${tool.value === "obstacle" ? html`<argo-obstacle-form></argo-obstacle-form>` : nothing}
+      <span class="unseen" id="floor">${shownFloor.value === null ? texts.allFloors : texts.floor(shownFloor.value)}</span>
+    `;
   }
 }

@@ -1,0 +1,95 @@
+/** Which labels are shown and on which side of their points, so that none lies over another one. */
+
+export interface LabelWish {
+  readonly key: string;
+  /** px, the point that it names */
+  readonly x: number;
+  readonly y: number;
+  /** px */
+  readonly width: number;
+  readonly height: number;
+  /** The higher, the sooner it gets a place. */
+  readonly weight: number;
+}
+
+export type Side = "right" | "left" | "above" | "below";
+
+export interface PlacedLabel {
+  readonly key: string;
+  readonly side: Side;
+  /** px, its corner at the left and top */
+  readonly left: number;
+  readonly top: number;
+  readonly width: number;
+  readonly height: number;
+}
+
+const SIDES: readonly Side[] = ["right", "left", "above", "below"];
+/** px from the point, and between labels */
+const AWAY = 9;
+const ABOVE = 13;
+const BETWEEN = 2;
+/** px, edge of a cell of the grid in which neighbours are found */
+const CELL = 120;
+
+/** Places labels in a view of a size (px). A label keeps the side that it had `before` if it can,
+ * so that it does not jump about while the camera moves. */
+export function declutter(
+  wishes: readonly LabelWish[],
+  width: number,
+  height: number,
+  before: ReadonlyMap<string, Side> = new Map(),
+): PlacedLabel[] {
+  const grid = new Map<string, PlacedLabel[]>();
+  const placed: PlacedLabel[] = [];
+  const had = (wish: LabelWish) => (before.has(wish.key) ? 0.5 : 0);
+  const order = [...wishes].sort(
+    (a, b) => b.weight + had(b) - a.weight - had(a) || (a.key < b.key ? -1 : 1),
+  );
+  for (const wish of order) {
+    const first = before.get(wish.key);
+    const sides = first === undefined ? SIDES : [first, ...SIDES.filter((side) => side !== first)];
+    const options = sides.map((side) => boxAt(wish, side));
+    const box = options.find((one) => isInside(one, width, height) && !isTaken(grid, one));
+    if (box === undefined) continue;
+    placed.push(box);
+    for (const cell of cellsOf(box)) {
+      const there = grid.get(cell);
+      if (there) there.push(box);
+      else grid.set(cell, [box]);
+    }
+  }
+  return placed;
+}
+
+function boxAt({ key, x, y, width, height }: LabelWish, side: Side): PlacedLabel {
+  const left = side === "right" ? x + AWAY : side === "left" ? x - AWAY - width : x - width / 2;
+  const top = side === "above" ? y - ABOVE - height : side === "below" ? y + ABOVE : y - height / 2;
+  return { key, side, left: Math.round(left), top: Math.round(top), width, height };
+}
+
+function isInside(box: PlacedLabel, width: number, height: number): boolean {
+  return box.left >= 0 && box.top >= 0 && box.left + box.width <= width && box.top + box.height <= height;
+}
+
+function isTaken(grid: ReadonlyMap<string, readonly PlacedLabel[]>, box: PlacedLabel): boolean {
+  for (const cell of cellsOf(box))
+    for (const other of grid.get(cell) ?? []) if (overlap(box, other)) return true;
+  return false;
+}
+
+export function overlap(a: PlacedLabel, b: PlacedLabel): boolean {
+  return (
+    a.left < b.left + b.width + BETWEEN &&
+    b.left < a.left + a.width + BETWEEN &&
+    a.top < b.top + b.height + BETWEEN &&
+    b.top < a.top + a.height + BETWEEN
+  );
+}
+
+function* cellsOf(box: PlacedLabel): Generator<string> {
+  const last = (from: number, size: number) => Math.floor((from + size + BETWEEN) / CELL);
+  for (let i = Math.floor((box.left - BETWEEN) / CELL); i <= last(box.left, box.width); i++)
+    for (let j = Math.floor((box.top - BETWEEN) / CELL); j <= last(box.top, box.height); j++)
+      yield `${i} ${j}`;
+}

@@ -1,0 +1,22 @@
+/** Whether what a pointer does is a click or a drag. */
+
+/** px that a pointer may move in a click. */
+export const CLICK_PX = 4;
+
+export interface Press {
+  readonly pointer: number;
+  readonly button: number;
+  readonly x: number;
+  readonly y: number;
+  /** Whether it has become a drag; a drag stays one, also where it comes back. */
+  readonly drag: boolean;
+}
+
+export function pressed(pointer: number, button: number, x: number, y: number): Press {
+  return { pointer, button, x, y, drag: false };
+}
+
+export function moved(press: Press, x: number, y: number): Press {
+  if (press.drag || Math.hypot(x - press.x, y - press.y) < CLICK_PX) return press;
+  return { ...press, drag: true };
+}

@@ -1,0 +1,164 @@
+/** What was clicked, in a card beside it, with what can be done there. */
+
+import type { Obstacle, Pose, WorldCheckpoint } from "../api/types";
+import { addMeasure, addTask } from "../list/add";
+import { mayPlan } from "../state/session";
+import { look as lookSignal } from "../state/view";
+import { removeObstacle } from "../state/world";
+import { t } from "../texts";
+import { css, customElement, html, look, nothing, PageElement, property } from "../ui/element";
+import { icon } from "../ui/icons";
+import { heed } from "./heed";
+import { type Mark, opened, round } from "./marks";
+import { setsStart } from "./navigate";
+import { floating } from "./panel";
+import type { SceneView } from "./view";
+
+const [WIDTH, BESIDE, MARGIN] = [250, 26, 8];
+
+@customElement("argo-scene-card")
+export class SceneCard extends PageElement {
+  static override styles = [
+    look,
+    floating,
+    css`
+      :host {
+        top: 0;
+        left: 0;
+        z-index: 3;
+        width: 250px;
+      }
+      .panel {
+        display: grid;
+        gap: 4px;
+        padding: 8px 10px 10px;
+        background: var(--raised);
+      }
+      h2 {
+        overflow-wrap: anywhere;
+      }
+      .head {
+        display: flex;
+        align-items: start;
+        gap: 6px;
+      }
+      .head button {
+        min-height: 24px;
+        width: 24px;
+      }
+      .buttons {
+        display: flex;
+        flex-wrap: wrap;
+        gap: 6px;
+        margin-top: 4px;
+      }
+      .bad {
+        color: var(--bad);
+        overflow-wrap: anywhere;
+      }
+      .good {
+        color: var(--good);
+      }
+    `,
+  ];
+
+  @property({ attribute: false }) view: SceneView | null = null;
+
+  override render() {
+    const { view } = this;
+    if (view === null) return nothing;
+    heed(view.frames);
+    const mark = view.markOf(opened.value);
+    if (mark === null) return nothing;
+    this.stand(view, mark);
+    return html`<div class="panel" role="group" aria-label=${mark.text} @keydown=${this.onKey}>
+      <div class="head">
+        <h2 class="grow">${this.named(mark)}</h2>
+        <button class="bare icon" aria-label=${t().scene.close} @click=${() => (opened.value = null)}>
+          ${icon("close", 14)}
+        </button>
+      </div>
+      ${this.content(mark)}
+    </div>`;
+  }
+
+  private named({ subject, text }: Mark): string {
+    return subject.kind === "checkpoint" ? `#${subject.checkpoint.id} ${text}` : text;
+  }
+
+  private content(mark: Mark) {
+    const { subject } = mark;
+    if (subject.kind === "checkpoint") return this.checkpoint(mark, subject.checkpoint);
+    if (subject.kind === "place") return this.place(subject.name, subject.pose, subject.dock);
+    return subject.kind === "obstacle" ? this.obstacle(subject.obstacle) : nothing;
+  }
+
+  private checkpoint(mark: Mark, one: WorldCheckpoint) {
+    const texts = t().scene;
+    const { nominal, stands } = one;
+    return html`<p class="dim">${t().words.checkpoint[one.kind]} · ${texts.floor(one.floor)}</p>
+      <p>${texts.nominal(bound(nominal.low), bound(nominal.high), one.unit)}</p>
+      ${mark.value === "" ? nothing : html`<p class=${mark.tone}>${texts.reading(mark.value)}</p>`}
+      ${mark.numbers === "" ? nothing : html`<p class="dim">${texts.inMission(mark.numbers)}</p>`}
+      ${one.problem ? html`<p class="bad">${texts.cannotRead} ${one.problem}</p>` : nothing}
+      <div class="buttons">
+        <button class="main" id="measure" ?disabled=${!mayPlan()} @click=${() => void addMeasure(String(one.id))}>
+          ${icon("gauge", 16)} ${texts.measure}
+        </button>
+        ${stands ? this.stands(texts.standHere, stands, "WAYPOINT") : nothing}
+        <button @click=${() => (lookSignal.value = { kind: "checkpoint", id: String(one.id) })}>${texts.look}</button>
+      </div>`;
+  }
+
+  private place(name: string, pose: Pose, dock: number | null) {
+    const texts = t().scene;
+    return html`<div class="buttons">
+      ${this.stands(texts.driveHere, pose, dock === null ? name : "DOCK")}
+      ${setsStart.value
+        ? html`<button ?disabled=${!mayPlan()} @click=${() => void addTask("START", "START", { pose })}>
+            ${icon("flag", 16)} ${texts.startHere}
+          </button>`
+        : nothing}
+    </div>`;
+  }
+
+  private stands(label: string, pose: Pose, name: string) {
+    return html`<button ?disabled=${!mayPlan()} @click=${() => void addTask("WAYPOINT", name, { pose })}>
+      ${icon("drive", 16)} ${label}
+    </button>`;
+  }
+
+  private obstacle({ id, size: [x, y, z] }: Obstacle) {
+    const texts = t().scene;
+    return html`<p class="dim">${texts.size(round(x), round(y), round(z))}</p>
+      <div class="buttons">
+        <button class="danger" ?disabled=${!mayPlan()} @click=${() => void removeObstacle(id)}>
+          ${icon("bin", 16)} ${texts.remove}
+        </button>
+      </div>`;
+  }
+
+  /** Beside what it is about, and whole in the picture. */
+  private stand(view: SceneView, mark: Mark): void {
+    const seen = view.stage.project(mark.at);
+    const { width, height } = view.stage.size;
+    const tall = Math.max(120, this.clientHeight);
+    const right = (seen?.x ?? 0) + BESIDE;
+    const left = right + WIDTH + MARGIN > width ? (seen?.x ?? 0) - BESIDE - WIDTH : right;
+    const within = (at: number, most: number) => Math.round(Math.max(MARGIN, Math.min(at, most)));
+    const x = within(left, width - WIDTH - MARGIN);
+    const y = within((seen?.y ?? 0) - 30, height - tall - MARGIN);
+    this.style.setProperty("transform", `translate(${x}px, ${y}px)`);
+  }
+
+  private onKey(event: KeyboardEvent): void {
+    if (event.key !== "Escape") return;
+    opened.value = null;
+    event.stopPropagation();
+    event.preventDefault();
+  }
+}
+
+function bound(value: number | null | undefined): string {
+  return value === null || value === undefined ? "∞" : round(value);
+}

@@ -1,0 +1,85 @@
+/** The gauges and valves themselves, all of a kind drawn at once. */
+
+import { Color, Group, InstancedMesh, Matrix4, MeshLambertMaterial, DoubleSide } from "three";
+
+import { fetched } from "../api/client";
+import type { World, WorldCheckpoint } from "../api/types";
+import { merged, wholeModel } from "./geometry";
+import { readGlb } from "./glb";
+import type { Stage } from "./stage";
+
+/** They are small; so that they are seen they are drawn this much larger. */
+const LARGER = 1.6;
+
+export class Gauges {
+  private readonly group = new Group();
+  private readonly material = new MeshLambertMaterial({ vertexColors: true, flatShading: true, side: DoubleSide });
+  private readonly kinds: { readonly mesh: InstancedMesh; readonly all: readonly WorldCheckpoint[] }[] = [];
+  private tints = new Map<number, string>();
+
+  constructor(private readonly stage: Stage) {
+    stage.scene.add(this.group);
+  }
+
+  /** Reads the kinds that there are. Throws `Unreached`. */
+  async load(site: World, cancelled: () => boolean): Promise<void> {
+    const kinds = [...new Set(site.checkpoints.map((one) => one.kind))];
+    const found = await Promise.all(
+      kinds.map((kind) => fetched(`/api/world/checkpoints/${encodeURIComponent(kind)}`)),
+    );
+    if (cancelled()) return;
+    this.clear();
+    kinds.forEach((kind, index) => {
+      const geometry = merged(wholeModel(readGlb(found[index] as ArrayBuffer)));
+      const all = site.checkpoints.filter((one) => one.kind === kind);
+      const mesh = new InstancedMesh(geometry, this.material, all.length);
+      mesh.frustumCulled = false;
+      all.forEach((_, i) => mesh.setColorAt(i, new Color("#ffffff")));
+      this.kinds.push({ mesh, all });
+      this.group.add(mesh);
+    });
+    this.tints = new Map();
+  }
+
+  /** Draws those on floors that are shown. */
+  show(isShown: (floor: number) => boolean): void {
+    const place = new Matrix4();
+    for (const { mesh, all } of this.kinds) {
+      all.forEach((one, i) => {
+        const size = isShown(one.floor) ? LARGER : 0;
+        place.makeRotationZ(one.facing).setPosition(...one.position);
+        mesh.setMatrixAt(i, place.multiply(new Matrix4().makeScale(size, size, size)));
+      });
+      mesh.instanceMatrix.needsUpdate = true;
+    }
+    this.stage.need();
+  }
+
+  /** Tints some by their number; only what is different from before is touched. */
+  tint(tints: ReadonlyMap<number, string>): void {
+    for (const { mesh, all } of this.kinds)
+      all.forEach((one, i) => {
+        const wanted = tints.get(one.id);
+        if (wanted === this.tints.get(one.id)) return;
+        mesh.setColorAt(i, new Color(wanted ?? "#ffffff"));
+        if (mesh.instanceColor) mesh.instanceColor.needsUpdate = true;
+      });
+    this.tints = new Map(tints);
+    this.stage.need();
+  }
+
+  dispose(): void {
+    this.clear();
+    this.material.dispose();
+    this.group.removeFromParent();
+  }
+
+  private clear(): void {
+    for (const { mesh } of this.kinds) {
+      mesh.removeFromParent();
+      mesh.geometry.dispose();
+      mesh.dispose();
+    }
+    this.kinds.length = 0;
+  }
+}

@@ -1,0 +1,76 @@
+/** Keys while the scene has the focus. */
+
+import { liftGhost, beginAt, FAST_CELLS, ghost, hideGhost, moveGhost, turnGhost } from "./navigate";
+import { shownFloor, tool } from "../state/view";
+import { world } from "../state/world";
+import { Vector3 } from "three";
+import type { SceneView } from "./view";
+
+export interface Keyed {
+  readonly view: SceneView;
+  readonly place: () => void;
+}
+
+const ARROWS: Readonly<Record<string, readonly [number, number]>> = {
+  ArrowUp: [0, 1],
+  ArrowDown: [0, -1],
+  ArrowLeft: [-1, 0],
+  ArrowRight: [1, 0],
+};
+
+/** Does what a key means in the scene. Whether it means something. */
+export function onSceneKey(event: KeyboardEvent, { view, place }: Keyed): boolean {
+  if (event.ctrlKey || event.metaKey || event.altKey) return false;
+  const arrow = ARROWS[event.key];
+  const navigates = tool.value === "navigate";
+  if (arrow && navigates) {
+    begin(view);
+    step(view, arrow, event.shiftKey ? FAST_CELLS : 1);
+  } else if (arrow) view.camera.key(event.key, true, event.shiftKey);
+  else if (event.key === "PageUp") changeFloor(view, 1);
+  else if (event.key === "PageDown") changeFloor(view, -1);
+  else if (navigates && event.key === ",") turn(view, 1);
+  else if (navigates && event.key === ".") turn(view, -1);
+  else if (navigates && event.key === "Enter" && ghost.value !== null) place();
+  else if (event.key === "+" || event.key === "=") view.camera.zoom(1);
+  else if (event.key === "-") view.camera.zoom(-1);
+  else if (event.key === "Home") void view.camera.showAll(shownFloor.value);
+  else return false;
+  return true;
+}
+
+function turn(view: SceneView, steps: number): void {
+  begin(view);
+  turnGhost(steps);
+}
+
+/** The ghost begins in the middle of the picture. */
+function begin(view: SceneView): void {
+  if (ghost.value !== null) return;
+  const { width, height } = view.stage.size;
+  const hit = view.site.hitWays(view.rayAt(width / 2, height / 2));
+  const dock = world.value?.docks[0]?.pose;
+  if (hit) beginAt(hit.point.x, hit.point.y, hit.point.z);
+  else if (dock) beginAt(dock.x, dock.y, dock.z);
+}
+
+/** Along the axis of the site that is the nearest to where the arrow shows in the picture. */
+function step(view: SceneView, [right, up]: readonly [number, number], cells: number): void {
+  const ahead = view.stage.camera.getWorldDirection(new Vector3());
+  const quarter = Math.round(Math.atan2(ahead.y, ahead.x) / (Math.PI / 2)) * (Math.PI / 2);
+  const [forwardX, forwardY] = [Math.round(Math.cos(quarter)), Math.round(Math.sin(quarter))];
+  moveGhost((up * forwardX + right * forwardY) * cells, (up * forwardY - right * forwardX) * cells);
+}
+
+/** Shows the floor above or below; the ghost goes along. */
+function changeFloor(view: SceneView, by: number): void {
+  const floors = world.value?.floors ?? [];
+  const at = shownFloor.value === null ? floors.length : floors.findIndex((floor) => floor.number === shownFloor.value);
+  const next = at + by;
+  if (next < 0) return;
+  const floor = floors[next];
+  shownFloor.value = floor?.number ?? null;
+  view.camera.toFloor(floor ?? null);
+  if (floor && ghost.value !== null) liftGhost(floor.z);
+  else if (!floor) hideGhost();
+}

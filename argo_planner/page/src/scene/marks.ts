@@ -1,0 +1,179 @@
+/** What of the site and of the mission has a mark in the scene that can be clicked. */
+
+import { computed, signal } from "@preact/signals-core";
+import { Vector3 } from "three";
+
+import type { Obstacle, Pose, Task, World, WorldCheckpoint } from "../api/types";
+import { taskKey } from "../model/outline";
+import { floorOf } from "../model/standing";
+import { mission, planId, selection } from "../state/plan";
+import { shownRun } from "../state/run";
+import { world } from "../state/world";
+import { t } from "../texts";
+
+export type Subject =
+  | { readonly kind: "checkpoint"; readonly checkpoint: WorldCheckpoint }
+  | { readonly kind: "task"; readonly task: Task; readonly pose: Pose }
+  | { readonly kind: "place"; readonly name: string; readonly pose: Pose; readonly dock: number | null }
+  | { readonly kind: "obstacle"; readonly obstacle: Obstacle };
+
+export interface Mark {
+  readonly key: string;
+  readonly subject: Subject;
+  readonly at: Vector3;
+  readonly floor: number;
+  readonly text: string;
+  /** Numbers in the mission, as the list has them. */
+  readonly numbers: string;
+  /** What was read there. */
+  readonly value: string;
+  readonly tone: "plain" | "planned" | "chosen" | "good" | "bad" | "active" | "dim";
+  readonly weight: number;
+  /** Keys of the tasks that it stands for. */
+  readonly tasks: readonly string[];
+}
+
+/** The mark whose card is open, by its key. */
+export const opened = signal<string | null>(null);
+
+const RAISED = 0.12;
+
+/** Numbers of the tasks that measure a checkpoint, and the tasks, by its id. */
+export const measuring = computed(() => {
+  const found = new Map<string, { readonly numbers: number[]; readonly tasks: Task[] }>();
+  mission.value?.tasks.forEach((task, index) => {
+    if (task.action !== "MEASURE" || task.object_id === null || task.object_id === undefined) return;
+    const there = found.get(task.object_id) ?? { numbers: [], tasks: [] };
+    there.numbers.push(index + 1);
+    there.tasks.push(task);
+    found.set(task.object_id, there);
+  });
+  return found;
+});
+
+/** What the run that is shown tells, if it is one of this mission. */
+const told = computed(() => {
+  const now = shownRun.value;
+  return now !== null && now.plan === planId.value ? now : null;
+});
+const readings = computed(() => new Map(told.value?.readings.map((one) => [one.checkpoint, one])));
+const active = computed(() => told.value?.task ?? null);
+
+export const marks = computed<readonly Mark[]>(() => {
+  const site = world.value;
+  if (site === null) return [];
+  return [
+    ...site.checkpoints.map((one) => checkpointMark(one)),
+    ...taskMarks(site),
+    ...placeMarks(site),
+    ...site.obstacles.map((one) => obstacleMark(site, one)),
+  ];
+});
+
+function checkpointMark(checkpoint: WorldCheckpoint): Mark {
+  const there = measuring.value.get(String(checkpoint.id));
+  const keys = there?.tasks.map((task) => taskKey(task.name)) ?? [];
+  const key = `checkpoint:${checkpoint.id}`;
+  const reading = readings.value.get(checkpoint.id);
+  const chosen = opened.value === key || keys.some((one) => selection.value.includes(one));
+  const isActive = there?.tasks.some((task) => task.name === active.value) ?? false;
+  const planned = keys.length > 0;
+  return {
+    key,
+    subject: { kind: "checkpoint", checkpoint },
+    at: new Vector3(...checkpoint.position),
+    floor: checkpoint.floor,
+    text: checkpoint.name,
+    numbers: shortList(there?.numbers ?? []),
+    value: reading ? `${round(reading.value)} ${reading.unit}` : "",
+    tone: isActive
+      ? "active"
+      : chosen
+        ? "chosen"
+        : reading
+          ? reading.normal
+            ? "good"
+            : "bad"
+          : planned
+            ? "planned"
+            : "plain",
+    weight: isActive ? 9 : chosen ? 8 : reading ? 6 : planned ? 5 : 1,
+    tasks: keys,
+  };
+}
+
+function taskMarks(site: World): Mark[] {
+  const found: Mark[] = [];
+  mission.value?.tasks.forEach((task, index) => {
+    const pose = poseOf(task, site);
+    if (pose === null || task.action === "MEASURE") return;
+    const key = taskKey(task.name);
+    const chosen = selection.value.includes(key);
+    const isActive = active.value === task.name;
+    found.push({
+      key,
+      subject: { kind: "task", task, pose },
+      at: new Vector3(pose.x, pose.y, pose.z + RAISED),
+      floor: floorOf(site.floors, pose.z)?.number ?? 1,
+      text: task.name,
+      numbers: String(index + 1),
+      value: "",
+      tone: isActive ? "active" : chosen ? "chosen" : "planned",
+      weight: isActive ? 9 : chosen ? 8 : 5,
+      tasks: [key],
+    });
+  });
+  return found;
+}
+
+/** Where a task takes place; START without a pose is in the dock of its area. */
+export function poseOf(task: Task, site: World): Pose | null {
+  if (task.pose) return task.pose;
+  if (task.action !== "START") return null;
+  const area = mission.value?.start_area ?? null;
+  return (site.docks.find((dock) => dock.area === area) ?? site.docks[0])?.pose ?? null;
+}
+
+function placeMarks(site: World): Mark[] {
+  const mark = (name: string, pose: Pose, dock: number | null): Mark => ({
+    key: dock === null ? `place:${name}` : `dock:${dock}`,
+    subject: { kind: "place", name, pose, dock },
+    at: new Vector3(pose.x, pose.y, pose.z + RAISED),
+    floor: floorOf(site.floors, pose.z)?.number ?? 1,
+    text: name,
+    numbers: "",
+    value: "",
+    tone: opened.value === (dock === null ? `place:${name}` : `dock:${dock}`) ? "chosen" : "dim",
+    weight: 2,
+    tasks: [],
+  });
+  return [
+    ...site.docks.map((dock) => mark(t().scene.dock(dock.area), dock.pose, dock.area)),
+    ...site.places.map((place) => mark(place.name, place.pose, null)),
+  ];
+}
+
+function obstacleMark(site: World, obstacle: Obstacle): Mark {
+  const { pose, size } = obstacle;
+  const key = `obstacle:${obstacle.id}`;
+  return {
+    key,
+    subject: { kind: "obstacle", obstacle },
+    at: new Vector3(pose.x, pose.y, pose.z + size[2]),
+    floor: floorOf(site.floors, pose.z)?.number ?? 1,
+    text: obstacle.name === "" ? t().scene.obstacle : obstacle.name,
+    numbers: "",
+    value: "",
+    tone: opened.value === key ? "chosen" : "bad",
+    weight: 3,
+    tasks: [],
+  };
+}
+
+function shortList(numbers: readonly number[]): string {
+  return numbers.length > 3 ? `${numbers.slice(0, 2).join(", ")} …` : numbers.join(", ");
+}
+
+export function round(value: number): string {
+  return String(Math.round(100 * value) / 100);
+}

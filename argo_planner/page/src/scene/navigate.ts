@@ -1,0 +1,135 @@
+/** The navigation tool: a ghost of the robot that can be put where the robot can stand. */
+
+import { computed, signal } from "@preact/signals-core";
+import type { Ray } from "three";
+
+import { addTask } from "../list/add";
+import { floorOf, type Standing } from "../model/standing";
+import { mission } from "../state/plan";
+import { shownFloor } from "../state/view";
+import { world } from "../state/world";
+import { t } from "../texts";
+import { heed } from "./heed";
+import type { Site } from "./site";
+import { mapsRead, readMaps, standing } from "./standing-maps";
+
+export interface GhostPose {
+  readonly x: number;
+  readonly y: number;
+  readonly z: number;
+  readonly yaw: number;
+  readonly floor: number;
+  /** null: not known yet */
+  readonly verdict: Standing | null;
+}
+
+/** Cells that the ghost goes by in a step with Shift. */
+export const FAST_CELLS = 5;
+const TURN = Math.PI / 4;
+/** m: heights that belong to the ground on which the ghost is. */
+const STEP_UP = 0.3;
+
+const placed = signal<Omit<GhostPose, "verdict" | "floor"> | null>(null);
+let yaw = 0;
+
+/** Where the ghost is and whether the robot can stand there; null: it is nowhere. */
+export const ghost = computed<GhostPose | null>(() => {
+  const at = placed.value;
+  const site = world.value;
+  if (at === null || site === null) return null;
+  heed(mapsRead);
+  const verdict = standing(at.x, at.y, at.z, at.yaw);
+  const z = verdict !== null && Math.abs(verdict.z - at.z) < STEP_UP ? verdict.z : at.z;
+  return { ...at, z, floor: floorOf(site.floors, z)?.number ?? 1, verdict };
+});
+
+/** The tool is taken: the maps are read. */
+export function takeGhost(): void {
+  const site = world.value;
+  if (site !== null) readMaps(site, shownFloor.peek() ?? site.floors.at(-1)?.number ?? 1);
+}
+
+export function hideGhost(): void {
+  placed.value = null;
+}
+
+/** Puts the ghost where a ray meets the ground. */
+export function hover(ray: Ray, site: Site): void {
+  const hit = site.hitWays(ray);
+  placed.value = hit && { x: hit.point.x, y: hit.point.y, z: hit.point.z, yaw };
+}
+
+/** Puts the ghost somewhere, if it is nowhere. */
+export function beginAt(x: number, y: number, z: number): void {
+  placed.value ??= { x: middle(x), y: middle(y), z, yaw };
+}
+
+/** Turns the ghost by steps of an eighth, counter-clockwise. */
+export function turnGhost(steps: number): void {
+  yaw = Math.atan2(Math.sin(yaw + steps * TURN), Math.cos(yaw + steps * TURN));
+  if (placed.value !== null) placed.value = { ...placed.value, yaw };
+}
+
+/** Moves the ghost by cells, along the ground on which it is. */
+export function moveGhost(columns: number, rows: number): void {
+  const at = placed.value;
+  const cell = world.value?.cell ?? 0.1;
+  if (at === null) return;
+  const steps = Math.max(Math.abs(columns), Math.abs(rows));
+  let { x, y, z } = at;
+  for (let i = 0; i < steps; i++) {
+    x += Math.sign(columns) * cell;
+    y += Math.sign(rows) * cell;
+    const there = standing(x, y, z, at.yaw);
+    if (there !== null && there.ground !== "none" && Math.abs(there.z - z) < STEP_UP) z = there.z;
+  }
+  placed.value = { x: middle(x), y: middle(y), z, yaw: at.yaw };
+}
+
+/** Puts the ghost on another floor. */
+export function liftGhost(z: number): void {
+  if (placed.value !== null) placed.value = { ...placed.value, z };
+}
+
+/** The middle of the cell, so that steps go from cell to cell. */
+function middle(value: number): number {
+  const cell = world.value?.cell ?? 0.1;
+  return Math.round((Math.floor(value / cell + 1e-6) + 0.5) * cell * 1e6) / 1e6;
+}
+
+/** Whether the next click sets the start. */
+export const setsStart = computed(
+  () => mission.value !== null && !mission.value.tasks.some((task) => task.action === "START"),
+);
+
+/** Adds a task where the ghost is, if the robot can stand there. Whether it was added. */
+export async function placeGhost(): Promise<boolean> {
+  const at = ghost.value;
+  if (at?.verdict?.ground !== "reached") return false;
+  const rounded = (value: number) => Math.round(1000 * value) / 1000;
+  const pose = { x: rounded(at.x), y: rounded(at.y), z: rounded(at.z), yaw: at.yaw };
+  const action = setsStart.value ? "START" : "WAYPOINT";
+  return addTask(action, action, { pose });
+}
+
+/** What holds where the ghost is, in words. */
+export function verdictWords(at: GhostPose | null): string {
+  const texts = t().scene;
+  if (at === null) return texts.offSite;
+  if (at.verdict === null) return texts.checking;
+  const said = texts.grounds[at.verdict.ground];
+  return at.verdict.ground !== "reached" && standsTurned(at) ? `${said} – ${texts.turnIt}` : said;
+}
+
+/** Whether the robot could stand there if it were turned. */
+function standsTurned({ x, y, z }: GhostPose): boolean {
+  return world.peek()?.headings.some((other) => standing(x, y, z, other)?.ground === "reached") ?? false;
+}
+
+/** Where the ghost is, in words. */
+export function ghostWords(at: GhostPose): string {
+  const texts = t().scene;
+  const eighth = Math.round(at.yaw / TURN);
+  const facing = texts.directions[((eighth % 8) + 8) % 8] ?? "";
+  return texts.ghostAt(at.x.toFixed(1), at.y.toFixed(1), at.floor, facing);
+}

@@ -1,0 +1,78 @@
+/** The obstacle tool: two corners span a box on the ground. */
+
+import { computed, signal } from "@preact/signals-core";
+
+import type { Obstacle } from "../api/types";
+import { tool } from "../state/view";
+import { addObstacle } from "../state/world";
+import type { Hit } from "./site";
+
+interface Corner {
+  readonly x: number;
+  readonly y: number;
+  readonly z: number;
+}
+
+/** m */
+const LEAST = 0.1;
+const MOST = 20;
+export const FIRST_HEIGHT = 0.5;
+
+/** The corners that were clicked, and the one at which the pointer is. */
+export const corners = signal<{
+  readonly first: Corner | null;
+  readonly second: Corner | null;
+  readonly pointed: Corner | null;
+} | null>(null);
+export const height = signal(FIRST_HEIGHT);
+
+/** The box as it would be put up. */
+export const spanned = computed<Pick<Obstacle, "pose" | "size"> | null>(() => {
+  const { first = null, second = null, pointed = null } = corners.value ?? {};
+  const other = second ?? pointed;
+  if (first === null || other === null) return null;
+  const side = (a: number, b: number) => Math.min(MOST, Math.max(LEAST, rounded(Math.abs(a - b))));
+  return {
+    pose: { x: rounded((first.x + other.x) / 2), y: rounded((first.y + other.y) / 2), z: first.z, yaw: 0 },
+    size: [side(first.x, other.x), side(first.y, other.y), height.value],
+  };
+});
+
+export function pointCorner(hit: Hit | null): void {
+  const now = corners.value;
+  if (now?.second) return;
+  corners.value = { first: now?.first ?? null, second: null, pointed: hit && cornerOf(hit) };
+}
+
+export function clickCorner(hit: Hit | null): void {
+  const now = corners.value;
+  if (hit === null || now?.second) return;
+  const corner = cornerOf(hit);
+  corners.value = now?.first
+    ? { ...now, second: corner, pointed: null }
+    : { first: corner, second: null, pointed: null };
+}
+
+export function hideCorners(): void {
+  corners.value = null;
+}
+
+/** Puts the box up. Whether it stands there. */
+export async function putUp(name: string): Promise<boolean> {
+  const box = spanned.value;
+  if (box === null) return false;
+  const done = await addObstacle({ ...box, name });
+  if (done) {
+    hideCorners();
+    tool.value = "select";
+  }
+  return done;
+}
+
+function cornerOf({ point }: Hit): Corner {
+  return { x: rounded(point.x), y: rounded(point.y), z: rounded(point.z) };
+}
+
+function rounded(value: number): number {
+  return Math.round(100 * value) / 100;
+}

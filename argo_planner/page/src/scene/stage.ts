@@ -1,0 +1,211 @@
+/** The picture: it is drawn only when something has changed, and coarser while it moves where the
+ * machine is slow. */
+
+import {
+  Color,
+  DirectionalLight,
+  HemisphereLight,
+  type Material,
+  Mesh,
+  type Object3D,
+  PCFShadowMap,
+  PerspectiveCamera,
+  Points,
+  Scene,
+  Vector3,
+  WebGLRenderer,
+} from "three";
+
+import type { Colours } from "./colours";
+
+const SLOW_MS = 45;
+const FAST_MS = 22;
+const COARSEST = 0.45;
+/** Frames after which the fineness is looked at again. */
+const WINDOW = 5;
+/** m below a surface at which shadows fall on it: they are drawn in steps */
+const BIAS = 0.07;
+const SHADOW_PX = 2048;
+/** Without a graphics card. */
+const SHADOW_PX_SLOW = 1024;
+
+/** What moves by itself: told the time since the last frame (s), says whether it goes on. */
+export type Moving = (dt: number) => boolean;
+
+export class Stage {
+  readonly scene = new Scene();
+  readonly camera = new PerspectiveCamera(38, 1, 0.1, 400);
+  readonly moving = new Set<Moving>();
+  /** Called behind each frame. */
+  readonly drawn = new Set<() => void>();
+  readonly slow: boolean;
+  private readonly renderer: WebGLRenderer;
+  private readonly sun = new DirectionalLight();
+  private readonly sky = new HemisphereLight();
+  private asked = 0;
+  private last = 0;
+  private ratio = 1;
+  private finest = 1;
+  private times: number[] = [];
+  private width = 1;
+  private height = 1;
+  private over = false;
+
+  constructor(readonly canvas: HTMLCanvasElement) {
+    this.slow = isSoftware();
+    this.renderer = new WebGLRenderer({ canvas, antialias: true, powerPreference: "high-performance" });
+    this.renderer.shadowMap.enabled = true;
+    this.renderer.shadowMap.type = PCFShadowMap;
+    this.renderer.shadowMap.autoUpdate = false;
+    this.renderer.info.autoReset = false;
+    this.camera.up.set(0, 0, 1);
+    this.sky.position.set(0, 0, 1);
+    this.sun.castShadow = true;
+    this.sun.shadow.mapSize.setScalar(this.slow ? SHADOW_PX_SLOW : SHADOW_PX);
+    this.scene.add(this.sky, this.sun, this.sun.target);
+    canvas.addEventListener("webglcontextrestored", this.restored);
+  }
+
+  /** Draws anew, with the next frame of the browser. */
+  readonly need = (): void => {
+    if (this.asked === 0 && !this.over) this.asked = requestAnimationFrame(this.frame);
+  };
+
+  /** What stands on the site has changed, and so have the shadows. */
+  needShadows(): void {
+    this.renderer.shadowMap.needsUpdate = true;
+    this.need();
+  }
+
+  get idle(): boolean {
+    return this.asked === 0;
+  }
+
+  /** Draw calls and triangles of the last frame. */
+  get figures(): { readonly calls: number; readonly triangles: number } {
+    const { calls, triangles } = this.renderer.info.render;
+    return { calls, triangles };
+  }
+
+  resize(width: number, height: number): void {
+    this.width = Math.max(1, width);
+    this.height = Math.max(1, height);
+    this.finest = Math.min(devicePixelRatio, this.slow ? 1 : 2);
+    this.ratio = this.finest;
+    this.camera.aspect = this.width / this.height;
+    this.camera.updateProjectionMatrix();
+    this.fit();
+    this.need();
+  }
+
+  get size(): { readonly width: number; readonly height: number } {
+    return { width: this.width, height: this.height };
+  }
+
+  /** Light for a theme, which falls on all between two corners (m). */
+  light(colours: Colours): void {
+    this.scene.background = new Color(colours.sky);
+    this.sky.color.set(colours.skyLight);
+    this.sky.groundColor.set(colours.groundLight);
+    this.sky.intensity = colours.dark ? 1.5 : 2.1;
+    this.sun.intensity = colours.dark ? 1.9 : 2.4;
+    this.need();
+  }
+
+  lightOver(lowest: Vector3, highest: Vector3): void {
+    const middle = lowest.clone().add(highest).multiplyScalar(0.5);
+    const radius = lowest.distanceTo(highest) / 2 + 1;
+    this.sun.target.position.copy(middle);
+    this.sun.position.copy(middle).add(new Vector3(-0.45, -0.7, 1.15).multiplyScalar(2 * radius));
+    this.sun.target.updateMatrixWorld();
+    const seen = this.sun.shadow.camera;
+    seen.left = seen.bottom = -radius;
+    seen.right = seen.top = radius;
+    seen.near = radius / 2;
+    seen.far = 5 * radius;
+    seen.updateProjectionMatrix();
+    this.sun.shadow.bias = -BIAS / (seen.far - seen.near);
+    this.needShadows();
+  }
+
+  /** Where a point (m) is in the picture (px), and how far away; behind the camera it is nowhere. */
+  project(point: Vector3): { readonly x: number; readonly y: number; readonly depth: number } | null {
+    SEEN.copy(point).applyMatrix4(this.camera.matrixWorldInverse);
+    const depth = -SEEN.z;
+    if (depth < this.camera.near) return null;
+    SEEN.applyMatrix4(this.camera.projectionMatrix);
+    return { x: ((SEEN.x + 1) / 2) * this.width, y: ((1 - SEEN.y) / 2) * this.height, depth };
+  }
+
+  dispose(): void {
+    this.over = true;
+    cancelAnimationFrame(this.asked);
+    this.canvas.removeEventListener("webglcontextrestored", this.restored);
+    dispose(this.scene);
+    this.sun.dispose();
+    this.renderer.dispose();
+    this.renderer.forceContextLoss();
+  }
+
+  private readonly frame = (time: number): void => {
+    this.asked = 0;
+    const running = this.last > 0;
+    const ms = running ? time - this.last : 16;
+    const dt = Math.min(0.1, ms / 1000);
+    let on = false;
+    for (const move of [...this.moving]) on = move(dt) || on;
+    if (running && on) this.adapt(ms);
+    else if (!on && this.ratio < this.finest) {
+      this.ratio = this.finest;
+      this.fit();
+    }
+    this.renderer.info.reset();
+    this.renderer.render(this.scene, this.camera);
+    this.last = on ? time : 0;
+    if (on) this.need();
+    for (const told of this.drawn) told();
+  };
+
+  /** Coarser where frames take long, finer where they do not. */
+  private adapt(ms: number): void {
+    this.times.push(ms);
+    if (this.times.length < WINDOW) return;
+    const middle = [...this.times].sort((a, b) => a - b)[WINDOW >> 1] as number;
+    this.times = [];
+    const factor = middle > SLOW_MS ? 0.75 : middle < FAST_MS ? 1.25 : 1;
+    const wanted = Math.min(this.finest, Math.max(COARSEST, this.ratio * factor));
+    if (wanted === this.ratio) return;
+    this.ratio = wanted;
+    this.fit();
+  }
+
+  private fit(): void {
+    this.renderer.setPixelRatio(this.ratio);
+    this.renderer.setSize(this.width, this.height, false);
+  }
+
+  private readonly restored = (): void => this.needShadows();
+}
+
+const SEEN = new Vector3();
+
+/** Gives back what a part of the scene has in the memory of the graphics card. */
+export function dispose(object: Object3D): void {
+  object.traverse((one) => {
+    if (!(one instanceof Mesh || one instanceof Points)) return;
+    const drawn = one as unknown as { geometry: { dispose(): void }; material: Material | Material[] };
+    drawn.geometry.dispose();
+    for (const material of [drawn.material].flat()) material.dispose();
+  });
+  object.removeFromParent();
+}
+
+/** Whether the browser draws without a graphics card. */
+function isSoftware(): boolean {
+  const gl = document.createElement("canvas").getContext("webgl2");
+  if (gl === null) return true;
+  const told = gl.getExtension("WEBGL_debug_renderer_info");
+  const name = told ? String(gl.getParameter(told.UNMASKED_RENDERER_WEBGL)) : "";
+  gl.getExtension("WEBGL_lose_context")?.loseContext();
+  return /swiftshader|llvmpipe|software|basic render/i.test(name);
+}

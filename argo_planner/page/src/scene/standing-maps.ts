@@ -1,0 +1,55 @@
+/** The maps of where the robot can stand, read once for each state of the site. */
+
+import { signal } from "@preact/signals-core";
+
+import { fetched, Unreached } from "../api/client";
+import type { World } from "../api/types";
+import { floorOf, readStandingMap, type Standing, type StandingMap, verdictAt } from "../model/standing";
+import { world } from "../state/world";
+
+const AT_ONCE = 4;
+const RETRY_MS = 1_000;
+const maps = new Map<string, StandingMap>();
+let digest = "";
+let reading = "";
+
+/** How many maps there are, which tells when there are more. */
+export const mapsRead = signal(0);
+
+/** Reads the maps of all floors, beginning with one of them, so that no request is needed while
+ * the pointer moves. */
+export function readMaps(site: World, first: number): void {
+  if (reading === site.digest) return;
+  reading = digest = site.digest;
+  maps.clear();
+  const numbers = site.floors.map((floor) => floor.number);
+  numbers.sort((a, b) => Math.abs(a - first) - Math.abs(b - first));
+  const waiting = numbers.flatMap((floor) => site.headings.map((_, heading) => `${floor} ${heading}`));
+  for (let worker = 0; worker < AT_ONCE; worker++) void read(site.digest, waiting);
+}
+
+async function read(of: string, waiting: string[]): Promise<void> {
+  for (let key = waiting.shift(); key !== undefined; key = waiting.shift()) {
+    const [floor = "", heading = ""] = key.split(" ");
+    try {
+      const map = await readStandingMap(await fetched(`/api/world/floors/${floor}/standing/${heading}`));
+      if (of !== digest) return;
+      maps.set(key, map);
+      mapsRead.value++;
+    } catch (error) {
+      if (!(error instanceof Unreached)) throw error;
+      waiting.push(key);
+      await new Promise((resolve) => setTimeout(resolve, RETRY_MS));
+      if (of !== digest) return;
+    }
+  }
+}
+
+/** Whether the robot can stand at a place (m, rad); null: that is not known yet. */
+export function standing(x: number, y: number, z: number, yaw: number): Standing | null {
+  const site = world.peek();
+  if (site === null || site.digest !== digest) return null;
+  const floor = floorOf(site.floors, z);
+  if (floor === undefined) return null;
+  return verdictAt((heading) => maps.get(`${floor.number} ${heading}`), site.headings, x, y, z, yaw);
+}

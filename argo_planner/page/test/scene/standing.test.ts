@@ -1,0 +1,89 @@
+import { deflateSync } from "node:zlib";
+
+import { describe, expect, it } from "vitest";
+
+import { floorOf, type Ground, headingsBeside, readStandingMap, standingAt, type StandingMap, verdictAt } from "../../src/model/standing";
+
+const GROUNDS: readonly Ground[] = ["none", "too_near", "too_steep", "cut_off", "closed", "reached"];
+const EIGHTHS = Array.from({ length: 8 }, (_, k) => (k * Math.PI) / 4);
+
+/** Two layers of 2 rows and 3 columns from (1, 2) on, cells of 0.5 m. */
+function map(codes: readonly number[], heights: readonly number[] = []): StandingMap {
+  return {
+    floor: 1,
+    heading: 0,
+    yaw: 0,
+    origin: [1, 2],
+    cell: 0.5,
+    layers: 2,
+    rows: 2,
+    columns: 3,
+    z: 10,
+    step: 0.001,
+    grounds: GROUNDS,
+    codes: Uint8Array.from(codes),
+    heights: Int16Array.from({ length: 12 }, (_, i) => heights[i] ?? 0),
+  };
+}
+
+describe("the map of where the robot can stand", () => {
+  const one = map([5, 1, 0, 2, 3, 4, 0, 5, 0, 0, 0, 0], [0, 0, 0, 0, 0, 0, 0, 1500]);
+
+  it("has a code for each cell, columns along x", () => {
+    expect(standingAt(one, 1.01, 2.01, 10)).toEqual({ ground: "reached", z: 10 });
+    expect(standingAt(one, 1.7, 2.3, 10).ground).toBe("too_near");
+    expect(standingAt(one, 1.2, 2.6, 10).ground).toBe("too_steep");
+    expect(standingAt(one, 2.49, 2.99, 10).ground).toBe("closed");
+  });
+
+  it("says none beyond its edges and where no ground is", () => {
+    expect(standingAt(one, 0.99, 2.1, 10)).toEqual({ ground: "none", z: 10 });
+    expect(standingAt(one, 2.51, 2.1, 10).ground).toBe("none");
+    expect(standingAt(one, 2.2, 2.2, 10).ground).toBe("none");
+  });
+
+  it("takes the layer that is nearest in height", () => {
+    expect(standingAt(one, 1.7, 2.3, 11.4)).toEqual({ ground: "reached", z: 11.5 });
+    expect(standingAt(one, 1.7, 2.3, 10.6).ground).toBe("too_near");
+  });
+
+  it("is read from what the service sends", async () => {
+    const { grounds, codes, heights, ...header } = one;
+    const names = Object.fromEntries(grounds.map((name, code) => [name, code]));
+    const body = Buffer.concat([Buffer.from(codes), Buffer.from(heights.buffer)]);
+    const line = Buffer.from(`${JSON.stringify({ ...header, codes: names })}\n`);
+    const sent = Uint8Array.from(Buffer.concat([line, deflateSync(body)]));
+    const read = await readStandingMap(sent.buffer);
+    expect(read).toEqual(one);
+  });
+});
+
+describe("the verdict on a heading", () => {
+  it("is that of the map with the heading", () => {
+    expect(headingsBeside(Math.PI / 4, EIGHTHS)).toEqual([1]);
+    expect(headingsBeside(-Math.PI / 4, EIGHTHS)).toEqual([7]);
+    expect(headingsBeside(2 * Math.PI, EIGHTHS)).toEqual([0]);
+  });
+
+  it("is the worse one of the headings beside it", () => {
+    expect(headingsBeside(-0.2, EIGHTHS)).toEqual([7, 0]);
+    const maps = [map([5, 5, 5, 5, 5, 5, 0, 0, 0, 0, 0, 0]), map([5, 1, 5, 5, 5, 5, 0, 0, 0, 0, 0, 0])];
+    const of = (heading: number) => maps[heading];
+    expect(verdictAt(of, EIGHTHS, 1.7, 2.3, 10, 0.3)?.ground).toBe("too_near");
+    expect(verdictAt(of, EIGHTHS, 1.7, 2.3, 10, 0)?.ground).toBe("reached");
+  });
+
+  it("is not known before the map is there", () => {
+    expect(verdictAt(() => undefined, EIGHTHS, 0, 0, 0, 0)).toBeNull();
+  });
+});
+
+it("tells the floor of a height as the service does", () => {
+  const floor = (number: number, z: number) => ({ number, z, name: "", storey: 2.5, bounds: [0, 0, 1, 1] as const, plates: [] });
+  const floors = [floor(1, 0), floor(2, 2.5)];
+  expect(floorOf(floors, -0.03)?.number).toBe(1);
+  expect(floorOf(floors, 2.39)?.number).toBe(1);
+  expect(floorOf(floors, 2.41)?.number).toBe(2);
+  expect(floorOf(floors, -5)?.number).toBe(1);
+  expect(floorOf([], 0)).toBeUndefined();
+});

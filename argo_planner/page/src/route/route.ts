@@ -1,8 +1,263 @@
-import { customElement, html, PageElement } from "../ui/element";
+/** What the best order has to keep to, and the search for it. */
+
+import { readTime, writeTime } from "../forms/times";
+import { edit, findings, mission } from "../state/plan";
+import { mayPlan } from "../state/session";
+import { t } from "../texts";
+import { css, customElement, html, look, nothing, PageElement, state } from "../ui/element";
+import { icon } from "../ui/icons";
+import "./result";
+import { job, search, type Asked } from "./search";
+
+const LIMITS = [5, 10, 30, 120, 600] as const; // s
 
 @customElement("argo-route")
 export class RoutePanel extends PageElement {
+  static override styles = [
+    look,
+    css`
+      :host {
+        padding: 12px;
+      }
+      .all,
+      .inner {
+        display: grid;
+        gap: 12px;
+      }
+      .begin {
+        display: grid;
+        grid-template-columns: 1fr auto;
+        align-items: end;
+        gap: 8px;
+      }
+      .begin button {
+        min-height: 44px;
+        font-weight: 600;
+      }
+      .begin select {
+        min-height: 44px;
+      }
+      label {
+        display: grid;
+        gap: 2px;
+        font-size: 12px;
+        color: var(--dim);
+      }
+      label > * {
+        color: var(--text);
+        font-size: 14px;
+      }
+      .inner {
+        padding: 6px 0 0 10px;
+        border-left: 2px solid var(--line);
+      }
+      .line {
+        display: grid;
+        gap: 6px;
+      }
+      .pair {
+        grid-template-columns: minmax(0, 1fr) auto minmax(0, 1fr) auto;
+        align-items: center;
+      }
+      .window {
+        grid-template-columns: minmax(0, 1fr) 82px 82px auto;
+      }
+      .window input,
+      .line select {
+        min-width: 0;
+      }
+      ul {
+        margin: 0;
+        padding: 0;
+        list-style: none;
+      }
+      li {
+        display: flex;
+        align-items: center;
+        gap: 6px;
+      }
+      .reason {
+        color: var(--dim);
+        font-size: 12px;
+      }
+      h3 {
+        margin-bottom: 4px;
+      }
+      summary {
+        cursor: pointer;
+      }
+    `,
+  ];
+
+  @state() private pairsAsked: Asked["before"] = [];
+  @state() private windows: Asked["windows"] = [];
+
   override render() {
-    return html``;
+    const texts = t().route;
+    const why = this.whyNot();
+    const running = job.value?.state === "running";
+    return html`<div class="all">
+      <form class="all" @submit=${this.search}>
+        <div class="begin">
+          <button class="main" id="search" ?disabled=${why !== null || running}>
+            ${icon("route", 20)} ${texts.search}
+          </button>
+          <label>
+            ${texts.timeLimit}
+            <select name="limit">
+              ${LIMITS.map((s) => html`<option value=${s} ?selected=${s === 10}>${texts.seconds(s)}</option>`)}
+            </select>
+          </label>
+        </div>
+        ${why === null ? nothing : html`<p class="reason">${why}</p>`} ${this.fixed()}
+        <details>
+          <summary>${texts.requirements}</summary>
+          <div class="inner">
+            <label>
+              ${texts.budget}
+              <input name="budget" placeholder="20 min" @change=${this.tidy} />
+              <span class="reason">${texts.budgetHint}</span>
+            </label>
+            ${this.pairs()} ${this.times()}
+          </div>
+        </details>
+      </form>
+      <argo-route-result></argo-route-result>
+    </div>`;
+  }
+
+  /** An order that is kept can't be bettered. */
+  private fixed() {
+    if (mission.value === null || mission.value.order === "any" || this.names().length < 2) return nothing;
+    return html`<div class="row">
+      <p class="grow reason">${t().route.fixed}</p>
+      <button
+        type="button"
+        id="free"
+        ?disabled=${!mayPlan()}
+        @click=${() => edit({ kind: "set_header", order: "any" })}
+      >
+        ${t().route.free}
+      </button>
+    </div>`;
+  }
+
+  private pairs() {
+    const texts = t().route;
+    return html`<section>
+      <h3>${texts.before}</h3>
+      <ul>
+        ${this.pairsAsked.map((pair, at) =>
+          this.item(texts.pair(...pair), () => {
+            this.pairsAsked = this.pairsAsked.filter((_, other) => other !== at);
+          }),
+        )}
+      </ul>
+      <div class="line pair">
+        ${this.choice("first", texts.first)} <span>${texts.isBefore}</span>
+        ${this.choice("second", texts.second)} ${this.addButton(this.addPair)}
+      </div>
+    </section>`;
+  }
+
+  private times() {
+    const texts = t().route;
+    return html`<section>
+      <h3>${texts.windows}</h3>
+      <ul>
+        ${this.windows.map(({ what, earliest, latest }, at) =>
+          this.item(
+            texts.window(what, writeTime(earliest), latest === null ? "" : writeTime(latest)),
+            () => {
+              this.windows = this.windows.filter((_, other) => other !== at);
+            },
+          ),
+        )}
+      </ul>
+      <div class="line window">
+        ${this.choice("what", texts.what)}
+        <input id="earliest" aria-label=${texts.earliest} placeholder=${texts.earliest} @change=${this.tidy} />
+        <input id="latest" aria-label=${texts.latest} placeholder=${texts.latest} @change=${this.tidy} />
+        ${this.addButton(this.addWindow)}
+      </div>
+    </section>`;
+  }
+
+  private item(said: string, drop: () => void) {
+    const label = t().route.remove(said);
+    return html`<li>
+      <span class="grow">${said}</span>
+      <button type="button" class="bare icon" aria-label=${label} title=${label} @click=${drop}>
+        ${icon("close", 16)}
+      </button>
+    </li>`;
+  }
+
+  private choice(id: string, label: string) {
+    return html`<select id=${id} aria-label=${label}>
+      ${this.names().map((name) => html`<option value=${name}>${name}</option>`)}
+    </select>`;
+  }
+
+  private addButton(act: () => void) {
+    const label = t().route.add;
+    return html`<button type="button" class="icon" aria-label=${label} title=${label} @click=${act}>
+      ${icon("add")}
+    </button>`;
+  }
+
+  private names(): string[] {
+    const tasks = mission.value?.tasks ?? [];
+    return tasks.filter((task) => task.action !== "START").map((task) => task.name);
+  }
+
+  private addPair(): void {
+    const [first, second] = [this.value("first"), this.value("second")];
+    if (first === second || first === "" || second === "") return;
+    if (!this.pairsAsked.some(([one, other]) => one === first && other === second))
+      this.pairsAsked = [...this.pairsAsked, [first, second]];
+  }
+
+  private addWindow(): void {
+    const what = this.value("what");
+    const earliest = readTime(this.value("earliest")) ?? 0;
+    const latest = readTime(this.value("latest"));
+    if (what === "" || (earliest === 0 && latest === null)) return;
+    if (latest !== null && latest <= earliest) return;
+    this.windows = [...this.windows.filter((one) => one.what !== what), { what, earliest, latest }];
+  }
+
+  private value(id: string): string {
+    return this.renderRoot.querySelector<HTMLInputElement>(`#${id}`)?.value ?? "";
+  }
+
+  /** A time as it was understood, or marked as none. */
+  private tidy(event: Event): void {
+    const field = event.target as HTMLInputElement;
+    const read = readTime(field.value);
+    const wrong = field.value.trim() !== "" && read === null;
+    field.setCustomValidity(wrong ? " " : "");
+    field.setAttribute("aria-invalid", String(wrong));
+    if (read !== null) field.value = writeTime(read);
+  }
+
+  private whyNot(): string | null {
+    const texts = t().route;
+    if (!mayPlan()) return texts.mayNotPlan;
+    if (this.names().length < 2) return texts.nothing;
+    const broken = findings.value.diagnostics.some((one) => one.severity === "error");
+    return broken ? texts.hasErrors : null;
+  }
+
+  private search(event: SubmitEvent): void {
+    event.preventDefault();
+    const form = new FormData(event.target as HTMLFormElement);
+    const known = new Set(this.names());
+    const asked: Asked = {
+      budget: readTime(form.get("budget") as string),
+      before: this.pairsAsked.filter((pair) => pair.every((name) => known.has(name))),
+      windows: this.windows.filter(({ what }) => known.has(what)),
+    };
+    void search(Number(form.get("limit")), asked);
   }
 }

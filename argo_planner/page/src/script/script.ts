@@ -79,6 +79,8 @@ export class ScriptPanel extends PageElement {
         white-space: pre-wrap;
       }
       textarea {
+        position: relative;
+        z-index: 1;
         width: 100%;
         height: 100%;
         overflow: hidden;

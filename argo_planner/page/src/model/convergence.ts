@@ -1,0 +1,52 @@
+/** The best order and the bound over time, as lines of a drawing. */
+
+export interface Step {
+  /** s since the search began */
+  readonly time: number;
+  /** s that the best order takes; null: there is none yet */
+  readonly best: number | null;
+  /** s less than which no order takes */
+  readonly bound: number;
+}
+
+export interface Convergence {
+  /** points of a path in a drawing of the given size */
+  readonly best: string;
+  readonly bound: string;
+  readonly low: number;
+  readonly high: number;
+  readonly end: number;
+}
+
+/** Both as steps: each holds until the next one. `until` (s): how long the search has lasted. */
+export function convergence(steps: readonly Step[], width: number, height: number, until = 0): Convergence | null {
+  const last = steps.at(-1);
+  if (last === undefined) return null;
+  const end = Math.max(last.time, until, 1e-3);
+  const bests = steps.flatMap((step) => step.best ?? []);
+  const all = [...bests, ...steps.map((step) => step.bound).filter((bound) => bound > 0)];
+  let low = Math.min(...all, ...(all.length === 0 ? [0] : []));
+  let high = Math.max(...all, ...(all.length === 0 ? [1] : []));
+  const room = Math.max((high - low) / 10, high / 100, 1e-9);
+  low -= room;
+  high += room;
+  const x = (time: number) => round((width * time) / end);
+  const y = (value: number) => round(height - (height * (Math.min(high, Math.max(low, value)) - low)) / (high - low));
+  const line = (of: (step: Step) => number | null): string => {
+    let path = "";
+    let height: number | null = null;
+    for (const step of steps) {
+      const value = of(step);
+      if (value === null) continue;
+      const next = y(value);
+      path += height === null ? `M${x(step.time)} ${next}` : `H${x(step.time)}V${next}`;
+      height = next;
+    }
+    return height === null ? "" : `${path}H${x(end)}`;
+  };
+  return { best: line((step) => step.best), bound: line((step) => step.bound), low, high, end };
+}
+
+function round(value: number): number {
+  return Math.round(100 * value) / 100;
+}

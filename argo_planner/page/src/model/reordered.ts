@@ -1,0 +1,43 @@
+/** Two orders of the same tasks beside each other. */
+
+export interface Placed {
+  readonly name: string;
+  /** Whether others have gone past it: it is not among those that stand as they stood. */
+  readonly moved: boolean;
+}
+
+export interface TwoOrders {
+  readonly before: readonly Placed[];
+  readonly after: readonly Placed[];
+}
+
+/** Both orders with those marked that have changed their places; as few as explain it. What is left
+ * out stands in the first one only, and is marked there. */
+export function compared(before: readonly string[], after: readonly string[]): TwoOrders {
+  const at = new Map(after.map((name, place) => [name, place]));
+  const places = before.flatMap((name) => at.get(name) ?? []);
+  const stay = new Set(longestRise(places).map((place) => after[place]));
+  const placed = (name: string): Placed => ({ name, moved: !stay.has(name) });
+  return { before: before.map(placed), after: after.map(placed) };
+}
+
+/** A longest part of the numbers, in their order, that rises. */
+export function longestRise(numbers: readonly number[]): number[] {
+  const ends: number[] = []; // of each length the place of the smallest last number
+  const behind = new Array<number>(numbers.length).fill(-1);
+  numbers.forEach((number, place) => {
+    let low = 0;
+    let high = ends.length;
+    while (low < high) {
+      const middle = (low + high) >> 1;
+      if ((numbers[ends[middle] as number] as number) < number) low = middle + 1;
+      else high = middle;
+    }
+    behind[place] = low > 0 ? (ends[low - 1] as number) : -1;
+    ends[low] = place;
+  });
+  const found: number[] = [];
+  for (let place = ends.at(-1) ?? -1; place >= 0; place = behind[place] as number)
+    found.push(numbers[place] as number);
+  return found.reverse();
+}

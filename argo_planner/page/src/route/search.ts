@@ -1,0 +1,111 @@
+/** The search for an order of the mission that is open: begun, watched, ended, taken. */
+
+import { batch, computed, effect, signal } from "@preact/signals-core";
+
+import { answered, client, newId, Refusal, Unreached } from "../api/client";
+import type { operations } from "../api/schema";
+import type { OrderJob } from "../api/types";
+import { tell, tellError } from "../state/notices";
+import { jobs, planId, revision } from "../state/plan";
+import { comparedPreview } from "../state/preview";
+import { t } from "../texts";
+
+export interface Asked {
+  readonly budget: number | null;
+  readonly before: readonly (readonly [string, string])[];
+  readonly windows: readonly { readonly what: string; readonly earliest: number; readonly latest: number | null }[];
+}
+
+/** Of the requirements only what is given is sent. */
+type SearchAsked =
+  operations["suggest_order"]["requestBody"]["content"]["application/json"];
+
+/** The search that is shown; null: none. */
+const shown = signal<OrderJob | null>(null);
+let plan: string | null = null;
+let previewed = "";
+
+/** How it stands, by what was told last. */
+export const job = computed<OrderJob | null>(() => {
+  const known = shown.value;
+  return known === null ? null : (jobs.value.get(known.id) ?? known);
+});
+/** Whether the mission was changed since the search began. */
+export const jobIsStale = computed(() => job.value !== null && job.value.revision !== revision.value);
+
+effect(() => {
+  const id = planId.value;
+  if (id !== plan) leave();
+  plan = id;
+});
+
+effect(() => {
+  const found = job.value;
+  if (found?.state === "done" && found.found?.reordering && previewed !== found.id) {
+    previewed = found.id;
+    void preview(found.id);
+  }
+});
+
+/** Shows the ways in that order on the site, to be compared with those of now. */
+async function preview(id: string): Promise<void> {
+  try {
+    const ways = await answered(client.GET("/api/jobs/{id}/preview", { params: { path: { id } } }));
+    if (shown.value?.id === id) comparedPreview.value = ways;
+  } catch (error) {
+    if (!(error instanceof Refusal || error instanceof Unreached)) throw error;
+  }
+}
+
+export async function search(seconds: number, asked: Asked): Promise<void> {
+  const id = planId.value;
+  if (id === null) return;
+  try {
+    const body = { time_limit: seconds, requirements: asked };
+    const begun = await answered(
+      client.POST("/api/missions/{id}/orders", {
+        params: { path: { id } },
+        body: body as unknown as SearchAsked,
+      }),
+    );
+    leave();
+    shown.value = begun;
+  } catch (error) {
+    tellError(error);
+  }
+}
+
+export async function cancel(): Promise<void> {
+  const id = job.value?.id;
+  if (id === undefined) return;
+  try {
+    shown.value = await answered(client.DELETE("/api/jobs/{id}", { params: { path: { id } } }));
+  } catch (error) {
+    tellError(error);
+  }
+}
+
+export async function accept(): Promise<void> {
+  const now = job.value;
+  if (now === null) return;
+  try {
+    await answered(
+      client.POST("/api/jobs/{id}/accept", {
+        params: { path: { id: now.id }, header: { "If-Match": `"${now.revision}"` } },
+        body: { id: newId() },
+      }),
+    );
+    leave();
+    tell("info", t().route.accepted);
+  } catch (error) {
+    if (error instanceof Refusal && error.problem.code === "stale-revision") tell("warn", t().route.stale);
+    else tellError(error);
+  }
+}
+
+export function leave(): void {
+  batch(() => {
+    shown.value = null;
+    comparedPreview.value = null;
+  });
+}

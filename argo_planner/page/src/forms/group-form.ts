@@ -33,7 +33,11 @@ export function groupForm(group: Group) {
       set({ max_repeat_count: count ?? 0 }),
     )}
     ${timeField(texts.duration, group.max_repeat_duration || null, (time) =>
-      set({ max_repeat_duration: time ?? 0 }),
+      // One round is what a new group has: with a time it is to go round until that is up.
+      set({
+        max_repeat_duration: time ?? 0,
+        ...(group.max_repeat_count === 1 && time ? { max_repeat_count: 0 } : {}),
+      }),
     )}
     ${group.max_repeat_duration > 0
       ? html`${selectField(texts.stop, group.stop, optionsOf(texts.stops), (stop) =>

@@ -7,6 +7,7 @@ import { isTaskKey, nameOfKey } from "../model/outline";
 import { editHere, mission, selection, tasksByName } from "../state/plan";
 import { t } from "../texts";
 import { css, customElement, html, look, nothing, PageElement } from "../ui/element";
+import type { FormField } from "./field";
 import { groupForm } from "./group-form";
 import { headerForm } from "./header-form";
 import { checkField, numberField, optionsOf, selectField } from "./parts";
@@ -66,6 +67,21 @@ export class PropertiesPanel extends PageElement {
       }
     `,
   ];
+
+  override connectedCallback(): void {
+    super.connectedCallback();
+    addEventListener("open-details", this.focusFirst);
+  }
+
+  override disconnectedCallback(): void {
+    super.disconnectedCallback();
+    removeEventListener("open-details", this.focusFirst);
+  }
+
+  /** Puts the cursor into the first field. */
+  private readonly focusFirst = (): void => {
+    this.renderRoot.querySelector<FormField>("argo-field")?.focus();
+  };
 
   override render() {
     const open = mission.value;

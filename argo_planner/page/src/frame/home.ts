@@ -124,7 +124,13 @@ export class PageHome extends PageElement {
     }
   }
 
+  private focused = false;
+
   override updated(): void {
+    if (!this.focused && mayPlan()) {
+      this.focused = true;
+      this.renderRoot.querySelector<HTMLElement>("button.main")?.focus();
+    }
     this.renderRoot.querySelector("dialog")?.showModal();
   }
 

@@ -2,6 +2,7 @@
 
 import { signal } from "@preact/signals-core";
 
+import { PropertiesPanel } from "../forms/properties";
 import { redo, select, selection, undo } from "../state/plan";
 import { mayPlan } from "../state/session";
 import { tool } from "../state/view";
@@ -81,7 +82,12 @@ export class PageKeys extends PageElement {
   }
 
   private readonly onKey = (event: KeyboardEvent): void => {
-    if (event.defaultPrevented || isTyping(event)) return;
+    if (event.defaultPrevented) return;
+    if (isTyping(event)) {
+      const form = event.composedPath().some((one) => one instanceof PropertiesPanel);
+      if (event.key === "Escape" && form) dispatchEvent(new CustomEvent("focus-list"));
+      return;
+    }
     const key = event.key.toLowerCase();
     const command = event.ctrlKey || event.metaKey;
     if (key === "?" && !command) keysShown.value = true;

@@ -7,12 +7,12 @@ import { placeForNew } from "../model/places";
 import { tell } from "../state/notices";
 import { edit, inTurn, mission, select, selection } from "../state/plan";
 import { mayPlan } from "../state/session";
-import { panel, tool } from "../state/view";
+import { panel, shownFloor, tool } from "../state/view";
 import { world } from "../state/world";
 import { t } from "../texts";
 import { css, customElement, html, look, nothing, PageElement, query, state } from "../ui/element";
 import { icon } from "../ui/icons";
-import { type Choice, checkpointChoices, matching, placeChoices } from "./choices";
+import { type Choice, checkpointChoices, matching, placeChoices, typedPlace } from "./choices";
 
 /** Adds a task behind what is selected, and selects it. Whether it was added. */
 export function addTask(action: Action, wanted: string, fields: Partial<Task>): Promise<boolean> {
@@ -32,6 +32,14 @@ export function addTask(action: Action, wanted: string, fields: Partial<Task>): 
 /** Adds the measuring of a checkpoint. */
 export function addMeasure(id: string): Promise<boolean> {
   return addTask("MEASURE", `MEASURE ${id}`, { object_id: id });
+}
+
+/** Adds a waypoint, or in a mission that begins nowhere yet its start. */
+export function addPlace(pose: Pose, name?: string): Promise<boolean> {
+  const started = mission.value?.tasks.some((task) => task.action === "START") ?? true;
+  return started
+    ? addTask("WAYPOINT", name ?? "WAYPOINT", { pose })
+    : addTask("START", "START", { pose });
 }
 
 @customElement("argo-add")
@@ -125,8 +133,9 @@ export class AddTasks extends PageElement {
   private choices(): readonly Choice[] {
     const site = world.value;
     if (site === null) return [];
-    const all = this.open === "measure" ? checkpointChoices(site) : placeChoices(site);
-    return matching(all, this.text);
+    if (this.open === "measure") return matching(checkpointChoices(site), this.text);
+    const typed = typedPlace(site, this.text, shownFloor.value);
+    return [...(typed ? [typed] : []), ...matching(placeChoices(site), this.text)];
   }
 
   override render() {
@@ -246,7 +255,7 @@ export class AddTasks extends PageElement {
   private choose(choice: Choice): void {
     this.close();
     if (choice.checkpoint !== undefined) void addMeasure(choice.checkpoint);
-    else if (choice.pose) void addTask("WAYPOINT", choice.name ?? "WAYPOINT", { pose: choice.pose });
+    else if (choice.pose) void addPlace(choice.pose, choice.name);
   }
 
   private addStart(pose: Pose, area: number): void {

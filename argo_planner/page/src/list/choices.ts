@@ -40,6 +40,17 @@ export function placeChoices(site: World): Choice[] {
   ];
 }
 
+/** The place that is typed as `x y` or `x y floor` (m, on the floor's deck); null: none is. */
+export function typedPlace(site: World, typed: string, floor: number | null): Choice | null {
+  const found = /^(-?\d+(?:\.\d+)?)[\s;]+(-?\d+(?:\.\d+)?)(?:[\s;]+(\d+))?$/.exec(typed.trim());
+  if (!found) return null;
+  const wanted = found[3] === undefined ? (floor ?? site.floors[0]?.number) : Number(found[3]);
+  const deck = site.floors.find((one) => one.number === wanted);
+  if (!deck) return null;
+  const pose = { x: Number(found[1]), y: Number(found[2]), z: deck.z, yaw: 0 };
+  return { label: coordinates(pose), detail: deck.name, pose };
+}
+
 /** The choices that fit what was typed, the best ones first: a number means that checkpoint. */
 export function matching(choices: readonly Choice[], typed: string): Choice[] {
   const text = typed.trim().toLowerCase().replace(/^#\s*/, "");

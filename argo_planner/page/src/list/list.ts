@@ -108,6 +108,7 @@ export class MissionList extends PageElement {
   override connectedCallback(): void {
     super.connectedCallback();
     addEventListener("keydown", this.onGlobalKey);
+    addEventListener("focus-list", this.focusTree);
     addEventListener("paste", this.onPaste);
     addEventListener("copy", this.onCopy);
     this.stop.push(effect(() => this.reveal(selection.value.at(-1))));
@@ -116,11 +117,14 @@ export class MissionList extends PageElement {
   override disconnectedCallback(): void {
     super.disconnectedCallback();
     removeEventListener("keydown", this.onGlobalKey);
+    removeEventListener("focus-list", this.focusTree);
     removeEventListener("paste", this.onPaste);
     removeEventListener("copy", this.onCopy);
     this.resized.disconnect();
     for (const one of this.stop.splice(0)) one();
   }
+
+  private readonly focusTree = (): void => this.tree.focus();
 
   override firstUpdated(): void {
     this.resized.observe(this.tree);
@@ -160,7 +164,7 @@ export class MissionList extends PageElement {
     const at = shown.findIndex((row) => row.key === active);
     return html`
       <div class="tools" role="toolbar" aria-label=${texts.tasks}>
-        <argo-add @focus-list=${() => this.tree.focus()}></argo-add>
+        <argo-add @focus-list=${this.focusTree}></argo-add>
         <span class="grow"></span>
         <button
           class="bare icon"
@@ -379,7 +383,7 @@ export class MissionList extends PageElement {
         break;
       case "Enter":
         panel.value = "properties";
-        this.dispatchEvent(new CustomEvent("open-details", { bubbles: true, composed: true }));
+        setTimeout(() => dispatchEvent(new CustomEvent("open-details"))); // once it is there
         break;
       case "F2":
         if (row && mayPlan()) this.renaming = row.key;

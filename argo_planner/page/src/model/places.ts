@@ -25,13 +25,11 @@ export function placeAt(row: Row, side: Side): Place {
   return { after: row.group.end, ...container };
 }
 
-/** Where a new task goes: behind what was selected last, else to the end. */
+/** Where a new task goes: behind the task or the group that was selected last, else to the end. */
 export function placeForNew(rows: readonly Row[], selection: readonly string[]): Place {
   const last = selection.at(-1);
   const row = rows.find((one) => one.key === last);
   if (!row) return {};
-  // A new task after a group that is selected belongs to it: that is what one is working on.
-  if (row.kind === "group") return { after: row.group.end, into: row.group.name };
   return placeAt(row, "after");
 }
 

@@ -1,6 +1,7 @@
 import { expect, test } from "vitest";
 
-import { matching, type Choice } from "../../src/list/choices";
+import type { World } from "../../src/api/types";
+import { matching, typedPlace, type Choice } from "../../src/list/choices";
 
 const CHOICES: Choice[] = [
   { label: "4 valve R25", detail: "", checkpoint: "4" },
@@ -20,4 +21,23 @@ test("words are found wherever they begin", () => {
 
 test("nothing fits what nothing is called", () => {
   expect(matching(CHOICES, "pump")).toEqual([]);
+});
+
+const SITE = {
+  floors: [
+    { number: 1, name: "Floor 1", z: 0 },
+    { number: 2, name: "Floor 2", z: 2.5 },
+  ],
+} as unknown as World;
+
+test.each([
+  ["1 1", null, [1, 1, 0]],
+  ["1.5 -2", 2, [1.5, -2, 2.5]],
+  ["1; 2; 2", null, [1, 2, 2.5]],
+])("%s is a place", (text, floor, [x, y, z]) => {
+  expect(typedPlace(SITE, text, floor)?.pose).toEqual({ x, y, z, yaw: 0 });
+});
+
+test.each(["1", "1 2 9", "dock", "1 2 3 4", ""])("%s is none", (text) => {
+  expect(typedPlace(SITE, text, null)).toBeNull();
 });

@@ -20,8 +20,8 @@ describe("a new task goes", () => {
   test("behind the one that was selected last, into its group", () => {
     expect(placeForNew(ROWS, ["task:a", "task:c"])).toEqual({ after: "c", into: "G" });
   });
-  test("to the end of a group that is selected", () => {
-    expect(placeForNew(ROWS, ["group:G"])).toEqual({ after: "c", into: "G" });
+  test("behind a group that is selected", () => {
+    expect(placeForNew(ROWS, ["group:G"])).toEqual({ after: "c" });
   });
 });
 

@@ -1,5 +1,7 @@
 /** What has happened in the run, newest first. A click goes back to that time. */
 
+import { computed } from "@preact/signals-core";
+
 import { happenings, type Happening, type Told } from "../model/happenings";
 import { shownEntries, shownRun, shownTime } from "../state/run";
 import { t } from "../texts";
@@ -45,6 +47,9 @@ export function inWords(what: Happening): string {
   }
 }
 
+const count = computed(() => shownRun.value?.entries ?? 0);
+const toldNow = computed(() => happenings(shownEntries.value, 0, count.value));
+
 @customElement("argo-run-events")
 export class RunEvents extends PageElement {
   static override styles = [
@@ -83,10 +88,9 @@ export class RunEvents extends PageElement {
   ];
 
   override render() {
-    const now = shownRun.value;
-    if (now === null) return nothing;
+    if (count.value === 0) return nothing;
     const texts = t().run;
-    const told = happenings(shownEntries.value, 0, now.entries);
+    const told = toldNow.value;
     return html`<section aria-label=${texts.events}>
       <h2>${texts.events}</h2>
       ${told.length === 0

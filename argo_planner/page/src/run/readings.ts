@@ -1,5 +1,6 @@
 /** What was read: each on the scale of its instrument, with the picture that it comes from. */
 
+import { computed } from "@preact/signals-core";
 import { svg } from "lit";
 
 import type { Reading } from "../model/replay";
@@ -14,6 +15,8 @@ import { figure, parts, percent } from "./parts";
 
 const WIDTH = 100;
 const HEIGHT = 10;
+
+const readingsNow = computed(() => shownRun.value?.readings ?? null);
 
 @customElement("argo-run-readings")
 export class RunReadings extends PageElement {
@@ -86,10 +89,10 @@ export class RunReadings extends PageElement {
   ];
 
   override render() {
-    const now = shownRun.value;
-    if (now === null) return nothing;
+    const readings = readingsNow.value;
+    if (readings === null) return nothing;
     const texts = t().run;
-    const latest = [...now.readings].sort((a, b) => b.t - a.t);
+    const latest = [...readings].sort((a, b) => b.t - a.t);
     return html`<section aria-label=${texts.readings}>
       <h2>${texts.readings}</h2>
       ${latest.length === 0

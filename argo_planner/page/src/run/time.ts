@@ -1,5 +1,6 @@
 /** Back in time: a slider over the run, with a mark for all that has happened. */
 
+import { computed } from "@preact/signals-core";
 import { svg } from "lit";
 
 import { happenings } from "../model/happenings";
@@ -10,6 +11,8 @@ import { parts } from "./parts";
 
 const STEP = 0.5; // s, as often as a run keeps where the robot was
 const MOST_MARKS = 300;
+
+const all = computed(() => happenings(shownEntries.value));
 
 @customElement("argo-run-time")
 export class RunTime extends PageElement {
@@ -56,7 +59,7 @@ export class RunTime extends PageElement {
     if (end <= 0) return nothing;
     const texts = t().run;
     const now = shownTime.value;
-    const marks = happenings(entries).slice(-MOST_MARKS);
+    const marks = all.value.slice(-MOST_MARKS);
     return html`<div class="line">
       <label class="slider">
         <span>${texts.backInTime}: ${t().words.seconds(now ?? end)}</span>

@@ -50,13 +50,15 @@ export interface ShownRun extends Moment {
   /** Whether it is the robot as it is now. */
   readonly live: boolean;
 }
+/** Made anew with entries only, and not with each pose. */
+const shownMoment = computed(() => momentAt(shownEntries.value, shownTime.value ?? Infinity));
 export const shownRun = computed<ShownRun | null>(() => {
   const state = shownRunState.value;
   if (state === null) return null;
   const { id, plan, revision: driven } = state;
   const back = shownTime.value;
   const past = pastRun.value !== null;
-  const moment = momentAt(shownEntries.value, back ?? Infinity);
+  const moment = shownMoment.value;
   if (past || back !== null)
     return moment && { ...moment, id, plan, revision: driven, live: false };
   const now = robotPose.value;

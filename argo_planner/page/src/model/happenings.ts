@@ -11,7 +11,7 @@ export type Happening =
   | { readonly kind: "fault"; readonly fault: string }
   | { readonly kind: "mishap"; readonly trouble: string; readonly detail: string }
   | { readonly kind: "contact"; readonly link: string; readonly element: string }
-  | { readonly kind: "resumed" }
+  | { readonly kind: "resumed" | "edited" }
   | { readonly kind: "ended"; readonly stopped: string | null };
 
 export interface Told {
@@ -29,7 +29,8 @@ export function happenings(entries: readonly Entry[], from = 0, to = entries.len
   for (let at = from; at < to; at++) {
     const entry = entries[at] as Entry;
     if (!isPlain(entry))
-      for (const [what, tone] of of(entry)) found.push({ t: entry.t, entry: at, what, tone });
+      for (const [what, tone] of of(entry, at === entries.length - 1))
+        found.push({ t: entry.t, entry: at, what, tone });
   }
   return found;
 }
@@ -48,7 +49,7 @@ function isPlain(entry: Entry): boolean {
   );
 }
 
-function* of(entry: Entry): Generator<[Happening, Told["tone"]]> {
+function* of(entry: Entry, isLast: boolean): Generator<[Happening, Told["tone"]]> {
   if (entry.resumed) yield [{ kind: "resumed" }, "warn"];
   for (const fault of entry.faults) yield [{ kind: "fault", fault: fault.kind }, "warn"];
   const { reading, task } = entry;
@@ -77,7 +78,9 @@ function* of(entry: Entry): Generator<[Happening, Told["tone"]]> {
     else if (task.outcome === "failed") yield [{ kind: "failed", task: task.task, why }, "bad"];
     else yield [{ kind: "stopped", task: task.task, why }, "warn"];
   }
-  if (entry.ended) yield [{ kind: "ended", stopped: entry.stopped ?? null }, "plain"];
+  // Where a run goes on after its end, it does so with an edited plan.
+  if (entry.ended)
+    yield isLast ? [{ kind: "ended", stopped: entry.stopped ?? null }, "plain"] : [{ kind: "edited" }, "warn"];
 }
 
 type Steering = Extract<Happening, { kind: "steered" }>["how"];

@@ -30,7 +30,14 @@ export class RunBand extends PageElement {
     look,
     parts,
     css`
+      /* Who has the robot stays in sight, however far down somebody looks. */
+      :host {
+        display: contents;
+      }
       .band {
+        position: sticky;
+        z-index: 2;
+        top: 0;
         display: flex;
         align-items: center;
         gap: 10px;
@@ -83,7 +90,7 @@ export class RunBand extends PageElement {
         grid-template-columns: auto 1fr auto;
         align-items: center;
         gap: 4px 8px;
-        margin: 8px 0 0;
+        margin: -6px 0 0;
         font-size: 13px;
       }
       dt {
@@ -113,7 +120,6 @@ export class RunBand extends PageElement {
         font-weight: 600;
       }
       .problem {
-        margin-top: 6px;
         color: var(--bad);
         overflow-wrap: anywhere;
       }

@@ -41,7 +41,8 @@ export function inWords(what: Happening): string {
     case "contact":
       return told.contact(what.link, what.element);
     case "resumed":
-      return told.resumed;
+    case "edited":
+      return told[what.kind];
     case "ended":
       return what.stopped === null ? told.ended : told.stoppedRun(what.stopped);
   }

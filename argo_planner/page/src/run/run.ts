@@ -28,7 +28,8 @@ export class RunPanel extends PageElement {
         padding: 12px;
       }
       .all {
-        display: grid;
+        display: flex;
+        flex-direction: column;
         gap: 14px;
       }
       a {

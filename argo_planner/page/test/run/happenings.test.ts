@@ -37,6 +37,10 @@ test("what people do, tasks, faults and the end are told in their order", () => 
   ).toEqual(["fault", "steered", "done", "by hand", "failed", "stopped", "found", "resumed", "ended"]);
 });
 
+test("an end that something follows is none: the run goes on with an edited plan", () => {
+  expect(kinds(entry({ ended: true, stopped: "it goes on" }), entry({}))).toEqual(["edited"]);
+});
+
 test("only those from one entry to another are told, with their numbers", () => {
   const all = [1, 2, 3].map((t) => entry({ t, resumed: true }));
   expect(happenings(all, 1, 3).map((one) => one.entry)).toEqual([1, 2]);

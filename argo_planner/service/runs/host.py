@@ -10,6 +10,7 @@ from typing import Any
 
 from argo_compiler.errors import ArgoError, Conflict, NotFound
 from argo_compiler.model import Model
+from argo_env.run.log import Entry
 from argo_planner.service.rooms.mailbox import Mailbox, MailboxClosed
 from argo_planner.service.runs.folder import KeptRun, RunFolder
 from argo_planner.service.runs.pipe import RobotText
@@ -61,6 +62,8 @@ class RunHost:
         self._workers: set[RunProcess] = set()
         """this one, and those that still write the report of a run before"""
         self._entries: list[str] = []
+        self._read: tuple[str, tuple[Entry, ...]] | None = None
+        """a run before that was read last, with its entries: who looks at it reads it in parts"""
         self._requests: dict[str, RequestState] = {}
         self._followers: dict[str, Mailbox] = {}
         self._robot: Mailbox | None = None
@@ -168,7 +171,9 @@ class RunHost:
         if state is not None and state.id == run:
             told = [EntryTold.model_validate_json(t) for t in self._entries[since : since + most]]
             return EntryList(count=len(self._entries), entries=tuple(one.entry for one in told))
-        entries = await asyncio.to_thread(self._folder.entries, run)
+        if self._read is None or self._read[0] != run:
+            self._read = run, await asyncio.to_thread(self._folder.entries, run)
+        entries = self._read[1]
         return EntryList(count=len(entries), entries=entries[since : since + most])
 
     def follow(self, client: str, since: int | None = None) -> Mailbox:

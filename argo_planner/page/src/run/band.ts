@@ -173,7 +173,7 @@ export class RunBand extends PageElement {
     const said = limit === null ? seconds(value) : t().run.ofLimit(seconds(value), seconds(limit));
     const part = limit === null ? 0 : value / limit;
     return html`<dt>${name}</dt>
-      ${limit === null ? html`<span></span>` : this.gauge(part, part >= 1)}
+      ${limit === null ? html`<dd></dd>` : this.gauge(part, part >= 1)}
       <dd id="time">${said}</dd>`;
   }
 
@@ -200,6 +200,8 @@ export class RunBand extends PageElement {
 
   private gauge(part: number, broken: boolean) {
     const width = `${Math.min(100, Math.max(0, 100 * part))}%`;
-    return html`<div class="gauge ${broken ? "broken" : ""}"><div ${styled({ width })}></div></div>`;
+    return html`<dd class="gauge ${broken ? "broken" : ""}" aria-hidden="true">
+      <div ${styled({ width })}></div>
+    </dd>`;
   }
 }

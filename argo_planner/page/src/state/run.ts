@@ -1,6 +1,6 @@
 /** The run that the robot is in or was in last, as the service tells it. */
 
-import { batch, computed, signal } from "@preact/signals-core";
+import { batch, computed, effect, signal } from "@preact/signals-core";
 
 import { answered, authorQuery, client, newId, Unreached } from "../api/client";
 import { LiveConnection } from "../api/live";
@@ -36,6 +36,11 @@ export const robotConnected = signal(false);
 export const pastRun = signal<{ readonly state: RunState; readonly entries: readonly Entry[] } | null>(null);
 /** s of the run that is shown, to which the page goes back; null: its newest moment. */
 export const shownTime = signal<number | null>(null);
+effect(() => {
+  const plan = planId.value;
+  const past = pastRun.peek();
+  if (past !== null && past.state.plan !== plan) pastRun.value = shownTime.value = null;
+});
 /** The run that is shown: a past one, or the robot's. */
 export const shownRunState = computed(() => pastRun.value?.state ?? run.value);
 export const shownEntries = computed(() => pastRun.value?.entries ?? entries.value);

@@ -6,7 +6,7 @@ interface Sheet {
   readonly title: string;
   readonly keys: readonly (readonly [key: string, what: string])[];
 }
-type Sheets = Readonly<Record<"everywhere" | "list" | "adding" | "scene", Sheet>>;
+type Sheets = Readonly<Record<"everywhere" | "list" | "adding" | "scene" | "script" | "byHand", Sheet>>;
 
 export const keys = both<Sheets>(
   {
@@ -54,6 +54,18 @@ export const keys = both<Sheets>(
         ["PageUp PageDown", "floor above or below"],
       ],
     },
+    script: { title: "Script", keys: [["Ctrl+Enter", "apply what is written"]] },
+    byHand: {
+      title: "Driving by hand",
+      keys: [
+        ["↑ W", "drive ahead, as long as it is held"],
+        ["↓ S", "drive back"],
+        ["← A", "turn left"],
+        ["→ D", "turn right"],
+        ["Space", "stand still"],
+        ["Esc", "end driving with the keys"],
+      ],
+    },
   },
   {
     everywhere: {
@@ -98,6 +110,18 @@ export const keys = both<Sheets>(
         [", .", "den Umriss drehen"],
         ["Enter", "den Umriss setzen"],
         ["Bild↑ Bild↓", "Stockwerk darüber oder darunter"],
+      ],
+    },
+    script: { title: "Skript", keys: [["Strg+Enter", "Geschriebenes anwenden"]] },
+    byHand: {
+      title: "Von Hand fahren",
+      keys: [
+        ["↑ W", "vorwärts fahren, solange gedrückt"],
+        ["↓ S", "rückwärts fahren"],
+        ["← A", "nach links drehen"],
+        ["→ D", "nach rechts drehen"],
+        ["Leertaste", "stehen bleiben"],
+        ["Esc", "Fahren mit den Tasten beenden"],
       ],
     },
   },

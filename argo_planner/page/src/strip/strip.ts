@@ -185,8 +185,8 @@ export class StripPanel extends PageElement {
       <div class="totals">
         ${this.total("time", atLeast + seconds(time.value), time, bounds)}
         ${this.total("energy", atLeast + this.share(energy.value), energy, bounds)}
-        <span class="total">${texts.distance} <b id="distance">${metres(found.distance)}</b></span>
-        <span class="total">${texts.climb} <b id="climb">${metres(found.climb)}</b></span>
+        <span class="total">${texts.distance} <b id="total-distance">${metres(found.distance)}</b></span>
+        <span class="total">${texts.climb} <b id="total-climb">${metres(found.climb)}</b></span>
         ${found.at_least.length > 0
           ? html`<span class="dim" title=${found.at_least.join("\n")}>${icon("clock", 13)} ${found.at_least[0]}</span>`
           : nothing}
@@ -205,7 +205,7 @@ export class StripPanel extends PageElement {
     const problem = isTime ? texts.tooLong : texts.tooMuch;
     return html`<span class="total ${of.broken ? "bad" : ""}" title=${of.broken ? problem : nothing}>
       ${of.broken ? icon("warning", 14) : nothing} ${isTime ? texts.time : texts.battery}
-      <b id=${kind}>${said}</b>
+      <b id=${`total-${kind}`}>${said}</b>
       ${isTime && of.limit !== null ? `/ ${write(of.limit)}` : nothing}
       ${bound === undefined ? nothing : this.bound(bound, write, said)}
     </span>`;

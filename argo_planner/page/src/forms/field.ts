@@ -80,6 +80,8 @@ export class FormField extends PageElement {
   @state() private typed: string | null = null;
   @state() private wrong: string | null = null;
   @state() private overtaken = false;
+  /** Whether what was typed is on its way. */
+  private taking = false;
   private readonly id_ = `field-${++count}`;
 
   override willUpdate(changes: Map<string, unknown>): void {
@@ -167,7 +169,7 @@ export class FormField extends PageElement {
 
   private onKey(event: KeyboardEvent): void {
     if (event.key === "Enter") void this.take((event.target as HTMLInputElement).value);
-    else if (event.key === "Escape" && this.typed !== null) this.forget();
+    else if (event.key === "Escape" && this.typed !== null && !this.taking) this.forget();
     else return;
     event.preventDefault();
     event.stopPropagation();
@@ -183,7 +185,9 @@ export class FormField extends PageElement {
     if (typed === this.value) return this.forget();
     this.typed = typed;
     this.overtaken = false;
+    this.taking = true;
     const wrong = await this.commit(typed);
+    this.taking = false;
     if (this.typed !== typed) return;
     if (wrong === null) this.forget();
     else this.wrong = wrong;

@@ -78,9 +78,11 @@ export class PropertiesPanel extends PageElement {
     removeEventListener("open-details", this.focusFirst);
   }
 
-  /** Puts the cursor into the first field. */
-  private readonly focusFirst = (): void => {
-    this.renderRoot.querySelector<FormField>("argo-field")?.focus();
+  /** Puts the cursor into the field that is named, or the first one. */
+  private readonly focusFirst = (event: Event): void => {
+    const label = (event as CustomEvent<string | undefined>).detail;
+    const fields = [...this.renderRoot.querySelectorAll<FormField>("argo-field")];
+    (fields.find((field) => field.label === label) ?? fields[0])?.focus();
   };
 
   override render() {

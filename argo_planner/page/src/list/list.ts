@@ -382,8 +382,7 @@ export class MissionList extends PageElement {
         select(shown.map((one) => one.key));
         break;
       case "Enter":
-        panel.value = "properties";
-        setTimeout(() => dispatchEvent(new CustomEvent("open-details"))); // once it is there
+        openDetails();
         break;
       case "F2":
         if (row && mayPlan()) this.renaming = row.key;
@@ -476,7 +475,7 @@ export class MissionList extends PageElement {
     const group = { name, start: first.name, end: last.name, max_repeat_count: 1 };
     if (await edit({ kind: "wrap_tasks", group })) {
       select([groupKey(inside + name)]);
-      panel.value = "properties";
+      openDetails(t().forms.duration);
     }
   };
 
@@ -564,6 +563,12 @@ export class MissionList extends PageElement {
     this.drop = null;
     if (drop) void this.moveTo(drop.row, drop.side);
   }
+}
+
+/** Shows the details of what is selected, with the cursor in a field. */
+function openDetails(label?: string): void {
+  panel.value = "properties";
+  setTimeout(() => dispatchEvent(new CustomEvent("open-details", { detail: label }))); // once it is there
 }
 
 function typing(): boolean {

@@ -83,7 +83,7 @@ function checkpointMark(checkpoint: WorldCheckpoint): Mark {
     subject: { kind: "checkpoint", checkpoint },
     at: new Vector3(...checkpoint.position),
     floor: checkpoint.floor,
-    text: checkpoint.name,
+    text: `#${checkpoint.id} ${checkpoint.name}`,
     numbers: shortList(there?.numbers ?? []),
     value: reading ? `${round(reading.value)} ${reading.unit}` : "",
     tone: isActive

@@ -1,12 +1,12 @@
 /** The navigation tool: a ghost of the robot that can be put where the robot can stand. */
 
-import { computed, signal } from "@preact/signals-core";
+import { computed, effect, signal } from "@preact/signals-core";
 import type { Ray } from "three";
 
 import { addTask } from "../list/add";
 import { floorOf, type Standing } from "../model/standing";
 import { mission } from "../state/plan";
-import { shownFloor } from "../state/view";
+import { shownFloor, tool } from "../state/view";
 import { world } from "../state/world";
 import { t } from "../texts";
 import { heed } from "./heed";
@@ -38,10 +38,13 @@ export const ghost = computed<GhostPose | null>(() => {
   const site = world.value;
   if (at === null || site === null) return null;
   heed(mapsRead);
-  const verdict = standing(at.x, at.y, at.z, at.yaw);
-  const z = verdict !== null && Math.abs(verdict.z - at.z) < STEP_UP ? verdict.z : at.z;
-  return { ...at, z, floor: floorOf(site.floors, z)?.number ?? 1, verdict };
+  return posed(at, standing(at.x, at.y, at.z, at.yaw));
 });
+
+function posed(at: Omit<GhostPose, "verdict" | "floor">, verdict: Standing | null): GhostPose {
+  const z = verdict !== null && Math.abs(verdict.z - at.z) < STEP_UP ? verdict.z : at.z;
+  return { ...at, z, floor: floorOf(world.peek()?.floors ?? [], z)?.number ?? 1, verdict };
+}
 
 /** The tool is taken: the maps are read. */
 export function takeGhost(): void {
@@ -104,12 +107,28 @@ export const setsStart = computed(
 
 /** Adds a task where the ghost is, if the robot can stand there. Whether it was added. */
 export async function placeGhost(): Promise<boolean> {
-  const at = ghost.value;
+  const at = await judged();
   if (at?.verdict?.ground !== "reached") return false;
   const rounded = (value: number) => Math.round(1000 * value) / 1000;
   const pose = { x: rounded(at.x), y: rounded(at.y), z: rounded(at.z), yaw: at.yaw };
   const action = setsStart.value ? "START" : "WAYPOINT";
   return addTask(action, action, { pose });
+}
+
+/** The ghost once it is known whether the robot can stand there: right after the tool was taken, the
+ * maps may still be on their way. */
+function judged(): Promise<GhostPose | null> {
+  const at = placed.peek();
+  return new Promise((resolve) => {
+    const stop = effect(() => {
+      heed(mapsRead);
+      const verdict = at && standing(at.x, at.y, at.z, at.yaw);
+      const gone = tool.value !== "navigate";
+      if (at !== null && verdict === null && !gone) return;
+      resolve(at === null || gone ? null : posed(at, verdict));
+      queueMicrotask(() => stop());
+    });
+  });
 }
 
 /** What holds where the ghost is, in words. */

@@ -156,9 +156,9 @@ export class ScenePanel extends PageElement {
   }
 
   private place(): void {
-    const at = ghost.value;
-    if (at?.verdict?.ground === "reached") void placeGhost();
-    else this.said.value = `${verdictWords(at)} `;
+    void placeGhost().then((placed) => {
+      if (!placed) this.said.value = `${verdictWords(ghost.value)} `;
+    });
   }
 
   private readonly onMenu = (event: MouseEvent): void => {

@@ -1,0 +1,56 @@
+"""For everyone: axe finds nothing serious, in both themes and languages, wide and narrow."""
+
+from pathlib import Path
+from typing import Any
+
+import pytest
+from playwright.sync_api import expect
+
+from argo_planner.service.web import page
+from tests.e2e.page.person import Person
+from tests.e2e.page.test_list import plan, row
+
+__all__ = ["plan"]
+AXE = Path(page.__file__).parents[2] / "page" / "node_modules" / "axe-core" / "axe.min.js"
+
+
+def require_accessible(person: Person, where: str) -> None:
+    """That axe finds nothing serious or critical."""
+    person.ask(AXE.read_text(encoding="utf-8"))
+    found: list[dict[str, Any]] = person.ask(
+        "() => axe.run(document, { resultTypes: ['violations'] }).then(r => r.violations)"
+    )
+    serious = [
+        (one["id"], node["target"], node.get("failureSummary"))
+        for one in found
+        if one["impact"] in ("serious", "critical")
+        for node in one["nodes"]
+    ]
+    assert not serious, (where, serious)
+
+
+@pytest.mark.parametrize("theme", ["light", "dark"])
+@pytest.mark.parametrize("locale", ["en-GB", "de-DE"])
+def test_planning_is_accessible(browsers, address, plan, theme, locale) -> None:
+    ann = browsers.person(address, locale=locale, color_scheme=theme)
+    ann.open()
+    expect(ann.page.locator("argo-home button.main")).to_be_enabled()
+    require_accessible(ann, "the list of missions")
+    ann.open(f"/missions/{plan}")
+    ann.click(row(ann, "A1"))
+    ann.idle()
+    require_accessible(ann, "planning")
+    for panel in ("script", "route", "run"):
+        ann.click(ann.page.locator(f"#tab-{panel}"))
+        require_accessible(ann, panel)
+    ann.key("?")
+    require_accessible(ann, "the sheet of keys")
+
+
+def test_a_phone_shows_the_run(browsers, address, plan) -> None:
+    ann = browsers.person(address, viewport={"width": 400, "height": 800})
+    ann.open(f"/missions/{plan}")
+    ann.click(ann.page.locator("#tab-run"))
+    ann.idle()
+    require_accessible(ann, "a phone")
+    assert ann.ask("() => document.documentElement.scrollWidth") <= 400

@@ -1,0 +1,155 @@
+"""Protocol #2 of the thesis' study (section 5.1), planned and run as a person would, and the inputs
+that it takes."""
+
+import re
+from typing import Any
+
+import pytest
+from playwright.sync_api import expect
+
+from tests.argo_planner.service.served import Served
+from tests.e2e.page.person import Person
+from tests.e2e.page.test_list import mission, order, row
+
+MOST = 40
+"""inputs, and one more for each undo, redo or reorder"""
+FRONT = (8.05, -2.05, -0.03)
+CORNERS = ((2, 2), (15, 1), (15, 11), (2, 10))
+PLANNED = ("START", "Round", *(f"WAYPOINT {n}" for n in range(1, 5)), "MEASURE 2", "MEASURE 14")
+
+
+@pytest.fixture
+def ann(browsers, address) -> Person:
+    ann = browsers.person(address)
+    ann.open()
+    expect(ann.button("New mission")).to_be_enabled()
+    return ann
+
+
+def expect_planned(ann: Person, service: Served) -> str:
+    """That the mission is the protocol's, also after the page is loaded again; its id."""
+    order(ann, *PLANNED)
+    expect(ann.page.get_by_role("status")).to_have_text("Saved")
+    ann.page.reload()
+    order(ann, *PLANNED)
+    id = ann.page.url.rpartition("/")[2]
+    found = mission(service, id)
+    (group,) = found["groups"]
+    assert (group["start"], group["end"]) == ("WAYPOINT 1", "WAYPOINT 4")
+    assert (group["max_repeat_count"], group["max_repeat_duration"]) == (0, 600)
+    poses = {task["name"]: task["pose"] for task in found["tasks"]}
+    for name, (x, y) in zip(PLANNED[2:6], CORNERS, strict=True):
+        assert abs(poses[name]["x"] - x) < 0.6
+        assert abs(poses[name]["y"] - y) < 0.6
+    assert abs(poses["START"]["x"] - FRONT[0]) < 0.6
+    return id
+
+
+def expect_success(ann: Person, service: Served, id: str) -> None:
+    """That the run, which goes as fast as possible from now on, ends well."""
+    ann.page.locator("#speed").select_option("null")
+
+    def run() -> Any:
+        return next(r for r in service.client.get("/api/runs").json()["runs"] if r["plan"] == id)
+
+    ann.until(lambda: run()["status"] == "ended", "the run ends")
+    ended = run()
+    assert ended["headline"] is not None
+    done = {task["task"]: task["done"] for task in ended["tasks"]}
+    assert done["MEASURE 2"] == done["MEASURE 14"] == 1
+    expect(ann.page.locator("argo-run")).to_contain_text(re.compile("success", re.IGNORECASE))
+
+
+def steer_by(press: Any) -> None:
+    """Starts the run, takes over and gives back; `press` is how a button is pressed."""
+    press("Start the run")
+    press("Take over")
+    press("Give back")
+
+
+def test_by_mouse(ann, service, capsys) -> None:
+    ann.click(ann.button("New mission"))
+    ann.idle()
+    ann.click(ann.page.locator("argo-scene").get_by_role("radio", name=re.compile("Floor 1")))
+    ann.idle()
+    ann.key("n")
+    ann.click(ann.at(*FRONT))
+    order(ann, "START")
+    for number, (x, y) in enumerate(CORNERS, start=1):
+        ann.click(ann.at(x, y, 0.0))
+        expect(row(ann, f"WAYPOINT {number}")).to_have_count(1)
+    ann.click(row(ann, "WAYPOINT 1"))
+    ann.click(row(ann, "WAYPOINT 4"), modifiers=["Shift"])
+    ann.key("g")
+    expect(ann.page.get_by_label("For at most")).to_be_focused()
+    ann.type("10m")
+    ann.key("Enter", "Escape")
+    for number in ("14", "2"):
+        ann.key("m")
+        ann.type(number)
+        ann.key("Enter")
+        expect(row(ann, f"MEASURE {number}")).to_have_attribute("aria-selected", "true")
+    ann.key("Delete")
+    expect(row(ann, "MEASURE 2")).to_have_count(0)
+    ann.click(row(ann, "Round"))
+    ann.key("m")
+    ann.type("2")
+    ann.key("Enter")
+    id = expect_planned(ann, service)
+    ann.click(ann.page.get_by_role("tab", name="Run"))
+
+    def press(name: str) -> None:
+        button = ann.page.locator("argo-run").get_by_role("button", name=name, exact=True)
+        expect(button).to_be_enabled(timeout=60_000)
+        ann.click(button)
+
+    steer_by(press)
+    with capsys.disabled():
+        print(f"\nprotocol #2 by mouse, run included: {ann.inputs} inputs")
+    assert ann.inputs <= MOST
+    expect_success(ann, service, id)
+
+
+def test_by_keys_alone(ann, service, capsys) -> None:
+    expect(ann.button("New mission")).to_be_focused()
+    ann.key("Enter")
+    expect(ann.button("Add")).to_be_enabled()
+    for place in ("f", *(f"{x} {y}" for x, y in CORNERS)):
+        ann.key("w")
+        ann.type(place)
+        ann.key("Enter")
+    order(ann, "START", *PLANNED[2:6])
+    ann.key("Shift+ArrowUp", "Shift+ArrowUp", "Shift+ArrowUp", "g")
+    expect(ann.page.get_by_label("For at most")).to_be_focused()
+    ann.type("10m")
+    ann.key("Enter", "Escape")
+    for number in ("14", "2"):
+        ann.key("m")
+        ann.type(number)
+        ann.key("Enter")
+    order(ann, *PLANNED[:6], "MEASURE 14", "MEASURE 2")
+    ann.key("Delete")
+    expect(row(ann, "MEASURE 2")).to_have_count(0)
+    ann.key("m")
+    ann.type("2")
+    ann.key("Enter", "Alt+ArrowUp")
+    id = expect_planned(ann, service)
+    planned = ann.inputs
+    ann.key("r")
+    start = ann.page.locator("argo-run").get_by_role("button", name="Start the run", exact=True)
+    expect(start).to_be_enabled()
+
+    def press(name: str) -> None:
+        button = ann.page.locator("argo-run").get_by_role("button", name=name, exact=True)
+        expect(button).to_be_enabled(timeout=60_000)
+        for _ in range(60):
+            if button.evaluate("one => one.getRootNode().activeElement === one"):
+                break
+            ann.key("Tab")
+        expect(button).to_be_focused()
+        ann.key("Enter")
+
+    steer_by(press)
+    with capsys.disabled():
+        print(f"\nprotocol #2 by keys: {planned} inputs, run included {ann.inputs}")
+    expect_success(ann, service, id)

@@ -1,18 +1,22 @@
 """Runs: begun, asked, followed; and those that were."""
 
+from collections.abc import Iterable, Sequence
 from typing import Annotated
 
 from fastapi import APIRouter, Path, Query, Response, WebSocket
 from pydantic import Field
 
-from argo_compiler.errors import ArgoError, NotFound
+from argo_compiler.errors import ArgoError, Invalid, NotFound
 from argo_compiler.model import Model
 from argo_env.faults.kinds import AnyFault
 from argo_env.report.files import PAGE, RECORD
+from argo_env.run.drives_and_sensors import DRIVES, SENSORS
+from argo_env.site import Site
 from argo_planner.service.core.commands import CommandId
 from argo_planner.service.core.refusals import StaleRevision
 from argo_planner.service.runs.requests import AskedOfRun, GoOnEdited, RequestState, RunOrder, Speed
 from argo_planner.service.runs.state import EntryList, RunState
+from argo_planner.service.runs.worker import REMOTE
 from argo_planner.service.web.access import AccessRole, Visitor
 from argo_planner.service.web.bodies import Sent
 from argo_planner.service.web.live import carry, require_socket, socket_client
@@ -87,6 +91,7 @@ async def start_run(
     if made_on is not None and made_on != plan.revision:
         raise StaleCommand(StaleRevision(made_on, plan.revision), plan.since(made_on))
     sound(document, service.site)
+    _require_known(run, service.site.site)
     order = RunOrder(
         plan=id,
         revision=plan.revision,
@@ -266,3 +271,19 @@ def _state(service: PlanningService, run: str) -> RunState:
     if present is not None and present.id == run:
         return present
     return service.runs.folder.kept(run).state
+
+
+def _require_known(run: RunAsked, site: Site) -> None:
+    """Raises Invalid for drives, sensors and checkpoints that there are not, before anything
+    begins."""
+    checkpoints = [checkpoint.id for checkpoint in site.checkpoints]
+    _require("drive", [run.drive], [*DRIVES, REMOTE])
+    _require("sensor", [run.sensor], [*SENSORS])
+    _require("values: checkpoint", run.values, checkpoints)
+
+
+def _require(what: str, given: Iterable[object], known: Sequence[object]) -> None:
+    if unknown := [f"`{one}`" for one in given if one not in known]:
+        raise Invalid(
+            f"{what} {', '.join(unknown)}: there is none; known: {', '.join(map(str, known))}"
+        )

@@ -106,6 +106,22 @@ def auth() -> dict[str, str]:
     return {"authorization": f"Bearer {ALL}"}
 
 
+def test_what_there_is_not_is_said_before_anything_begins(service: Served, id: str) -> None:
+    before = service.client.get("/api/runs").json()["runs"]
+    for wrong, named, known in (
+        ({"drive": "flying"}, "`flying`", "kinematic"),
+        ({"sensor": "nose"}, "`nose`", "ideal"),
+        ({"values": {"99": 1.0, "1": 2.0, "98": 0.0}}, "checkpoint `99`, `98`", " 14,"),
+    ):
+        refused = service.client.post(
+            f"/api/missions/{id}/runs", json=wrong, headers={"if-match": "*"}
+        )
+        detail = problem(refused, 422, "invalid")["detail"]
+        assert named in detail
+        assert known in detail
+    assert service.client.get("/api/runs").json()["runs"] == before
+
+
 def test_the_run_goes_on_when_nobody_looks(service: Served, id: str) -> None:
     live = service.socket("/api/robot/live", auth())
     run = start(service, id, speed=None)["id"]

@@ -108,15 +108,13 @@ async def start_run(
 @router.get("/runs", operation_id="list_runs", response_model=RunList)
 async def list_runs(service: Service, _: Viewer) -> Response:
     """The present run and those before it."""
-    present = service.runs.state
-    kept = [k.state for k in service.runs.folder.all() if not present or k.state.id != present.id]
-    return said(RunList(runs=(*([present] if present else []), *kept)))
+    return said(RunList(runs=tuple(await service.runs.all())))
 
 
 @router.get("/runs/{run}", operation_id="read_run", response_model=RunState)
 async def read_run(service: Service, _: Viewer, run: RunId) -> Response:
     """How a run stands, or how it ended."""
-    return said(_state(service, run))
+    return said(await service.runs.read(run))
 
 
 @router.post(
@@ -214,14 +212,9 @@ async def read_report(
 ) -> Response:
     """A file of the report of a run that has ended: report.html, report.json or site.png."""
     media = {PAGE: "text/html", RECORD: "application/json", "site.png": "image/png"}
-    _state(service, run)
-    path = service.runs.folder.path(run) / file
     if file not in media:
         raise NotFound(f"the report has no file {file!r}; it has: {', '.join(media)}")
-    try:
-        content = path.read_bytes()
-    except FileNotFoundError:
-        raise NotFound(f"run {run} has no report yet: it is made when the run has ended") from None
+    content = await service.runs.report(run, file)
     return Response(content, media_type=media[file])
 
 
@@ -258,19 +251,11 @@ async def connect_robot(socket: WebSocket) -> None:
         await socket.send_denial_response(answer(problem_of(error)))
         return
     await socket.accept()
-    line = service.runs.connect_robot()
+    line = service.runs.robot.connect()
     try:
         await carry(socket, line, lambda text: service.runs.hear_robot(line, text))
     finally:
-        service.runs.disconnect_robot(line)
-
-
-def _state(service: PlanningService, run: str) -> RunState:
-    """Raises NotFound."""
-    present = service.runs.state
-    if present is not None and present.id == run:
-        return present
-    return service.runs.folder.kept(run).state
+        service.runs.robot.disconnect(line)
 
 
 def _require_known(run: RunAsked, site: Site) -> None:

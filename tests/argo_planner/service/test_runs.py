@@ -65,7 +65,8 @@ def test_a_run_is_begun_followed_steered_and_reported(service: Served, id: str) 
     assert "ann has begun run" in problem(refused, 409, "conflict")["detail"]
     wait(service, run, moving=True)
     assert ask(service, run, "pause")["progress"] == "confirmed"
-    assert not wait(service, run, mode="paused")["moving"]
+    paused = state(service, run)
+    assert (paused["mode"], paused["moving"]) == ("paused", False)
     assert ask(service, run, "take_over")["progress"] == "confirmed"
     wrong = ask(service, run, "measure", checkpoint="99")
     assert wrong["progress"] == "refused"
@@ -120,6 +121,17 @@ def test_what_there_is_not_is_said_before_anything_begins(service: Served, id: s
         assert named in detail
         assert known in detail
     assert service.client.get("/api/runs").json()["runs"] == before
+
+
+def test_why_there_is_no_report_yet_is_said(service: Served, id: str) -> None:
+    run = start(service, id, speed=1.0)["id"]
+    missing = service.client.get(f"/api/runs/{run}/report/report.html")
+    detail = problem(missing, 404, "not-found")["detail"]
+    assert "when it has ended" in detail
+    assert f"/api/runs/{run}/entries" in detail
+    wait(service, run, status="running")
+    assert ask(service, run, "stop")["progress"] == "confirmed"
+    assert state(service, run)["status"] == "ended", "known before it is confirmed"
 
 
 def test_the_run_goes_on_when_nobody_looks(service: Served, id: str) -> None:

@@ -2,24 +2,18 @@
 
 from collections.abc import Callable, Sequence
 
-from argo_compiler.errors import ArgoError, Conflict, NotFound
-from argo_compiler.hfsm import ByHand, Cancel, GiveBack, Occurred, Pause, Resume, TakeOver
+from argo_compiler.errors import ArgoError, Conflict
+from argo_compiler.hfsm import Cancel, GiveBack, Occurred, Pause, Resume, TakeOver
 from argo_compiler.hfsm.events import ReadingGiven
-from argo_compiler.il import Action, Task
-from argo_compiler.model import Model
 from argo_env.drives.powertrain import Powertrain
-from argo_env.run.log import Entry
-from argo_env.run.machine import Machine
-from argo_env.run.observer import Observer
-from argo_env.run.record import Reading
 from argo_env.run.simulation import Simulation
 from argo_env.run.spec import RunSpec
 from argo_env.run.steering import DoByHand, ReachIn, Steering, StopByHand, StopRun
 from argo_planner.service.runs import requests as asked
 from argo_planner.service.runs.pace import Pace
+from argo_planner.service.runs.request_book import RequestBook
 from argo_planner.service.runs.requests import RequestProgress, RequestState, RunRequest
 from argo_planner.service.runs.state import (
-    EntryTold,
     PoseTold,
     RequestTold,
     RunMode,
@@ -28,40 +22,13 @@ from argo_planner.service.runs.state import (
     StateTold,
     TaskCount,
 )
+from argo_planner.service.runs.supervised import SupervisedRun
+from argo_planner.service.runs.teller import RunTeller, Tell
 
 POSES = 30.0
 """a second of the clock, at most"""
 STATES = 2.0
 """likewise, of those that tell nothing but how time goes on"""
-MOST_REQUESTS = 50
-"""that are over and still told"""
-_FREE = ("drive by hand", "measure by hand")
-
-Tell = Callable[[Model], None]
-
-
-class RunTeller(Observer):
-    """Tells the entries of a run, with their numbers. Holds the last readings."""
-
-    def __init__(self, run: str, tell: Tell, past: tuple[Entry, ...] = ()) -> None:
-        self._run, self._tell = run, tell
-        self.count = 0
-        self.readings: dict[int, Reading] = {}
-        self.fresh = True
-        """whether something has been told since this was last set to False"""
-        for entry in past:
-            self._note(entry)
-
-    def on_change(self, entry: Entry, machine: Machine) -> None:  # noqa: ARG002
-        """An entry was made, and the machine has it."""
-        self._note(entry)
-        self._tell(EntryTold.model_construct(run=self._run, number=self.count, entry=entry))
-
-    def _note(self, entry: Entry) -> None:
-        self.count += 1
-        self.fresh = True
-        if entry.reading is not None:
-            self.readings[entry.reading.checkpoint] = entry.reading
 
 
 class RunDriver:
@@ -83,10 +50,10 @@ class RunDriver:
         self._tell = tell
         self._clock = clock
         self._pace = Pace(first.speed, simulation.now, clock())
-        self._requests = {request.id: request for request in requests}
+        self._book = RequestBook(first.id, requests)
         self._awaited: dict[str, Callable[[], bool]] = {}
         self._by_hand: str | None = None
-        self._skipped: list[ByHand] = []
+        self._hands = SupervisedRun(simulation, first.skipped)
         self._pose_due = self._stated = 0.0
         self.following: tuple[RunSpec, int] | None = None
         """with what the run is to go on instead of this simulation, and of which revision of the
@@ -100,7 +67,7 @@ class RunDriver:
     @property
     def requests(self) -> tuple[RequestState, ...]:
         """What was asked, the last one last."""
-        return tuple(self._requests.values())
+        return self._book.told()
 
     @property
     def over(self) -> bool:
@@ -119,9 +86,21 @@ class RunDriver:
             # Late ones are made up for, so that steps of nearly this length are all told.
             self._pose_due = max(self._pose_due + 1.0 / POSES, now - 1.0 / POSES)
             self._tell(self._pose())
-        if self._teller.fresh or now - self._stated >= 1.0 / STATES:
+        due = self._stated + 1.0 / (POSES if self._teller.fresh else STATES)
+        if now >= due:
             self.tell_state()
-        return left
+        return min(left, max(0.0, due - now)) if self._teller.fresh else left
+
+    def take_up(self, request: RunRequest, by: str) -> None:
+        """What was asked for while the run was interrupted: to go on, which it does as soon as
+        something happens in it again, or to stop."""
+        if isinstance(request, asked.EndRun) and not self.over:
+            self.ask(request, by)
+            return
+        known = self._teller.count
+        self._progress(request.id, request.kind, by, RequestProgress.UNDER_WAY)
+        self._awaited[request.id] = lambda: self._teller.count > known or self.over
+        self._look()
 
     def ask(self, request: RunRequest, by: str) -> None:
         """Does what is asked for, or refuses it."""
@@ -137,9 +116,14 @@ class RunDriver:
 
     def confirm_following(self) -> None:
         """Confirms that the run goes on with an edited plan, as it does now."""
-        for request in self.requests:
-            if request.kind == "go_on_edited" and not request.over:
-                self._progress(request.id, request.kind, request.by, RequestProgress.CONFIRMED)
+        confirmed = {"progress": RequestProgress.CONFIRMED}
+        self._settle(
+            [
+                request.model_copy(update=confirmed)
+                for request in self._book.pending
+                if request.kind == "go_on_edited"
+            ]
+        )
 
     def tell_state(self) -> None:
         """Tells how the run stands."""
@@ -169,12 +153,12 @@ class RunDriver:
                 "reaction": machine.reaction,
                 "rounds": dict(machine.rounds),
                 "tasks": tuple(TaskCount(**dict(tally)) for tally in progress.tallies),
-                "skipped": tuple(one.task for one in self._skipped),
+                "skipped": self._hands.skipped,
                 "readings": tuple(self._teller.readings.values()),
                 "charge": self._charge(),
                 "silent_since": simulation.silent_since,
                 "entries": self._teller.count,
-                "requests": tuple(self._requests.values()),
+                "requests": self.requests,
                 "speed": self._pace.speed,
                 "headline": simulation.record().headline if self.over else None,
             }
@@ -191,23 +175,29 @@ class RunDriver:
                 self._pace.change(speed, simulation.now, self._clock())
                 return _at_once
             case asked.SkipTask(task=name):
-                self._skip(name)
+                self._hands.skip(name)
                 return _at_once
             case asked.GiveRobotBack():
-                done = (*simulation.done_by_hand, *self._skipped)
-                simulation.handle(GiveBack(done))
-                self._skipped.clear()
+                if not simulation.taken_over:
+                    raise Conflict("nobody has the robot: it is given back by who took it over")
+                simulation.handle(GiveBack(self._hands.done(simulation.spec.mission)))
+                self._hands.forget()
                 return lambda: simulation.over or not simulation.taken_over
             case asked.GoOnEdited(mission=mission, revision=revision):
                 if not simulation.taken_over:
                     raise Conflict("the plan is exchanged by a person who has the robot")
-                done = (*simulation.done_by_hand, *self._skipped)
-                self.following = simulation.going_on(mission, done), revision
+                self.following = simulation.going_on(mission, self._hands.done(mission)), revision
                 return lambda: False
             case asked.TakeRobot():
                 simulation.handle(TakeOver())
                 return lambda: simulation.taken_over and simulation.task is None
             case asked.PauseRun():
+                if simulation.taken_over:
+                    raise Conflict(
+                        "a person has the robot: the mission stands still until they give it back"
+                    )
+                if machine.paused:
+                    return lambda: simulation.task is None
                 simulation.handle(Pause())
                 return lambda: machine.paused and simulation.task is None
             case asked.GoOnWithRun():
@@ -219,7 +209,7 @@ class RunDriver:
                 simulation.handle(StopByHand())
                 return lambda: simulation.task is None
             case asked.DoTask() | asked.DriveTo() | asked.MeasureAt():
-                simulation.handle(DoByHand(self._task(request)))
+                simulation.handle(DoByHand(self._hands.task(request)))
                 self._by_hand = request.id
                 return lambda: simulation.by_hand is None
             case asked.CancelMission():
@@ -228,49 +218,22 @@ class RunDriver:
         simulation.handle(_steering(request))
         return _at_once
 
-    def _task(self, request: asked.DoTask | asked.DriveTo | asked.MeasureAt) -> Task:
-        """What the robot is to do by hand. Raises NotFound for a task that there is not."""
-        mission = self._simulation.spec.mission
-        if isinstance(request, asked.DoTask):
-            task = mission.task(request.task)
-            if task is None:
-                raise NotFound(f"the mission has no task '{request.task}'")
-            return task
-        drive = isinstance(request, asked.DriveTo)
-        name = _FREE[0 if drive else 1]
-        while mission.task(name) is not None:
-            name += "'"
-        if isinstance(request, asked.DriveTo):
-            return Task(name=name, action=Action.WAYPOINT, pose=request.pose)
-        return Task(name=name, action=Action.MEASURE, object_id=request.checkpoint)
-
-    def _skip(self, name: str) -> None:
-        if not self._simulation.taken_over:
-            raise Conflict("a task is skipped by a person who has the robot: take it over first")
-        task = self._simulation.spec.mission.task(name)
-        if task is None or task.action is Action.START:
-            raise NotFound(f"the mission has no task '{name}' that could be skipped")
-        self._skipped.append(ByHand(task=name, skipped=True))
-
     def _look(self) -> None:
         """Confirms what is so by now."""
-        if not self._awaited:
-            return
+        settled = []
         for id, until in [*self._awaited.items()]:
-            if until():
-                del self._awaited[id]
-                known = self._requests[id]
-                progress, reason = RequestProgress.CONFIRMED, None
-                if id == self._by_hand:
-                    self._by_hand = None
-                    progress, reason = self._outcome()
-                self._progress(id, known.kind, known.by, progress, reason)
-            elif self.over:
-                del self._awaited[id]
-                known = self._requests[id]
-                self._progress(
-                    id, known.kind, known.by, RequestProgress.FAILED, "the run has ended before"
-                )
+            progress, reason = RequestProgress.CONFIRMED, None
+            if not until():
+                if not self.over:
+                    continue
+                progress, reason = RequestProgress.FAILED, "the run has ended before"
+            elif id == self._by_hand:
+                self._by_hand = None
+                progress, reason = self._outcome()
+            del self._awaited[id]
+            update = {"progress": progress, "reason": reason}
+            settled.append(self._book.of(id).model_copy(update=update))
+        self._settle(settled)
 
     def _outcome(self) -> tuple[RequestProgress, str | None]:
         """How what was done by hand last has ended."""
@@ -279,15 +242,22 @@ class RunDriver:
             return RequestProgress.CONFIRMED, None
         return RequestProgress.FAILED, last.reason or last.outcome
 
+    def _settle(self, requests: Sequence[RequestState]) -> None:
+        """Requests are over. The state that they have brought about is told first: whoever waits
+        for a request knows it then."""
+        if not requests:
+            return
+        for request in requests:
+            self._book.note(request)
+        self.tell_state()
+        for request in requests:
+            self._tell(RequestTold(run=self._state.id, request=request))
+
     def _progress(
         self, id: str, kind: str, by: str, progress: RequestProgress, reason: str | None = None
     ) -> None:
         told = RequestState(id=id, kind=kind, by=by, progress=progress, reason=reason)
-        self._requests.pop(id, None)
-        self._requests[id] = told
-        over = [id for id, known in self._requests.items() if known.over]
-        for old in over[: max(0, len(over) - MOST_REQUESTS)]:
-            del self._requests[old]
+        self._book.note(told)
         self._tell(RequestTold(run=self._state.id, request=told))
 
     # ---- what is told

@@ -12,6 +12,7 @@ from argo_compiler.model import Model
 from argo_env.files.checked_lines import sync_folder
 from argo_env.run.journal import open_journal
 from argo_env.run.log import Entry
+from argo_planner.service.runs.request_file import RequestFile
 from argo_planner.service.runs.requests import RunOrder
 from argo_planner.service.runs.state import RunState
 from argo_planner.service.runs.worker import entries_of, journals
@@ -19,6 +20,7 @@ from argo_planner.service.runs.worker import entries_of, journals
 RUN_ID = r"[0-9]{8}-[0-9]{6}-[0-9a-f]{4}"
 """what a run's id looks like: when it was begun, in UTC, and something that tells it from others"""
 _KEPT = "run.json"
+_REQUESTS = "requests"
 
 
 class KeptRun(Model):
@@ -61,13 +63,14 @@ class RunFolder:
 
     def all(self) -> list[KeptRun]:
         """The runs, the newest first."""
-        found = []
+        found: list[KeptRun] = []
         with suppress(FileNotFoundError):
-            for name in sorted(os.listdir(self._path), reverse=True):
+            for name in os.listdir(self._path):
                 if re.fullmatch(RUN_ID, name):
                     with suppress(NotFound):
                         found.append(self.kept(name))
-        return found
+        # More than one may have been begun within a second.
+        return sorted(found, key=lambda kept: kept.state.begun, reverse=True)
 
     def kept(self, id: str) -> KeptRun:
         """How a run stands. Raises NotFound if there is none, or that can't be read."""
@@ -90,10 +93,30 @@ class RunFolder:
         self.kept(id)
         return entries_of(self.path(id))
 
+    def requests(self, id: str) -> RequestFile:
+        """Where the requests to a run are kept."""
+        return RequestFile(self.path(id) / _REQUESTS)
+
+    def report(self, id: str, file: str) -> bytes | None:
+        """A file of the report of a run; None if it is not there. Raises NotFound if there is no
+        such run, Unavailable if the file can't be read."""
+        self.kept(id)
+        path = self.path(id) / file
+        try:
+            return path.read_bytes()
+        except FileNotFoundError:
+            return None
+        except OSError as error:
+            raise Unavailable(f"{path}: can't be read: {error.strerror}") from error
+
+    def last_journal(self, id: str) -> Path | None:
+        """The journal of the last plan of a run; None if it ended before there was one."""
+        return next(reversed(journals(self.path(id))), None)
+
     def has_ended(self, id: str) -> bool:
         """Whether the last plan of a run has come to its end. Raises ArgoError likewise."""
-        known = journals(self.path(id))
-        if not known:
+        last = self.last_journal(id)
+        if last is None:
             return False
-        with open_journal(known[-1]) as journal:
+        with open_journal(last) as journal:
             return journal.ended

@@ -2,19 +2,22 @@
 
 import asyncio
 import secrets
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from datetime import datetime
 from enum import StrEnum
 from pathlib import Path
-from typing import Any
 
-from argo_compiler.errors import ArgoError, Conflict, NotFound
+from argo_compiler.errors import ArgoError, Conflict
 from argo_compiler.model import Model
 from argo_env.run.log import Entry
-from argo_planner.service.rooms.mailbox import Mailbox, MailboxClosed
+from argo_planner.service.rooms.mailbox import Mailbox
+from argo_planner.service.runs.disk import DiskThread
 from argo_planner.service.runs.folder import KeptRun, RunFolder
-from argo_planner.service.runs.pipe import RobotText
+from argo_planner.service.runs.left_behind import left_behind
+from argo_planner.service.runs.pipe import BrokenOff, RobotText
+from argo_planner.service.runs.present import PresentRun
 from argo_planner.service.runs.process import RunProcess
+from argo_planner.service.runs.reports import missing_report
 from argo_planner.service.runs.requests import (
     EndRun,
     GoOnWithRun,
@@ -23,15 +26,8 @@ from argo_planner.service.runs.requests import (
     RunOrder,
     RunRequest,
 )
-from argo_planner.service.runs.state import (
-    EntryList,
-    EntryTold,
-    PoseTold,
-    RequestTold,
-    RunState,
-    RunStatus,
-    StateTold,
-)
+from argo_planner.service.runs.robot_line import RobotLine
+from argo_planner.service.runs.state import EntryList, RequestTold, RunState, RunStatus, StateTold
 
 
 class AfterRestart(StrEnum):
@@ -43,7 +39,7 @@ class AfterRestart(StrEnum):
 
 
 class RunHost:
-    """The run of the service's robot. Holds its process and those who follow it."""
+    """The run of the service's robot. Holds its process, and the line to a robot elsewhere."""
 
     def __init__(
         self,
@@ -54,25 +50,24 @@ class RunHost:
     ) -> None:
         """`foxglove`: the port at which runs are shown live on this machine; None: they are not."""
         self._folder = RunFolder(folder)
+        self._disk = DiskThread()
         self._after_restart = after_restart
         self._clock = clock
         self._foxglove = foxglove
-        self._kept: KeptRun | None = None
+        self._present = PresentRun(self._folder, self._disk)
         self._worker: RunProcess | None = None
         self._workers: set[RunProcess] = set()
         """this one, and those that still write the report of a run before"""
-        self._entries: list[str] = []
+        self._asking = asyncio.Lock()
+        """so that requests are kept and passed on in the order in which they come"""
+        self.robot = RobotLine()
         self._read: tuple[str, tuple[Entry, ...]] | None = None
         """a run before that was read last, with its entries: who looks at it reads it in parts"""
-        self._requests: dict[str, RequestState] = {}
-        self._followers: dict[str, Mailbox] = {}
-        self._robot: Mailbox | None = None
-        self._ended = asyncio.Event()
 
     @property
     def state(self) -> RunState | None:
         """How the last run stands; None: there was none."""
-        return self._kept.state if self._kept else None
+        return self._present.state
 
     @property
     def folder(self) -> RunFolder:
@@ -81,264 +76,219 @@ class RunHost:
 
     async def open(self) -> None:
         """Finds the last run. One that had not ended goes on, or waits for a person."""
-        runs = await asyncio.to_thread(self._folder.all)
+        runs = await self._disk.do(self._folder.all)
         if not runs:
             return
-        kept = runs[0]
-        if kept.state.status is not RunStatus.ENDED:
-            problem = "the service has ended while it was under way"
-            kept = await self._found_interrupted(kept, problem)
-        self._kept = kept
-        if kept.state.status is RunStatus.INTERRUPTED and (
-            self._after_restart is AfterRestart.GO_ON
+        present, found = self._present, runs[0]
+        requests = self._folder.requests(found.state.id)
+        present.become(found, await self._disk.do(requests.all))
+        await self._lose("the service has ended while it was under way", may_stop=True)
+        if self._after_restart is AfterRestart.GO_ON and (
+            present.kept.state.status is RunStatus.INTERRUPTED
         ):
-            self._begin()
+            await self._begin()
 
     async def start(self, order: RunOrder, by: str) -> RunState:
         """Begins a run. Raises Conflict, with who holds the robot, if one is not over yet."""
-        state = self.state
-        if state is not None and state.status is not RunStatus.ENDED:
-            raise Conflict(
-                f"{state.by} has begun run {state.id} of '{state.name}' at "
-                f"{state.begun:%H:%M:%S} UTC, and it is {state.status}: wait for its end, or "
-                "stop it"
+        async with self._asking:
+            state = self.state
+            if state is not None and state.status is not RunStatus.ENDED:
+                raise Conflict(
+                    f"{state.by} has begun run {state.id} of '{state.name}' at "
+                    f"{state.begun:%H:%M:%S} UTC, and it is {state.status}: wait for its end, or "
+                    "stop it"
+                )
+            now = self._clock()
+            first = RunState(
+                id=f"{now:%Y%m%d-%H%M%S}-{secrets.token_hex(2)}",
+                plan=order.plan,
+                revision=order.revision,
+                name=order.name,
+                by=by,
+                begun=now,
+                status=RunStatus.PREPARING,
+                drive=order.drive,
+                sensor=order.sensor,
+                seed=order.seed,
+                speed=order.speed,
+                max_duration=order.mission.max_duration,
             )
-        now = self._clock()
-        first = RunState(
-            id=f"{now:%Y%m%d-%H%M%S}-{secrets.token_hex(2)}",
-            plan=order.plan,
-            revision=order.revision,
-            name=order.name,
-            by=by,
-            begun=now,
-            status=RunStatus.PREPARING,
-            drive=order.drive,
-            sensor=order.sensor,
-            seed=order.seed,
-            speed=order.speed,
-            max_duration=order.mission.max_duration,
-        )
-        self._kept = KeptRun(order=order, state=first)
-        self._entries, self._requests = [], {}
-        try:
-            await asyncio.to_thread(self._folder.make, self._kept)
-        except ArgoError:
-            self._kept = KeptRun(
-                order=order, state=first.model_copy(update={"status": RunStatus.ENDED})
-            )
-            raise
-        self._begin()
-        return first
+            kept = KeptRun(order=order, state=first)
+            await self._disk.do(self._folder.make, kept)
+            self._worker = None  # that of the run before tells nothing any more
+            self._present.become(kept)
+            await self._begin()
+            return first
 
     async def ask(self, run: str, request: RunRequest, by: str) -> RequestState:
-        """Passes a request on; sent again it does nothing twice. What comes of it is told.
+        """Passes a request on, once it is kept; sent again it does nothing twice. What comes of it
+        is told.
 
-        Raises NotFound if the run is another one, Conflict if it is over.
+        Raises NotFound if the run is another one, Conflict if it is over or can't be asked that
+        now, Unavailable if the request can't be kept, or the process takes nothing.
         """
-        state = self.of(run)
-        if (known := self._requests.get(request.id)) is not None:
-            if (known.kind, known.by) != (request.kind, by):
-                raise Conflict(f"another request has had the id {request.id}: give each its own")
-            return known
-        if state.status is RunStatus.ENDED:
-            raise Conflict(f"run {run} is over")
-        accepted = RequestState(
-            id=request.id, kind=request.kind, by=by, progress=RequestProgress.ACCEPTED
-        )
-        if state.status is RunStatus.INTERRUPTED:
-            return await self._ask_interrupted(request, accepted)
-        if self._worker is None:
-            raise Conflict(f"run {run} is {state.status}: ask again in a moment")
-        self._hear(RequestTold(run=run, request=accepted))
-        self._worker.send((request, by))
-        return accepted
+        async with self._asking:
+            state, worker = self._present.of(run), self._worker
+            if (known := self._present.book.known(request, by)) is not None:
+                return known
+            if state.status is RunStatus.ENDED:
+                raise Conflict(f"run {run} is over")
+            interrupted = state.status is RunStatus.INTERRUPTED
+            if interrupted and not isinstance(request, GoOnWithRun | EndRun):
+                raise Conflict(
+                    f"run {run} is interrupted ({state.problem}): it can be asked for `go_on` or "
+                    "`stop` only"
+                )
+            if worker is not None:
+                worker.require_room()
+            elif not interrupted:
+                raise Conflict(f"run {run} is {state.status}: ask again in a moment")
+            accepted = RequestState(
+                id=request.id, kind=request.kind, by=by, progress=RequestProgress.ACCEPTED
+            )
+            await self._present.accept(accepted)
+            if interrupted:
+                await self._begin((request, by))
+            elif worker is not None and worker is self._worker:
+                worker.send((request, by))
+            return accepted
 
     def request(self, run: str, id: str) -> RequestState:
         """How far a request is. Raises NotFound."""
-        self.of(run)
-        if id not in self._requests:
-            raise NotFound(f"run {run} has had no request {id[:64]!r}")
-        return self._requests[id]
+        self._present.of(run)
+        return self._present.book.of(id)
 
-    def entries(self, run: str, since: int) -> tuple[int, list[str]]:
-        """How many entries there are, and those after the first `since`, as JSON."""
-        self.of(run)
-        return len(self._entries), self._entries[since:]
+    def of(self, run: str) -> RunState:
+        """How the present run stands. Raises NotFound if that is another one."""
+        return self._present.of(run)
+
+    # ---- looking
+
+    async def all(self) -> list[RunState]:
+        """The present run, and those before it."""
+        runs = [kept.state for kept in await self._disk.do(self._folder.all)]
+        state = self.state
+        return runs if state is None else [state, *(one for one in runs if one.id != state.id)]
+
+    async def read(self, run: str) -> RunState:
+        """How a run stands, or how it ended. Raises NotFound."""
+        if self._is_present(run):
+            return self._present.kept.state
+        return (await self._disk.do(self._folder.kept, run)).state
 
     async def history(self, run: str, since: int, most: int) -> EntryList:
         """What has happened in a run after the first `since` entries. Raises NotFound."""
-        state = self.state
-        if state is not None and state.id == run:
-            told = [EntryTold.model_validate_json(t) for t in self._entries[since : since + most]]
-            return EntryList(count=len(self._entries), entries=tuple(one.entry for one in told))
+        if self._is_present(run):
+            return self._present.entries(since, most)
         if self._read is None or self._read[0] != run:
-            self._read = run, await asyncio.to_thread(self._folder.entries, run)
+            self._read = run, await self._disk.do(self._folder.entries, run)
         entries = self._read[1]
         return EntryList(count=len(entries), entries=entries[since : since + most])
+
+    async def report(self, run: str, file: str) -> bytes:
+        """A file of the report of a run. Raises NotFound, with why it is not there and what there
+        is instead."""
+        if (content := await self._disk.do(self._folder.report, run, file)) is not None:
+            return content
+        making = any(worker.run == run for worker in self._workers)
+        journal = await self._disk.do(self._folder.last_journal, run)
+        raise missing_report(await self.read(run), file, journal, making)
 
     def follow(self, client: str, since: int | None = None) -> Mailbox:
         """Somebody follows the robot's runs: first how it stands, then the entries after that
         number of the present run, then all that happens."""
-        state = StateTold.model_construct(state=self.state).model_dump_json()
-        mailbox = Mailbox([state, *self._entries[since or 0 :]])
-        self._followers[client] = mailbox
-        return mailbox
-
-    def connect_robot(self) -> Mailbox:
-        """A robot that is somewhere else has connected: the texts for it. One that was connected
-        before is let go."""
-        if self._robot is not None:
-            self._robot.close(MailboxClosed("the robot has connected again"))
-        self._robot = Mailbox()
-        return self._robot
-
-    def hear_robot(self, line: Mailbox, text: str) -> None:
-        """The robot on that line tells something. While no run is under way nobody hears it."""
-        if line is self._robot and self._worker is not None:
-            self._worker.send(RobotText(text=text))
-
-    def disconnect_robot(self, line: Mailbox) -> None:
-        """The robot's connection has ended."""
-        if line is self._robot:
-            self._robot = None
+        return self._present.follow(client, since)
 
     def leave(self, client: str) -> None:
         """Somebody has gone."""
-        self._followers.pop(client, None)
+        self._present.leave(client)
+
+    def hear_robot(self, line: Mailbox, text: str) -> None:
+        """The robot on that line tells something. While no run is under way nobody hears it."""
+        if self._worker is not None and self.robot.is_that_of(line):
+            self._worker.send_text(text)
 
     async def close(self) -> None:
         """Ends the process; the journal stays, and the run can go on from it."""
         self._worker = None
-        for worker in [*self._workers]:
-            await asyncio.to_thread(worker.end)
-        for mailbox in (*self._followers.values(), *([self._robot] if self._robot else [])):
-            mailbox.close(MailboxClosed("the service ends"))
+        while self._workers:
+            await asyncio.to_thread(next(iter(self._workers)).end)
+        await asyncio.to_thread(self._disk.close)
+        self._present.close("the service ends")
+        self.robot.close("the service ends")
+
+    def _is_present(self, run: str) -> bool:
+        return self.state is not None and self.state.id == run
 
     # ---- the process
 
-    def _begin(self) -> None:
-        """Begins the process of the run, which goes on from its journal if there is one."""
-        assert self._kept is not None
-        first = self._kept.state.model_copy(
-            update={"status": RunStatus.PREPARING, "problem": None, "requests": ()}
-        )
-        self._kept = self._kept.model_copy(update={"state": first})
+    async def _begin(self, asked: tuple[RunRequest, str] | None = None) -> None:
+        """Begins the process of the run, which goes on from its journal if there is one. It is told
+        what was `asked` for while the run was interrupted."""
+        order, state = self._present.kept.order, self._present.kept.state
+        requests = self._present.book.told()
+        update = {"status": RunStatus.PREPARING, "problem": None, "requests": requests}
+        first = state.model_copy(update=update)
+        await self._present.take([StateTold(state=first)])
+        path = self._folder.path(first.id)
         loop = asyncio.get_running_loop()
-        worker = RunProcess(self._folder.path(first.id), self._kept.order, first, self._foxglove)
+        try:
+            worker = await asyncio.to_thread(RunProcess, path, order, first, self._foxglove, asked)
+        except OSError as error:
+            await self._lose(f"its process can't begin: {error.strerror}", may_stop=False)
+            return
         self._worker = worker
         self._workers.add(worker)
-        self._tell_state()
         worker.read(
-            lambda message: loop.call_soon_threadsafe(self._hear_of, worker, message),
-            lambda: loop.call_soon_threadsafe(self._died, worker),
+            lambda messages: asyncio.run_coroutine_threadsafe(
+                self._hear(worker, messages), loop
+            ).result(),
+            lambda: asyncio.run_coroutine_threadsafe(self._died(worker), loop).result(),
         )
 
-    def _hear_of(self, worker: "RunProcess", message: Model) -> None:
+    async def _hear(self, worker: RunProcess, messages: Sequence[Model]) -> None:
+        """The process tells something; one of a run before is not listened to."""
+        for message in messages:
+            match message:
+                case BrokenOff(problem=problem):
+                    worker.problem = problem
+                case RobotText(text=text) if worker is self._worker:
+                    self.robot.post(text)
         if worker is self._worker:
-            self._hear(message)
+            await self._present.take(messages)
 
-    def _hear(self, message: Model) -> None:
-        """Something is told of the run."""
-        assert self._kept is not None
-        match message:
-            case StateTold(state=state) if state is not None:
-                self._take_state(state)
-                return
-            case RobotText(text=text):
-                if self._robot is not None:
-                    self._robot.post(text)
-                return
-            case PoseTold():
-                text = message.model_dump_json()
-                for mailbox in self._followers.values():
-                    mailbox.post_newest("pose", text)
-                return
-            case EntryTold(number=number):
-                if number <= len(self._entries):
-                    return
-                self._entries.append(text := message.model_dump_json())
-            case RequestTold(request=request):
-                self._requests[request.id] = request
-                text = message.model_dump_json()
-            case _:
-                return
-        for mailbox in self._followers.values():
-            mailbox.post(text)
-
-    def _take_state(self, state: RunState) -> None:
-        assert self._kept is not None
-        before = self._kept.state.status
-        self._kept = self._kept.model_copy(update={"state": state})
-        self._tell_state()
-        if state.status is not before:
-            self._folder.keep(self._kept)
-
-    def _tell_state(self) -> None:
-        text = StateTold.model_construct(state=self.state).model_dump_json()
-        for mailbox in self._followers.values():
-            mailbox.post_newest("state", text)
-
-    def _died(self, worker: "RunProcess") -> None:
+    async def _died(self, worker: RunProcess) -> None:
         """The process has ended: with the run, or before."""
-        self._workers.discard(worker)
-        if worker is not self._worker:
-            return
-        self._worker = None
-        assert self._kept is not None
-        state = self._kept.state
-        if state.status is not RunStatus.ENDED:
-            problem = state.problem or f"its process has ended ({worker.how_it_ended()})"
-            broken = {"status": RunStatus.INTERRUPTED, "problem": problem, "moving": False}
-            self._take_state(state.model_copy(update=broken))
-        for request in [*self._requests.values()]:
-            if not request.over:
-                failed = {"progress": RequestProgress.FAILED, "reason": "the process has ended"}
-                told = RequestTold(run=state.id, request=request.model_copy(update=failed))
-                self._hear(told)
-
-    async def _found_interrupted(self, kept: KeptRun, problem: str) -> KeptRun:
-        """A run whose process is gone, with what its journal says of it."""
-        ended = False
         try:
-            entries = await asyncio.to_thread(self._folder.entries, kept.state.id)
-            ended = await asyncio.to_thread(self._folder.has_ended, kept.state.id)
+            if worker is self._worker:
+                self._worker = None
+                problem = worker.problem or f"its process has ended ({worker.how_it_ended()})"
+                await self._lose(problem, may_stop=not worker.for_stop)
+        finally:
+            self._workers.discard(worker)
+
+    async def _lose(self, problem: str, may_stop: bool) -> None:
+        """The run has no process: see `left_behind`."""
+        present, ended = self._present, False
+        run = present.kept.state.id
+        damaged = False
+        try:
+            await present.read_entries()
+            ended = await self._disk.do(self._folder.has_ended, run)
         except ArgoError as error:
-            entries, problem = (), f"{problem}; its journal can't be read: {error}"
-        self._entries = [
-            EntryTold.model_construct(
-                run=kept.state.id, number=number, entry=entry
-            ).model_dump_json()
-            for number, entry in enumerate(entries, start=1)
-        ]
-        update: dict[str, Any] = {"entries": len(entries), "moving": False, "requests": ()}
-        if ended:
-            update |= {"status": RunStatus.ENDED, "t": entries[-1].t}
-        else:
-            update |= {"status": RunStatus.INTERRUPTED, "problem": problem}
-        kept = kept.model_copy(update={"state": kept.state.model_copy(update=update)})
-        await asyncio.to_thread(self._folder.keep, kept)
-        return kept
-
-    async def _ask_interrupted(self, request: RunRequest, accepted: RequestState) -> RequestState:
-        """An interrupted run can only go on, or be given up."""
-        assert self._kept is not None
-        state = self._kept.state
-        match request:
-            case GoOnWithRun():
-                self._begin()
-            case EndRun():
-                self._take_state(state.model_copy(update={"status": RunStatus.ENDED}))
-            case _:
-                raise Conflict(
-                    f"run {state.id} is interrupted ({state.problem}): let it go on, or stop it"
-                )
-        done = accepted.model_copy(update={"progress": RequestProgress.CONFIRMED})
-        self._hear(RequestTold(run=state.id, request=done))
-        return done
-
-    def of(self, run: str) -> RunState:
-        """How the present run stands. Raises NotFound if that is another one."""
-        state = self.state
-        if state is None or state.id != run:
-            raise NotFound(f"run {run[:40]!r} is not the present one")
-        return state
+            damaged = True
+            if str(error) not in problem:
+                problem = f"{problem}; {error}"
+        left = left_behind(
+            present.kept.state,
+            present.book.pending,
+            problem,
+            begun=damaged or present.count > 0,
+            ended=ended,
+            may_stop=may_stop,
+        )
+        state = left.state.model_copy(update={"requests": present.book.told(left.settled)})
+        settled = [RequestTold(run=run, request=request) for request in left.settled]
+        await present.take([StateTold(state=state), *settled])
+        if left.stop is not None:
+            await self._begin((EndRun(id=left.stop.id), left.stop.by))

@@ -1,4 +1,4 @@
-"""The worker's end of the pipe to the service: requests of people, and texts of the robot."""
+"""The pipe between the service and the worker: requests of people, texts of the robot, news."""
 
 from collections import deque
 from collections.abc import Sequence
@@ -13,6 +13,12 @@ class RobotText(Model):
     """What the robot's line carries, from one end to the other."""
 
     text: str
+
+
+class BrokenOff(Model):
+    """The process can't go on with the run, or could not begin it; it ends now."""
+
+    problem: str
 
 
 class WorkerPipe:

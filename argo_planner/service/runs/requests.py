@@ -63,7 +63,7 @@ class RequestState(Model):
     by: str
     progress: RequestProgress
     reason: str | None = None
-    """of a refusal or a failure"""
+    """of a refusal or a failure, or why a run that was to stop ended otherwise"""
 
     @property
     def over(self) -> bool:
@@ -75,19 +75,20 @@ class _Request(Model):
 
 
 class PauseRun(_Request):
-    """The mission stands still; confirmed when nothing moves any more."""
+    """The mission stands still; confirmed when nothing moves any more. During a pause it changes
+    nothing; while a person has the robot it is refused."""
 
     kind: Literal["pause"] = "pause"
 
 
 class GoOnWithRun(_Request):
-    """The mission goes on after a pause, or the run after its process has died."""
+    """The mission goes on after a pause; or the run, as it stood, after its process has died."""
 
     kind: Literal["go_on"] = "go_on"
 
 
 class EndRun(_Request):
-    """The run ends here, whatever it is doing."""
+    """The run ends here, whatever it is doing, also where it is interrupted."""
 
     kind: Literal["stop"] = "stop"
 
@@ -105,7 +106,8 @@ class TakeRobot(_Request):
 
 
 class GiveRobotBack(_Request):
-    """The person gives the robot back: what was done by hand or skipped is passed over."""
+    """The person gives the robot back: what was done by hand or skipped is passed over. The mission
+    goes on, also where it was paused before they took over."""
 
     kind: Literal["give_back"] = "give_back"
 
@@ -138,7 +140,8 @@ class StopByHandNow(_Request):
 
 
 class SkipTask(_Request):
-    """The next visit of a task is left out; it counts when the robot is given back."""
+    """The next visit of a task is left out; it counts when the robot is given back. A task is
+    skipped once until then."""
 
     kind: Literal["skip"] = "skip"
     task: str

@@ -21,8 +21,8 @@ class RunStatus(StrEnum):
     """its process begins, and opens the site"""
     RUNNING = "running"
     INTERRUPTED = "interrupted"
-    """its process has died, or that of the service: it goes on from its journal when it is asked
-    to"""
+    """its process has died, or that of the service: it goes on from its journal, or stops, when it
+    is asked to"""
     ENDED = "ended"
 
 
@@ -97,7 +97,7 @@ class RunState(Model):
     """s of the run, since when nothing was heard of a robot that is somewhere else; None: it is
     heard"""
     problem: str | None = None
-    """why it was interrupted or could not begin"""
+    """why it was interrupted, or has ended without having been carried out or stopped properly"""
 
 
 class EntryList(Model):

@@ -9,7 +9,8 @@ from multiprocessing.connection import Connection
 from pathlib import Path
 from uuid import uuid4
 
-from argo_compiler.errors import ArgoError
+from argo_compiler.errors import ArgoError, Unavailable
+from argo_compiler.files.writing import write_whole
 from argo_env.planning.opening import OpenedSite, open_site
 from argo_env.recording.live import LiveWriter, served_live
 from argo_env.remote.channel import Channel
@@ -24,11 +25,12 @@ from argo_env.run.simulation import Simulation
 from argo_env.run.spec import RunSpec
 from argo_env.run.steering import StopRun
 from argo_planner.service.jobs.orphans import end_with_parent
-from argo_planner.service.runs.driver import RunDriver, RunTeller
+from argo_planner.service.runs.driver import RunDriver
 from argo_planner.service.runs.pictures import PictureKeeper
-from argo_planner.service.runs.pipe import WorkerPipe
-from argo_planner.service.runs.requests import RequestState, RunOrder
-from argo_planner.service.runs.state import RunState, RunStatus, StateTold
+from argo_planner.service.runs.pipe import BrokenOff, WorkerPipe
+from argo_planner.service.runs.requests import EndRun, RequestState, RunOrder, RunRequest
+from argo_planner.service.runs.state import RunState, StateTold
+from argo_planner.service.runs.teller import RunTeller
 from argo_planner.service.world.obstacles import with_obstacles
 from argo_planner.use_cases.reporting import report_files
 
@@ -60,23 +62,23 @@ def carry_out(
     order: RunOrder,
     first: RunState,
     foxglove: int | None = None,
+    asked: tuple[RunRequest, str] | None = None,
 ) -> None:
     """Carries a run out, or goes on with the last journal in its folder. Through the pipe come
     requests with who sends them, and go all that is to be told. At the port `foxglove`, if there is
-    one, the run is shown live."""
+    one, the run is shown live. The first request, `asked`, came while the run was interrupted."""
     end_with_parent()
     try:
         site = with_obstacles(open_site(order.site).prepare(), order.obstacles)
         with ExitStack() as stack:
             live = None if foxglove is None else stack.enter_context(served_live(foxglove))
-            process = _Segments(WorkerPipe(pipe), folder, order, first, site, live)
+            process = _Segments(WorkerPipe(pipe), folder, order, first, site, live, asked)
             record = process.carry_out()
     except ArgoError as error:
-        broken = {"status": RunStatus.INTERRUPTED, "problem": str(error)}
-        pipe.send(StateTold(state=first.model_copy(update=broken)))
+        pipe.send(BrokenOff(problem=str(error)))
         return
     for name, content in report_files(record, site.site, site.robot).items():
-        (folder / name).write_bytes(content)
+        write_whole(folder / name, content)
 
 
 class _Segments:
@@ -91,6 +93,7 @@ class _Segments:
         first: RunState,
         site: OpenedSite,
         live: LiveWriter | None,
+        asked: tuple[RunRequest, str] | None,
     ) -> None:
         self._pipe = pipe
         self._folder = folder
@@ -98,13 +101,16 @@ class _Segments:
         self._state = first
         self._site = site
         self._live = live
+        self._asked = asked
         self._teller = RunTeller(first.id, pipe.tell, entries_of(folder))
         self._robot = None if order.drive != REMOTE else self._remote_robot()
 
     def carry_out(self) -> RunRecord:
         """The record of the last simulation."""
         with ExitStack() as stack:
-            driver, simulation = self._begin(self._journal(stack), stack)
+            driver, simulation = self._begin(self._journal(stack), stack, self._state.requests)
+            if self._asked is not None:
+                driver.take_up(*self._asked)
             while not driver.over:
                 self._pipe.wait(driver.turn())
                 for request, by in self._pipe.requests():
@@ -119,17 +125,32 @@ class _Segments:
                 )
             return simulation.record()
 
-    def _remote_robot(self) -> RemoteRobot:
-        """Raises Unavailable if the robot does not tell where it is."""
+    @property
+    def _only_stops(self) -> bool:
+        """Whether the run goes on for no other reason than to be stopped: that is done whatever has
+        changed, and without the robot."""
+        return self._asked is not None and isinstance(self._asked[0], EndRun)
+
+    def _remote_robot(self) -> RemoteRobot | None:
+        """None if the run is to stop, and the robot does not tell where it is; else that raises
+        Unavailable."""
         channel = Channel(self._pipe, uuid4().hex, time.time)
         navigator = self._site.navigator
-        return RemoteRobot(navigator, channel, self._state.id, time.time, time.sleep)
+        try:
+            return RemoteRobot(navigator, channel, self._state.id, time.time, time.sleep)
+        except Unavailable as error:
+            if not self._only_stops:
+                raise
+            problem = f"the robot was not told that the run is over: {error}"
+            self._state = self._state.model_copy(update={"problem": problem})
+            return None
 
     def _journal(self, stack: ExitStack) -> Journal:
         """The last journal that there is, or a first one."""
         if known := journals(self._folder):
             journal = stack.enter_context(open_journal(known[-1]))
-            journal.require_unchanged(self._site)
+            if not self._only_stops:
+                journal.require_unchanged(self._site)
             return journal
         order = self._order
         spec = RunSpec(
@@ -149,7 +170,7 @@ class _Segments:
         return stack.enter_context(journal)
 
     def _begin(
-        self, journal: Journal, stack: ExitStack, requests: Sequence[RequestState] = ()
+        self, journal: Journal, stack: ExitStack, requests: Sequence[RequestState]
     ) -> tuple[RunDriver, Simulation]:
         spec, tell = journal.header.spec, self._pipe.tell
         simulation = Simulation(
@@ -183,7 +204,7 @@ class _Segments:
         simulation.handle(StopRun("it goes on with an edited plan"))
         simulation.close()
         limit = spec.mission.max_duration
-        update = {"revision": revision, "max_duration": limit, "speed": driver.speed}
+        update = {"revision": revision, "max_duration": limit, "speed": driver.speed, "skipped": ()}
         self._state = self._state.model_copy(update=update)
         following, begun = self._begin(journal, stack, driver.requests)
         following.confirm_following()

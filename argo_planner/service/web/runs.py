@@ -1,18 +1,22 @@
 """Runs: begun, asked, followed; and those that were."""
 
+from collections.abc import Iterable, Sequence
 from typing import Annotated
 
 from fastapi import APIRouter, Path, Query, Response, WebSocket
 from pydantic import Field
 
-from argo_compiler.errors import ArgoError, NotFound
+from argo_compiler.errors import ArgoError, Invalid, NotFound
 from argo_compiler.model import Model
 from argo_env.faults.kinds import AnyFault
 from argo_env.report.files import PAGE, RECORD
+from argo_env.run.drives_and_sensors import DRIVES, SENSORS
+from argo_env.site import Site
 from argo_planner.service.core.commands import CommandId
 from argo_planner.service.core.refusals import StaleRevision
 from argo_planner.service.runs.requests import AskedOfRun, GoOnEdited, RequestState, RunOrder, Speed
 from argo_planner.service.runs.state import EntryList, RunState
+from argo_planner.service.runs.worker import REMOTE
 from argo_planner.service.web.access import AccessRole, Visitor
 from argo_planner.service.web.bodies import Sent
 from argo_planner.service.web.live import carry, require_socket, socket_client
@@ -87,6 +91,7 @@ async def start_run(
     if made_on is not None and made_on != plan.revision:
         raise StaleCommand(StaleRevision(made_on, plan.revision), plan.since(made_on))
     sound(document, service.site)
+    _require_known(run, service.site.site)
     order = RunOrder(
         plan=id,
         revision=plan.revision,
@@ -103,15 +108,13 @@ async def start_run(
 @router.get("/runs", operation_id="list_runs", response_model=RunList)
 async def list_runs(service: Service, _: Viewer) -> Response:
     """The present run and those before it."""
-    present = service.runs.state
-    kept = [k.state for k in service.runs.folder.all() if not present or k.state.id != present.id]
-    return said(RunList(runs=(*([present] if present else []), *kept)))
+    return said(RunList(runs=tuple(await service.runs.all())))
 
 
 @router.get("/runs/{run}", operation_id="read_run", response_model=RunState)
 async def read_run(service: Service, _: Viewer, run: RunId) -> Response:
     """How a run stands, or how it ended."""
-    return said(_state(service, run))
+    return said(await service.runs.read(run))
 
 
 @router.post(
@@ -209,14 +212,9 @@ async def read_report(
 ) -> Response:
     """A file of the report of a run that has ended: report.html, report.json or site.png."""
     media = {PAGE: "text/html", RECORD: "application/json", "site.png": "image/png"}
-    _state(service, run)
-    path = service.runs.folder.path(run) / file
     if file not in media:
         raise NotFound(f"the report has no file {file!r}; it has: {', '.join(media)}")
-    try:
-        content = path.read_bytes()
-    except FileNotFoundError:
-        raise NotFound(f"run {run} has no report yet: it is made when the run has ended") from None
+    content = await service.runs.report(run, file)
     return Response(content, media_type=media[file])
 
 
@@ -253,16 +251,24 @@ async def connect_robot(socket: WebSocket) -> None:
         await socket.send_denial_response(answer(problem_of(error)))
         return
     await socket.accept()
-    line = service.runs.connect_robot()
+    line = service.runs.robot.connect()
     try:
         await carry(socket, line, lambda text: service.runs.hear_robot(line, text))
     finally:
-        service.runs.disconnect_robot(line)
+        service.runs.robot.disconnect(line)
 
 
-def _state(service: PlanningService, run: str) -> RunState:
-    """Raises NotFound."""
-    present = service.runs.state
-    if present is not None and present.id == run:
-        return present
-    return service.runs.folder.kept(run).state
+def _require_known(run: RunAsked, site: Site) -> None:
+    """Raises Invalid for drives, sensors and checkpoints that there are not, before anything
+    begins."""
+    checkpoints = [checkpoint.id for checkpoint in site.checkpoints]
+    _require("drive", [run.drive], [*DRIVES, REMOTE])
+    _require("sensor", [run.sensor], [*SENSORS])
+    _require("values: checkpoint", run.values, checkpoints)
+
+
+def _require(what: str, given: Iterable[object], known: Sequence[object]) -> None:
+    if unknown := [f"`{one}`" for one in given if one not in known]:
+        raise Invalid(
+            f"{what} {', '.join(unknown)}: there is none; known: {', '.join(map(str, known))}"
+        )

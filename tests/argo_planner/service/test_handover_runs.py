@@ -111,7 +111,6 @@ def test_by_hand_and_by_edit(service: Served, site: OpenedSite) -> None:
 
 @pytest.mark.long
 def test_many_random_runs(service: Served, site: OpenedSite) -> None:
-    played = Counter(
-        word for seed in range(examples(8)) for word in play(service, site, seed).split()
-    )
-    assert {"do_task", "skip", "edited", "given", "back"} <= played.keys()
+    tried = examples(8)
+    played = Counter(word for seed in range(tried) for word in play(service, site, seed).split())
+    assert tried < 8 or {"do_task", "skip", "edited", "given", "back"} <= played.keys()

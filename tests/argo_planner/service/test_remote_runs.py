@@ -1,14 +1,18 @@
 """A robot in another process carries a mission out, and loses its connection now and then."""
 
+import signal
 import subprocess
 import sys
+import time
+from collections.abc import Iterator
+from contextlib import contextmanager
 from pathlib import Path
 
 import pytest
 from websockets.exceptions import InvalidStatus
 
 from tests.argo_planner.service.served import ALL, SECRETS, Served
-from tests.argo_planner.service.test_run_host import SCRIPT
+from tests.argo_planner.service.test_run_host import SCRIPT, send_signal
 from tests.argo_planner.service.test_runs import ask, state, wait
 
 ROOT = Path(__file__).parents[3]
@@ -30,14 +34,22 @@ def begin(service: Served, id: str) -> str:
     return begun.json()["id"]
 
 
-def test_a_robot_somewhere_else_carries_a_mission_out(service: Served) -> None:
+@contextmanager
+def a_robot(service: Served) -> Iterator[subprocess.Popen[bytes]]:
     dock = service.client.get("/api/world").json()["docks"][0]["pose"]
     place = [str(dock[axis]) for axis in ("x", "y", "z", "yaw")]
     robot = subprocess.Popen(
-        [sys.executable, "-m", FAKE, service.address, ALL, "1", *place],
-        cwd=ROOT,
+        [sys.executable, "-m", FAKE, service.address, ALL, "1", *place], cwd=ROOT
     )
     try:
+        yield robot
+    finally:
+        robot.kill()
+        robot.wait()
+
+
+def test_a_robot_somewhere_else_carries_a_mission_out(service: Served) -> None:
+    with a_robot(service) as robot:
         id = imported(service)
         run = begin(service, id)
         wait(service, run, moving=True)
@@ -51,19 +63,36 @@ def test_a_robot_somewhere_else_carries_a_mission_out(service: Served) -> None:
         assert counts == {t["name"]: 1 for t in tasks if t["action"] != "START"}
         assert ended["headline"]["word"] in ("Success", "Done, 1 finding", "Done, 2 findings")
         assert robot.poll() is None
-    finally:
-        robot.kill()
-        robot.wait()
+
+
+def test_an_interrupted_run_stops_without_its_robot(service: Served) -> None:
+    with a_robot(service):
+        run = begin(service, imported(service))
+        wait(service, run, moving=True)
+        send_signal(signal.SIGKILL, run)
+        while state(service, run)["status"] != "interrupted":
+            time.sleep(0.05)
+    assert ask(service, run, "go_on")["progress"] == "failed"
+    found = state(service, run)
+    assert found["status"] == "interrupted"
+    assert "robot" in found["problem"]
+    assert ask(service, run, "stop")["progress"] == "confirmed"
+    found = state(service, run)
+    assert found["status"] == "ended"
+    assert found["headline"]["word"] == "No success"
+    assert "the robot was not told that the run is over" in found["problem"]
+    path = f"/api/runs/{run}/report/report.html"
+    while (report := service.client.get(path)).status_code == 404:
+        assert "ask again in a moment" in report.json()["detail"]
+        time.sleep(0.1)
 
 
 def test_without_a_robot_it_is_said(service: Served) -> None:
     run = begin(service, imported(service))
     while (found := state(service, run))["status"] == "preparing":
-        pass
-    assert found["status"] == "interrupted"
+        time.sleep(0.05)
+    assert found["status"] == "ended"
     assert "robot" in found["problem"]
-    assert ask(service, run, "stop")["progress"] == "confirmed"
-    assert state(service, run)["status"] == "ended"
 
 
 def test_only_who_operates_may_be_the_robot(service: Served) -> None:

@@ -2,9 +2,11 @@
 
 import asyncio
 import json
+import multiprocessing
 import os
 import signal
 from collections.abc import Awaitable, Callable
+from contextlib import suppress
 from datetime import UTC, datetime
 from pathlib import Path
 
@@ -55,6 +57,14 @@ def play(folder: Path, script: Callable[[RunHost], Awaitable[None]], after: str 
     asyncio.run(playing())
 
 
+def send_signal(number: signal.Signals, run: str = "") -> None:
+    """To the process of the run, or of the only one."""
+    name = f"run {run}"
+    [process] = [one for one in multiprocessing.active_children() if one.name.startswith(name)]
+    assert process.pid is not None
+    os.kill(process.pid, number)
+
+
 async def until(_: RunHost, so: Callable[[], bool]) -> None:
     while not so():
         await asyncio.sleep(0.01)
@@ -80,15 +90,25 @@ async def told(mailbox: Mailbox, kind: str) -> list[dict]:
             found.append(message)
 
 
+async def begun(host: RunHost, site: OpenedSite, after: float = 3.0, **other: object) -> str:
+    """Begins a run, and waits until some of its time is over."""
+    run = (await host.start(order(site, **({"speed": 20.0} | other)), "ann")).id
+    await until(host, lambda: bool(host.state and host.state.t > after))
+    return run
+
+
 def ended(host: RunHost) -> Callable[[], bool]:
     return lambda: host.state is not None and host.state.status is RunStatus.ENDED
 
 
 async def reported(host: RunHost) -> RunRecord:
     assert host.state is not None
-    path = host.folder.path(host.state.id) / "report.html"
-    await until(host, lambda: os.path.exists(path))
-    return RunRecord.model_validate_json((path.parent / "report.json").read_bytes())
+    while True:
+        with suppress(NotFound):
+            await host.report(host.state.id, "report.html")
+            break
+        await asyncio.sleep(0.05)
+    return RunRecord.model_validate_json(await host.report(host.state.id, "report.json"))
 
 
 def test_a_run_is_that_of_the_simulation(tmp_path, site) -> None:
@@ -127,7 +147,7 @@ def test_a_second_run_is_refused_with_who_has_the_robot(tmp_path, site) -> None:
         await host.start(order(site), "bob")
         await until(host, ended(host))
         assert host.state.by == "bob"
-        assert [kept.state.by for kept in host.folder.all()] == ["bob", "ann"]
+        assert [state.by for state in await host.all()] == ["bob", "ann"]
 
     play(tmp_path, script)
 
@@ -145,7 +165,7 @@ def test_paused_is_said_only_when_nothing_moves(tmp_path, site) -> None:
         await until(host, lambda: host.request(run, "p").over)
         steps = [m["request"]["progress"] for m in await told(follower, "request")]
         assert steps == ["accepted", "under way", "confirmed"]
-        await until(host, lambda: host.state.mode is RunMode.PAUSED)
+        assert host.state.mode is RunMode.PAUSED
         assert not host.state.moving
         with pytest.raises(Conflict, match="id p"):
             await host.ask(run, asked.TakeRobot(id="p"), "ann")
@@ -182,7 +202,7 @@ def test_a_person_takes_over_drives_measures_skips_and_gives_back(tmp_path, site
         assert await done(host, asked.DoTask(id="5", task=first.name)) == "confirmed"
         assert await done(host, asked.MeasureAt(id="6", checkpoint=second.object_id)) == "confirmed"
         assert await done(host, asked.SkipTask(id="7", task=second.name)) == "confirmed"
-        await until(host, lambda: host.state.skipped == (second.name,))
+        assert host.state.skipped == (second.name,)
         assert host.state.mode is RunMode.SUPERVISED
         assert len(host.state.readings) == 2
         assert await done(host, asked.GoOnWithRun(id="8")) == "refused"
@@ -205,8 +225,7 @@ def test_a_run_goes_on_when_its_process_was_killed(tmp_path, site) -> None:
     async def script(host: RunHost) -> None:
         await host.start(order(site, speed=50.0), "ann")
         await until(host, lambda: bool(host.state and host.state.t > 10))
-        process = host._worker._process
-        os.kill(process.pid, signal.SIGKILL)
+        send_signal(signal.SIGKILL)
         await until(host, lambda: host.state.status is RunStatus.INTERRUPTED)
         assert "signal 9" in host.state.problem
         with pytest.raises(Conflict, match="interrupted"):
@@ -238,10 +257,10 @@ def test_a_service_that_begins_again_finds_its_run(tmp_path, site, after: str) -
             assert "the service has ended" in state.problem
             assert await done(host, asked.GoOnWithRun(id="g")) == "confirmed"
         assert await done_by_itself(host) == "Success"
-        known, entries = host.entries(state.id, 0)
-        assert known == len(entries) == host.state.entries
+        history = await host.history(state.id, 0, 10**6)
+        assert history.count == len(history.entries) == host.state.entries
         with pytest.raises(NotFound):
-            host.entries("20200101-000000-0000", 0)
+            await host.history("20200101-000000-0000", 0, 1)
 
     play(tmp_path, begin)
     play(tmp_path, find, after)
@@ -254,12 +273,15 @@ async def done_by_itself(host: RunHost) -> str:
     return host.state.headline.word
 
 
-def test_what_can_not_be_run_is_said(tmp_path, site) -> None:
+def test_what_can_not_be_run_has_ended_with_its_reason(tmp_path, site) -> None:
     async def script(host: RunHost) -> None:
-        await host.start(order(site, drive="flying"), "ann")
-        await until(host, lambda: host.state.status is RunStatus.INTERRUPTED)
+        run = (await host.start(order(site, drive="flying"), "ann")).id
+        await until(host, ended(host))
         assert "no drive `flying`" in host.state.problem
-        assert await done(host, asked.EndRun(id="s")) == "confirmed"
-        assert host.state.status is RunStatus.ENDED
+        with pytest.raises(NotFound, match="before anything had happened"):
+            await host.report(run, "report.html")
+        await host.start(order(site), "bob")
+        await until(host, ended(host))
+        assert host.state.problem is None
 
     play(tmp_path, script)

@@ -65,7 +65,8 @@ def test_a_run_is_begun_followed_steered_and_reported(service: Served, id: str) 
     assert "ann has begun run" in problem(refused, 409, "conflict")["detail"]
     wait(service, run, moving=True)
     assert ask(service, run, "pause")["progress"] == "confirmed"
-    assert not wait(service, run, mode="paused")["moving"]
+    paused = state(service, run)
+    assert (paused["mode"], paused["moving"]) == ("paused", False)
     assert ask(service, run, "take_over")["progress"] == "confirmed"
     wrong = ask(service, run, "measure", checkpoint="99")
     assert wrong["progress"] == "refused"
@@ -104,6 +105,33 @@ def test_a_run_is_begun_followed_steered_and_reported(service: Served, id: str) 
 
 def auth() -> dict[str, str]:
     return {"authorization": f"Bearer {ALL}"}
+
+
+def test_what_there_is_not_is_said_before_anything_begins(service: Served, id: str) -> None:
+    before = service.client.get("/api/runs").json()["runs"]
+    for wrong, named, known in (
+        ({"drive": "flying"}, "`flying`", "kinematic"),
+        ({"sensor": "nose"}, "`nose`", "ideal"),
+        ({"values": {"99": 1.0, "1": 2.0, "98": 0.0}}, "checkpoint `99`, `98`", " 14,"),
+    ):
+        refused = service.client.post(
+            f"/api/missions/{id}/runs", json=wrong, headers={"if-match": "*"}
+        )
+        detail = problem(refused, 422, "invalid")["detail"]
+        assert named in detail
+        assert known in detail
+    assert service.client.get("/api/runs").json()["runs"] == before
+
+
+def test_why_there_is_no_report_yet_is_said(service: Served, id: str) -> None:
+    run = start(service, id, speed=1.0)["id"]
+    missing = service.client.get(f"/api/runs/{run}/report/report.html")
+    detail = problem(missing, 404, "not-found")["detail"]
+    assert "when it has ended" in detail
+    assert f"/api/runs/{run}/entries" in detail
+    wait(service, run, status="running")
+    assert ask(service, run, "stop")["progress"] == "confirmed"
+    assert state(service, run)["status"] == "ended", "known before it is confirmed"
 
 
 def test_the_run_goes_on_when_nobody_looks(service: Served, id: str) -> None:

@@ -1898,7 +1898,7 @@ export interface components {
         };
         /**
          * EndRun
-         * @description The run ends here, whatever it is doing.
+         * @description The run ends here, whatever it is doing, also where it is interrupted.
          */
         readonly EndRun: {
             /** Id */
@@ -2086,7 +2086,8 @@ export interface components {
         };
         /**
          * GiveRobotBack
-         * @description The person gives the robot back: what was done by hand or skipped is passed over.
+         * @description The person gives the robot back: what was done by hand or skipped is passed over. The mission
+         *     goes on, also where it was paused before they took over.
          */
         readonly GiveRobotBack: {
             /** Id */
@@ -2099,7 +2100,7 @@ export interface components {
         };
         /**
          * GoOnWithRun
-         * @description The mission goes on after a pause, or the run after its process has died.
+         * @description The mission goes on after a pause; or the run, as it stood, after its process has died.
          */
         readonly GoOnWithRun: {
             /** Id */
@@ -2928,7 +2929,8 @@ export interface components {
         readonly PartSaid: "header" | "task" | "round" | "order" | "reaction";
         /**
          * PauseRun
-         * @description The mission stands still; confirmed when nothing moves any more.
+         * @description The mission stands still; confirmed when nothing moves any more. During a pause it changes
+         *     nothing; while a person has the robot it is refused.
          */
         readonly PauseRun: {
             /** Id */
@@ -4117,7 +4119,8 @@ export interface components {
         readonly Severity: "error" | "warning" | "note";
         /**
          * SkipTask
-         * @description The next visit of a task is left out; it counts when the robot is given back.
+         * @description The next visit of a task is left out; it counts when the robot is given back. A task is
+         *     skipped once until then.
          */
         readonly SkipTask: {
             /** Id */

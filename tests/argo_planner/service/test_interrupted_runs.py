@@ -1,0 +1,242 @@
+"""What is left of a run, and of what was asked of it, when its process or the service is killed."""
+
+import json
+import signal
+from multiprocessing.process import BaseProcess
+from pathlib import Path
+
+import pytest
+
+from argo_compiler.errors import Conflict, NotFound, Unavailable
+from argo_planner.service.runs import requests as asked
+from argo_planner.service.runs.host import RunHost
+from argo_planner.service.runs.state import RunMode, RunStatus
+from tests.argo_planner.service.test_run_host import (
+    begun,
+    done,
+    ended,
+    order,
+    play,
+    reported,
+    send_signal,
+    told,
+    until,
+)
+
+
+async def interrupted(host: RunHost) -> None:
+    """Kills the process of the run, and waits until that is known."""
+    send_signal(signal.SIGKILL)
+    await until(host, lambda: host.state.status is RunStatus.INTERRUPTED)
+
+
+def damage(folder: Path, run: str) -> None:
+    path = folder / run / "run-0001.journal"
+    content = bytearray(path.read_bytes())
+    content[len(content) // 2] ^= 1
+    path.write_bytes(content)
+
+
+def test_a_hung_process_delays_nobody(tmp_path, site) -> None:
+    async def script(host: RunHost) -> None:
+        run = await begun(host, site, speed=1.0, after=0.0)
+        send_signal(signal.SIGSTOP)
+        taken: list[str] = []
+
+        async def ask_for_ever() -> None:
+            while True:
+                id = f"e{len(taken)}"
+                event = asked.TellEvent(id=id, event="gas_leak", detail="x" * 900)
+                await host.ask(run, event, "ann")
+                taken.append(id)
+
+        with pytest.raises(Unavailable, match="takes nothing"):
+            await ask_for_ever()
+        with pytest.raises(NotFound):
+            host.request(run, f"e{len(taken)}")
+        assert [state.id for state in await host.all()] == [run]
+        assert (await host.history(run, 0, 1)).entries
+        send_signal(signal.SIGCONT)
+        await until(host, lambda: all(host.request(run, id).over for id in taken))
+        assert {host.request(run, id).progress for id in taken} == {"confirmed"}
+        assert await done(host, asked.PauseRun(id="p")) == "confirmed"
+
+    play(tmp_path, script)
+
+
+def test_requests_are_known_after_the_service_was_killed(tmp_path, site) -> None:
+    async def asks(host: RunHost) -> None:
+        run = await begun(host, site)
+        assert await done(host, asked.PauseRun(id="p")) == "confirmed"
+        send_signal(signal.SIGSTOP)
+        assert (await host.ask(run, asked.TakeRobot(id="t"), "ann")).progress == "accepted"
+
+    async def asks_again(host: RunHost) -> None:
+        run = host.state.id
+        known = await host.ask(run, asked.PauseRun(id="p"), "ann")
+        assert known.progress == "confirmed"
+        lost = await host.ask(run, asked.TakeRobot(id="t"), "ann")
+        assert lost.progress == "failed"
+        assert "the service has ended" in lost.reason
+        with pytest.raises(Conflict, match="another request has had the id p"):
+            await host.ask(run, asked.PauseRun(id="p"), "bob")
+        assert await done(host, asked.GoOnWithRun(id="g")) == "confirmed"
+        assert host.state.mode is RunMode.PAUSED, "as it stood"
+        assert [(one.id, one.progress) for one in host.state.requests] == [
+            ("p", "confirmed"),
+            ("t", "failed"),
+            ("g", "confirmed"),
+        ]
+        assert (await host.ask(run, asked.GoOnWithRun(id="g"), "ann")).progress == "confirmed"
+        assert host.state.mode is RunMode.PAUSED, "the same request goes on once"
+
+    play(tmp_path, asks)
+    [file] = tmp_path.glob("*/requests")
+    with file.open("ab") as opened:
+        opened.write(b"00000000 {torn")
+    play(tmp_path, asks_again)
+    play(tmp_path, asks_nothing_twice)
+
+
+async def asks_nothing_twice(host: RunHost) -> None:
+    for id, request in (("p", asked.PauseRun(id="p")), ("g", asked.GoOnWithRun(id="g"))):
+        assert (await host.ask(host.state.id, request, "ann")).progress == "confirmed", id
+    assert host.state.status is RunStatus.INTERRUPTED
+
+
+def test_a_stop_that_was_kept_is_done_after_a_restart(tmp_path, site) -> None:
+    async def asks(host: RunHost) -> None:
+        run = await begun(host, site)
+        send_signal(signal.SIGSTOP)
+        assert (await host.ask(run, asked.EndRun(id="s"), "ann")).progress == "accepted"
+
+    async def looks(host: RunHost) -> None:
+        await until(host, ended(host))
+        await until(host, lambda: host.request(host.state.id, "s").over)
+        assert host.request(host.state.id, "s").progress == "confirmed"
+        assert "stopped by a person" in (await reported(host)).result.verdict
+
+    play(tmp_path, asks)
+    play(tmp_path, looks, "go-on")
+
+
+def test_an_interrupted_run_goes_on_or_stops_and_nothing_else(tmp_path, site) -> None:
+    async def script(host: RunHost) -> None:
+        run = await begun(host, site)
+        await interrupted(host)
+        for request in (asked.PauseRun(id="1"), asked.SkipTask(id="2", task="MEASURE 1")):
+            with pytest.raises(Conflict, match="`go_on` or `stop` only"):
+                await host.ask(run, request, "ann")
+        follower = host.follow("1", host.state.entries)
+        accepted = await host.ask(run, asked.EndRun(id="s"), "ann")
+        assert accepted.progress == "accepted"
+        await until(host, lambda: host.request(run, "s").over)
+        assert host.state.status is RunStatus.ENDED
+        assert host.state.headline is not None
+        steps = [m["request"]["progress"] for m in await told(follower, "request")]
+        assert steps == ["accepted", "under way", "confirmed"]
+        assert "stopped by a person" in (await reported(host)).result.verdict
+
+    play(tmp_path, script)
+
+
+def test_a_damaged_journal_keeps_a_run_from_going_on_and_not_from_ending(tmp_path, site) -> None:
+    async def script(host: RunHost) -> None:
+        run = await begun(host, site)
+        await interrupted(host)
+        damage(tmp_path, run)
+        assert await done(host, asked.GoOnWithRun(id="g")) == "failed"
+        assert "damaged" in host.request(run, "g").reason
+        assert host.state.status is RunStatus.INTERRUPTED
+        assert await done(host, asked.EndRun(id="s")) == "confirmed"
+        assert host.state.status is RunStatus.ENDED
+        assert "damaged" in host.state.problem
+        last = {one.id: one.progress for one in host.state.requests}
+        assert last == {"g": "failed", "s": "confirmed"}
+        await host.start(order(site), "bob")
+        await until(host, ended(host))
+
+    play(tmp_path, script)
+
+
+def test_a_process_that_can_not_begin(tmp_path, site, monkeypatch) -> None:
+    def refuse(_: BaseProcess) -> None:
+        raise OSError(11, "Resource temporarily unavailable")
+
+    async def script(host: RunHost) -> None:
+        await begun(host, site)
+        await interrupted(host)
+        with monkeypatch.context() as patched:
+            patched.setattr("multiprocessing.process.BaseProcess.start", refuse)
+            assert await done(host, asked.GoOnWithRun(id="g")) == "failed"
+            assert host.state.status is RunStatus.INTERRUPTED
+            assert await done(host, asked.EndRun(id="s")) == "confirmed"
+            assert host.state.status is RunStatus.ENDED
+            assert "can't begin: Resource" in host.state.problem
+            await host.start(order(site), "bob")
+            assert host.state.status is RunStatus.ENDED
+        await host.start(order(site), "eve")
+        await until(host, ended(host))
+        assert host.state.headline is not None
+
+    play(tmp_path, script)
+
+
+def test_what_was_skipped_is_known_after_the_process_and_the_service_died(tmp_path, site) -> None:
+    measures = [t for t in order(site).mission.tasks if t.action == "MEASURE"]
+    first, second = measures[0], measures[1]
+
+    async def skips(host: RunHost) -> None:
+        await begun(host, site)
+        assert await done(host, asked.TakeRobot(id="t")) == "confirmed"
+        assert await done(host, asked.SkipTask(id="1", task=first.name)) == "confirmed"
+        assert await done(host, asked.SkipTask(id="2", task=second.name)) == "confirmed"
+        await interrupted(host)
+        assert await done(host, asked.GoOnWithRun(id="g")) == "confirmed"
+        assert host.state.skipped == (first.name, second.name)
+
+    async def gives_back(host: RunHost) -> None:
+        assert await done(host, asked.GoOnWithRun(id="h")) == "confirmed"
+        assert host.state.skipped == (first.name, second.name)
+        assert host.state.mode is RunMode.SUPERVISED
+        anew = second.model_copy(update={"object_id": first.object_id})
+        mission = order(site).mission
+        tasks = tuple(anew if task.name == second.name else task for task in mission.tasks)
+        edited = mission.model_copy(update={"tasks": tasks})
+        assert await done(host, asked.ChangeSpeed(id="f", speed=None)) == "confirmed"
+        request = asked.GoOnEdited(id="e", mission=edited, revision=4)
+        assert await done(host, request) == "confirmed"
+        assert host.state.revision == 4
+        assert host.state.skipped == ()
+        await until(host, ended(host))
+        made = {t.task: (t.done, t.by_hand) for t in host.state.tasks}
+        assert made[first.name] == (0, 1)
+        assert made[second.name] == (1, 0), "it is another task, under the same name"
+
+    play(tmp_path, skips)
+    play(tmp_path, gives_back)
+
+
+def test_a_run_that_was_killed_before_its_report_says_so(tmp_path, site) -> None:
+    async def runs(host: RunHost) -> None:
+        run = await begun(host, site)
+        with pytest.raises(NotFound, match="it is running"):
+            await host.report(run, "report.html")
+        assert await done(host, asked.ChangeSpeed(id="f", speed=None)) == "confirmed"
+        await until(host, ended(host))
+        await reported(host)
+
+    async def looks(host: RunHost) -> None:
+        assert host.state.status is RunStatus.ENDED
+        assert (await host.history(host.state.id, 0, 5)).count == host.state.entries > 0
+        with pytest.raises(NotFound, match=r"argo resume .*run-0001\.journal"):
+            await host.report(host.state.id, "report.html")
+
+    play(tmp_path, runs)
+    [kept] = tmp_path.glob("*/run.json")
+    as_killed = json.loads(kept.read_text())
+    as_killed["state"]["status"] = "running"
+    kept.write_text(json.dumps(as_killed))
+    (kept.parent / "report.html").unlink()
+    play(tmp_path, looks)
+    play(tmp_path, looks)

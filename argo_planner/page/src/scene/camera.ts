@@ -32,7 +32,7 @@ const TIGHT = 0.44;
 const TURNS = [0.35, -0.35, 0.8, -0.8, 0, 1.2, -1.2];
 const HEIGHTS = [0.5, 0.75, 0.25, 1.05];
 const NEAR = [2.6, 3.6, 1.8];
-const FOLLOW = { behind: { away: 4.5, polar: 1.05 }, above: { away: 8, polar: 0.02 } };
+const FOLLOW = { behind: { away: 5.5, polar: 0.85 }, above: { away: 8, polar: 0.02 } };
 
 export type Free = (from: Vector3, to: Vector3) => boolean;
 

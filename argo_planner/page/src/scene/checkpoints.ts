@@ -5,11 +5,25 @@ import { Color, Group, InstancedMesh, Matrix4, MeshLambertMaterial, DoubleSide }
 import { fetched } from "../api/client";
 import type { World, WorldCheckpoint } from "../api/types";
 import { merged, wholeModel } from "./geometry";
-import { readGlb } from "./glb";
+import { type GlbNode, type GlbPart, readGlb } from "./glb";
 import type { Stage } from "./stage";
 
 /** They are small; so that they are seen they are drawn this much larger. */
 const LARGER = 1.6;
+const FACE = [0.85, 0.86, 0.84] as const;
+/** Of the colour of a tint: what it is of is still to be seen. */
+const TINT = 0.45;
+
+/** The plate of a gauge that is the foremost is its face, which is told without what is painted on
+ * it, and dark. */
+function withFace(nodes: readonly GlbNode[]): GlbNode[] {
+  const front = (part: GlbPart) => part.positions.reduce((most, x, i) => (i % 3 === 0 ? Math.max(most, x) : most), -Infinity);
+  const [body, ...others] = nodes;
+  if (body === undefined) return [];
+  const foremost = Math.max(...body.parts.map(front));
+  const parts = body.parts.map((part) => (front(part) === foremost ? { ...part, colour: FACE } : part));
+  return [{ ...body, parts }, ...others];
+}
 
 export class Gauges {
   private readonly group = new Group();
@@ -30,7 +44,8 @@ export class Gauges {
     if (cancelled()) return;
     this.clear();
     kinds.forEach((kind, index) => {
-      const geometry = merged(wholeModel(readGlb(found[index] as ArrayBuffer)));
+      const nodes = readGlb(found[index] as ArrayBuffer);
+      const geometry = merged(wholeModel(kind === "valve" ? nodes : withFace(nodes)));
       const all = site.checkpoints.filter((one) => one.kind === kind);
       const mesh = new InstancedMesh(geometry, this.material, all.length);
       mesh.frustumCulled = false;
@@ -61,7 +76,7 @@ export class Gauges {
       all.forEach((one, i) => {
         const wanted = tints.get(one.id);
         if (wanted === this.tints.get(one.id)) return;
-        mesh.setColorAt(i, new Color(wanted ?? "#ffffff"));
+        mesh.setColorAt(i, new Color("#ffffff").lerp(new Color(wanted ?? "#ffffff"), TINT));
         if (mesh.instanceColor) mesh.instanceColor.needsUpdate = true;
       });
     this.tints = new Map(tints);

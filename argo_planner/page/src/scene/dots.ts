@@ -32,7 +32,7 @@ const VERTEX = `
   varying float across;
   void main() {
     vec4 seen = modelViewMatrix * vec4(position, 1.0);
-    seen.xyz *= 1.0 - 0.12 / max(0.5, length(seen.xyz)); // in front of what it stands on
+    seen.xyz *= 1.0 - 0.22 / max(0.5, length(seen.xyz)); // in front of what it stands on
     gl_Position = projectionMatrix * seen;
     gl_PointSize = size * ratio;
     across = size;

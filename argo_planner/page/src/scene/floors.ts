@@ -67,7 +67,7 @@ export class SceneFloors extends PageElement {
         fill: var(--text);
       }
       circle.robot {
-        fill: var(--person);
+        fill: var(--warn);
       }
     `,
   ];

@@ -101,7 +101,7 @@ export function toneColour(tone: Mark["tone"], colours: Colours): string {
     case "chosen":
       return colours.accent;
     case "active":
-      return colours.person;
+      return colours.warn;
     case "good":
       return colours.good;
     case "bad":

@@ -6,7 +6,8 @@ import { Vector3 } from "three";
 import type { Obstacle, Pose, Task, World, WorldCheckpoint } from "../api/types";
 import { taskKey } from "../model/outline";
 import { floorOf } from "../model/standing";
-import { mission, planId, selection } from "../state/plan";
+import { mission, planId, select, selection } from "../state/plan";
+import { preview } from "../state/preview";
 import { shownRun } from "../state/run";
 import { world } from "../state/world";
 import { t } from "../texts";
@@ -168,6 +169,16 @@ function obstacleMark(site: World, obstacle: Obstacle): Mark {
     weight: 3,
     tasks: [],
   };
+}
+
+/** Selects the task to which a way leads. */
+export function chooseWay(way: number, add: boolean): void {
+  const target = preview.value?.ways[way]?.target;
+  if (target === undefined) return;
+  const key = taskKey(target);
+  const others = selection.value.filter((one) => one !== key);
+  opened.value = null;
+  select(add ? (others.length < selection.value.length ? others : [...others, key]) : [key]);
 }
 
 function shortList(numbers: readonly number[]): string {

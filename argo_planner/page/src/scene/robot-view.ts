@@ -1,6 +1,6 @@
 /** The robot of the run that is shown, or at the start of the mission, and the ghost of the tool. */
 
-import { effect } from "@preact/signals-core";
+import { effect, signal } from "@preact/signals-core";
 import { BufferAttribute, BufferGeometry, Line, LineBasicMaterial, Vector3 } from "three";
 
 import { fetched, Unreached } from "../api/client";
@@ -27,14 +27,19 @@ const SMOOTH = 0.09;
 const JUMP = 1.5;
 const STILL = 0.002;
 const TRAIL_Z = 0.06;
+/** m, of its top above the ground */
+const TOP = 1.1;
 
 export class RobotView {
   private body: RobotBody | null = null;
   private ghost: Ghost | null = null;
   private target: Vector5 | null = null;
   private now: Vector5 | null = null;
+  private mode: ShownMode | null = null;
   private readonly trail = new Line(new BufferGeometry(), new LineBasicMaterial());
   private readonly stops: (() => void)[] = [];
+  /** Where the robot is drawn, and how its run stands; null: there is none. */
+  readonly told = signal<{ readonly at: Vector3; readonly floor: number; readonly mode: ShownMode } | null>(null);
   private over = false;
   private loaded = "";
 
@@ -97,7 +102,8 @@ export class RobotView {
     // A run of another mission that is over says nothing of this one.
     const tells = now !== null && state !== null && (now.plan === planId.value || (run.value === state && state.status !== "ended"));
     this.target = tells ? now.pose : startOf(site);
-    this.body?.mark(tells ? ringColour(shownMode(state), colours.value) : null);
+    this.mode = tells ? shownMode(state) : null;
+    this.body?.mark(this.mode && ringColour(this.mode, colours.value));
     heed(shownFloor, following);
     this.view.stage.need();
   }
@@ -121,6 +127,7 @@ export class RobotView {
       if (moved) this.view.camera.follow(new Vector3(now[0], now[1], now[2]), now[3], how);
     }
     this.body.group.visible = this.view.site.isShown(floor);
+    this.told.value = this.mode && { at: new Vector3(now[0], now[1], now[2] + TOP), floor, mode: this.mode };
     return !there;
   };
 

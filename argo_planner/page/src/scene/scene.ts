@@ -3,6 +3,7 @@
 import { effect, signal } from "@preact/signals-core";
 
 import { tell } from "../state/notices";
+import { hoveredLeg } from "../state/preview";
 import { mayPlan } from "../state/session";
 import { shownFloor, tool } from "../state/view";
 import { world } from "../state/world";
@@ -22,7 +23,7 @@ import { edgesMove } from "./settings";
 import { sceneStyle } from "./style";
 import { RobotView } from "./robot-view";
 import { SceneView } from "./view";
-import { opened } from "./marks";
+import { chooseWay, type Mark, opened } from "./marks";
 import { ObstacleView } from "./obstacle-view";
 import { PathsView } from "./paths-view";
 
@@ -38,6 +39,7 @@ export class ScenePanel extends PageElement {
   @query("canvas") private readonly canvas!: HTMLCanvasElement;
   @query("#labels") private readonly labels!: HTMLElement;
   @query("#picture") private readonly picture!: HTMLElement;
+  @query("#robot") private readonly robotSign!: HTMLElement | null;
   @query("#verdict") private readonly verdict!: HTMLElement | null;
 
   private readonly view = signal<SceneView | null>(null);
@@ -48,6 +50,8 @@ export class ScenePanel extends PageElement {
   private saying: ReturnType<typeof setTimeout> | undefined;
   /** Whether the ghost was moved by keys last. */
   private keyed = false;
+  /** The way at which the pointer is; whoever else points at one is not disturbed. */
+  private pointed: number | null = null;
 
   override connectedCallback(): void {
     super.connectedCallback();
@@ -84,18 +88,21 @@ export class ScenePanel extends PageElement {
     const sizes = new ResizeObserver(() => view.resize(this.picture.clientWidth, this.picture.clientHeight));
     sizes.observe(this.picture);
     view.resize(this.picture.clientWidth, this.picture.clientHeight);
+    const robot = new RobotView(view);
+    const paths = new PathsView(view);
     this.parts = [
       view,
-      new RobotView(view),
-      new PathsView(view),
+      robot,
+      paths,
       new ObstacleView(view),
-      new PointerWatch(this.canvas, this.told(view)),
+      new PointerWatch(this.canvas, this.told(view, paths)),
       { dispose: () => sizes.disconnect() },
     ];
     this.stops = [
       effect(() => this.take(view)),
       effect(() => this.announce()),
       effect(() => this.placeVerdict(view)),
+      effect(() => this.placeRobot(view, robot)),
     ];
     this.view.value = view;
   }
@@ -110,14 +117,14 @@ export class ScenePanel extends PageElement {
     if (now !== "obstacle") hideCorners();
   }
 
-  private told(view: SceneView) {
+  private told(view: SceneView, paths: PathsView) {
     return {
       pointed: (x: number, y: number) => {
         this.keyed = false;
         this.pushAtEdge(view, x, y);
         if (tool.value === "navigate") this.timed(view, () => hover(view.rayAt(x, y), view.site));
         else if (tool.value === "obstacle") pointCorner(view.site.hitWays(view.rayAt(x, y)));
-        else this.canvas.classList.toggle("over", view.markAt(x, y) !== null);
+        else this.pointAt(view.markAt(x, y), paths.wayAt(x, y));
       },
       left: () => {
         view.camera.edge(0, 0);
@@ -130,7 +137,12 @@ export class ScenePanel extends PageElement {
           hover(view.rayAt(x, y), view.site);
           this.place();
         } else if (tool.value === "obstacle") clickCorner(view.site.hitWays(view.rayAt(x, y)));
-        else view.choose(view.markAt(x, y), add);
+        else {
+          const mark = view.markAt(x, y);
+          const way = mark === null ? paths.wayAt(x, y) : null;
+          if (way === null) view.choose(mark, add);
+          else chooseWay(way, add);
+        }
       },
       clickedRight: () => (tool.value = "select"),
       wheeled: (steps: number) => {
@@ -139,6 +151,13 @@ export class ScenePanel extends PageElement {
         return true;
       },
     };
+  }
+
+  private pointAt(mark: Mark | null, way: number | null): void {
+    this.canvas.classList.toggle("over", mark !== null || way !== null);
+    const meant = mark === null ? way : null;
+    if (meant !== this.pointed) hoveredLeg.value = meant;
+    this.pointed = meant;
   }
 
   /** Notes how long a verdict takes, for those who measure it. */
@@ -201,6 +220,20 @@ export class ScenePanel extends PageElement {
     beside.style.setProperty("transform", `translate(${Math.round(seen.x + 22)}px, ${Math.round(seen.y + 14)}px)`);
   }
 
+  /** Who has the robot stands above it. */
+  private placeRobot(view: SceneView, robot: RobotView): void {
+    const told = robot.told.value;
+    heed(view.frames);
+    const seen = told !== null && view.site.isShown(told.floor) ? view.project(told.at) : null;
+    const above = this.robotSign;
+    if (above === null) return;
+    above.hidden = seen === null;
+    if (seen === null || told === null) return;
+    above.className = told.mode;
+    above.textContent = t().run.modes[told.mode];
+    above.style.setProperty("transform", `translate(${Math.round(seen.x)}px, ${Math.round(seen.y)}px) translate(-50%, -100%)`);
+  }
+
   override render() {
     const texts = t().scene;
     const view = this.view.value;
@@ -220,6 +253,7 @@ export class ScenePanel extends PageElement {
       >
         <canvas class=${tool.value}></canvas>
         <div id="labels" aria-hidden="true"></div>
+        <div id="robot" aria-hidden="true" hidden></div>
         <div id="verdict" aria-hidden="true" hidden></div>
       </div>
       <p id="help" class="unseen">${navigates ? texts.helpNavigate : texts.help}</p>

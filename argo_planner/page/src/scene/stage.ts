@@ -2,6 +2,7 @@
  * machine is slow. */
 
 import {
+  BasicShadowMap,
   Color,
   DirectionalLight,
   HemisphereLight,
@@ -21,6 +22,9 @@ import type { Colours } from "./colours";
 const SLOW_MS = 45;
 const FAST_MS = 22;
 const COARSEST = 0.45;
+/** ms without a frame after which nothing moves */
+const REST_MS = 160;
+const FINE_SLOW = 1.5;
 /** Frames after which the fineness is looked at again. */
 const WINDOW = 5;
 /** m below a surface at which shadows fall on it: they are drawn in steps */
@@ -43,9 +47,15 @@ export class Stage {
   private readonly sun = new DirectionalLight();
   private readonly sky = new HemisphereLight();
   private asked = 0;
+  private resting: ReturnType<typeof setTimeout> | undefined;
+  private refining = false;
+  private drawnAt = -Infinity;
   private last = 0;
-  private ratio = 1;
+  /** Pixels of the picture in one of the page: while it moves, at most then, and at rest. */
+  private ratio = 2;
+  private most = 1;
   private finest = 1;
+  private fitted = 0;
   private times: number[] = [];
   private width = 1;
   private height = 1;
@@ -53,9 +63,9 @@ export class Stage {
 
   constructor(readonly canvas: HTMLCanvasElement) {
     this.slow = isSoftware();
-    this.renderer = new WebGLRenderer({ canvas, antialias: true, powerPreference: "high-performance" });
+    this.renderer = new WebGLRenderer({ canvas, antialias: !this.slow, powerPreference: "high-performance" });
     this.renderer.shadowMap.enabled = true;
-    this.renderer.shadowMap.type = PCFShadowMap;
+    this.renderer.shadowMap.type = this.slow ? BasicShadowMap : PCFShadowMap;
     this.renderer.shadowMap.autoUpdate = false;
     this.renderer.info.autoReset = false;
     this.camera.up.set(0, 0, 1);
@@ -78,7 +88,7 @@ export class Stage {
   }
 
   get idle(): boolean {
-    return this.asked === 0;
+    return this.asked === 0 && this.resting === undefined;
   }
 
   /** Draw calls and triangles of the last frame. */
@@ -90,11 +100,13 @@ export class Stage {
   resize(width: number, height: number): void {
     this.width = Math.max(1, width);
     this.height = Math.max(1, height);
-    this.finest = Math.min(devicePixelRatio, this.slow ? 1 : 2);
-    this.ratio = this.finest;
+    // Without a graphics card, edges are smoothed where nothing moves, by a finer picture.
+    this.finest = this.slow ? FINE_SLOW * Math.min(1, devicePixelRatio) : Math.min(devicePixelRatio, 2);
+    this.most = this.slow ? Math.min(1, this.finest) : this.finest;
+    this.ratio = Math.min(this.ratio, this.most);
     this.camera.aspect = this.width / this.height;
     this.camera.updateProjectionMatrix();
-    this.fit();
+    this.fitted = 0;
     this.need();
   }
 
@@ -140,6 +152,7 @@ export class Stage {
   dispose(): void {
     this.over = true;
     cancelAnimationFrame(this.asked);
+    clearTimeout(this.resting);
     this.canvas.removeEventListener("webglcontextrestored", this.restored);
     dispose(this.scene);
     this.sun.dispose();
@@ -155,13 +168,22 @@ export class Stage {
     let on = false;
     for (const move of [...this.moving]) on = move(dt) || on;
     if (running && on) this.adapt(ms);
-    else if (!on && this.ratio < this.finest) {
-      this.ratio = this.finest;
-      this.fit();
-    }
+    // Frames that follow each other soon are coarse as well: the pointer moves the ghost.
+    const coarse = !this.refining && (on || time - this.drawnAt < REST_MS);
+    this.fit(coarse ? this.ratio : this.finest);
+    clearTimeout(this.resting);
+    this.resting = undefined;
+    this.refining = false;
+    if (!on && coarse && this.ratio < this.finest)
+      this.resting = setTimeout(() => {
+        this.resting = undefined;
+        this.refining = true;
+        this.need();
+      }, REST_MS);
     this.renderer.info.reset();
     this.renderer.render(this.scene, this.camera);
     this.last = on ? time : 0;
+    this.drawnAt = time;
     if (on) this.need();
     for (const told of this.drawn) told();
   };
@@ -173,14 +195,13 @@ export class Stage {
     const middle = [...this.times].sort((a, b) => a - b)[WINDOW >> 1] as number;
     this.times = [];
     const factor = middle > SLOW_MS ? 0.75 : middle < FAST_MS ? 1.25 : 1;
-    const wanted = Math.min(this.finest, Math.max(COARSEST, this.ratio * factor));
-    if (wanted === this.ratio) return;
-    this.ratio = wanted;
-    this.fit();
+    this.ratio = Math.min(this.most, Math.max(COARSEST, this.ratio * factor));
   }
 
-  private fit(): void {
-    this.renderer.setPixelRatio(this.ratio);
+  private fit(ratio: number): void {
+    if (ratio === this.fitted) return;
+    this.fitted = ratio;
+    this.renderer.setPixelRatio(ratio);
     this.renderer.setSize(this.width, this.height, false);
   }
 

@@ -96,8 +96,8 @@ export const sceneStyle = css`
     color: var(--on-accent);
   }
   .label.active {
-    border-color: var(--person);
-    background: var(--person-ground);
+    border-color: var(--warn);
+    background: var(--warn-ground);
   }
   .label.bad {
     border-color: var(--bad);
@@ -120,6 +120,42 @@ export const sceneStyle = css`
     font-size: 13px;
     white-space: nowrap;
     pointer-events: none;
+  }
+  #robot {
+    position: absolute;
+    top: 0;
+    left: 0;
+    padding: 1px 8px;
+    border: 2px solid var(--accent);
+    border-radius: 6px;
+    background: var(--raised);
+    font-size: 12px;
+    font-weight: 600;
+    white-space: nowrap;
+    pointer-events: none;
+  }
+  #robot.supervised {
+    border-color: var(--person);
+    background: var(--person-ground);
+    color: var(--person);
+  }
+  #robot.paused,
+  #robot.stopping,
+  #robot.notice {
+    border-color: var(--warn);
+    border-style: dashed;
+    background: var(--warn-ground);
+    color: var(--warn);
+  }
+  #robot.reacting,
+  #robot.interrupted,
+  #robot.bad {
+    border-color: var(--bad);
+    background: var(--bad-ground);
+    color: var(--bad);
+  }
+  #robot.good {
+    border-color: var(--good);
   }
   #verdict.bad {
     border-color: var(--bad);

@@ -39,6 +39,7 @@ export function declutter(
   width: number,
   height: number,
   before: ReadonlyMap<string, Side> = new Map(),
+  most = Infinity,
 ): PlacedLabel[] {
   const grid = new Map<string, PlacedLabel[]>();
   const placed: PlacedLabel[] = [];
@@ -47,6 +48,7 @@ export function declutter(
     (a, b) => b.weight + had(b) - a.weight - had(a) || (a.key < b.key ? -1 : 1),
   );
   for (const wish of order) {
+    if (placed.length >= most) break;
     const first = before.get(wish.key);
     const sides = first === undefined ? SIDES : [first, ...SIDES.filter((side) => side !== first)];
     const options = sides.map((side) => boxAt(wish, side));

@@ -25,7 +25,7 @@ const { ACTION } = CameraControls;
 /** rad: how the site is looked at first, from the south-west and above */
 const [AZIMUTH, POLAR] = [-0.6, 0.95];
 /** Of the distance to what is looked at, that the camera moves in a second. */
-const PACE = 0.7;
+const PACE = 0.35;
 /** Of half the diagonal of the site: its corners may touch the edges of the picture. */
 const TIGHT = 0.44;
 /** rad and m: where a checkpoint is looked at from, the first one that is free is taken */

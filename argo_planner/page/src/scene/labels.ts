@@ -11,8 +11,8 @@ const HEIGHT = 20;
 const [PADDING, BADGE] = [12, 12];
 /** px: longer names are cut. */
 const WIDEST = 190;
-/** What is farther away than this (m) has a label only if it matters. */
-const FAR = 60;
+/** More of them would hide the site. */
+const MOST = 60;
 
 interface Shown {
   readonly element: HTMLElement;
@@ -38,12 +38,12 @@ export class Labels {
     const byKey = new Map<string, Mark>();
     for (const mark of marks) {
       const seen = this.project(mark.at, width, height);
-      if (seen === null || (seen.depth > FAR && mark.weight < 5)) continue;
+      if (seen === null) continue;
       byKey.set(mark.key, mark);
       const weight = mark.weight - (behind.has(mark.key) ? 4 : 0) - seen.depth / 200;
       wishes.push({ key: mark.key, x: seen.x, y: seen.y, width: this.width(mark), height: HEIGHT, weight });
     }
-    this.placed = declutter(wishes, width, height, this.sides);
+    this.placed = declutter(wishes, width, height, this.sides, MOST);
     this.sides = new Map(this.placed.map((one) => [one.key, one.side]));
     for (const one of this.placed) this.draw(one, byKey.get(one.key) as Mark, behind.has(one.key));
     for (const [key, { element }] of this.shown)

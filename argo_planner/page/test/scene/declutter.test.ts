@@ -37,6 +37,11 @@ describe("labels", () => {
     expect(placed.map((one) => one.key)).toEqual(["8", "7", "6", "5"]);
   });
 
+  it("are not more than wanted", () => {
+    const wishes = Array.from({ length: 20 }, (_, i) => wish(String(i), 300, 30 * i + 15, i));
+    expect(declutter(wishes, 900, 700, new Map(), 5).map((one) => one.key)).toEqual(["19", "18", "17", "16", "15"]);
+  });
+
   it("keep their side", () => {
     const placed = declutter([wish("a", 300, 300)], 900, 700, new Map([["a", "below"]]));
     expect(placed[0]?.side).toBe("below");

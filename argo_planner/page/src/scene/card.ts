@@ -73,17 +73,13 @@ export class SceneCard extends PageElement {
     this.stand(view, mark);
     return html`<div class="panel" role="group" aria-label=${mark.text} @keydown=${this.onKey}>
       <div class="head">
-        <h2 class="grow">${this.named(mark)}</h2>
+        <h2 class="grow">${mark.text}</h2>
         <button class="bare icon" aria-label=${t().scene.close} @click=${() => (opened.value = null)}>
           ${icon("close", 14)}
         </button>
       </div>
       ${this.content(mark)}
     </div>`;
-  }
-
-  private named({ subject, text }: Mark): string {
-    return subject.kind === "checkpoint" ? `#${subject.checkpoint.id} ${text}` : text;
   }
 
   private content(mark: Mark) {

@@ -1,7 +1,7 @@
 /** The navigation tool: a ghost of the robot that can be put where the robot can stand. */
 
 import { computed, effect, signal } from "@preact/signals-core";
-import type { Ray } from "three";
+import type { Ray, Vector3 } from "three";
 
 import { addTask } from "../list/add";
 import { floorOf, type Standing } from "../model/standing";
@@ -28,6 +28,9 @@ export const FAST_CELLS = 5;
 const TURN = Math.PI / 4;
 /** m: heights that belong to the ground on which the ghost is. */
 const STEP_UP = 0.3;
+/** How many steps a ray may go through, and how thick they are (m). */
+const MOST_STEPS = 12;
+const THROUGH = 0.02;
 
 const placed = signal<Omit<GhostPose, "verdict" | "floor"> | null>(null);
 let yaw = 0;
@@ -56,10 +59,26 @@ export function hideGhost(): void {
   placed.value = null;
 }
 
-/** Puts the ghost where a ray meets the ground. */
+/** Puts the ghost where a ray meets the ground; through stairs on which the robot can't stand, if it
+ * can behind them. */
 export function hover(ray: Ray, site: Site): void {
-  const hit = site.hitWays(ray);
-  placed.value = hit && { x: hit.point.x, y: hit.point.y, z: hit.point.z, yaw };
+  const first = site.hitWays(ray);
+  let hit = first;
+  for (let tries = 0; hit !== null && tries < MOST_STEPS && isStep(hit.point); tries++)
+    hit = site.hitWays(ray, hit.distance + THROUGH);
+  const behind = hit !== null && hit !== first && groundAt(hit.point) === "reached";
+  const meant = behind ? hit : first;
+  placed.value = meant && { x: meant.point.x, y: meant.point.y, z: meant.point.z, yaw };
+}
+
+/** Whether it is above the deck of its floor, and the robot can't stand there. */
+function isStep(point: Vector3): boolean {
+  const floor = floorOf(world.peek()?.floors ?? [], point.z);
+  return floor !== undefined && point.z > floor.z + STEP_UP && groundAt(point) !== "reached";
+}
+
+function groundAt({ x, y, z }: Vector3): string | undefined {
+  return standing(x, y, z, yaw)?.ground;
 }
 
 /** Puts the ghost somewhere, if it is nowhere. */

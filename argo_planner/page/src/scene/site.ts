@@ -84,12 +84,12 @@ export class Site {
     return this.highest === null || floor <= this.highest;
   }
 
-  /** What a ray meets first of that on which the robot can drive. */
-  hitWays(ray: Ray): Hit | null {
+  /** What a ray meets first, beyond a distance (m), of that on which the robot can drive. */
+  hitWays(ray: Ray, beyond = 0): Hit | null {
     let nearest: Hit | null = null;
     for (const storey of this.storeys) {
       if (!storey.group.visible) continue;
-      const hit = storey.ways.raycastFirst(ray, DoubleSide);
+      const hit = storey.ways.raycastFirst(ray, DoubleSide, beyond);
       if (hit !== null && (nearest === null || hit.distance < nearest.distance))
         nearest = { point: hit.point, floor: storey.number, distance: hit.distance };
     }

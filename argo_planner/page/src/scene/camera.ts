@@ -26,8 +26,8 @@ const { ACTION } = CameraControls;
 const [AZIMUTH, POLAR] = [-0.6, 0.95];
 /** Of the distance to what is looked at, that the camera moves in a second. */
 const PACE = 0.35;
-/** Of half the diagonal of the site: its corners may touch the edges of the picture. */
-const TIGHT = 0.44;
+/** Of the diagonal of the site: nearly half, as it is not seen from its corners. */
+const TIGHT = 0.48;
 /** rad and m: where a checkpoint is looked at from, the first one that is free is taken */
 const TURNS = [0.35, -0.35, 0.8, -0.8, 0, 1.2, -1.2];
 const HEIGHTS = [0.5, 0.75, 0.25, 1.05];
@@ -43,6 +43,8 @@ export class SiteCamera {
   /** px a frame, by the pointer at an edge */
   private push = { x: 0, y: 0 };
   private site: World | null = null;
+  /** Whether it is still as it was when the site was opened. */
+  private untouched = true;
 
   constructor(private readonly stage: Stage) {
     const controls = new CameraControls(stage.camera, stage.canvas);
@@ -59,6 +61,8 @@ export class SiteCamera {
     controls.touches.two = ACTION.TOUCH_DOLLY_TRUCK;
     for (const what of ["controlstart", "control", "transitionstart", "update", "wake"] as const)
       controls.addEventListener(what, stage.need);
+    for (const what of ["controlstart", "control", "transitionstart"] as const)
+      controls.addEventListener(what, () => (this.untouched = false));
     stage.moving.add(this.move);
     stage.canvas.addEventListener("wheel", stage.need, { passive: true });
   }
@@ -71,6 +75,14 @@ export class SiteCamera {
   setSite(site: World, glide: boolean): void {
     this.site = site;
     void this.showAll(null, glide);
+    this.untouched = true;
+  }
+
+  /** The picture has another size: the site is whole in it until somebody moves the camera. */
+  resized(): void {
+    if (!this.untouched || this.site === null) return;
+    void this.controls.fitToSphere(this.around(null), false);
+    this.untouched = true;
   }
 
   /** Looks at all floors up to a number. */

@@ -26,6 +26,8 @@ const SMOOTH = 0.09;
 /** m that the robot does not drive at once: it is put there */
 const JUMP = 1.5;
 const STILL = 0.002;
+/** Nobody has the robot any more. */
+const OVER: ReadonlySet<ShownMode> = new Set(["good", "notice", "bad"]);
 const TRAIL_Z = 0.06;
 /** m, of its top above the ground */
 const TOP = 1.1;
@@ -127,7 +129,7 @@ export class RobotView {
       if (moved) this.view.camera.follow(new Vector3(now[0], now[1], now[2]), now[3], how);
     }
     this.body.group.visible = this.view.site.isShown(floor);
-    this.told.value = this.mode && { at: new Vector3(now[0], now[1], now[2] + TOP), floor, mode: this.mode };
+    this.told.value = this.mode && !OVER.has(this.mode) ? { at: new Vector3(now[0], now[1], now[2] + TOP), floor, mode: this.mode } : null;
     return !there;
   };
 

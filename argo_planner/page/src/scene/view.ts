@@ -79,6 +79,7 @@ export class SceneView {
 
   resize(width: number, height: number): void {
     this.stage.resize(width, height);
+    this.camera.resized();
   }
 
   /** A ray from the camera through a point of the picture (px). */

@@ -14,7 +14,7 @@ from tests.e2e.page.test_list import mission, order, row
 MOST = 40
 """inputs, and one more for each undo, redo or reorder"""
 FRONT = (8.05, -2.05, -0.03)
-CORNERS = ((2, 2), (15, 1), (15, 11), (2, 10))
+CORNERS = ((2, 2), (15, 1), (15, 11), (4, 10))
 PLANNED = ("START", "Round", *(f"WAYPOINT {n}" for n in range(1, 5)), "MEASURE 2", "MEASURE 14")
 
 
@@ -76,6 +76,7 @@ def test_by_mouse(ann, service, capsys) -> None:
     ann.click(ann.at(*FRONT))
     order(ann, "START")
     for number, (x, y) in enumerate(CORNERS, start=1):
+        ann.idle()
         ann.click(ann.at(x, y, 0.0))
         expect(row(ann, f"WAYPOINT {number}")).to_have_count(1)
     ann.click(row(ann, "WAYPOINT 1"))

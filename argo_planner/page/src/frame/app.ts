@@ -59,6 +59,7 @@ export class ArgoApp extends PageElement {
       }
       argo-strip {
         grid-column: 2;
+        min-height: 114px; /* as with tasks in it, so that the site does not move under the pointer */
         min-width: 0;
         border-top: 1px solid var(--line);
         background: var(--surface);
@@ -126,6 +127,7 @@ export class ArgoApp extends PageElement {
     super.connectedCallback();
     beginSession();
     addEventListener("hashchange", this.followAddress);
+    addEventListener("open-run", this.focusPanel);
     const named = effect(() => {
       document.title = planName.value ? `${planName.value} – Argo` : "Argo";
     });
@@ -136,8 +138,11 @@ export class ArgoApp extends PageElement {
   override disconnectedCallback(): void {
     super.disconnectedCallback();
     removeEventListener("hashchange", this.followAddress);
+    removeEventListener("open-run", this.focusPanel);
     for (const one of this.stop) one();
   }
+
+  private readonly focusPanel = (): void => this.renderRoot.querySelector<HTMLElement>("#panel")?.focus();
 
   /** Reads what does not depend on the mission; tries again until the service is there. */
   private async begin(): Promise<void> {

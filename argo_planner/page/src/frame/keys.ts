@@ -3,9 +3,9 @@
 import { signal } from "@preact/signals-core";
 
 import { PropertiesPanel } from "../forms/properties";
-import { redo, select, selection, undo } from "../state/plan";
+import { planId, redo, select, selection, undo } from "../state/plan";
 import { mayPlan } from "../state/session";
-import { tool } from "../state/view";
+import { panel, tool } from "../state/view";
 import { t } from "../texts";
 import { css, customElement, html, look, PageElement, query } from "../ui/element";
 
@@ -93,6 +93,7 @@ export class PageKeys extends PageElement {
     if (key === "?" && !command) keysShown.value = true;
     else if (command && mayPlan() && key === "z") void (event.shiftKey ? redo() : undo());
     else if (command && mayPlan() && key === "y") void redo();
+    else if (key === "r" && !command && !event.altKey && planId.value !== null) openRun();
     else if (key === "escape" && tool.value !== "select") tool.value = "select";
     else if (key === "escape" && selection.value.length > 0) select([]);
     else return;
@@ -127,6 +128,12 @@ export class PageKeys extends PageElement {
       </div>
     </dialog>`;
   }
+}
+
+/** Shows the run, with the focus before its first button. */
+function openRun(): void {
+  panel.value = "run";
+  setTimeout(() => dispatchEvent(new CustomEvent("open-run")));
 }
 
 /** Whether a key is meant for a field or a dialog. */

@@ -1,6 +1,6 @@
 /** Adding tasks: a menu, and a field in which a checkpoint or a place is typed. */
 
-import type { Action, Pose, Reaction, Task } from "../api/types";
+import type { Action, Mission, Pose, Reaction, Task } from "../api/types";
 import { freeName, numberedName, taskNames } from "../model/naming";
 import { outline, reactionKey, taskKey } from "../model/outline";
 import { placeForNew } from "../model/places";
@@ -14,14 +14,37 @@ import { css, customElement, html, look, nothing, PageElement, query, state } fr
 import { icon } from "../ui/icons";
 import { type Choice, checkpointChoices, matching, placeChoices, typedPlace } from "./choices";
 
+interface NewTask {
+  readonly action: Action;
+  /** What it is to be called; another name is taken where there is such a task. */
+  readonly wanted: string;
+  readonly fields: Partial<Task>;
+}
+
 /** Adds a task behind what is selected, and selects it. Whether it was added. */
 export function addTask(action: Action, wanted: string, fields: Partial<Task>): Promise<boolean> {
+  return added(() => ({ action, wanted, fields }));
+}
+
+/** Adds a waypoint, or in a mission that begins nowhere yet its start. */
+export function addPlace(pose: Pose, name?: string): Promise<boolean> {
+  return added((open) => {
+    const action = open.tasks.some((task) => task.action === "START") ? "WAYPOINT" : "START";
+    const wanted = action === "WAYPOINT" && name !== undefined ? name : action;
+    return { action, wanted, fields: { pose } };
+  });
+}
+
+/** Adds what is to be added to the mission as it is when its turn comes. */
+function added(find: (open: Mission) => NewTask): Promise<boolean> {
   return inTurn(async (make) => {
     const open = mission.value;
     if (open === null) return false;
+    const { action, wanted, fields } = find(open);
     const names = taskNames(open);
-    const name = wanted === action && action !== "START" ? numberedName(wanted, names) : freeName(wanted, names);
     const start = action === "START";
+    const numbered = wanted === action && !start;
+    const name = numbered ? numberedName(wanted, names) : freeName(wanted, names);
     const where = start ? { first: true } : placeForNew(outline(open), selection.value);
     const done = await make({ kind: "add_task", task: { name, action, ...fields }, ...where });
     if (done) select([taskKey(name)]);
@@ -32,14 +55,6 @@ export function addTask(action: Action, wanted: string, fields: Partial<Task>): 
 /** Adds the measuring of a checkpoint. */
 export function addMeasure(id: string): Promise<boolean> {
   return addTask("MEASURE", `MEASURE ${id}`, { object_id: id });
-}
-
-/** Adds a waypoint, or in a mission that begins nowhere yet its start. */
-export function addPlace(pose: Pose, name?: string): Promise<boolean> {
-  const started = mission.value?.tasks.some((task) => task.action === "START") ?? true;
-  return started
-    ? addTask("WAYPOINT", name ?? "WAYPOINT", { pose })
-    : addTask("START", "START", { pose });
 }
 
 @customElement("argo-add")

@@ -298,6 +298,8 @@ export class MissionList extends PageElement {
 
   private choose(row: Row, extend: boolean, toggle: boolean): void {
     const { shown } = this.rows();
+    const { value: chosen } = selection;
+    if (this.anchor === null || !chosen.includes(this.anchor)) this.anchor = chosen.at(-1) ?? null;
     if (extend && this.anchor !== null) {
       const from = shown.findIndex((one) => one.key === this.anchor);
       const to = shown.indexOf(row);

@@ -3,7 +3,7 @@
 import { computed, effect, signal } from "@preact/signals-core";
 import type { Ray, Vector3 } from "three";
 
-import { addTask } from "../list/add";
+import { addPlace } from "../list/add";
 import { floorOf, type Standing } from "../model/standing";
 import { mission } from "../state/plan";
 import { shownFloor, tool } from "../state/view";
@@ -130,8 +130,7 @@ export async function placeGhost(): Promise<boolean> {
   if (at?.verdict?.ground !== "reached") return false;
   const rounded = (value: number) => Math.round(1000 * value) / 1000;
   const pose = { x: rounded(at.x), y: rounded(at.y), z: rounded(at.z), yaw: at.yaw };
-  const action = setsStart.value ? "START" : "WAYPOINT";
-  return addTask(action, action, { pose });
+  return addPlace(pose);
 }
 
 /** The ghost once it is known whether the robot can stand there: right after the tool was taken, the

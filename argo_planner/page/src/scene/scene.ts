@@ -2,7 +2,9 @@
 
 import { effect, signal } from "@preact/signals-core";
 
+import { nameOfKey } from "../model/outline";
 import { tell } from "../state/notices";
+import { selection } from "../state/plan";
 import { hoveredLeg } from "../state/preview";
 import { mayPlan } from "../state/session";
 import { shownFloor, tool } from "../state/view";
@@ -10,6 +12,7 @@ import { world } from "../state/world";
 import { t } from "../texts";
 import { customElement, html, look, nothing, PageElement, query } from "../ui/element";
 import "./bar";
+import { aboveRobot, besideGhost } from "./beside";
 import "./card";
 import "./compass";
 import "./floors";
@@ -101,8 +104,8 @@ export class ScenePanel extends PageElement {
     this.stops = [
       effect(() => this.take(view)),
       effect(() => this.announce()),
-      effect(() => this.placeVerdict(view)),
-      effect(() => this.placeRobot(view, robot)),
+      effect(() => besideGhost(view, this.verdict)),
+      effect(() => aboveRobot(view, robot, this.robotSign)),
     ];
     this.view.value = view;
   }
@@ -176,7 +179,8 @@ export class ScenePanel extends PageElement {
 
   private place(): void {
     void placeGhost().then((placed) => {
-      if (!placed) this.said.value = `${verdictWords(ghost.value)} `;
+      const name = nameOfKey(selection.value.at(-1) ?? "");
+      this.said.value = placed ? t().scene.placed(name) : `${verdictWords(ghost.value)} `;
     });
   }
 
@@ -204,34 +208,6 @@ export class ScenePanel extends PageElement {
     if (at === null) return;
     const words = `${verdictWords(at)}. ${ghostWords(at)}`;
     this.saying = setTimeout(() => (this.said.value = words), SAID_AFTER_MS);
-  }
-
-  /** The reason stands beside the ghost. */
-  private placeVerdict(view: SceneView): void {
-    const at = ghost.value;
-    heed(view.frames);
-    const beside = this.verdict;
-    if (beside === null) return;
-    const seen = at === null ? null : view.project(at);
-    beside.hidden = seen === null;
-    if (seen === null) return;
-    beside.textContent = verdictWords(at);
-    beside.classList.toggle("bad", at?.verdict !== null && at?.verdict.ground !== "reached");
-    beside.style.setProperty("transform", `translate(${Math.round(seen.x + 22)}px, ${Math.round(seen.y + 14)}px)`);
-  }
-
-  /** Who has the robot stands above it. */
-  private placeRobot(view: SceneView, robot: RobotView): void {
-    const told = robot.told.value;
-    heed(view.frames);
-    const seen = told !== null && view.site.isShown(told.floor) ? view.project(told.at) : null;
-    const above = this.robotSign;
-    if (above === null) return;
-    above.hidden = seen === null;
-    if (seen === null || told === null) return;
-    above.className = told.mode;
-    above.textContent = t().run.modes[told.mode];
-    above.style.setProperty("transform", `translate(${Math.round(seen.x)}px, ${Math.round(seen.y)}px) translate(-50%, -100%)`);
   }
 
   override render() {

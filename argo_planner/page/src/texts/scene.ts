@@ -68,8 +68,6 @@ export const scene = both(
     putUp: "Put up",
     cancel: "Cancel",
     mayNot: "You may look, but not change anything here.",
-    robot: "robot",
-    leg: (from: string, to: string) => `${from} → ${to}`,
   },
   {
     site: "Die Anlage",
@@ -138,7 +136,5 @@ export const scene = both(
     putUp: "Aufstellen",
     cancel: "Abbrechen",
     mayNot: "Sie dürfen hier zusehen, aber nichts ändern.",
-    robot: "Roboter",
-    leg: (from, to) => `${from} → ${to}`,
   },
 );

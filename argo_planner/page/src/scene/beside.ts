@@ -1,0 +1,34 @@
+/** Words that stand beside what moves in the picture: the ghost and the robot. */
+
+import { t } from "../texts";
+import { heed } from "./heed";
+import { ghost, verdictWords } from "./navigate";
+import type { RobotView } from "./robot-view";
+import type { SceneView } from "./view";
+
+/** Why the robot can't stand where the ghost is. */
+export function besideGhost(view: SceneView, element: HTMLElement | null): void {
+  const at = ghost.value;
+  heed(view.frames);
+  if (element === null) return;
+  const seen = at === null ? null : view.project(at);
+  element.hidden = seen === null;
+  if (seen === null) return;
+  element.textContent = verdictWords(at);
+  element.classList.toggle("bad", at?.verdict !== null && at?.verdict.ground !== "reached");
+  element.style.setProperty("transform", `translate(${Math.round(seen.x + 22)}px, ${Math.round(seen.y + 14)}px)`);
+}
+
+/** Who has the robot. */
+export function aboveRobot(view: SceneView, robot: RobotView, element: HTMLElement | null): void {
+  const told = robot.told.value;
+  heed(view.frames);
+  if (element === null) return;
+  const seen = told !== null && view.site.isShown(told.floor) ? view.project(told.at) : null;
+  element.hidden = seen === null;
+  if (seen === null || told === null) return;
+  element.className = told.mode;
+  element.textContent = t().run.modes[told.mode];
+  const place = `translate(${Math.round(seen.x)}px, ${Math.round(seen.y)}px) translate(-50%, -100%)`;
+  element.style.setProperty("transform", place);
+}

@@ -77,6 +77,11 @@ class Person:
     def button(self, name: str, exact: bool = True) -> Any:
         return self.page.get_by_role("button", name=name, exact=exact).first
 
+    @property
+    def saved(self) -> Any:
+        """Where the page says whether all is saved."""
+        return self.page.locator("argo-topbar [role=status]")
+
     def ask(self, expression: str, argument: Any = None) -> Any:
         """What an expression of the page says."""
         return self.page.evaluate(expression, argument)
@@ -146,7 +151,7 @@ class Browsers:
         for person in self.people:
             person.context.close()
         self.people.clear()
-        assert not complaints
+        assert complaints == []
 
     def close(self) -> None:
         self._browser.close()

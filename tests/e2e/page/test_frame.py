@@ -22,7 +22,7 @@ def ann(browsers, address) -> Person:
 
 def test_a_mission_is_made_named_deleted_and_taken_back(ann, service) -> None:
     ann.click(ann.button("New mission"))
-    expect(ann.page.get_by_role("status")).to_have_text("Saved")
+    expect(ann.saved).to_have_text("Saved")
     ann.click(ann.page.get_by_title("Rename the mission"))
     ann.page.keyboard.type("Night round")
     ann.key("Enter")
@@ -41,7 +41,7 @@ def test_a_script_that_leaves_its_areas_open_asks_for_them(ann, service) -> None
     ann.page.get_by_label("It begins in area").select_option("1")
     ann.page.get_by_label("It ends in area").select_option("2")
     ann.click(ann.button("Import"))
-    expect(ann.page.get_by_role("status")).to_have_text("Saved")
+    expect(ann.saved).to_have_text("Saved")
     id = ann.page.url.rpartition("/")[2]
     mission = service.client.get(f"/api/missions/{id}").json()["mission"]
     assert (mission["start_area"], mission["end_area"]) == (1, 2)

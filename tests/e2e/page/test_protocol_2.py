@@ -29,7 +29,7 @@ def ann(browsers, address) -> Person:
 def expect_planned(ann: Person, service: Served) -> str:
     """That the mission is the protocol's, also after the page is loaded again; its id."""
     order(ann, *PLANNED)
-    expect(ann.page.get_by_role("status")).to_have_text("Saved")
+    expect(ann.saved).to_have_text("Saved")
     ann.page.reload()
     order(ann, *PLANNED)
     id = ann.page.url.rpartition("/")[2]

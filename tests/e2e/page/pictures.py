@@ -1,0 +1,101 @@
+"""Makes the pictures of `docs/planner.md` from the real page:
+`python -m tests.e2e.page.pictures docs/images`."""
+
+import re
+import sys
+import tempfile
+from pathlib import Path
+from typing import Any
+
+from playwright.sync_api import expect
+
+from argo_env.planning.opening import open_site
+from tests.argo_planner.service.served import ALL, Served, served
+from tests.e2e.page.person import Browsers, Person
+
+SCRIPT = Path(__file__).parents[3] / "scenarios" / "umad" / "missions" / "protocol_3.txt"
+
+
+def imported(service: Served) -> str:
+    """The mission of the pictures; its id."""
+    made = service.client.post(
+        "/api/imports", params={"filename": SCRIPT.name}, content=SCRIPT.read_bytes()
+    )
+    id: str = made.json()["id"]
+    return id
+
+
+def opened(browsers: Browsers, service: Served, id: str, **context: Any) -> Person:
+    person = browsers.person(f"http://{service.address}/?token={ALL}", "Ann", **context)
+    person.open(f"/missions/{id}")
+    person.idle()
+    return person
+
+
+def settled(person: Person) -> None:
+    """Waits until the ways and the analysis are there and drawn."""
+    expect(person.page.locator("argo-strip")).to_contain_text("Time")
+    person.page.wait_for_timeout(1500)
+    person.idle()
+
+
+def take(person: Person, folder: Path, name: str) -> None:
+    person.page.screenshot(path=folder / f"planner-{name}.png")
+    print(f"{folder}/planner-{name}.png")
+
+
+def planning(browsers: Browsers, service: Served, folder: Path) -> None:
+    id = imported(service)
+    for theme in ("light", "dark"):
+        ann = opened(browsers, service, id, color_scheme=theme)
+        settled(ann)
+        take(ann, folder, theme)
+        browsers.leave()
+    ann = opened(browsers, service, id)
+    ann.page.get_by_role("treeitem").nth(2).click()
+    settled(ann)
+    take(ann, folder, "form")
+    ann.page.locator("argo-scene").get_by_role("radio", name=re.compile("Floor 1")).click()
+    ann.idle()
+    ann.key("n")
+    ann.page.mouse.move(*ann.at(3.05, 4.0, 0.0))
+    ann.page.wait_for_timeout(1500)
+    ann.idle()
+    take(ann, folder, "ghost")
+    browsers.leave()
+
+
+def running(browsers: Browsers, service: Served, folder: Path) -> None:
+    id = imported(service)
+    ann = opened(browsers, service, id)
+    ann.page.get_by_role("tab", name="Run").click()
+    ann.page.locator("argo-run").get_by_role("button", name="Start the run", exact=True).click()
+    expect(ann.page.locator("#speed")).to_be_visible()
+    ann.page.locator("#speed").select_option("10")
+    ann.until(
+        lambda: service.client.get("/api/runs").json()["runs"][0]["readings"], "something is read"
+    )
+    ann.page.wait_for_timeout(500)
+    take(ann, folder, "run")
+    phone = opened(browsers, service, id, viewport={"width": 400, "height": 850})
+    phone.page.locator("#tab-run").click()
+    phone.page.wait_for_timeout(500)
+    take(phone, folder, "phone")
+    ann.page.locator("argo-run").get_by_role("button", name="Take over", exact=True).click()
+    give_back = ann.page.locator("argo-run").get_by_role("button", name="Give back", exact=True)
+    expect(give_back).to_be_enabled()
+    take(ann, folder, "taken-over")
+    browsers.leave()
+
+
+def main(folder: Path) -> None:
+    site = open_site("umad").prepare()
+    with tempfile.TemporaryDirectory() as missions, served(Path(missions), site) as service:
+        browsers = Browsers()
+        planning(browsers, service, folder)
+        running(browsers, service, folder)
+        browsers.close()
+
+
+if __name__ == "__main__":
+    main(Path(sys.argv[1]))

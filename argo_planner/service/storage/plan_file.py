@@ -105,8 +105,12 @@ class PlanFile(Closing):
         Raises Unavailable if it can't be written, PlanTooLarge if it could not be opened again; the
         file is as it was then.
         """
+        data = record.model_dump(mode="json")
+        line = checked_line({"n": self._extent.lines} | data)
+        if self._extent.size + len(line) > MAX_BYTES:
+            self._write_anew()
+            line = checked_line({"n": self._extent.lines} | data)
         extent = self._extent
-        line = checked_line({"n": extent.lines} | record.model_dump(mode="json"))
         if extent.size + len(line) > MAX_BYTES:
             raise PlanTooLarge(
                 f"the mission's file would have more than {MAX_BYTES // 1_000_000} MB: drop some "
@@ -166,8 +170,8 @@ def open_plan_file(path: Path) -> PlanFile:
         )
     if read.lost:
         lost = (
-            f"{read.lost} of {read.lost + read.extent.lines} lines are damaged or follow a damaged one: "
-            f"this is the mission at revision {read.document.plan.revision}"
+            f"{read.lost} of {read.lost + read.extent.lines} lines are damaged or follow a damaged "
+            f"one: this is the mission at revision {read.document.plan.revision}"
         )
         return _recovered(path, read, lost)
     file = _open(path)

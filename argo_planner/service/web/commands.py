@@ -22,7 +22,7 @@ from argo_planner.service.jobs.analysis import AnalysisFound
 from argo_planner.service.rooms.messages import CommandDone
 from argo_planner.service.rooms.room import PlanRoom
 from argo_planner.service.storage.notes import keep_notes
-from argo_planner.service.web.bodies import Sent, StrictJson
+from argo_planner.service.web.bodies import Sent
 from argo_planner.service.web.missions import sound
 from argo_planner.service.web.problems import StaleCommand, documented
 from argo_planner.service.web.requests import (
@@ -48,7 +48,6 @@ router = APIRouter(
 )
 
 AnyCommand = Annotated[EditPlan | UndoEdit | RedoEdit | ReplacePlan, Discriminator("kind")]
-SentCommand = Annotated[AnyCommand, StrictJson(AnyCommand)]
 
 
 class ScriptGiven(Model):
@@ -68,7 +67,7 @@ async def carry_out_command(
     service: Service,
     visitor: Planner,
     id: PlanId,
-    command: SentCommand,
+    command: Sent[AnyCommand],
     made_on: MadeOn,
 ) -> Response:
     """Carries out a command. Sent again with the same id it does nothing twice."""

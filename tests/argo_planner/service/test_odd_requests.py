@@ -1,5 +1,6 @@
 """What strangers send: each gets one clear answer, and nothing is lost."""
 
+import json
 import os
 from collections.abc import Iterator
 from pathlib import Path
@@ -9,7 +10,7 @@ from websockets.exceptions import InvalidStatus
 
 from argo_planner.service.rooms import mailbox
 from argo_planner.service.storage import folder, plan_file
-from tests.argo_planner.service.served import Served
+from tests.argo_planner.service.served import ALL, Served
 
 TASK = {"name": "a", "action": "WAYPOINT", "pose": {"x": 3.05, "y": 1.55, "z": 0.0}}
 CHANGE = {"kind": "change_task", "name": "a", "retries": 3}
@@ -74,8 +75,8 @@ def test_a_body_of_unsaid_size_that_is_too_large_is_called_so(service) -> None:
         for _ in range(30):
             yield b" " * 100_000
 
-    json = {"content-type": "application/json"}
-    answer = service.client.post("/api/missions", content=parts(), headers=json)
+    told = {"content-type": "application/json"}
+    answer = service.client.post("/api/missions", content=parts(), headers=told)
     assert (answer.status_code, answer.json()["code"]) == (413, "too-large")
 
 
@@ -84,6 +85,10 @@ def test_what_is_wrong_with_an_edit_is_said_of_that_kind_of_edit(service, plan) 
     detail = service.command(plan, 2, wrong).json()["detail"]
     assert "edits.0.add_task.task.pose.x" in detail
     assert "UndoEdit" not in detail
+    request = service.client.post(
+        "/api/runs/20260101-000000-0000/requests", json={"kind": "speed", "id": "x", "speed": "1"}
+    )
+    assert request.json()["detail"].startswith("body.speed.speed: ")
     unknown = {"kind": "edt", "id": "x"}
     answer = service.client.post(
         f"/api/missions/{plan}/commands", json=unknown, headers={"if-match": "*"}
@@ -91,12 +96,20 @@ def test_what_is_wrong_with_an_edit_is_said_of_that_kind_of_edit(service, plan) 
     assert "'edit', 'undo', 'redo', 'replace'" in answer.json()["detail"]
 
 
-@pytest.mark.parametrize("since", ["abc", "-1", "0", "1.5", "9" * 30])
+@pytest.mark.parametrize("since", ["abc", "-1", "", "1.5"])
 def test_a_socket_asked_for_since_no_number_says_so(service, plan, since) -> None:
-    with pytest.raises(InvalidStatus) as refused:
-        service.follow(plan, since=since)
-    assert refused.value.response.status_code == 422
-    assert b"since=" in refused.value.response.body
+    for path in (f"/api/missions/{plan}/live", "/api/robot/live"):
+        with pytest.raises(InvalidStatus) as refused:
+            service.socket(f"{path}?since={since}", {"authorization": f"Bearer {ALL}"})
+        assert refused.value.response.status_code == 422
+        problem = json.loads(refused.value.response.body)
+        assert problem["code"] == "invalid"
+        assert problem["detail"].startswith("query.since: ")
+
+
+def test_what_a_socket_says_to_know_and_nobody_can_know_gets_a_snapshot(service, plan) -> None:
+    for since in (99, 10**30):
+        assert '"snapshot"' in service.follow(plan, since=since).recv(timeout=10)[:30]
 
 
 def test_a_stale_version_says_what_was_done_since(service, plan) -> None:

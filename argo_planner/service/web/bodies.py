@@ -24,7 +24,8 @@ class StrictJson:
     ) -> core_schema.CoreSchema:
         # Pydantic has taken off what tells the kinds of a union apart.
         union = get_origin(source) in (Union, UnionType)
-        adapter = TypeAdapter[Any](Annotated[source, Discriminator("kind")] if union else source)
+        body: Any = Annotated[source, Discriminator("kind")] if union else source
+        adapter = TypeAdapter[Any](body)
 
         def validated(given: Any, leniently: Callable[[Any], Any]) -> Any:
             if isinstance(given, bytes):  # by its header it is no JSON

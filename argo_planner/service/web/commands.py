@@ -14,6 +14,7 @@ from argo_planner.service.core.commands import (
     EditPlan,
     PlanCommand,
     RedoEdit,
+    ReplaceFrom,
     ReplacePlan,
     UndoEdit,
 )
@@ -117,11 +118,15 @@ async def read_analysis(service: Service, _: Viewer, id: PlanId) -> Response:
 
 
 async def carried_out(
-    room: PlanRoom, command: PlanCommand, author: str, made_on: int | None
+    room: PlanRoom,
+    command: PlanCommand,
+    author: str,
+    made_on: int | None,
+    asked: ReplaceFrom | None = None,
 ) -> Response:
     """The answer to a command. Raises StaleCommand, which has what was done meanwhile."""
     try:
-        done = await room.carry_out(command, author, made_on)
+        done = await room.carry_out(command, author, made_on, asked)
     except StaleRevision as stale:
         since = room.document.plan.since(stale.made_on)
         raise StaleCommand(stale, since) from None

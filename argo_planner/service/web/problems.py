@@ -169,7 +169,7 @@ def answer_problems(app: FastAPI) -> None:
     }
     for kind, handler in handlers.items():
         app.add_exception_handler(kind, handler)
-    app.add_exception_handler(WebSocketRequestValidationError, of_socket)  # type: ignore[arg-type]
+    app.add_exception_handler(WebSocketRequestValidationError, of_socket)
 
 
 def _methods(request: Request) -> list[str]:

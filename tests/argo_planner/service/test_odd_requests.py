@@ -134,6 +134,13 @@ def test_putting_a_version_back_is_answered_again_when_the_version_is_gone(servi
     assert again.json()["revision"] == first.json()["revision"]
     other = service.client.post(restore, json={"id": "another"}, headers=made_on)
     assert other.status_code == 404
+    taken = service.client.post(f"{url}/7/restore", json=body, headers=made_on)
+    assert (taken.status_code, taken.json()["code"]) == (409, "command-id-taken")
+    assert service.command(plan, 4, {**CHANGE, "retries": 9}).status_code == 200
+    second = service.client.post(url, json={"name": "w"}, headers={"if-match": "*"}).json()
+    assert second["number"] == kept["number"]
+    again = service.client.post(restore, json=body, headers=made_on)
+    assert again.json()["revision"] == first.json()["revision"]
 
 
 @pytest.mark.parametrize(
@@ -164,11 +171,23 @@ def test_a_way_leads_to_one_thing(service) -> None:
         assert "either" in answer.json()["detail"]
 
 
-def test_an_order_of_what_is_not_there_is_refused_at_once(service, plan) -> None:
-    url = f"/api/missions/{plan}/orders"
-    answer = service.client.post(url, json={"requirements": {"mandatory": ["nothing"]}})
-    assert answer.status_code in (404, 422)
-    assert "nothing" in answer.json()["detail"]
+@pytest.mark.parametrize(
+    "requirements",
+    [
+        {"mandatory": ["nothing"]},
+        {"mandatory": ["a", "nothing"]},
+        {"optional": [{"what": "nothing"}]},
+        {"windows": [{"what": "nothing", "latest": 60}]},
+        {"before": [["a", "nothing"]]},
+        {"likelihoods": [{"task": "a", "target": "nothing", "probability": 0.5}]},
+    ],
+)
+def test_an_order_of_what_is_not_there_is_refused_at_once(service, plan, requirements) -> None:
+    answer = service.client.post(
+        f"/api/missions/{plan}/orders", json={"requirements": requirements, "time_limit": 1}
+    )
+    assert (answer.status_code, answer.json()["code"]) == (422, "invalid")
+    assert "'nothing'" in answer.json()["detail"]
 
 
 def test_a_file_of_few_large_records_does_not_grow_without_end(service, plan, monkeypatch) -> None:

@@ -1,6 +1,7 @@
 """What strangers send: each gets one clear answer, and nothing is lost."""
 
 import json
+import math
 import os
 from collections.abc import Iterator
 from pathlib import Path
@@ -146,10 +147,17 @@ def test_putting_a_version_back_is_answered_again_when_the_version_is_gone(servi
 @pytest.mark.parametrize(
     ("change", "said"),
     [
-        ({"name": "\u200b\u200b"}, "can be seen"),
+        ({"name": "\u200b\u200b"}, "name: Value error, the obstacle needs a name that can be seen"),
         ({"name": "  "}, "can be seen"),
         ({"name": "a\nb"}, "U+000A"),
-        ({"pose": {"x": 1e9, "y": 0, "z": 0}}, "farther away"),
+        ({"id": "\u200b"}, "id: Value error"),
+        ({"pose": {"x": 1e9, "y": 0, "z": 0}}, "pose: Value error, the obstacle stands farther"),
+        (
+            {"pose": {"x": 0, "y": 0, "z": 0, "yaw": 1e9}},
+            "pose: Value error, the obstacle has a yaw",
+        ),
+        ({"pose": {"x": math.nan, "y": 0, "z": 0}}, "pose.x: Input should be a finite number"),
+        ({"size": [1, math.inf, 1]}, "size.1: Input should be a finite number"),
         ({"size": [0, 1, 1]}, "greater than 0"),
         ({"size": [1, 1, 1e6]}, "less than or equal to 20"),
     ],
@@ -157,10 +165,60 @@ def test_putting_a_version_back_is_answered_again_when_the_version_is_gone(servi
 def test_odd_obstacles_are_refused(service, change, said) -> None:
     box = {"id": "1", "name": "box", "pose": {"x": 3, "y": 3, "z": 0}, "size": [1, 1, 1]}
     answer = service.client.put(
-        "/api/world/obstacles", json={"obstacles": [box | change]}, headers={"if-match": "*"}
+        "/api/world/obstacles",
+        content=json.dumps({"obstacles": [box | change]}),  # NaN too, which httpx does not send
+        headers={"if-match": "*", "content-type": "application/json"},
     )
     assert answer.status_code == 422
+    assert answer.json()["detail"].startswith("body.obstacles.0.")
     assert said in answer.json()["detail"]
+
+
+@pytest.mark.parametrize(
+    ("asked", "said"),
+    [
+        ({"start": {"x": 1e9, "y": 0, "z": 0}, "goal": TASK["pose"]}, "the start stands farther"),
+        ({"goal": {"x": 0, "y": -1e308, "z": 0}}, "the goal stands farther"),
+        ({"goal": {"x": 3.05, "y": 1.55, "z": 0, "yaw": 1e308}}, "the goal has a yaw"),
+        ({"task": {**TASK, "pose": {"x": 0, "y": 0, "z": 1e9}}}, "the pose of task 'a' stands"),
+        ({"task": {"name": "a", "action": "WAYPOINT"}}, "has no pose"),
+        (
+            {"task": {"name": "a", "action": "START", "pose": TASK["pose"]}},
+            "where a mission begins",
+        ),
+        ({"task": {"name": "a", "action": "MEASURE"}}, "has no object_id"),
+        ({"task": {"name": "a", "action": "MEASURE", "object_id": "99999"}}, "99999"),
+        ({"task": {"name": "a", "action": "WAIT"}}, "how long"),
+    ],
+)
+def test_a_way_of_what_makes_no_sense_is_refused(service, asked, said) -> None:
+    answer = service.client.post("/api/world/way", json={"start": TASK["pose"]} | asked)
+    assert answer.status_code == 422, answer.text
+    assert said in answer.json()["detail"]
+
+
+def test_a_way_to_a_task_does_not_ask_what_comes_behind_it(service) -> None:
+    dock = service.client.get("/api/world").json()["docks"][0]["pose"]
+    onward = {"transitions": [{"target": "b"}], "on_failure": "branch", "failure_target": "c"}
+    for task in (TASK, TASK | onward, TASK | {"group": "g"}):
+        way = service.client.post("/api/world/way", json={"start": dock, "task": task})
+        assert way.status_code == 200, way.text
+        assert way.json()["time"] > 0
+    slow = service.client.post(
+        "/api/world/way", json={"start": dock, "task": TASK | {"velocity": 1e-320}}
+    )
+    assert slow.status_code == 200
+    assert (slow.json()["time"], slow.json()["points"]) == (None, [])
+    assert "takes longer than any mission" in slow.json()["problem"]
+
+
+def test_a_mission_that_leads_out_of_the_world_is_previewed(service, plan) -> None:
+    for k, pose in enumerate([{"x": 1e308, "y": 0, "z": 0}, {**TASK["pose"], "yaw": 1e308}]):
+        far = {**TASK, "name": f"far {k}", "pose": pose}
+        assert service.command(plan, "*", {"kind": "add_task", "task": far}).status_code == 200
+    found = service.client.get(f"/api/missions/{plan}/preview")
+    assert found.status_code == 200, found.text
+    assert len(found.json()["problems"]) == 2
 
 
 def test_a_way_leads_to_one_thing(service) -> None:

@@ -142,6 +142,20 @@ def _limit(mission: Mission, requirements: Requirements) -> tuple[float, str] | 
     return min(limits, default=None)
 
 
+def require_known(mission: Mission, requirements: Requirements) -> None:
+    """Raises ArgoError if a requirement names something that the mission does not have."""
+    visits = Visits(find_spine(mission))
+    named = [
+        *requirements.mandatory,
+        *(one.what for one in requirements.optional),
+        *(one.what for one in requirements.windows),
+    ]
+    for what in named:
+        visits.find(what)
+    asked_names(visits, requirements)
+    _likely(visits, requirements)
+
+
 def _likely(visits: Visits, requirements: Requirements) -> dict[tuple[int, int], float]:
     """How likely conditional ways are, by leaves."""
     flow = visits.spine.flow

@@ -4,9 +4,9 @@ from collections.abc import Iterator
 from itertools import combinations, pairwise, product
 
 from argo_compiler.errors import Invalid
-from argo_compiler.il import Action, Mission
+from argo_compiler.il import Action
 from argo_compiler.reorder.requirements import Requirements
-from argo_compiler.reorder.units import TaskUnit, Unit, find_spine
+from argo_compiler.reorder.units import TaskUnit, Unit
 from argo_compiler.reorder.visits import Visits, said
 from argo_compiler.route.problem import Precedence
 
@@ -38,20 +38,6 @@ def precedences(
         found += _early_ends(visits)
         found += _last_ones(visits)
     return tuple(dict.fromkeys(found))
-
-
-def require_known(mission: Mission, requirements: Requirements) -> None:
-    """Raises ArgoError if a requirement names something that the mission does not have."""
-    visits = Visits(find_spine(mission))
-    named = [
-        *requirements.mandatory,
-        *(one.what for one in requirements.optional),
-        *(one.what for one in requirements.windows),
-    ]
-    for what in named:
-        visits.find(what)
-    for _ in asked_for(visits, requirements):
-        pass
 
 
 def must_be_last(visits: Visits) -> int | None:

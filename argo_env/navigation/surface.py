@@ -21,6 +21,7 @@ DIRECTIONS: tuple[tuple[int, int], ...] = (
 )  # fmt: skip
 """Steps to the eight neighbours; direction k points k * 45 degrees from the x axis."""
 _TOUCHING = 0.01  # m: what reaches no higher than this above the surface is not in the way
+_LONGEST = 2.0**40  # cells
 
 
 @dataclass(frozen=True)
@@ -49,14 +50,19 @@ class Surface:
 
     def near(self, x: float, y: float, distance: float) -> NDArray[np.int64]:
         """The cells, ascending, of the square about (x, y) that reaches `distance` (m) far."""
-        i0, i1 = (math.floor((x + d - self.grid.x0) / CELL) for d in (-distance, distance))
-        j0, j1 = (math.floor((y + d - self.grid.y0) / CELL) for d in (-distance, distance))
-        # Poses may lie anywhere, also further than arrays are long.
+        # Poses may lie anywhere, also further than arrays are long, or floats are large.
+        i0, i1 = (_whole((x + d - self.grid.x0) / CELL) for d in (-distance, distance))
+        j0, j1 = (_whole((y + d - self.grid.y0) / CELL) for d in (-distance, distance))
         low, high = (min(max(i, 0), self.grid.nx) for i in (i0, i1 + 1))
         rows = np.arange(low, high) * self.grid.ny
         first = np.searchsorted(self._columns, rows + min(max(j0, 0), self.grid.ny))
         last = np.searchsorted(self._columns, rows + min(max(j1 + 1, 0), self.grid.ny))
         return np.concatenate([np.arange(a, b) for a, b in zip(first, last, strict=True)] or [rows])
+
+
+def _whole(number: float) -> int:
+    """Rounded down, and as large as any array may be where it is larger."""
+    return math.floor(min(max(number, -_LONGEST), _LONGEST))
 
 
 def surface_arrays(surface: Surface) -> Arrays:

@@ -4,7 +4,7 @@ from typing import TYPE_CHECKING
 
 from argo_compiler.analysis import Leg, NoWay, Standing
 from argo_compiler.errors import Unreachable
-from argo_compiler.il import Action, Mission, Task
+from argo_compiler.il import MAX_TIME_S, Action, Mission, Task
 from argo_compiler.model import Pose
 from argo_env.drives.timetable import steps
 from argo_env.navigation.path import Motion, Path
@@ -108,9 +108,12 @@ class SiteTravel:
         checkpoint = self._on.site.measured_by(place)
         return self._navigator.plan_to_view(origin, checkpoint.id)
 
-    def _leg(self, way: Path, velocity: float | None, work: float) -> Leg:
+    def _leg(self, way: Path, velocity: float | None, work: float) -> Leg | NoWay:
         robot, power = self._robot, self._robot.power
-        drive = max(self.time_step, self._stepped(way.duration(robot, velocity)))
+        seconds = way.duration(robot, velocity)
+        if seconds > MAX_TIME_S:
+            return NoWay(f"at {velocity} m/s the way there takes longer than any mission")
+        drive = max(self.time_step, self._stepped(seconds))
         energy = sum(m.duration(robot, velocity) * self._watts(m) for m in way.motions) / 3600
         work_energy = work * power.measuring / 3600
         return Leg(drive + work, energy + work_energy, way.end, work, work_energy)

@@ -8,8 +8,7 @@ from argo_compiler.diagnostics import DiagnosticError
 from argo_compiler.errors import ArgoError, Conflict, Invalid, Remedy, located
 from argo_compiler.files.reading import decode_text, require_size
 from argo_compiler.il import Mission
-from argo_compiler.reorder.mission import MissionRoute
-from argo_compiler.reorder.precedences import require_known
+from argo_compiler.reorder.mission import MissionRoute, require_known
 from argo_compiler.reorder.requirements import Requirements
 from argo_compiler.reorder.rewriting import apply_route
 from argo_compiler.route.certificate import Certificate, certify

@@ -51,6 +51,14 @@ class ReplacePlan(Model):
     """where it comes from, for people"""
 
 
+class ReplaceFrom(Model):
+    """Stands for a `replace` by a mission that is kept somewhere: what is kept there may have gone,
+    or be another one, when the command is sent again."""
+
+    id: CommandId
+    kept_as: str
+
+
 PlanCommand = EditPlan | UndoEdit | RedoEdit | ReplacePlan
 
 

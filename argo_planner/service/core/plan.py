@@ -16,6 +16,7 @@ from argo_planner.service.core.commands import (
     EditPlan,
     PlanCommand,
     RedoEdit,
+    ReplaceFrom,
     ReplacePlan,
     Revision,
     UndoEdit,
@@ -59,7 +60,7 @@ class MissionPlan:
             return None
         return self.history[len(self.history) - count :]
 
-    def repeated(self, command: PlanCommand, author: str) -> Revision | None:
+    def repeated(self, command: PlanCommand | ReplaceFrom, author: str) -> Revision | None:
         """What came of the command, if it has been carried out before.
 
         Raises CommandIdTaken if another one has had its id.
@@ -71,23 +72,24 @@ class MissionPlan:
             )
         return known
 
-    def replaced(self, id: str, author: str) -> Revision | None:
-        """What came of the author's command of that id, if it has put another mission here."""
-        mine = (r for r in self.history if r.id == id and r.author == author)
-        return next((r for r in mine if r.kind == "replace"), None)
-
     def carried_out(
-        self, command: PlanCommand, author: str, made_on: int, at: datetime
+        self,
+        command: PlanCommand,
+        author: str,
+        made_on: int,
+        at: datetime,
+        asked: ReplaceFrom | None = None,
     ) -> "MissionPlan":
         """The plan after a command that an author has made on a revision; its last revision tells
-        what changed. A command that has been carried out before is not carried out again.
+        what changed. A command that has been carried out before is not carried out again; it is
+        known by what was `asked`, where that stands for it.
 
         Raises:
             StaleRevision: the plan has another revision by now.
             EditRefused, ChangedSince, NothingToUndo, CommandIdTaken, DiagnosticError,
                 PlanTooLarge, Invalid: it can't be carried out.
         """
-        if self.repeated(command, author) is not None:
+        if self.repeated(asked or command, author) is not None:
             return self
         if made_on != self.revision:
             raise StaleRevision(made_on, self.revision)
@@ -114,7 +116,7 @@ class MissionPlan:
             edits=command.edits if isinstance(command, EditPlan) else (),
             reverts=reverts,
             about=command.about if isinstance(command, ReplacePlan) else "",
-            digest=digest_of(command, author),
+            digest=digest_of(asked or command, author),
             change=change,
             consequences=consequences,
         )
@@ -216,7 +218,7 @@ class MissionPlan:
         return missions[revision - 1 - self.revision + len(missions) - 1]
 
 
-def digest_of(command: PlanCommand, author: str) -> str:
+def digest_of(command: PlanCommand | ReplaceFrom, author: str) -> str:
     """Tells commands apart that have the same id."""
     content = f"{author}\n{command.model_dump_json()}"
     return hashlib.sha256(content.encode(errors="surrogatepass")).hexdigest()[:16]

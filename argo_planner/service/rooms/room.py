@@ -9,7 +9,7 @@ from argo_compiler.catalog import Catalog
 from argo_compiler.checks import check
 from argo_compiler.errors import Conflict
 from argo_compiler.model import Model
-from argo_planner.service.core.commands import PlanCommand, Revision
+from argo_planner.service.core.commands import PlanCommand, ReplaceFrom, Revision
 from argo_planner.service.core.document import (
     PlanDocument,
     PlanRecord,
@@ -88,35 +88,49 @@ class PlanRoom:
             self.document, self._findings, author, self._analysis, lost.message if lost else None
         )
 
+    def repeated(self, asked: ReplaceFrom, author: str) -> CommandDone | None:
+        """The answer to a command that has been carried out before. Raises CommandIdTaken."""
+        known = self.document.plan.repeated(asked, author)
+        return None if known is None else self._done(known, author)
+
     async def carry_out(
-        self, command: PlanCommand, author: str, made_on: int | None
+        self,
+        command: PlanCommand,
+        author: str,
+        made_on: int | None,
+        asked: ReplaceFrom | None = None,
     ) -> CommandDone:
         """Carries out a command that was made on a revision; None: on whichever there is. When
-        this returns, it is on disk, and all who are there are being told.
+        this returns, it is on disk, and all who are there are being told. It is known by what was
+        `asked`, where that stands for it.
 
         Raises what `MissionPlan.carried_out` raises, or Unavailable where it can't be written.
         """
-        return await _to_the_end(self._carry_out(command, author, made_on))
+        return await _to_the_end(self._carry_out(command, author, made_on, asked))
 
     async def _carry_out(
-        self, command: PlanCommand, author: str, made_on: int | None
+        self,
+        command: PlanCommand,
+        author: str,
+        made_on: int | None,
+        asked: ReplaceFrom | None,
     ) -> CommandDone:
         async with self._turn:
             self._require_open()
             plan = self.document.plan
-            known = plan.repeated(command, author)
+            known = plan.repeated(asked or command, author)
             if known is not None:
-                return self.done(known, author)
+                return self._done(known, author)
             on = plan.revision if made_on is None else made_on
             changed, record = self.document.made(
-                plan.carried_out(command, author, on, self._clock())
+                plan.carried_out(command, author, on, self._clock(), asked)
             )
             await self._write(changed, record)
             before, self._findings = self._findings, self._found()
             findings = None if self._findings == before else self._findings
             self._tell(RevisionTold.model_construct(revision=record.revision, findings=findings))
             self._analyse_soon()
-            return self.done(record.revision, author)
+            return self._done(record.revision, author)
 
     async def rename(self, name: str, author: str) -> None:
         """Gives the plan another name. Raises Invalid, Unavailable."""
@@ -246,8 +260,7 @@ class PlanRoom:
         # Not before, so that whoever joins meanwhile is told of it like all others.
         self._document = document
 
-    def done(self, revision: Revision, author: str) -> CommandDone:
-        """The answer to the command that made a revision."""
+    def _done(self, revision: Revision, author: str) -> CommandDone:
         plan = self.document.plan
         return CommandDone.model_construct(
             revision=revision,

@@ -37,9 +37,8 @@ class PlanRooms:
     async def plans(self) -> list[PlanSummary]:
         """All plans, the newest ones first."""
         async with self._listing:
-            listed = await asyncio.to_thread(self._folder.plans)
-        opened = {id: summary_of(room.document) for id, room in self._rooms.items()}
-        return [opened.get(plan.id, plan) for plan in listed]
+            opened = {id: summary_of(room.document) for id, room in self._rooms.items()}
+            return await asyncio.to_thread(self._folder.plans, opened)
 
     async def deleted(self) -> list[PlanSummary]:
         """Those in the bin."""

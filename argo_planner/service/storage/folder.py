@@ -4,7 +4,7 @@ import fcntl
 import os
 import re
 import stat
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass
 from datetime import datetime
 from pathlib import Path
@@ -65,13 +65,13 @@ class PlanFolder(Closing):
     def close(self) -> None:
         os.close(self._lock)
 
-    def plans(self) -> list[PlanSummary]:
-        """All of them, the newest ones first."""
-        return self._listed(self.path)
+    def plans(self, opened: Mapping[str, PlanSummary] | None = None) -> list[PlanSummary]:
+        """All of them, the newest ones first. Files of those that are open are not read."""
+        return self._listed(self.path, opened or {})
 
     def deleted(self) -> list[PlanSummary]:
         """Those in the bin, the newest ones first."""
-        return self._listed(self.path / _BIN)
+        return self._listed(self.path / _BIN, {})
 
     def create(self, name: str, mission: Mission, at: datetime) -> PlanFile:
         """A new plan. Raises Invalid for what can't be its name, Conflict if the folder is full."""
@@ -117,27 +117,25 @@ class PlanFolder(Closing):
         except OSError as error:
             raise Unavailable(f"mission {id} can't be moved: {error.strerror}") from error
 
-    def _listed(self, folder: Path) -> list[PlanSummary]:
-        paths = list(_files(folder))
-        self._known = {
-            path: known
-            for path, known in self._known.items()
-            if path.parent != folder or path in {*paths}
-        }
-        found = [summary for path in paths if (summary := self._summary(path)) is not None]
+    def _listed(self, folder: Path, opened: Mapping[str, PlanSummary]) -> list[PlanSummary]:
+        paths = {*_files(folder)}
+        for gone in [p for p in self._known if p.parent == folder and p not in paths]:
+            del self._known[gone]
+        summaries = (opened.get(path.stem) or self._summary(path) for path in paths)
+        found = [summary for summary in summaries if summary is not None]
         return sorted(found, key=lambda s: (s.changed is not None, s.changed, s.id), reverse=True)
 
     def _summary(self, path: Path) -> PlanSummary | None:
         """None: it has gone meanwhile."""
         try:
             status = path.lstat()
-        except FileNotFoundError:
+            state = (status.st_mtime_ns, status.st_size, status.st_ino)
+            known = self._known.get(path)
+            if known is None or known.state != state:
+                known = _Known(state, read_outline(path))
+                self._known[path] = known
+        except (FileNotFoundError, NotFound):
             return None
-        state = (status.st_mtime_ns, status.st_size, status.st_ino)
-        known = self._known.get(path)
-        if known is None or known.state != state:
-            known = _Known(state, read_outline(path))
-            self._known[path] = known
         return known.summary
 
     def _free_id(self) -> str:
@@ -174,8 +172,11 @@ def _files(folder: Path) -> Iterator[Path]:
 
 
 def _is_own(entry: os.DirEntry[str]) -> bool:
-    """Whether it is a file, and no link to one."""
-    return stat.S_ISREG(entry.stat(follow_symlinks=False).st_mode)
+    """Whether it is a file that is still there, and no link to one."""
+    try:
+        return stat.S_ISREG(entry.stat(follow_symlinks=False).st_mode)
+    except FileNotFoundError:
+        return False
 
 
 def _beside(path: Path) -> list[Path]:

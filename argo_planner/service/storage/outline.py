@@ -5,10 +5,10 @@ from datetime import datetime
 from pathlib import Path
 from typing import Any
 
-from argo_compiler.errors import ArgoError
+from argo_compiler.errors import ArgoError, NotFound
 from argo_compiler.model import Model
 from argo_env.files.checked_lines import checked_object
-from argo_planner.service.storage.plan_file import earlier_file, plan_content
+from argo_planner.service.storage.plan_file import base_object, earlier_file, plan_content
 
 
 class PlanSummary(Model):
@@ -26,11 +26,13 @@ class PlanSummary(Model):
 
 def read_outline(path: Path) -> PlanSummary:
     """The summary of a file as far as its lines are good. Where it can't be opened as a plan, its
-    `problem` says why."""
+    `problem` says why. Raises NotFound if there is no such file."""
     try:
         found = _outline(path.stem, plan_content(path))
         if found is None and os.path.exists(earlier := earlier_file(path)):
             found = _outline(path.stem, plan_content(earlier))
+    except NotFound:
+        raise
     except ArgoError as error:
         return PlanSummary(id=path.stem, name=path.stem, problem=str(error))
     if found is None:
@@ -41,8 +43,8 @@ def read_outline(path: Path) -> PlanSummary:
 
 def _outline(id: str, content: bytes) -> PlanSummary | None:
     lines = content.split(b"\n")[:-1]
-    base = checked_object(lines[0]) if lines else None
-    if base is None or base.get("format") != "argo plan":
+    base = base_object(lines[0]) if lines else None
+    if base is None:
         return None
     try:
         tasks = {task["name"] for task in base["mission"]["tasks"]}
@@ -54,7 +56,7 @@ def _outline(id: str, content: bytes) -> PlanSummary | None:
             _follow(record, tasks, told)
         return PlanSummary(id=id, **told, tasks=len(tasks))
     except (KeyError, TypeError, ValueError):
-        return None  # a file of another version, or of another program
+        return None  # another program has written it
 
 
 def _follow(record: dict[str, Any], tasks: set[str], told: dict[str, Any]) -> None:

@@ -31,16 +31,17 @@ from argo_planner.service.core.document import (
     RevisionMade,
 )
 from argo_planner.service.core.plan import MissionPlan
+from argo_planner.service.core.refusals import PlanTooLarge
 
 VERSION = 1
 """of the file's format"""
 MAX_BYTES = 1_000_000_000
 MOST_RECORDS = 400
-"""after which the file is written anew, and after as many bytes as the limit below"""
+"""after which the file is written anew"""
 MOST_GROWN = 16_000_000
-"""bytes that have come since, or as many as there were then, where those are more"""
+"""bytes of records after which it is, too, or as many as its first line has where that is more"""
 KEPT_RECORDS = 100
-"""revisions that can still be undone then"""
+"""revisions that can still be undone then; fewer, where they have more than half of those bytes"""
 _FLAGS = os.O_RDWR | os.O_APPEND | os.O_CLOEXEC | os.O_NOFOLLOW
 _RECORD: TypeAdapter[PlanRecord] = TypeAdapter(PlanRecord)
 
@@ -69,40 +70,61 @@ class Recovery:
     """name of the damaged file, beside the plan's"""
 
 
+@dataclass(frozen=True)
+class PlanExtent:
+    """How large a file is."""
+
+    first: int
+    """bytes of its first line"""
+    size: int
+    """bytes"""
+    lines: int
+
+    @property
+    def has_grown(self) -> bool:
+        """Whether it is time to write it anew."""
+        grown = self.size - self.first
+        return self.lines > MOST_RECORDS or grown > max(MOST_GROWN, self.first)
+
+
 class PlanFile(Closing):
     """An open file of a plan. Holds the file and the plan as it is on disk; one thread at a time
     may use it."""
 
-    def __init__(
-        self, path: Path, file: int, document: PlanDocument, size: int, lines: int
-    ) -> None:
+    def __init__(self, path: Path, file: int, document: PlanDocument, extent: "PlanExtent") -> None:
         self.path = path
         self.document = document
         self.recovery: Recovery | None = None
         """what was lost when it was opened, if anything was"""
         self._file = file
-        self._size = size
-        self._lines = lines
-        self._begun = size
+        self._extent = extent
 
     def append(self, document: PlanDocument, record: PlanRecord) -> None:
         """Writes a record, after which the plan is the document. When this returns, it is on disk.
 
-        Raises Unavailable if it can't be written; the file is as it was then.
+        Raises Unavailable if it can't be written, PlanTooLarge if it could not be opened again; the
+        file is as it was then.
         """
         data = record.model_dump(mode="json")
-        line = checked_line({"n": self._lines} | data)
+        line = checked_line({"n": self._extent.lines} | data)
+        if self._extent.size + len(line) > MAX_BYTES:
+            self._write_anew()
+            line = checked_line({"n": self._extent.lines} | data)
+        extent = self._extent
+        if extent.size + len(line) > MAX_BYTES:
+            raise PlanTooLarge(
+                f"the mission's file would have more than {MAX_BYTES // 1_000_000} MB: drop some "
+                "of its versions, or go on with a copy"
+            )
         try:
             write_all(self._file, line)
             os.fdatasync(self._file)
         except OSError as error:
-            cut_off(self._file, self._size)
+            cut_off(self._file, extent.size)
             raise _unwritten(self.path, error) from error
-        self._size += len(line)
-        self._lines += 1
+        self._extent = PlanExtent(extent.first, extent.size + len(line), extent.lines + 1)
         self.document = document
-        grown = self._size - self._begun
-        if self._lines > MOST_RECORDS or grown > max(MOST_GROWN, self._begun):
+        if self._extent.has_grown:
             self._write_anew()
 
     def close(self) -> None:
@@ -110,21 +132,18 @@ class PlanFile(Closing):
 
     def _write_anew(self) -> None:
         """Writes the plan with its last revisions; the file before stays beside it."""
-        plan = self.document.plan
-        kept = plan.history[-KEPT_RECORDS:]
         try:
-            written = _written(self.path, self.document, plan, kept)
+            written = _written(self.path, self.document, KEPT_RECORDS)
         except Unavailable:
             return  # all is in the file that there is
         os.close(self._file)
-        self._file, self._size, self._lines = written
-        self._begun = self._size
+        self._file, self._extent = written
 
 
 def create_plan_file(path: Path, document: PlanDocument) -> PlanFile:
     """A new file with the plan. Raises Unavailable if it can't be written."""
-    file, size, lines = _written(path, document, document.plan, ())
-    return PlanFile(path, file, document, size, lines)
+    file, extent = _written(path, document, 0)
+    return PlanFile(path, file, document, extent)
 
 
 def open_plan_file(path: Path) -> PlanFile:
@@ -151,23 +170,22 @@ def open_plan_file(path: Path) -> PlanFile:
         )
     if read.lost:
         lost = (
-            f"{read.lost} of {read.lost + read.lines} lines are damaged or follow a damaged one: "
-            f"this is the mission at revision {read.document.plan.revision}"
+            f"{read.lost} of {read.lost + read.extent.lines} lines are damaged or follow a damaged "
+            f"one: this is the mission at revision {read.document.plan.revision}"
         )
         return _recovered(path, read, lost)
     file = _open(path)
-    if read.size < len(content):
-        os.ftruncate(file, read.size)  # what nobody was told was written
+    if read.extent.size < len(content):
+        os.ftruncate(file, read.extent.size)  # what nobody was told was written
         os.fsync(file)
-    return PlanFile(path, file, read.document, read.size, read.lines)
+    return PlanFile(path, file, read.document, read.extent)
 
 
 @dataclass(frozen=True)
 class _Read:
     document: PlanDocument
-    size: int
-    """bytes that are good"""
-    lines: int
+    extent: PlanExtent
+    """as far as it is good"""
     lost: int
     """lines, which were whole once"""
 
@@ -175,7 +193,29 @@ class _Read:
 def _read(content: bytes) -> _Read | None:
     """The plan in a file as far as it is good; None if its first line is not."""
     *whole, torn = content.split(b"\n")
-    base = checked_object(whole[0]) if whole else None
+    base = base_object(whole[0]) if whole else None
+    if base is None:
+        return None
+    base.pop("n", None)
+    try:
+        document = _document(PlanBase.model_validate(base))
+    except ValidationError:
+        return None
+    first = size = len(whole[0]) + 1
+    for number, line in enumerate(whole[1:], start=1):
+        following = _following(document, line, number)
+        if following is None:
+            return _Read(document, PlanExtent(first, size, number), len(whole) - number)
+        document = following
+        size += len(line) + 1
+    del torn
+    return _Read(document, PlanExtent(first, size, len(whole)), 0)
+
+
+def base_object(line: bytes) -> dict[str, Any] | None:
+    """What the first line of a plan's file has; None if it is none. Raises Invalid if another
+    version of Argo has written it."""
+    base = checked_object(line)
     if base is None or base.get("format") != "argo plan":
         return None
     if base.get("version") != VERSION:
@@ -183,20 +223,7 @@ def _read(content: bytes) -> _Read | None:
             f"the plan has version {base.get('version')} of its format, and this Argo reads "
             f"{VERSION}: open it with the Argo that wrote it"
         )
-    base.pop("n", None)
-    try:
-        document = _document(PlanBase.model_validate(base))
-    except ValidationError:
-        return None
-    size = len(whole[0]) + 1
-    for number, line in enumerate(whole[1:], start=1):
-        following = _following(document, line, number)
-        if following is None:
-            return _Read(document, size, number, len(whole) - number)
-        document = following
-        size += len(line) + 1
-    del torn
-    return _Read(document, size, len(whole), 0)
+    return base
 
 
 def _following(document: PlanDocument, line: bytes, number: int) -> PlanDocument | None:
@@ -226,23 +253,21 @@ def _recovered(path: Path, read: _Read, lost: str) -> PlanFile:
         os.link(path, aside, follow_symlinks=False)
     except OSError as error:
         raise _unwritten(path, error) from error
-    plan = read.document.plan
-    written = _written(path, read.document, plan, plan.history, keep_before=False)
-    opened = PlanFile(path, written[0], read.document, *written[1:])
+    kept = len(read.document.plan.history)
+    file, extent = _written(path, read.document, kept, keep_before=False)
+    opened = PlanFile(path, file, read.document, extent)
     opened.recovery = Recovery(f"{lost}; the damaged file is kept as {aside.name}", aside.name)
     return opened
 
 
 def _written(
-    path: Path,
-    document: PlanDocument,
-    plan: MissionPlan,
-    revisions: tuple[Any, ...],
-    keep_before: bool = True,
-) -> tuple[int, int, int]:
-    """Writes the whole file under another name, then gives it its own. Returns the open file, its
-    size (bytes) and its lines."""
-    begins = plan.before(revisions[0].number) if revisions else plan
+    path: Path, document: PlanDocument, records: int, keep_before: bool = True
+) -> tuple[int, PlanExtent]:
+    """Writes the whole file, with the last revisions as records, under another name, then gives it
+    its own. Returns the open file, and how large it is."""
+    plan = document.plan
+    made = _last_made(plan, records)
+    begins = plan.before(made[0].revision.number) if made else plan
     base = PlanBase.model_construct(
         id=document.id,
         name=document.name,
@@ -252,7 +277,6 @@ def _written(
         mission=begins.mission,
         versions=document.versions,
     )
-    made = [RevisionMade.model_construct(revision=revision) for revision in revisions]
     lines = [checked_line({"n": 0} | base.model_dump(mode="json"))]
     for number, record in enumerate(made, start=1):
         data = record.model_dump(mode="json")
@@ -276,7 +300,20 @@ def _written(
         os.close(file)
         draft.unlink(missing_ok=True)
         raise _unwritten(path, error) from error
-    return file, len(content), len(lines)
+    return file, PlanExtent(len(lines[0]), len(content), len(lines))
+
+
+def _last_made(plan: MissionPlan, most: int) -> list[RevisionMade]:
+    """The last revisions as records: at most so many, and not too large together."""
+    found: list[RevisionMade] = []
+    size = 0
+    for revision in reversed(plan.history[-most:] if most else ()):
+        made = RevisionMade.model_construct(revision=revision)
+        size += len(made.model_dump_json())
+        if found and size > MOST_GROWN // 2:
+            break
+        found.append(made)
+    return found[::-1]
 
 
 def earlier_file(path: Path) -> Path:

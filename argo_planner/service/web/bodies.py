@@ -2,17 +2,16 @@
 
 import json
 from collections.abc import Callable
-from dataclasses import dataclass
-from typing import Annotated, Any, TypeVar
+from types import UnionType
+from typing import Annotated, Any, TypeVar, Union, get_origin
 
 from fastapi.exceptions import RequestValidationError
-from pydantic import GetCoreSchemaHandler, TypeAdapter, ValidationError
+from pydantic import Discriminator, GetCoreSchemaHandler, TypeAdapter, ValidationError
 from pydantic_core import core_schema
 
 T = TypeVar("T")
 
 
-@dataclass(frozen=True)
 class StrictJson:
     """Marks the type of a body in which a text such as "1.5" is no number.
 
@@ -20,14 +19,13 @@ class StrictJson:
     tuples and members of enumerations, which no JSON has; so the body is validated as JSON again.
     """
 
-    whole: Any = None
-    """the type with what tells the kinds of a union apart, which pydantic takes off before it asks
-    here; None: it is no union"""
-
     def __get_pydantic_core_schema__(
         self, source: Any, handler: GetCoreSchemaHandler
     ) -> core_schema.CoreSchema:
-        adapter = TypeAdapter[Any](source if self.whole is None else self.whole)
+        # Pydantic has taken off what tells the kinds of a union apart.
+        union = get_origin(source) in (Union, UnionType)
+        body: Any = Annotated[source, Discriminator("kind")] if union else source
+        adapter = TypeAdapter[Any](body)
 
         def validated(given: Any, leniently: Callable[[Any], Any]) -> Any:
             if isinstance(given, bytes):  # by its header it is no JSON

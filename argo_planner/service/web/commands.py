@@ -14,6 +14,7 @@ from argo_planner.service.core.commands import (
     EditPlan,
     PlanCommand,
     RedoEdit,
+    ReplaceFrom,
     ReplacePlan,
     UndoEdit,
 )
@@ -22,7 +23,7 @@ from argo_planner.service.jobs.analysis import AnalysisFound
 from argo_planner.service.rooms.messages import CommandDone
 from argo_planner.service.rooms.room import PlanRoom
 from argo_planner.service.storage.notes import keep_notes
-from argo_planner.service.web.bodies import Sent, StrictJson
+from argo_planner.service.web.bodies import Sent
 from argo_planner.service.web.missions import sound
 from argo_planner.service.web.problems import StaleCommand, documented
 from argo_planner.service.web.requests import (
@@ -48,7 +49,6 @@ router = APIRouter(
 )
 
 AnyCommand = Annotated[EditPlan | UndoEdit | RedoEdit | ReplacePlan, Discriminator("kind")]
-SentCommand = Annotated[AnyCommand, StrictJson(AnyCommand)]
 
 
 class ScriptGiven(Model):
@@ -68,7 +68,7 @@ async def carry_out_command(
     service: Service,
     visitor: Planner,
     id: PlanId,
-    command: SentCommand,
+    command: Sent[AnyCommand],
     made_on: MadeOn,
 ) -> Response:
     """Carries out a command. Sent again with the same id it does nothing twice."""
@@ -118,11 +118,15 @@ async def read_analysis(service: Service, _: Viewer, id: PlanId) -> Response:
 
 
 async def carried_out(
-    room: PlanRoom, command: PlanCommand, author: str, made_on: int | None
+    room: PlanRoom,
+    command: PlanCommand,
+    author: str,
+    made_on: int | None,
+    asked: ReplaceFrom | None = None,
 ) -> Response:
     """The answer to a command. Raises StaleCommand, which has what was done meanwhile."""
     try:
-        done = await room.carry_out(command, author, made_on)
+        done = await room.carry_out(command, author, made_on, asked)
     except StaleRevision as stale:
         since = room.document.plan.since(stale.made_on)
         raise StaleCommand(stale, since) from None

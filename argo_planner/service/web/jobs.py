@@ -5,9 +5,9 @@ from typing import Annotated
 from fastapi import APIRouter, Path, Response
 from pydantic import Field
 
-from argo_compiler.errors import Conflict
+from argo_compiler.errors import Conflict, Invalid, NotFound
 from argo_compiler.model import Model
-from argo_compiler.reorder.precedences import require_known
+from argo_compiler.reorder.mission import require_known
 from argo_compiler.reorder.requirements import Requirements
 from argo_planner.service.core.commands import CommandId, ReplacePlan
 from argo_planner.service.core.refusals import StaleRevision
@@ -79,7 +79,10 @@ async def suggest_order(
     document = (await service.rooms.open(id)).document
     sound(document, service.site)
     plan = document.plan
-    require_known(plan.mission, asked.requirements)
+    try:
+        require_known(plan.mission, asked.requirements)
+    except NotFound as error:  # the address is right
+        raise Invalid(str(error)) from None
     job = service.jobs.suggest_order(
         id, plan.revision, plan.mission, asked.requirements, asked.time_limit, visitor.author
     )
@@ -129,7 +132,8 @@ async def accept_order(
         id=accepted.id, mission=job.found.mission, about="a suggested order"
     )
     plan = room.document.plan
-    on = plan.revision if made_on is None else made_on
-    if job.revision != on and plan.repeated(command, visitor.author) is None:
-        raise StaleCommand(StaleRevision(job.revision, plan.revision), plan.since(job.revision))
-    return await carried_out(room, command, visitor.author, made_on)
+    if plan.repeated(command, visitor.author) is None:
+        for on in (job.revision, job.revision if made_on is None else made_on):
+            if on != plan.revision:
+                raise StaleCommand(StaleRevision(on, plan.revision), plan.since(on))
+    return await carried_out(room, command, visitor.author, job.revision)

@@ -6,8 +6,12 @@ from collections.abc import Awaitable, Callable
 from http import HTTPStatus
 from typing import Any
 
-from fastapi import FastAPI, Request, Response
-from fastapi.exceptions import RequestValidationError
+from fastapi import FastAPI, Request, Response, WebSocket
+from fastapi.exceptions import (
+    RequestValidationError,
+    ValidationException,
+    WebSocketRequestValidationError,
+)
 from pydantic import Field
 from starlette.exceptions import HTTPException
 
@@ -139,6 +143,11 @@ def answer_problems(app: FastAPI) -> None:
         assert isinstance(error, RequestValidationError)
         return answer(plain(HTTPStatus.UNPROCESSABLE_ENTITY, "invalid", _first(error)))
 
+    async def of_socket(socket: WebSocket, error: Exception) -> None:
+        assert isinstance(error, WebSocketRequestValidationError)
+        said = plain(HTTPStatus.UNPROCESSABLE_ENTITY, "invalid", _first(error))
+        await socket.send_denial_response(answer(said))
+
     async def of_http(request: Request, error: Exception) -> Response:
         assert isinstance(error, HTTPException)
         code = {404: "not-found", 405: "method-not-allowed"}.get(error.status_code, "invalid")
@@ -160,6 +169,7 @@ def answer_problems(app: FastAPI) -> None:
     }
     for kind, handler in handlers.items():
         app.add_exception_handler(kind, handler)
+    app.add_exception_handler(WebSocketRequestValidationError, of_socket)
 
 
 def _methods(request: Request) -> list[str]:
@@ -173,7 +183,7 @@ def _methods(request: Request) -> list[str]:
     ]
 
 
-def _first(error: RequestValidationError) -> str:
+def _first(error: ValidationException) -> str:
     """What is wrong with a request, in one sentence with the place."""
     faults = error.errors()
     fault = faults[0]

@@ -4,9 +4,8 @@ from typing import Annotated
 
 from fastapi import APIRouter, Path, Response
 
-from argo_compiler.errors import NotFound
 from argo_compiler.model import Model
-from argo_planner.service.core.commands import CommandId, ReplacePlan
+from argo_planner.service.core.commands import CommandId, ReplaceFrom, ReplacePlan
 from argo_planner.service.core.document import PlanVersion
 from argo_planner.service.core.refusals import StaleRevision
 from argo_planner.service.rooms.messages import CommandDone, VersionSummary
@@ -119,15 +118,12 @@ async def restore_version(
 ) -> Response:
     """Makes a version the mission again, as a command that can be undone."""
     room = await service.rooms.open(id)
-    try:
-        version = room.document.version(number)
-    except NotFound:
-        # Dropped since, maybe: who sends a command again gets its answer all the same.
-        plan = room.document.plan
-        if (again := plan.replaced(command.id, visitor.author)) is None:
-            raise
-        return said(room.done(again, visitor.author), revision=plan.revision)
+    asked = ReplaceFrom(id=command.id, kept_as=f"version {number}")
+    # Before the version is looked for, which may have been dropped since.
+    if (again := room.repeated(asked, visitor.author)) is not None:
+        return said(again, revision=again.newest)
+    version = room.document.version(number)
     replaced = ReplacePlan.model_construct(
         id=command.id, mission=version.mission, about=f"version {version.name}"
     )
-    return await carried_out(room, replaced, visitor.author, made_on)
+    return await carried_out(room, replaced, visitor.author, made_on, asked)

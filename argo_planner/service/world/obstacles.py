@@ -2,10 +2,10 @@
 for plans."""
 
 import math
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from functools import lru_cache
 from itertools import pairwise
-from typing import Annotated
+from typing import Annotated, TypeVar
 
 import numpy as np
 from numpy.typing import NDArray
@@ -20,14 +20,14 @@ from argo_env.planning.opening import OpenedSite
 from argo_env.site.shapes import Box, Element, Role
 from argo_env.site.spec import Rect
 from argo_planner.service.core.limits import require_name
+from argo_planner.service.world.bounds import require_on_site
 
+T = TypeVar("T")
 MOST_OBSTACLES = 200
 _SLABS = 32  # rectangles at most that stand for an obstacle which is turned
 _STRAIGHT = 1e-6  # rad
 
 _Edge = Annotated[float, Field(gt=0, le=20)]
-FARTHEST = 10_000.0
-"""m from the middle of the site's frame"""
 
 
 class Obstacle(Model):
@@ -40,11 +40,17 @@ class Obstacle(Model):
     size: tuple[_Edge, _Edge, _Edge]
     """m, along its own axes: x, y and upwards"""
 
+    @field_validator("id", "name")
+    @classmethod
+    def _seen(cls, text: str) -> str:
+        if text:
+            _required(require_name, text, "the obstacle")
+        return text
+
     @field_validator("pose")
     @classmethod
     def _near(cls, pose: Pose) -> Pose:
-        if max(abs(pose.x), abs(pose.y), abs(pose.z)) > FARTHEST:
-            raise ValueError(f"stands farther away than {FARTHEST:g} m, on no site")
+        _required(require_on_site, pose, "the obstacle")
         return pose
 
     def body(self) -> Box:
@@ -53,20 +59,24 @@ class Obstacle(Model):
         return Box((x, y, z), self.size, (0.0, 0.0, self.pose.yaw))
 
 
+def _required(require: Callable[[T, str], None], value: T, what: str) -> None:
+    """Pydantic tells the place of a ValueError."""
+    try:
+        require(value, what)
+    except Invalid as error:
+        raise ValueError(str(error)) from None
+
+
 def with_obstacles(site: OpenedSite, obstacles: Sequence[Obstacle]) -> OpenedSite:
     """The site with the obstacles on it: plans go round them, checkpoints are not seen through
     them, and in the worlds of runs on it they are solid. Its catalogue is that of the site.
 
     It can't be sent to another process: who wants it there makes it there. Raises Invalid for two
-    obstacles with one id, for too many, or for names that can't be seen.
+    obstacles with one id, or too many.
     """
     if len(obstacles) > MOST_OBSTACLES:
         raise Invalid(f"{len(obstacles)} obstacles are too many: at most {MOST_OBSTACLES}")
     ids = [obstacle.id for obstacle in obstacles]
-    for obstacle in obstacles:
-        require_name(obstacle.id, "an obstacle")
-        if obstacle.name:
-            require_name(obstacle.name, f"obstacle `{obstacle.id}`")
     if twice := next((id for id in ids if ids.count(id) > 1), None):
         raise Invalid(f"two obstacles have the id `{twice}`: give each one of its own")
     return _with_obstacles(site, tuple(obstacles)) if obstacles else site

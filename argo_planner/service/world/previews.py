@@ -5,8 +5,11 @@ from enum import StrEnum
 from itertools import pairwise
 
 from argo_compiler.analysis import Leg, NoWay
+from argo_compiler.catalog import Catalog
+from argo_compiler.checks import check
+from argo_compiler.diagnostics import DiagnosticError, has_errors
 from argo_compiler.errors import ArgoError, Invalid, NotFound
-from argo_compiler.il import Action, Mission, Task
+from argo_compiler.il import Action, Mission, OnFailure, Task
 from argo_compiler.il.grouping import group_ranges
 from argo_compiler.il.ways import beginning, branches, default_target
 from argo_compiler.model import Model, Pose
@@ -14,6 +17,7 @@ from argo_env.navigation import Path
 from argo_env.planning.opening import OpenedSite
 from argo_env.planning.travel import SiteTravel
 from argo_env.robot.spec import RobotSpec
+from argo_planner.service.world.bounds import require_on_site
 from argo_planner.service.world.obstacles import Obstacle, with_obstacles
 
 MOST_WAYS = 20_000
@@ -90,7 +94,16 @@ class PreviewedMission(Model):
 def preview_way(
     site: OpenedSite, start: Pose, goal: Task | Pose, obstacles: Sequence[Obstacle] = ()
 ) -> PreviewedWay:
-    """The way from `start` to a pose, or to a task's place with its action."""
+    """The way from `start` to a pose, or to a task's place with its action.
+
+    Raises Invalid for a pose that is on no site, or a task to which no way can lead, and
+    DiagnosticError for one that makes no sense whatever comes before and after it.
+    """
+    require_on_site(start, "the start")
+    if isinstance(goal, Task):
+        _require_sound(goal, site.catalog)
+    else:
+        require_on_site(goal, "the goal")
     return _Ways(site, obstacles).way(start, goal)
 
 
@@ -152,6 +165,8 @@ class _Ways:
         if task.action is Action.WAIT:
             return PreviewedWay(time=0.0, points=((0.0, *_row(start)),), end=start)
         try:
+            if task.pose is not None:
+                require_on_site(task.pose, "its pose")
             leg = self.travel.leg(start, task, task.velocity)
             if isinstance(leg, NoWay):
                 return PreviewedWay(problem=_not_there(goal, leg.reason))
@@ -178,6 +193,19 @@ def _task_of(goal: Task | Pose) -> Task:
     if isinstance(goal, Task):
         return goal
     return Task(name="there", action=Action.WAYPOINT, pose=goal)
+
+
+def _require_sound(task: Task, catalog: Catalog) -> None:
+    """Raises Invalid or DiagnosticError for a task to which no way can lead. What it leads to is
+    not looked at."""
+    if task.action is Action.START:
+        raise Invalid(f"task '{task.name}' only says where a mission begins: no way leads there")
+    if task.pose is not None:
+        require_on_site(task.pose, f"the pose of task '{task.name}'")
+    onward = {"transitions": (), "on_failure": OnFailure.CONTINUE, "failure_target": None}
+    alone = task.model_copy(update={**onward, "group": ""})
+    if has_errors(found := check(Mission(tasks=(alone,)), catalog)):
+        raise DiagnosticError(f"task '{task.name}'", found)
 
 
 def _not_there(goal: Task | Pose, reason: str) -> str:

@@ -77,13 +77,19 @@ def test_an_order_of_an_earlier_revision_is_not_accepted(service: Served) -> Non
     id = imported(service)
     job = begin(service, id)
     over(service, job)
+    early = service.client.post(
+        f"/api/jobs/{job}/accept", json={"id": "o"}, headers={"if-match": '"5"'}
+    )
+    assert "made on revision 5" in problem(early, 412, "stale-revision")["detail"]
     edit = {"kind": "set_header", "designation": "other"}
     assert service.command(id, 1, edit).status_code == 200
     for revision in ('"1"', '"2"', "*"):
         stale = service.client.post(
             f"/api/jobs/{job}/accept", json={"id": "o"}, headers={"if-match": revision}
         )
-        problem(stale, 412, "stale-revision")
+        told = problem(stale, 412, "stale-revision")
+        assert told["newest"] == 2
+        assert [made["number"] for made in told["since"]] == [2]
 
 
 def test_a_search_is_cancelled(service: Served) -> None:
@@ -105,6 +111,5 @@ def test_what_can_not_be_ordered_says_why(service: Served) -> None:
     id = imported(service)
     asked = {"requirements": {"before": [["MEASURE 14", "nobody"]]}}
     refused = service.client.post(f"/api/missions/{id}/orders", json=asked)
-    assert refused.status_code in (404, 422)
-    assert "nobody" in refused.json()["detail"]
+    assert "nobody" in problem(refused, 422, "invalid")["detail"]
     problem(service.client.get("/api/jobs/000000000000"), 404, "not-found")

@@ -15,6 +15,7 @@ from argo_planner.service.rooms import mailbox as mailboxes
 from argo_planner.service.rooms.mailbox import Mailbox, MailboxClosed
 from argo_planner.service.rooms.room import PlanRoom
 from argo_planner.service.rooms.rooms import PlanRooms
+from argo_planner.service.storage import folder as folders
 from argo_planner.service.storage.folder import PlanFolder
 from tests.argo_planner.service.test_plan import mission
 
@@ -164,6 +165,21 @@ def test_rooms_that_nobody_uses_are_closed(rooms, monkeypatch) -> None:
         await rooms.close()
 
     asyncio.run(play())
+
+
+def test_files_of_open_plans_are_not_read_for_a_list(rooms, monkeypatch) -> None:
+    read = []
+    monkeypatch.setattr(folders, "read_outline", read.append)
+
+    async def play() -> None:
+        room = await rooms.create("Round", mission("a", "b"))
+        await room.carry_out(renamed(1), "ann", 1)
+        (listed,) = await rooms.plans()
+        assert (listed.name, listed.revision) == ("Round", 2)
+        await rooms.close()
+
+    asyncio.run(play())
+    assert read == []
 
 
 def test_who_joins_while_a_command_is_written_hears_of_it_once(rooms) -> None:

@@ -5,8 +5,10 @@ import random
 import subprocess
 import sys
 import textwrap
+import threading
+from concurrent.futures import ThreadPoolExecutor
 from datetime import UTC, datetime, timedelta
-from itertools import count
+from itertools import count, pairwise
 from pathlib import Path
 
 import pytest
@@ -14,8 +16,11 @@ import pytest
 from argo_compiler.editing import commands as edits
 from argo_compiler.errors import Conflict, Invalid, NotFound
 from argo_compiler.il import Mission
+from argo_env.files.checked_lines import checked_line, checked_object
 from argo_planner.service.core.commands import EditPlan, UndoEdit
 from argo_planner.service.core.document import PlanDocument
+from argo_planner.service.core.refusals import PlanTooLarge
+from argo_planner.service.storage import plan_file
 from argo_planner.service.storage.folder import PlanFolder
 from argo_planner.service.storage.plan_file import (
     KEPT_RECORDS,
@@ -245,3 +250,76 @@ def test_what_was_acknowledged_survives_a_kill(folder):
             assert len({r.id for r in file.document.plan.history}) == len(
                 file.document.plan.history
             )
+
+
+def write_much(file: PlanFile, k: int, characters: int) -> None:
+    document = file.document
+    text = f"{k}" + "x" * characters
+    command = EditPlan(id=f"m{k}", edits=(edits.SetHeader(anomaly_specification=text),))
+    plan = document.plan.carried_out(command, "ann", document.plan.revision, AT)
+    file.append(*document.made(plan))
+
+
+def test_a_file_of_few_large_records_stays_small_however_often_it_is_opened(folder, monkeypatch):
+    monkeypatch.setattr(plan_file, "MOST_GROWN", 100_000)
+    with folder.create("Round", mission("a", "b"), AT) as file:
+        id = file.document.id
+    sizes = []
+    for k in range(60):
+        with folder.open(id) as file:
+            write_much(file, k, 9_000)
+        sizes.append(path_of(folder, id).stat().st_size)
+    assert max(sizes) < 150_000
+    assert sum(later < size for size, later in pairwise(sizes)) < 20
+    with folder.open(id) as file:
+        plan = file.document.plan
+        assert plan.revision == 61
+        assert plan.carried_out(UndoEdit(id="u"), "ann", 61, AT).mission == plan.missions[-1]
+
+
+def test_what_could_not_be_opened_again_is_not_written(folder, monkeypatch):
+    monkeypatch.setattr(plan_file, "MAX_BYTES", 50_000)
+    with folder.create("Round", mission("a", "b"), AT) as file:
+        id = file.document.id
+        for k in range(2):
+            write_much(file, k, 9_000)
+        written = file.document
+        with pytest.raises(PlanTooLarge, match="drop some of its versions"):
+            write_much(file, 4, 19_900)
+    with folder.open(id) as file:
+        assert file.document == written
+
+
+def test_a_plan_of_another_version_of_the_format_is_listed_as_such(folder):
+    id, _ = filled(folder)
+    path = path_of(folder, id)
+    base = checked_object(path.read_bytes().split(b"\n")[0])
+    assert base is not None
+    path.write_bytes(checked_line(base | {"version": 99}))
+    (summary,) = folder.plans()
+    assert summary.problem is not None
+    assert "version 99" in summary.problem
+    with pytest.raises(Invalid, match="version 99"):
+        folder.open(id)
+
+
+def test_plans_that_come_and_go_while_they_are_listed(folder):
+    ids = [filled(folder, 1)[0] for _ in range(20)]
+    over = threading.Event()
+
+    def move() -> None:
+        while not over.is_set():
+            for id in ids:
+                folder.delete(id)
+            for id in ids:
+                folder.restore(id)
+
+    with ThreadPoolExecutor(1) as thread:
+        moving = thread.submit(move)
+        try:
+            for _ in range(300):
+                assert not [plan.problem for plan in folder.plans() if plan.problem]
+                folder.deleted()
+        finally:
+            over.set()
+        moving.result()

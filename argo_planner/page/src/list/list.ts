@@ -73,7 +73,7 @@ export class MissionList extends PageElement {
         background: none;
       }
       .reactions {
-        max-height: 30%;
+        max-height: 26vh;
         overflow: auto;
         border-top: 1px solid var(--line);
       }

@@ -7,6 +7,7 @@ import tempfile
 from pathlib import Path
 from typing import Any
 
+from PIL import Image
 from playwright.sync_api import expect
 
 from argo_env.planning.opening import open_site
@@ -40,8 +41,12 @@ def settled(person: Person) -> None:
 
 
 def take(person: Person, folder: Path, name: str) -> None:
-    person.page.screenshot(path=folder / f"planner-{name}.png")
-    print(f"{folder}/planner-{name}.png")
+    path = folder / f"planner-{name}.png"
+    person.page.screenshot(path=path)
+    with Image.open(path) as picture:
+        fewer = picture.convert("RGB").quantize(256, dither=Image.Dither.NONE)
+    fewer.save(path, optimize=True)
+    print(path)
 
 
 def planning(browsers: Browsers, service: Served, folder: Path) -> None:

@@ -97,6 +97,17 @@ def test_a_group_is_made_left_entered_and_moved_as_a_whole(ann, service, plan) -
     order(ann, "START", "C4", "Round", "A1", "B2")
 
 
+def test_a_group_folds_though_a_task_in_it_is_selected(ann) -> None:
+    ann.click(row(ann, "B2"))
+    ann.key("g", "Escape")
+    order(ann, "START", "A1", "Round", "B2", "C4")
+    ann.click(row(ann, "B2"))
+    ann.click(row(ann, "Round").locator(".fold"))
+    order(ann, "START", "A1", "Round", "C4")
+    ann.click(row(ann, "Round").locator(".fold"))
+    order(ann, "START", "A1", "Round", "B2", "C4")
+
+
 def test_several_tasks_are_dragged_at_once_into_a_group(ann, service, plan) -> None:
     ann.click(row(ann, "C4"))
     ann.key("g")

@@ -2,7 +2,8 @@
 
 import type { Group } from "../api/types";
 import { groupKey, ownName } from "../model/outline";
-import { edit, editHere, mission, select } from "../state/plan";
+import { edit, editHere } from "../state/commands";
+import { mission, select } from "../state/plan";
 import { mayPlan } from "../state/session";
 import { t } from "../texts";
 import { html } from "../ui/element";

@@ -1,7 +1,7 @@
 /** The form of the mission as a whole. */
 
 import type { Mission } from "../api/types";
-import { edit, editHere } from "../state/plan";
+import { edit, editHere } from "../state/commands";
 import { mayPlan } from "../state/session";
 import { world } from "../state/world";
 import { t } from "../texts";

@@ -4,7 +4,8 @@ import { keyed } from "lit/directives/keyed.js";
 
 import type { Task } from "../api/types";
 import { isTaskKey, nameOfKey } from "../model/outline";
-import { editHere, mission, selection, tasksByName } from "../state/plan";
+import { editHere } from "../state/commands";
+import { mission, selection, tasksByName } from "../state/plan";
 import { t } from "../texts";
 import { css, customElement, html, look, nothing, PageElement } from "../ui/element";
 import type { FormField } from "./field";
@@ -31,6 +32,11 @@ export class PropertiesPanel extends PageElement {
       }
       p {
         margin-bottom: 8px;
+      }
+      .title {
+        display: flex;
+        align-items: start;
+        justify-content: space-between;
       }
       .two,
       .four {

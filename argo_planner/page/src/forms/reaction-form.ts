@@ -2,7 +2,8 @@
 
 import type { EventKind, Reaction } from "../api/types";
 import { reactionKey } from "../model/outline";
-import { edit, editHere, mission, select } from "../state/plan";
+import { edit, editHere } from "../state/commands";
+import { mission, select } from "../state/plan";
 import { mayPlan } from "../state/session";
 import { world } from "../state/world";
 import { t } from "../texts";

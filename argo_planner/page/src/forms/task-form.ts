@@ -2,8 +2,10 @@
 
 import type { Task, TimeWindow, Transition, WaitRule } from "../api/types";
 import { taskKey } from "../model/outline";
-import { edit, editHere, mission, select, tasksByName } from "../state/plan";
+import { edit, editHere } from "../state/commands";
+import { mission, select, tasksByName } from "../state/plan";
 import { mayPlan } from "../state/session";
+import { lookAt } from "../state/view";
 import { checkpointsById, world } from "../state/world";
 import { t } from "../texts";
 import { html, nothing } from "../ui/element";
@@ -41,7 +43,14 @@ export function taskForm(task: Task) {
     if (wrong === null) select([taskKey(name.trim())]);
     return wrong;
   };
-  return html`<h2>${t().words.action[task.action]}</h2>
+  return html`<div class="title">
+      <h2>${t().words.action[task.action]}</h2>
+      ${task.object_id || task.pose
+        ? html`<button title=${`${texts.show} (v)`} @click=${() => lookAt(task)}>
+            ${icon("camera", 16)} ${texts.show}
+          </button>`
+        : nothing}
+    </div>
     ${textField(texts.name, task.name, rename)}
     ${task.action === "MEASURE" ? measuring(task, set) : nothing}
     ${task.action === "WAIT" ? waiting(task.wait ?? null, set) : nothing}

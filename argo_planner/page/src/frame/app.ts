@@ -9,6 +9,7 @@ import "../run/run";
 import "../scene/scene";
 import "../script/script";
 import "../strip/strip";
+import { waiting } from "../state/commands";
 import { closePlan, openPlan, planId, planName } from "../state/plan";
 import { followRobot } from "../state/run";
 import { beginSession, readService, service } from "../state/session";
@@ -127,7 +128,8 @@ export class ArgoApp extends PageElement {
     super.connectedCallback();
     beginSession();
     addEventListener("hashchange", this.followAddress);
-    addEventListener("open-run", this.focusPanel);
+    addEventListener("beforeunload", this.beforeLeaving);
+
     const named = effect(() => {
       document.title = planName.value ? `${planName.value} – Argo` : "Argo";
     });
@@ -138,11 +140,15 @@ export class ArgoApp extends PageElement {
   override disconnectedCallback(): void {
     super.disconnectedCallback();
     removeEventListener("hashchange", this.followAddress);
-    removeEventListener("open-run", this.focusPanel);
+    removeEventListener("beforeunload", this.beforeLeaving);
+
     for (const one of this.stop) one();
   }
 
-  private readonly focusPanel = (): void => this.renderRoot.querySelector<HTMLElement>("#panel")?.focus();
+  /** The browser asks whether to leave while something has not been sent. */
+  private readonly beforeLeaving = (event: Event): void => {
+    if (waiting.value > 0) event.preventDefault();
+  };
 
   /** Reads what does not depend on the mission; tries again until the service is there. */
   private async begin(): Promise<void> {

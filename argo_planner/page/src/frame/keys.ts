@@ -3,7 +3,8 @@
 import { signal } from "@preact/signals-core";
 
 import { PropertiesPanel } from "../forms/properties";
-import { planId, redo, select, selection, undo } from "../state/plan";
+import { redo, undo } from "../state/commands";
+import { planId, select, selection } from "../state/plan";
 import { mayPlan } from "../state/session";
 import { panel, tool } from "../state/view";
 import { t } from "../texts";
@@ -130,7 +131,7 @@ export class PageKeys extends PageElement {
   }
 }
 
-/** Shows the run, with the focus before its first button. */
+/** Shows the run, with the focus on what comes next. */
 function openRun(): void {
   panel.value = "run";
   setTimeout(() => dispatchEvent(new CustomEvent("open-run")));

@@ -2,7 +2,8 @@
 
 import { answered, client } from "../api/client";
 import { tellError } from "../state/notices";
-import { connected, others, planId, planName, redo, redoable, undo, undoable, waiting } from "../state/plan";
+import { redo, undo, waiting } from "../state/commands";
+import { connected, others, planId, planName, redoable, undoable } from "../state/plan";
 import { author, mayPlan, service, theme } from "../state/session";
 import { language, t } from "../texts";
 import { css, customElement, html, look, nothing, PageElement, state } from "../ui/element";

@@ -1,7 +1,8 @@
 /** Ways out of what was found, where one click is enough. */
 
 import type { Diagnostic } from "../api/types";
-import { mission, type LooseEdit } from "../state/plan";
+import { type LooseEdit } from "../state/commands";
+import { mission } from "../state/plan";
 import { nameOfKey } from "../model/outline";
 import { world } from "../state/world";
 import { t } from "../texts";

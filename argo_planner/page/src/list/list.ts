@@ -1,36 +1,27 @@
 /** The mission as a list: nested groups that fold, reordered by hand or by keys. Only the rows that
  * are in view are in the page, so that thousands of tasks open and scroll as fast as ten. */
 
-import { effect, signal } from "@preact/signals-core";
+import { effect, untracked } from "@preact/signals-core";
 import { repeat } from "lit/directives/repeat.js";
 
-import type { Reaction } from "../api/types";
 import { isTyping } from "../frame/keys";
-import { copied, pasting, readCopied } from "../model/clipboard";
-import {
-  groupKey,
-  nameOfKey,
-  outline,
-  ownName,
-  reactionKey,
-  taskKey,
-  unfolded,
-  type Row,
-} from "../model/outline";
-import { moves, placeForNew, step, tasksOf, type Side } from "../model/places";
-import { tell } from "../state/notices";
-import { edit, inTurn, mission, planId, select, selection } from "../state/plan";
+import { groupKey, nameOfKey, reactionKey, type Row } from "../model/outline";
+import type { Side } from "../model/places";
+import { mission, planId, select, selection, tasksByName } from "../state/plan";
 import { mayPlan } from "../state/session";
-import { panel, tool } from "../state/view";
+import { lookAt, panel, tool } from "../state/view";
 import { t } from "../texts";
 import { css, customElement, html, look, nothing, PageElement, query, state } from "../ui/element";
-import { styled } from "../ui/styled";
 import { icon } from "../ui/icons";
+import { styled } from "../ui/styled";
+import { copyChosen, deleteChosen, groupChosen, openDetails, paste, renameRow } from "./acting";
 import "./add";
 import type { AddTasks } from "./add";
-import "./problems";
 import { marksOf } from "./marks";
+import { enterGroup, leaveGroup, moveByStep, moveTo } from "./moving";
+import "./problems";
 import { rowView, ROW_HEIGHT, rowStyles } from "./row";
+import { fold, folded, rowOf, shownRows, unfoldAround } from "./rows";
 
 const BEYOND = 12;
 
@@ -97,7 +88,6 @@ export class MissionList extends PageElement {
   @state() private height = 800;
   @state() private renaming: string | null = null;
   @state() private drop: { row: Row; side: Side } | null = null;
-  private readonly folded = signal<ReadonlySet<string>>(new Set());
   private readonly stop: (() => void)[] = [];
   /** Where Shift extends the selection from. */
   private anchor: string | null = null;
@@ -111,7 +101,11 @@ export class MissionList extends PageElement {
     addEventListener("focus-list", this.focusTree);
     addEventListener("paste", this.onPaste);
     addEventListener("copy", this.onCopy);
-    this.stop.push(effect(() => this.reveal(selection.value.at(-1))));
+    const shown = effect(() => {
+      const key = selection.value.at(-1);
+      untracked(() => this.reveal(key)); // not again when the groups are folded
+    });
+    this.stop.push(shown);
   }
 
   override disconnectedCallback(): void {
@@ -135,27 +129,9 @@ export class MissionList extends PageElement {
     this.renderRoot.querySelector<HTMLInputElement>(".names input")?.select();
   }
 
-  /** All rows, and those that show as groups are folded. */
-  private rows(): { all: Row[]; shown: Row[] } {
-    const open = mission.value;
-    if (open === null) return { all: [], shown: [] };
-    if (this.known?.mission !== open || this.known.folded !== this.folded.value) {
-      const all = outline(open);
-      const shown = unfolded(all, this.folded.value);
-      this.known = { mission: open, folded: this.folded.value, all, shown };
-    }
-    return this.known;
-  }
-  private known: {
-    mission: object;
-    folded: ReadonlySet<string>;
-    all: Row[];
-    shown: Row[];
-  } | null = null;
-
   override render() {
     const texts = t().list;
-    const { shown } = this.rows();
+    const shown = shownRows.value;
     const chosen = new Set(selection.value);
     const may = mayPlan();
     const first = Math.max(0, Math.floor(this.top / ROW_HEIGHT) - BEYOND);
@@ -171,7 +147,7 @@ export class MissionList extends PageElement {
           aria-label=${texts.group}
           title=${`${texts.group} (g)`}
           ?disabled=${!may || chosen.size === 0}
-          @click=${this.wrap}
+          @click=${groupChosen}
         >
           ${icon("group")}
         </button>
@@ -180,7 +156,7 @@ export class MissionList extends PageElement {
           aria-label=${texts.delete}
           title=${`${texts.delete} (Del)`}
           ?disabled=${!may || chosen.size === 0}
-          @click=${this.removeChosen}
+          @click=${deleteChosen}
         >
           ${icon("bin")}
         </button>
@@ -215,7 +191,7 @@ export class MissionList extends PageElement {
             (row, index) =>
               rowView(row, first + index, {
                 chosen: chosen.has(row.key),
-                folded: this.folded.value.has(row.key),
+                folded: folded.value.has(row.key),
                 renaming: this.renaming === row.key,
                 of: shown.length,
                 marks: marksOf(row),
@@ -266,17 +242,8 @@ export class MissionList extends PageElement {
   /** Brings a row into view, and opens the groups that it lies in. */
   private reveal(key: string | undefined): void {
     if (key === undefined || !this.hasUpdated) return;
-    const { all, shown } = this.rows();
-    if (!shown.some((row) => row.key === key)) {
-      const row = all.find((one) => one.key === key);
-      if (!row) return;
-      const around = new Set<string>();
-      for (const one of all)
-        if (one.kind === "group" && (row.inside === one.group.name || row.inside?.startsWith(`${one.group.name}/`)))
-          around.add(one.key);
-      this.folded.value = new Set([...this.folded.value].filter((one) => !around.has(one)));
-    }
-    const at = this.rows().shown.findIndex((row) => row.key === key) * ROW_HEIGHT;
+    if (rowOf(key) === undefined) unfoldAround(key);
+    const at = shownRows.value.findIndex((row) => row.key === key) * ROW_HEIGHT;
     void this.updateComplete.then(() => {
       if (at < this.tree.scrollTop) this.tree.scrollTop = at;
       else if (at + ROW_HEIGHT > this.tree.scrollTop + this.height)
@@ -286,18 +253,18 @@ export class MissionList extends PageElement {
 
   private rowAt(event: Event): Row | null {
     const found = (event.target as HTMLElement).closest<HTMLElement>("[role=treeitem]");
-    return found ? (this.rows().shown[Number(found.dataset["index"])] ?? null) : null;
+    return found ? (shownRows.value[Number(found.dataset["index"])] ?? null) : null;
   }
 
   private onClick(event: MouseEvent): void {
     const row = this.rowAt(event);
     if (!row) return;
-    if ((event.target as HTMLElement).closest(".fold")) this.fold(row);
+    if ((event.target as HTMLElement).closest(".fold")) fold(row, !folded.value.has(row.key));
     else this.choose(row, event.shiftKey, event.ctrlKey || event.metaKey);
   }
 
   private choose(row: Row, extend: boolean, toggle: boolean): void {
-    const { shown } = this.rows();
+    const shown = shownRows.value;
     const { value: chosen } = selection;
     if (this.anchor === null || !chosen.includes(this.anchor)) this.anchor = chosen.at(-1) ?? null;
     if (extend && this.anchor !== null) {
@@ -313,13 +280,6 @@ export class MissionList extends PageElement {
     else select([...selection.value, row.key]);
   }
 
-  private fold(row: Row, closed = !this.folded.value.has(row.key)): void {
-    const folded = new Set(this.folded.value);
-    if (closed) folded.add(row.key);
-    else folded.delete(row.key);
-    this.folded.value = folded;
-  }
-
   private onDoubleClick(event: MouseEvent): void {
     const row = this.rowAt(event);
     if (row && mayPlan()) this.renaming = row.key;
@@ -328,10 +288,15 @@ export class MissionList extends PageElement {
   /** Keys that work wherever the focus is, but in fields. */
   private readonly onGlobalKey = (event: KeyboardEvent): void => {
     if (event.defaultPrevented || isTyping(event) || planId.value === null) return;
-    if (event.ctrlKey || event.metaKey || event.altKey || !mayPlan()) return;
+    if (event.ctrlKey || event.metaKey || event.altKey) return;
+    if (!mayPlan() && event.key !== "v") return;
     const act = {
       m: () => this.adding.openMeasure(),
-      g: () => void this.wrap(),
+      g: () => void groupChosen(),
+      v: () => {
+        const task = tasksByName.value.get(nameOfKey(selection.value.at(-1) ?? ""));
+        if (task) lookAt(task);
+      },
       n: () => (tool.value = tool.value === "navigate" ? "select" : "navigate"),
       o: () => (tool.value = tool.value === "obstacle" ? "select" : "obstacle"),
       w: () => this.adding.addAtPlace(),
@@ -343,7 +308,7 @@ export class MissionList extends PageElement {
 
   private onKey(event: KeyboardEvent): void {
     if (isTyping(event)) return;
-    const { shown } = this.rows();
+    const shown = shownRows.value;
     const at = shown.findIndex((row) => row.key === selection.value.at(-1));
     const row = shown[at];
     const command = event.ctrlKey || event.metaKey;
@@ -373,11 +338,11 @@ export class MissionList extends PageElement {
         go(at - page);
         break;
       case "ArrowRight":
-        if (row?.kind === "group" && this.folded.value.has(row.key)) this.fold(row, false);
+        if (row?.kind === "group" && folded.value.has(row.key)) fold(row, false);
         else if (row?.kind === "group") go(at + 1);
         break;
       case "ArrowLeft":
-        if (row?.kind === "group" && !this.folded.value.has(row.key)) this.fold(row, true);
+        if (row?.kind === "group" && !folded.value.has(row.key)) fold(row, true);
         else if (row?.inside) select([groupKey(row.inside)]);
         break;
       case "Ctrl+a":
@@ -391,19 +356,19 @@ export class MissionList extends PageElement {
         break;
       case "Delete":
       case "Backspace":
-        if (mayPlan()) void this.removeChosen();
+        if (mayPlan()) void deleteChosen();
         break;
       case "Alt+ArrowUp":
-        if (mayPlan()) void this.shift("up");
+        if (mayPlan()) void moveByStep("up");
         break;
       case "Alt+ArrowDown":
-        if (mayPlan()) void this.shift("down");
+        if (mayPlan()) void moveByStep("down");
         break;
       case "Alt+ArrowLeft":
-        if (mayPlan()) void this.leaveGroup();
+        if (mayPlan()) void leaveGroup();
         break;
       case "Alt+ArrowRight":
-        if (mayPlan()) void this.enterGroup();
+        if (mayPlan()) void enterGroup();
         break;
       default:
         return;
@@ -411,133 +376,24 @@ export class MissionList extends PageElement {
     event.preventDefault();
   }
 
-  private shift(direction: "up" | "down"): Promise<boolean> {
-    return this.inTurn(() => step(this.rows().shown, selection.value, direction));
-  }
-
-  /** Out of the group that the selection lies in, behind it. */
-  private leaveGroup(): Promise<boolean> {
-    return this.inTurn(() => {
-      const { all } = this.rows();
-      const row = all.find((one) => one.key === selection.value.at(-1));
-      const target = all.find((one) => one.kind === "group" && one.group.name === row?.inside);
-      return target ? { target, side: "after" } : null;
-    });
-  }
-
-  /** Into the group that stands right above, to its end, or the one right below. */
-  private enterGroup(): Promise<boolean> {
-    return this.inTurn(() => {
-      const { all } = this.rows();
-      const first = all.findIndex((one) => selection.value.includes(one.key));
-      const last = all.findLastIndex((one) => selection.value.includes(one.key));
-      const [above, here, below] = [all[first - 1], all[first], all[last + 1]];
-      if (above && here && above.depth > here.depth) return { target: above, side: "after" };
-      return below?.kind === "group" ? { target: below, side: "into" } : null;
-    });
-  }
-
-  private moveTo(target: Row, side: Side): Promise<boolean> {
-    return this.inTurn(() => ({ target, side }));
-  }
-
-  /** Moves what is selected beside the row that is found when its turn comes. */
-  private inTurn(find: () => { readonly target: Row; readonly side: Side } | null): Promise<boolean> {
-    return inTurn(async (make) => {
-      const open = mission.value;
-      const found = find();
-      if (open === null || found === null) return false;
-      const kept = selection.value;
-      const { all } = this.rows();
-      const target = all.find((row) => row.key === found.target.key);
-      if (!target) return false;
-      const done = await make(...moves(open, all, kept, target, found.side));
-      this.reveal(kept.at(-1));
-      return done;
-    });
-  }
-
-  private readonly wrap = async (): Promise<void> => {
-    const open = mission.value;
-    if (open === null || !mayPlan() || selection.value.length === 0) return;
-    const { all } = this.rows();
-    const tasks = tasksOf(open, all, selection.value);
-    const [first, last] = [tasks[0], tasks.at(-1)];
-    if (!first || !last) return;
-    const from = open.tasks.indexOf(first);
-    if (open.tasks.indexOf(last) - from + 1 !== tasks.length) {
-      tell("warn", t().list.notTogether);
-      return;
-    }
-    const row = all.find((one) => one.key === selection.value[0]);
-    const inside = row?.inside ? `${row.inside}/` : "";
-    const taken = new Set(open.groups.map((group) => group.name));
-    let name = t().list.newGroup;
-    for (let number = 2; taken.has(inside + name); number++) name = `${t().list.newGroup} ${number}`;
-    const group = { name, start: first.name, end: last.name, max_repeat_count: 1 };
-    if (await edit({ kind: "wrap_tasks", group })) {
-      select([groupKey(inside + name)]);
-      openDetails(t().forms.duration);
-    }
-  };
-
-  private readonly removeChosen = async (): Promise<void> => {
-    const open = mission.value;
-    if (open === null || selection.value.length === 0) return;
-    const { shown } = this.rows();
-    const reactions = selection.value.filter((key) => key.startsWith("reaction:")).map(nameOfKey);
-    const tasks = tasksOf(open, this.rows().all, selection.value).map((task) => task.name);
-    const first = shown.findIndex((row) => selection.value.includes(row.key));
-    const last = shown.findLastIndex((row) => selection.value.includes(row.key));
-    const next = shown.slice(last + 1).find((row) => row.kind === "task") ?? shown[first - 1];
-    const done = await edit(
-      ...tasks.map((name) => ({ kind: "remove_task", name }) as const),
-      ...reactions.map((event) => ({ kind: "remove_reaction", event: event as Reaction["event"] }) as const),
-    );
-    if (done && next) select([next.key]);
-  };
-
   private readonly onRename = (row: Row, name: string): void => {
     this.renaming = null;
     this.tree.focus();
-    void this.rename(row, name);
+    void renameRow(row, name);
   };
 
-  private async rename(row: Row, name: string): Promise<void> {
-    const old = row.kind === "task" ? row.task.name : ownName(row.group.name);
-    if (name === "" || name === old) return;
-    if (row.kind === "task") {
-      if (await edit({ kind: "rename_task", name: old, new_name: name })) select([taskKey(name)]);
-    } else {
-      const whole = row.group.name;
-      const renamed = whole.slice(0, whole.length - old.length) + name;
-      if (await edit({ kind: "rename_group", name: whole, own_name: name }))
-        select([groupKey(renamed)]);
-    }
-  }
-
   private readonly onCopy = (event: ClipboardEvent): void => {
-    const open = mission.value;
-    if (open === null || typing() || getSelection()?.toString()) return;
-    const tasks = tasksOf(open, this.rows().all, selection.value);
-    if (tasks.length === 0) return;
-    event.clipboardData?.setData("text/plain", copied(tasks));
-    tell("info", t().list.copiedCount(tasks.length));
+    if (planId.value === null || typing() || getSelection()?.toString()) return;
+    const text = copyChosen();
+    if (text === null) return;
+    event.clipboardData?.setData("text/plain", text);
     event.preventDefault();
   };
 
   private readonly onPaste = (event: ClipboardEvent): void => {
-    const open = mission.value;
-    if (open === null || typing() || !mayPlan()) return;
+    if (planId.value === null || typing() || !mayPlan()) return;
     event.preventDefault();
-    const tasks = readCopied(event.clipboardData?.getData("text/plain") ?? "");
-    if (tasks === null) {
-      tell("info", t().list.nothingToPaste);
-      return;
-    }
-    const place = placeForNew(this.rows().all, selection.value);
-    const { edits, names } = pasting(open, tasks, place);
-    void edit(...edits).then((done) => done && select(names.map(taskKey)));
+    void paste(event.clipboardData?.getData("text/plain") ?? "");
   };
 
   private onDragStart(event: DragEvent): void {
@@ -553,9 +409,9 @@ export class MissionList extends PageElement {
     event.preventDefault();
     const box = (event.target as HTMLElement).closest("[role=treeitem]")?.getBoundingClientRect();
     const share = box ? (event.clientY - box.top) / box.height : 0;
-    const folded = this.folded.value.has(row.key);
+    const closed = folded.value.has(row.key);
     let side: Side = share < 0.5 ? "before" : "after";
-    if (row.kind === "group" && share > 0.3 && !(folded && share > 0.8)) side = "into";
+    if (row.kind === "group" && share > 0.3 && !(closed && share > 0.8)) side = "into";
     if (this.drop?.row !== row || this.drop.side !== side) this.drop = { row, side };
   }
 
@@ -563,14 +419,8 @@ export class MissionList extends PageElement {
     event.preventDefault();
     const drop = this.drop;
     this.drop = null;
-    if (drop) void this.moveTo(drop.row, drop.side);
+    if (drop) void moveTo(drop.row, drop.side);
   }
-}
-
-/** Shows the details of what is selected, with the cursor in a field. */
-function openDetails(label?: string): void {
-  panel.value = "properties";
-  setTimeout(() => dispatchEvent(new CustomEvent("open-details", { detail: label }))); // once it is there
 }
 
 function typing(): boolean {

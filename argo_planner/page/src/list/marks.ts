@@ -8,7 +8,7 @@ import { touched } from "../model/change";
 import { groupKey, taskKey, type Row } from "../model/outline";
 import { analysis, findings, lastRevision, others, planId } from "../state/plan";
 import { reading } from "../state/reading";
-import { run } from "../state/run";
+import { pastRun, run, shownRun, shownTime } from "../state/run";
 import { author } from "../state/session";
 import { world } from "../state/world";
 import { describeGroup, describeTask } from "./describe";
@@ -27,7 +27,8 @@ const FLASH_MS = 1_600;
 /** All that the check and the analysis have found, errors first. */
 export const problems = computed<readonly Diagnostic[]>(() => {
   const rank = { error: 0, warning: 1, note: 2 };
-  const checked = findings.value.diagnostics;
+  // A mission without tasks says so itself.
+  const checked = findings.value.diagnostics.filter((one) => one.code !== "il.empty-mission");
   const analysed = analysis.value?.analysis?.diagnostics ?? [];
   const known = new Set(checked.map((one) => one.code + (one.subject ?? "") + one.message));
   const all = [
@@ -62,8 +63,23 @@ effect(() => {
   setTimeout(() => (flashing.value = new Set()), FLASH_MS);
 });
 
+const OUTCOMES = {
+  done: "done",
+  failed: "failed",
+  stopped: null,
+  "by hand": "byHand",
+  skipped: "skipped",
+} as const;
+
 const runStates = computed(() => {
   const found = new Map<string, Marks["run"]>();
+  if (shownTime.value !== null || pastRun.value !== null) {
+    const past = shownRun.value;
+    if (past === null || past.plan !== planId.value) return found;
+    for (const [name, outcome] of past.outcomes) found.set(name, OUTCOMES[outcome]);
+    if (past.task) found.set(past.task, "active");
+    return found;
+  }
   const shown = run.value;
   if (shown === null || shown.plan !== planId.value) return found;
   for (const task of shown.tasks)

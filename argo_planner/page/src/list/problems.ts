@@ -2,7 +2,8 @@
  * out as a button where there is one. */
 
 import type { Diagnostic } from "../api/types";
-import { edit, select } from "../state/plan";
+import { edit } from "../state/commands";
+import { select } from "../state/plan";
 import { mayPlan } from "../state/session";
 import { panel } from "../state/view";
 import { t } from "../texts";

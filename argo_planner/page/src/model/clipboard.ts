@@ -1,7 +1,7 @@
 /** Tasks that are copied, and what pasting them does. */
 
 import type { Mission, Task } from "../api/types";
-import type { LooseEdit } from "../state/plan";
+import type { LooseEdit } from "../state/commands";
 import { freeName, taskNames } from "./naming";
 import type { Place } from "./places";
 

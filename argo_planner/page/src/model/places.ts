@@ -1,7 +1,7 @@
 /** Where tasks can be put, and the edits that put them there. */
 
 import type { Group, Mission, Task } from "../api/types";
-import type { LooseEdit } from "../state/plan";
+import type { LooseEdit } from "../state/commands";
 import { isTaskKey, nameOfKey, ownName, type Row } from "./outline";
 
 /** A place between tasks: behind or before one, in a group or in none. */

@@ -1,7 +1,8 @@
 /** What the best order has to keep to, and the search for it. */
 
 import { readTime, writeTime } from "../forms/times";
-import { edit, findings, mission } from "../state/plan";
+import { edit } from "../state/commands";
+import { findings, mission } from "../state/plan";
 import { mayPlan } from "../state/session";
 import { t } from "../texts";
 import { css, customElement, html, look, nothing, PageElement, state } from "../ui/element";

@@ -47,6 +47,24 @@ export class RunPanel extends PageElement {
     `,
   ];
 
+  override connectedCallback(): void {
+    super.connectedCallback();
+    addEventListener("open-run", this.focusMain);
+  }
+
+  override disconnectedCallback(): void {
+    super.disconnectedCallback();
+    removeEventListener("open-run", this.focusMain);
+  }
+
+  /** Puts the focus on what comes next: start, go on, give back, pause. */
+  private readonly focusMain = (): void => {
+    for (const part of this.renderRoot.querySelectorAll("argo-run-start, argo-run-controls")) {
+      const main = part.shadowRoot?.querySelector<HTMLElement>("button.main:not(:disabled)");
+      if (main) return main.focus();
+    }
+  };
+
   @state() private past: readonly RunState[] = [];
   private listed = "";
 

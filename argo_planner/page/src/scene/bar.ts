@@ -39,6 +39,11 @@ export class SceneBar extends PageElement {
         display: flex;
         padding: 2px;
       }
+      @media (max-width: 800px) {
+        .tools {
+          display: none; /* a phone is for watching */
+        }
+      }
       .settings {
         position: absolute;
         top: 42px;
@@ -68,7 +73,7 @@ export class SceneBar extends PageElement {
     if (view === null) return nothing;
     const { camera } = view;
     return html`
-      <div class="panel" role="toolbar" aria-label=${texts.tools}>
+      <div class="panel tools" role="toolbar" aria-label=${texts.tools}>
         ${this.tool("select", "hand", texts.toolSelect, "Esc")}
         ${this.tool("navigate", "drive", texts.toolNavigate, "n")}
         ${this.tool("obstacle", "obstacle", texts.toolObstacle, "o")}

@@ -2,7 +2,7 @@
 
 import { signal } from "@preact/signals-core";
 
-import type { Pose } from "../api/types";
+import type { Pose, Task } from "../api/types";
 
 /** What a click in the scene does: choose, place the robot's next task, or put an obstacle up. */
 export type Tool = "select" | "navigate" | "obstacle";
@@ -19,6 +19,12 @@ export type Look =
   | { readonly kind: "checkpoint"; readonly id: string }
   | { readonly kind: "all" };
 export const look = signal<Look | null>(null);
+
+/** Shows where a task is done: the face of its checkpoint, or its place. */
+export function lookAt(task: Task): void {
+  if (task.object_id) look.value = { kind: "checkpoint", id: task.object_id };
+  else if (task.pose) look.value = { kind: "pose", pose: task.pose };
+}
 
 /** The part of the page at the right that is open; on narrow screens the only one. */
 export type Panel = "properties" | "script" | "route" | "run";

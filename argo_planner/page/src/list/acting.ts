@@ -1,0 +1,103 @@
+/** What is done with what is selected: grouped, deleted, renamed, copied, pasted. */
+
+import type { Reaction } from "../api/types";
+import { copied, pasting, readCopied } from "../model/clipboard";
+import { groupKey, nameOfKey, ownName, taskKey, type Row } from "../model/outline";
+import { placeForNew, tasksOf } from "../model/places";
+import { edit, inTurn } from "../state/commands";
+import { tell } from "../state/notices";
+import { mission, select, selection } from "../state/plan";
+import { mayPlan } from "../state/session";
+import { panel } from "../state/view";
+import { t } from "../texts";
+import { allRows, shownRows } from "./rows";
+
+/** Makes a group of what is selected, and opens its details. */
+export function groupChosen(): Promise<void> {
+  return inTurn(async (make) => {
+    const open = mission.value;
+    if (open === null || !mayPlan() || selection.value.length === 0) return;
+    const tasks = tasksOf(open, allRows.value, selection.value);
+    const [first, last] = [tasks[0], tasks.at(-1)];
+    if (!first || !last) return;
+    if (open.tasks.indexOf(last) - open.tasks.indexOf(first) + 1 !== tasks.length) {
+      tell("warn", t().list.notTogether);
+      return;
+    }
+    const row = allRows.value.find((one) => one.key === selection.value[0]);
+    const inside = row?.inside ? `${row.inside}/` : "";
+    const taken = new Set(open.groups.map((group) => group.name));
+    let name = t().list.newGroup;
+    for (let number = 2; taken.has(inside + name); number++)
+      name = `${t().list.newGroup} ${number}`;
+    const group = { name, start: first.name, end: last.name, max_repeat_count: 1 };
+    if (!(await make({ kind: "wrap_tasks", group }))) return;
+    select([groupKey(inside + name)]);
+    openDetails(t().forms.duration);
+  });
+}
+
+/** Deletes what is selected when its turn comes, and selects what comes next. */
+export function deleteChosen(): Promise<void> {
+  return inTurn(async (make) => {
+    const open = mission.value;
+    const keys = selection.value;
+    if (open === null || keys.length === 0) return;
+    const shown = shownRows.value;
+    const reactions = keys.filter((key) => key.startsWith("reaction:")).map(nameOfKey);
+    const tasks = tasksOf(open, allRows.value, keys).map((task) => task.name);
+    const first = shown.findIndex((row) => keys.includes(row.key));
+    const last = shown.findLastIndex((row) => keys.includes(row.key));
+    const next = shown.slice(last + 1).find((row) => row.kind === "task") ?? shown[first - 1];
+    const done = await make(
+      ...tasks.map((name) => ({ kind: "remove_task", name }) as const),
+      ...reactions.map(
+        (event) => ({ kind: "remove_reaction", event: event as Reaction["event"] }) as const,
+      ),
+    );
+    if (done && next) select([next.key]);
+  });
+}
+
+/** Gives a task or a group another name, and selects it under that. */
+export async function renameRow(row: Row, name: string): Promise<void> {
+  const old = row.kind === "task" ? row.task.name : ownName(row.group.name);
+  if (name === "" || name === old) return;
+  if (row.kind === "task") {
+    if (await edit({ kind: "rename_task", name: old, new_name: name })) select([taskKey(name)]);
+    return;
+  }
+  const whole = row.group.name;
+  const renamed = whole.slice(0, whole.length - old.length) + name;
+  if (await edit({ kind: "rename_group", name: whole, own_name: name })) select([groupKey(renamed)]);
+}
+
+/** The tasks that are selected, as text; null: there are none. */
+export function copyChosen(): string | null {
+  const open = mission.value;
+  const tasks = open === null ? [] : tasksOf(open, allRows.value, selection.value);
+  if (tasks.length === 0) return null;
+  tell("info", t().list.copiedCount(tasks.length));
+  return copied(tasks);
+}
+
+/** Adds the tasks of a text behind what is selected. */
+export function paste(text: string): Promise<void> {
+  return inTurn(async (make) => {
+    const open = mission.value;
+    const tasks = readCopied(text);
+    if (open === null || tasks === null) {
+      tell("info", t().list.nothingToPaste);
+      return;
+    }
+    const { edits, names } = pasting(open, tasks, placeForNew(allRows.value, selection.value));
+    if (await make(...edits)) select(names.map(taskKey));
+  });
+}
+
+/** Shows the details of what is selected, with the cursor in a field. */
+export function openDetails(label?: string): void {
+  panel.value = "properties";
+  // Once they are there.
+  setTimeout(() => dispatchEvent(new CustomEvent("open-details", { detail: label })));
+}

@@ -1,0 +1,56 @@
+/** What is selected, moved: beside a row, by a step, out of a group and into one. */
+
+import { mission, selection } from "../state/plan";
+import { inTurn } from "../state/commands";
+import { moves, step, type Side } from "../model/places";
+import type { Row } from "../model/outline";
+import { allRows, shownRows } from "./rows";
+
+interface Target {
+  readonly target: Row;
+  readonly side: Side;
+}
+
+/** Moves what is selected beside a row. Whether it was moved. */
+export function moveTo(target: Row, side: Side): Promise<boolean> {
+  return moveWhere(() => ({ target, side }));
+}
+
+export function moveByStep(direction: "up" | "down"): Promise<boolean> {
+  return moveWhere(() => step(shownRows.value, selection.value, direction));
+}
+
+/** Out of the group that the selection lies in, behind it. */
+export function leaveGroup(): Promise<boolean> {
+  return moveWhere(() => {
+    const row = allRows.value.find((one) => one.key === selection.value.at(-1));
+    const target = allRows.value.find(
+      (one) => one.kind === "group" && one.group.name === row?.inside,
+    );
+    return target ? { target, side: "after" } : null;
+  });
+}
+
+/** Into the group that stands right above, to its end, or the one right below. */
+export function enterGroup(): Promise<boolean> {
+  return moveWhere(() => {
+    const all = allRows.value;
+    const first = all.findIndex((one) => selection.value.includes(one.key));
+    const last = all.findLastIndex((one) => selection.value.includes(one.key));
+    const [above, here, below] = [all[first - 1], all[first], all[last + 1]];
+    if (above && here && above.depth > here.depth) return { target: above, side: "after" };
+    return below?.kind === "group" ? { target: below, side: "into" } : null;
+  });
+}
+
+/** Moves what is selected beside the row that is found when its turn comes. */
+function moveWhere(find: () => Target | null): Promise<boolean> {
+  return inTurn(async (make) => {
+    const open = mission.value;
+    const found = find();
+    if (open === null || found === null) return false;
+    const target = allRows.value.find((row) => row.key === found.target.key);
+    if (!target) return false;
+    return make(...moves(open, allRows.value, selection.value, target, found.side));
+  });
+}

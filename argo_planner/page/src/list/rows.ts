@@ -1,0 +1,38 @@
+/** The rows of the list: all of them, and those that show as groups are folded. */
+
+import { computed, signal } from "@preact/signals-core";
+
+import { outline, unfolded, type Row } from "../model/outline";
+import { mission } from "../state/plan";
+
+/** Keys of the groups that are folded. */
+export const folded = signal<ReadonlySet<string>>(new Set());
+
+export const allRows = computed<readonly Row[]>(() =>
+  mission.value === null ? [] : outline(mission.value),
+);
+export const shownRows = computed<readonly Row[]>(() => unfolded(allRows.value, folded.value));
+
+/** Folds a group, or unfolds it. */
+export function fold(row: Row, closed: boolean): void {
+  const keys = new Set(folded.value);
+  if (closed) keys.add(row.key);
+  else keys.delete(row.key);
+  folded.value = keys;
+}
+
+/** Unfolds all groups that a row lies in. */
+export function unfoldAround(key: string): void {
+  const row = allRows.value.find((one) => one.key === key);
+  if (!row) return;
+  const around = new Set<string>();
+  for (const one of allRows.value)
+    if (one.kind === "group" && `${row.inside ?? ""}/`.startsWith(`${one.group.name}/`))
+      around.add(one.key);
+  folded.value = new Set([...folded.value].filter((one) => !around.has(one)));
+}
+
+/** The row that was selected last, among those that show. */
+export function rowOf(key: string | undefined): Row | undefined {
+  return shownRows.value.find((row) => row.key === key);
+}

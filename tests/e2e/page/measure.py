@@ -1,0 +1,110 @@
+"""How fast the page is: `python -m tests.e2e.page.measure`. Printed, and never asserted."""
+
+import tempfile
+import time
+from collections.abc import Iterator
+from contextlib import contextmanager
+from itertools import pairwise
+from pathlib import Path
+from typing import Any
+
+from playwright.sync_api import expect
+
+from argo_env.planning.opening import open_site
+from tests.argo_planner.service.served import ALL, Served, served
+from tests.e2e.page.person import Browsers, Person
+
+LARGE = "generated:floors=6,seed=7"
+MOVES = 200
+PAGES = 50
+
+
+def mission(count: int, site: str) -> dict[str, Any]:
+    tasks: list[dict[str, Any]] = [
+        {"name": f"T{n}", "action": "MEASURE", "object_id": str(n % 3 + 1)} for n in range(count)
+    ]
+    for task, after in pairwise(tasks):
+        task["transitions"] = [{"target": after["name"]}]
+    return {"version": 3, "site": site, "tasks": tasks}
+
+
+@contextmanager
+def serving(site: str) -> Iterator[Served]:
+    opened = open_site(site).prepare()
+    with tempfile.TemporaryDirectory() as folder, served(Path(folder), opened) as found:
+        yield found
+
+
+def rows_there(person: Person) -> None:
+    expect(person.page.get_by_role("treeitem").first).to_be_visible()
+    expect(person.button("Add")).to_be_enabled()
+
+
+def opening(browsers: Browsers, service: Served, count: int) -> None:
+    """From the address to where one can work, and to where all is drawn; the second time, as the
+    first one fills the caches of the service."""
+    id = service.create(f"{count} tasks", mission(count, "umad"))
+    for attempt in ("first", "again"):
+        person = browsers.person(f"http://{service.address}/?token={ALL}")
+        begun = time.perf_counter()
+        person.open(f"/missions/{id}")
+        rows_there(person)
+        usable = time.perf_counter() - begun
+        person.idle()
+        drawn = time.perf_counter() - begun
+        print(f"{count:5} tasks, {attempt}: usable in {usable:.2f} s, all drawn in {drawn:.2f} s")
+        browsers.leave()
+
+
+def many_pages(browsers: Browsers, service: Served) -> None:
+    """Many pages of one mission that open at once, each in a context of its own."""
+    id = service.create("Together", mission(200, "umad"))
+    people = [browsers.person(f"http://{service.address}/?token={ALL}") for _ in range(PAGES)]
+    begun = time.perf_counter()
+    for person in people:
+        person.page.goto(f"{person.address}#/missions/{id}", wait_until="commit")
+    for person in people:
+        rows_there(person)
+    print(
+        f"{PAGES} pages with 200 tasks: the last one usable in {time.perf_counter() - begun:.1f} s"
+    )
+    browsers.leave()
+
+
+def hovering(browsers: Browsers, service: Served) -> None:
+    """The verdict under the pointer, and what it asks of the service."""
+    site = open_site(LARGE)
+    id = service.create("Ghost", mission(3, site.name))
+    person = browsers.person(f"http://{service.address}/?token={ALL}")
+    person.open(f"/missions/{id}")
+    rows_there(person)
+    person.idle()
+    person.key("n")
+    person.page.wait_for_timeout(3000)
+    asked: list[str] = []
+    person.page.on("request", lambda request: asked.append(request.url))
+    box = person.page.locator("argo-scene").bounding_box()
+    assert box is not None
+    for k in range(MOVES):
+        x = box["x"] + box["width"] * (0.25 + 0.5 * k / MOVES)
+        person.page.mouse.move(x, box["y"] + box["height"] * (0.4 + 0.3 * (k % 10) / 10))
+    took = sorted(person.ask("() => window.argo.figures().hover"))
+    solids = len(site.site.elements)
+    last = took[int(0.95 * len(took))]
+    print(f"{solids} solids: verdict p95 {last:.2f} ms of {len(took)}, {len(asked)} requests")
+    browsers.leave()
+
+
+def main() -> None:
+    browsers = Browsers()
+    with serving("umad") as service:
+        for count in (200, 2000):
+            opening(browsers, service, count)
+        many_pages(browsers, service)
+    with serving(LARGE) as service:
+        hovering(browsers, service)
+    browsers.close()
+
+
+if __name__ == "__main__":
+    main()

@@ -29,7 +29,6 @@ def imported(service: Served) -> str:
 def opened(browsers: Browsers, service: Served, id: str, **context: Any) -> Person:
     person = browsers.person(f"http://{service.address}/?token={ALL}", "Ann", **context)
     person.open(f"/missions/{id}")
-    person.idle()
     return person
 
 
@@ -73,6 +72,7 @@ def planning(browsers: Browsers, service: Served, folder: Path) -> None:
 def running(browsers: Browsers, service: Served, folder: Path) -> None:
     id = imported(service)
     ann = opened(browsers, service, id)
+    ann.idle()
     ann.page.get_by_role("tab", name="Run").click()
     ann.page.locator("argo-run").get_by_role("button", name="Start the run", exact=True).click()
     expect(ann.page.locator("#speed")).to_be_visible()
@@ -84,7 +84,8 @@ def running(browsers: Browsers, service: Served, folder: Path) -> None:
     take(ann, folder, "run")
     phone = opened(browsers, service, id, viewport={"width": 400, "height": 850})
     phone.page.locator("#tab-run").click()
-    phone.page.wait_for_timeout(500)
+    expect(phone.page.locator("argo-scene .loading")).to_be_hidden()
+    phone.page.wait_for_timeout(3000)
     take(phone, folder, "phone")
     ann.page.locator("argo-run").get_by_role("button", name="Take over", exact=True).click()
     give_back = ann.page.locator("argo-run").get_by_role("button", name="Give back", exact=True)

@@ -93,7 +93,7 @@ def hovering(browsers: Browsers, service: Served) -> None:
         x = box["x"] + box["width"] * (0.25 + 0.5 * k / MOVES)
         person.page.mouse.move(x, box["y"] + box["height"] * (0.4 + 0.3 * (k % 10) / 10))
     took = sorted(person.ask("() => window.argo.figures().hover"))
-    solids = len(site.site.elements)
+    solids = sum(len(element.solids) for element in site.site.elements)
     last = took[int(0.95 * len(took))]
     print(f"{solids} solids: verdict p95 {last:.2f} ms of {len(took)}, {len(asked)} requests")
     browsers.leave()

@@ -13,10 +13,9 @@ from argo_compiler.errors import Unavailable
 from argo_compiler.extras import install_line
 from argo_compiler.il import Mission
 from argo_env.planning.opening import open_site
-from argo_planner.terminal import completion
 from argo_planner.terminal.files import read_upload
 from argo_planner.terminal.importing import import_shown
-from argo_planner.terminal.options import EndArea, StartArea
+from argo_planner.terminal.options import EndArea, SiteOption, StartArea
 from argo_planner.terminal.verbosity import is_quiet
 
 if TYPE_CHECKING:
@@ -36,14 +35,7 @@ def plan_mission(
     folder: Annotated[Path, typer.Option("--folder", help="where the missions are kept")] = Path(
         "missions"
     ),
-    site: Annotated[
-        str,
-        typer.Option(
-            "--site",
-            help="a site's name, its .yaml, or generated:…",
-            autocompletion=completion.sites,
-        ),
-    ] = "umad",
+    site: SiteOption = "umad",
     port: Annotated[
         int | None,
         typer.Option(

@@ -12,7 +12,7 @@ from argo_compiler.errors import Invalid, Unavailable
 from argo_compiler.extras import install_line
 from argo_env.planning.opening import open_site
 from argo_env.recording.live import require_foxglove
-from argo_planner.terminal import completion
+from argo_planner.terminal.options import SiteOption
 from argo_planner.terminal.verbosity import is_quiet
 
 
@@ -20,14 +20,7 @@ def serve_plans(
     folder: Annotated[
         Path, typer.Argument(metavar="FOLDER", help="where the missions are kept")
     ] = Path("missions"),
-    site: Annotated[
-        str,
-        typer.Option(
-            "--site",
-            help="a site's name, its .yaml, or generated:…",
-            autocompletion=completion.sites,
-        ),
-    ] = "umad",
+    site: SiteOption = "umad",
     host: Annotated[
         str,
         typer.Option(

@@ -91,7 +91,7 @@ class PlanFile(Closing):
     """An open file of a plan. Holds the file and the plan as it is on disk; one thread at a time
     may use it."""
 
-    def __init__(self, path: Path, file: int, document: PlanDocument, extent: "PlanExtent") -> None:
+    def __init__(self, path: Path, file: int, document: PlanDocument, extent: PlanExtent) -> None:
         self.path = path
         self.document = document
         self.recovery: Recovery | None = None

@@ -3,7 +3,7 @@
 import { signal } from "@preact/signals-core";
 
 import { answered, client, newId, Refusal, Unreached } from "../api/client";
-import type { CommandDone, Edit, Mission, Revision } from "../api/types";
+import type { CommandDone, Edit, Revision } from "../api/types";
 import { touched } from "../model/change";
 import { t } from "../texts";
 import { messageOf, tell, tellError } from "./notices";
@@ -19,8 +19,7 @@ type Loose<T> = { [key in keyof T]: T[key] extends object | null | undefined ? u
 
 type Command =
   | { readonly kind: "edit"; readonly edits: readonly LooseEdit[] }
-  | { readonly kind: "undo" | "redo" }
-  | { readonly kind: "replace"; readonly mission: Mission; readonly about: string };
+  | { readonly kind: "undo" | "redo" };
 
 const RETRY_MS = 1_000;
 
@@ -62,10 +61,6 @@ export function undo(): Promise<boolean> {
 }
 export function redo(): Promise<boolean> {
   return queued((seen) => carriedOut({ kind: "redo" }, tellError, seen));
-}
-export function replaceMission(newMission: Mission, about: string): Promise<boolean> {
-  const asked = { kind: "replace", mission: newMission, about } as const;
-  return queued((seen) => carriedOut(asked, tellError, seen));
 }
 
 /** What was seen when something was asked for: a mission, and its revision. */
@@ -137,7 +132,6 @@ async function caughtUp(plan: string, since: readonly Revision[] | null): Promis
 /** Whether what others did touches nothing that the command is about. */
 function apart(asked: Command, since: readonly Revision[] | null): boolean {
   if (since === null) return false;
-  if (asked.kind === "replace") return since.length === 0;
   if (asked.kind !== "edit") return true;
   const about = new Set<unknown>();
   for (const one of asked.edits)

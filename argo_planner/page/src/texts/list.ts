@@ -43,7 +43,6 @@ export const list = both(
     when: (event: string) => `When: ${event}`,
     problems: (count: number) => (count === 1 ? "1 problem" : `${count} problems`),
     hints: (count: number) => (count === 1 ? "1 remark" : `${count} remarks`),
-    noProblems: "No problem found",
     more: (count: number) => `and ${count} more`,
     states: {
       done: "done",
@@ -105,7 +104,6 @@ export const list = both(
     when: (event: string) => `Bei: ${event}`,
     problems: (count: number) => (count === 1 ? "1 Problem" : `${count} Probleme`),
     hints: (count: number) => (count === 1 ? "1 Hinweis" : `${count} Hinweise`),
-    noProblems: "Kein Problem gefunden",
     more: (count: number) => `und ${count} weitere`,
     states: {
       done: "erledigt",

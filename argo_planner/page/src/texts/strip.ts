@@ -24,7 +24,6 @@ export const strip = both(
     table: "Show all legs",
     task: "To",
     atLeast: "At least, because",
-    analysing: "All paths are being looked at…",
   },
   {
     title: "Der Weg, Abschnitt für Abschnitt",
@@ -49,6 +48,5 @@ export const strip = both(
     table: "Alle Abschnitte zeigen",
     task: "Nach",
     atLeast: "Mindestens, denn",
-    analysing: "Alle Wege werden angesehen …",
   },
 );

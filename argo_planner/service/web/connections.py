@@ -34,7 +34,7 @@ class LimitedProtocol(HttpToolsProtocol):
             oldest.refuse()
         if not transport.is_closing():
             self.waiting[transport] = self
-            self._timeout = self.loop.call_later(FIRST_REQUEST_WITHIN, self.refuse)
+            self._timeout = self.loop.call_later(FIRST_REQUEST_WITHIN, self.give_up)
 
     def on_headers_complete(self) -> None:
         """A request has come."""
@@ -45,6 +45,12 @@ class LimitedProtocol(HttpToolsProtocol):
         """The connection has ended."""
         self._heard()
         super().connection_lost(exc)
+
+    def give_up(self) -> None:
+        """Closes the connection without a word: browsers open some in advance, and ask anew on
+        another one where such a one is closed; an answer they would take for that of a request."""
+        self._heard()
+        self.transport.close()
 
     def refuse(self) -> None:
         """Closes the connection, with an answer for who still reads."""

@@ -3,12 +3,17 @@
 import tempfile
 import time
 from collections.abc import Iterator
+from concurrent.futures import ThreadPoolExecutor
 from contextlib import contextmanager
+from http.client import HTTPConnection
 from itertools import pairwise
+from multiprocessing import Process
 from pathlib import Path
+from threading import Barrier
 from typing import Any
 
 from playwright.sync_api import expect
+from websockets.sync.client import connect
 
 from argo_env.planning.opening import open_site
 from tests.argo_planner.service.served import ALL, Served, served
@@ -75,6 +80,69 @@ def many_pages(browsers: Browsers, service: Served) -> None:
     browsers.leave()
 
 
+def asked_by_a_page(browsers: Browsers, service: Served, id: str) -> list[str]:
+    """Paths of all that a page asks of the service until it has drawn all."""
+    person = browsers.person(f"http://{service.address}/?token={ALL}")
+    paths: list[str] = []
+    person.page.on("request", lambda request: paths.append(request.url.split(service.address)[1]))
+    person.open(f"/missions/{id}")
+    rows_there(person)
+    person.idle()
+    browsers.leave()
+    return paths
+
+
+def ask_all(address: str, paths: list[str], id: str, start: Barrier) -> None:
+    """Asks what a page asks, on one connection, and opens its live connection."""
+    connection = HTTPConnection(address)
+    headers = {"authorization": f"Bearer {ALL}", "accept-encoding": "gzip"}
+    start.wait()
+    for path in paths:
+        connection.request("GET", path, headers=headers)
+        answer = connection.getresponse()
+        answer.read()
+        assert answer.status < 400, f"{path}: {answer.status}"
+    with connect(
+        f"ws://{address}/api/missions/{id}/live", additional_headers=headers, proxy=None
+    ) as live:
+        live.recv()
+
+
+def ask_for_many(address: str, paths: list[str], id: str) -> None:
+    start = Barrier(PAGES + 1)
+    with ThreadPoolExecutor(PAGES) as pool:
+        asked = [pool.submit(ask_all, address, paths, id, start) for _ in range(PAGES)]
+        start.wait()
+        begun = time.perf_counter()
+        for one in asked:
+            one.result()
+        took = time.perf_counter() - begun
+    print(f"{PAGES} times all of the {len(paths)} answers that a page needs: {took:.1f} s")
+
+
+def answering(browsers: Browsers, service: Served) -> None:
+    """What the service does for many pages that open at once, without their browsers."""
+    id = service.create("Answers", mission(200, "umad"))
+    paths = asked_by_a_page(browsers, service, id)
+    asking = Process(target=ask_for_many, args=(service.address, paths, id))
+    asking.start()
+    asking.join()
+
+
+def line_of_text(browsers: Browsers, service: Served) -> None:
+    """What as many browsers take for a text: the least that any page could."""
+    people = [browsers.person(f"http://{service.address}/api/service") for _ in range(PAGES)]
+    begun = time.perf_counter()
+    for person in people:
+        person.page.goto(person.address, wait_until="commit")
+    for person in people:
+        expect(person.page.locator("body")).to_be_visible()
+    print(f"{PAGES} pages with a line of text: {time.perf_counter() - begun:.1f} s")
+    for person in people:
+        person.complaints.clear()
+    browsers.leave()
+
+
 def hovering(browsers: Browsers, service: Served) -> None:
     """The verdict under the pointer, and what it asks of the service."""
     site = open_site(LARGE)
@@ -106,6 +174,8 @@ def main() -> None:
     with serving("umad") as service:
         for count in (200, 2000):
             opening(browsers, service, count)
+        answering(browsers, service)
+        line_of_text(browsers, service)
         many_pages(browsers, service)
     browsers.close()
 

@@ -15,6 +15,9 @@ export class Refusal extends Error {
 /** No answer has come: the service is not there, or the network is not. */
 export class Unreached extends Error {}
 
+/** The code of a service that has too much to do for now. */
+const FULL = "full";
+
 let author = "";
 
 /** Says who is working, with each request from now on. */
@@ -44,7 +47,7 @@ interface Answer<T> {
 export async function answered<T>(asked: Promise<Answer<T>>): Promise<T> {
   const { data, error, response } = await asked;
   if (response.ok) return data as T;
-  if (isProblem(error)) throw new Refusal(error);
+  if (isProblem(error) && error.code !== FULL) throw new Refusal(error);
   throw new Unreached(`${response.status} ${response.statusText}`);
 }
 

@@ -1,19 +1,18 @@
 /** The page as a whole: which mission is open, and where its parts stand. */
 
-import { effect } from "@preact/signals-core";
+import { effect, signal } from "@preact/signals-core";
 
 import "../forms/properties";
 import "../list/list";
 import "../route/route";
 import "../run/run";
-import "../scene/scene";
 import "../script/script";
 import "../strip/strip";
 import { waiting } from "../state/commands";
 import { closePlan, openPlan, planId, planName } from "../state/plan";
 import { followRobot } from "../state/run";
 import { beginSession, readService, service } from "../state/session";
-import { tellError } from "../state/notices";
+import { tell, tellError } from "../state/notices";
 import { panel, type Panel } from "../state/view";
 import { readWorld, world } from "../state/world";
 import { css, customElement, html, look, PageElement } from "../ui/element";
@@ -123,11 +122,13 @@ export class ArgoApp extends PageElement {
   ];
 
   private readonly stop: (() => void)[] = [];
+  /** Whether the mission that the address names is being read. */
+  private readonly opening = signal(false);
 
   override connectedCallback(): void {
     super.connectedCallback();
     beginSession();
-    addEventListener("hashchange", this.followAddress);
+    addEventListener("hashchange", this.addressChanged);
     addEventListener("beforeunload", this.beforeLeaving);
 
     const named = effect(() => {
@@ -139,7 +140,7 @@ export class ArgoApp extends PageElement {
 
   override disconnectedCallback(): void {
     super.disconnectedCallback();
-    removeEventListener("hashchange", this.followAddress);
+    removeEventListener("hashchange", this.addressChanged);
     removeEventListener("beforeunload", this.beforeLeaving);
 
     for (const one of this.stop) one();
@@ -152,33 +153,44 @@ export class ArgoApp extends PageElement {
 
   /** Reads what does not depend on the mission; tries again until the service is there. */
   private async begin(): Promise<void> {
-    this.followAddress();
+    void this.followAddress().then(readScene);
     followRobot();
     while (service.value === null || world.value === null) {
       try {
         await Promise.all([readService(), readWorld()]);
       } catch (error) {
         tellError(error);
-        await new Promise((resolve) => setTimeout(resolve, RETRY_MS));
+        await pause(RETRY_MS);
       }
     }
   }
 
-  private readonly followAddress = (): void => {
+  private readonly addressChanged = (): void => void this.followAddress();
+
+  private async followAddress(): Promise<void> {
     const id = /^#\/missions\/([0-9a-f]+)$/.exec(location.hash)?.[1];
-    if (id === undefined) closePlan();
-    else if (id !== planId.value)
-      openPlan(id).catch((error: unknown) => {
-        location.hash = "";
-        tellError(error);
-      });
-  };
+    if (id === planId.value) return;
+    if (id === undefined) {
+      closePlan();
+      return;
+    }
+    this.opening.value = true;
+    try {
+      await openPlan(id);
+      await this.updateComplete;
+    } catch (error) {
+      location.hash = "";
+      tellError(error);
+    } finally {
+      this.opening.value = false;
+    }
+  }
 
   override render() {
     const open = planId.value !== null;
     return html`
       <argo-topbar></argo-topbar>
-      ${open ? this.planning() : html`<argo-home></argo-home>`}
+      ${open ? this.planning() : this.opening.value ? html`<main></main>` : html`<argo-home></argo-home>`}
       <argo-notices></argo-notices>
       <argo-keys></argo-keys>
     `;
@@ -226,4 +238,27 @@ export class ArgoApp extends PageElement {
     this.renderRoot.querySelector<HTMLElement>(`#tab-${next}`)?.focus();
     event.preventDefault();
   }
+}
+
+/** Reads the scene, by far the largest part of the page, once the browser has nothing else to do. */
+async function readScene(): Promise<void> {
+  while (!customElements.get("argo-scene")) {
+    await quiet();
+    try {
+      await import("../scene/scene");
+    } catch {
+      tell("warn", t().frame.notReached);
+      await pause(RETRY_MS);
+    }
+  }
+}
+
+/** Until the browser has nothing else to do, where it can tell. */
+function quiet(): Promise<void> {
+  if (!("requestIdleCallback" in window)) return pause(0);
+  return new Promise((resolve) => requestIdleCallback(() => resolve(), { timeout: RETRY_MS }));
+}
+
+function pause(ms: number): Promise<void> {
+  return new Promise((resolve) => setTimeout(resolve, ms));
 }

@@ -87,12 +87,14 @@ def edited(
 
 def new_errors(before: Mission, after: Mission) -> list[Diagnostic]:
     """The errors of a kind of which the mission had fewer before the edit."""
+    if not before.tasks:
+        # Of a mission without tasks nothing else is looked at.
+        begun = {"tasks": (Task(name="START", action=Action.START),)}
+        before = before.model_copy(update=begun)
+        after = after if after.tasks else after.model_copy(update=begun)
     errors = [f for f in check(after) if f.severity is Severity.ERROR]
     if not errors:
         return []
-    if not before.tasks:
-        # Of a mission without tasks nothing else is looked at.
-        before = before.model_copy(update={"tasks": (Task(name="START", action=Action.START),)})
     had = [f for f in check(before) if f.severity is Severity.ERROR]
     counts = Counter(f.code for f in had)
     if any(f.subject and f.subject.startswith("groups") for f in had):

@@ -135,6 +135,8 @@ class ResumedTold(Model):
     client: str
     revision: int
     """that it has said it knows"""
+    name: str
+    versions: tuple[VersionSummary, ...]
     members: tuple[Member, ...]
 
 

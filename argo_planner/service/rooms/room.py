@@ -183,7 +183,15 @@ class PlanRoom:
             told = SnapshotTold.model_construct(client=client, state=state, members=members)
             past.append(told)
         else:
-            past.append(ResumedTold.model_construct(client=client, revision=since, members=members))
+            past.append(
+                ResumedTold.model_construct(
+                    client=client,
+                    revision=since,
+                    name=self.document.name,
+                    versions=self._versions(),
+                    members=members,
+                )
+            )
             past += [RevisionTold.model_construct(revision=revision) for revision in missed]
             if missed:
                 newest = RevisionTold.model_construct(revision=missed[-1], findings=self._findings)
@@ -250,8 +258,10 @@ class PlanRoom:
                 mailbox.post(text)
 
     def _tell_versions(self) -> None:
-        versions = tuple(map(VersionSummary.of, self.document.versions))
-        self._tell(VersionsTold(versions=versions))
+        self._tell(VersionsTold(versions=self._versions()))
+
+    def _versions(self) -> tuple[VersionSummary, ...]:
+        return tuple(map(VersionSummary.of, self.document.versions))
 
     # ---- what is found out
 

@@ -29,6 +29,10 @@ from argo_planner.service.runs.requests import (
 from argo_planner.service.runs.robot_line import RobotLine
 from argo_planner.service.runs.state import EntryList, RequestTold, RunState, RunStatus, StateTold
 
+_REPORT_LOOKS = 50
+_REPORT_PAUSE = 0.2
+"""s between looks whether a report is there"""
+
 
 class AfterRestart(StrEnum):
     """What becomes of a run that was under way when the service was killed."""
@@ -186,11 +190,15 @@ class RunHost:
         return EntryList(count=len(entries), entries=entries[since : since + most])
 
     async def report(self, run: str, file: str) -> bytes:
-        """A file of the report of a run. Raises NotFound, with why it is not there and what there
-        is instead."""
-        if (content := await self._disk.do(self._folder.report, run, file)) is not None:
-            return content
-        making = any(worker.run == run for worker in self._workers)
+        """A file of the report of a run; of one that has just ended, once it is made. Raises
+        NotFound, with why it is not there and what there is instead."""
+        for _ in range(_REPORT_LOOKS):
+            if (content := await self._disk.do(self._folder.report, run, file)) is not None:
+                return content
+            making = any(worker.run == run for worker in self._workers)
+            if not making or (await self.read(run)).status is not RunStatus.ENDED:
+                break
+            await asyncio.sleep(_REPORT_PAUSE)
         journal = await self._disk.do(self._folder.last_journal, run)
         raise missing_report(await self.read(run), file, journal, making)
 

@@ -67,6 +67,8 @@ class Visitor:
 
     role: AccessRole
     author: str
+    named: bool = False
+    """whether the token says who it is"""
 
     def require(self, role: AccessRole) -> None:
         """Raises AccessDenied."""
@@ -102,7 +104,7 @@ def visitor(token: AccessToken, headers: Mapping[str, str], query: Mapping[str, 
     """Who has sent a request with that token. Raises Invalid for what can't be a name."""
     said = headers.get(AUTHOR_HEADER) or query.get("author")
     if token.name is not None or not said:
-        return Visitor(token.role, token.name or "somebody")
+        return Visitor(token.role, token.name or "somebody", token.name is not None)
     author = unquote(said)
     require_name(author, "whoever sends this")
     return Visitor(token.role, author)

@@ -42,6 +42,8 @@ class ServiceSummary(Model):
     """its version"""
     site: str
     author: str
+    named: bool
+    """whether the token says who asks, whatever they say themselves"""
     role: AccessRole
 
 
@@ -50,7 +52,11 @@ async def read_service(service: Service, visitor: Viewer) -> Response:
     """What the service is, and what whoever asks may do."""
     return said(
         ServiceSummary(
-            argo=__version__, site=service.site.name, author=visitor.author, role=visitor.role
+            argo=__version__,
+            site=service.site.name,
+            author=visitor.author,
+            named=visitor.named,
+            role=visitor.role,
         )
     )
 

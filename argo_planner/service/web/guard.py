@@ -204,7 +204,8 @@ def _protected(scope: Scope, send: Send) -> Send:
     async def sending(message: Message) -> None:
         if message["type"] == "http.response.start":
             headers = MutableHeaders(scope=message)
-            headers.update(_HEADERS)
+            for name, value in _HEADERS.items():
+                headers.setdefault(name, value)
             if api and "cache-control" not in headers:
                 headers["cache-control"] = "no-store"
         await send(message)

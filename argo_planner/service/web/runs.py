@@ -35,6 +35,11 @@ from argo_planner.service.web.requests import (
     said,
 )
 
+# A report is one file, with its styles in it; it runs nothing and loads nothing.
+_REPORT_POLICY = (
+    "default-src 'none'; style-src 'unsafe-inline'; img-src data:; frame-ancestors 'none'"
+)
+
 router = APIRouter(
     prefix="/api",
     tags=["runs"],
@@ -215,7 +220,8 @@ async def read_report(
     if file not in media:
         raise NotFound(f"the report has no file {file!r}; it has: {', '.join(media)}")
     content = await service.runs.report(run, file)
-    return Response(content, media_type=media[file])
+    headers = {"content-security-policy": _REPORT_POLICY} if file == PAGE else None
+    return Response(content, media_type=media[file], headers=headers)
 
 
 socket_router = APIRouter()

@@ -37,6 +37,8 @@ class DescribedFloor(Model):
     """m, around its walkways"""
     plates: tuple[Rect, ...]
     """m, its deck without the openings, in rectangles that do not overlap"""
+    corners: tuple[Pose, ...] = ()
+    """of a patrol of the floor, in its order"""
 
 
 class DescribedCheckpoint(Model):
@@ -136,6 +138,7 @@ def describe(site: OpenedSite, obstacles: Sequence[Obstacle] = ()) -> WorldDescr
     """The description of a site with obstacles on it."""
     plan, spec = site.site, site.site.spec
     navigator = with_obstacles(site, obstacles).navigator
+    patrols = {floor.number: floor.patrol for floor in site.catalog.floors}
     return WorldDescription(
         name=plan.name,
         title=spec.title,
@@ -143,7 +146,7 @@ def describe(site: OpenedSite, obstacles: Sequence[Obstacle] = ()) -> WorldDescr
         ground=spec.ground,
         ground_z=spec.ground_z,
         headings=tuple(heading_angle(k) for k in range(HEADINGS)),
-        floors=tuple(_floor(floor, spec.storey) for floor in spec.floors),
+        floors=tuple(_floor(floor, spec.storey, patrols[floor.number]) for floor in spec.floors),
         checkpoints=tuple(_checkpoint(c, navigator) for c in plan.checkpoints),
         docks=tuple(DescribedDock(area=n, pose=p) for n, p in sorted(plan.docks.items())),
         places=tuple(DescribedPlace(name=name, pose=pose) for name, pose in plan.places.items()),
@@ -160,7 +163,7 @@ def world_digest(site: OpenedSite, obstacles: Sequence[Obstacle] = ()) -> str:
     return sink.hexdigest()
 
 
-def _floor(floor: FloorSpec, storey: float) -> DescribedFloor:
+def _floor(floor: FloorSpec, storey: float, patrol: tuple[Pose, ...]) -> DescribedFloor:
     walkways = tuple(floor.walkways.values())
     plates = Deck.from_rectangles(walkways, tuple(floor.openings.values())).plates()
     x0, y0, x1, y1 = zip(*walkways, strict=True)
@@ -171,6 +174,7 @@ def _floor(floor: FloorSpec, storey: float) -> DescribedFloor:
         storey=storey,
         bounds=(min(x0), min(y0), max(x1), max(y1)),
         plates=tuple(plates),
+        corners=patrol,
     )
 
 

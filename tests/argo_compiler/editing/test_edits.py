@@ -495,3 +495,8 @@ def test_what_comes_before_what_is_renamed_and_goes_with_its_tasks():
     with pytest.raises(EditConflict):
         editing.set_header(turned, before=(("A", "C"),))
     assert editing.set_header(mission, before=()).mission.before == ()
+
+
+def test_a_mission_without_tasks_can_be_given_its_duration() -> None:
+    edited = editing.set_header(Mission(tasks=()), max_duration=1200.0)
+    assert edited.mission.max_duration == 1200

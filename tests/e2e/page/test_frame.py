@@ -98,3 +98,41 @@ def test_german_is_spoken_where_the_browser_does(browsers, address) -> None:
 
 
 POSE = json.loads('{"x": 3.05, "y": 1.55, "z": 0.0, "yaw": 0.0}')
+
+
+def test_the_focus_is_never_lost(ann) -> None:
+    """Where what has the focus goes, it goes to what is beside it."""
+    focused = """() => {
+        let at = document.activeElement;
+        while (at?.shadowRoot?.activeElement) at = at.shadowRoot.activeElement;
+        return at?.getAttribute("aria-label") ?? at?.textContent.trim() ?? "";
+    }"""
+
+    def expect_focus(said: str) -> None:
+        ann.until(lambda: said in ann.ask(focused), f"the focus is on {said}")
+
+    ann.button("New mission").focus()
+    ann.key("Enter")
+    expect(ann.page.get_by_role("tree")).to_be_focused()
+    name = ann.page.locator("argo-topbar button.name")
+    name.focus()
+    ann.key("Enter")
+    ann.type("Rounds")
+    ann.key("Enter")
+    expect(name).to_have_text("Rounds")
+    expect(name).to_be_focused()
+    ann.page.get_by_role("button", name="What is shown").focus()
+    ann.key("Enter", "Tab", "Escape")
+    expect_focus("What is shown")
+    ann.page.get_by_role("button", name="Mission: copy").focus()
+    ann.key("Enter", "Tab", "Escape")
+    expect(ann.page.locator("argo-mission-menu [popover]")).to_be_hidden()
+    expect_focus("Mission: copy")
+    ann.page.get_by_role("tree").focus()
+    for _ in range(2):
+        ann.key("Control+v")  # nothing that could be pasted
+        expect(ann.page.locator("argo-notices article")).to_have_count(1)
+        ann.button("Dismiss").focus()
+        ann.key("Enter")
+        expect(ann.page.locator("argo-notices article")).to_have_count(0)
+        ann.page.get_by_role("tree").focus()

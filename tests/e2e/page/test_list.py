@@ -55,13 +55,13 @@ def order(person: Person, *names: str) -> None:
 
 def test_checkpoints_are_added_by_keys_one_after_the_other(ann, service, plan) -> None:
     ann.page.get_by_role("tree").focus()
-    ann.key("End")
+    ann.key("End", "m")
     for number in ("14", "2"):
-        ann.key("m")
         ann.type(number)
         ann.key("Enter")
     order(ann, "START", "A1", "B2", "C4", "MEASURE 14", "MEASURE 2")
-    assert ann.inputs == 1 + 4 + 3
+    ann.key("Escape", "ArrowUp")
+    expect(row(ann, "MEASURE 14")).to_have_attribute("aria-selected", "true")
     objects = [task["object_id"] for task in mission(service, plan)["tasks"][-2:]]
     assert objects == ["14", "2"]
 
@@ -139,15 +139,61 @@ def test_tasks_are_copied_and_pasted(ann) -> None:
     order(ann, "START", "A1", "B2", "C4", "A1 (2)")
 
 
-def test_a_task_is_renamed_in_its_place(ann) -> None:
+def test_a_group_is_copied_with_what_it_says(ann, service, plan) -> None:
+    ann.context.grant_permissions(["clipboard-read", "clipboard-write"])
+    ann.click(row(ann, "A1"))
+    ann.click(row(ann, "B2"), modifiers=["Shift"])
+    ann.key("g")
+    rounds = ann.page.get_by_label("Rounds")
+    rounds.fill("3")
+    rounds.press("Enter")
+    ann.click(row(ann, "Round"))
+    ann.key("Control+c", "Control+v")
+    order(ann, "START", "Round", "A1", "B2", "Round (2)", "A1 (2)", "B2 (2)", "C4")
+    groups = mission(service, plan)["groups"]
+    assert [group["max_repeat_count"] for group in groups] == [3, 3]
+
+
+def test_a_task_is_renamed_in_its_place_once(ann, service, plan) -> None:
+    before = service.client.get(f"/api/missions/{plan}").json()["revision"]
     ann.click(row(ann, "B2"))
     ann.key("F2", "Control+a")
     ann.type("Pump")
     ann.key("Enter")
     order(ann, "START", "A1", "Pump", "C4")
     assert ann.ask("() => document.activeElement.tagName") == "ARGO-APP"
+    assert service.client.get(f"/api/missions/{plan}").json()["revision"] == before + 1
+    expect(ann.page.locator("argo-notices article")).to_have_count(0)
     ann.key("ArrowDown")
     expect(row(ann, "C4")).to_have_attribute("aria-selected", "true")
+
+
+def test_a_name_that_is_refused_stays_in_the_field(ann) -> None:
+    ann.click(row(ann, "B2"))
+    ann.key("F2", "Control+a")
+    ann.type("C4")
+    ann.key("Enter")
+    expect(ann.page.locator("argo-notices article")).to_contain_text("C4")
+    field = ann.page.locator("argo-list input")
+    expect(field).to_have_value("C4")
+    expect(field).to_be_focused()
+    ann.key("Escape")
+    order(ann, "START", "A1", "B2", "C4")
+    ann.key("Escape")
+    expect(ann.page.locator("argo-notices article")).to_have_count(0)
+    expect(row(ann, "B2")).to_have_attribute("aria-selected", "true")
+
+
+def test_a_place_is_a_waypoint_where_something_is_planned(ann, service, plan) -> None:
+    gone = {"kind": "remove_task", "name": "START"}
+    assert service.command(plan, "*", gone).status_code == 200
+    order(ann, "A1", "B2", "C4")
+    ann.click(row(ann, "C4"))
+    ann.key("w")
+    ann.type("dock")
+    ann.key("Enter")
+    order(ann, "A1", "B2", "C4", "DOCK")
+    assert mission(service, plan)["tasks"][-1]["action"] == "WAYPOINT"
 
 
 def test_a_form_takes_times_as_people_write_them(ann, service, plan) -> None:
@@ -166,7 +212,7 @@ def test_a_form_takes_times_as_people_write_them(ann, service, plan) -> None:
 
 def test_a_condition_is_made_in_the_form(ann, service, plan) -> None:
     ann.click(row(ann, "A1"))
-    ann.click(ann.button("Another way on a condition"))
+    ann.click(ann.button("Go elsewhere on a condition"))
     ann.page.get_by_label("is", exact=True).select_option("MEASURED_VALUE_LESS")
     bound = ann.page.get_by_label("Value", exact=True)
     bound.fill("2,5")

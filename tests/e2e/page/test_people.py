@@ -75,6 +75,73 @@ def test_a_stale_edit_says_what_was_changed(browsers, plan, service) -> None:
         ann.complaints[:] = [said for said in ann.complaints if "WebSocket connection" not in said]
 
 
+def test_a_mission_is_not_left_before_all_is_sent(browsers, plan, service) -> None:
+    with Line(service.address) as line:
+        ann = at(browsers, f"http://{line.address}/?token={ALL}", plan, "Ann")
+        ann.click(row(ann, "A1"))
+        line.cut()
+        expect(ann.saved).to_contain_text("Offline")
+        ann.key("Delete")
+        ann.click(ann.button("All missions"))
+        expect(ann.page.get_by_role("log")).to_contain_text("has not been sent")
+        expect(ann.page.get_by_role("tree")).to_be_visible()
+        line.mend()
+        order(ann, "START", "B2", "C4")
+        ann.click(ann.button("All missions"))
+        expect(ann.button("New mission")).to_be_visible()
+        assert tasks(service, plan) == ["START", "B2", "C4"]
+        ann.complaints[:] = [said for said in ann.complaints if "WebSocket connection" not in said]
+
+
+def test_who_deletes_what_one_works_on_is_told_with_what_was_typed(
+    browsers, address, plan, service
+) -> None:
+    ann = at(browsers, address, plan, "Ann")
+    ann.click(row(ann, "A1"))
+    field = ann.page.get_by_label("Speed on the way there")
+    field.click()
+    ann.type("0.2")
+    bob = service.as_("Bob")
+    gone = {"kind": "remove_task", "name": "A1"}
+    assert service.command(plan, "*", gone, client=bob).status_code == 200
+    expect(ann.page.get_by_role("log")).to_contain_text("Bob has deleted or renamed A1")
+    expect(ann.page.get_by_role("log")).to_contain_text("0.2")
+
+
+def test_a_mission_that_is_deleted_leaves_nothing_under_the_next_key(
+    browsers, address, plan, service
+) -> None:
+    ann = at(browsers, address, plan, "Ann")
+    before = len(service.client.get("/api/missions").json()["missions"])
+    service.as_("Bob").delete(f"/api/missions/{plan}")
+    expect(ann.page.get_by_role("log")).to_contain_text("has deleted the mission")
+    expect(ann.button("New mission")).to_be_visible()
+    ann.key("Enter")
+    ann.page.wait_for_timeout(300)
+    assert len(service.client.get("/api/missions").json()["missions"]) == before - 1
+
+
+def test_obstacles_that_were_put_up_meanwhile_are_heard_of(
+    browsers, address, plan, service
+) -> None:
+    ann = browsers.person(address)
+    ann.open()
+    expect(ann.button("New mission")).to_be_enabled()
+    box = {"id": "box", "name": "", "pose": {"x": 8, "y": 1.6, "z": 0, "yaw": 0}, "size": [1, 1, 1]}
+    answer = service.client.put(
+        "/api/world/obstacles", json={"obstacles": [box]}, headers={"if-match": "*"}
+    )
+    assert answer.status_code == 200
+    ann.page.goto(f"{address}#/missions/{plan}")
+    ann.idle()
+    ann.key("n")
+    ann.until(
+        lambda: ann.ask("() => window.argo.standing(8, 1.6, 0, 0)") == "closed",
+        "the ground is closed there",
+    )
+    service.client.put("/api/world/obstacles", json={"obstacles": []}, headers={"if-match": "*"})
+
+
 def away(browsers: Any, service: Served, plan: str, seconds: float) -> None:
     """Somebody works on while their line is cut for a time, and nothing of theirs is lost."""
     with Line(service.address) as line:

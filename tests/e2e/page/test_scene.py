@@ -124,3 +124,27 @@ def test_an_obstacle_closes_the_ground(ann, service) -> None:
         "the ground is closed there",
     )
     service.client.put("/api/world/obstacles", json={"obstacles": []}, headers={"if-match": "*"})
+
+
+def test_an_obstacle_is_put_up_by_keys_alone(ann, service) -> None:
+    floor(ann, 1)
+    ann.page.get_by_role("tree").focus()
+    ann.key("o", "Shift+ArrowLeft", "Enter", "Shift+ArrowRight", "Shift+ArrowUp", "Enter")
+    expect(ann.page.locator("argo-obstacle-form #name")).to_be_focused()
+    ann.type("Box")
+    ann.key("Enter")
+    (box,) = ann.until(
+        lambda: service.client.get("/api/world/obstacles").json()["obstacles"], "it stands there"
+    )
+    assert box["name"] == "Box"
+    assert box["size"][:2] == [0.5, 0.5]
+    service.client.put("/api/world/obstacles", json={"obstacles": []}, headers={"if-match": "*"})
+
+
+def test_the_tool_is_moved_by_keys_at_once_and_put_away(ann) -> None:
+    floor(ann, 1)
+    ann.page.get_by_role("tree").focus()
+    ann.key("n", "ArrowUp")
+    expect(ann.page.locator("argo-scene #verdict")).to_be_visible()
+    ann.key("Escape")
+    expect(ann.page.get_by_role("tree")).to_be_focused()

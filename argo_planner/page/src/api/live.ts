@@ -23,6 +23,7 @@ export class LiveConnection<Message> {
   constructor(private readonly telling: Telling<Message>) {
     this.connect();
     addEventListener("online", this.retry);
+    addEventListener("offline", this.lost);
   }
 
   send(message: object): void {
@@ -32,8 +33,24 @@ export class LiveConnection<Message> {
   close(): void {
     this.closed = true;
     removeEventListener("online", this.retry);
+    removeEventListener("offline", this.lost);
     clearTimeout(this.waiting);
     this.socket?.close();
+  }
+
+  /** The browser has no network: the socket itself would notice only minutes later. */
+  private readonly lost = (): void => {
+    const socket = this.socket;
+    if (socket === null) return;
+    this.socket = null;
+    socket.close();
+    this.ended();
+  };
+
+  private ended(): void {
+    this.telling.changed(false);
+    this.waiting = setTimeout(this.retry, this.pause * (0.75 + Math.random() / 2));
+    this.pause = Math.min(2 * this.pause, LATEST_MS);
   }
 
   private readonly retry = (): void => {
@@ -48,24 +65,22 @@ export class LiveConnection<Message> {
     const socket = new WebSocket(url);
     this.socket = socket;
     socket.onopen = () => {
+      if (this.socket !== socket) return;
       this.pause = SOONEST_MS;
       this.telling.changed(true);
     };
     socket.onmessage = (event: MessageEvent<string>) => {
+      if (this.socket !== socket) return;
       this.telling.heard(JSON.parse(event.data) as Message);
     };
     socket.onclose = (event) => {
       if (this.socket !== socket) return;
       this.socket = null;
       if (this.closed) return;
+      if (event.code !== GONE) return this.ended();
+      this.closed = true;
       this.telling.changed(false);
-      if (event.code === GONE) {
-        this.closed = true;
-        this.telling.gone?.();
-        return;
-      }
-      this.waiting = setTimeout(this.retry, this.pause * (0.75 + Math.random() / 2));
-      this.pause = Math.min(2 * this.pause, LATEST_MS);
+      this.telling.gone?.();
     };
   }
 }

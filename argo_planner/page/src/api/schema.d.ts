@@ -1666,6 +1666,11 @@ export interface components {
                 number,
                 number
             ])[];
+            /**
+             * Corners
+             * @default []
+             */
+            readonly corners: readonly components["schemas"]["Pose"][];
         };
         /**
          * DescribedPlace
@@ -3692,6 +3697,10 @@ export interface components {
             readonly client: string;
             /** Revision */
             readonly revision: number;
+            /** Name */
+            readonly name: string;
+            /** Versions */
+            readonly versions: readonly components["schemas"]["VersionSummary"][];
             /** Members */
             readonly members: readonly components["schemas"]["Member"][];
         };
@@ -3961,6 +3970,8 @@ export interface components {
             readonly site: string;
             /** Author */
             readonly author: string;
+            /** Named */
+            readonly named: boolean;
             readonly role: components["schemas"]["AccessRole"];
         };
         /**

@@ -1,6 +1,7 @@
 /** A field of a form. What is typed is kept until it is right: a refusal is said beside it, and what
  * others do meanwhile does not overwrite it. */
 
+import { tell } from "../state/notices";
 import { t } from "../texts";
 import { css, customElement, html, look, nothing, PageElement, property, state } from "../ui/element";
 
@@ -87,7 +88,7 @@ export class FormField extends PageElement {
   override willUpdate(changes: Map<string, unknown>): void {
     if (changes.has("value") && this.typed !== null && changes.get("value") !== undefined) {
       this.overtaken = this.typed !== this.value;
-      if (!this.overtaken) this.typed = null;
+      if (!this.overtaken) this.forget();
     }
   }
 
@@ -126,6 +127,7 @@ export class FormField extends PageElement {
         ?disabled=${this.disabled}
         @input=${this.onInput}
         @change=${this.onChange}
+        @keydown=${this.onKey}
       ></textarea>`;
     else
       field = html`<input
@@ -168,7 +170,7 @@ export class FormField extends PageElement {
   }
 
   private onKey(event: KeyboardEvent): void {
-    if (event.key === "Enter") void this.take((event.target as HTMLInputElement).value);
+    if (event.key === "Enter" && this.kind !== "long") void this.take((event.target as HTMLInputElement).value);
     else if (event.key === "Escape" && this.typed !== null && !this.taking) this.forget();
     else return;
     event.preventDefault();
@@ -183,11 +185,17 @@ export class FormField extends PageElement {
 
   private async take(typed: string): Promise<void> {
     if (typed === this.value) return this.forget();
+    if (this.taking && typed === this.typed) return; // Enter, and then the focus went
     this.typed = typed;
     this.overtaken = false;
     this.taking = true;
-    const wrong = await this.commit(typed);
-    this.taking = false;
+    let wrong: string | null;
+    try {
+      wrong = await this.commit(typed);
+    } finally {
+      this.taking = false;
+    }
+    if (wrong !== null && !this.isConnected) tell("bad", `${this.label}: ${wrong}`, { details: [typed] });
     if (this.typed !== typed) return;
     if (wrong === null) this.forget();
     else this.wrong = wrong;

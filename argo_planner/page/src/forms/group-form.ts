@@ -8,18 +8,20 @@ import { mayPlan } from "../state/session";
 import { t } from "../texts";
 import { html } from "../ui/element";
 import { conditionList } from "./conditions";
-import { checkField, numberField, optionsOf, selectField, textField, timeField } from "./parts";
+import { checkField, countField, optionsOf, selectField, textField, timeField } from "./parts";
 
 type Fields = Partial<Omit<Group, "name" | "source">>;
 
 export function groupForm(group: Group) {
   const texts = t().forms;
-  const set = (fields: Fields) => editHere(() => [{ kind: "change_group", name: group.name, ...fields }]);
-  const saveUntil = (change: (was: Group["until"]) => Group["until"]) =>
+  const setOf = (change: (was: Group) => Fields) =>
     editHere(() => {
-      const now = mission.value?.groups.find((one) => one.name === group.name) ?? group;
-      return [{ kind: "change_group", name: group.name, until: change(now.until) }];
+      const was = mission.value?.groups.find((one) => one.name === group.name) ?? group;
+      return [{ kind: "change_group", name: group.name, ...change(was) }];
     });
+  const set = (fields: Fields) => setOf(() => fields);
+  const saveUntil = (change: (was: Group["until"]) => Group["until"]) =>
+    setOf((was) => ({ until: change(was.until) }));
   const tasks = (mission.value?.tasks ?? []).map(({ name }) => ({ value: name, label: name }));
   const rename = async (name: string) => {
     const own_name = name.trim();
@@ -30,15 +32,15 @@ export function groupForm(group: Group) {
   };
   return html`<h2>${texts.group}</h2>
     ${textField(texts.name, ownName(group.name), rename)}
-    ${numberField(texts.rounds, group.max_repeat_count || null, (count) =>
+    ${countField(texts.rounds, group.max_repeat_count || null, (count) =>
       set({ max_repeat_count: count ?? 0 }),
     )}
     ${timeField(texts.duration, group.max_repeat_duration || null, (time) =>
       // One round is what a new group has: with a time it is to go round until that is up.
-      set({
+      setOf((was) => ({
         max_repeat_duration: time ?? 0,
-        ...(group.max_repeat_count === 1 && time ? { max_repeat_count: 0 } : {}),
-      }),
+        ...(was.max_repeat_count === 1 && time ? { max_repeat_count: 0 } : {}),
+      })),
     )}
     ${group.max_repeat_duration > 0
       ? html`${selectField(texts.stop, group.stop, optionsOf(texts.stops), (stop) =>

@@ -1,7 +1,8 @@
 /** The form of the mission as a whole. */
 
 import type { Mission } from "../api/types";
-import { edit, editHere } from "../state/commands";
+import { editHere } from "../state/commands";
+import { mission as open } from "../state/plan";
 import { mayPlan } from "../state/session";
 import { world } from "../state/world";
 import { t } from "../texts";
@@ -10,15 +11,20 @@ import { optionsOf, poseFields, selectField, textField, timeField } from "./part
 
 type Fields = Partial<Omit<Mission, "version" | "tasks" | "groups" | "reactions">>;
 
+/** Sets fields of the mission, of what it is by then. */
+function setOf(change: (now: Mission) => Fields): Promise<string | null> {
+  return editHere(() => (open.value === null ? [] : [{ kind: "set_header", ...change(open.value) }]));
+}
+
 export function headerForm(mission: Mission) {
   const texts = t().forms;
-  const set = (fields: Fields) => editHere(() => [{ kind: "set_header", ...fields }]);
+  const set = (fields: Fields) => setOf(() => fields);
   const areas = (world.value?.docks ?? []).map((dock) => ({
     value: String(dock.area),
     label: texts.area(dock.area),
   }));
   const area = (value: string) => (value === "" ? null : Number(value));
-  const open = [{ value: "", label: texts.notSaid }, ...areas];
+  const unsaid = [{ value: "", label: texts.notSaid }, ...areas];
   return html`<h2>${texts.mission}</h2>
     <p class="dim">${texts.chooseSomething}</p>
     ${textField(texts.designation, mission.designation, (designation) => set({ designation }))}
@@ -30,14 +36,14 @@ export function headerForm(mission: Mission) {
       set({ order: order as Mission["order"] }),
     )}
     <div class="two">
-      ${selectField(texts.startArea, String(mission.start_area ?? ""), open, (value) =>
+      ${selectField(texts.startArea, String(mission.start_area ?? ""), unsaid, (value) =>
         set({ start_area: area(value) }),
       )}
-      ${selectField(texts.endArea, String(mission.end_area ?? ""), open, (value) =>
+      ${selectField(texts.endArea, String(mission.end_area ?? ""), unsaid, (value) =>
         set({ end_area: area(value) }),
       )}
     </div>
-    ${poseFields(texts.homeDock, mission.dock, (dock) => set({ dock }), texts.none)}
+    ${poseFields(texts.homeDock, mission.dock, (change) => setOf((now) => ({ dock: change(now.dock ?? null) })), texts.none)}
     ${textField(texts.anomalies, mission.anomaly_specification, (anomaly_specification) =>
       set({ anomaly_specification }), "long")}
     ${textField(texts.reporting, mission.real_time_reporting, (real_time_reporting) =>
@@ -48,17 +54,16 @@ export function headerForm(mission: Mission) {
       ? html`<h3>${texts.before}</h3>
           <ul>
             ${mission.before.map(
-              ([first, second], index) =>
+              ([first, second]) =>
                 html`<li>
                   ${texts.comesBefore(first, second)}
                   <button
                     class="bare"
                     ?disabled=${!mayPlan()}
                     @click=${() =>
-                      edit({
-                        kind: "set_header",
-                        before: mission.before.filter((_, at) => at !== index),
-                      })}
+                      setOf((now) => ({
+                        before: now.before.filter(([one, other]) => one !== first || other !== second),
+                      }))}
                   >
                     ${texts.remove}
                   </button>

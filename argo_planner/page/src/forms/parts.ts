@@ -67,6 +67,30 @@ export function numberField(
   return plain(label, value === null || value === undefined ? "" : String(value), take, options);
 }
 
+/** A whole number; empty is null. */
+export function countField(
+  label: string,
+  value: number | null | undefined,
+  commit: (value: number | null) => ReturnType<Commit>,
+  options: FieldOptions = {},
+) {
+  const take = (number: number | null) =>
+    number === null || (Number.isInteger(number) && number >= 0) ? commit(number) : t().forms.noCount;
+  return numberField(label, value, take, options);
+}
+
+/** A speed (m/s), at most what the robot drives; empty is null. */
+export function speedField(
+  label: string,
+  value: number | null | undefined,
+  commit: (value: number | null) => ReturnType<Commit>,
+) {
+  const most = world.value?.robot.speed ?? Infinity;
+  const take = (speed: number | null) =>
+    speed === null || (speed > 0 && speed <= most) ? commit(speed) : t().forms.tooFast(most);
+  return numberField(label, value, take, { note: "m/s", placeholder: Number.isFinite(most) ? String(most) : "" });
+}
+
 /** A time, held in s; empty is null. */
 export function timeField(
   label: string,
@@ -106,11 +130,14 @@ export function checkpointOptions(): Option[] {
   }));
 }
 
+/** What becomes of a pose, of what it is by the time that it is changed. */
+export type PoseChange = (was: Pose | null) => Pose | null;
+
 /** A place on the site: a named one, or where exactly. */
 export function poseFields(
   label: string,
   pose: Pose | null | undefined,
-  commit: (pose: Pose | null) => ReturnType<Commit>,
+  commit: (change: PoseChange) => ReturnType<Commit>,
   none: string | null,
 ) {
   const texts = t().forms;
@@ -128,14 +155,15 @@ export function poseFields(
   ];
   const choose = (value: string) => {
     if (value === "own") return null;
-    return commit(value === "" ? null : (named[Number(value)]?.pose ?? null));
+    const chosen = value === "" ? null : (named[Number(value)]?.pose ?? null);
+    return commit(() => chosen);
   };
   const value = !pose ? "" : at < 0 ? "own" : String(at);
   const part = (name: string, key: "x" | "y" | "z", digits: number) =>
     numberField(
       name,
       pose ? round(pose[key], digits) : null,
-      (number) => (pose && number !== null ? commit({ ...pose, [key]: number }) : texts.noNumber),
+      (number) => (number === null ? texts.noNumber : commit((was) => was && { ...was, [key]: number })),
       { note: "m" },
     );
   return html`${selectField(label, value, options, choose)}
@@ -146,7 +174,9 @@ export function poseFields(
           texts.heading,
           round((pose.yaw * 180) / Math.PI, 1),
           (degrees) =>
-            degrees === null ? texts.noNumber : commit({ ...pose, yaw: (degrees * Math.PI) / 180 }),
+            degrees === null
+              ? texts.noNumber
+              : commit((was) => was && { ...was, yaw: (degrees * Math.PI) / 180 }),
           { note: "°" },
         )}
       </div>`

@@ -5,13 +5,13 @@ import { keyed } from "lit/directives/keyed.js";
 import type { Task } from "../api/types";
 import { isTaskKey, nameOfKey } from "../model/outline";
 import { editHere } from "../state/commands";
-import { mission, selection, tasksByName } from "../state/plan";
+import { mission, planId, selection, tasksByName } from "../state/plan";
 import { t } from "../texts";
 import { css, customElement, html, look, nothing, PageElement } from "../ui/element";
 import type { FormField } from "./field";
 import { groupForm } from "./group-form";
 import { headerForm } from "./header-form";
-import { checkField, numberField, optionsOf, selectField } from "./parts";
+import { checkField, countField, optionsOf, selectField, speedField } from "./parts";
 import { reactionForm } from "./reaction-form";
 import { taskForm } from "./task-form";
 
@@ -100,8 +100,9 @@ export class PropertiesPanel extends PageElement {
       const task = tasksByName.value.get(nameOfKey(one));
       return task ? [task] : [];
     });
-    if (tasks.length > 1) return severalForm(tasks);
-    if (key === undefined) return headerForm(open);
+    const whole = () => keyed(planId.value, headerForm(open));
+    if (tasks.length > 1) return html`${keyed(keys.join("\n"), severalForm(tasks))}`;
+    if (key === undefined) return html`${whole()}`;
     const name = nameOfKey(key);
     const task = tasks[0];
     const group = open.groups.find((one) => one.name === name);
@@ -110,7 +111,7 @@ export class PropertiesPanel extends PageElement {
     if (isTaskKey(key) && task) form = taskForm(task);
     else if (key.startsWith("group:") && group) form = groupForm(group);
     else if (reaction) form = reactionForm(reaction);
-    else return headerForm(open);
+    else return html`${whole()}`;
     return html`${keyed(key, form)}`;
   }
 }
@@ -125,8 +126,8 @@ function severalForm(tasks: readonly Task[]) {
     return first && tasks.every((one) => one[key] === first[key]) ? first[key] : null;
   };
   return html`<h2>${texts.several(tasks.length)}</h2>
-    ${numberField(texts.speed, shared("velocity"), (velocity) => set({ velocity }), { note: "m/s" })}
-    ${numberField(texts.retries, shared("retries"), (retries) => set({ retries: retries ?? 0 }))}
+    ${speedField(texts.speed, shared("velocity"), (velocity) => set({ velocity }))}
+    ${countField(texts.retries, shared("retries"), (retries) => set({ retries: retries ?? 0 }))}
     ${selectField(
       texts.onFailure,
       shared("on_failure") ?? "",
@@ -134,7 +135,7 @@ function severalForm(tasks: readonly Task[]) {
       (value) => set({ on_failure: value as Task["on_failure"], failure_target: null }),
     )}
     ${checkField(texts.optional, shared("optional") ?? false, (optional) => set({ optional }))}
-    ${numberField(texts.priority, shared("priority"), (priority) =>
+    ${countField(texts.priority, shared("priority"), (priority) =>
       set({ priority: priority ?? 1 }),
     )}`;
 }

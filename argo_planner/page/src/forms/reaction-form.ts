@@ -8,19 +8,22 @@ import { mayPlan } from "../state/session";
 import { world } from "../state/world";
 import { t } from "../texts";
 import { html, nothing } from "../ui/element";
-import { numberField, optionsOf, poseFields, selectField, timeField } from "./parts";
+import { countField, numberField, optionsOf, poseFields, selectField, timeField } from "./parts";
 
 export function reactionForm(reaction: Reaction) {
   const texts = t().forms;
-  const save = async (change: Partial<Reaction>) => {
-    const { event } = reaction;
+  const saveOf = async (change: (was: Reaction) => Partial<Reaction>) => {
+    let event = reaction.event;
     const wrong = await editHere(() => {
-      const now = mission.value?.reactions.find((one) => one.event === event) ?? reaction;
-      return [{ kind: "change_reaction", event, reaction: { ...now, ...change, source: null } }];
+      const was = mission.value?.reactions.find((one) => one.event === reaction.event) ?? reaction;
+      const now = { ...was, ...change(was), source: null };
+      event = now.event;
+      return [{ kind: "change_reaction", event: reaction.event, reaction: now }];
     });
-    if (wrong === null) select([reactionKey(change.event ?? event)]);
+    if (wrong === null) select([reactionKey(event)]);
     return wrong;
   };
+  const save = (change: Partial<Reaction>) => saveOf(() => change);
   const had = new Set(mission.value?.reactions.map((one) => one.event));
   const events = optionsOf(t().words.event).filter(
     ({ value }) => value === reaction.event || !had.has(value as EventKind),
@@ -40,13 +43,17 @@ export function reactionForm(reaction: Reaction) {
         )
       : nothing}
     ${selectField(texts.response, reaction.response, optionsOf(t().words.response), (response) =>
-      save(responding(reaction, response as Reaction["response"])),
+      saveOf((was) => responding(was, response as Reaction["response"])),
     )}
     ${drives
       ? poseFields(
           texts.where,
           reaction.pose,
-          (pose) => save({ pose, area: areaOf(pose) }),
+          (change) =>
+            saveOf((was) => {
+              const pose = change(was.pose ?? null);
+              return { pose, area: areaOf(pose) };
+            }),
           reaction.response === "return" ? texts.ownDock : null,
         )
       : nothing}
@@ -69,7 +76,7 @@ export function reactionForm(reaction: Reaction) {
           save({ afterwards: value as Reaction["afterwards"] }),
         )
       : nothing}
-    ${numberField(texts.rank, reaction.priority, (priority) => save({ priority }), {
+    ${countField(texts.rank, reaction.priority, (priority) => save({ priority }), {
       placeholder: texts.byEvent,
     })}
     <button

@@ -6,7 +6,7 @@ import { edit, editHere } from "../state/commands";
 import { mission, select, tasksByName } from "../state/plan";
 import { mayPlan } from "../state/session";
 import { lookAt } from "../state/view";
-import { checkpointsById, world } from "../state/world";
+import { checkpointsById } from "../state/world";
 import { t } from "../texts";
 import { html, nothing } from "../ui/element";
 import { icon } from "../ui/icons";
@@ -14,10 +14,11 @@ import { aboveNormal, conditionList } from "./conditions";
 import {
   checkField,
   checkpointOptions,
-  numberField,
+  countField,
   optionsOf,
   poseFields,
   selectField,
+  speedField,
   textField,
   timeField,
 } from "./parts";
@@ -55,25 +56,21 @@ export function taskForm(task: Task) {
     ${task.action === "MEASURE" ? measuring(task, set) : nothing}
     ${task.action === "WAIT" ? waiting(task.wait ?? null, set) : nothing}
     ${task.action === "WAYPOINT" || task.action === "START"
-      ? poseFields(texts.place, task.pose, (pose) => set({ pose }), null)
+      ? poseFields(texts.place, task.pose, (change) => set((was) => ({ pose: change(was.pose ?? null) })), null)
       : nothing}
     ${task.action === "START" ? ways(task) : rest(task, set)}`;
 }
 
 function rest(task: Task, set: Save) {
   const texts = t().forms;
-  const robot = world.value?.robot;
   const moves = task.action !== "WAIT";
   return html`${moves
-      ? numberField(texts.speed, task.velocity, (velocity) => set({ velocity }), {
-          note: "m/s",
-          placeholder: robot ? String(robot.speed) : "",
-        })
+      ? speedField(texts.speed, task.velocity, (velocity) => set({ velocity }))
       : nothing}
     ${ways(task)}
     <details ?open=${task.on_failure !== "continue" || task.retries > 0}>
       <summary>${texts.failure}</summary>
-      ${numberField(texts.retries, task.retries, (retries) => set({ retries: retries ?? 0 }))}
+      ${countField(texts.retries, task.retries, (retries) => set({ retries: retries ?? 0 }))}
       ${timeField(texts.timeLimit, task.time_limit, (time_limit) => set({ time_limit }))}
       ${task.action === "MEASURE"
         ? timeField(texts.readingLimit, task.reading_limit, (reading_limit) =>
@@ -83,8 +80,7 @@ function rest(task: Task, set: Save) {
       ${selectField(texts.onFailure, task.on_failure, optionsOf(texts.failures), (value) => {
         const on_failure = value as Task["on_failure"];
         if (on_failure !== "branch") return set({ on_failure, failure_target: null });
-        const failure_target = task.failure_target ?? followers(task)[0]?.value ?? null;
-        return set({ on_failure, failure_target });
+        return set((was) => ({ on_failure, failure_target: was.failure_target ?? followers(was)[0]?.value ?? null }));
       })}
       ${task.on_failure === "branch"
         ? selectField(texts.goOnWith, task.failure_target ?? "", followers(task), (failure_target) =>
@@ -95,7 +91,7 @@ function rest(task: Task, set: Save) {
     <details ?open=${task.optional || task.window !== null}>
       <summary>${texts.when}</summary>
       ${checkField(texts.optional, task.optional, (optional) => set({ optional }))}
-      ${numberField(texts.priority, task.priority, (priority) => set({ priority: priority ?? 1 }))}
+      ${countField(texts.priority, task.priority, (priority) => set({ priority: priority ?? 1 }))}
       ${windowFields(task, set)}
     </details>
     ${task.joint_states
@@ -123,7 +119,7 @@ function measuring(task: Task, set: Save) {
           </p>
           ${checkpoint.problem ? html`<p class="error">${checkpoint.problem}</p>` : nothing}`
       : nothing}
-    ${poseFields(texts.standing, task.pose, (pose) => set({ pose }), texts.anywhere)}`;
+    ${poseFields(texts.standing, task.pose, (change) => set((was) => ({ pose: change(was.pose ?? null) })), texts.anywhere)}`;
 }
 
 function waiting(wait: WaitRule | null, set: Save) {

@@ -1,13 +1,14 @@
 /** Times as people write them. */
 
-/** The s of `90`, `90 s`, `1:30`, `1:30 min`, `1:05:00`, `10 min`, `1.5 h`, `2 h 30 min`; null for
- * what is none. */
+/** The s of `90`, `90 s`, `1:30`, `1:30 min`, `1:05:00`, `10 min`, `1.5 h`, `2 h 30 min`, `20'`; null
+ * for what is none. */
 export function readTime(text: string): number | null {
   const said = text.trim().toLowerCase().replaceAll(",", ".");
   const clock = /^(?:(\d+):)?(\d{1,3}):(\d{1,2}(?:\.\d+)?)(?:\s*(?:h|min|s))?$/.exec(said);
   if (clock)
     return 3600 * Number(clock[1] ?? 0) + 60 * Number(clock[2]) + Number(clock[3]);
-  const part = /(\d+(?:\.\d+)?)\s*(hours?|h|stunden?|std|minutes?|minuten?|min|m|seconds?|sekunden?|sec|s)?(?=\s|$|\d)/y;
+  const part =
+    /(\d+(?:\.\d+)?)\s*(hours?|h|stunden?|std|minutes?|minuten?|min|m|['′’]|seconds?|sekunden?|sec|s|["″])?(?=\s|$|\d)/y;
   let total = 0;
   let at = 0;
   while (at < said.length) {
@@ -36,7 +37,7 @@ export function writeTime(seconds: number): string {
 
 function secondsOf(unit: string): number {
   if (unit.startsWith("h") || unit.startsWith("st")) return 3600;
-  return unit.startsWith("m") ? 60 : 1;
+  return unit.startsWith("m") || "'′’".includes(unit) ? 60 : 1;
 }
 
 function round(value: number): number {

@@ -2,19 +2,20 @@
 
 import { effect, signal } from "@preact/signals-core";
 
+import { untilReached, pause } from "../api/trying";
 import "../forms/properties";
 import "../list/list";
 import "../route/route";
 import "../run/run";
 import "../script/script";
 import "../strip/strip";
-import { waiting } from "../state/commands";
+import { settled, waiting } from "../state/commands";
 import { closePlan, openPlan, planId, planName } from "../state/plan";
 import { followRobot } from "../state/run";
-import { beginSession, readService, service } from "../state/session";
+import { beginSession, readService } from "../state/session";
 import { tell, tellError } from "../state/notices";
 import { panel, type Panel } from "../state/view";
-import { readWorld, world } from "../state/world";
+import { readWorld } from "../state/world";
 import { css, customElement, html, look, PageElement } from "../ui/element";
 import { icon, type Icon } from "../ui/icons";
 import { t } from "../texts";
@@ -24,6 +25,7 @@ import "./notices";
 import "./topbar";
 
 const RETRY_MS = 1_000;
+const SENT_WITHIN_MS = 2_000;
 const PANELS: readonly (readonly [Panel, Icon])[] = [
   ["properties", "settings"],
   ["script", "script"],
@@ -122,8 +124,8 @@ export class ArgoApp extends PageElement {
   ];
 
   private readonly stop: (() => void)[] = [];
-  /** Whether the mission that the address names is being read. */
-  private readonly opening = signal(false);
+  /** The mission that the address names, while it is being read. */
+  private readonly opening = signal<string | null>(null);
 
   override connectedCallback(): void {
     super.connectedCallback();
@@ -155,42 +157,61 @@ export class ArgoApp extends PageElement {
   private async begin(): Promise<void> {
     void this.followAddress().then(readScene);
     followRobot();
-    while (service.value === null || world.value === null) {
-      try {
-        await Promise.all([readService(), readWorld()]);
-      } catch (error) {
-        tellError(error);
-        await pause(RETRY_MS);
-      }
-    }
+    const isWanted = () => {
+      tell("warn", t().frame.readAgain);
+      return true;
+    };
+    await untilReached(() => Promise.all([readService(), readWorld()]), isWanted, RETRY_MS).catch(tellError);
   }
 
   private readonly addressChanged = (): void => void this.followAddress();
 
+  /** Opens what the address says. Whatever is opened meanwhile goes before it. */
   private async followAddress(): Promise<void> {
-    const id = /^#\/missions\/([0-9a-f]+)$/.exec(location.hash)?.[1];
-    if (id === planId.value) return;
-    if (id === undefined) {
+    const id = namedMission();
+    if (id === (this.opening.value ?? planId.value)) return;
+    if (planId.value !== null && !(await allSent())) {
+      this.stayFor(id);
+      return;
+    }
+    if (namedMission() !== id) return;
+    this.opening.value = id;
+    if (id === null) {
       closePlan();
       return;
     }
-    this.opening.value = true;
+    const isMeant = () => this.opening.value === id;
     try {
-      await openPlan(id);
+      await untilReached(() => openPlan(id, isMeant), isMeant, RETRY_MS);
       await this.updateComplete;
+      // Whatever had the focus is gone; keys work at once.
+      if (document.activeElement === document.body) setTimeout(() => dispatchEvent(new CustomEvent("focus-list")));
     } catch (error) {
+      if (!isMeant()) return;
       location.hash = "";
       tellError(error);
     } finally {
-      this.opening.value = false;
+      if (isMeant()) this.opening.value = null;
     }
+  }
+
+  /** Not all that was done is sent: the mission stays open until it is, or somebody leaves it so. */
+  private stayFor(id: string | null): void {
+    const leave = () => {
+      closePlan();
+      location.hash = addressOf(id);
+      void this.followAddress();
+    };
+    history.replaceState(null, "", addressOf(planId.value));
+    const texts = t().frame;
+    tell("bad", texts.unsent(waiting.value), { actions: [{ label: texts.leaveAnyway, act: leave }] });
   }
 
   override render() {
     const open = planId.value !== null;
     return html`
       <argo-topbar></argo-topbar>
-      ${open ? this.planning() : this.opening.value ? html`<main></main>` : html`<argo-home></argo-home>`}
+      ${open ? this.planning() : this.opening.value !== null ? html`<main></main>` : html`<argo-home></argo-home>`}
       <argo-notices></argo-notices>
       <argo-keys></argo-keys>
     `;
@@ -240,6 +261,21 @@ export class ArgoApp extends PageElement {
   }
 }
 
+/** The mission that the address names; null: none. */
+function namedMission(): string | null {
+  return /^#\/missions\/([0-9a-f]+)$/.exec(location.hash)?.[1] ?? null;
+}
+
+function addressOf(id: string | null): string {
+  return id === null ? "#" : `#/missions/${id}`;
+}
+
+/** Whether all edits are sent, or are so within a moment. */
+async function allSent(): Promise<boolean> {
+  if (waiting.value > 0) await Promise.race([settled(), pause(SENT_WITHIN_MS)]);
+  return waiting.value === 0;
+}
+
 /** Reads the scene, by far the largest part of the page, once the browser has nothing else to do. */
 async function readScene(): Promise<void> {
   while (!customElements.get("argo-scene")) {
@@ -247,7 +283,7 @@ async function readScene(): Promise<void> {
     try {
       await import("../scene/scene");
     } catch {
-      tell("warn", t().frame.notReached);
+      tell("warn", t().frame.readAgain);
       await pause(RETRY_MS);
     }
   }
@@ -257,8 +293,4 @@ async function readScene(): Promise<void> {
 function quiet(): Promise<void> {
   if (!("requestIdleCallback" in window)) return pause(0);
   return new Promise((resolve) => requestIdleCallback(() => resolve(), { timeout: RETRY_MS }));
-}
-
-function pause(ms: number): Promise<void> {
-  return new Promise((resolve) => setTimeout(resolve, ms));
 }

@@ -1,19 +1,17 @@
-/** All missions: open, make, import, copy from the bin, delete. */
+/** All missions: open, make, delete, take back out of the bin. */
 
-import { answered, client, Refusal } from "../api/client";
+import { answered, client } from "../api/client";
+import { untilReached } from "../api/trying";
 import type { PlanSummary } from "../api/types";
 import { tell, tellError } from "../state/notices";
+import { wasGone } from "../state/plan";
 import { mayPlan, service } from "../state/session";
-import { world } from "../state/world";
-import { language, t } from "../texts";
+import { dateLocale, t } from "../texts";
 import { css, customElement, html, look, nothing, PageElement, state } from "../ui/element";
 import { icon } from "../ui/icons";
+import "./import";
 
-interface AreaChoice {
-  readonly file: File;
-  readonly start: boolean;
-  readonly end: boolean;
-}
+const RETRY_MS = 1_000;
 
 @customElement("argo-home")
 export class PageHome extends PageElement {
@@ -33,16 +31,6 @@ export class PageHome extends PageElement {
         flex-wrap: wrap;
         gap: 8px;
         margin-bottom: 16px;
-      }
-      .drop {
-        padding: 18px;
-        border: 2px dashed var(--line);
-        border-radius: var(--round);
-        text-align: center;
-      }
-      .drop.over {
-        border-color: var(--accent);
-        background: var(--chosen);
       }
       table {
         width: 100%;
@@ -69,18 +57,6 @@ export class PageHome extends PageElement {
         color: var(--accent);
         font-weight: 600;
       }
-      dialog {
-        max-width: min(560px, calc(100vw - 24px));
-        border: 1px solid var(--line);
-        border-radius: 10px;
-        background: var(--raised);
-        color: var(--text);
-      }
-      label {
-        display: grid;
-        gap: 2px;
-        margin: 10px 0;
-      }
       summary {
         margin-top: 20px;
         cursor: pointer;
@@ -95,8 +71,7 @@ export class PageHome extends PageElement {
 
   @state() private missions: readonly PlanSummary[] | null = null;
   @state() private bin: readonly PlanSummary[] = [];
-  @state() private over = false;
-  @state() private choice: AreaChoice | null = null;
+  private reading = false;
 
   override connectedCallback(): void {
     super.connectedCallback();
@@ -112,15 +87,22 @@ export class PageHome extends PageElement {
   private readonly refresh = (): void => void this.read();
 
   private async read(): Promise<void> {
+    const both = () =>
+      Promise.all([answered(client.GET("/api/missions")), answered(client.GET("/api/bin"))]);
+    const goesOn = () => {
+      if (this.isConnected) tell("warn", t().frame.readAgain);
+      return this.isConnected;
+    };
+    if (this.reading) return;
+    this.reading = true;
     try {
-      const [all, deleted] = await Promise.all([
-        answered(client.GET("/api/missions")),
-        answered(client.GET("/api/bin")),
-      ]);
+      const [all, deleted] = await untilReached(both, goesOn, RETRY_MS);
       this.missions = all.missions;
       this.bin = deleted.missions;
     } catch (error) {
-      tellError(error);
+      if (this.isConnected) tellError(error);
+    } finally {
+      this.reading = false;
     }
   }
 
@@ -129,9 +111,9 @@ export class PageHome extends PageElement {
   override updated(): void {
     if (!this.focused && mayPlan()) {
       this.focused = true;
-      this.renderRoot.querySelector<HTMLElement>("button.main")?.focus();
+      // Who was thrown out of a mission is not to make one with the next key.
+      if (!wasGone.value) this.renderRoot.querySelector<HTMLElement>("button.main")?.focus();
     }
-    this.renderRoot.querySelector("dialog")?.showModal();
   }
 
   override render() {
@@ -144,32 +126,8 @@ export class PageHome extends PageElement {
           ${icon("add")} ${texts.newMission}
         </button>
       </div>
-      <div
-        class=${this.over ? "drop over" : "drop"}
-        @dragover=${this.onDragOver}
-        @dragleave=${() => (this.over = false)}
-        @drop=${this.onDrop}
-      >
-        <p>${texts.dropHere}</p>
-        <p class="dim">${texts.whatCanBeImported}</p>
-        <input
-          id="file"
-          class="unseen"
-          type="file"
-          aria-label=${texts.chooseFile}
-          ?disabled=${!may}
-          @change=${this.onFile}
-        />
-        <p>
-          <button
-            ?disabled=${!may}
-            @click=${() => this.renderRoot.querySelector<HTMLElement>("#file")?.click()}
-          >
-            ${texts.chooseFile}
-          </button>
-        </p>
-      </div>
-      ${this.table()} ${this.deleted()} ${this.areas()}
+      <argo-import></argo-import>
+      ${this.table()} ${this.deleted()}
     </div>`;
   }
 
@@ -237,31 +195,6 @@ export class PageHome extends PageElement {
     </details>`;
   }
 
-  /** Asks where a mission begins and ends whose script leaves that open. */
-  private areas() {
-    const choice = this.choice;
-    const texts = t().frame;
-    if (choice === null) return nothing;
-    const field = (name: string, label: string) =>
-      html`<label>
-        ${label}<select name=${name}>
-          ${(world.value?.docks ?? []).map((dock) => html`<option>${dock.area}</option>`)}
-        </select>
-      </label>`;
-    return html`<dialog aria-labelledby="areas" @close=${() => (this.choice = null)}>
-      <form @submit=${this.onAreas}>
-        <h2 id="areas">${choice.file.name}</h2>
-        <p>${texts.areasLeftOpen}</p>
-        ${choice.start ? field("start_area", texts.startArea) : nothing}
-        ${choice.end ? field("end_area", texts.endArea) : nothing}
-        <div class="bar">
-          <button class="main">${texts.import}</button>
-          <button type="button" @click=${() => (this.choice = null)}>${texts.cancel}</button>
-        </div>
-      </form>
-    </dialog>`;
-  }
-
   private async create(): Promise<void> {
     try {
       const name = free(t().frame.untitled, this.missions ?? []);
@@ -270,68 +203,6 @@ export class PageHome extends PageElement {
     } catch (error) {
       tellError(error);
     }
-  }
-
-  private onFile(event: Event): void {
-    const field = event.target as HTMLInputElement;
-    const file = field.files?.[0];
-    if (file) void this.import(file, {});
-    field.value = "";
-  }
-
-  private onDragOver(event: DragEvent): void {
-    event.preventDefault();
-    this.over = mayPlan();
-  }
-
-  private onDrop(event: DragEvent): void {
-    event.preventDefault();
-    this.over = false;
-    const file = event.dataTransfer?.files[0];
-    if (file && mayPlan()) void this.import(file, {});
-  }
-
-  private onAreas(event: SubmitEvent): void {
-    event.preventDefault();
-    const choice = this.choice;
-    const given = new FormData(event.target as HTMLFormElement);
-    const areas = Object.fromEntries([...given].map(([name, value]) => [name, Number(value)]));
-    this.choice = null;
-    if (choice !== null) void this.import(choice.file, areas);
-  }
-
-  private async import(
-    file: File,
-    areas: { start_area?: number; end_area?: number },
-  ): Promise<void> {
-    try {
-      const content = await file.arrayBuffer();
-      const made = await answered(
-        client.POST("/api/imports", {
-          params: { query: { filename: file.name.slice(-200), ...areas } },
-          body: content as never,
-          bodySerializer: (body) => body,
-          headers: { "Content-Type": "application/octet-stream" },
-        }),
-      );
-      location.hash = `#/missions/${made.id}`;
-    } catch (error) {
-      const open = error instanceof Refusal ? openAreas(error) : null;
-      if (open === null) this.tellImport(file.name, error);
-      else this.choice = { file, ...open };
-    }
-  }
-
-  /** What is wrong with a file, with the lines where it is. */
-  private tellImport(name: string, error: unknown): void {
-    if (!(error instanceof Refusal)) return tellError(error);
-    const found = error.problem.diagnostics.filter((one) => one.severity === "error");
-    const details = found.map((one) => {
-      const place = one.span ? `${t().frame.line(one.span.line)}: ` : "";
-      return `${place}${one.message}${one.hint ? ` – ${one.hint}` : ""}`;
-    });
-    const said = found.length > 0 ? t().frame.cantImport(name) : error.message;
-    tell("bad", said, { details: details.slice(0, 6) });
   }
 
   private async delete(one: PlanSummary): Promise<void> {
@@ -359,14 +230,6 @@ export class PageHome extends PageElement {
   }
 }
 
-/** Whether all that is wrong with a script is that it leaves open where it begins or ends. */
-function openAreas(error: Refusal): { start: boolean; end: boolean } | null {
-  const errors = error.problem.diagnostics.filter((one) => one.severity === "error");
-  if (errors.length === 0 || errors.some((one) => one.code !== "script.area-choice")) return null;
-  const open = error.problem.remedies;
-  return { start: open.includes("choose-start"), end: open.includes("choose-end") };
-}
-
 function free(name: string, known: readonly PlanSummary[]): string {
   const taken = new Set(known.map((one) => one.name));
   let tried = name;
@@ -376,6 +239,6 @@ function free(name: string, known: readonly PlanSummary[]): string {
 
 function when(time: string | null | undefined): string {
   if (!time) return "";
-  const form = new Intl.DateTimeFormat(language.value, { dateStyle: "medium", timeStyle: "short" });
+  const form = new Intl.DateTimeFormat(dateLocale(), { dateStyle: "medium", timeStyle: "short" });
   return form.format(new Date(time));
 }

@@ -4,8 +4,11 @@ import { signal } from "@preact/signals-core";
 
 import { PropertiesPanel } from "../forms/properties";
 import { redo, undo } from "../state/commands";
+import { dismissNewest, notices } from "../state/notices";
 import { planId, select, selection } from "../state/plan";
-import { mayPlan } from "../state/session";
+import { isUnderWay } from "../model/run-mode";
+import { ask, asking, run } from "../state/run";
+import { mayOperate, mayPlan } from "../state/session";
 import { panel, tool } from "../state/view";
 import { t } from "../texts";
 import { css, customElement, html, look, PageElement, query } from "../ui/element";
@@ -83,7 +86,7 @@ export class PageKeys extends PageElement {
   }
 
   private readonly onKey = (event: KeyboardEvent): void => {
-    if (event.defaultPrevented) return;
+    if (event.defaultPrevented || inPopover(event)) return;
     if (isTyping(event)) {
       const form = event.composedPath().some((one) => one instanceof PropertiesPanel);
       if (event.key === "Escape" && form) dispatchEvent(new CustomEvent("focus-list"));
@@ -94,8 +97,13 @@ export class PageKeys extends PageElement {
     if (key === "?" && !command) keysShown.value = true;
     else if (command && mayPlan() && key === "z") void (event.shiftKey ? redo() : undo());
     else if (command && mayPlan() && key === "y") void redo();
-    else if (key === "r" && !command && !event.altKey && planId.value !== null) openRun();
-    else if (key === "escape" && tool.value !== "select") tool.value = "select";
+    else if (key === "f8" && planId.value !== null) openRun();
+    else if (key === "f9" && !event.repeat && canTakeOver()) void takeOver();
+    else if (key === "escape" && tool.value !== "select") {
+      tool.value = "select";
+      dispatchEvent(new CustomEvent("focus-list"));
+    }
+    else if (key === "escape" && notices.value.length > 0) dismissNewest();
     else if (key === "escape" && selection.value.length > 0) select([]);
     else return;
     event.preventDefault();
@@ -131,10 +139,27 @@ export class PageKeys extends PageElement {
   }
 }
 
+/** Whether the mission that is open drives the robot by itself. */
+function canTakeOver(): boolean {
+  const now = run.value;
+  if (now === null || now.status !== "running" || now.plan !== planId.value || !mayOperate()) return false;
+  return now.mode !== "supervised" && !asking.value.includes("take_over") && !isUnderWay(now, "take_over");
+}
+
+async function takeOver(): Promise<void> {
+  openRun();
+  await ask({ kind: "take_over" });
+}
+
 /** Shows the run, with the focus on what comes next. */
 function openRun(): void {
   panel.value = "run";
   setTimeout(() => dispatchEvent(new CustomEvent("open-run")));
+}
+
+/** Whether a key is meant for a menu, which the browser closes with Escape. */
+function inPopover(event: KeyboardEvent): boolean {
+  return event.composedPath().some((one) => one instanceof HTMLElement && one.matches(":popover-open"));
 }
 
 /** Whether a key is meant for a field or a dialog. */

@@ -1,11 +1,13 @@
 /** What can be done with the mission as a whole: exported, kept as a version, copied. */
 
-import { answered, client, newId } from "../api/client";
+import { answered, client } from "../api/client";
+import { commandId, settled } from "../state/commands";
 import { tell, tellError } from "../state/notices";
-import { planId, planName, revision, versions } from "../state/plan";
+import { planId, planName, revision, take, versions } from "../state/plan";
 import { t } from "../texts";
 import { css, customElement, html, look, nothing, PageElement } from "../ui/element";
 import { icon } from "../ui/icons";
+import { closed, closeLeft } from "../ui/popover";
 
 const FORMATS = ["script", "json", "scxml", "btcpp", "flexbe", "mermaid", "dot", "isar"] as const;
 
@@ -31,9 +33,13 @@ export class MissionMenu extends PageElement {
       h2 {
         margin: 12px 0 4px;
       }
+      .formats {
+        display: flex;
+        flex-wrap: wrap;
+        gap: 4px 12px;
+      }
       a {
         color: var(--accent);
-        margin-right: 10px;
       }
       form {
         display: flex;
@@ -63,12 +69,14 @@ export class MissionMenu extends PageElement {
       >
         ${icon("more")}
       </button>
-      <div id="menu" popover>
+      <div id="menu" popover @focusout=${closeLeft} @toggle=${closed}>
         <button @click=${this.duplicate}>${icon("copy")} ${texts.duplicate}</button>
         <h2>${texts.exportAs}</h2>
-        ${FORMATS.map(
-          (format) => html`<a href=${`/api/missions/${id}/export/${format}`} download>${format}</a>`,
-        )}
+        <p class="formats">
+          ${FORMATS.map(
+            (format) => html`<a href=${`/api/missions/${id}/export/${format}`} download>${format}</a>`,
+          )}
+        </p>
         <h2>${texts.versions}</h2>
         <form @submit=${this.keepVersion}>
           <input
@@ -98,6 +106,7 @@ export class MissionMenu extends PageElement {
   private async duplicate(): Promise<void> {
     const id = planId.value;
     if (id === null) return;
+    await settled();
     try {
       const name = t().frame.copyOf(planName.value).slice(0, 200);
       const made = await answered(
@@ -115,6 +124,7 @@ export class MissionMenu extends PageElement {
     const name = (new FormData(form).get("name") as string).trim();
     const id = planId.value;
     if (id === null || name === "") return;
+    await settled();
     try {
       await answered(
         client.POST("/api/missions/{id}/versions", {
@@ -132,13 +142,15 @@ export class MissionMenu extends PageElement {
   private async restore(number: number): Promise<void> {
     const id = planId.value;
     if (id === null) return;
+    await settled();
     try {
-      await answered(
+      const done = await answered(
         client.POST("/api/missions/{id}/versions/{number}/restore", {
           params: { path: { id, number }, header: { "If-Match": `"${revision.value}"` } },
-          body: { id: newId() },
+          body: { id: commandId() },
         }),
       );
+      if (planId.value === id) take(done);
     } catch (error) {
       tellError(error);
     }

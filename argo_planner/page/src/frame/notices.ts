@@ -1,4 +1,4 @@
-/** Messages at the bottom, newest last. */
+/** Messages above the strip of times, newest last. */
 
 import { dismiss, notices, type Notice } from "../state/notices";
 import { t } from "../texts";
@@ -13,7 +13,7 @@ export class PageNotices extends PageElement {
       :host {
         position: fixed;
         z-index: 30;
-        bottom: 16px;
+        bottom: 130px;
         left: 50%;
         width: min(560px, calc(100vw - 24px));
         translate: -50% 0;
@@ -38,6 +38,11 @@ export class PageNotices extends PageElement {
       }
       article.bad {
         border-left-color: var(--bad);
+      }
+      @media (max-width: 800px) {
+        :host {
+          bottom: 12px;
+        }
       }
       ul {
         margin: 4px 0 0;

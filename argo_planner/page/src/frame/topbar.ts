@@ -8,6 +8,7 @@ import { author, mayPlan, service, theme } from "../state/session";
 import { language, t } from "../texts";
 import { css, customElement, html, look, nothing, PageElement, state } from "../ui/element";
 import { icon } from "../ui/icons";
+import { closed, closeLeft } from "../ui/popover";
 import { keysShown } from "./keys";
 import "./mission-menu";
 
@@ -128,7 +129,8 @@ export class PageTopbar extends PageElement {
             </span>
             ${this.saved()}`
         : html`<h1>Argo</h1>
-            <span class="dim">${service.value?.site ?? ""}</span>`}
+            <span class="dim">${service.value?.site ?? ""}</span>
+            ${waiting.value > 0 ? this.saved() : nothing}`}
       <span class="grow"></span>
       ${others.value.length > 0 ? this.people() : nothing}
       <button
@@ -197,7 +199,10 @@ export class PageTopbar extends PageElement {
   private onNameKey(event: KeyboardEvent): void {
     const field = event.target as HTMLInputElement;
     if (event.key === "Escape") field.value = planName.value;
-    if (event.key === "Enter" || event.key === "Escape") field.blur();
+    if (event.key !== "Enter" && event.key !== "Escape") return;
+    event.preventDefault(); // else it presses the button that takes the focus
+    field.blur();
+    void this.updateComplete.then(() => this.renderRoot.querySelector<HTMLElement>("button.name")?.focus());
   }
 
   private async rename(event: Event): Promise<void> {
@@ -209,7 +214,7 @@ export class PageTopbar extends PageElement {
       await answered(
         client.PUT("/api/missions/{id}/name", { params: { path: { id } }, body: { name } }),
       );
-      planName.value = name;
+      if (planId.value === id) planName.value = name;
     } catch (error) {
       tellError(error);
     }
@@ -232,7 +237,7 @@ export class PageTopbar extends PageElement {
 
   private settings() {
     const texts = t().frame;
-    return html`<div id="settings" popover>
+    return html`<div id="settings" popover @focusout=${closeLeft} @toggle=${closed}>
       <label>
         ${texts.yourName}
         <input

@@ -1,9 +1,9 @@
 /** What is done with what is selected: grouped, deleted, renamed, copied, pasted. */
 
-import type { Reaction } from "../api/types";
+import type { Group, Mission, Reaction } from "../api/types";
 import { copied, pasting, readCopied } from "../model/clipboard";
 import { groupKey, nameOfKey, ownName, taskKey, type Row } from "../model/outline";
-import { placeForNew, tasksOf } from "../model/places";
+import { groupsOf, placeForNew, tasksOf } from "../model/places";
 import { edit, inTurn } from "../state/commands";
 import { tell } from "../state/notices";
 import { mission, select, selection } from "../state/plan";
@@ -48,8 +48,10 @@ export function deleteChosen(): Promise<void> {
     const tasks = tasksOf(open, allRows.value, keys).map((task) => task.name);
     const first = shown.findIndex((row) => keys.includes(row.key));
     const last = shown.findLastIndex((row) => keys.includes(row.key));
-    const next = shown.slice(last + 1).find((row) => row.kind === "task") ?? shown[first - 1];
+    const stays = (row: Row) => row.kind === "task" && !tasks.includes(row.task.name);
+    const next = shown.slice(last + 1).find(stays) ?? shown.slice(0, Math.max(0, first)).findLast(stays);
     const done = await make(
+      ...emptied(open, tasks).map((name) => ({ kind: "dissolve_group", name }) as const),
       ...tasks.map((name) => ({ kind: "remove_task", name }) as const),
       ...reactions.map(
         (event) => ({ kind: "remove_reaction", event: event as Reaction["event"] }) as const,
@@ -59,17 +61,35 @@ export function deleteChosen(): Promise<void> {
   });
 }
 
-/** Gives a task or a group another name, and selects it under that. */
-export async function renameRow(row: Row, name: string): Promise<void> {
-  const old = row.kind === "task" ? row.task.name : ownName(row.group.name);
-  if (name === "" || name === old) return;
+/** Groups of which nothing would be left, the inner ones first. Their rounds are nothing any more, so that
+ * their tasks can go one by one. */
+function emptied(open: Mission, gone: readonly string[]): string[] {
+  const away = new Set(gone);
+  const at = new Map(open.tasks.map((task, index) => [task.name, index]));
+  const isEmptied = ({ start, end }: Group) =>
+    open.tasks.slice(at.get(start), (at.get(end) ?? -1) + 1).every((task) => away.has(task.name));
+  const depth = (name: string) => name.split("/").length;
+  return open.groups
+    .filter(isEmptied)
+    .map((group) => group.name)
+    .sort((a, b) => depth(b) - depth(a));
+}
+
+/** Gives a task or a group another name, and selects it under that. Whether it has that name. */
+export async function renameRow(row: Row, name: string): Promise<boolean> {
   if (row.kind === "task") {
-    if (await edit({ kind: "rename_task", name: old, new_name: name })) select([taskKey(name)]);
-    return;
+    const old = row.task.name;
+    if (name === "" || name === old) return true;
+    const done = await edit({ kind: "rename_task", name: old, new_name: name });
+    if (done) select([taskKey(name)]);
+    return done;
   }
   const whole = row.group.name;
-  const renamed = whole.slice(0, whole.length - old.length) + name;
-  if (await edit({ kind: "rename_group", name: whole, own_name: name })) select([groupKey(renamed)]);
+  const old = ownName(whole);
+  if (name === "" || name === old) return true;
+  const done = await edit({ kind: "rename_group", name: whole, own_name: name });
+  if (done) select([groupKey(whole.slice(0, whole.length - old.length) + name)]);
+  return done;
 }
 
 /** The tasks that are selected, as text; null: there are none. */
@@ -78,19 +98,19 @@ export function copyChosen(): string | null {
   const tasks = open === null ? [] : tasksOf(open, allRows.value, selection.value);
   if (tasks.length === 0) return null;
   tell("info", t().list.copiedCount(tasks.length));
-  return copied(tasks);
+  return copied({ tasks, groups: open === null ? [] : groupsOf(open, selection.value) });
 }
 
 /** Adds the tasks of a text behind what is selected. */
 export function paste(text: string): Promise<void> {
   return inTurn(async (make) => {
     const open = mission.value;
-    const tasks = readCopied(text);
-    if (open === null || tasks === null) {
+    const found = readCopied(text);
+    if (open === null || found === null) {
       tell("info", t().list.nothingToPaste);
       return;
     }
-    const { edits, names } = pasting(open, tasks, placeForNew(allRows.value, selection.value));
+    const { edits, names } = pasting(open, found, placeForNew(allRows.value, selection.value));
     if (await make(...edits)) select(names.map(taskKey));
   });
 }

@@ -1,62 +1,19 @@
-/** Adding tasks: a menu, and a field in which a checkpoint or a place is typed. */
+/** The menu of what can be added, and a field in which a checkpoint or a place is typed. */
 
-import type { Action, Mission, Pose, Reaction, Task } from "../api/types";
-import { freeName, numberedName, taskNames } from "../model/naming";
-import { outline, reactionKey, taskKey } from "../model/outline";
-import { placeForNew } from "../model/places";
+import type { Pose } from "../api/types";
 import { tell } from "../state/notices";
-import { edit, inTurn } from "../state/commands";
-import { mission, select, selection } from "../state/plan";
+import { mission } from "../state/plan";
 import { mayPlan } from "../state/session";
 import { panel, shownFloor, tool } from "../state/view";
 import { world } from "../state/world";
 import { t } from "../texts";
 import { css, customElement, html, look, nothing, PageElement, query, state } from "../ui/element";
-import { icon } from "../ui/icons";
+import { icon, type Icon } from "../ui/icons";
+import { addMeasure, addPlace, addReaction, addStart, addTask, addWait, isEmpty, lacksStart } from "./adding";
 import { type Choice, checkpointChoices, matching, placeChoices, typedPlace } from "./choices";
 
-interface NewTask {
-  readonly action: Action;
-  /** What it is to be called; another name is taken where there is such a task. */
-  readonly wanted: string;
-  readonly fields: Partial<Task>;
-}
-
-/** Adds a task behind what is selected, and selects it. Whether it was added. */
-export function addTask(action: Action, wanted: string, fields: Partial<Task>): Promise<boolean> {
-  return added(() => ({ action, wanted, fields }));
-}
-
-/** Adds a waypoint, or in a mission that begins nowhere yet its start. */
-export function addPlace(pose: Pose, name?: string): Promise<boolean> {
-  return added((open) => {
-    const action = open.tasks.some((task) => task.action === "START") ? "WAYPOINT" : "START";
-    const wanted = action === "WAYPOINT" && name !== undefined ? name : action;
-    return { action, wanted, fields: { pose } };
-  });
-}
-
-/** Adds what is to be added to the mission as it is when its turn comes. */
-function added(find: (open: Mission) => NewTask): Promise<boolean> {
-  return inTurn(async (make) => {
-    const open = mission.value;
-    if (open === null) return false;
-    const { action, wanted, fields } = find(open);
-    const names = taskNames(open);
-    const start = action === "START";
-    const numbered = wanted === action && !start;
-    const name = numbered ? numberedName(wanted, names) : freeName(wanted, names);
-    const where = start ? { first: true } : placeForNew(outline(open), selection.value);
-    const done = await make({ kind: "add_task", task: { name, action, ...fields }, ...where });
-    if (done) select([taskKey(name)]);
-    return done;
-  });
-}
-
-/** Adds the measuring of a checkpoint. */
-export function addMeasure(id: string): Promise<boolean> {
-  return addTask("MEASURE", `MEASURE ${id}`, { object_id: id });
-}
+/** Choices that show at once; more letters find the others. */
+const MOST = 60;
 
 @customElement("argo-add")
 export class AddTasks extends PageElement {
@@ -81,12 +38,16 @@ export class AddTasks extends PageElement {
       }
       .menu button {
         justify-content: start;
+        text-align: left;
       }
       .menu kbd {
         margin-left: auto;
         color: var(--dim);
         font: inherit;
         font-size: 12px;
+      }
+      .added {
+        padding: 4px 8px 0;
       }
       [role="listbox"] {
         max-height: 50vh;
@@ -109,6 +70,10 @@ export class AddTasks extends PageElement {
   @state() private text = "";
   @state() private at = 0;
   @query("input") private readonly field!: HTMLInputElement | null;
+  /** What was added last since the field is open. */
+  @state() private added: string | null = null;
+  /** Where something was placed since the field is open; the mission may not have it yet. */
+  private placed: Pose[] = [];
 
   override connectedCallback(): void {
     super.connectedCallback();
@@ -135,6 +100,8 @@ export class AddTasks extends PageElement {
   private async openField(which: "measure" | "place"): Promise<void> {
     if (world.value === null) return; // the site is being read: there is nothing to choose from yet
     this.open = which;
+    this.placed = [];
+    this.added = null;
     this.text = "";
     this.at = 0;
     await this.updateComplete;
@@ -147,11 +114,17 @@ export class AddTasks extends PageElement {
   }
 
   private choices(): readonly Choice[] {
+    // What was added shows in the list, which the choices would cover.
+    return this.added !== null && this.text === "" ? [] : this.allChoices().slice(0, MOST);
+  }
+
+  private allChoices(): readonly Choice[] {
     const site = world.value;
     if (site === null) return [];
     if (this.open === "measure") return matching(checkpointChoices(site), this.text);
     const typed = typedPlace(site, this.text, shownFloor.value);
-    return [...(typed ? [typed] : []), ...matching(placeChoices(site), this.text)];
+    const planned = (mission.value?.tasks ?? []).flatMap((task) => task.pose ?? []);
+    return [...(typed ? [typed] : []), ...matching(placeChoices(site, [...planned, ...this.placed]), this.text)];
   }
 
   override render() {
@@ -171,36 +144,25 @@ export class AddTasks extends PageElement {
 
   private menu() {
     const texts = t().list;
-    const started = mission.value?.tasks.some((task) => task.action === "START") ?? true;
+    const started = mission.value === null || !lacksStart(mission.value);
+    const docks = world.value?.docks ?? [];
     return html`<div class="menu" role="menu" @keydown=${this.onMenuKey}>
       ${started
         ? nothing
-        : world.value?.docks.map(
-            (dock) =>
-              html`<button
-                role="menuitem"
-                class="bare"
-                @click=${() => this.addStart(dock.pose, dock.area)}
-              >
-                ${icon("flag")} ${texts.addStart} (${texts.dock(dock.area)})
-              </button>`,
-          )}
-      <button role="menuitem" class="bare" @click=${() => this.openMeasure()}>
-        ${icon("gauge")} ${texts.addMeasure} <kbd>m</kbd>
-      </button>
-      <button role="menuitem" class="bare" @click=${() => this.navigate()}>
-        ${icon("drive")} ${texts.addWaypoint} <kbd>n</kbd>
-      </button>
-      <button role="menuitem" class="bare" @click=${() => this.addAtPlace()}>
-        ${icon("flag")} ${texts.addAtPlace} <kbd>w</kbd>
-      </button>
-      <button role="menuitem" class="bare" @click=${() => this.addWait()}>
-        ${icon("wait")} ${texts.addWait}
-      </button>
-      <button role="menuitem" class="bare" @click=${() => this.addReaction()}>
-        ${icon("reaction")} ${texts.addReaction}
-      </button>
+        : docks.map(({ pose, area }) => this.item("flag", texts.addStart(area), () => this.startAt(pose, area)))}
+      ${this.item("gauge", texts.addMeasure, () => this.openMeasure(), "m")}
+      ${this.item("drive", texts.addWaypoint, () => this.navigate(), "n")}
+      ${this.item("flag", texts.addAtPlace, () => this.addAtPlace(), "w")}
+      ${docks.map(({ pose, area }) => this.item("back", texts.addReturn(area), () => this.endAt(pose)))}
+      ${this.item("wait", texts.addWait, () => this.waits())}
+      ${this.item("reaction", texts.addReaction, () => this.reacts())}
     </div>`;
+  }
+
+  private item(sign: Icon, label: string, act: () => void, key?: string) {
+    return html`<button role="menuitem" class="bare" @click=${act}>
+      ${icon(sign)} ${label} ${key === undefined ? nothing : html`<kbd>${key}</kbd>`}
+    </button>`;
   }
 
   private onMenuKey(event: KeyboardEvent): void {
@@ -217,7 +179,8 @@ export class AddTasks extends PageElement {
   private chooser() {
     const texts = t().list;
     const found = this.choices();
-    const label = this.open === "measure" ? texts.checkpoint : texts.place;
+    const begins = mission.value !== null && isEmpty(mission.value);
+    const label = this.open === "measure" ? texts.checkpoint : begins ? texts.startPlace : texts.place;
     return html`<div class="menu">
       <input
         role="combobox"
@@ -232,8 +195,9 @@ export class AddTasks extends PageElement {
         @input=${this.onInput}
         @keydown=${this.onFieldKey}
       />
+      ${this.added === null ? nothing : html`<p class="dim added" role="status">${texts.added(this.added)}</p>`}
       <ul role="listbox" id="choices" aria-label=${label}>
-        ${found.slice(0, 60).map(
+        ${found.map(
           (choice, index) =>
             html`<li
               role="option"
@@ -245,7 +209,7 @@ export class AddTasks extends PageElement {
             </li>`,
         )}
       </ul>
-      ${found.length === 0 ? html`<p class="dim" role="status">${texts.nothingFits}</p>` : nothing}
+      ${found.length === 0 && this.added === null ? html`<p class="dim" role="status">${texts.nothingFits}</p>` : nothing}
     </div>`;
   }
 
@@ -268,39 +232,43 @@ export class AddTasks extends PageElement {
     event.stopPropagation();
   }
 
+  /** Adds what is chosen; the field stays for the next one, until Escape or a click elsewhere. */
   private choose(choice: Choice): void {
-    this.close();
+    this.added = choice.label;
+    this.text = "";
+    this.at = 0;
+    this.field?.focus();
     if (choice.checkpoint !== undefined) void addMeasure(choice.checkpoint);
-    else if (choice.pose) void addPlace(choice.pose, choice.name);
+    else if (choice.pose) {
+      this.placed.push(choice.pose);
+      void addPlace(choice.pose, isEmpty, choice.name);
+    }
   }
 
-  private addStart(pose: Pose, area: number): void {
+  private startAt(pose: Pose, area: number): void {
     this.close();
-    void addTask("START", "START", { pose }).then(
-      (done) => done && edit({ kind: "set_header", start_area: area, dock: pose }),
-    );
+    void addStart(pose, area);
   }
 
-  private addWait(): void {
+  private endAt(pose: Pose): void {
+    this.close();
+    void addTask("WAYPOINT", "DOCK", { pose });
+  }
+
+  private waits(): void {
     this.close();
     panel.value = "properties";
-    void addTask("WAIT", "WAIT", { wait: { duration: 60, conditions: [] } });
+    void addWait();
+  }
+
+  private reacts(): void {
+    this.close();
+    panel.value = "properties";
+    void addReaction();
   }
 
   private navigate(): void {
     this.close();
     tool.value = "navigate";
-  }
-
-  /** A reaction to the first event that has none yet; the form is for choosing another one. */
-  private addReaction(): void {
-    this.close();
-    const had = new Set(mission.value?.reactions.map((one) => one.event));
-    const events = Object.keys(t().words.event) as Reaction["event"][];
-    const event = events.find((one) => !had.has(one));
-    if (event === undefined) return;
-    panel.value = "properties";
-    const reaction = { event, response: "pause" };
-    void edit({ kind: "add_reaction", reaction }).then((done) => done && select([reactionKey(event)]));
   }
 }

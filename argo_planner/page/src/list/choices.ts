@@ -3,6 +3,9 @@
 import type { Pose, World } from "../api/types";
 import { t } from "../texts";
 
+/** m within which a place is the same one */
+const SAME = 0.05;
+
 export interface Choice {
   /** What is typed to find it. */
   readonly label: string;
@@ -22,8 +25,18 @@ export function checkpointChoices(site: World): Choice[] {
   }));
 }
 
-/** Docks and places by name. */
-export function placeChoices(site: World): Choice[] {
+/** Docks, places and corners of the floors by name; what is planned already comes last. */
+export function placeChoices(site: World, planned: readonly Pose[] = []): Choice[] {
+  const isPlanned = ({ pose }: Choice) => planned.some((one) => pose !== undefined && isAt(one, pose));
+  const all = namedPlaces(site);
+  return [...all.filter((one) => !isPlanned(one)), ...all.filter(isPlanned)];
+}
+
+function isAt(a: Pose, b: Pose): boolean {
+  return Math.hypot(a.x - b.x, a.y - b.y, a.z - b.z) < SAME;
+}
+
+function namedPlaces(site: World): Choice[] {
   return [
     ...site.docks.map((dock) => ({
       label: t().list.dock(dock.area),
@@ -37,6 +50,13 @@ export function placeChoices(site: World): Choice[] {
       pose: place.pose,
       name: place.name,
     })),
+    ...site.floors.flatMap((floor) =>
+      floor.corners.map((pose, at) => ({
+        label: t().list.corner(at + 1, floor.number),
+        detail: coordinates(pose),
+        pose,
+      })),
+    ),
   ];
 }
 

@@ -1,8 +1,9 @@
 /** Ways out of what was found, where one click is enough. */
 
-import type { Diagnostic } from "../api/types";
+import type { Diagnostic, Transition } from "../api/types";
 import { type LooseEdit } from "../state/commands";
-import { mission } from "../state/plan";
+import { mission, tasksByName } from "../state/plan";
+import { freeName, taskNames } from "../model/naming";
 import { nameOfKey } from "../model/outline";
 import { world } from "../state/world";
 import { t } from "../texts";
@@ -29,10 +30,7 @@ export function fixOf(found: Diagnostic): Fix | null {
     case "il.unknown-target":
     case "il.start-condition":
       if (name === null || way === null) return null;
-      return {
-        label: texts.removeWay,
-        edits: () => [{ kind: "remove_transition", task: name, at: Number(way[1]) }],
-      };
+      return { label: texts.removeWay, edits: removeWay(name, Number(way[1])) };
     case "il.unknown-current":
       return { label: texts.forget, edits: () => [{ kind: "set_header", current: null }] };
     case "il.left-out":
@@ -43,11 +41,39 @@ export function fixOf(found: Diagnostic): Fix | null {
         label: texts.once,
         edits: () => [{ kind: "change_group", name, max_repeat_count: 1 }],
       };
+    case "analysis.end-elsewhere":
+      return driveHome(name);
     case "il.never-measured":
       return neverMeasured(found);
     default:
       return null;
   }
+}
+
+/** The mission is to end docked and doesn't: from its last task it drives to the dock. */
+function driveHome(task: string | null): Fix | null {
+  const open = mission.value;
+  const area = open?.end_area ?? null;
+  const dock = world.value?.docks.find((one) => one.area === area);
+  if (!open || !dock || open.tasks.at(-1)?.name !== task) return null;
+  const name = freeName("DOCK", taskNames(open));
+  return {
+    label: t().list.addReturn(dock.area),
+    edits: () => [{ kind: "add_task", task: { name, action: "WAYPOINT", pose: dock.pose } }],
+  };
+}
+
+/** The way that was meant, wherever it stands by then. */
+function removeWay(task: string, at: number): () => LooseEdit[] {
+  const meant = wayOf(task)?.[at];
+  return () => {
+    const now = wayOf(task)?.findIndex((one) => JSON.stringify(one) === JSON.stringify(meant)) ?? -1;
+    return now < 0 ? [] : [{ kind: "remove_transition", task, at: now }];
+  };
+}
+
+function wayOf(task: string): readonly Transition[] | undefined {
+  return tasksByName.value.get(task)?.transitions;
 }
 
 /** A condition compares a checkpoint that nothing measures: measure it first. */

@@ -6,16 +6,17 @@ import { computed, effect, signal } from "@preact/signals-core";
 import type { Diagnostic } from "../api/types";
 import { touched } from "../model/change";
 import { groupKey, taskKey, type Row } from "../model/outline";
-import { analysis, findings, lastRevision, others, planId } from "../state/plan";
+import { analysis, broken, findings, lastRevision, others, planId, tasksByName } from "../state/plan";
 import { reading } from "../state/reading";
-import { pastRun, run, shownRun, shownTime } from "../state/run";
-import { author } from "../state/session";
+import { run, shownRun } from "../state/run";
+import { isOwn } from "../state/commands";
+import { isMe } from "../state/session";
 import { world } from "../state/world";
 import { describeGroup, describeTask } from "./describe";
 
 export interface Marks {
   readonly problem: Diagnostic | null;
-  readonly run: "done" | "failed" | "byHand" | "active" | "skipped" | null;
+  readonly run: "done" | "abnormal" | "failed" | "byHand" | "active" | "skipped" | null;
   readonly people: readonly string[];
   /** Whether somebody else has just changed it. */
   readonly changed: boolean;
@@ -55,12 +56,14 @@ const selectedByOthers = computed(() => {
 });
 
 /** Names of what somebody else has just changed. */
+let ending: ReturnType<typeof setTimeout> | undefined;
 const flashing = signal<ReadonlySet<string>>(new Set());
 effect(() => {
   const made = lastRevision.value;
-  if (made === null || made.author === author.peek()) return;
+  if (made === null || isOwn(made) || isMe(made.author)) return;
   flashing.value = touched(made.change);
-  setTimeout(() => (flashing.value = new Set()), FLASH_MS);
+  clearTimeout(ending);
+  ending = setTimeout(() => (flashing.value = new Set()), FLASH_MS);
 });
 
 const OUTCOMES = {
@@ -71,21 +74,33 @@ const OUTCOMES = {
   skipped: "skipped",
 } as const;
 
+/** Of the run that is shown, one by one: its pose changes many times a second, and they do not. */
+const shownPlan = computed(() => shownRun.value?.plan);
+const shownOutcomes = computed(() => shownRun.value?.outcomes);
+const shownReadings = computed(() => shownRun.value?.readings);
+const shownTask = computed(() => shownRun.value?.task ?? null);
+const shownIsLive = computed(() => shownRun.value?.live ?? false);
+
+const abnormal = computed(
+  () => new Set((shownReadings.value ?? []).filter((one) => !one.normal).map((one) => String(one.checkpoint))),
+);
+
+/** Whether what a task measures was last read as abnormal. */
+function isAbnormal(task: string): boolean {
+  return abnormal.value.has(tasksByName.value.get(task)?.object_id ?? "");
+}
+
+/** How far the tasks of the mission are: how their last visit has ended, which are to be skipped next, and
+ * which one is under way. */
 const runStates = computed(() => {
   const found = new Map<string, Marks["run"]>();
-  if (shownTime.value !== null || pastRun.value !== null) {
-    const past = shownRun.value;
-    if (past === null || past.plan !== planId.value) return found;
-    for (const [name, outcome] of past.outcomes) found.set(name, OUTCOMES[outcome]);
-    if (past.task) found.set(past.task, "active");
-    return found;
-  }
-  const shown = run.value;
-  if (shown === null || shown.plan !== planId.value) return found;
-  for (const task of shown.tasks)
-    found.set(task.task, task.failed > 0 ? "failed" : task.by_hand > 0 ? "byHand" : "done");
-  for (const name of shown.skipped) found.set(name, "skipped");
-  if (shown.task && shown.status === "running") found.set(shown.task, "active");
+  if (shownPlan.value !== planId.value) return found;
+  for (const [name, outcome] of shownOutcomes.value ?? [])
+    found.set(name, outcome === "done" && isAbnormal(name) ? "abnormal" : OUTCOMES[outcome]);
+  const live = shownIsLive.value ? run.value : null;
+  for (const name of live?.skipped ?? []) found.set(name, "skipped");
+  if (shownTask.value !== null && (live === null || live.status === "running"))
+    found.set(shownTask.value, "active");
   return found;
 });
 
@@ -100,8 +115,11 @@ export function marksOf(row: Row): Marks {
   return { problem, run: state, people, changed };
 }
 
+/** Sentences of tasks and rounds, as long as they are of the mission as it is. A task that was not
+ * changed since is said as before: the list does not flicker with each edit. */
 const sentences = computed(() => {
   const found = new Map<string, string>();
+  if (broken.value) return found;
   for (const entry of reading.value?.reading.entries ?? []) {
     if (entry.part !== "task" && entry.part !== "round") continue;
     const key = entry.part === "task" ? taskKey(entry.name) : groupKey(entry.name);

@@ -2,7 +2,7 @@
  * out as a button where there is one. */
 
 import type { Diagnostic } from "../api/types";
-import { edit } from "../state/commands";
+import { inTurn } from "../state/commands";
 import { select } from "../state/plan";
 import { mayPlan } from "../state/session";
 import { panel } from "../state/view";
@@ -97,7 +97,7 @@ export class MissionProblems extends PageElement {
       <div>
         <button class="to" @click=${show}>${one.message}</button>
         ${one.hint ? html`<p class="dim">${one.hint}</p>` : nothing}
-        ${fix ? html`<button @click=${() => edit(...fix.edits())}>${fix.label}</button>` : nothing}
+        ${fix ? html`<button @click=${() => inTurn((make) => make(...fix.edits()))}>${fix.label}</button>` : nothing}
       </div>
     </li>`;
   }

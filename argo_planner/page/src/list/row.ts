@@ -113,12 +113,14 @@ export const rowStyles = css`
 export interface RowState {
   readonly chosen: boolean;
   readonly folded: boolean;
-  readonly renaming: boolean;
+  /** What is in the field for its name; null: there is no field. */
+  readonly name: string | null;
   /** How many rows there are. */
   readonly of: number;
   readonly marks: Marks;
   readonly may: boolean;
-  readonly onRename: (row: Row, name: string) => void;
+  /** Takes the name that was typed; `byKey`: the list is to have the focus again. */
+  readonly onNamed: (row: Row, name: string, byKey: boolean) => Promise<void>;
 }
 
 export function rowView(row: Row, index: number, shown: RowState) {
@@ -134,7 +136,7 @@ export function rowView(row: Row, index: number, shown: RowState) {
     data-index=${index}
     class=${classMap({ group, active: marks.run === "active", flash: marks.changed })}
     ${styled(place)}
-    draggable=${shown.may && !shown.renaming ? "true" : "false"}
+    draggable=${shown.may && shown.name === null ? "true" : "false"}
     aria-level=${row.depth + 1}
     aria-setsize=${shown.of}
     aria-posinset=${index + 1}
@@ -149,7 +151,7 @@ export function rowView(row: Row, index: number, shown: RowState) {
           >${icon(SIGNS[row.task.action], 18)}</span
         >`}
     <span class="names">
-      ${shown.renaming ? nameField(row, shown) : html`<span>${nameOf(row)}</span>`}
+      ${shown.name !== null ? nameField(row, shown.name, shown.onNamed) : html`<span>${nameOf(row)}</span>`}
       <span class="said" title=${sentenceOf(row)}>${sentenceOf(row)}</span>
     </span>
     <span class="marks">
@@ -167,25 +169,25 @@ export function rowView(row: Row, index: number, shown: RowState) {
   </div>`;
 }
 
-function nameOf(row: Row): string {
+export function nameOf(row: Row): string {
   return row.kind === "task" ? row.task.name : ownName(row.group.name);
 }
 
-function nameField(row: Row, shown: RowState) {
+function nameField(row: Row, text: string, onNamed: RowState["onNamed"]) {
   const onKey = (event: KeyboardEvent) => {
     event.stopPropagation();
+    if (event.key !== "Escape" && event.key !== "Enter") return;
     const field = event.target as HTMLInputElement;
-    if (event.key === "Escape") field.value = nameOf(row);
-    if (event.key === "Enter" || event.key === "Escape") shown.onRename(row, field.value.trim());
+    void onNamed(row, event.key === "Enter" ? field.value.trim() : nameOf(row), true);
   };
   const onBlur = (event: FocusEvent) => {
     const field = event.target as HTMLInputElement;
-    if (field.isConnected) shown.onRename(row, field.value.trim());
+    if (field.isConnected) void onNamed(row, field.value.trim(), false);
   };
   return html`<input
     aria-label=${t().list.renameTask}
     maxlength="200"
-    .value=${nameOf(row)}
+    .value=${text}
     @keydown=${onKey}
     @blur=${onBlur}
     @dblclick=${(event: Event) => event.stopPropagation()}
@@ -195,6 +197,7 @@ function nameField(row: Row, shown: RowState) {
 function runMark(state: NonNullable<Marks["run"]>) {
   const signs: Record<typeof state, readonly [Icon, string]> = {
     done: ["check", "good"],
+    abnormal: ["warning", "error"],
     failed: ["close", "error"],
     byHand: ["hand", "good"],
     active: ["play", ""],

@@ -39,6 +39,11 @@ export function touched(change: MissionChange): ReadonlySet<string> {
   return found;
 }
 
+/** Fields of the mission as a whole that a change sets. */
+export function touchedHeader(change: MissionChange): ReadonlySet<string> {
+  return new Set(Object.keys(change.header ?? {}).filter((field) => field !== "kind"));
+}
+
 function named(item: Task | Group): string {
   return item.name;
 }

@@ -1,32 +1,40 @@
-/** Tasks that are copied, and what pasting them does. */
+/** Tasks and groups that are copied, and what pasting them does. */
 
-import type { Mission, Task } from "../api/types";
+import type { Group, Mission, Task } from "../api/types";
 import type { LooseEdit } from "../state/commands";
 import { freeName, taskNames } from "./naming";
+import { ownName } from "./outline";
 import type { Place } from "./places";
 
 const KIND = "argo-tasks";
 
-/** Tasks as text for the clipboard. */
-export function copied(tasks: readonly Task[]): string {
-  return JSON.stringify({ kind: KIND, tasks });
+/** What is copied: tasks in their order, and groups of them, the outer ones first. */
+export interface Copied {
+  readonly tasks: readonly Task[];
+  readonly groups: readonly Group[];
 }
 
-/** The tasks of a text from the clipboard; null if it is something else. */
-export function readCopied(text: string): readonly Task[] | null {
+/** As text for the clipboard. */
+export function copied({ tasks, groups }: Copied): string {
+  return JSON.stringify({ kind: KIND, tasks, groups });
+}
+
+/** What a text from the clipboard holds; null if it is something else. */
+export function readCopied(text: string): Copied | null {
   try {
-    const found = JSON.parse(text) as { kind?: unknown; tasks?: unknown };
-    return found.kind === KIND && Array.isArray(found.tasks) ? (found.tasks as Task[]) : null;
+    const found = JSON.parse(text) as { kind?: unknown; tasks?: unknown; groups?: unknown };
+    if (found.kind !== KIND || !Array.isArray(found.tasks) || !Array.isArray(found.groups)) return null;
+    return { tasks: found.tasks as Task[], groups: found.groups as Group[] };
   } catch {
     return null;
   }
 }
 
-/** Edits that put copies of tasks at a place, under free names. Ways on conditions are kept where
- * they lead to a task that was copied too, or that the mission has. */
+/** Edits that put copies of tasks and groups at a place, under free names. Ways are kept where they
+ * lead to a task that was copied too, those on conditions also where they lead to one that the mission has. */
 export function pasting(
   mission: Mission,
-  tasks: readonly Task[],
+  { tasks, groups }: Copied,
   place: Place,
 ): { readonly edits: LooseEdit[]; readonly names: readonly string[] } {
   const taken = taskNames(mission);
@@ -45,7 +53,7 @@ export function pasting(
   const ways: LooseEdit[] = [];
   let where = place;
   const names: string[] = [];
-  for (const task of pasted) {
+  for (const [at, task] of pasted.entries()) {
     const name = renamed.get(task.name) ?? task.name;
     names.push(name);
     const { window, failure_target } = task;
@@ -59,15 +67,40 @@ export function pasting(
         : {}),
     };
     if (Object.keys(later).length > 0) ways.push({ kind: "change_task", name, ...later });
-    task.transitions
-      .filter((way) => way.conditions.length > 0 && target(way.target) !== null)
-      .forEach((way, at) => {
+    const conditional = task.transitions.filter((way) => way.conditions.length > 0 && target(way.target) !== null);
+    const further = task.transitions.find((way) => way.conditions.length === 0)?.target ?? "";
+    const onward = renamed.get(further);
+    if (onward !== undefined && further !== pasted[at + 1]?.name) {
+      const transitions = [...conditional, { target: further, conditions: [] }].map((way) => ({
+        target: target(way.target),
+        conditions: way.conditions,
+      }));
+      ways.push({ kind: "set_transitions", task: name, transitions });
+    } else
+      conditional.forEach((way, number) => {
         const transition = { target: target(way.target), conditions: way.conditions };
-        ways.push({ kind: "add_transition", task: name, transition, at });
+        ways.push({ kind: "add_transition", task: name, transition, at: number });
       });
     where = where.into === undefined ? { after: name } : { after: name, into: where.into };
   }
-  return { edits: [...edits, ...ways], names };
+  return { edits: [...edits, ...ways, ...wrapping(mission, { tasks, groups }, renamed)], names };
+}
+
+/** Edits that make groups of what was pasted, the inner ones first: their names follow from what they
+ * come to lie in. */
+function wrapping(mission: Mission, { tasks, groups }: Copied, renamed: ReadonlyMap<string, string>): LooseEdit[] {
+  const taken = new Set(mission.groups.map((group) => ownName(group.name)));
+  const at = (name: string) => tasks.findIndex((task) => task.name === name);
+  const edits: LooseEdit[] = [];
+  for (const group of [...groups].reverse()) {
+    const members = tasks.slice(at(group.start), at(group.end) + 1).flatMap((task) => renamed.get(task.name) ?? []);
+    const [start, end] = [members[0], members.at(-1)];
+    if (start === undefined || end === undefined) continue;
+    const name = freeName(ownName(group.name), taken);
+    taken.add(name);
+    edits.push({ kind: "wrap_tasks", group: { ...group, name, start, end, source: null } });
+  }
+  return edits;
 }
 
 /** The task under a name, without what names others. */

@@ -42,12 +42,11 @@ export function moves(
   target: Row,
   side: Side,
 ): LooseEdit[] {
-  const groups = rootGroups(mission, selection);
   const moved = tasksOf(mission, rows, selection);
   if (moved.length === 0 || inSelection(rows, target, selection)) return [];
   let place = anchored(mission, moved, placeAt(target, side));
   if (place === null) return [];
-  const taken = groups.flatMap((group) => withInner(mission, group));
+  const taken = groupsOf(mission, selection);
   const edits: LooseEdit[] = [];
   // Inner groups go first and come back first: their names follow from what they lie in.
   for (const { name } of [...taken].reverse()) edits.push({ kind: "dissolve_group", name });
@@ -75,6 +74,11 @@ export function tasksOf(
     if (row.kind === "task" && (open >= 0 || chosen.has(row.key))) names.add(row.task.name);
   }
   return mission.tasks.filter((task) => names.has(task.name));
+}
+
+/** The groups of a selection and those in them, the outer ones first. */
+export function groupsOf(mission: Mission, selection: readonly string[]): Group[] {
+  return rootGroups(mission, selection).flatMap((group) => withInner(mission, group));
 }
 
 /** Where one step up or down leads to for what is selected, among the rows that show; null:

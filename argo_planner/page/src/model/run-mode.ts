@@ -43,3 +43,8 @@ export function shownRequests(requests: readonly RequestState[], past: number): 
   const over = requests.filter(isOver);
   return [...over.slice(Math.max(0, over.length - past)), ...open].reverse();
 }
+
+/** Who has taken the robot over last; null: that is not known. */
+export function takenOverBy(run: RunState): string | null {
+  return run.requests.findLast((one) => one.kind === "take_over" && one.progress === "confirmed")?.by ?? null;
+}

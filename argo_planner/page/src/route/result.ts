@@ -8,8 +8,9 @@ import { compared, type Placed } from "../model/reordered";
 import { taskKey } from "../model/outline";
 import { select, tasksByName } from "../state/plan";
 import { mayPlan } from "../state/session";
-import { language, t } from "../texts";
+import { t } from "../texts";
 import { css, customElement, html, look, nothing, PageElement } from "../ui/element";
+import { percent, seconds } from "../ui/figures";
 import { icon } from "../ui/icons";
 import { accept, cancel, job, jobIsStale, leave } from "./search";
 
@@ -166,7 +167,7 @@ export class RouteResult extends PageElement {
         <span class="key low">${texts.bound}: <b>${last === undefined ? texts.untilNow : seconds(last.bound)}</b></span>
         <span class="dim" role="status">
           ${now.state === "running" ? texts.searching : nothing}
-          ${gap === null || gap < 0.0005 ? nothing : texts.gap(percent(gap))}
+          ${gap === null || gap < 0.0005 ? nothing : texts.gap(percent(gap, 1))}
         </span>
       </figcaption>
     </figure>`;
@@ -182,14 +183,16 @@ export class RouteResult extends PageElement {
         ${this.reasons(found.reasons)}`;
     const out = new Set(found.left_out);
     const lists = compared(order.written, order.order);
+    const same = found.left_out.length === 0 && lists.after.every((one) => !one.moved);
     const saved = order.written_duration - order.duration;
     return html`<p class="saving">
         ${saved > 0.5
-          ? texts.saves(seconds(saved), percent(saved / order.written_duration))
+          ? texts.saves(seconds(saved), percent(saved / order.written_duration, 1))
           : saved < -0.5
             ? texts.takesMore(seconds(-saved))
             : texts.saysNothing}
       </p>
+      <p class="dim">${texts.wholeSeconds}</p>
       ${order.proven ? html`<p class="dim">${icon("check", 14)} ${texts.proven}</p>` : nothing}
       <div class="both">
         <div>
@@ -207,7 +210,7 @@ export class RouteResult extends PageElement {
       ${found.warning ? html`<p class="warn">${found.warning}</p>` : nothing} ${this.reasons(found.reasons)}
       ${jobIsStale.value ? html`<p class="warn" role="alert">${texts.stale}</p>` : nothing}
       <div class="decide">
-        <button class="main" id="accept" ?disabled=${!mayPlan() || jobIsStale.value} @click=${accept}>
+        <button class="main" id="accept" ?disabled=${!mayPlan() || jobIsStale.value || same} @click=${accept}>
           ${icon("check")} ${texts.accept}
         </button>
         <button id="leave" @click=${leave}>${texts.leave}</button>
@@ -240,12 +243,4 @@ export class RouteResult extends PageElement {
       </ul>
     </details>`;
   }
-}
-
-function seconds(s: number): string {
-  return t().words.seconds(s);
-}
-
-function percent(part: number): string {
-  return `${(100 * part).toLocaleString(language.value, { maximumFractionDigits: 1 })} %`;
 }

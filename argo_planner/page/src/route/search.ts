@@ -2,11 +2,12 @@
 
 import { batch, computed, effect, signal } from "@preact/signals-core";
 
-import { answered, client, newId, Refusal, Unreached } from "../api/client";
+import { answered, client, Refusal, Unreached } from "../api/client";
 import type { operations } from "../api/schema";
 import type { OrderJob } from "../api/types";
+import { commandId, settled } from "../state/commands";
 import { tell, tellError } from "../state/notices";
-import { jobs, planId, revision } from "../state/plan";
+import { connected, jobs, planId, revision, take } from "../state/plan";
 import { comparedPreview } from "../state/preview";
 import { t } from "../texts";
 
@@ -47,6 +48,24 @@ effect(() => {
   }
 });
 
+// What became of it while nobody could tell is asked for.
+effect(() => {
+  const known = job.peek();
+  if (!connected.value || known === null || isOver(known)) return;
+  answered(client.GET("/api/jobs/{id}", { params: { path: { id: known.id } } }))
+    .then((found) => {
+      if (shown.peek()?.id === found.id) jobs.value = new Map(jobs.peek()).set(found.id, found);
+    })
+    .catch((error: unknown) => {
+      if (error instanceof Refusal) leave();
+      else if (!(error instanceof Unreached)) throw error;
+    });
+});
+
+function isOver(one: OrderJob): boolean {
+  return one.state !== "running";
+}
+
 /** Shows the ways in that order on the site, to be compared with those of now. */
 async function preview(id: string): Promise<void> {
   try {
@@ -60,6 +79,7 @@ async function preview(id: string): Promise<void> {
 export async function search(seconds: number, asked: Asked): Promise<void> {
   const id = planId.value;
   if (id === null) return;
+  await settled();
   try {
     const body = { time_limit: seconds, requirements: asked };
     const begun = await answered(
@@ -68,6 +88,7 @@ export async function search(seconds: number, asked: Asked): Promise<void> {
         body: body as unknown as SearchAsked,
       }),
     );
+    if (planId.value !== id) return;
     leave();
     shown.value = begun;
   } catch (error) {
@@ -87,14 +108,18 @@ export async function cancel(): Promise<void> {
 
 export async function accept(): Promise<void> {
   const now = job.value;
-  if (now === null) return;
+  const id = planId.value;
+  if (now === null || id === null) return;
+  await settled();
   try {
-    await answered(
+    const done = await answered(
       client.POST("/api/jobs/{id}/accept", {
         params: { path: { id: now.id }, header: { "If-Match": `"${now.revision}"` } },
-        body: { id: newId() },
+        body: { id: commandId() },
       }),
     );
+    if (planId.value !== id) return;
+    take(done);
     leave();
     tell("info", t().route.accepted);
   } catch (error) {

@@ -1,13 +1,17 @@
 /** At a glance: who has the robot, what it does, how far it is. */
 
-import { shownMode, type ShownMode } from "../model/run-mode";
-import { mission, planId } from "../state/plan";
+import type { RunState } from "../api/types";
+import type { Outcome } from "../model/replay";
+import { shownMode, type ShownMode, takenOverBy } from "../model/run-mode";
+import { mission, planId, revision } from "../state/plan";
 import { robotConnected, shownRun, shownRunState, shownTime } from "../state/run";
+import { isMe } from "../state/session";
 import { t } from "../texts";
 import { css, customElement, html, look, nothing, PageElement } from "../ui/element";
 import { icon, type Icon } from "../ui/icons";
 import { styled } from "../ui/styled";
-import { parts, percent } from "./parts";
+import { percent } from "../ui/figures";
+import { parts } from "./parts";
 
 const SIGNS: Record<ShownMode, Icon> = {
   preparing: "clock",
@@ -136,7 +140,7 @@ export class RunBand extends PageElement {
     return html`<div class="band ${past ? "past" : mode}" id="mode" data-mode=${mode} role="status">
         ${icon(past ? "clock" : SIGNS[mode], 26)}
         <div class="grow">
-          <p class="word">${past ? texts.pastShown : texts.modes[mode]}</p>
+          <p class="word">${past ? texts.pastShown : modeWords(run, mode)}</p>
           <p class="what">${this.doing()}</p>
         </div>
       </div>
@@ -193,6 +197,11 @@ export class RunBand extends PageElement {
     const all = there.tasks.filter((task) => task.action !== "START");
     const done = all.filter((task) => ["done", "by hand"].includes(now.outcomes.get(task.name) ?? ""));
     const broken = all.some((task) => now.outcomes.get(task.name) === "failed");
+    // Of a mission that was changed since, nobody here knows how many tasks it had.
+    if (run.revision !== revision.value)
+      return html`<dt>${t().frame.tasks}</dt>
+        <dd></dd>
+        <dd id="done">${t().run.tasksDoneOnly(doneOf(now.outcomes))}</dd>`;
     return html`<dt>${t().frame.tasks}</dt>
       ${this.gauge(all.length === 0 ? 0 : done.length / all.length, broken)}
       <dd id="done">${t().run.tasksDone(done.length, all.length)}</dd>`;
@@ -204,4 +213,14 @@ export class RunBand extends PageElement {
       <div ${styled({ width })}></div>
     </dd>`;
   }
+}
+
+/** How the run stands, and whether it is whoever looks that has the robot. */
+function modeWords(run: RunState, mode: ShownMode): string {
+  const by = mode === "supervised" ? takenOverBy(run) : null;
+  return by !== null && isMe(by) ? t().run.youHave : t().run.modes[mode];
+}
+
+function doneOf(outcomes: ReadonlyMap<string, Outcome>): number {
+  return [...outcomes.values()].filter((one) => one === "done" || one === "by hand").length;
 }

@@ -2,8 +2,8 @@
 
 import type { RequestState } from "../api/types";
 import { isOver, isUnderWay, shownRequests } from "../model/run-mode";
-import { revision } from "../state/plan";
-import { ask, giveBackEdited, run } from "../state/run";
+import { planId, revision } from "../state/plan";
+import { ask, asking, giveBackEdited, run, shownTime } from "../state/run";
 import { mayOperate } from "../state/session";
 import { t } from "../texts";
 import { css, customElement, html, look, nothing, PageElement } from "../ui/element";
@@ -73,7 +73,8 @@ export class RunControls extends PageElement {
   override render() {
     const state = run.value;
     if (state === null || state.status === "ended") return nothing;
-    return html`<div class="buttons">${this.buttons()}</div>
+    return html`${shownTime.value === null ? nothing : html`<p class="reason">${t().run.actsNow}</p>`}
+      <div class="buttons">${this.buttons()}</div>
       ${mayOperate() ? nothing : html`<p class="reason">${t().run.mayNotOperate}</p>`} ${this.asked()}`;
   }
 
@@ -85,7 +86,10 @@ export class RunControls extends PageElement {
     const rest = [this.simple("cancel", "danger"), this.simple("stop", "danger"), this.speed()];
     switch (state.mode) {
       case "supervised":
-        return [this.simple("give_back", "main"), this.giveBackEdited(), ...rest];
+        // Whoever has edited the mission wants it driven so, and else it has to be said.
+        return this.isEdited()
+          ? [this.giveBackEdited(), this.simple("give_back", "", t().run.giveBackUnedited), ...rest]
+          : [this.simple("give_back", "main"), ...rest];
       case "paused":
         return [this.simple("go_on", "main"), this.simple("take_over"), ...rest];
       default:
@@ -93,9 +97,9 @@ export class RunControls extends PageElement {
     }
   }
 
-  private simple(kind: Simple, look = "") {
+  private simple(kind: Simple, look = "", label = t().run.requests[kind]) {
     const state = run.value;
-    const busy = state !== null && isUnderWay(state, kind);
+    const busy = state !== null && (isUnderWay(state, kind) || asking.value.includes(kind));
     return html`<button
       id=${kind}
       class=${look}
@@ -104,16 +108,21 @@ export class RunControls extends PageElement {
       ?disabled=${!mayOperate() || busy}
       @click=${() => ask({ kind })}
     >
-      ${icon(SIGNS[kind])} ${t().run.requests[kind]}
+      ${icon(SIGNS[kind])} ${label}
     </button>`;
   }
 
-  private giveBackEdited() {
+  /** Whether the mission of the run was changed since the run has it. */
+  private isEdited(): boolean {
     const state = run.value;
-    const edited = state !== null && state.revision !== revision.value;
+    return state !== null && state.plan === planId.value && state.revision !== revision.value;
+  }
+
+  private giveBackEdited() {
     return html`<button
       id="give_back_edited"
-      ?disabled=${!mayOperate() || !edited}
+      class="main"
+      ?disabled=${!mayOperate()}
       title=${t().run.edited}
       @click=${() => giveBackEdited()}
     >

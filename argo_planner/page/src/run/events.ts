@@ -7,7 +7,8 @@ import { shownEntries, shownRun, shownTime } from "../state/run";
 import { t } from "../texts";
 import { css, customElement, html, look, nothing, PageElement } from "../ui/element";
 import { icon, type Icon } from "../ui/icons";
-import { figure, parts } from "./parts";
+import { figure } from "../ui/figures";
+import { parts } from "./parts";
 
 const MOST = 100;
 const SIGNS: Record<Told["tone"], Icon> = { plain: "right", good: "check", warn: "hand", bad: "warning" };

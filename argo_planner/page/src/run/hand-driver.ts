@@ -46,7 +46,7 @@ async function step(direction: Direction): Promise<boolean> {
     const goal = goalOf(from.pose, direction, reach);
     if (!(await isFree(from.pose, goal, direction, reach))) continue;
     if (wanted.value !== direction) return true;
-    const asked = await ask({ kind: "drive_to", pose: goal }, true);
+    const asked = await ask({ kind: "drive_to", pose: goal }, true, () => wanted.value === direction);
     if (asked === null) return false;
     const how = await over(asked.id, direction);
     if (wanted.value !== direction) {

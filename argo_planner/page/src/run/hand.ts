@@ -1,9 +1,11 @@
 /** A person has the robot: what they let it do. */
 
+import { effect } from "@preact/signals-core";
+
 import { isTyping } from "../frame/keys";
 import { choiceOf, chosenCheckpoint } from "../model/checkpoint-choice";
 import { directionOf, type Direction } from "../model/hand-driving";
-import { chosenTask, mission } from "../state/plan";
+import { chosenTask, mission, planId } from "../state/plan";
 import { ask, run } from "../state/run";
 import { mayOperate } from "../state/session";
 import { world } from "../state/world";
@@ -70,6 +72,9 @@ export class RunHand extends PageElement {
   ];
 
   @state() private withKeys = false;
+  /** The task that was chosen here, or is selected in the list. */
+  @state() private task = "";
+  private stopFollowing: (() => void) | undefined;
   private speedBefore: number | null | undefined;
 
   override connectedCallback(): void {
@@ -78,6 +83,9 @@ export class RunHand extends PageElement {
     addEventListener("keyup", this.onKeyUp, { capture: true });
     addEventListener("blur", this.halt);
     addEventListener("visibilitychange", this.halt);
+    this.stopFollowing = effect(() => {
+      if (chosenTask.value !== null) this.task = chosenTask.value.name;
+    });
   }
 
   override disconnectedCallback(): void {
@@ -86,7 +94,9 @@ export class RunHand extends PageElement {
     removeEventListener("keyup", this.onKeyUp, { capture: true });
     removeEventListener("blur", this.halt);
     removeEventListener("visibilitychange", this.halt);
-    this.halt();
+    this.stopFollowing?.();
+    if (this.withKeys) this.driveWithKeys(false);
+    else this.halt();
   }
 
   override render() {
@@ -111,6 +121,7 @@ export class RunHand extends PageElement {
           ${icon("stop")} <span>${texts.standStill}</span>
         </button>
       </div>
+      ${this.withKeys ? nothing : html`<p class="reason">${texts.holdToDrive}</p>`}
       ${blocked.value ? html`<p class="blocked" role="status">${texts.noWay}</p>` : nothing}
       <form class="line" @submit=${this.measure}>
         <input
@@ -125,21 +136,32 @@ export class RunHand extends PageElement {
         </datalist>
         <button id="measure" ?disabled=${busy}>${icon("gauge", 16)} ${texts.measureHere}</button>
       </form>
-      <div class="line">
-        <select id="task" aria-label=${texts.whichTask}>
-          ${this.tasks().map(
-            (name) =>
-              html`<option value=${name} .selected=${chosenTask.value?.name === name}>${name}</option>`,
-          )}
-        </select>
-        <button id="do" ?disabled=${busy} @click=${() => this.withTask("do_task")}>${texts.doTask}</button>
-        <button id="skip" ?disabled=${off} @click=${() => this.withTask("skip")}>
-          ${icon("skip", 16)} ${texts.skip}
-        </button>
-      </div>
+      ${state.plan === planId.value ? this.ofTasks(off, busy) : nothing}
       ${state.skipped.length > 0 ? html`<p>${texts.skipped(state.skipped)}</p>` : nothing}
       <p class="reason">${texts.edited}</p>
     </section>`;
+  }
+
+  /** A task of the mission, done or skipped. */
+  private ofTasks(off: boolean, busy: boolean) {
+    const texts = t().run;
+    const tasks = this.tasks();
+    const chosen = tasks.includes(this.task) ? this.task : (tasks[0] ?? "");
+    return html`<div class="line">
+      <select
+        id="task"
+        aria-label=${texts.whichTask}
+        @change=${(event: Event) => (this.task = (event.target as HTMLSelectElement).value)}
+      >
+        ${tasks.map((name) => html`<option value=${name} .selected=${name === chosen}>${name}</option>`)}
+      </select>
+      <button id="do" ?disabled=${busy || chosen === ""} @click=${() => ask({ kind: "do_task", task: chosen })}>
+        ${texts.doTask}
+      </button>
+      <button id="skip" ?disabled=${off || chosen === ""} @click=${() => ask({ kind: "skip", task: chosen })}>
+        ${icon("skip", 16)} ${texts.skip}
+      </button>
+    </div>`;
   }
 
   private arrow(direction: Direction, sign: Icon, name: string) {
@@ -220,10 +242,5 @@ export class RunHand extends PageElement {
     const checkpoint = chosenCheckpoint(field?.value ?? "", world.value?.checkpoints ?? []);
     if (checkpoint === null) return field?.focus();
     await ask({ kind: "measure", checkpoint: String(checkpoint.id) });
-  }
-
-  private async withTask(kind: "do_task" | "skip"): Promise<void> {
-    const task = this.renderRoot.querySelector<HTMLSelectElement>("#task")?.value;
-    if (task) await ask({ kind, task });
   }
 }

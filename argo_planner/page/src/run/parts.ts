@@ -1,22 +1,13 @@
-/** What the parts of the run panel share: their look, speeds, and numbers as people write them. */
+/** What the parts of the run panel share: their look, and speeds. */
 
 import { css } from "../ui/element";
-import { language, t } from "../texts";
+import { t } from "../texts";
 
 /** Simulated seconds a second. */
 export const SPEEDS: readonly (number | null)[] = [0.5, 1, 2, 5, 10, 30, null];
 
 export function speedName(speed: number | null): string {
   return speed === null ? t().run.fullSpeed : t().run.times(speed);
-}
-
-/** A number as it is written in the language of the page. */
-export function figure(value: number, digits = 2): string {
-  return value.toLocaleString(language.value, { maximumFractionDigits: digits });
-}
-
-export function percent(part: number): string {
-  return `${figure(100 * part, 0)} %`;
 }
 
 export const parts = css`

@@ -11,7 +11,8 @@ import { world } from "../state/world";
 import { t } from "../texts";
 import { css, customElement, html, look, nothing, PageElement } from "../ui/element";
 import { icon } from "../ui/icons";
-import { figure, parts, percent } from "./parts";
+import { figure, percent } from "../ui/figures";
+import { parts } from "./parts";
 
 const WIDTH = 100;
 const HEIGHT = 10;

@@ -5,7 +5,7 @@ import type { RunState } from "../api/types";
 import { tellError } from "../state/notices";
 import { planId } from "../state/plan";
 import { pastRun, run, runIsOn, showRun, shownRunState } from "../state/run";
-import { language, t } from "../texts";
+import { dateLocale, t } from "../texts";
 import { css, customElement, html, look, nothing, PageElement, state } from "../ui/element";
 import { icon } from "../ui/icons";
 import "./band";
@@ -124,7 +124,7 @@ export class RunPanel extends PageElement {
   }
 
   private named(one: RunState): string {
-    const when = new Date(one.begun).toLocaleString(language.value, {
+    const when = new Date(one.begun).toLocaleString(dateLocale(), {
       dateStyle: "medium",
       timeStyle: "short",
     });

@@ -9,7 +9,8 @@ import { world } from "../state/world";
 import { t } from "../texts";
 import { css, customElement, html, look, nothing, PageElement, state } from "../ui/element";
 import { icon } from "../ui/icons";
-import { figure, parts, SPEEDS, speedName } from "./parts";
+import { figure } from "../ui/figures";
+import { parts, SPEEDS, speedName } from "./parts";
 
 export const FAULTS = [
   "abnormal_value",

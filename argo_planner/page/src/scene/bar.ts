@@ -67,6 +67,20 @@ export class SceneBar extends PageElement {
   @property({ attribute: false }) view: SceneView | null = null;
   @state() private open = false;
 
+  override connectedCallback(): void {
+    super.connectedCallback();
+    addEventListener("pointerdown", this.onOutside);
+  }
+
+  override disconnectedCallback(): void {
+    super.disconnectedCallback();
+    removeEventListener("pointerdown", this.onOutside);
+  }
+
+  private readonly onOutside = (event: Event): void => {
+    if (!event.composedPath().includes(this)) this.open = false;
+  };
+
   override render() {
     const texts = t().scene;
     const { view } = this;
@@ -133,7 +147,12 @@ export class SceneBar extends PageElement {
       @keydown=${(event: KeyboardEvent) => {
         if (event.key !== "Escape") return;
         this.open = false;
+        this.renderRoot.querySelector<HTMLElement>("[aria-expanded]")?.focus();
         event.stopPropagation();
+      }}
+      @focusout=${(event: FocusEvent) => {
+        const to = event.relatedTarget as Element | null;
+        if (to !== null && to.closest(".settings, [aria-expanded]") === null) this.open = false;
       }}
     >
       ${HIDEABLE.map((one) => box(texts.hide[one], !hidden.value.has(one), (on) => hide(one, !on)))}

@@ -1,5 +1,6 @@
 /** Words that stand beside what moves in the picture: the ghost and the robot. */
 
+import { shownTime } from "../state/run";
 import { t } from "../texts";
 import { heed } from "./heed";
 import { ghost, verdictWords } from "./navigate";
@@ -28,7 +29,8 @@ export function aboveRobot(view: SceneView, robot: RobotView, element: HTMLEleme
   element.hidden = seen === null;
   if (seen === null || told === null) return;
   element.className = told.mode;
-  element.textContent = t().run.modes[told.mode];
+  const back = shownTime.value;
+  element.textContent = back === null ? t().run.modes[told.mode] : t().words.seconds(back);
   const place = `translate(${Math.round(seen.x)}px, ${Math.round(seen.y)}px) translate(-50%, -100%)`;
   element.style.setProperty("transform", place);
 }

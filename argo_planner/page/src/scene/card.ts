@@ -1,15 +1,16 @@
 /** What was clicked, in a card beside it, with what can be done there. */
 
 import type { Obstacle, Pose, WorldCheckpoint } from "../api/types";
-import { addMeasure, addTask } from "../list/add";
+import { addMeasure, addStart, addTask } from "../list/adding";
 import { mayPlan } from "../state/session";
 import { look as lookSignal } from "../state/view";
-import { removeObstacle } from "../state/world";
+import { removeObstacle, world } from "../state/world";
 import { t } from "../texts";
 import { css, customElement, html, look, nothing, PageElement, property } from "../ui/element";
+import { figure } from "../ui/figures";
 import { icon } from "../ui/icons";
 import { heed } from "./heed";
-import { type Mark, opened, round } from "./marks";
+import { type Mark, opened } from "./marks";
 import { setsStart } from "./navigate";
 import { floating } from "./panel";
 import type { SceneView } from "./view";
@@ -98,7 +99,7 @@ export class SceneCard extends PageElement {
       ${mark.numbers === "" ? nothing : html`<p class="dim">${texts.inMission(mark.numbers)}</p>`}
       ${one.problem ? html`<p class="bad">${texts.cannotRead} ${one.problem}</p>` : nothing}
       <div class="buttons">
-        <button class="main" id="measure" ?disabled=${!mayPlan()} @click=${() => void addMeasure(String(one.id))}>
+        <button class="main" id="measure" ?disabled=${!mayPlan()} @click=${() => added(addMeasure(String(one.id)))}>
           ${icon("gauge", 16)} ${texts.measure}
         </button>
         ${stands ? this.stands(texts.standHere, stands, "WAYPOINT") : nothing}
@@ -108,10 +109,11 @@ export class SceneCard extends PageElement {
 
   private place(name: string, pose: Pose, dock: number | null) {
     const texts = t().scene;
+    const area = world.value?.docks.find((one) => one.area === dock)?.area;
     return html`<div class="buttons">
       ${this.stands(texts.driveHere, pose, dock === null ? name : "DOCK")}
       ${setsStart.value
-        ? html`<button ?disabled=${!mayPlan()} @click=${() => void addTask("START", "START", { pose })}>
+        ? html`<button ?disabled=${!mayPlan()} @click=${() => added(addStart(pose, area))}>
             ${icon("flag", 16)} ${texts.startHere}
           </button>`
         : nothing}
@@ -119,14 +121,14 @@ export class SceneCard extends PageElement {
   }
 
   private stands(label: string, pose: Pose, name: string) {
-    return html`<button ?disabled=${!mayPlan()} @click=${() => void addTask("WAYPOINT", name, { pose })}>
+    return html`<button ?disabled=${!mayPlan()} @click=${() => added(addTask("WAYPOINT", name, { pose }))}>
       ${icon("drive", 16)} ${label}
     </button>`;
   }
 
   private obstacle({ id, size: [x, y, z] }: Obstacle) {
     const texts = t().scene;
-    return html`<p class="dim">${texts.size(round(x), round(y), round(z))}</p>
+    return html`<p class="dim">${texts.size(figure(x), figure(y), figure(z))}</p>
       <div class="buttons">
         <button class="danger" ?disabled=${!mayPlan()} @click=${() => void removeObstacle(id)}>
           ${icon("bin", 16)} ${texts.remove}
@@ -155,6 +157,13 @@ export class SceneCard extends PageElement {
   }
 }
 
+/** What was asked for shows in the list and on the site, which the card would cover. */
+function added(adding: Promise<boolean>): void {
+  void adding.then((done) => {
+    if (done) opened.value = null;
+  });
+}
+
 function bound(value: number | null | undefined): string {
-  return value === null || value === undefined ? "∞" : round(value);
+  return value === null || value === undefined ? "∞" : figure(value);
 }

@@ -76,6 +76,7 @@ export class Dots {
   show(dots: readonly Dot[]): void {
     const same = dots.length === this.dots.length && dots.every((dot, i) => dot.key === this.dots[i]?.key && dot.at.equals(this.dots[i].at));
     if (!same) {
+      this.geometry.dispose(); // else the buffers of before stay on the graphics card
       this.geometry.setAttribute("position", new BufferAttribute(new Float32Array(dots.flatMap(({ at }) => at.toArray())), 3));
       this.geometry.setAttribute("color", new BufferAttribute(new Float32Array(3 * dots.length), 3));
       this.geometry.setAttribute("rim", new BufferAttribute(new Float32Array(3 * dots.length), 3));

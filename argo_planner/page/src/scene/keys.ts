@@ -1,6 +1,7 @@
 /** Keys while the scene has the focus. */
 
 import { liftGhost, beginAt, FAST_CELLS, ghost, hideGhost, moveGhost, turnGhost } from "./navigate";
+import { beginCorner, corners, liftCorner, moveCorner, takePointed } from "./obstacle-tool";
 import { shownFloor, tool } from "../state/view";
 import { world } from "../state/world";
 import { Vector3 } from "three";
@@ -23,15 +24,22 @@ export function onSceneKey(event: KeyboardEvent, { view, place }: Keyed): boolea
   if (event.ctrlKey || event.metaKey || event.altKey) return false;
   const arrow = ARROWS[event.key];
   const navigates = tool.value === "navigate";
+  const spans = tool.value === "obstacle" && !corners.value?.second;
+  const cells = event.shiftKey ? FAST_CELLS : 1;
   if (arrow && navigates) {
     begin(view);
-    step(view, arrow, event.shiftKey ? FAST_CELLS : 1);
+    step(view, arrow, cells, moveGhost);
+  } else if (arrow && spans) {
+    const middle = middleOf(view);
+    if (middle) beginCorner(middle);
+    step(view, arrow, cells, moveCorner);
   } else if (arrow) view.camera.key(event.key, true, event.shiftKey);
   else if (event.key === "PageUp") changeFloor(view, 1);
   else if (event.key === "PageDown") changeFloor(view, -1);
   else if (navigates && event.key === ",") turn(view, 1);
   else if (navigates && event.key === ".") turn(view, -1);
   else if (navigates && event.key === "Enter" && ghost.value !== null) place();
+  else if (spans && event.key === "Enter") takePointed();
   else if (event.key === "+" || event.key === "=") view.camera.zoom(1);
   else if (event.key === "-") view.camera.zoom(-1);
   else if (event.key === "Home") void view.camera.showAll(shownFloor.value);
@@ -46,20 +54,27 @@ function turn(view: SceneView, steps: number): void {
 
 /** The ghost begins in the middle of the picture. */
 function begin(view: SceneView): void {
-  if (ghost.value !== null) return;
+  const middle = ghost.value === null ? middleOf(view) : undefined;
+  if (middle) beginAt(middle.x, middle.y, middle.z);
+}
+
+/** Where the middle of the picture meets the ground (m), else the first dock. */
+function middleOf(view: SceneView): { readonly x: number; readonly y: number; readonly z: number } | undefined {
   const { width, height } = view.stage.size;
-  const hit = view.site.hitWays(view.rayAt(width / 2, height / 2));
-  const dock = world.value?.docks[0]?.pose;
-  if (hit) beginAt(hit.point.x, hit.point.y, hit.point.z);
-  else if (dock) beginAt(dock.x, dock.y, dock.z);
+  return view.site.hitWays(view.rayAt(width / 2, height / 2))?.point ?? world.value?.docks[0]?.pose;
 }
 
 /** Along the axis of the site that is the nearest to where the arrow shows in the picture. */
-function step(view: SceneView, [right, up]: readonly [number, number], cells: number): void {
+function step(
+  view: SceneView,
+  [right, up]: readonly [number, number],
+  cells: number,
+  move: (columns: number, rows: number) => void,
+): void {
   const ahead = view.stage.camera.getWorldDirection(new Vector3());
   const quarter = Math.round(Math.atan2(ahead.y, ahead.x) / (Math.PI / 2)) * (Math.PI / 2);
   const [forwardX, forwardY] = [Math.round(Math.cos(quarter)), Math.round(Math.sin(quarter))];
-  moveGhost((up * forwardX + right * forwardY) * cells, (up * forwardY - right * forwardX) * cells);
+  move((up * forwardX + right * forwardY) * cells, (up * forwardY - right * forwardX) * cells);
 }
 
 /** Shows the floor above or below; the ghost goes along. */
@@ -71,6 +86,7 @@ function changeFloor(view: SceneView, by: number): void {
   const floor = floors[next];
   shownFloor.value = floor?.number ?? null;
   view.camera.toFloor(floor ?? null);
+  if (floor) liftCorner(floor.z);
   if (floor && ghost.value !== null) liftGhost(floor.z);
   else if (!floor) hideGhost();
 }

@@ -11,6 +11,7 @@ import { preview } from "../state/preview";
 import { shownRun } from "../state/run";
 import { world } from "../state/world";
 import { t } from "../texts";
+import { figure } from "../ui/figures";
 
 export type Subject =
   | { readonly kind: "checkpoint"; readonly checkpoint: WorldCheckpoint }
@@ -86,7 +87,7 @@ function checkpointMark(checkpoint: WorldCheckpoint): Mark {
     floor: checkpoint.floor,
     text: `#${checkpoint.id} ${checkpoint.name}`,
     numbers: shortList(there?.numbers ?? []),
-    value: reading ? `${round(reading.value)} ${reading.unit}` : "",
+    value: reading ? `${figure(reading.value)} ${reading.unit}` : "",
     tone: isActive
       ? "active"
       : chosen
@@ -185,6 +186,3 @@ function shortList(numbers: readonly number[]): string {
   return numbers.length > 3 ? `${numbers.slice(0, 2).join(", ")} …` : numbers.join(", ");
 }
 
-export function round(value: number): string {
-  return String(Math.round(100 * value) / 100);
-}

@@ -3,7 +3,7 @@
 import { computed, effect, signal } from "@preact/signals-core";
 import type { Ray, Vector3 } from "three";
 
-import { addPlace } from "../list/add";
+import { addPlace, lacksStart } from "../list/adding";
 import { floorOf, type Standing } from "../model/standing";
 import { mission } from "../state/plan";
 import { shownFloor, tool } from "../state/view";
@@ -120,9 +120,7 @@ function middle(value: number): number {
 }
 
 /** Whether the next click sets the start. */
-export const setsStart = computed(
-  () => mission.value !== null && !mission.value.tasks.some((task) => task.action === "START"),
-);
+export const setsStart = computed(() => mission.value !== null && lacksStart(mission.value));
 
 /** Adds a task where the ghost is, if the robot can stand there. Whether it was added. */
 export async function placeGhost(): Promise<boolean> {
@@ -130,7 +128,7 @@ export async function placeGhost(): Promise<boolean> {
   if (at?.verdict?.ground !== "reached") return false;
   const rounded = (value: number) => Math.round(1000 * value) / 1000;
   const pose = { x: rounded(at.x), y: rounded(at.y), z: rounded(at.z), yaw: at.yaw };
-  return addPlace(pose);
+  return addPlace(pose, lacksStart);
 }
 
 /** The ghost once it is known whether the robot can stand there: right after the tool was taken, the

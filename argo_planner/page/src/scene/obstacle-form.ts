@@ -4,7 +4,7 @@ import { tool } from "../state/view";
 import { t } from "../texts";
 import { css, customElement, html, look, nothing, PageElement, query, state } from "../ui/element";
 import { height, hideCorners, putUp, spanned, corners } from "./obstacle-tool";
-import { round } from "./marks";
+import { figure } from "../ui/figures";
 import { floating } from "./panel";
 
 @customElement("argo-obstacle-form")
@@ -66,7 +66,7 @@ export class ObstacleForm extends PageElement {
           }}
         />
       </label>
-      <p class="dim">${texts.size(round(x), round(y), round(z))}</p>
+      <p class="dim">${texts.size(figure(x), figure(y), figure(z))}</p>
       <div class="row">
         <button class="main grow" ?disabled=${this.busy}>${texts.putUp}</button>
         <button type="button" @click=${hideCorners}>${texts.cancel}</button>

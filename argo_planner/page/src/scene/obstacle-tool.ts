@@ -16,6 +16,8 @@ interface Corner {
 /** m */
 const LEAST = 0.1;
 const MOST = 20;
+/** m that a key moves a corner by */
+const STEP = 0.1;
 export const FIRST_HEIGHT = 0.5;
 
 /** The corners that were clicked, and the one at which the pointer is. */
@@ -30,7 +32,8 @@ export const height = signal(FIRST_HEIGHT);
 export const spanned = computed<Pick<Obstacle, "pose" | "size"> | null>(() => {
   const { first = null, second = null, pointed = null } = corners.value ?? {};
   const other = second ?? pointed;
-  if (first === null || other === null) return null;
+  if (other === null) return null;
+  if (first === null) return { pose: { ...other, yaw: 0 }, size: [LEAST, LEAST, height.value] };
   const side = (a: number, b: number) => Math.min(MOST, Math.max(LEAST, rounded(Math.abs(a - b))));
   return {
     pose: { x: rounded((first.x + other.x) / 2), y: rounded((first.y + other.y) / 2), z: first.z, yaw: 0 },
@@ -45,9 +48,40 @@ export function pointCorner(hit: Hit | null): void {
 }
 
 export function clickCorner(hit: Hit | null): void {
+  if (hit !== null) takeCorner(cornerOf(hit));
+}
+
+/** Takes the corner at which the keys are. */
+export function takePointed(): void {
+  const at = corners.value?.pointed;
+  if (at) takeCorner(at);
+}
+
+/** Points at a corner, if nothing points at one yet. */
+export function beginCorner(at: Corner): void {
   const now = corners.value;
-  if (hit === null || now?.second) return;
-  const corner = cornerOf(hit);
+  if (now?.second || now?.pointed) return;
+  const pointed = now?.first ?? { x: rounded(at.x), y: rounded(at.y), z: rounded(at.z) };
+  corners.value = { first: now?.first ?? null, second: null, pointed };
+}
+
+/** Moves the corner at which the keys are by steps along x and y. */
+export function moveCorner(columns: number, rows: number): void {
+  const now = corners.value;
+  if (!now?.pointed || now.second) return;
+  const { x, y, z } = now.pointed;
+  corners.value = { ...now, pointed: { x: rounded(x + STEP * columns), y: rounded(y + STEP * rows), z } };
+}
+
+/** Points at a corner on another floor (m). */
+export function liftCorner(z: number): void {
+  const now = corners.value;
+  if (now?.pointed && now.first === null) corners.value = { ...now, pointed: { ...now.pointed, z } };
+}
+
+function takeCorner(corner: Corner): void {
+  const now = corners.value;
+  if (now?.second) return;
   corners.value = now?.first
     ? { ...now, second: corner, pointed: null }
     : { first: corner, second: null, pointed: null };

@@ -21,7 +21,7 @@ import { floorOf } from "../model/standing";
 import { timeColour } from "../model/time-colour";
 import { selection } from "../state/plan";
 import { comparedPreview, hoveredLeg, preview } from "../state/preview";
-import { shownFloor } from "../state/view";
+import { panel, shownFloor } from "../state/view";
 import { world } from "../state/world";
 import { colours } from "./colours";
 import { heed } from "./heed";
@@ -69,7 +69,7 @@ export class PathsView {
       effect(() => {
         const other = new Color(colours.value.good);
         this.clear(this.compared);
-        const { paths } = pathsOf(comparedPreview.value);
+        const { paths } = pathsOf(panel.value === "route" ? comparedPreview.value : null);
         this.draw(this.compared, paths.filter((one) => !one.dashed), WIDTH, () => other, ABOVE + 0.03);
       }),
       effect(() => {
@@ -81,7 +81,7 @@ export class PathsView {
       effect(() => {
         const highest = shownFloor.value;
         const on = pathsShown.value;
-        heed(this.paths, this.meant, comparedPreview, colours);
+        heed(this.paths, this.meant, comparedPreview, panel, colours);
         for (const group of [this.group, this.marked, this.compared])
           for (const one of group.children)
             one.visible = on && (highest === null || (one.userData["floor"] as number) <= highest);

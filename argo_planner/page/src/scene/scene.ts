@@ -2,6 +2,7 @@
 
 import { effect, signal } from "@preact/signals-core";
 
+import { isTyping } from "../frame/keys";
 import { nameOfKey } from "../model/outline";
 import { tell } from "../state/notices";
 import { selection } from "../state/plan";
@@ -60,6 +61,8 @@ export class ScenePanel extends PageElement {
     super.connectedCallback();
     if (this.hasUpdated) this.begin();
     addEventListener("contextmenu", this.onMenu);
+    addEventListener("pointerdown", this.onElsewhere);
+    addEventListener("keydown", this.onEscape, { capture: true });
   }
 
   override firstUpdated(): void {
@@ -69,6 +72,8 @@ export class ScenePanel extends PageElement {
   override disconnectedCallback(): void {
     super.disconnectedCallback();
     removeEventListener("contextmenu", this.onMenu);
+    removeEventListener("pointerdown", this.onElsewhere);
+    removeEventListener("keydown", this.onEscape, { capture: true });
     clearTimeout(this.saying);
     for (const stop of this.stops) stop();
     for (const part of this.parts.reverse()) part.dispose();
@@ -103,6 +108,9 @@ export class ScenePanel extends PageElement {
     ];
     this.stops = [
       effect(() => this.take(view)),
+      effect(() => {
+        if (tool.value !== "select") this.picture.focus({ preventScroll: true }); // its keys work at once
+      }),
       effect(() => this.announce()),
       effect(() => besideGhost(view, this.verdict)),
       effect(() => aboveRobot(view, robot, this.robotSign)),
@@ -184,6 +192,18 @@ export class ScenePanel extends PageElement {
     });
   }
 
+  /** The card closes with a click elsewhere, and with Escape. */
+  private readonly onElsewhere = (event: Event): void => {
+    if (!event.composedPath().includes(this)) opened.value = null;
+  };
+
+  private readonly onEscape = (event: KeyboardEvent): void => {
+    if (event.key !== "Escape" || opened.value === null || isTyping(event)) return;
+    opened.value = null;
+    event.preventDefault();
+    event.stopImmediatePropagation();
+  };
+
   private readonly onMenu = (event: MouseEvent): void => {
     const inList = event.composedPath().some((one) => one instanceof HTMLElement && one.localName === "argo-list");
     if (!inList || tool.value === "select") return;
@@ -232,7 +252,9 @@ export class ScenePanel extends PageElement {
         <div id="robot" aria-hidden="true" hidden></div>
         <div id="verdict" aria-hidden="true" hidden></div>
       </div>
-      <p id="help" class="unseen">${navigates ? texts.helpNavigate : texts.help}</p>
+      <p id="help" class="unseen">
+        ${navigates ? texts.helpNavigate : tool.value === "obstacle" ? texts.helpObstacle : texts.help}
+      </p>
       <p class="unseen" aria-live="polite" id="said">${this.said.value}</p>
       ${loading === "there"
         ? nothing

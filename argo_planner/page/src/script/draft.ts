@@ -2,11 +2,13 @@
 
 import { batch, computed, effect, signal } from "@preact/signals-core";
 
-import { answered, client, newId, Refusal, Unreached } from "../api/client";
+import { answered, client, Refusal, Unreached } from "../api/client";
 import type { Diagnostic } from "../api/types";
+import { commandId, settled } from "../state/commands";
 import { tellError } from "../state/notices";
-import { findings, planId, revision } from "../state/plan";
+import { broken, planId, revision, take } from "../state/plan";
 import { keep, kept } from "../state/session";
+import { readNotes } from "./notes";
 
 interface Base {
   readonly revision: number;
@@ -39,14 +41,14 @@ let keeping: ReturnType<typeof setTimeout> | undefined;
 effect(() => {
   const id = planId.value;
   const at = revision.value;
-  const wrong = findings.value.diagnostics.some((one) => one.severity === "error");
   clearTimeout(waiting);
   if (id !== plan) begin(id);
-  if (id === null || at === 0 || wrong || base.peek()?.revision === at) return;
+  if (id === null || at === 0 || broken.value || base.peek()?.revision === at) return;
   waiting = setTimeout(() => void read(id, at), PAUSE_MS);
 });
 
 function begin(id: string | null): void {
+  if (keeping !== undefined) keepDraft(); // of the mission that was open
   plan = id;
   batch(() => {
     base.value = refused.value = unsaid.value = aside.value = null;
@@ -98,6 +100,8 @@ export function write(text: string): void {
 }
 
 function keepDraft(): void {
+  clearTimeout(keeping);
+  keeping = undefined;
   if (plan !== null) keep(draftName(), dirty.value ? draft.value : "");
 }
 
@@ -133,14 +137,17 @@ export async function apply(anyway = false): Promise<void> {
   if (id === null || from === null || applying.value) return;
   const on = anyway ? revision.value : from.revision;
   applying.value = true;
+  await settled();
   try {
     const done = await answered(
       client.PUT("/api/missions/{id}/script", {
         params: { path: { id }, header: { "If-Match": `"${on}"` } },
-        body: { id: newId(), script },
+        body: { id: commandId(), script },
       }),
     );
     if (planId.value !== id) return;
+    take(done);
+    void readNotes(id, false);
     batch(() => {
       refused.value = null;
       // Its own words and remarks stay until the mission is changed in another way.

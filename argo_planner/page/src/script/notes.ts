@@ -29,10 +29,11 @@ effect(() => {
   const opened = id !== plan;
   plan = id;
   if (opened) openNotes.value = [];
-  if (id !== null) void read(id, opened);
+  if (id !== null) void readNotes(id, opened);
 });
 
-async function read(id: string, opened: boolean): Promise<void> {
+/** Reads what is open; `opened`: the mission was opened just now, and somebody is to look. */
+export async function readNotes(id: string, opened: boolean): Promise<void> {
   try {
     const found = await answered(
       client.GET("/api/missions/{id}/notes", { params: { path: { id } } }),

@@ -272,7 +272,7 @@ export class ScriptPanel extends PageElement {
 
   private problems() {
     const told = refused.value;
-    if (told === null) return nothing;
+    if (told === null || !dirty.value) return nothing;
     const texts = t().script;
     return html`<section class="told bad" aria-label=${texts.problems} role="alert">
       <p>${texts.refused}</p>

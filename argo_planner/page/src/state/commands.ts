@@ -3,8 +3,9 @@
 import { signal } from "@preact/signals-core";
 
 import { answered, client, newId, Refusal, Unreached } from "../api/client";
+import { pause } from "../api/trying";
 import type { CommandDone, Edit, Revision } from "../api/types";
-import { touched } from "../model/change";
+import { touched, touchedHeader } from "../model/change";
 import { t } from "../texts";
 import { messageOf, tell, tellError } from "./notices";
 import { doneSince, planId, revision, take, takeRevision } from "./plan";
@@ -29,6 +30,23 @@ export const waiting = signal(0);
 let queue: Promise<unknown> = Promise.resolve();
 /** Ids of the commands that were asked for here. */
 const own = new Set<string>();
+
+/** An id for a command that is asked for here. */
+export function commandId(): string {
+  const id = newId();
+  own.add(id);
+  return id;
+}
+
+/** Whether a revision came of what was asked for here. */
+export function isOwn(made: Revision): boolean {
+  return own.has(made.id);
+}
+
+/** Until all that was asked for so far is answered. */
+export async function settled(): Promise<void> {
+  await queue;
+}
 
 /** Makes edits, all of them or none. Whether they were made; if not, a notice says why. */
 export function edit(...edits: LooseEdit[]): Promise<boolean> {
@@ -81,37 +99,49 @@ function queued<T>(work: (seen: Seen) => Promise<T>): Promise<T> {
 async function carriedOut(
   asked: Command,
   refused: (error: unknown) => void,
-  seen: Seen,
+  { plan, revision: seen }: Seen,
 ): Promise<boolean> {
-  const { plan } = seen;
   if (plan === null || planId.value !== plan) return false;
   if (asked.kind === "edit" && asked.edits.length === 0) return true;
-  const commandId = newId();
-  own.add(commandId);
-  let known = seen.revision;
+  const id = commandId();
+  let known = seen;
   while (planId.value === plan) {
-    const meanwhile = doneSince(known)?.filter((one) => !own.has(one.id)) ?? null;
-    if (!apart(asked, meanwhile)) {
-      tellStale(asked, meanwhile ?? []);
+    const meanwhile = doneSince(known)?.filter((one) => !isOwn(one)) ?? null;
+    if (!isApart(asked, meanwhile)) {
+      tellStale(asked, meanwhile ?? [], plan);
       return false;
     }
     known = revision.value;
     try {
-      take(await sent(plan, commandId, asked, `"${revision.value}"`));
+      await tried(plan, id, asked);
       return true;
     } catch (error) {
+      // It may have been carried out: the same id makes sending it again harmless.
       if (error instanceof Unreached) {
-        // It may have been carried out: the same id makes sending it again harmless.
-        await new Promise((resolve) => setTimeout(resolve, RETRY_MS));
-      } else if (error instanceof Refusal && error.problem.code === "stale-revision") {
-        await caughtUp(plan, error.problem.since ?? null);
-      } else {
+        tell("warn", t().frame.offline);
+        await pause(RETRY_MS);
+      } else if (!isStale(error)) {
         refused(error);
         return false;
       }
     }
   }
   return false;
+}
+
+/** Sends a command once. Where it is stale, takes what was done meanwhile before it throws that. */
+async function tried(plan: string, id: string, asked: Command): Promise<void> {
+  try {
+    const done = await sent(plan, id, asked, `"${revision.value}"`);
+    if (planId.value === plan) take(done);
+  } catch (error) {
+    if (isStale(error)) await caughtUp(plan, error.problem.since ?? null);
+    throw error;
+  }
+}
+
+function isStale(error: unknown): error is Refusal {
+  return error instanceof Refusal && error.problem.code === "stale-revision";
 }
 
 function sent(plan: string, id: string, asked: Command, made: string): Promise<CommandDone> {
@@ -125,25 +155,47 @@ function sent(plan: string, id: string, asked: Command, made: string): Promise<C
 
 /** Takes what was done meanwhile, or the whole mission where that is not known any more. */
 async function caughtUp(plan: string, since: readonly Revision[] | null): Promise<void> {
-  if (since !== null) for (const one of since) takeRevision(one);
-  else take(await answered(client.GET("/api/missions/{id}", { params: { path: { id: plan } } })));
+  const state =
+    since === null
+      ? await answered(client.GET("/api/missions/{id}", { params: { path: { id: plan } } }))
+      : null;
+  if (planId.value !== plan) return;
+  if (state !== null) take(state);
+  else for (const one of since ?? []) takeRevision(one);
 }
 
 /** Whether what others did touches nothing that the command is about. */
-function apart(asked: Command, since: readonly Revision[] | null): boolean {
+function isApart(asked: Command, since: readonly Revision[] | null): boolean {
   if (since === null) return false;
   if (asked.kind !== "edit") return true;
-  const about = new Set<unknown>();
-  for (const one of asked.edits)
-    for (const value of Object.values(one)) if (typeof value === "string") about.add(value);
-  return since.every((one) => [...touched(one.change)].every((name) => !about.has(name)));
+  const names = new Set<unknown>();
+  const fields = new Set<string>();
+  for (const one of asked.edits) {
+    for (const value of Object.values(one)) if (typeof value === "string") names.add(value);
+    if (one.kind === "wrap_tasks") {
+      const { start, end } = one.group as { start?: string; end?: string };
+      names.add(start).add(end);
+    }
+    if (one.kind === "set_header") for (const field of Object.keys(one)) fields.add(field);
+  }
+  return since.every(
+    ({ change }) =>
+      [...touched(change)].every((name) => !names.has(name)) &&
+      [...touchedHeader(change)].every((field) => !fields.has(field)),
+  );
 }
 
-function tellStale(asked: Command, since: readonly Revision[]): void {
-  const details = since
-    .slice(-4)
-    .map((one) => t().frame.changedBy(one.author, [...touched(one.change)].slice(0, 5)));
-  const act = () => void queued((seen) => carriedOut(asked, tellError, seen));
-  const again = { label: t().frame.doItAnyway, act };
-  tell("warn", t().frame.stale, { details, actions: [again] });
+function tellStale(asked: Command, since: readonly Revision[], plan: string): void {
+  const details = since.slice(-4).map(({ author, change }) => {
+    const what = [...touched(change)].slice(0, 5);
+    if (touchedHeader(change).size > 0) what.push(t().frame.missionItself);
+    return t().frame.changedBy(author, what);
+  });
+  const act = () =>
+    void queued((seen) => {
+      if (seen.plan === plan) return carriedOut(asked, tellError, seen);
+      tell("warn", t().frame.otherMission);
+      return Promise.resolve(false);
+    });
+  tell("warn", t().frame.stale, { details, actions: [{ label: t().frame.doItAnyway, act }] });
 }

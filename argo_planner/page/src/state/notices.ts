@@ -14,8 +14,9 @@ export interface Notice {
 }
 
 export const notices = signal<readonly Notice[]>([]);
-const INFO_MS = 5_000;
-const MOST = 4;
+/** ms after which a message goes, if there is nothing to be chosen in it */
+const STAYS_MS = { info: 5_000, warn: 15_000, bad: 25_000 };
+const MOST = 3;
 let count = 0;
 
 export function tell(
@@ -27,7 +28,17 @@ export function tell(
   const notice = { id, tone, text, details: more.details ?? [], actions: more.actions ?? [] };
   const others = notices.value.filter((one) => one.text !== text);
   notices.value = [...others, notice].slice(-MOST);
-  if (tone === "info") setTimeout(() => dismiss(id), INFO_MS);
+  if (notice.actions.length === 0) dismissLater(id, STAYS_MS[tone]);
+}
+
+/** Nothing goes that nobody could have seen. */
+function dismissLater(id: number, ms: number): void {
+  setTimeout(() => (document.hidden ? dismissLater(id, ms) : dismiss(id)), ms);
+}
+
+/** Takes the newest message away. */
+export function dismissNewest(): void {
+  notices.value = notices.value.slice(0, -1);
 }
 
 export function dismiss(id: number): void {

@@ -2,7 +2,7 @@
 
 import { batch, computed, signal } from "@preact/signals-core";
 
-import { answered, authorQuery, client } from "../api/client";
+import { answered, authorQuery, client, Refusal, Unreached } from "../api/client";
 import { LiveConnection } from "../api/live";
 import type {
   AnalysisFound,
@@ -20,7 +20,8 @@ import { changed } from "../model/change";
 import { groupKey, isTaskKey, nameOfKey, reactionKey, taskKey } from "../model/outline";
 import { t } from "../texts";
 import { tell } from "./notices";
-import { author } from "./session";
+import { isMe } from "./session";
+import { resetView } from "./view";
 import { obstaclesChanged } from "./world";
 
 const MOST_RECENT = 500;
@@ -30,6 +31,8 @@ export const planName = signal("");
 export const mission = signal<Mission | null>(null);
 export const revision = signal(0);
 export const findings = signal<Findings>({ diagnostics: [], more: 0 });
+/** Whether the mission has errors, with which it can be neither reckoned nor driven. */
+export const broken = computed(() => findings.value.diagnostics.some((one) => one.severity === "error"));
 /** The last analysis, which may be of an earlier revision. */
 export const analysis = signal<AnalysisFound | null>(null);
 export const versions = signal<readonly VersionSummary[]>([]);
@@ -40,6 +43,8 @@ export const others = signal<readonly Member[]>([]);
 /** The newest state of each search for an order, by id. */
 export const jobs = signal<ReadonlyMap<string, OrderJob>>(new Map());
 export const connected = signal(false);
+/** Whether somebody else has deleted the mission that was open last. */
+export const wasGone = signal(false);
 /** Keys of what is selected (`taskKey`, `groupKey`, `reactionKey`), the last one last. */
 export const selection = signal<readonly string[]>([]);
 /** What was done last, by whomever: to flash what others have changed. */
@@ -56,14 +61,17 @@ export const chosenTask = computed(() => {
 });
 
 let live: LiveConnection<RoomMessage> | null = null;
-let client_ = "";
+/** What this page is called among the members. */
+let self = "";
 /** The last revisions in order, by whomever. */
 const recent: Revision[] = [];
 
-/** Opens a mission; the first snapshot resolves it. Throws `Refusal` or `Unreached`. */
-export async function openPlan(id: string): Promise<void> {
+/** Opens a mission, if it is still meant once it is there. Throws `Refusal` or `Unreached`. */
+export async function openPlan(id: string, isMeant: () => boolean): Promise<void> {
   const state = await answered(client.GET("/api/missions/{id}", { params: { path: { id } } }));
+  if (!isMeant()) return;
   closePlan();
+  wasGone.value = false;
   batch(() => {
     planId.value = id;
     take(state);
@@ -74,21 +82,39 @@ export async function openPlan(id: string): Promise<void> {
     heard,
     changed: (there) => {
       connected.value = there;
-      if (there) tellSelection();
+      if (there) {
+        tellSelection();
+        obstaclesChanged(); // nobody tells of those that were put up meanwhile
+      } else void stillThere(id);
     },
-    gone: () => {
-      tell("warn", t().frame.deleted);
-      closePlan();
-      history.replaceState(null, "", "#");
-    },
+    gone,
   });
 }
 
+/** The connection has ended: perhaps as the mission is not there any more. */
+async function stillThere(id: string): Promise<void> {
+  try {
+    await answered(client.GET("/api/missions/{id}/versions", { params: { path: { id } } }));
+  } catch (error) {
+    if (error instanceof Refusal && error.problem.status === 404 && planId.value === id) gone();
+    else if (!(error instanceof Refusal || error instanceof Unreached)) throw error;
+  }
+}
+
+function gone(): void {
+  wasGone.value = true;
+  tell("warn", t().frame.deletedBy(planName.value));
+  closePlan();
+  history.replaceState(null, "", "#");
+}
+
 export function closePlan(): void {
+  resetView();
   live?.close();
   live = null;
   batch(() => {
     planId.value = null;
+    planName.value = "";
     mission.value = null;
     selection.value = [];
     others.value = [];
@@ -122,7 +148,7 @@ export function take(told: PlanState | CommandDone): void {
       versions.value = told.versions;
       recent.length = 0;
       if (told.recovered) tell("warn", told.recovered);
-      keepSelection();
+      keepSelection(null);
     } else takeRevision(told.revision);
     if (!("newest" in told) || told.newest === revision.value) findings.value = told.findings;
     undoable.value = told.undoable;
@@ -140,7 +166,7 @@ export function takeRevision(made: Revision): void {
     mission.value = changed(before, made.change);
     revision.value = made.number;
     lastRevision.value = made;
-    keepSelection();
+    keepSelection(isMe(made.author) ? null : made.author);
   });
 }
 
@@ -148,19 +174,21 @@ function heard(message: RoomMessage): void {
   batch(() => {
     switch (message.kind) {
       case "snapshot":
-        client_ = message.client;
+        self = message.client;
         take(message.state);
         takeMembers(message.members);
         break;
       case "resumed":
-        client_ = message.client;
+        self = message.client;
+        planName.value = message.name;
+        versions.value = message.versions;
         takeMembers(message.members);
         break;
       case "revision":
         if (message.revision.number <= revision.value) break;
         takeRevision(message.revision);
         if (message.findings) findings.value = message.findings;
-        if (message.revision.author === (author.value || "somebody")) takeUndoable(message.revision);
+        if (isMe(message.revision.author)) takeUndoable(message.revision);
         break;
       case "analysis":
         analysis.value = message.analysis;
@@ -195,11 +223,11 @@ function takeUndoable(made: Revision): void {
 }
 
 function takeMembers(members: readonly Member[]): void {
-  others.value = members.filter((member) => member.client !== client_);
+  others.value = members.filter((member) => member.client !== self);
 }
 
-/** Takes out of the selection what is not there any more. */
-function keepSelection(): void {
+/** Takes out of the selection what is not there any more, and says who took it away. */
+function keepSelection(by: string | null): void {
   const open = mission.value;
   const keys = new Set([
     ...(open?.tasks ?? []).map((task) => taskKey(task.name)),
@@ -207,7 +235,10 @@ function keepSelection(): void {
     ...(open?.reactions ?? []).map((reaction) => reactionKey(reaction.event)),
   ]);
   const there = selection.value.filter((key) => keys.has(key));
-  if (there.length < selection.value.length) select(there);
+  if (there.length === selection.value.length) return;
+  const lost = selection.value.filter((key) => !keys.has(key)).map(nameOfKey);
+  if (by !== null) tell("warn", t().frame.wentAway(by, lost.slice(0, 5).join(", ")));
+  select(there);
 }
 
 function tellSelection(): void {

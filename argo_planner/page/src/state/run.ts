@@ -2,7 +2,8 @@
 
 import { batch, computed, effect, signal } from "@preact/signals-core";
 
-import { answered, authorQuery, client, newId, Unreached } from "../api/client";
+import { answered, authorQuery, client, newId, Refusal, Unreached } from "../api/client";
+import { untilReached } from "../api/trying";
 import { LiveConnection } from "../api/live";
 import type {
   Entry,
@@ -15,7 +16,8 @@ import type {
 import { momentAt, type Moment } from "../model/replay";
 import { tell, tellError } from "./notices";
 import { planId, revision } from "./plan";
-import { author, service } from "./session";
+import { settled } from "./commands";
+import { isMe } from "./session";
 
 export interface RobotPose {
   readonly t: number;
@@ -86,11 +88,17 @@ export const shownRun = computed<ShownRun | null>(() => {
   };
 });
 
-const RETRY_MS = 1_000;
+const RETRY_MS = 500;
+/** ms after which a question that has not reached the service is given up: what the robot is to do is not
+ * to be done when nobody expects it any more. To stand still is never too late. */
+const PATIENCE_MS = 3_000;
+const PATIENCE_TO_STOP_MS = 60_000;
+const STOPS: ReadonlySet<string> = new Set(["pause", "stop", "stop_by_hand"]);
 /** Entries come one by one, and many at once when the page opens; they are shown together. */
 const ENTRIES_MS = 40;
 const quiet = new Set<string>();
 let live: LiveConnection<RunMessage> | null = null;
+let shownLast = 0;
 let comeIn: Entry[] = [];
 let showing: ReturnType<typeof setTimeout> | undefined;
 let catchingUp = false;
@@ -112,14 +120,17 @@ function since(): string {
 /** Shows a run that was; null: the robot's. Throws `Refusal` or `Unreached`. */
 export async function showRun(id: string | null): Promise<void> {
   if (id === null || id === run.value?.id) {
+    shownLast++;
     batch(() => {
       pastRun.value = null;
       shownTime.value = null;
     });
     return;
   }
+  const turn = ++shownLast;
   const state = await answered(client.GET("/api/runs/{run}", { params: { path: { run: id } } }));
   const found = await entriesOf(id, 0);
+  if (turn !== shownLast || planId.value !== state.plan) return;
   batch(() => {
     pastRun.value = { state, entries: found };
     shownTime.value = null;
@@ -143,6 +154,7 @@ async function entriesOf(id: string, since: number): Promise<Entry[]> {
 export async function startRun(asked: Partial<RunAsked>): Promise<boolean> {
   const id = planId.value;
   if (id === null) return false;
+  await settled();
   try {
     const begun = await answered(
       client.POST("/api/missions/{id}/runs", {
@@ -165,45 +177,54 @@ export type Question = RunQuestion extends infer One
     : never
   : never;
 
-/** Asks something of the run. What became of it so far; null if it was refused at once. `quietly`:
- * no notice says so if nothing comes of it. */
-export function ask(question: Question, quietly = false): Promise<RequestState | null> {
+/** Kinds of the questions that have not reached the service yet. */
+export const asking = signal<readonly string[]>([]);
+
+/** Asks something of the run. What became of it so far; null if it was refused at once, or did not reach
+ * the service in time. `quietly`: no notice says so if nothing comes of it. `wanted`: whether it still
+ * is, where it is sent again. */
+export function ask(
+  question: Question,
+  quietly = false,
+  wanted: () => boolean = () => true,
+): Promise<RequestState | null> {
   const body = { id: newId(), ...question } as unknown as RunQuestion;
   if (quietly) quiet.add(body.id);
-  return asked((id) =>
-    answered(client.POST("/api/runs/{run}/requests", { params: { path: { run: id } }, body })),
-  );
+  const send = (id: string) =>
+    answered(client.POST("/api/runs/{run}/requests", { params: { path: { run: id } }, body }));
+  return asked(question.kind, send, quietly, wanted);
 }
 
 /** Gives the robot back with the mission as it is edited now. */
-export function giveBackEdited(): Promise<RequestState | null> {
+export async function giveBackEdited(): Promise<RequestState | null> {
+  await settled();
   const body = { id: newId() };
-  return asked((id) =>
-    answered(
-      client.POST("/api/runs/{run}/plan", {
-        params: { path: { run: id }, header: { "If-Match": `"${revision.value}"` } },
-        body,
-      }),
-    ),
+  const header = { "If-Match": `"${revision.value}"` };
+  return asked("go_on_edited", (id) =>
+    answered(client.POST("/api/runs/{run}/plan", { params: { path: { run: id }, header }, body })),
   );
 }
 
 async function asked(
+  kind: string,
   send: (run: string) => Promise<RequestState>,
+  quietly = false,
+  wanted: () => boolean = () => true,
 ): Promise<RequestState | null> {
   const id = run.value?.id;
-  while (id !== undefined && run.value?.id === id) {
-    try {
-      return await send(id);
-    } catch (error) {
-      if (!(error instanceof Unreached)) {
-        tellError(error);
-        return null;
-      }
-      await new Promise((resolve) => setTimeout(resolve, RETRY_MS));
-    }
+  if (id === undefined) return null;
+  const end = performance.now() + (STOPS.has(kind) ? PATIENCE_TO_STOP_MS : PATIENCE_MS);
+  const goesOn = () => run.value?.id === id && wanted() && performance.now() < end;
+  asking.value = [...asking.value, kind];
+  try {
+    return await untilReached(() => send(id), goesOn, RETRY_MS);
+  } catch (error) {
+    if (!(quietly && error instanceof Refusal)) tellError(error);
+    return null;
+  } finally {
+    const at = asking.value.indexOf(kind);
+    asking.value = asking.value.filter((_, other) => other !== at);
   }
-  return null;
 }
 
 function takeState(state: RunState | null): void {
@@ -224,6 +245,9 @@ function heard(message: RunMessage): void {
   switch (message.kind) {
     case "state":
       takeState(message.state);
+      // Those of a run that began and ended while nothing was heard are not told one by one.
+      if (message.state?.status === "ended" && message.state.entries > entries.value.length + comeIn.length)
+        void catchUp(message.state.id);
       break;
     case "pose":
       if (message.run === run.value?.id)
@@ -245,8 +269,7 @@ function takeRequest(id: string, request: RequestState): void {
     const others = now.requests.filter((one) => one.id !== request.id);
     run.value = { ...now, requests: [...others, request] };
   }
-  const mine = request.by === (service.value?.author ?? "") || request.by === author.value;
-  if (request.reason && request.progress !== "confirmed" && mine && !quiet.has(request.id))
+  if (request.reason && request.progress !== "confirmed" && isMe(request.by) && !quiet.has(request.id))
     tell("warn", request.reason);
 }
 

@@ -13,6 +13,11 @@ export const service = signal<ServiceSummary | null>(null);
 export const author = signal(kept("author") ?? "");
 export const theme = signal<Theme>(firstTheme());
 
+/** Whether something was done under the name of whoever looks. */
+export function isMe(name: string): boolean {
+  return name === (service.value?.named ? service.value.author : author.value || "somebody");
+}
+
 /** Whether they may change missions. */
 export function mayPlan(): boolean {
   return service.value !== null && service.value.role !== "view";

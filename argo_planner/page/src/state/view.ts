@@ -29,3 +29,11 @@ export function lookAt(task: Task): void {
 /** The part of the page at the right that is open; on narrow screens the only one. */
 export type Panel = "properties" | "script" | "route" | "run";
 export const panel = signal<Panel>("properties");
+
+/** As another mission is opened: nothing of what was seen and in hand with the one before. */
+export function resetView(): void {
+  tool.value = "select";
+  shownFloor.value = null;
+  following.value = "off";
+  if (panel.value === "run") panel.value = "properties";
+}

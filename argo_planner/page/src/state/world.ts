@@ -1,8 +1,8 @@
 /** The site: what stands on it, and where the robot can stand. */
 
-import { computed, signal } from "@preact/signals-core";
+import { batch, computed, signal } from "@preact/signals-core";
 
-import { answered, client, newId } from "../api/client";
+import { answered, client, newId, Unreached } from "../api/client";
 import type { Obstacle, World } from "../api/types";
 import { tellError } from "./notices";
 
@@ -20,13 +20,25 @@ export async function readWorld(): Promise<void> {
     answered(client.GET("/api/world")),
     answered(client.GET("/api/world/obstacles")),
   ]);
-  world.value = found;
-  obstacleRevision.value = obstacles.revision;
+  const older = world.value !== null && obstacles.revision < obstacleRevision.value;
+  if (older) return; // another reading was faster
+  batch(() => {
+    // Those that the revision is of: the other answer may be of a moment before or after.
+    world.value = { ...found, obstacles: obstacles.obstacles };
+    obstacleRevision.value = obstacles.revision;
+  });
 }
 
-/** The obstacles are others: reads them. */
+/** The obstacles may be others: reads the site again if they are. */
 export function obstaclesChanged(): void {
-  readWorld().catch(tellError);
+  readAgain().catch((error: unknown) => {
+    if (!(error instanceof Unreached)) tellError(error); // the connection comes back, and asks again
+  });
+}
+
+async function readAgain(): Promise<void> {
+  const { revision } = await answered(client.GET("/api/world/obstacles"));
+  if (world.value === null || revision !== obstacleRevision.value) await readWorld();
 }
 
 /** Puts an obstacle on the site. Whether it stands there. */

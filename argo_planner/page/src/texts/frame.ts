@@ -2,8 +2,16 @@ import { both } from "./both";
 
 export const frame = both(
   {
-    notReached: "The service is not reached. What you do is sent as soon as it is.",
-    deleted: "Somebody has deleted this mission.",
+    notReached: "The service is not reached. This was not done: try again once it is back.",
+    readAgain: "The service is not reached. The page goes on as soon as it is back.",
+    unsent: (count: number) =>
+      count === 1 ? "One edit has not been sent yet." : `${count} edits have not been sent yet.`,
+    leaveAnyway: "Leave without them",
+    missionItself: "the mission itself",
+    otherMission: "That was about another mission, which is not open any more.",
+    wentAway: (who: string, what: string) => `${who} has deleted or renamed ${what}.`,
+    offline: "There is no connection. What you do to the mission is sent as soon as there is one.",
+    deletedBy: (name: string) => `Somebody has deleted the mission “${name}”. It is in the bin.`,
     stale: "This was changed meanwhile, so your edit was not made.",
     changedBy: (who: string, what: readonly string[]) => `${who} changed ${what.join(", ")}`,
     doItAnyway: "Do it all the same",
@@ -60,8 +68,16 @@ export const frame = both(
     keysTitle: "Keys",
   },
   {
-    notReached: "Der Dienst antwortet nicht. Was Sie tun, wird gesendet, sobald er es tut.",
-    deleted: "Jemand hat diese Mission gelöscht.",
+    notReached: "Der Dienst antwortet nicht. Das wurde nicht getan: versuchen Sie es wieder, sobald er es tut.",
+    readAgain: "Der Dienst antwortet nicht. Die Seite macht weiter, sobald er es tut.",
+    unsent: (count: number) =>
+      count === 1 ? "Eine Änderung ist noch nicht gesendet." : `${count} Änderungen sind noch nicht gesendet.`,
+    leaveAnyway: "Ohne sie verlassen",
+    missionItself: "die Mission selbst",
+    otherMission: "Das betraf eine andere Mission, die nicht mehr offen ist.",
+    offline: "Es gibt keine Verbindung. Was Sie an der Mission tun, wird gesendet, sobald es eine gibt.",
+    wentAway: (who: string, what: string) => `${who} hat ${what} gelöscht oder umbenannt.`,
+    deletedBy: (name: string) => `Jemand hat die Mission „${name}“ gelöscht. Sie ist im Papierkorb.`,
     stale: "Das wurde inzwischen geändert, darum wurde Ihre Änderung nicht gemacht.",
     changedBy: (who: string, what: readonly string[]) => `${who} hat ${what.join(", ")} geändert`,
     doItAnyway: "Trotzdem machen",

@@ -32,3 +32,8 @@ export const language = signal<Language>("en");
 export function t(): Texts {
   return ALL[language.value];
 }
+
+/** How dates are written: as the browser does it, where it speaks the language of the page. */
+export function dateLocale(): string {
+  return navigator.languages.find((one) => one.startsWith(language.value)) ?? language.value;
+}

@@ -16,8 +16,9 @@ export const keys = both<Sheets>(
         ["?", "this sheet"],
         ["Ctrl+Z", "undo what you did last"],
         ["Ctrl+Y", "redo it"],
-        ["r", "start, watch and steer the run"],
-        ["Esc", "put the tool away, then unselect"],
+        ["F8", "start, watch and steer the run"],
+        ["F9", "take over from the run"],
+        ["Esc", "put the tool away, close a message, unselect"],
       ],
     },
     list: {
@@ -76,8 +77,9 @@ export const keys = both<Sheets>(
         ["?", "diese Übersicht"],
         ["Strg+Z", "rückgängig machen, was Sie zuletzt taten"],
         ["Strg+Y", "wiederholen"],
-        ["r", "Fahrt starten, verfolgen und steuern"],
-        ["Esc", "Werkzeug weglegen, dann Auswahl aufheben"],
+        ["F8", "Fahrt starten, verfolgen und steuern"],
+        ["F9", "die Fahrt von Hand übernehmen"],
+        ["Esc", "Werkzeug weglegen, Meldung schließen, Auswahl aufheben"],
       ],
     },
     list: {

@@ -2,7 +2,7 @@ import { both } from "./both";
 
 export const route = both(
   {
-    title: "Suggest an order",
+    wholeSeconds: "Each way counts in whole seconds here, rounded up.",
     search: "Search for the best order",
     cancel: "End the search",
     timeLimit: "Search for",
@@ -51,7 +51,7 @@ export const route = both(
     accepted: "The mission is in the suggested order; undo brings the old one back.",
   },
   {
-    title: "Folge vorschlagen",
+    wholeSeconds: "Jeder Weg zählt hier in ganzen Sekunden, aufgerundet.",
     search: "Beste Folge suchen",
     cancel: "Suche beenden",
     timeLimit: "Suchen für",

@@ -7,7 +7,7 @@ export const script = both(
     applying: "Applying…",
     revert: "Put aside",
     back: "Bring my text back",
-    unchanged: "As the mission is",
+    unchanged: "Same as the mission",
     changed: "Not applied yet",
     refused: "The script was refused; the mission is as it was.",
     overtaken: "The mission was changed meanwhile, so your text is not what it is any more.",
@@ -18,14 +18,14 @@ export const script = both(
     line: (line: number) => `Line ${line}`,
     hint: (hint: string) => `Way out: ${hint}`,
     problems: "What is wrong",
-    notes: "What was taken for something when it was brought in",
+    notes: "How the script was read where it was not clear",
     notesOpen: (count: number) =>
       count === 1
-        ? "One thing in the script was healed or taken for something: please confirm it."
-        : `${count} things in the script were healed or taken for something: please confirm them.`,
+        ? "One thing in the script was not clear: please check how it was read."
+        : `${count} things in the script were not clear: please check how they were read.`,
     look: "Look",
-    confirm: "Right so",
-    confirmAll: "All right so",
+    confirm: "OK",
+    confirmAll: "All OK",
     loading: "The script is being written…",
     severity: { error: "error", warning: "warning", note: "note" },
   },

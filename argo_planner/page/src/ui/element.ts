@@ -4,6 +4,8 @@
 import { SignalWatcher } from "@lit-labs/preact-signals";
 import { css, LitElement } from "lit";
 
+import { keepFocus, noteFocus } from "./focus";
+
 export { css, html, nothing } from "lit";
 export { customElement, property, query, state } from "lit/decorators.js";
 
@@ -139,4 +141,15 @@ export const look = css`
 /** An element of the page. */
 export class PageElement extends SignalWatcher(LitElement) {
   static override styles = [look];
+
+  constructor() {
+    super();
+    this.addController({ hostUpdated: keepFocus });
+  }
+
+  protected override createRenderRoot(): HTMLElement | DocumentFragment {
+    const root = super.createRenderRoot();
+    root.addEventListener("focusin", noteFocus);
+    return root;
+  }
 }

@@ -15,6 +15,8 @@ test.each([
   ["1h5m10s", 3910],
   ["0", 0],
   ["10 Minuten", 600],
+  ["20'", 1200],
+  ["1' 30\"", 90],
 ])("%s is read", (text, seconds) => {
   expect(readTime(text)).toBe(seconds);
 });

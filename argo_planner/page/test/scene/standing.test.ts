@@ -79,7 +79,7 @@ describe("the verdict on a heading", () => {
 });
 
 it("tells the floor of a height as the service does", () => {
-  const floor = (number: number, z: number) => ({ number, z, name: "", storey: 2.5, bounds: [0, 0, 1, 1] as const, plates: [] });
+  const floor = (number: number, z: number) => ({ number, z, name: "", storey: 2.5, bounds: [0, 0, 1, 1] as const, plates: [], corners: [] });
   const floors = [floor(1, 0), floor(2, 2.5)];
   expect(floorOf(floors, -0.03)?.number).toBe(1);
   expect(floorOf(floors, 2.39)?.number).toBe(1);

@@ -1,0 +1,182 @@
+/** Bringing in a mission that somebody has written elsewhere. */
+
+import { answered, client, Refusal } from "../api/client";
+import { tell, tellError } from "../state/notices";
+import { mayPlan } from "../state/session";
+import { world } from "../state/world";
+import { t } from "../texts";
+import { css, customElement, html, look, nothing, PageElement, state } from "../ui/element";
+
+interface AreaChoice {
+  readonly file: File;
+  readonly start: boolean;
+  readonly end: boolean;
+}
+
+@customElement("argo-import")
+export class MissionImport extends PageElement {
+  static override styles = [
+    look,
+    css`
+      .drop {
+        display: grid;
+        justify-items: center;
+        gap: 6px;
+        padding: 18px;
+        border: 2px dashed var(--line);
+        border-radius: var(--round);
+        text-align: center;
+      }
+      .drop.over {
+        border-color: var(--accent);
+        background: var(--chosen);
+      }
+      dialog {
+        max-width: min(560px, calc(100vw - 24px));
+        border: 1px solid var(--line);
+        border-radius: 10px;
+        background: var(--raised);
+        color: var(--text);
+      }
+      label {
+        display: grid;
+        gap: 2px;
+        margin: 10px 0;
+      }
+    `,
+  ];
+
+  @state() private over = false;
+  @state() private choice: AreaChoice | null = null;
+
+  override updated(): void {
+    const dialog = this.renderRoot.querySelector("dialog");
+    if (dialog?.open === false) dialog.showModal();
+  }
+
+  override render() {
+    const texts = t().frame;
+    const may = mayPlan();
+    return html`<div
+        class=${this.over ? "drop over" : "drop"}
+        @dragover=${this.onDragOver}
+        @dragleave=${() => (this.over = false)}
+        @drop=${this.onDrop}
+      >
+        <p class="row">
+          ${texts.dropHere}
+          <button
+            ?disabled=${!may}
+            @click=${() => this.renderRoot.querySelector<HTMLElement>("#file")?.click()}
+          >
+            ${texts.chooseFile}
+          </button>
+        </p>
+        <p class="dim">${texts.whatCanBeImported}</p>
+        <input
+          id="file"
+          class="unseen"
+          type="file"
+          aria-label=${texts.chooseFile}
+          ?disabled=${!may}
+          @change=${this.onFile}
+        />
+      </div>
+      ${this.areas()}`;
+  }
+
+  /** Asks where a mission begins and ends whose script leaves that open. */
+  private areas() {
+    const choice = this.choice;
+    const texts = t().frame;
+    if (choice === null) return nothing;
+    const field = (name: string, label: string) =>
+      html`<label>
+        ${label}<select name=${name}>
+          ${(world.value?.docks ?? []).map((dock) => html`<option>${dock.area}</option>`)}
+        </select>
+      </label>`;
+    return html`<dialog aria-labelledby="areas" @close=${() => (this.choice = null)}>
+      <form @submit=${this.onAreas}>
+        <h2 id="areas">${choice.file.name}</h2>
+        <p>${texts.areasLeftOpen}</p>
+        ${choice.start ? field("start_area", texts.startArea) : nothing}
+        ${choice.end ? field("end_area", texts.endArea) : nothing}
+        <div class="row">
+          <button class="main">${texts.import}</button>
+          <button type="button" @click=${() => (this.choice = null)}>${texts.cancel}</button>
+        </div>
+      </form>
+    </dialog>`;
+  }
+
+  private onFile(event: Event): void {
+    const field = event.target as HTMLInputElement;
+    const file = field.files?.[0];
+    if (file) void this.import(file, {});
+    field.value = "";
+  }
+
+  private onDragOver(event: DragEvent): void {
+    event.preventDefault();
+    this.over = mayPlan();
+  }
+
+  private onDrop(event: DragEvent): void {
+    event.preventDefault();
+    this.over = false;
+    const file = event.dataTransfer?.files[0];
+    if (file && mayPlan()) void this.import(file, {});
+  }
+
+  private onAreas(event: SubmitEvent): void {
+    event.preventDefault();
+    const choice = this.choice;
+    const given = new FormData(event.target as HTMLFormElement);
+    const areas = Object.fromEntries([...given].map(([name, value]) => [name, Number(value)]));
+    this.choice = null;
+    if (choice !== null) void this.import(choice.file, areas);
+  }
+
+  private async import(
+    file: File,
+    areas: { start_area?: number; end_area?: number },
+  ): Promise<void> {
+    try {
+      const content = await file.arrayBuffer();
+      const made = await answered(
+        client.POST("/api/imports", {
+          params: { query: { filename: file.name.slice(-200), ...areas } },
+          body: content as never,
+          bodySerializer: (body) => body,
+          headers: { "Content-Type": "application/octet-stream" },
+        }),
+      );
+      location.hash = `#/missions/${made.id}`;
+    } catch (error) {
+      const open = error instanceof Refusal ? openAreas(error) : null;
+      if (open === null) this.tellImport(file.name, error);
+      else this.choice = { file, ...open };
+    }
+  }
+
+  /** What is wrong with a file, with the lines where it is. */
+  private tellImport(name: string, error: unknown): void {
+    if (!(error instanceof Refusal)) return tellError(error);
+    const found = error.problem.diagnostics.filter((one) => one.severity === "error");
+    const details = found.map((one) => {
+      const place = one.span ? `${t().frame.line(one.span.line)}: ` : "";
+      return `${place}${one.message}${one.hint ? ` – ${one.hint}` : ""}`;
+    });
+    const said = found.length > 0 ? t().frame.cantImport(name) : error.message;
+    tell("bad", said, { details: details.slice(0, 6) });
+  }
+}
+
+/** Whether all that is wrong with a script is that it leaves open where it begins or ends. */
+function openAreas(error: Refusal): { start: boolean; end: boolean } | null {
+  const errors = error.problem.diagnostics.filter((one) => one.severity === "error");
+  if (errors.length === 0 || errors.some((one) => one.code !== "script.area-choice")) return null;
+  const open = error.problem.remedies;
+  return { start: open.includes("choose-start"), end: open.includes("choose-end") };
+}

@@ -1,0 +1,158 @@
+/** How long the mission takes and how much of the battery, against the limits; what it may be on any path,
+ * and the path on which it is most. */
+
+import type { PreviewedMission } from "../api/types";
+import { boundsOf, limited, type BoundShown, type Limited } from "../model/legs";
+import { taskKey } from "../model/outline";
+import { analysis, broken, mission, revision, select } from "../state/plan";
+import { previewIsNew } from "../state/preview";
+import { world } from "../state/world";
+import { t } from "../texts";
+import { css, customElement, html, look, nothing, PageElement, property, state } from "../ui/element";
+import { metres, seconds, share } from "../ui/figures";
+import { icon } from "../ui/icons";
+
+@customElement("argo-totals")
+export class StripTotals extends PageElement {
+  static override styles = [
+    look,
+    css`
+      .totals {
+        display: flex;
+        flex-wrap: wrap;
+        align-items: baseline;
+        gap: 2px 18px;
+      }
+      .total b {
+        font-size: 15px;
+      }
+      .bad,
+      .bad b {
+        color: var(--bad);
+      }
+      .warn {
+        color: var(--warn);
+      }
+      .total button {
+        display: inline;
+        min-height: 0;
+        padding: 0 4px;
+        font-size: 12px;
+        text-decoration: underline dotted;
+        text-underline-offset: 3px;
+      }
+      .old {
+        opacity: 0.6;
+      }
+      ol {
+        display: flex;
+        flex-wrap: wrap;
+        gap: 4px;
+        margin: 4px 0;
+        padding: 0;
+        list-style: none;
+      }
+      li button {
+        min-height: 24px;
+        padding: 0 8px;
+        font-size: 12px;
+      }
+    `,
+  ];
+
+  @property({ attribute: false }) found: PreviewedMission | null = null;
+  @state() private path: BoundShown["kind"] | null = null;
+
+  override render() {
+    const { found } = this;
+    if (found === null) return nothing;
+    const texts = t().strip;
+    const time = limited(found.time, mission.value?.max_duration ?? null);
+    const energy = limited(found.energy, battery());
+    const bounds = boundsOf(analysis.value, { time: time.limit, energy: energy.limit });
+    // With rounds and branches it is not the whole: then what it may be on any path says more.
+    const part = found.at_least.length > 0;
+    const old = !previewIsNew.value;
+    return html`<div class="totals ${old ? "old" : ""}">
+        ${this.total("time", seconds(time.value), time, bounds, part)}
+        ${this.total("energy", share(energy.value, battery()), energy, bounds, part)}
+        <span class="total">${texts.distance} <b id="total-distance">${metres(found.distance)}</b></span>
+        <span class="total">${texts.climb} <b id="total-climb">${metres(found.climb)}</b></span>
+        ${old ? html`<span role="status">${broken.value ? texts.before : texts.outdated}</span>` : nothing}
+        ${found.at_least.length > 0
+          ? html`<span class="dim" title=${found.at_least.join("\n")}>${icon("clock", 13)} ${found.at_least[0]}</span>`
+          : nothing}
+      </div>
+      ${this.witness(bounds)}`;
+  }
+
+  private total(kind: BoundShown["kind"], once: string, of: Limited, bounds: readonly BoundShown[], part: boolean) {
+    const texts = t().strip;
+    const isTime = kind === "time";
+    const write = isTime ? seconds : (wh: number) => share(wh, battery());
+    const bound = bounds.find((one) => one.kind === kind);
+    const problem = isTime ? texts.tooLong : texts.tooMuch;
+    return html`<span class="total ${of.broken ? "bad" : ""}" title=${of.broken ? problem : nothing}>
+      ${of.broken ? icon("warning", 14) : nothing} ${isTime ? texts.time : texts.battery}
+      ${part ? html`<span class="dim">${texts.oneRound}</span>` : nothing}
+      <b id=${`total-${kind}`}>${once}</b>
+      ${isTime && of.limit !== null ? `/ ${write(of.limit)}` : nothing}
+      ${bound === undefined ? nothing : this.bound(bound, write, once)}
+    </span>`;
+  }
+
+  /** What it may be on any path; a click shows the path on which it is most. */
+  private bound(bound: BoundShown, write: (value: number) => string, said: string) {
+    const texts = t().strip;
+    const old = analysis.value?.revision !== revision.value;
+    const least = bound.least === null ? texts.noBound : write(bound.least);
+    const most = bound.most === null ? texts.noBound : write(bound.most);
+    return html`<button
+      class="bare ${bound.broken ? "warn" : "dim"} ${old ? "old" : ""}"
+      title=${old ? texts.outdated : texts.allPaths}
+      aria-expanded=${this.path === bound.kind}
+      ?disabled=${bound.path.length === 0}
+      @click=${() => this.showPath(bound)}
+    >
+      ${bound.broken ? icon("warning", 12) : nothing}
+      ${said === most && said === least
+        ? html`${icon("route", 14)}<span class="unseen">${texts.allPaths}</span>`
+        : html`<span>${texts.onAllPaths}</span> <b>${texts.between(least, most)}</b>`}
+    </button>`;
+  }
+
+  private showPath(bound: BoundShown): void {
+    this.path = this.path === bound.kind ? null : bound.kind;
+    if (this.path === null) return;
+    const tasks = bound.path.flatMap((part) => (part.task === null ? [] : [taskKey(part.task)]));
+    select([...new Set(tasks)]);
+  }
+
+  private witness(bounds: readonly BoundShown[]) {
+    const bound = bounds.find((one) => one.kind === this.path);
+    if (bound === undefined) return nothing;
+    const texts = t().strip;
+    const write = bound.kind === "time" ? seconds : (wh: number) => share(wh, battery());
+    return html`<p class="dim">${texts.path(bound.most === null ? texts.noBound : write(bound.most))}</p>
+      <ol>
+        ${bound.path.map((part) => {
+          const name =
+            part.task === null
+              ? texts.rounds(part.group ?? "", part.rounds)
+              : part.missed
+                ? texts.missed(part.task)
+                : part.task;
+          return html`<li>
+            <button ?disabled=${part.task === null} @click=${() => part.task !== null && select([taskKey(part.task)])}>
+              ${name} <span class="dim">${write(part.until)}</span>
+            </button>
+          </li>`;
+        })}
+      </ol>`;
+  }
+}
+
+/** Wh */
+function battery(): number {
+  return world.value?.robot.battery ?? 0;
+}

@@ -1,0 +1,78 @@
+"""Random hands at the list: what the page shows is what the service has, whatever was done."""
+
+import random
+from typing import Any
+
+import pytest
+from playwright.sync_api import expect
+
+from tests.argo_planner.service.served import Served
+from tests.e2e.page.person import Person
+from tests.e2e.page.test_list import mission, plan, row  # noqa: F401
+
+KEYS = (
+    *("ArrowDown", "ArrowUp", "Shift+ArrowDown", "Shift+ArrowUp", "Home", "End"),
+    *("Alt+ArrowUp", "Alt+ArrowDown", "Alt+ArrowLeft", "Alt+ArrowRight"),
+    *("Delete", "Control+z", "Control+z", "Control+y", "Control+c", "Control+v", "Control+v"),
+    *("g", "m", "Escape"),
+)
+
+
+def rows_of(found: dict[str, Any]) -> list[tuple[str, int]]:
+    """The rows that the list is to show: names and depths, a group before its tasks."""
+    at = {task["name"]: index for index, task in enumerate(found["tasks"])}
+    spans = [(g["name"], at[g["start"]], at[g["end"]]) for g in found["groups"]]
+    rows = []
+    for index, task in enumerate(found["tasks"]):
+        around = sum(first < index <= last for _, first, last in spans)
+        begun = [one for one in spans if one[1] == index]
+        for deeper, (name, _, _) in enumerate(
+            sorted(begun, key=lambda one: (-one[2], len(one[0])))
+        ):
+            rows.append((name.rpartition("/")[2], 1 + around + deeper))
+        rows.append((task["name"], 1 + around + len(begun)))
+    return rows
+
+
+def rows_shown(person: Person) -> list[tuple[str, int]]:
+    script = """() => {
+        const rows = [...document.querySelector("argo-app").shadowRoot
+            .querySelector("argo-list").shadowRoot.querySelectorAll("[role=treeitem]")];
+        rows.sort((a, b) => a.dataset.index - b.dataset.index);
+        return rows.map((row) => [
+            row.querySelector(".names > :first-child").textContent.trim(), Number(row.ariaLevel)]);
+    }"""
+    return [(name, level) for name, level in person.ask(script)]
+
+
+def expect_same(person: Person, service: Served, id: str) -> None:
+    expect(person.saved).to_have_text("Saved")
+    person.until(
+        lambda: rows_shown(person) == rows_of(mission(service, id)),
+        f"{rows_shown(person)} is {rows_of(mission(service, id))}",
+    )
+
+
+@pytest.mark.parametrize(("seed", "steps"), [(7, 60), pytest.param(8, 400, marks=pytest.mark.long)])
+def test_the_list_is_what_the_service_has(browsers, address, service, plan, seed, steps) -> None:  # noqa: F811
+    ann = browsers.person(address, viewport={"width": 1400, "height": 2400})
+    ann.context.grant_permissions(["clipboard-read", "clipboard-write"])
+    ann.open(f"/missions/{plan}")
+    expect(row(ann, "START")).to_be_visible()
+    chosen = random.Random(seed)
+    for _ in range(steps):
+        key = chosen.choice(KEYS)
+        if len(mission(service, plan)["tasks"]) > 25 and key == "Control+v":
+            key = "Delete"
+        ann.page.get_by_role("tree").focus()
+        ann.key(key)
+        if key == "g":
+            ann.key("Escape")
+        if key == "m":
+            expect(ann.page.locator("argo-add input")).to_be_focused()
+            ann.type(str(chosen.randint(1, 20)))
+            ann.key("Enter", "Escape")
+        expect_same(ann, service, plan)
+    ann.page.reload()
+    expect(ann.page.get_by_role("treeitem").first).to_be_visible()
+    expect_same(ann, service, plan)

@@ -1,0 +1,75 @@
+"""Runs: what is edited meanwhile, what another mission shows of it, and the report."""
+
+from typing import Any
+
+from playwright.sync_api import expect
+
+from tests.e2e.page.test_list import order, plan, row
+
+__all__ = ["plan"]
+
+
+def runs(service: Any) -> Any:
+    return service.client.get("/api/runs").json()["runs"]
+
+
+def panel(person: Any) -> Any:
+    return person.page.locator("argo-run")
+
+
+def test_an_edited_mission_is_given_back_edited_and_the_report_is_readable(
+    browsers, address, plan, service
+) -> None:
+    ann = browsers.person(address)
+    ann.open(f"/missions/{plan}")
+    expect(row(ann, "C4")).to_be_visible()
+    ann.key("F8")
+    expect(ann.button("Start the run")).to_be_focused()
+    ann.key("Enter")
+    expect(ann.button("Take over")).to_be_enabled()
+    ann.key("F9")
+    expect(panel(ann)).to_contain_text("You have the robot")
+    expect(ann.button("Give back")).to_be_focused()
+    ann.click(row(ann, "C4"))
+    ann.key("Delete")
+    order(ann, "START", "A1", "B2")
+    ann.page.locator("#speed").select_option("null")
+    edited = ann.button("Give back, edited")
+    expect(ann.page.locator("argo-run-controls button.main")).to_have_text("Give back, edited")
+    ann.click(edited)
+    ann.until(lambda: runs(service)[0]["status"] == "ended", "the run ends")
+    assert [task["task"] for task in runs(service)[0]["tasks"]] == ["A1", "B2"]
+    address_of = f"/api/runs/{runs(service)[0]['id']}/report/report.html"
+    ann.until(
+        lambda: service.client.get(address_of).status_code == 200, "the report has been made"
+    )
+    with ann.context.expect_page() as opening:
+        ann.click(ann.page.get_by_role("link", name="Open the report"))
+    report = opening.value
+    report.wait_for_url("**/report.html")
+    report.wait_for_load_state()
+    assert report.evaluate("() => document.styleSheets.length") > 0
+    assert report.evaluate("() => getComputedStyle(document.body).fontFamily") != "Times"
+    report.close()
+
+
+def test_the_run_of_another_mission_does_not_offer_this_one_s_tasks(
+    browsers, address, plan, service
+) -> None:
+    begun = service.client.post(
+        f"/api/missions/{plan}/runs", json={"speed": 0.5}, headers={"if-match": "*"}
+    )
+    assert begun.status_code == 201, begun.text
+    run = begun.json()["id"]
+    other = service.create("Another", service.client.get(f"/api/missions/{plan}").json()["mission"])
+    ann = browsers.person(address)
+    ann.open(f"/missions/{other}")
+    expect(row(ann, "C4")).to_be_visible()
+    ann.page.locator("#tab-run").click()
+    take_over = ann.button("Take over")
+    expect(take_over).to_be_enabled()
+    ann.click(take_over)
+    expect(ann.button("Give back")).to_be_enabled()
+    expect(ann.page.locator("argo-run-hand #task")).to_have_count(0)
+    service.client.post(f"/api/runs/{run}/requests", json={"kind": "stop", "id": "end"})
+    ann.until(lambda: runs(service)[0]["status"] == "ended", "the run ends")

@@ -61,7 +61,7 @@ export class ArgoApp extends PageElement {
       }
       argo-strip {
         grid-column: 2;
-        min-height: 114px; /* as with tasks in it, so that the site does not move under the pointer */
+        min-height: 136px; /* as with tasks in it, so that the site does not move under the pointer */
         min-width: 0;
         border-top: 1px solid var(--line);
         background: var(--surface);
@@ -185,7 +185,9 @@ export class ArgoApp extends PageElement {
       await untilReached(() => openPlan(id, isMeant), isMeant, RETRY_MS);
       await this.updateComplete;
       // Whatever had the focus is gone; keys work at once.
-      if (document.activeElement === document.body) setTimeout(() => dispatchEvent(new CustomEvent("focus-list")));
+      setTimeout(() => {
+        if (document.activeElement === document.body) dispatchEvent(new CustomEvent("focus-list"));
+      });
     } catch (error) {
       if (!isMeant()) return;
       location.hash = "";

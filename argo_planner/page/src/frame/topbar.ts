@@ -1,10 +1,14 @@
 /** The bar at the top: the mission's name, undo and redo, whoever else is there, settings. */
 
 import { answered, client } from "../api/client";
+import { isUnderWay, shownMode } from "../model/run-mode";
 import { tellError } from "../state/notices";
 import { redo, undo, waiting } from "../state/commands";
 import { connected, others, planId, planName, redoable, undoable } from "../state/plan";
-import { author, mayPlan, service, theme } from "../state/session";
+import { ask, asking, run, runIsOn } from "../state/run";
+import { author, mayOperate, mayPlan, service, theme } from "../state/session";
+import { panel } from "../state/view";
+import { modeWords } from "../run/mode-words";
 import { language, t } from "../texts";
 import { css, customElement, html, look, nothing, PageElement, state } from "../ui/element";
 import { icon } from "../ui/icons";
@@ -55,6 +59,16 @@ export class PageTopbar extends PageElement {
         color: var(--person);
         font-weight: 600;
         font-size: 12px;
+      }
+      .run {
+        gap: 0;
+        border: 1px solid var(--line);
+        border-left: 4px solid var(--accent);
+        border-radius: 6px;
+        font-size: 13px;
+      }
+      .run.supervised {
+        border-left-color: var(--person);
       }
       .state {
         padding: 2px 8px;
@@ -132,7 +146,7 @@ export class PageTopbar extends PageElement {
             <span class="dim">${service.value?.site ?? ""}</span>
             ${waiting.value > 0 ? this.saved() : nothing}`}
       <span class="grow"></span>
-      ${others.value.length > 0 ? this.people() : nothing}
+      ${this.run()} ${others.value.length > 0 ? this.people() : nothing}
       <button
         class="bare icon planning"
         aria-label=${texts.keysTitle}
@@ -159,6 +173,33 @@ export class PageTopbar extends PageElement {
       </button>
       ${this.settings()}
     </header>`;
+  }
+
+  /** What the robot does, wherever one is: it can be halted from there. */
+  private run() {
+    const state = run.value;
+    if (state === null || !runIsOn.value) return nothing;
+    const mode = shownMode(state);
+    const texts = t().run;
+    const show = () => {
+      if (planId.value === null) location.hash = `#/missions/${state.plan}`;
+      panel.value = "run";
+    };
+    const drives = state.status === "running" && state.mode !== "paused" && state.mode !== "supervised";
+    return html`<span class="row run ${mode}">
+      <button class="bare" title=${state.name} @click=${show}>${modeWords(state)}</button>
+      ${drives && mayOperate()
+        ? html`<button
+            class="bare icon"
+            aria-label=${texts.pauseRobot}
+            title=${texts.pauseRobot}
+            ?disabled=${asking.value.includes("pause") || isUnderWay(state, "pause")}
+            @click=${() => ask({ kind: "pause" })}
+          >
+            ${icon("pause")}
+          </button>`
+        : nothing}
+    </span>`;
   }
 
   /** Whether all that was done is on the service's disk. */

@@ -78,12 +78,22 @@ export class AddTasks extends PageElement {
   override connectedCallback(): void {
     super.connectedCallback();
     addEventListener("pointerdown", this.onOutside);
+    addEventListener("keydown", this.onEscape, { capture: true });
   }
 
   override disconnectedCallback(): void {
     super.disconnectedCallback();
     removeEventListener("pointerdown", this.onOutside);
+    removeEventListener("keydown", this.onEscape, { capture: true });
   }
+
+  /** Escape closes it wherever the focus is. */
+  private readonly onEscape = (event: KeyboardEvent): void => {
+    if (event.key !== "Escape" || this.open === "") return;
+    this.close();
+    event.preventDefault();
+    event.stopImmediatePropagation();
+  };
 
   private readonly onOutside = (event: Event): void => {
     if (this.open !== "" && !event.composedPath().includes(this)) this.open = "";
@@ -169,8 +179,7 @@ export class AddTasks extends PageElement {
     const items = [...this.renderRoot.querySelectorAll<HTMLElement>("[role=menuitem]")];
     const at = items.indexOf(event.target as HTMLElement);
     const move = { ArrowDown: 1, ArrowUp: -1 }[event.key];
-    if (event.key === "Escape") this.close();
-    else if (move !== undefined) items[(at + move + items.length) % items.length]?.focus();
+    if (move !== undefined) items[(at + move + items.length) % items.length]?.focus();
     else return;
     event.preventDefault();
     event.stopPropagation();
@@ -221,8 +230,7 @@ export class AddTasks extends PageElement {
   private onFieldKey(event: KeyboardEvent): void {
     const found = this.choices();
     const move = { ArrowDown: 1, ArrowUp: -1 }[event.key];
-    if (event.key === "Escape") this.close();
-    else if (move !== undefined) this.at = Math.max(0, Math.min(found.length - 1, this.at + move));
+    if (move !== undefined) this.at = Math.max(0, Math.min(found.length - 1, this.at + move));
     else if (event.key === "Enter") {
       const choice = found[this.at];
       if (choice) this.choose(choice);

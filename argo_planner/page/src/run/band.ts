@@ -1,16 +1,15 @@
 /** At a glance: who has the robot, what it does, how far it is. */
 
-import type { RunState } from "../api/types";
 import type { Outcome } from "../model/replay";
-import { shownMode, type ShownMode, takenOverBy } from "../model/run-mode";
+import { shownMode, type ShownMode } from "../model/run-mode";
 import { mission, planId, revision } from "../state/plan";
 import { robotConnected, shownRun, shownRunState, shownTime } from "../state/run";
-import { isMe } from "../state/session";
 import { t } from "../texts";
 import { css, customElement, html, look, nothing, PageElement } from "../ui/element";
 import { icon, type Icon } from "../ui/icons";
 import { styled } from "../ui/styled";
 import { percent } from "../ui/figures";
+import { modeWords } from "./mode-words";
 import { parts } from "./parts";
 
 const SIGNS: Record<ShownMode, Icon> = {
@@ -140,7 +139,7 @@ export class RunBand extends PageElement {
     return html`<div class="band ${past ? "past" : mode}" id="mode" data-mode=${mode} role="status">
         ${icon(past ? "clock" : SIGNS[mode], 26)}
         <div class="grow">
-          <p class="word">${past ? texts.pastShown : modeWords(run, mode)}</p>
+          <p class="word">${past ? texts.pastShown : modeWords(run)}</p>
           <p class="what">${this.doing()}</p>
         </div>
       </div>
@@ -213,12 +212,6 @@ export class RunBand extends PageElement {
       <div ${styled({ width })}></div>
     </dd>`;
   }
-}
-
-/** How the run stands, and whether it is whoever looks that has the robot. */
-function modeWords(run: RunState, mode: ShownMode): string {
-  const by = mode === "supervised" ? takenOverBy(run) : null;
-  return by !== null && isMe(by) ? t().run.youHave : t().run.modes[mode];
 }
 
 function doneOf(outcomes: ReadonlyMap<string, Outcome>): number {

@@ -32,6 +32,13 @@ export class RunPanel extends PageElement {
         flex-direction: column;
         gap: 14px;
       }
+      argo-run-controls {
+        position: sticky;
+        z-index: 2;
+        top: -12px; /* the padding above */
+        padding: 6px 0;
+        background: var(--surface);
+      }
       a {
         color: var(--accent);
       }

@@ -1,6 +1,7 @@
 /** Words that stand beside what moves in the picture: the ghost and the robot. */
 
-import { shownTime } from "../state/run";
+import { modeWords } from "../run/mode-words";
+import { shownRunState, shownTime } from "../state/run";
 import { t } from "../texts";
 import { heed } from "./heed";
 import { ghost, verdictWords } from "./navigate";
@@ -30,7 +31,9 @@ export function aboveRobot(view: SceneView, robot: RobotView, element: HTMLEleme
   if (seen === null || told === null) return;
   element.className = told.mode;
   const back = shownTime.value;
-  element.textContent = back === null ? t().run.modes[told.mode] : t().words.seconds(back);
+  const state = shownRunState.value;
+  const now = state === null ? t().run.modes[told.mode] : modeWords(state);
+  element.textContent = back === null ? now : t().words.seconds(back);
   const place = `translate(${Math.round(seen.x)}px, ${Math.round(seen.y)}px) translate(-50%, -100%)`;
   element.style.setProperty("transform", place);
 }

@@ -33,10 +33,18 @@ export class StripTotals extends PageElement {
       .warn {
         color: var(--warn);
       }
-      .total button {
-        display: inline;
+      .bounds {
+        display: flex;
+        gap: 14px;
+        min-height: 20px; /* also while nothing is known: what is below does not move */
+        overflow: hidden;
+        white-space: nowrap;
+        font-size: 12px;
+      }
+      .bounds button {
         min-height: 0;
-        padding: 0 4px;
+        padding: 0;
+        border: 0;
         font-size: 12px;
         text-decoration: underline dotted;
         text-underline-offset: 3px;
@@ -70,40 +78,39 @@ export class StripTotals extends PageElement {
     const time = limited(found.time, mission.value?.max_duration ?? null);
     const energy = limited(found.energy, battery());
     const bounds = boundsOf(analysis.value, { time: time.limit, energy: energy.limit });
-    // With rounds and branches it is not the whole: then what it may be on any path says more.
-    const part = found.at_least.length > 0;
     const old = !previewIsNew.value;
     return html`<div class="totals ${old ? "old" : ""}">
-        ${this.total("time", seconds(time.value), time, bounds, part)}
-        ${this.total("energy", share(energy.value, battery()), energy, bounds, part)}
+        ${this.total("time", time, seconds)} ${this.total("energy", energy, (wh) => share(wh, battery()))}
         <span class="total">${texts.distance} <b id="total-distance">${metres(found.distance)}</b></span>
         <span class="total">${texts.climb} <b id="total-climb">${metres(found.climb)}</b></span>
         ${old ? html`<span role="status">${broken.value ? texts.before : texts.outdated}</span>` : nothing}
+      </div>
+      <p class="bounds">
+        ${isPart(found) ? html`<span class="dim">${texts.oneRound}</span>` : nothing}
+        ${bounds.map((bound) => this.bound(bound))}
         ${found.at_least.length > 0
           ? html`<span class="dim" title=${found.at_least.join("\n")}>${icon("clock", 13)} ${found.at_least[0]}</span>`
           : nothing}
-      </div>
+      </p>
       ${this.witness(bounds)}`;
   }
 
-  private total(kind: BoundShown["kind"], once: string, of: Limited, bounds: readonly BoundShown[], part: boolean) {
+  private total(kind: BoundShown["kind"], of: Limited, write: (value: number) => string) {
     const texts = t().strip;
     const isTime = kind === "time";
-    const write = isTime ? seconds : (wh: number) => share(wh, battery());
-    const bound = bounds.find((one) => one.kind === kind);
     const problem = isTime ? texts.tooLong : texts.tooMuch;
     return html`<span class="total ${of.broken ? "bad" : ""}" title=${of.broken ? problem : nothing}>
       ${of.broken ? icon("warning", 14) : nothing} ${isTime ? texts.time : texts.battery}
-      ${part ? html`<span class="dim">${texts.oneRound}</span>` : nothing}
-      <b id=${`total-${kind}`}>${once}</b>
+      <b id=${`total-${kind}`}>${write(of.value)}</b>
       ${isTime && of.limit !== null ? `/ ${write(of.limit)}` : nothing}
-      ${bound === undefined ? nothing : this.bound(bound, write, once)}
     </span>`;
   }
 
   /** What it may be on any path; a click shows the path on which it is most. */
-  private bound(bound: BoundShown, write: (value: number) => string, said: string) {
+  private bound(bound: BoundShown) {
     const texts = t().strip;
+    const isTime = bound.kind === "time";
+    const write = isTime ? seconds : (wh: number) => share(wh, battery());
     const old = analysis.value?.revision !== revision.value;
     const least = bound.least === null ? texts.noBound : write(bound.least);
     const most = bound.most === null ? texts.noBound : write(bound.most);
@@ -115,9 +122,7 @@ export class StripTotals extends PageElement {
       @click=${() => this.showPath(bound)}
     >
       ${bound.broken ? icon("warning", 12) : nothing}
-      ${said === most && said === least
-        ? html`${icon("route", 14)}<span class="unseen">${texts.allPaths}</span>`
-        : html`<span>${texts.onAllPaths}</span> <b>${texts.between(least, most)}</b>`}
+      ${isTime ? texts.timeOnAllPaths : texts.batteryOnAllPaths} <b>${texts.between(least, most)}</b>
     </button>`;
   }
 
@@ -150,6 +155,12 @@ export class StripTotals extends PageElement {
         })}
       </ol>`;
   }
+}
+
+/** Whether the mission is more than each of its tasks once. */
+function isPart(found: PreviewedMission): boolean {
+  const groups = mission.value?.groups ?? [];
+  return found.at_least.length > 0 || groups.some((group) => group.max_repeat_count !== 1);
 }
 
 /** Wh */

@@ -40,9 +40,7 @@ def test_an_edited_mission_is_given_back_edited_and_the_report_is_readable(
     ann.until(lambda: runs(service)[0]["status"] == "ended", "the run ends")
     assert [task["task"] for task in runs(service)[0]["tasks"]] == ["A1", "B2"]
     address_of = f"/api/runs/{runs(service)[0]['id']}/report/report.html"
-    ann.until(
-        lambda: service.client.get(address_of).status_code == 200, "the report has been made"
-    )
+    ann.until(lambda: service.client.get(address_of).status_code == 200, "the report has been made")
     with ann.context.expect_page() as opening:
         ann.click(ann.page.get_by_role("link", name="Open the report"))
     report = opening.value

@@ -2,6 +2,7 @@
 
 import type { Mission } from "../api/types";
 import { editHere } from "../state/commands";
+import { tell } from "../state/notices";
 import { mission as open } from "../state/plan";
 import { mayPlan } from "../state/session";
 import { world } from "../state/world";
@@ -50,29 +51,58 @@ export function headerForm(mission: Mission) {
       set({ real_time_reporting }), "long")}
     ${textField(texts.report, mission.after_mission_report, (after_mission_report) =>
       set({ after_mission_report }), "long")}
-    ${mission.before.length > 0
-      ? html`<h3>${texts.before}</h3>
-          <ul>
-            ${mission.before.map(
-              ([first, second]) =>
-                html`<li>
-                  ${texts.comesBefore(first, second)}
-                  <button
-                    class="bare"
-                    ?disabled=${!mayPlan()}
-                    @click=${() =>
-                      setOf((now) => ({
-                        before: now.before.filter(([one, other]) => one !== first || other !== second),
-                      }))}
-                  >
-                    ${texts.remove}
-                  </button>
-                </li>`,
-            )}
-          </ul>`
-      : nothing}
+    ${befores(mission)}
     ${mission.left_out.length > 0
       ? html`<h3>${texts.leftOut}</h3>
           <p>${mission.left_out.join(", ")}</p>`
       : nothing}`;
+}
+
+/** Which tasks come before which others, whatever the order. */
+function befores(mission: Mission) {
+  const texts = t().forms;
+  const names = mission.tasks.filter((task) => task.action !== "START").map((task) => task.name);
+  const choice = (name: string, label: string) =>
+    html`<select name=${name} aria-label=${label}>
+      ${names.map((one) => html`<option value=${one}>${one}</option>`)}
+    </select>`;
+  const add = (event: SubmitEvent) => {
+    event.preventDefault();
+    const form = new FormData(event.target as HTMLFormElement);
+    const [first, second] = [form.get("first") as string, form.get("second") as string];
+    void editing(() => setOf((now) => ({ before: [...now.before, [first, second]] })));
+  };
+  return html`<details ?open=${mission.before.length > 0}>
+    <summary>${texts.before}</summary>
+    <ul>
+      ${mission.before.map(
+        ([first, second]) =>
+          html`<li>
+            ${texts.comesBefore(first, second)}
+            <button
+              class="bare"
+              ?disabled=${!mayPlan()}
+              @click=${() =>
+                setOf((now) => ({
+                  before: now.before.filter(([one, other]) => one !== first || other !== second),
+                }))}
+            >
+              ${texts.remove}
+            </button>
+          </li>`,
+      )}
+    </ul>
+    ${names.length > 1
+      ? html`<form class="two" @submit=${add}>
+          ${choice("first", texts.first)} ${choice("second", texts.comesLater)}
+          <button ?disabled=${!mayPlan()}>${texts.addBefore}</button>
+        </form>`
+      : nothing}
+  </details>`;
+}
+
+/** Says why an edit was refused. */
+async function editing(work: () => Promise<string | null>): Promise<void> {
+  const wrong = await work();
+  if (wrong) tell("bad", wrong);
 }

@@ -113,6 +113,9 @@ export class ArgoApp extends PageElement {
         argo-strip {
           grid-column: 1;
         }
+        argo-strip {
+          min-height: 0;
+        }
         aside {
           grid-column: 1;
           grid-row: 3;

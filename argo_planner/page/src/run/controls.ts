@@ -5,6 +5,7 @@ import { isOver, isUnderWay, shownRequests } from "../model/run-mode";
 import { planId, revision } from "../state/plan";
 import { ask, asking, giveBackEdited, run, shownTime } from "../state/run";
 import { mayOperate } from "../state/session";
+import { following } from "../state/view";
 import { t } from "../texts";
 import { css, customElement, html, look, nothing, PageElement } from "../ui/element";
 import { icon, type Icon } from "../ui/icons";
@@ -74,7 +75,9 @@ export class RunControls extends PageElement {
     const state = run.value;
     if (state === null || state.status === "ended") return nothing;
     return html`${shownTime.value === null ? nothing : html`<p class="reason">${t().run.actsNow}</p>`}
-      <div class="buttons">${this.buttons()}</div>
+      ${state.status === "preparing"
+        ? nothing
+        : html`<div class="buttons">${this.buttons()} ${this.follow()}</div>`}
       ${mayOperate() ? nothing : html`<p class="reason">${t().run.mayNotOperate}</p>`} ${this.asked()}`;
   }
 
@@ -82,7 +85,6 @@ export class RunControls extends PageElement {
     const state = run.value;
     if (state === null) return nothing;
     if (state.status === "interrupted") return [this.simple("go_on", "main"), this.simple("stop", "danger")];
-    if (state.status === "preparing") return nothing;
     const rest = [this.simple("cancel", "danger"), this.simple("stop", "danger"), this.speed()];
     switch (state.mode) {
       case "supervised":
@@ -147,6 +149,26 @@ export class RunControls extends PageElement {
           (speed) =>
             html`<option value=${String(speed)} .selected=${speed === now}>
               ${t().run.speed}: ${speedName(speed)}
+            </option>`,
+        )}
+      </select>
+    </label>`;
+  }
+
+  /** How the camera follows the robot. */
+  private follow() {
+    const texts = t().scene;
+    return html`<label class="wide">
+      <span class="unseen">${texts.follow}</span>
+      <select
+        id="follow"
+        @change=${(event: Event) =>
+          (following.value = (event.target as HTMLSelectElement).value as typeof following.value)}
+      >
+        ${(["off", "behind", "above"] as const).map(
+          (how) =>
+            html`<option value=${how} .selected=${how === following.value}>
+              ${texts.follow}: ${{ off: texts.followOff, behind: texts.followBehind, above: texts.followAbove }[how]}
             </option>`,
         )}
       </select>

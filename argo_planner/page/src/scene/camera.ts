@@ -15,6 +15,7 @@ import {
 } from "three";
 
 import type { World, WorldCheckpoint, WorldFloor } from "../api/types";
+import { following } from "../state/view";
 import type { Stage } from "./stage";
 
 CameraControls.install({
@@ -63,9 +64,17 @@ export class SiteCamera {
       controls.addEventListener(what, stage.need);
     for (const what of ["controlstart", "control", "transitionstart"] as const)
       controls.addEventListener(what, () => (this.untouched = false));
+    controls.addEventListener("control", this.moved);
     stage.moving.add(this.move);
     stage.canvas.addEventListener("wheel", stage.need, { passive: true });
   }
+
+  /** Whoever turns or moves the camera wants to look elsewhere than after the robot; nearer and farther is
+   * no such wish. */
+  private readonly moved = (): void => {
+    const { currentAction } = this.controls;
+    if (currentAction !== ACTION.NONE && currentAction !== ACTION.DOLLY) following.value = "off";
+  };
 
   /** Whether the wheel changes the distance; else it is the tool's. */
   set wheel(on: boolean) {
@@ -173,6 +182,7 @@ export class SiteCamera {
 
   /** An arrow key goes down or up. */
   key(key: string, down: boolean, fast: boolean): void {
+    if (down) following.value = "off";
     this.fast = fast;
     if (down) this.keys.add(key);
     else this.keys.delete(key);

@@ -188,7 +188,7 @@ def test_who_may_do_what(service: Served) -> None:
     id = service.create(mission=data("a", "b"))
     by_role = {role: service.as_("x", secret) for role, secret in SECRETS.items()}
     assert by_role["view"].get("/api/service").json() | {"argo": ""} == {
-        "argo": "", "site": "umad", "author": "view", "role": "view",
+        "argo": "", "site": "umad", "author": "view", "named": True, "role": "view",
     }  # fmt: skip
     edit = {"kind": "rename_task", "name": "a", "new_name": "A"}
     problem(service.command(id, 1, edit, client=by_role["view"]), 403, "access-denied")

@@ -147,6 +147,8 @@ def test_a_group_is_copied_with_what_it_says(ann, service, plan) -> None:
     rounds = ann.page.get_by_label("Rounds")
     rounds.fill("3")
     rounds.press("Enter")
+    ann.until(lambda: mission(service, plan)["groups"][0]["max_repeat_count"] == 3, "3 rounds")
+    expect(ann.saved).to_have_text("Saved")
     ann.click(row(ann, "Round"))
     ann.key("Control+c", "Control+v")
     order(ann, "START", "Round", "A1", "B2", "Round (2)", "A1 (2)", "B2 (2)", "C4")

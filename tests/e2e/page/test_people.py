@@ -87,6 +87,7 @@ def test_a_mission_is_not_left_before_all_is_sent(browsers, plan, service) -> No
         expect(ann.page.get_by_role("tree")).to_be_visible()
         line.mend()
         order(ann, "START", "B2", "C4")
+        expect(ann.page.get_by_role("log")).not_to_contain_text("has not been sent")
         ann.click(ann.button("All missions"))
         expect(ann.button("New mission")).to_be_visible()
         assert tasks(service, plan) == ["START", "B2", "C4"]

@@ -13,7 +13,7 @@ import { settled, waiting } from "../state/commands";
 import { closePlan, openPlan, planId, planName } from "../state/plan";
 import { followRobot } from "../state/run";
 import { beginSession, readService } from "../state/session";
-import { tell, tellError } from "../state/notices";
+import { dismiss, tell, tellError } from "../state/notices";
 import { panel, type Panel } from "../state/view";
 import { readWorld } from "../state/world";
 import { css, customElement, html, look, PageElement } from "../ui/element";
@@ -209,7 +209,8 @@ export class ArgoApp extends PageElement {
     };
     history.replaceState(null, "", addressOf(planId.value));
     const texts = t().frame;
-    tell("bad", texts.unsent(waiting.value), { actions: [{ label: texts.leaveAnyway, act: leave }] });
+    const told = tell("bad", texts.unsent(waiting.value), { actions: [{ label: texts.leaveAnyway, act: leave }] });
+    void settled().then(() => dismiss(told)); // it would not be so any more
   }
 
   override render() {

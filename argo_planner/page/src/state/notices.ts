@@ -19,16 +19,18 @@ const STAYS_MS = { info: 5_000, warn: 15_000, bad: 25_000 };
 const MOST = 3;
 let count = 0;
 
+/** Tells something; the id under which it can be dismissed. */
 export function tell(
   tone: Notice["tone"],
   text: string,
   more: { details?: readonly string[]; actions?: Notice["actions"] } = {},
-): void {
+): number {
   const id = ++count;
   const notice = { id, tone, text, details: more.details ?? [], actions: more.actions ?? [] };
   const others = notices.value.filter((one) => one.text !== text);
   notices.value = [...others, notice].slice(-MOST);
   if (notice.actions.length === 0) dismissLater(id, STAYS_MS[tone]);
+  return id;
 }
 
 /** Nothing goes that nobody could have seen. */

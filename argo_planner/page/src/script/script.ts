@@ -1,18 +1,6 @@
 /** The mission as text, edited either way. */
 
-import type { Diagnostic } from "../api/types";
-import {
-  lineOf,
-  linesBySource,
-  linesBySteps,
-  nameInLine,
-  placeOf,
-  severities,
-  type Lines,
-} from "../model/script-lines";
-import { groupKey, nameOfKey, taskKey } from "../model/outline";
-import { findings, revision, select, selection, tasksByName } from "../state/plan";
-import { reading } from "../state/reading";
+import { broken } from "../state/plan";
 import { mayPlan } from "../state/session";
 import { t } from "../texts";
 import { css, customElement, html, look, nothing, PageElement, query } from "../ui/element";
@@ -23,15 +11,15 @@ import {
   aside,
   base,
   dirty,
-  draft,
   overtaken,
   refused,
   takeAside,
   takeTheirs,
   unsaid,
-  write,
 } from "./draft";
 import { confirm, openNotes } from "./notes";
+import "./sheet";
+import type { ScriptSheet } from "./sheet";
 
 @customElement("argo-script")
 export class ScriptPanel extends PageElement {
@@ -44,91 +32,6 @@ export class ScriptPanel extends PageElement {
         gap: 8px;
         height: 100%;
         padding: 10px;
-      }
-      .paper {
-        flex: 1;
-        min-height: 160px;
-        overflow: auto;
-        border: 1px solid var(--line);
-        border-radius: var(--round);
-        background: var(--surface);
-      }
-      .paper:focus-within {
-        outline: 2px solid var(--accent);
-      }
-      /* The text lies over a mirror of itself, which has the numbers and the marks. */
-      .sheet {
-        display: grid;
-        min-height: 100%;
-      }
-      .mirror,
-      textarea {
-        grid-area: 1 / 1;
-        margin: 0;
-        padding: 6px 8px 6px 42px;
-        border: 0;
-        font: 13px/1.5 ui-monospace, "DejaVu Sans Mono", monospace;
-        white-space: pre-wrap;
-        overflow-wrap: anywhere;
-        tab-size: 4;
-      }
-      .mirror {
-        white-space: normal;
-      }
-      .mirror div {
-        white-space: pre-wrap;
-      }
-      textarea {
-        position: relative;
-        z-index: 1;
-        width: 100%;
-        height: 100%;
-        overflow: hidden;
-        resize: none;
-        border-radius: 0;
-        background: none;
-        color: var(--text);
-        outline: 0;
-      }
-      .mirror {
-        color: transparent;
-        counter-reset: line;
-        user-select: none;
-        pointer-events: none;
-      }
-      .mirror div {
-        position: relative;
-        min-height: 1.5em;
-        margin: 0 -8px 0 -42px;
-        padding: 0 8px 0 42px;
-        counter-increment: line;
-      }
-      .mirror div::before {
-        content: counter(line);
-        position: absolute;
-        top: 0;
-        left: 0;
-        width: 32px;
-        color: var(--dim);
-        font-size: 11px;
-        text-align: right;
-      }
-      .mirror .chosen {
-        background: var(--chosen);
-      }
-      .mirror .error {
-        background: var(--bad-ground);
-      }
-      .mirror .warning {
-        background: var(--warn-ground);
-      }
-      .mirror .error::before {
-        color: var(--bad);
-        font-weight: 700;
-      }
-      .mirror .warning::before {
-        color: var(--warn);
-        font-weight: 700;
       }
       .told {
         max-height: 34%;
@@ -166,19 +69,16 @@ export class ScriptPanel extends PageElement {
     `,
   ];
 
-  @query("textarea") private readonly field!: HTMLTextAreaElement | null;
-  @query(".chosen") private readonly chosen!: HTMLElement | null;
-  private shownSelection: unknown;
+  @query("argo-script-sheet") private readonly sheet!: ScriptSheet | null;
 
   override render() {
     const texts = t().script;
-    const wrong = findings.value.diagnostics.some((one) => one.severity === "error");
     if (base.value === null) {
-      const said = unsaid.value ?? (wrong ? texts.hasErrors : texts.loading);
+      const said = unsaid.value ?? (broken.value ? texts.hasErrors : texts.loading);
       return html`<p class="dim">${said}</p>`;
     }
     return html`${this.notes()} ${overtaken.value ? this.meanwhile() : nothing}
-      <div class="paper">${this.sheet()}</div>
+      <argo-script-sheet></argo-script-sheet>
       ${this.problems()} ${unsaid.value === null ? nothing : html`<p class="told warn">${unsaid.value}</p>`}
       <div class="row">
         <button
@@ -198,65 +98,6 @@ export class ScriptPanel extends PageElement {
           ${!mayPlan() ? texts.mayNotPlan : dirty.value ? texts.changed : texts.unchanged}
         </span>
       </div>`;
-  }
-
-  private sheet() {
-    const text = draft.value;
-    const found = refused.value?.text === text ? refused.value.found : [];
-    const marks = severities(found);
-    const places = this.places();
-    const chosen = selection.value.map((key) => places.get(nameOfKey(key)));
-    const isChosen = (line: number) =>
-      chosen.some((part) => part !== undefined && part.from <= line && line <= part.to);
-    return html`<div class="sheet">
-      <div class="mirror" aria-hidden="true">
-        ${text.split("\n").map((line, at) => {
-          const marked = marks.get(at + 1) ?? (isChosen(at + 1) ? "chosen" : "");
-          return html`<div class=${marked}>${line}</div>`;
-        })}
-      </div>
-      <textarea
-        aria-label=${t().script.title}
-        spellcheck="false"
-        autocomplete="off"
-        autocapitalize="off"
-        ?readonly=${!mayPlan()}
-        .value=${text}
-        @input=${(event: Event) => write((event.target as HTMLTextAreaElement).value)}
-        @keydown=${this.onKey}
-        @click=${this.onClick}
-      ></textarea>
-    </div>`;
-  }
-
-  /** Where in the text each task stands, as long as the text is the mission. */
-  private places(): Map<string, Lines> {
-    const from = base.value;
-    const read = reading.value;
-    if (from === null || read === null || dirty.value || read.revision !== revision.value) return new Map();
-    const { entries } = read.reading;
-    return from.own ? linesBySource(from.text, entries) : linesBySteps(from.text, entries);
-  }
-
-  override updated(): void {
-    if (this.shownSelection === selection.value) return;
-    this.shownSelection = selection.value;
-    if (this.renderRoot instanceof ShadowRoot && this.renderRoot.activeElement === this.field) return;
-    this.chosen?.scrollIntoView({ block: "nearest" });
-  }
-
-  private onKey(event: KeyboardEvent): void {
-    if (event.key !== "Enter" || !(event.ctrlKey || event.metaKey)) return;
-    event.preventDefault();
-    if (mayPlan() && dirty.value && !overtaken.value) void apply();
-  }
-
-  /** Whoever clicks into the text means the task there. */
-  private onClick(): void {
-    const field = this.field;
-    if (field === null || dirty.value || field.selectionStart !== field.selectionEnd) return;
-    const name = nameInLine(this.places(), lineOf(field.value, field.selectionStart));
-    if (name !== null) select([tasksByName.value.has(name) ? taskKey(name) : groupKey(name)]);
   }
 
   private meanwhile() {
@@ -281,7 +122,7 @@ export class ScriptPanel extends PageElement {
           (one) =>
             html`<li>
               ${one.span
-                ? html`<button @click=${() => this.goTo(one)}>${texts.line(one.span.line)}</button>`
+                ? html`<button @click=${() => this.sheet?.goTo(one)}>${texts.line(one.span.line)}</button>`
                 : nothing}
               <span class=${one.severity === "error" ? "error-said" : ""}>${one.message}</span>
               ${one.hint ? html`<br /><span class="dim">${texts.hint(one.hint)}</span>` : nothing}
@@ -289,15 +130,6 @@ export class ScriptPanel extends PageElement {
         )}
       </ul>
     </section>`;
-  }
-
-  private goTo({ span }: Diagnostic): void {
-    const field = this.field;
-    if (!span || field === null) return;
-    const at = placeOf(field.value, span.line, span.column);
-    field.focus();
-    field.setSelectionRange(at, at + span.length);
-    this.renderRoot.querySelectorAll(".mirror div")[span.line - 1]?.scrollIntoView({ block: "nearest" });
   }
 
   private notes() {

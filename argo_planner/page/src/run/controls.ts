@@ -3,7 +3,8 @@
 import type { RequestState } from "../api/types";
 import { isOver, isUnderWay, shownRequests } from "../model/run-mode";
 import { planId, revision } from "../state/plan";
-import { ask, asking, giveBackEdited, run, shownTime } from "../state/run";
+import { ask, asking, giveBackEdited } from "../state/asking";
+import { run, shownTime } from "../state/run";
 import { mayOperate } from "../state/session";
 import { following } from "../state/view";
 import { t } from "../texts";

@@ -7,7 +7,8 @@ import { answered, client, Refusal, Unreached } from "../api/client";
 import type { Pose } from "../api/types";
 import { goalOf, isStraight, reachesOf, type Direction } from "../model/hand-driving";
 import { isOver } from "../model/run-mode";
-import { ask, robotPose, run } from "../state/run";
+import { ask } from "../state/asking";
+import { robotPose, run } from "../state/run";
 
 /** Where somebody wants to drive now; null: nowhere. */
 export const wanted = signal<Direction | null>(null);

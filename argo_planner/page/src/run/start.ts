@@ -4,7 +4,7 @@ import type { RunAsked } from "../api/types";
 import { choiceOf, chosenCheckpoint } from "../model/checkpoint-choice";
 import { keep, kept, mayOperate } from "../state/session";
 import { findings, mission } from "../state/plan";
-import { startRun } from "../state/run";
+import { startRun } from "../state/asking";
 import { world } from "../state/world";
 import { t } from "../texts";
 import { css, customElement, html, look, nothing, PageElement, state } from "../ui/element";

@@ -3,7 +3,8 @@
 
 import type { EventKind } from "../api/types";
 import { choiceOf, chosenCheckpoint } from "../model/checkpoint-choice";
-import { ask, run, type Question } from "../state/run";
+import { ask, type Question } from "../state/asking";
+import { run } from "../state/run";
 import { mayOperate } from "../state/session";
 import { world } from "../state/world";
 import { t } from "../texts";

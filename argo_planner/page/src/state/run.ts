@@ -1,22 +1,18 @@
-/** The run that the robot is in or was in last, as the service tells it. */
+/** The run that the robot is in or was in last, as the service tells it; or one that was, gone back over. */
 
 import { batch, computed, effect, signal } from "@preact/signals-core";
 
-import { answered, authorQuery, client, newId, Refusal, Unreached } from "../api/client";
-import { untilReached } from "../api/trying";
+import { answered, authorQuery, client, Unreached } from "../api/client";
 import { LiveConnection } from "../api/live";
 import type {
   Entry,
   RequestState,
-  RunAsked,
   RunMessage,
-  RunQuestion,
   RunState,
 } from "../api/types";
 import { momentAt, type Moment } from "../model/replay";
 import { tell, tellError } from "./notices";
-import { planId, revision } from "./plan";
-import { settled } from "./commands";
+import { planId } from "./plan";
 import { isMe } from "./session";
 
 export interface RobotPose {
@@ -88,15 +84,10 @@ export const shownRun = computed<ShownRun | null>(() => {
   };
 });
 
-const RETRY_MS = 500;
-/** ms after which a question that has not reached the service is given up: what the robot is to do is not
- * to be done when nobody expects it any more. To stand still is never too late. */
-const PATIENCE_MS = 3_000;
-const PATIENCE_TO_STOP_MS = 60_000;
-const STOPS: ReadonlySet<string> = new Set(["pause", "stop", "stop_by_hand"]);
 /** Entries come one by one, and many at once when the page opens; they are shown together. */
 const ENTRIES_MS = 40;
-const quiet = new Set<string>();
+/** Ids of requests of which no notice says that nothing comes of them. */
+export const quiet = new Set<string>();
 let live: LiveConnection<RunMessage> | null = null;
 let shownLast = 0;
 let comeIn: Entry[] = [];
@@ -150,84 +141,8 @@ async function entriesOf(id: string, since: number): Promise<Entry[]> {
   }
 }
 
-/** Begins a run of the mission as it is. Whether it has begun; a notice says why not. */
-export async function startRun(asked: Partial<RunAsked>): Promise<boolean> {
-  const id = planId.value;
-  if (id === null) return false;
-  await settled();
-  try {
-    const begun = await answered(
-      client.POST("/api/missions/{id}/runs", {
-        params: { path: { id }, header: { "If-Match": `"${revision.value}"` } },
-        body: asked as RunAsked,
-      }),
-    );
-    takeState(begun);
-    return true;
-  } catch (error) {
-    tellError(error);
-    return false;
-  }
-}
-
-/** A question without its id, which is given to it when it is asked. */
-export type Question = RunQuestion extends infer One
-  ? One extends { readonly id: string }
-    ? Partial<Omit<One, "id" | "kind">> & { readonly kind: One extends { readonly kind?: infer K } ? NonNullable<K> : never }
-    : never
-  : never;
-
-/** Kinds of the questions that have not reached the service yet. */
-export const asking = signal<readonly string[]>([]);
-
-/** Asks something of the run. What became of it so far; null if it was refused at once, or did not reach
- * the service in time. `quietly`: no notice says so if nothing comes of it. `wanted`: whether it still
- * is, where it is sent again. */
-export function ask(
-  question: Question,
-  quietly = false,
-  wanted: () => boolean = () => true,
-): Promise<RequestState | null> {
-  const body = { id: newId(), ...question } as unknown as RunQuestion;
-  if (quietly) quiet.add(body.id);
-  const send = (id: string) =>
-    answered(client.POST("/api/runs/{run}/requests", { params: { path: { run: id } }, body }));
-  return asked(question.kind, send, quietly, wanted);
-}
-
-/** Gives the robot back with the mission as it is edited now. */
-export async function giveBackEdited(): Promise<RequestState | null> {
-  await settled();
-  const body = { id: newId() };
-  const header = { "If-Match": `"${revision.value}"` };
-  return asked("go_on_edited", (id) =>
-    answered(client.POST("/api/runs/{run}/plan", { params: { path: { run: id }, header }, body })),
-  );
-}
-
-async function asked(
-  kind: string,
-  send: (run: string) => Promise<RequestState>,
-  quietly = false,
-  wanted: () => boolean = () => true,
-): Promise<RequestState | null> {
-  const id = run.value?.id;
-  if (id === undefined) return null;
-  const end = performance.now() + (STOPS.has(kind) ? PATIENCE_TO_STOP_MS : PATIENCE_MS);
-  const goesOn = () => run.value?.id === id && wanted() && performance.now() < end;
-  asking.value = [...asking.value, kind];
-  try {
-    return await untilReached(() => send(id), goesOn, RETRY_MS);
-  } catch (error) {
-    if (!(quietly && error instanceof Refusal)) tellError(error);
-    return null;
-  } finally {
-    const at = asking.value.indexOf(kind);
-    asking.value = asking.value.filter((_, other) => other !== at);
-  }
-}
-
-function takeState(state: RunState | null): void {
+/** Takes how the run of the robot stands. */
+export function takeState(state: RunState | null): void {
   batch(() => {
     if (state?.id !== run.value?.id) {
       entries.value = [];

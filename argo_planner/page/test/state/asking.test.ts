@@ -4,7 +4,8 @@ import { fakeService, problem } from "./fake-service";
 
 import type { RunState } from "../../src/api/types";
 import { notices } from "../../src/state/notices";
-import { ask, asking, run } from "../../src/state/run";
+import { ask, asking } from "../../src/state/asking";
+import { run } from "../../src/state/run";
 
 beforeEach(() => {
   vi.useFakeTimers();

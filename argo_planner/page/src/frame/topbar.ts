@@ -1,21 +1,17 @@
-/** The bar at the top: the mission's name, undo and redo, whoever else is there, settings. */
+/** The bar at the top: the mission's name, undo and redo, whoever else is there, what the robot does, settings. */
 
 import { answered, client } from "../api/client";
-import { isUnderWay, shownMode } from "../model/run-mode";
 import { tellError } from "../state/notices";
 import { redo, undo, waiting } from "../state/commands";
 import { connected, others, planId, planName, redoable, undoable } from "../state/plan";
-import { ask, asking } from "../state/asking";
-import { run, runIsOn } from "../state/run";
-import { author, mayOperate, mayPlan, service, theme } from "../state/session";
-import { panel } from "../state/view";
-import { modeWords } from "../run/mode-words";
-import { language, t } from "../texts";
+import { mayPlan, service, theme } from "../state/session";
+import { t } from "../texts";
 import { css, customElement, html, look, nothing, PageElement, state } from "../ui/element";
 import { icon } from "../ui/icons";
-import { closed, closeLeft } from "../ui/popover";
 import { keysShown } from "./keys";
 import "./mission-menu";
+import "./run-badge";
+import "./settings";
 
 @customElement("argo-topbar")
 export class PageTopbar extends PageElement {
@@ -61,16 +57,6 @@ export class PageTopbar extends PageElement {
         font-weight: 600;
         font-size: 12px;
       }
-      .run {
-        gap: 0;
-        border: 1px solid var(--line);
-        border-left: 4px solid var(--accent);
-        border-radius: 6px;
-        font-size: 13px;
-      }
-      .run.supervised {
-        border-left-color: var(--person);
-      }
       .state {
         padding: 2px 8px;
         border-radius: 10px;
@@ -79,23 +65,6 @@ export class PageTopbar extends PageElement {
       .state.away {
         background: var(--warn-ground);
         color: var(--warn);
-      }
-      [popover] {
-        position: fixed;
-        inset: 48px 8px auto auto;
-        width: 260px;
-        margin: 0;
-        padding: 12px;
-        border: 1px solid var(--line);
-        border-radius: var(--round);
-        background: var(--raised);
-        color: var(--text);
-        box-shadow: var(--shadow);
-      }
-      label {
-        display: grid;
-        gap: 2px;
-        margin-bottom: 8px;
       }
       @media (max-width: 800px) {
         .planning {
@@ -147,7 +116,8 @@ export class PageTopbar extends PageElement {
             <span class="dim">${service.value?.site ?? ""}</span>
             ${waiting.value > 0 ? this.saved() : nothing}`}
       <span class="grow"></span>
-      ${this.run()} ${others.value.length > 0 ? this.people() : nothing}
+      <argo-run-badge></argo-run-badge>
+      ${others.value.length > 0 ? this.people() : nothing}
       <button
         class="bare icon planning"
         aria-label=${texts.keysTitle}
@@ -164,43 +134,8 @@ export class PageTopbar extends PageElement {
       >
         ${icon(theme.value === "dark" ? "sun" : "moon")}
       </button>
-      <button
-        class="bare icon"
-        aria-label=${texts.settings}
-        title=${texts.settings}
-        popovertarget="settings"
-      >
-        ${icon("settings")}
-      </button>
-      ${this.settings()}
+      <argo-settings></argo-settings>
     </header>`;
-  }
-
-  /** What the robot does, wherever one is: it can be halted from there. */
-  private run() {
-    const state = run.value;
-    if (state === null || !runIsOn.value) return nothing;
-    const mode = shownMode(state);
-    const texts = t().run;
-    const show = () => {
-      if (planId.value === null) location.hash = `#/missions/${state.plan}`;
-      panel.value = "run";
-    };
-    const drives = state.status === "running" && state.mode !== "paused" && state.mode !== "supervised";
-    return html`<span class="row run ${mode}">
-      <button class="bare" title=${state.name} @click=${show}>${modeWords(state)}</button>
-      ${drives && mayOperate()
-        ? html`<button
-            class="bare icon"
-            aria-label=${texts.pauseRobot}
-            title=${texts.pauseRobot}
-            ?disabled=${asking.value.includes("pause") || isUnderWay(state, "pause")}
-            @click=${() => ask({ kind: "pause" })}
-          >
-            ${icon("pause")}
-          </button>`
-        : nothing}
-    </span>`;
   }
 
   /** Whether all that was done is on the service's disk. */
@@ -275,35 +210,6 @@ export class PageTopbar extends PageElement {
         )}
       ${names.length > 6 ? html`<li>+${names.length - 6}</li>` : nothing}
     </ul>`;
-  }
-
-  private settings() {
-    const texts = t().frame;
-    return html`<div id="settings" popover @focusout=${closeLeft} @toggle=${closed}>
-      <label>
-        ${texts.yourName}
-        <input
-          maxlength="100"
-          .value=${author.value}
-          placeholder=${texts.somebody}
-          @change=${(event: Event) => (author.value = (event.target as HTMLInputElement).value.trim())}
-        />
-      </label>
-      <label>
-        ${texts.language}
-        <select
-          .value=${language.value}
-          @change=${(event: Event) =>
-            (language.value = (event.target as HTMLSelectElement).value === "de" ? "de" : "en")}
-        >
-          <option value="en" ?selected=${language.value === "en"}>English</option>
-          <option value="de" ?selected=${language.value === "de"}>Deutsch</option>
-        </select>
-      </label>
-      <p class="dim">
-        ${service.value ? texts.version(service.value.argo, texts.roles[service.value.role]) : ""}
-      </p>
-    </div>`;
   }
 }
 

@@ -1,0 +1,57 @@
+/** What the robot does, wherever one is: it can be halted from there. */
+
+import { isUnderWay, shownMode } from "../model/run-mode";
+import { modeWords } from "../run/mode-words";
+import { ask, asking } from "../state/asking";
+import { planId } from "../state/plan";
+import { run, runIsOn } from "../state/run";
+import { mayOperate } from "../state/session";
+import { panel } from "../state/view";
+import { t } from "../texts";
+import { css, customElement, html, look, nothing, PageElement } from "../ui/element";
+import { icon } from "../ui/icons";
+
+@customElement("argo-run-badge")
+export class RunBadge extends PageElement {
+  static override styles = [
+    look,
+    css`
+      .run {
+        gap: 0;
+        border: 1px solid var(--line);
+        border-left: 4px solid var(--accent);
+        border-radius: 6px;
+        font-size: 13px;
+      }
+      .run.supervised {
+        border-left-color: var(--person);
+      }
+    `,
+  ];
+
+  override render() {
+    const state = run.value;
+    if (state === null || !runIsOn.value) return nothing;
+    const mode = shownMode(state);
+    const texts = t().run;
+    const show = () => {
+      if (planId.value === null) location.hash = `#/missions/${state.plan}`;
+      panel.value = "run";
+    };
+    const drives = state.status === "running" && state.mode !== "paused" && state.mode !== "supervised";
+    return html`<span class="row run ${mode}">
+      <button class="bare" title=${state.name} @click=${show}>${modeWords(state)}</button>
+      ${drives && mayOperate()
+        ? html`<button
+            class="bare icon"
+            aria-label=${texts.pauseRobot}
+            title=${texts.pauseRobot}
+            ?disabled=${asking.value.includes("pause") || isUnderWay(state, "pause")}
+            @click=${() => ask({ kind: "pause" })}
+          >
+            ${icon("pause")}
+          </button>`
+        : nothing}
+    </span>`;
+  }
+}

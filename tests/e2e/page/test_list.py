@@ -60,6 +60,7 @@ def test_checkpoints_are_added_by_keys_one_after_the_other(ann, service, plan) -
         ann.type(number)
         ann.key("Enter")
     order(ann, "START", "A1", "B2", "C4", "MEASURE 14", "MEASURE 2")
+    expect(row(ann, "MEASURE 2")).to_have_attribute("aria-selected", "true")
     ann.key("Escape", "ArrowUp")
     expect(row(ann, "MEASURE 14")).to_have_attribute("aria-selected", "true")
     objects = [task["object_id"] for task in mission(service, plan)["tasks"][-2:]]

@@ -25,6 +25,7 @@ def test_an_edited_mission_is_given_back_edited_and_the_report_is_readable(
     expect(row(ann, "C4")).to_be_visible()
     ann.key("F8")
     expect(ann.button("Start the run")).to_be_focused()
+    expect(ann.button("Start the run")).to_be_enabled()
     ann.key("Enter")
     expect(ann.button("Take over")).to_be_enabled()
     ann.key("F9")

@@ -2,7 +2,7 @@
 
 import { readTime, writeTime } from "../forms/times";
 import { edit } from "../state/commands";
-import { findings, mission } from "../state/plan";
+import { broken, mission } from "../state/plan";
 import { mayPlan } from "../state/session";
 import { t } from "../texts";
 import { css, customElement, html, look, nothing, PageElement, state } from "../ui/element";
@@ -246,8 +246,7 @@ export class RoutePanel extends PageElement {
     const texts = t().route;
     if (!mayPlan()) return texts.mayNotPlan;
     if (this.names().length < 2) return texts.nothing;
-    const broken = findings.value.diagnostics.some((one) => one.severity === "error");
-    return broken ? texts.hasErrors : null;
+    return broken.value ? texts.hasErrors : null;
   }
 
   private search(event: SubmitEvent): void {

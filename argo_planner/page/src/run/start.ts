@@ -3,7 +3,7 @@
 import type { RunAsked } from "../api/types";
 import { choiceOf, chosenCheckpoint } from "../model/checkpoint-choice";
 import { keep, kept, mayOperate } from "../state/session";
-import { findings, mission } from "../state/plan";
+import { broken, mission } from "../state/plan";
 import { startRun } from "../state/asking";
 import { world } from "../state/world";
 import { t } from "../texts";
@@ -88,7 +88,7 @@ export class RunStart extends PageElement {
         <button
           class="main"
           id="start"
-          ?disabled=${reason !== null || this.starting}
+          aria-disabled=${reason !== null || this.starting}
           aria-describedby=${reason === null ? nothing : "reason"}
         >
           ${icon("play", 20)} ${this.starting ? texts.starting : texts.start}
@@ -207,12 +207,13 @@ export class RunStart extends PageElement {
     </button>`;
   }
 
+  /** Why no run can be started now. The button can have the focus nevertheless: the keys lead to it before all
+   * is checked, and who can't see the page hears the reason there. */
   private whyNot(): string | null {
     const texts = t().run;
     if (!mayOperate()) return texts.mayNotOperate;
     if ((mission.value?.tasks.length ?? 0) === 0) return texts.noTasks;
-    const broken = findings.value.diagnostics.some((one) => one.severity === "error");
-    return broken ? texts.hasErrors : null;
+    return broken.value ? texts.hasErrors : null;
   }
 
   private onValueKey(event: KeyboardEvent): void {
@@ -242,6 +243,7 @@ export class RunStart extends PageElement {
 
   private async start(event: SubmitEvent): Promise<void> {
     event.preventDefault();
+    if (this.starting || this.whyNot() !== null) return;
     const form = new FormData(event.target as HTMLFormElement);
     const speed = form.get("speed") as string;
     keep("speed", speed);

@@ -4,6 +4,7 @@ import { effect, signal } from "@preact/signals-core";
 import { BufferAttribute, BufferGeometry, Line, LineBasicMaterial, Vector3 } from "three";
 
 import { fetched, Unreached } from "../api/client";
+import { pause } from "../api/trying";
 import type { World } from "../api/types";
 import { shownMode, type ShownMode } from "../model/run-mode";
 import { floorOf } from "../model/standing";
@@ -87,7 +88,7 @@ export class RobotView {
         done = true;
       } catch (error) {
         if (!(error instanceof Unreached)) throw error;
-        await new Promise((resolve) => setTimeout(resolve, RETRY_MS));
+        await pause(RETRY_MS);
         if (this.over) return;
       }
     this.now = null;

@@ -3,6 +3,7 @@
 import { signal } from "@preact/signals-core";
 
 import { fetched, Unreached } from "../api/client";
+import { pause } from "../api/trying";
 import type { World } from "../api/types";
 import { floorOf, readStandingMap, type Standing, type StandingMap, verdictAt } from "../model/standing";
 import { world } from "../state/world";
@@ -39,7 +40,7 @@ async function read(of: string, waiting: string[]): Promise<void> {
     } catch (error) {
       if (!(error instanceof Unreached)) throw error;
       waiting.push(key);
-      await new Promise((resolve) => setTimeout(resolve, RETRY_MS));
+      await pause(RETRY_MS);
       if (of !== digest) return;
     }
   }

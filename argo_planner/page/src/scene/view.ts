@@ -4,6 +4,7 @@ import { batch, effect, signal } from "@preact/signals-core";
 import { Ray, Vector2, Vector3 } from "three";
 
 import { Unreached } from "../api/client";
+import { pause } from "../api/trying";
 import type { World } from "../api/types";
 import { offer, withdraw, type ArgoTestInterface } from "../frame/test-interface";
 import { floorOf } from "../model/standing";
@@ -166,7 +167,7 @@ export class SceneView {
         if (!(error instanceof Unreached)) throw error;
         this.loading.value = "failed";
         tellError(error);
-        await new Promise((resolve) => setTimeout(resolve, RETRY_MS));
+        await pause(RETRY_MS);
       }
     }
   }

@@ -61,10 +61,11 @@ export const look = css`
     background: var(--raised);
     cursor: pointer;
   }
-  button:hover:not(:disabled) {
+  button:hover:not(:disabled, [aria-disabled="true"]) {
     border-color: var(--accent);
   }
-  button:disabled {
+  button:disabled,
+  button[aria-disabled="true"] {
     color: var(--dim);
     background: var(--sunken);
     cursor: default;
@@ -74,7 +75,8 @@ export const look = css`
     background: var(--accent);
     color: var(--on-accent);
   }
-  button.main:disabled {
+  button.main:disabled,
+  button.main[aria-disabled="true"] {
     border-color: var(--line);
     background: var(--sunken);
     color: var(--dim);

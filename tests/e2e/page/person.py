@@ -18,6 +18,7 @@ from playwright.sync_api import (
     ConsoleMessage,
     Page,
     Request,
+    expect,
     sync_playwright,
 )
 
@@ -76,6 +77,12 @@ class Person:
 
     def button(self, name: str, exact: bool = True) -> Any:
         return self.page.get_by_role("button", name=name, exact=exact).first
+
+    def focus(self, what: Any) -> None:
+        """Puts the focus on something, once it can have it."""
+        expect(what).to_be_enabled()
+        what.focus()
+        expect(what).to_be_focused()
 
     @property
     def saved(self) -> Any:

@@ -54,7 +54,7 @@ def order(person: Person, *names: str) -> None:
 
 
 def test_checkpoints_are_added_by_keys_one_after_the_other(ann, service, plan) -> None:
-    ann.page.get_by_role("tree").focus()
+    ann.focus(ann.page.get_by_role("tree"))
     ann.key("End", "m")
     for number in ("14", "2"):
         ann.type(number)
@@ -269,7 +269,7 @@ def test_two_thousand_tasks_open_and_scroll(browsers, address, service) -> None:
     ann.open(f"/missions/{id}")
     expect(row(ann, "T0")).to_be_visible()
     assert ann.page.get_by_role("treeitem").count() < 100
-    ann.page.get_by_role("tree").focus()
+    ann.focus(ann.page.get_by_role("tree"))
     ann.key("End")
     expect(row(ann, "T1999")).to_be_visible()
     ann.key("Delete")

@@ -128,7 +128,7 @@ def test_an_obstacle_closes_the_ground(ann, service) -> None:
 
 def test_an_obstacle_is_put_up_by_keys_alone(ann, service) -> None:
     floor(ann, 1)
-    ann.page.get_by_role("tree").focus()
+    ann.focus(ann.page.get_by_role("tree"))
     ann.key("o", "Shift+ArrowLeft", "Enter", "Shift+ArrowRight", "Shift+ArrowUp", "Enter")
     expect(ann.page.locator("argo-obstacle-form #name")).to_be_focused()
     ann.type("Box")
@@ -143,7 +143,7 @@ def test_an_obstacle_is_put_up_by_keys_alone(ann, service) -> None:
 
 def test_the_tool_is_moved_by_keys_at_once_and_put_away(ann) -> None:
     floor(ann, 1)
-    ann.page.get_by_role("tree").focus()
+    ann.focus(ann.page.get_by_role("tree"))
     ann.key("n", "ArrowUp")
     expect(ann.page.locator("argo-scene #verdict")).to_be_visible()
     ann.key("Escape")

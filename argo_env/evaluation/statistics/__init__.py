@@ -1,0 +1,1 @@
+"""What follows from the outcomes of runs, and how sure it is."""

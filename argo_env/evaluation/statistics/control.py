@@ -35,7 +35,7 @@ class ControlVariate:
         """From pairs, one of each a world, shape (n,) each."""
         if len(expensive) != len(cheap) or len(expensive) < _FEWEST:
             raise Invalid(f"a correlation takes at least {_FEWEST} pairs of runs")
-        if not 0 < cost:
+        if not cost > 0:
             raise Invalid(f"a cheap run that costs {cost:g} of an expensive one: give more than 0")
         if np.ptp(expensive) == 0 or np.ptp(cheap) == 0:
             return cls(0.0, cost)

@@ -46,7 +46,7 @@ class SuccessPairs:
 
     @property
     def p_value(self) -> float:
-        """Of McNemar's exact test: how likely a difference as great or greater is where there is none.
+        """Of McNemar's exact test: how likely a difference at least as great is if there is none.
 
         Q. McNemar, Psychometrika 12 (1947), 153-157; exact by the binomial distribution of the
         pairs that differ.

@@ -46,8 +46,8 @@ def clopper_pearson(count: int, runs: int, level: float = LEVEL) -> Rate:
 
 
 def wilson(count: int, runs: int, level: float = LEVEL) -> Rate:
-    """A quick interval to look at while runs still come. Its coverage is `level` on average only, so
-    nothing is claimed by it.
+    """A quick interval to look at while runs still come. Its coverage is `level` on average only,
+    so nothing is claimed by it.
 
     E. B. Wilson, Journal of the American Statistical Association 22 (1927), 209-212.
     """

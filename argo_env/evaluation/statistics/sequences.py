@@ -1,16 +1,16 @@
 """Confidence sequences: what may be looked at after each run, and acted upon.
 
-An interval that is made for a fixed number of runs errs more and more often the more often one looks
-at it. A confidence sequence has the true mean at all times at once, with the probability `level`:
-whoever stops because of what it says keeps what it says.
+An interval that is made for a fixed number of runs errs more and more often the more often one
+looks at it. A confidence sequence has the true mean at all times at once, with the probability
+`level`: whoever stops because of what it says keeps what it says.
 
-It is made by betting. Somebody who says that the mean is m sells bets on each outcome at that price; a
-buyer whose money has grown twentyfold has shown at the level 95 % that it is another one, since money
-that grows in a fair game by 20 or more does so with a probability of at most 1/20 (Ville's
-inequality). The buyer spreads the money over the means that may be true instead, and leaves it there. Where
-outcomes are 0 or 1, that is the mixture of binomial likelihoods of H. Robbins (Annals of
-Mathematical Statistics 41 (1970), 1397-1409); for any outcomes from 0 to 1 see I. Waudby-Smith and
-A. Ramdas, Journal of the Royal Statistical Society B 86 (2024), 1-27.
+It is made by betting. Somebody who says that the mean is m sells bets on each outcome at that
+price; a buyer whose money has grown twentyfold has shown at the level 95 % that it is another one,
+since money grows in a fair game by 20 or more with a probability of at most 1/20 (Ville's
+inequality). The buyer spreads the money over the means that may be true instead, and leaves it
+there. Where outcomes are 0 or 1, that is the mixture of binomial likelihoods of H. Robbins (Annals
+of Mathematical Statistics 41 (1970), 1397-1409); for any outcomes from 0 to 1 see
+I. Waudby-Smith and A. Ramdas, Journal of the Royal Statistical Society B 86 (2024), 1-27.
 """
 
 import math

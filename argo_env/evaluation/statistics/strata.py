@@ -54,7 +54,7 @@ def stratified_rate(strata: Sequence[Stratum], level: float = LEVEL) -> Estimate
 def allocation(strata: Sequence[Stratum], runs: int) -> tuple[int, ...]:
     """How many of so many further runs each stratum gets, so that the whole rate becomes as sure as
     can be: by weight, and by how uncertain the outcome is (J. Neyman, Journal of the Royal
-    Statistical Society 97 (1934), 558-625). Of each at least one run is made, if there are enough."""
+    Statistical Society 97 (1934), 558-625). Each gets at least one, if there are enough."""
     # As if one more had succeeded and one more failed: a stratum of which few runs are known is
     # not taken for sure.
     shares = [(s.count + 1) / (s.runs + 2) for s in strata]

@@ -1,0 +1,45 @@
+"""The seam to what has the worker processes."""
+
+from collections.abc import Callable, Sequence
+from typing import Any, Protocol
+
+from argo_compiler.errors import ArgoError
+
+
+class WorkerDiedError(Exception):
+    """The worker process ended before the call did; holds what is known of why."""
+
+
+class BackendUnavailableError(ArgoError):
+    """There are no workers: what is needed is not installed, or a cluster can't be reached."""
+
+    code = "unavailable"
+
+    def __reduce__(self) -> tuple[type["BackendUnavailableError"], tuple[str]]:
+        return type(self), (str(self),)
+
+
+class WorkerBackend(Protocol):
+    """Has worker processes, and calls a function in them. What is called and what it is given and
+    returns can be pickled."""
+
+    name: str
+    workers: int
+    """how many calls are carried out at once"""
+    names_the_dead: bool
+    """whether a worker that dies tells which call it died of, and takes no other along"""
+
+    def submit(self, call: Callable[[Any], Any], argument: Any) -> Any:
+        """Hands the call to the workers; returns what stands for it."""
+
+    def wait(self, calls: Sequence[Any]) -> Sequence[Any]:
+        """Waits until some of these have ended, and returns those."""
+
+    def result(self, call: Any) -> Any:
+        """What a call that has ended has returned; raises what it raised, or WorkerDiedError."""
+
+    def mend(self) -> None:
+        """New workers in place of those that have died."""
+
+    def close(self) -> None:
+        """Ends the workers, whatever they do."""

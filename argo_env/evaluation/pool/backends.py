@@ -1,0 +1,64 @@
+"""The back ends by name. What one of them needs is imported when it is made."""
+
+import os
+from collections.abc import Callable
+from importlib.util import find_spec
+
+from argo_compiler.errors import Invalid
+from argo_env.evaluation.pool.backend import BackendUnavailableError, WorkerBackend
+
+PROCESSES = "processes"
+
+
+def _processes(workers: int | None, address: str | None) -> WorkerBackend:
+    if address is not None:
+        raise Invalid("processes are of this machine and have no address: take `ray` or `dask`")
+    from argo_env.evaluation.pool.processes import Processes
+
+    return Processes(workers or usable_processors())
+
+
+def _ray(workers: int | None, address: str | None) -> WorkerBackend:
+    _require("ray")
+    from argo_env.evaluation.pool.on_ray import RayCluster
+
+    return RayCluster(workers or (None if address else usable_processors()), address)
+
+
+def _dask(workers: int | None, address: str | None) -> WorkerBackend:
+    _require("distributed")
+    from argo_env.evaluation.pool.on_dask import DaskCluster
+
+    return DaskCluster(workers or (None if address else usable_processors()), address)
+
+
+BACKENDS: dict[str, Callable[[int | None, str | None], WorkerBackend]] = {
+    PROCESSES: _processes,
+    "ray": _ray,
+    "dask": _dask,
+}
+"""What makes the back ends, with a number of workers (None: all that there are) and the address of
+a cluster (None: this machine)."""
+
+
+def make_backend(
+    name: str = PROCESSES, workers: int | None = None, address: str | None = None
+) -> WorkerBackend:
+    """The back end of that name, with its workers begun. Raises ArgoError if there can be none."""
+    if name not in BACKENDS:
+        raise Invalid(f"no back end `{name}`; there are: {', '.join(BACKENDS)}")
+    if workers is not None and workers < 1:
+        raise Invalid(f"{workers} workers can't do anything: give 1 or more")
+    return BACKENDS[name](workers, address)
+
+
+def usable_processors() -> int:
+    """How many processors this process may use."""
+    return len(os.sched_getaffinity(0))
+
+
+def _require(module: str) -> None:
+    if find_spec(module) is None:
+        raise BackendUnavailableError(
+            f"the package `{module}` is not installed: pip install 'argo-mission[cluster]'"
+        )

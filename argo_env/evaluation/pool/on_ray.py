@@ -1,0 +1,85 @@
+"""Workers of a Ray cluster: one of this machine, or an existing one by its address."""
+
+import logging
+import os
+from collections.abc import Callable, Sequence
+from typing import Any
+
+import ray
+from ray.exceptions import GetTimeoutError, RayTaskError, WorkerCrashedError
+
+from argo_env.evaluation.pool.backend import BackendUnavailableError, WorkerDiedError
+
+_STORE = 100_000_000  # bytes that Ray shares between processes; specs and rows are small
+_PATIENCE = 60.0  # s until a result that is ready is there
+
+
+class RayCluster:
+    """Ray's workers by its own futures. A worker that dies takes no other call along."""
+
+    name = "ray"
+    names_the_dead = True
+
+    def __init__(self, workers: int | None, address: str | None = None) -> None:
+        """Without an `address` a cluster of so many workers is begun on this machine; of one that
+        exists, `workers` None are as many as it has processors.
+
+        Raises BackendUnavailableError if it can't be reached.
+        """
+        os.environ.setdefault("RAY_ACCEL_ENV_VAR_OVERRIDE_ON_ZERO", "0")
+        own: dict[str, Any] = {}
+        if address is None:
+            own = {
+                "num_cpus": workers,
+                "object_store_memory": _STORE,
+                "include_dashboard": False,
+            }
+        try:
+            ray.init(
+                address=address or "local",
+                log_to_driver=False,
+                logging_level=logging.ERROR,
+                ignore_reinit_error=False,
+                **own,
+            )
+        except (ConnectionError, RuntimeError, ValueError) as error:
+            where = f" at {address}" if address else ""
+            raise BackendUnavailableError(f"no Ray cluster{where}: {error}") from None
+        self.workers = workers or max(1, int(ray.cluster_resources().get("CPU", 1)))
+        self._remote: dict[Any, Any] = {}
+
+    def submit(self, call: Callable[[Any], Any], argument: Any) -> Any:
+        remote = self._remote.get(call)
+        if remote is None:
+            remote = self._remote[call] = ray.remote(max_retries=0, num_cpus=1)(call)
+        return remote.remote(argument)
+
+    def wait(self, calls: Sequence[Any]) -> Sequence[Any]:
+        if not calls:
+            return ()
+        ready, _ = ray.wait(list(calls), num_returns=1)
+        if len(calls) > 1:
+            ready, _ = ray.wait(list(calls), num_returns=len(calls), timeout=0)
+        return list(ready)
+
+    def result(self, call: Any) -> Any:
+        try:
+            return ray.get(call, timeout=_PATIENCE)
+        except WorkerCrashedError:
+            raise WorkerDiedError("the worker process ended") from None
+        except RayTaskError as error:
+            raise error.cause if isinstance(error.cause, Exception) else error from None
+        except GetTimeoutError:
+            raise WorkerDiedError("its result was lost with a machine of the cluster") from None
+        except ray.exceptions.RayError as error:  # a machine is gone, or out of memory
+            raise WorkerDiedError(_first_line(error)) from None
+
+    def mend(self) -> None:
+        """Ray begins new workers by itself."""
+
+    def close(self) -> None:
+        ray.shutdown()
+
+
+def _first_line(error: Exception) -> str:
+    return str(error).strip().partition("\n")[0]

@@ -1,0 +1,117 @@
+"""Calls handed to workers, and what came of each: also of those that kill their worker."""
+
+from collections import deque
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass
+from typing import Any
+
+from argo_env.evaluation.pool.backend import WorkerBackend, WorkerDiedError
+
+ATTEMPTS = 3
+"""times that a call is tried whose worker dies; from the second one on alone, in a fresh worker"""
+_AHEAD = 3  # calls a worker that are handed over at once, so that none waits for the next
+
+
+@dataclass(frozen=True)
+class Finished:
+    """What came of a call."""
+
+    ticket: Any
+    """what `submit` was given"""
+    value: Any = None
+    """what it returned"""
+    error: Exception | None = None
+    """what it raised, if it did"""
+    died: str | None = None
+    """why its workers died, if they did, each time that it was tried"""
+
+
+@dataclass
+class _Call:
+    ticket: Any
+    argument: Any
+    attempts: int = 0
+
+
+class Pool:
+    """Hands calls of one function to workers and gives back what came of them, as it comes.
+
+    Where a worker dies, its call is tried again in a fresh one, while no other call is under way
+    that could be the reason; a call whose workers die each time is given back as `died`. All others
+    are carried out, each once more if it was lost with a worker.
+    """
+
+    def __init__(self, backend: WorkerBackend, call: Callable[[Any], Any]) -> None:
+        self._backend = backend
+        self._call = call
+        self._waiting: deque[_Call] = deque()
+        self._suspects: deque[_Call] = deque()
+        self._under_way: dict[Any, _Call] = {}
+
+    @property
+    def open(self) -> int:
+        """How many calls have not ended."""
+        return len(self._waiting) + len(self._suspects) + len(self._under_way)
+
+    @property
+    def wants_more(self) -> bool:
+        """Whether a worker may soon have nothing to do."""
+        return self.open < 2 * _AHEAD * self._backend.workers
+
+    def submit(self, ticket: Any, argument: Any) -> None:
+        """Calls the function with the argument, when a worker is free for it."""
+        self._waiting.append(_Call(ticket, argument))
+
+    def as_completed(self) -> Iterator[Finished]:
+        """What came of the calls, in the order in which they end; more may be submitted
+        meanwhile. Ends when none is open."""
+        while self.open:
+            self._hand_over()
+            for handle in self._backend.wait(list(self._under_way)):
+                finished = self._taken(handle)
+                if finished is not None:
+                    yield finished
+
+    def close(self) -> None:
+        """Ends the workers. What they were at is lost."""
+        self._backend.close()
+
+    def __enter__(self) -> "Pool":
+        return self
+
+    def __exit__(self, *_: object) -> None:
+        self.close()
+
+    def _hand_over(self) -> None:
+        if self._suspects and not self._backend.names_the_dead:
+            # One after the other, and alone: who dies then is to blame.
+            if not self._under_way:
+                self._backend.mend()
+                self._begin(self._suspects.popleft())
+            return
+        while self._suspects:
+            self._begin(self._suspects.popleft())
+        while self._waiting and len(self._under_way) < _AHEAD * self._backend.workers:
+            self._begin(self._waiting.popleft())
+
+    def _begin(self, call: _Call) -> None:
+        try:
+            handle = self._backend.submit(self._call, call.argument)
+        except WorkerDiedError:
+            # The workers died of something before this call came to them.
+            self._suspects.append(call)
+            return
+        self._under_way[handle] = call
+
+    def _taken(self, handle: Any) -> Finished | None:
+        call = self._under_way.pop(handle)
+        try:
+            return Finished(call.ticket, self._backend.result(handle))
+        except WorkerDiedError as death:
+            call.attempts += 1
+            if call.attempts >= ATTEMPTS:
+                return Finished(call.ticket, died=str(death))
+            self._suspects.append(call)
+            return None
+        except Exception as error:  # whatever the function raises is what came of the call
+            return Finished(call.ticket, error=error)

@@ -1,0 +1,90 @@
+"""Worker processes on this machine, by loky."""
+
+import os
+import re
+import signal
+import threading
+import time
+from collections.abc import Callable, Sequence
+from concurrent.futures import FIRST_COMPLETED, Future, wait
+from typing import Any
+
+from loky import ProcessPoolExecutor
+from loky.process_executor import BrokenProcessPool
+
+from argo_env.evaluation.pool.backend import WorkerDiedError
+
+_PERIOD = 1.0  # s between two looks whether the parent is there
+
+
+class Processes:
+    """Workers that are processes of this machine. If one dies, all of them are begun anew, and with
+    it the calls that were under way."""
+
+    name = "processes"
+    names_the_dead = False
+
+    def __init__(self, workers: int) -> None:
+        self.workers = workers
+        self._broken = False
+        self._executor = self._begun()
+
+    def submit(self, call: Callable[[Any], Any], argument: Any) -> "Future[Any]":
+        try:
+            future: Future[Any] = self._executor.submit(call, argument)
+        except BrokenProcessPool as broken:
+            self._broken = True
+            raise WorkerDiedError(_reason(broken)) from None
+        return future
+
+    def wait(self, calls: Sequence["Future[Any]"]) -> Sequence["Future[Any]"]:
+        if not calls:
+            return ()
+        ended = wait(calls, return_when=FIRST_COMPLETED).done
+        return [call for call in calls if call in ended]
+
+    def result(self, call: "Future[Any]") -> Any:
+        try:
+            return call.result()
+        except BrokenProcessPool as broken:
+            self._broken = True
+            raise WorkerDiedError(_reason(broken)) from None
+
+    def mend(self) -> None:
+        if self._broken:
+            self.close()
+            self._executor = self._begun()
+            self._broken = False
+
+    def close(self) -> None:
+        self._executor.shutdown(wait=True, kill_workers=True)
+
+    def _begun(self) -> ProcessPoolExecutor:
+        return ProcessPoolExecutor(self.workers, initializer=_begin, initargs=(os.getpid(),))
+
+
+def _reason(broken: BrokenProcessPool) -> str:
+    """What loky knows of the end of its workers, in a few words."""
+    codes = re.findall(r"(SIG[A-Z]+|EXIT)\((-?\d+)\)", str(broken))
+    # Its own end of those that were left is no reason.
+    own = [(name, code) for name, code in codes if name != "SIGTERM"] or codes
+    if not own:
+        return "the worker process ended"
+    name, code = own[0]
+    return (
+        f"the worker process ended with code {code}"
+        if name == "EXIT"
+        else f"the worker process was ended by {name}"
+    )
+
+
+def _begin(parent: int) -> None:
+    """In each worker: it leaves interruptions to its parent, and ends with it."""
+    signal.signal(signal.SIGINT, signal.SIG_IGN)
+    threading.Thread(target=_end_after, args=(parent,), daemon=True).start()
+
+
+def _end_after(parent: int) -> None:
+    while os.getppid() == parent:
+        time.sleep(_PERIOD)
+    os._exit(1)

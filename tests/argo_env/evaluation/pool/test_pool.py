@@ -1,0 +1,131 @@
+"""The pool on each of its back ends, all of them for real on this machine."""
+
+from importlib.util import find_spec
+
+import pytest
+
+from argo_compiler.errors import ArgoError, Invalid
+from argo_env.evaluation.pool import backends
+from argo_env.evaluation.pool.backends import BACKENDS, make_backend
+from argo_env.evaluation.pool.pool import Pool
+from tests.argo_env.evaluation.pool import work
+
+PACKAGES = {"processes": "loky", "ray": "ray", "dask": "distributed"}
+NEEDED = [
+    pytest.param(
+        name,
+        marks=pytest.mark.skipif(
+            find_spec(package) is None, reason=f"needs `{package}`: pip install '.[cluster]'"
+        ),
+    )
+    for name, package in PACKAGES.items()
+]
+
+
+@pytest.fixture(scope="module", params=NEEDED)
+def backend(request):
+    made = make_backend(request.param, 2)
+    yield made
+    made.close()
+
+
+def carried_out(backend, call, arguments):
+    """What came of the call with each argument, by its number."""
+    pool = Pool(backend, call)
+    for ticket, argument in enumerate(arguments):
+        pool.submit(ticket, argument)
+    found = {}
+    for finished in pool.as_completed():
+        assert finished.ticket not in found, "one call has ended twice"
+        found[finished.ticket] = finished
+    return found
+
+
+def test_all_that_is_submitted_comes_back_once(backend):
+    found = carried_out(backend, work.square, range(100))
+    assert {ticket: one.value for ticket, one in found.items()} == {k: k * k for k in range(100)}
+
+
+def test_what_a_call_raises_is_told_and_the_others_go_on(backend):
+    found = carried_out(backend, work.fail_on_seven, range(40))
+    assert sorted(found) == list(range(40))
+    failed = {ticket: str(one.error) for ticket, one in found.items() if one.error}
+    assert failed == {k: f"no {k}" for k in (7, 17, 27, 37)}
+
+
+def test_of_a_thousand_calls_one_that_kills_its_worker_is_named(backend):
+    found = carried_out(backend, work.die_on_500, range(1_000))
+    assert sorted(found) == list(range(1_000))
+    died = {ticket: one.died for ticket, one in found.items() if one.died}
+    assert list(died) == [500]
+    assert "worker process" in died[500]
+    assert all(one.value == ticket for ticket, one in found.items() if ticket != 500)
+
+
+def test_a_call_that_was_lost_with_its_worker_is_made_again(backend, tmp_path):
+    found = carried_out(backend, work.die_once, [(str(tmp_path), k) for k in range(20)])
+    assert {ticket: one.value for ticket, one in found.items()} == {k: k for k in range(20)}
+
+
+def test_more_may_be_submitted_meanwhile(backend):
+    pool = Pool(backend, work.square)
+    pool.submit(0, 0)
+    values = []
+    for finished in pool.as_completed():
+        values.append(finished.value)
+        if finished.ticket < 30:
+            pool.submit(finished.ticket + 1, finished.ticket + 1)
+    assert values == [k * k for k in range(31)]
+
+
+def test_all_workers_work(backend):
+    found = carried_out(backend, work.who, range(60))
+    assert len({one.value for one in found.values()}) == 2
+
+
+def test_there_is_a_test_for_each_back_end():
+    assert set(PACKAGES) == set(BACKENDS)
+
+
+def test_what_can_be_no_back_end_is_said():
+    with pytest.raises(Invalid, match="no back end `spark`; there are: processes, ray, dask"):
+        make_backend("spark")
+    with pytest.raises(Invalid, match="0 workers"):
+        make_backend("processes", 0)
+    with pytest.raises(Invalid, match="have no address"):
+        make_backend("processes", 1, "127.0.0.1:1")
+
+
+@pytest.mark.parametrize("name", ["ray", "dask"])
+def test_what_is_not_installed_says_how_to_install_it(name, monkeypatch):
+    monkeypatch.setattr(backends, "find_spec", lambda _: None)
+    with pytest.raises(ArgoError, match=r"pip install 'argo-mission\[cluster\]'"):
+        make_backend(name)
+
+
+@pytest.mark.skipif(find_spec("distributed") is None, reason="needs `distributed`")
+def test_a_cluster_that_is_there_is_used_by_its_address(tmp_path):
+    from distributed import LocalCluster
+
+    with LocalCluster(
+        n_workers=2,
+        threads_per_worker=1,
+        dashboard_address="127.0.0.1:0",
+        local_directory=tmp_path,
+    ) as cluster:
+        backend = make_backend("dask", address=cluster.scheduler_address)
+        try:
+            assert backend.workers == 2
+            found = carried_out(backend, work.square, range(10))
+            assert [found[k].value for k in range(10)] == [k * k for k in range(10)]
+        finally:
+            backend.close()
+
+
+@pytest.mark.skipif(find_spec("distributed") is None, reason="needs `distributed`")
+def test_a_cluster_that_is_not_there_is_said(monkeypatch):
+    import argo_env.evaluation.pool.on_dask as on_dask
+
+    monkeypatch.setitem(on_dask._SETTINGS, "distributed.comm.timeouts.connect", "1s")
+    with pytest.raises(ArgoError, match=r"no Dask cluster at tcp://127\.0\.0\.1:9"):
+        make_backend("dask", address="tcp://127.0.0.1:9")

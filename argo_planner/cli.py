@@ -84,6 +84,13 @@ class ArgoCommands(LazyGroup):
             "Show what was recorded of a run, and make its report and its film again.",
         ),
         _command(
+            "evaluate",
+            "evaluate",
+            "evaluate",
+            "Run missions many times, and say how sure they are to work and what breaks them; "
+            "exits with status 1 if a requirement is not met.",
+        ),
+        _command(
             "sites",
             "sites",
             "show_sites",

@@ -9,6 +9,7 @@ from pathlib import Path
 
 from argo_compiler.errors import Invalid
 from argo_env.planning.opening import OpenedSite, open_site
+from argo_env.robot.spec import load_robot
 from argo_env.run.beginning import machine_of
 from argo_env.run.fitting_together import require_site
 from argo_env.run.journal import Header, Journal, create_journal
@@ -56,7 +57,7 @@ def simulate(
             the site is not the spec's, or the journal can't be written.
     """
     spec = checked(spec)
-    site = site or open_site(spec.site)
+    site = site or open_site(spec.site, load_robot(spec.robot))
     require_site(site, spec)
     check_spec(spec, site.site)
     check_given(spec.events, spec.mission, site.site)
@@ -97,7 +98,7 @@ def resume(
     if events:
         journal.require_going_on()
     spec = journal.header.spec
-    site = site or open_site(spec.site)
+    site = site or open_site(spec.site, load_robot(spec.robot))
     journal.require_unchanged(site)
     machine = machine_of(spec.mission, spec.beginning)
     told = [journal, *_paced(pace), *observers]

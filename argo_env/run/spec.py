@@ -25,6 +25,8 @@ class RunSpec(Model):
     mission: Mission
     site: str = "umad"
     """what opens the site: its name, the path of its file, or its parameters"""
+    robot: str = "tracker"
+    """name of the robot that opens the site, where that is not open already"""
     drive: str = "kinematic"
     """name of the drive"""
     sensor: str = "ideal"

@@ -7,6 +7,7 @@ it, and so are the tables in `docs/diagnostics.md`, which `make generated` write
 from argo_compiler.diagnostics.codes.analysis import ANALYSIS
 from argo_compiler.diagnostics.codes.code import Code
 from argo_compiler.diagnostics.codes.edit import EDIT
+from argo_compiler.diagnostics.codes.evaluation import EVALUATION
 from argo_compiler.diagnostics.codes.export import EXPORT
 from argo_compiler.diagnostics.codes.faults import FAULTS
 from argo_compiler.diagnostics.codes.file import FILE
@@ -28,6 +29,7 @@ CODES: dict[str, Code] = {
     **ROS,
     **SITE,
     **FAULTS,
+    **EVALUATION,
     **HANDOVER,
     **ROUTE,
     **EDIT,

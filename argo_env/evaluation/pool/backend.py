@@ -3,20 +3,9 @@
 from collections.abc import Callable, Sequence
 from typing import Any, Protocol
 
-from argo_compiler.errors import ArgoError
-
 
 class WorkerDiedError(Exception):
     """The worker process ended before the call did; holds what is known of why."""
-
-
-class BackendUnavailableError(ArgoError):
-    """There are no workers: what is needed is not installed, or a cluster can't be reached."""
-
-    code = "unavailable"
-
-    def __reduce__(self) -> tuple[type["BackendUnavailableError"], tuple[str]]:
-        return type(self), (str(self),)
 
 
 class WorkerBackend(Protocol):

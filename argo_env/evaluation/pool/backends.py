@@ -4,8 +4,8 @@ import os
 from collections.abc import Callable
 from importlib.util import find_spec
 
-from argo_compiler.errors import Invalid
-from argo_env.evaluation.pool.backend import BackendUnavailableError, WorkerBackend
+from argo_compiler.errors import Invalid, Unavailable
+from argo_env.evaluation.pool.backend import WorkerBackend
 
 PROCESSES = "processes"
 
@@ -59,6 +59,6 @@ def usable_processors() -> int:
 
 def _require(module: str) -> None:
     if find_spec(module) is None:
-        raise BackendUnavailableError(
+        raise Unavailable(
             f"the package `{module}` is not installed: pip install 'argo-mission[cluster]'"
         )

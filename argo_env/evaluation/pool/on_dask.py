@@ -9,7 +9,8 @@ from distributed import Client, KilledWorker, LocalCluster
 from distributed import wait as wait_for
 from distributed.client import FutureCancelledError
 
-from argo_env.evaluation.pool.backend import BackendUnavailableError, WorkerDiedError
+from argo_compiler.errors import Unavailable
+from argo_env.evaluation.pool.backend import WorkerDiedError
 
 _LOGGERS = tuple(f"distributed{part}" for part in ("", ".scheduler", ".nanny", ".core", ".worker"))
 _SETTINGS = {
@@ -31,7 +32,7 @@ class DaskCluster:
         """Without an `address` a cluster of so many workers is begun on this machine; of one that
         exists, `workers` None are as many as it has threads.
 
-        Raises BackendUnavailableError if it can't be reached.
+        Raises Unavailable if it can't be reached.
         """
         for name in _LOGGERS:
             logging.getLogger(name).setLevel(logging.CRITICAL)
@@ -50,7 +51,7 @@ class DaskCluster:
             self._client = Client(self._cluster if address is None else address)
         except (OSError, ValueError, RuntimeError) as error:
             where = f" at {address}" if address else ""
-            raise BackendUnavailableError(f"no Dask cluster{where}: {error}") from None
+            raise Unavailable(f"no Dask cluster{where}: {error}") from None
         self.workers = workers or max(1, sum(self._client.nthreads().values()))
 
     def submit(self, call: Callable[[Any], Any], argument: Any) -> Any:

@@ -8,7 +8,8 @@ from typing import Any
 import ray
 from ray.exceptions import GetTimeoutError, RayTaskError, WorkerCrashedError
 
-from argo_env.evaluation.pool.backend import BackendUnavailableError, WorkerDiedError
+from argo_compiler.errors import Unavailable
+from argo_env.evaluation.pool.backend import WorkerDiedError
 
 _STORE = 100_000_000  # bytes that Ray shares between processes; specs and rows are small
 _PATIENCE = 60.0  # s until a result that is ready is there
@@ -24,7 +25,7 @@ class RayCluster:
         """Without an `address` a cluster of so many workers is begun on this machine; of one that
         exists, `workers` None are as many as it has processors.
 
-        Raises BackendUnavailableError if it can't be reached.
+        Raises Unavailable if it can't be reached.
         """
         os.environ.setdefault("RAY_ACCEL_ENV_VAR_OVERRIDE_ON_ZERO", "0")
         own: dict[str, Any] = {}
@@ -44,7 +45,7 @@ class RayCluster:
             )
         except (ConnectionError, RuntimeError, ValueError) as error:
             where = f" at {address}" if address else ""
-            raise BackendUnavailableError(f"no Ray cluster{where}: {error}") from None
+            raise Unavailable(f"no Ray cluster{where}: {error}") from None
         self.workers = workers or max(1, int(ray.cluster_resources().get("CPU", 1)))
         self._remote: dict[Any, Any] = {}
 

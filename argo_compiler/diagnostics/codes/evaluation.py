@@ -1,0 +1,16 @@
+"""The codes of diagnostics about files of evaluations."""
+
+from argo_compiler.diagnostics.codes.code import error
+
+EVALUATION = {
+    "evaluation.duplicate-key": error(
+        "A mapping in the file of an evaluation has the same key twice.", "Remove one of the two."
+    ),
+    "evaluation.not-yaml": error(
+        "The file of an evaluation is no YAML.", "Correct the file at the mark."
+    ),
+    "evaluation.wrong-field": error(
+        "A field of the evaluation is unknown, missing, or has a value that makes no sense.",
+        "Correct the field; docs/evaluating.md lists them.",
+    ),
+}

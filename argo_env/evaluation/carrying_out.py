@@ -1,0 +1,48 @@
+"""One run of an evaluation, in whatever process."""
+
+import os
+import threading
+import traceback
+from dataclasses import dataclass
+
+from argo_compiler.errors import ArgoError
+from argo_env.evaluation.plan import Case
+from argo_env.evaluation.row import Row, RunOutcome, row_of, row_without_end
+from argo_env.run.session import run
+from argo_env.run.spec import RunSpec
+
+TOOK_TOO_LONG = 70
+"""exit code of a worker whose run took longer than it may"""
+
+
+@dataclass(frozen=True)
+class RunOrder:
+    """What a worker is told: a run, and the key that its row has."""
+
+    key: str
+    case: Case
+    spec: RunSpec
+    limit: float | None = None
+    """s of wall time that it may take; then its process ends, and that is its reason"""
+
+
+def carry_out(order: RunOrder) -> Row:
+    """Makes the run and its row. What goes wrong in the simulator is an outcome as well: one of
+    many thousand runs must not end them all."""
+    watchdog = None
+    if order.limit is not None:
+        watchdog = threading.Timer(order.limit, os._exit, (TOOK_TOO_LONG,))
+        watchdog.daemon = True
+        watchdog.start()
+    try:
+        return row_of(order.key, order.case, order.spec, run(order.spec))
+    except ArgoError as error:
+        return row_without_end(order.key, order.case, order.spec, RunOutcome.ERROR, str(error))
+    except Exception as error:  # told in the row, with its place
+        frame = traceback.extract_tb(error.__traceback__)[-1]
+        place = f"{os.path.basename(frame.filename)}, line {frame.lineno}"
+        reason = f"{type(error).__name__}: {error} ({place})"
+        return row_without_end(order.key, order.case, order.spec, RunOutcome.ERROR, reason)
+    finally:
+        if watchdog is not None:
+            watchdog.cancel()

@@ -1,0 +1,125 @@
+"""Two plans in the same worlds: which is better, and how sure that is."""
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+
+from argo_compiler.errors import Conflict
+from argo_env.evaluation.plan import PlanName
+from argo_env.evaluation.results import EvaluationResults
+from argo_env.evaluation.row import Row
+from argo_env.evaluation.statistics.pairs import Difference, SuccessPairs, difference, power
+
+_Pairs = list[tuple[Row, Row]]
+
+
+@dataclass(frozen=True)
+class PlanComparison:
+    """Two plans, run in the same worlds with the same faults."""
+
+    first: str
+    second: str
+    pairs: tuple[tuple[Row, Row], ...]
+    """runs of both that were carried out"""
+    lost: int
+    """pairs of which one could not be carried out"""
+
+    @cached_property
+    def successes(self) -> SuccessPairs:
+        """How often which succeeded, over all pairs."""
+        return _successes(list(self.pairs))
+
+    @cached_property
+    def by_faults(self) -> dict[str, SuccessPairs]:
+        """The same for each set of faults."""
+        names = dict.fromkeys(a.faults for a, _ in self.pairs)
+        return {
+            name: _successes([pair for pair in self.pairs if pair[0].faults == name])
+            for name in names
+        }
+
+    @cached_property
+    def success(self) -> Difference:
+        """By how much the first one's rate of success is higher, over worlds: the runs of one world
+        with several faults depend on each other, and count as one."""
+        return self._by_world(lambda row: float(row.success), list(self.pairs))
+
+    @cached_property
+    def p_value(self) -> float:
+        """How likely a difference in success as great as this is where there is none: by McNemar's
+        exact test if each world has one pair, else by the test over worlds."""
+        one_each = len({a.seed for a, _ in self.pairs}) == len(self.pairs)
+        return self.successes.p_value if one_each else self.success.p_value
+
+    @cached_property
+    def duration(self) -> Difference:
+        """By how many seconds the first one takes longer, where both succeeded."""
+        both = [pair for pair in self.pairs if pair[0].success and pair[1].success]
+        return self._by_world(lambda row: row.duration or 0.0, both)
+
+    @cached_property
+    def distance(self) -> Difference:
+        """By how many metres the first one drives farther, where both succeeded."""
+        both = [pair for pair in self.pairs if pair[0].success and pair[1].success]
+        return self._by_world(lambda row: row.distance or 0.0, both)
+
+    def power(self, gain: float) -> float:
+        """How likely so many pairs show that one plan succeeds more often by `gain` (0 to 1), if
+        as many pairs differ as here beside that."""
+        pairs = self.successes
+        noise = min(pairs.first_only, pairs.second_only) / pairs.pairs if pairs.pairs else 0.0
+        noise = min(noise, (1.0 - gain) / 2.0)
+        return power(pairs.pairs, noise + gain, noise)
+
+    @staticmethod
+    def _by_world(value: Callable[[Row], float], pairs: _Pairs) -> Difference:
+        worlds: dict[int, list[tuple[float, float]]] = {}
+        for a, b in pairs:
+            worlds.setdefault(a.seed, []).append((value(a), value(b)))
+        means = np.array([np.mean(both, axis=0) for both in worlds.values()]).reshape(-1, 2)
+        return difference(means[:, 0], means[:, 1])
+
+
+def compare_plans(
+    first: EvaluationResults,
+    second: EvaluationResults,
+    first_plan: PlanName | None = None,
+    second_plan: PlanName | None = None,
+) -> PlanComparison:
+    """Two plans of the same or of two evaluations; of one that has one plan only, that one.
+
+    Raises Conflict where the plans have no world in common, or it is not clear which are meant.
+    """
+    a_name = first_plan or _only(first)
+    b_name = second_plan or _only(second)
+    a = {(row.seed, row.faults): row for row in first.of(a_name)}
+    b = {(row.seed, row.faults): row for row in second.of(b_name)}
+    common = [key for key in a if key in b]
+    if not common:
+        raise Conflict(
+            "the two have no world in common: evaluate both with the same seeds and faults"
+        )
+    if first.plan.variation != second.plan.variation:
+        raise Conflict("the worlds of the two vary in different ways: evaluate both in the same")
+    pairs = [(a[key], b[key]) for key in common]
+    whole = [pair for pair in pairs if pair[0].carried_out and pair[1].carried_out]
+    names = (a_name, b_name)
+    said = [str(name.beside(names)) for name in names]
+    if said[0] == said[1]:
+        said = [f"{first.plan.name}: {said[0]}", f"{second.plan.name}: {said[1]}"]
+    return PlanComparison(said[0], said[1], tuple(whole), len(pairs) - len(whole))
+
+
+def _only(results: EvaluationResults) -> PlanName:
+    if len(results.plan.plans) != 1:
+        names = "; ".join(plan.beside(results.plan.plans) for plan in results.plan.plans)
+        raise Conflict(f"{results.plan.name} has several plans, say which is meant: {names}")
+    return results.plan.plans[0]
+
+
+def _successes(pairs: _Pairs) -> SuccessPairs:
+    a = np.array([pair[0].success for pair in pairs], dtype=bool)
+    b = np.array([pair[1].success for pair in pairs], dtype=bool)
+    return SuccessPairs.of(a, b)

@@ -1,0 +1,157 @@
+"""An evaluation under way: runs are handed out, rows come back and are kept."""
+
+import logging
+import time
+from collections import Counter
+from collections.abc import Callable, Iterator, Mapping
+from dataclasses import dataclass
+
+from argo_compiler.errors import ArgoError
+from argo_env.evaluation.batches import batches
+from argo_env.evaluation.carrying_out import RunOrder, carry_out
+from argo_env.evaluation.plan import EvaluationPlan, PlanName, PlannedRun
+from argo_env.evaluation.pool.backend import WorkerBackend
+from argo_env.evaluation.pool.pool import Finished, Pool
+from argo_env.evaluation.results import EvaluationResults
+from argo_env.evaluation.row import Row, RunOutcome, row_without_end
+from argo_env.evaluation.store import RowStore
+
+_log = logging.getLogger(__name__)
+_COMPACTED = 5_000
+"""rows in the log from which on they are moved to a Parquet file"""
+
+
+@dataclass(frozen=True)
+class EvaluationProgress:
+    """How far an evaluation is."""
+
+    outcomes: Mapping[PlanName, Counter[RunOutcome]]
+    """how the runs ended that have, of each plan"""
+    most: int
+    """runs that there are at most"""
+    known: int
+    """of the runs that have ended, those that had before"""
+    seconds: float
+    """that it has taken"""
+
+    @property
+    def done(self) -> int:
+        """Runs that have ended."""
+        return sum(counts.total() for counts in self.outcomes.values())
+
+    @property
+    def remaining(self) -> float | None:
+        """s that it takes at most, if it goes on as fast; None: not known yet."""
+        made = self.done - self.known
+        return (self.most - self.done) * self.seconds / made if made else None
+
+    @property
+    def all_outcomes(self) -> Counter[RunOutcome]:
+        """How the runs of all plans ended."""
+        return sum(self.outcomes.values(), start=Counter())
+
+
+class Evaluating:
+    """Makes the runs of a plan that are not in the store yet. Holds the rows that count."""
+
+    def __init__(
+        self,
+        plan: EvaluationPlan,
+        backend: WorkerBackend,
+        store: RowStore | None = None,
+        *,
+        limit: float | None = None,
+        clock: Callable[[], float] = time.monotonic,
+    ) -> None:
+        """`limit` (s of wall time) is what a run may take. Closes neither back end nor store.
+
+        Raises ArgoError for a plan that makes no sense.
+        """
+        plan.check()
+        self._plan = plan
+        self._pool = Pool(backend, carry_out)
+        self._store = store
+        self._limit = limit
+        self._clock = clock
+        self._begun = clock()
+        self._known = 0
+        self._order: dict[str, int] = {}
+        self._rows: list[Row] = []
+        self._outcomes: dict[PlanName, Counter[RunOutcome]] = {p: Counter() for p in plan.plans}
+
+    @property
+    def progress(self) -> EvaluationProgress:
+        """How far it is."""
+        per_seed = 1 if self._plan.strata else len(self._plan.cases)
+        return EvaluationProgress(
+            {plan: counts.copy() for plan, counts in self._outcomes.items()},
+            len(self._plan.seeds) * per_seed,
+            self._known,
+            self._clock() - self._begun,
+        )
+
+    @property
+    def results(self) -> EvaluationResults:
+        """What has come of it, in the order of the plan, whichever run came first."""
+        rows = sorted(self._rows, key=lambda row: self._order[row.key])
+        return EvaluationResults(self._plan, tuple(rows))
+
+    def rows_as_they_come(self) -> Iterator[Row]:
+        """Makes all runs, and gives their rows; those that were there before come first."""
+        for batch in batches(self._plan, self._rows):
+            yield from self._carried_out(batch)
+        if self._store is not None:
+            self._store.compact()
+
+    def _carried_out(self, runs: Iterator[PlannedRun]) -> Iterator[Row]:
+        missing: list[tuple[PlannedRun, str]] = []
+        for run in runs:
+            key = self._plan.key(run)
+            self._order[key] = len(self._order)
+            row = self._store.rows.get(key) if self._store is not None else None
+            if row is None:
+                missing.append((run, key))
+                continue
+            self._known += 1
+            yield self._counted(row)
+        ahead = iter(missing)
+        for finished in self._handed_out(ahead):
+            row = self._row(finished)
+            if self._store is not None:
+                self._store.add(row)
+                if self._store.loose >= _COMPACTED:
+                    self._store.compact()
+            yield self._counted(row)
+
+    def _counted(self, row: Row) -> Row:
+        self._rows.append(row)
+        self._outcomes[row.plan][row.outcome] += 1
+        return row
+
+    def _handed_out(self, runs: Iterator[tuple[PlannedRun, str]]) -> Iterator[Finished]:
+        self._fill(runs)
+        for finished in self._pool.as_completed():
+            self._fill(runs)
+            yield finished
+
+    def _fill(self, runs: Iterator[tuple[PlannedRun, str]]) -> None:
+        while self._pool.wants_more:
+            following = next(runs, None)
+            if following is None:
+                return
+            run, key = following
+            case = self._plan.cases[run.case]
+            self._pool.submit((run, key), RunOrder(key, case, run.spec, self._limit))
+
+    def _row(self, finished: Finished) -> Row:
+        run, key = finished.ticket
+        if isinstance(finished.value, Row):
+            return finished.value
+        case = self._plan.cases[run.case]
+        if finished.died is not None:
+            _log.warning("run %s, seed %d: %s", key, run.seed, finished.died)
+            return row_without_end(key, case, run.spec, RunOutcome.DIED, finished.died)
+        reason = str(finished.error)
+        if not isinstance(finished.error, ArgoError):
+            reason = f"{type(finished.error).__name__}: {reason}"
+        return row_without_end(key, case, run.spec, RunOutcome.ERROR, reason)

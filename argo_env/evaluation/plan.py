@@ -1,0 +1,161 @@
+"""What is to be evaluated, as data: cases, seeds, and when there are enough runs."""
+
+import hashlib
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+from functools import cached_property
+
+from pydantic import Field
+
+import argo_compiler
+from argo_compiler.errors import Conflict, Invalid
+from argo_compiler.model import Model
+from argo_env.evaluation.requirement import Requirement
+from argo_env.evaluation.worlds import NO_VARIATION, Variation
+from argo_env.run.spec import RunSpec
+
+NO_FAULTS = "none"
+"""the name of the case in which nothing goes wrong"""
+AS_WRITTEN = "as written"
+"""the policy that keeps the mission's order"""
+
+
+class Case(Model):
+    """One of the things that are run again and again, each time with another seed."""
+
+    mission: str
+    """what it is called in tables"""
+    policy: str = AS_WRITTEN
+    """in which order the mission's tasks are done"""
+    faults: str = NO_FAULTS
+    """what the faults of this case are called"""
+    spec: RunSpec
+    """all but the seed, and what varies from world to world"""
+    digest: str = ""
+    """of the site's and the robot's descriptions, which the spec only names"""
+    weight: float = Field(default=1.0, gt=0)
+    """how often missions are like this, beside the other cases of the same plan"""
+
+    @property
+    def plan(self) -> "PlanName":
+        """What it is a case of: rates are told of plans, over all their faults and seeds."""
+        spec = self.spec
+        return PlanName(self.mission, self.policy, spec.site, spec.robot, spec.drive, spec.sensor)
+
+
+@dataclass(frozen=True, order=True)
+class PlanName:
+    """What is evaluated, under whatever faults."""
+
+    mission: str
+    policy: str
+    site: str
+    robot: str
+    drive: str
+    sensor: str
+
+    def __str__(self) -> str:
+        return self.beside(())
+
+    def beside(self, others: Sequence["PlanName"]) -> str:
+        """Its name in words: the mission, and of the rest what is not the same for all."""
+        parts = [self.mission]
+        for name in ("policy", "site", "robot", "drive", "sensor"):
+            own = getattr(self, name)
+            if any(getattr(other, name) != own for other in others):
+                parts.append(own)
+        return ", ".join(parts)
+
+
+class Stopping(Model):
+    """When there are enough runs, before all seeds have been used."""
+
+    width: float | None = Field(default=None, gt=0, lt=1)
+    """of the interval of each plan's rate of success, at 95 %"""
+    require: tuple[Requirement, ...] = ()
+    """what each plan must hold: one stops as soon as it is decided for all"""
+    every: int = Field(default=20, ge=1)
+    """seeds after which one looks"""
+
+
+class EvaluationPlan(Model):
+    """What is to be evaluated. Each seed is one world, in which all cases are run."""
+
+    name: str = "evaluation"
+    cases: tuple[Case, ...] = Field(min_length=1)
+    seeds: tuple[int, ...] = Field(min_length=1)
+    variation: Variation = NO_VARIATION
+    """what differs from world to world beside what seeds draw anyway"""
+    stopping: Stopping = Stopping()
+    strata: bool = False
+    """whether runs go to the cases by how uncertain they are, and not to all alike"""
+
+    @cached_property
+    def plans(self) -> tuple[PlanName, ...]:
+        """What is evaluated, in the order of the cases."""
+        return tuple(dict.fromkeys(case.plan for case in self.cases))
+
+    def run(self, case: int, seed: int) -> "PlannedRun":
+        """The run of the case of that number in the world of the seed."""
+        return PlannedRun(case, seed, self.variation.applied(self.cases[case].spec, seed))
+
+    def runs(self, seeds: Sequence[int] | None = None) -> Iterator["PlannedRun"]:
+        """All runs of these seeds (all), seed by seed, so that cases are compared in equal worlds
+        whenever one stops."""
+        for seed in self.seeds if seeds is None else seeds:
+            for case in range(len(self.cases)):
+                yield self.run(case, seed)
+
+    def key(self, run: "PlannedRun") -> str:
+        """What the run is known by: a hash of all that it depends on, of what its case is called,
+        and of Argo's version."""
+        case = self.cases[run.case]
+        said = (argo_compiler.__version__, case.digest, case.mission, case.policy, case.faults)
+        text = "\n".join((*said, run.spec.model_dump_json()))
+        return hashlib.sha256(text.encode()).hexdigest()[:24]
+
+    def check(self) -> None:
+        """Raises ArgoError for what makes no sense: equal cases, seeds twice."""
+        if len(set(self.seeds)) < len(self.seeds):
+            raise Conflict("a seed is there twice: each one is a world of its own")
+        names = [(case.plan, case.faults) for case in self.cases]
+        twice = [name for name in dict.fromkeys(names) if names.count(name) > 1]
+        if twice:
+            plan, faults = twice[0]
+            raise Conflict(f"{plan} with faults {faults} is there twice: rename one of them")
+        if self.strata and len(self.plans) > 1:
+            raise Invalid("strata are of one plan: give one mission, drive and policy")
+
+
+@dataclass(frozen=True)
+class PlannedRun:
+    """A run that is to be made."""
+
+    case: int
+    """number of the case"""
+    seed: int
+    spec: RunSpec
+    """with all that is drawn for its world"""
+
+
+def parse_seeds(text: str) -> tuple[int, ...]:
+    """Seeds as people write them: `0..999`, `7`, or several of these with commas.
+
+    Raises Invalid for anything else.
+    """
+    found: list[int] = []
+    for part in text.replace(" ", "").split(","):
+        first, dots, last = part.partition("..")
+        if not first.isdecimal() or (dots and not last.isdecimal()):
+            raise Invalid(f"seeds `{text}`: write them as 0..999, or 3,7,20..29")
+        low, high = int(first), int(last or first)
+        if high < low or high - low >= MOST_RUNS:
+            raise Invalid(f"seeds `{part}`: the last one is before the first, or it is too many")
+        found += range(low, high + 1)
+    if len(set(found)) < len(found):
+        raise Invalid(f"seeds `{text}`: one is there twice")
+    return tuple(found)
+
+
+MOST_RUNS = 10_000_000
+"""seeds that one range may have"""

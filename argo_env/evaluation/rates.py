@@ -1,0 +1,156 @@
+"""Rates of plans, from rows: the right interval for the way in which the runs came."""
+
+from collections import Counter, defaultdict
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+from enum import StrEnum
+
+from argo_compiler.errors import Invalid
+from argo_env.evaluation.plan import EvaluationPlan, PlanName
+from argo_env.evaluation.row import Row, RunOutcome
+from argo_env.evaluation.statistics.rates import clopper_pearson, wilson
+from argo_env.evaluation.statistics.sequences import ConfidenceSequence
+from argo_env.evaluation.statistics.strata import Stratum, stratified_rate
+
+
+class IntervalMethod(StrEnum):
+    """How an interval was made."""
+
+    EXACT = "Clopper-Pearson"
+    """one run a world"""
+    SEQUENCE = "confidence sequence"
+    """several runs in each world, which depend on each other: their mean in each world counts"""
+    STRATA = "strata"
+    """runs of each case by themselves, put together by weight"""
+    QUICK = "Wilson"
+    """while it runs; nothing is claimed by it"""
+
+
+@dataclass(frozen=True)
+class PlanRate:
+    """How often something is so in the runs of a plan. Shares are 0 to 1, intervals of 95 %."""
+
+    value: float
+    low: float
+    high: float
+    runs: int
+    """that count"""
+    lost: int
+    """that could not be carried out, and do not count"""
+    method: IntervalMethod
+
+
+def success(row: Row) -> bool:
+    """Whether the mission was one."""
+    return row.success
+
+
+def rate_of(
+    evaluation: EvaluationPlan,
+    plan: PlanName,
+    rows: Sequence[Row],
+    holds: Callable[[Row], bool] = success,
+) -> PlanRate:
+    """The rate of a plan over all its cases, from the rows of the evaluation. Runs that could not
+    be carried out are left out, and counted."""
+    own = [row for row in rows if row.plan == plan]
+    ran = [row for row in own if row.carried_out]
+    lost = len(own) - len(ran)
+    cases = [case for case in evaluation.cases if case.plan == plan]
+    if len(cases) == 1:
+        rate = clopper_pearson(sum(map(holds, ran)), len(ran))
+        return PlanRate(rate.value, rate.low, rate.high, len(ran), lost, IntervalMethod.EXACT)
+    weights = {case.faults: case.weight for case in cases}
+    if evaluation.strata:
+        whole = sum(weights.values())
+        strata = [
+            Stratum(weight / whole, sum(map(holds, of_case)), len(of_case))
+            for name, weight in weights.items()
+            for of_case in ([row for row in ran if row.faults == name],)
+        ]
+        found = stratified_rate(strata)
+        return PlanRate(found.value, found.low, found.high, len(ran), lost, IntervalMethod.STRATA)
+    means = world_means(ran, weights, holds)
+    sequence = ConfidenceSequence()
+    sequence.add(means.values())
+    low, high = sequence.interval
+    value = sum(means.values()) / len(means) if means else float("nan")
+    return PlanRate(value, low, high, len(ran), lost, IntervalMethod.SEQUENCE)
+
+
+def world_means(
+    rows: Sequence[Row], weights: dict[str, float], holds: Callable[[Row], bool]
+) -> dict[int, float]:
+    """By seed, the weighted mean over the cases of a plan, for worlds in which all have run."""
+    by_seed: dict[int, dict[str, bool]] = defaultdict(dict)
+    for row in rows:
+        by_seed[row.seed][row.faults] = holds(row)
+    whole = sum(weights.values())
+    return {
+        seed: min(1.0, sum(weights[name] for name, so in said.items() if so) / whole)
+        for seed, said in by_seed.items()
+        if len(said) == len(weights)
+    }
+
+
+def quick_rate(outcomes: Counter[RunOutcome]) -> PlanRate:
+    """The rate of success of so many runs, to look at while more come."""
+    ran = outcomes[RunOutcome.SUCCESS] + outcomes[RunOutcome.FAILURE]
+    rate = wilson(outcomes[RunOutcome.SUCCESS], ran)
+    lost = outcomes.total() - ran
+    return PlanRate(rate.value, rate.low, rate.high, ran, lost, IntervalMethod.QUICK)
+
+
+class Verdict(StrEnum):
+    """What is known of a requirement."""
+
+    MET = "met"
+    MISSED = "missed"
+    OPEN = "not decided"
+
+
+@dataclass(frozen=True)
+class RequirementVerdict:
+    """What the runs say of a requirement on a plan."""
+
+    plan: PlanName
+    requirement: str
+    verdict: Verdict
+    low: float
+    high: float
+    """of the share, whenever one stops"""
+    worlds: int
+
+
+def judge_requirements(
+    evaluation: EvaluationPlan, rows: Sequence[Row]
+) -> tuple[RequirementVerdict, ...]:
+    """What is shown by now, of each plan and requirement. It may be asked after each run: the
+    chance that any of the verdicts on one plan is ever wrong is at most 5 %.
+
+    Runs that could not be carried out count against the requirement.
+    """
+    required = evaluation.stopping.require
+    found = []
+    for plan in evaluation.plans:
+        own = [row for row in rows if row.plan == plan]
+        weights = {case.faults: case.weight for case in evaluation.cases if case.plan == plan}
+        for requirement in required:
+            sequence = ConfidenceSequence(level=1.0 - 0.05 / len(required))
+            sequence.add(world_means(own, weights, requirement.holds).values())
+            above = sequence.runs > 0 and sequence.is_above(requirement.share)
+            below = sequence.runs > 0 and sequence.is_below(requirement.share)
+            verdict = Verdict.OPEN
+            if above or below:
+                verdict = Verdict.MET if above == requirement.at_least else Verdict.MISSED
+            low, high = sequence.interval
+            found.append(
+                RequirementVerdict(plan, str(requirement), verdict, low, high, sequence.runs)
+            )
+    return tuple(found)
+
+
+def require_no_strata(evaluation: EvaluationPlan) -> None:
+    """Raises Invalid for requirements on strata, of which no confidence sequence is known here."""
+    if evaluation.strata and evaluation.stopping.require:
+        raise Invalid("strata have no worlds in common: give a width to stop at, or no strata")

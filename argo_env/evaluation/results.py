@@ -1,0 +1,140 @@
+"""What came of an evaluation."""
+
+import html
+from collections import Counter
+from collections.abc import Sequence
+from dataclasses import dataclass
+from functools import cached_property
+from typing import TYPE_CHECKING
+
+from argo_env.evaluation.plan import EvaluationPlan, PlanName
+from argo_env.evaluation.rates import (
+    PlanRate,
+    RequirementVerdict,
+    judge_requirements,
+    rate_of,
+)
+from argo_env.evaluation.requirement import QUANTITIES
+from argo_env.evaluation.row import Row, RunOutcome
+from argo_env.evaluation.statistics.rates import Rate, clopper_pearson
+
+if TYPE_CHECKING:
+    import pandas
+
+
+@dataclass(frozen=True)
+class GroupRate:
+    """The rate of success of some of a plan's runs, with the exact interval."""
+
+    plan: PlanName
+    name: str
+    rate: Rate
+    outcomes: Counter[RunOutcome]
+    drawn: bool = False
+    """whether it is a part that chance made, so that the interval is only to look at"""
+
+
+@dataclass(frozen=True)
+class EvaluationResults:
+    """The rows of an evaluation, in the order of its plan, and what they say."""
+
+    plan: EvaluationPlan
+    rows: tuple[Row, ...]
+
+    @cached_property
+    def outcomes(self) -> Counter[RunOutcome]:
+        """How many runs ended how."""
+        return Counter(row.outcome for row in self.rows)
+
+    @property
+    def missing(self) -> int:
+        """Runs that could not be carried out."""
+        return self.outcomes[RunOutcome.ERROR] + self.outcomes[RunOutcome.DIED]
+
+    @cached_property
+    def failing(self) -> tuple[Row, ...]:
+        """The runs that were no success."""
+        return tuple(row for row in self.rows if not row.success)
+
+    def of(self, plan: PlanName) -> tuple[Row, ...]:
+        """The rows of one of the plans."""
+        return tuple(row for row in self.rows if row.plan == plan)
+
+    def rate(self, plan: PlanName, quantity: str = "success") -> PlanRate:
+        """How often something is so in a plan's runs, over all their faults."""
+        return rate_of(self.plan, plan, self.rows, QUANTITIES[quantity])
+
+    @cached_property
+    def verdicts(self) -> tuple[RequirementVerdict, ...]:
+        """What is shown of what was required."""
+        return judge_requirements(self.plan, self.rows)
+
+    def by_faults(self, plan: PlanName) -> tuple[GroupRate, ...]:
+        """A plan's rates by what went wrong."""
+        own = self.of(plan)
+        drawn = self.plan.variation.faults is not None
+        names = dict.fromkeys(self.faults_of(row) for row in own)
+        return tuple(
+            _group(plan, name, [row for row in own if self.faults_of(row) == name], drawn)
+            for name in names
+        )
+
+    def faults_of(self, row: Row) -> str:
+        """What went wrong in a run: the faults of its case, or those that were drawn."""
+        if self.plan.variation.faults is None:
+            return row.faults
+        return self.plan.variation.drawn_faults(row.seed) or "nothing"
+
+    def by_seeds(self, plan: PlanName, blocks: int = 10) -> tuple[GroupRate, ...]:
+        """A plan's rates by blocks of seeds, which should differ by chance only."""
+        own = self.of(plan)
+        seeds = sorted({row.seed for row in own})
+        size = max(1, -(-len(seeds) // blocks))
+        found = []
+        for first in range(0, len(seeds), size):
+            block = seeds[first : first + size]
+            rows = [row for row in own if block[0] <= row.seed <= block[-1]]
+            name = str(block[0]) if len(block) == 1 else f"{block[0]} to {block[-1]}"
+            found.append(_group(plan, name, rows))
+        return tuple(found)
+
+    @cached_property
+    def frame(self) -> "pandas.DataFrame":
+        """The rows as a table, one line each; what was drawn for the world as `world.…`."""
+        import pandas
+
+        lines = []
+        for row in self.rows:
+            line = row.model_dump(mode="json", exclude={"world", "detections", "place"})
+            line["detected"] = all(one.delay is not None for one in row.detections)
+            line["delay"] = max((one.delay or 0.0 for one in row.detections), default=None)
+            line["x"], line["y"], line["z"] = row.place or (None, None, None)
+            line.update({f"world.{name}": value for name, value in row.world.items()})
+            lines.append(line)
+        return pandas.DataFrame(lines)
+
+    def _repr_html_(self) -> str:
+        """As notebooks show it: a line for each plan."""
+        head = "".join(
+            f"<th>{name}</th>" for name in ("plan", "runs", "success", "95 %", "failures", "lost")
+        )
+        lines = []
+        for plan in self.plan.plans:
+            rate = self.rate(plan)
+            failures = sum(row.outcome is RunOutcome.FAILURE for row in self.of(plan))
+            cells = (
+                html.escape(plan.beside(self.plan.plans)),
+                str(rate.runs),
+                f"{rate.value:.1%}",
+                f"{rate.low:.1%} to {rate.high:.1%}",
+                str(failures),
+                str(rate.lost),
+            )
+            lines.append("<tr>" + "".join(f"<td>{cell}</td>" for cell in cells) + "</tr>")
+        return f"<table><thead><tr>{head}</tr></thead><tbody>{''.join(lines)}</tbody></table>"
+
+
+def _group(plan: PlanName, name: str, rows: Sequence[Row], drawn: bool = False) -> GroupRate:
+    ran = [row for row in rows if row.carried_out]
+    rate = clopper_pearson(sum(row.success for row in ran), len(ran))
+    return GroupRate(plan, name, rate, Counter(row.outcome for row in rows), drawn)

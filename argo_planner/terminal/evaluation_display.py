@@ -1,0 +1,80 @@
+"""What a person sees of an evaluation while it goes on: a bar, the outcomes and the rate."""
+
+import sys
+import time
+from collections.abc import Callable
+from typing import Self
+
+from rich.console import Console
+from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn
+
+from argo_env.closing import Closing
+from argo_env.evaluation.evaluating import EvaluationProgress
+from argo_env.evaluation.rates import quick_rate
+from argo_env.evaluation.row import RunOutcome
+from argo_env.formatting import clock
+from argo_planner.terminal.verbosity import is_quiet
+
+EVERY = 10.0
+"""s between lines where standard error is no terminal"""
+_REDRAWN = 0.2  # s
+
+
+class EvaluationDisplay(Closing):
+    """The progress on standard error: a bar on a terminal, and else a line now and then."""
+
+    def __init__(self, clock: Callable[[], float] = time.monotonic) -> None:
+        self._clock = clock
+        self._console = Console(stderr=True, highlight=False)
+        self._progress = Progress(
+            BarColumn(),
+            MofNCompleteColumn(),
+            TextColumn("{task.fields[said]}"),
+            console=self._console,
+            transient=True,
+            disable=is_quiet() or not sys.stderr.isatty(),
+        )
+        self._bar = self._progress.add_task("", total=None, said="")
+        self._shown = -EVERY
+
+    def show(self, progress: EvaluationProgress) -> None:
+        """Shows how far it is, unless it has just been shown."""
+        terminal = sys.stderr.isatty()
+        now = self._clock()
+        if is_quiet() or now - self._shown < (_REDRAWN if terminal else EVERY):
+            return
+        first, self._shown = self._shown < 0, now
+        text = said(progress)
+        if terminal:
+            self._progress.update(
+                self._bar, total=progress.most, completed=progress.done, said=text
+            )
+        elif not first:
+            self._console.print(f"{progress.done} of {progress.most} runs, {text}")
+
+    def __enter__(self) -> Self:
+        self._progress.start()
+        return self
+
+    def close(self) -> None:
+        """Ends the display."""
+        self._progress.stop()
+
+
+def said(progress: EvaluationProgress) -> str:
+    """The rate, what did not succeed, and the time that is left, in words."""
+    outcomes = progress.all_outcomes
+    rate = quick_rate(outcomes)
+    parts = []
+    if rate.runs:
+        parts.append(f"success {rate.value:.1%} ({rate.low:.1%} to {rate.high:.1%})")
+    for outcome, name in (
+        (RunOutcome.FAILURE, "failed"),
+        (RunOutcome.ERROR, "errors"),
+        (RunOutcome.DIED, "died"),
+    ):
+        if outcomes[outcome]:
+            parts.append(f"{outcomes[outcome]} {name}")
+    if progress.remaining is not None:
+        parts.append(f"at most {clock(progress.remaining)} left")
+    return ", ".join(parts)

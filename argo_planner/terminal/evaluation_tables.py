@@ -1,0 +1,179 @@
+"""What came of an evaluation, on the terminal."""
+
+import math
+import shlex
+from collections.abc import Iterator, Mapping
+from pathlib import Path
+
+from rich.console import Console
+from rich.markup import escape
+from rich.table import Table
+
+from argo_env.evaluation.comparison import PlanComparison
+from argo_env.evaluation.plan import PlanName
+from argo_env.evaluation.rates import IntervalMethod, Verdict
+from argo_env.evaluation.results import EvaluationResults, GroupRate
+from argo_env.evaluation.row import RunOutcome
+from argo_env.evaluation.statistics.pairs import Difference
+from argo_env.formatting import clock
+
+_STYLES = {Verdict.MET: "bold green", Verdict.MISSED: "bold red", Verdict.OPEN: "bold yellow"}
+_NAMED = 10  # failing runs that are shown
+
+
+def show_results(results: EvaluationResults, failing: Mapping[str, Path], console: Console) -> None:
+    """Prints the rates by plan, by faults and by seeds, what is shown of the requirements, and how
+    each failing run is made again."""
+    console.print(_plans(results))
+    for plan in results.plan.plans:
+        groups = results.by_faults(plan)
+        if len(groups) > 1:
+            console.print(_groups(_titled("by faults", plan, results), "faults", groups))
+        blocks = results.by_seeds(plan)
+        if len(blocks) > 1 and results.failing:
+            console.print(_groups(_titled("by seeds", plan, results), "seeds", blocks))
+    for line in _failing(results, failing):
+        console.print(escape(line), soft_wrap=True)
+    for verdict in results.verdicts:
+        style = _STYLES[verdict.verdict]
+        of = (
+            f" for {verdict.plan.beside(results.plan.plans)}" if len(results.plan.plans) > 1 else ""
+        )
+        console.print(
+            f"[{style}]{verdict.requirement}{escape(of)}: {verdict.verdict}[/] "
+            f"(between {_percent(verdict.low)} and {_percent(verdict.high)}, "
+            f"{verdict.worlds} worlds)",
+            soft_wrap=True,
+        )
+
+
+def _titled(what: str, plan: PlanName, results: EvaluationResults) -> str:
+    several = len(results.plan.plans) > 1
+    return f"{plan.beside(results.plan.plans)}: {what}" if several else what.capitalize()
+
+
+def _plans(results: EvaluationResults) -> Table:
+    table = Table(title=escape(results.plan.name), title_justify="left")
+    table.add_column("plan")
+    for name in ("runs", "success", "95 % interval", "failures", "errors", "died", "time"):
+        table.add_column(name, justify="right")
+    for plan in results.plan.plans:
+        rows, rate = results.of(plan), results.rate(plan)
+        took = sorted(row.duration for row in rows if row.duration is not None)
+        counts = {o: sum(row.outcome is o for row in rows) for o in RunOutcome}
+        star = "" if rate.method is IntervalMethod.EXACT else " *"
+        table.add_row(
+            escape(plan.beside(results.plan.plans)),
+            str(len(rows)),
+            _percent(rate.value),
+            f"{_percent(rate.low)} to {_percent(rate.high)}{star}",
+            str(counts[RunOutcome.FAILURE] or ""),
+            str(counts[RunOutcome.ERROR] or ""),
+            str(counts[RunOutcome.DIED] or ""),
+            clock(took[len(took) // 2]) if took else "",
+        )
+    methods = {results.rate(plan).method for plan in results.plan.plans}
+    if IntervalMethod.SEQUENCE in methods:
+        table.caption = "* the runs of one world depend on each other: it counts as one"
+    elif IntervalMethod.STRATA in methods:
+        table.caption = "* put together by the probabilities of faults"
+    return table
+
+
+def _groups(title: str, what: str, groups: tuple[GroupRate, ...]) -> Table:
+    table = Table(title=escape(title), title_justify="left")
+    table.add_column(what)
+    for name in ("runs", "success", "95 % interval", "failures", "lost"):
+        table.add_column(name, justify="right")
+    for group in groups:
+        lost = group.outcomes[RunOutcome.ERROR] + group.outcomes[RunOutcome.DIED]
+        table.add_row(
+            escape(group.name),
+            str(group.rate.runs + lost),
+            _percent(group.rate.value),
+            f"{_percent(group.rate.low)} to {_percent(group.rate.high)}",
+            str(group.outcomes[RunOutcome.FAILURE] or ""),
+            str(lost or ""),
+        )
+    return table
+
+
+def _failing(results: EvaluationResults, files: Mapping[str, Path]) -> Iterator[str]:
+    rows = results.failing
+    if not rows:
+        return
+    yield f"{len(rows)} of {len(results.rows)} runs are no success; each is made again alone by:"
+    for row in rows[:_NAMED]:
+        said = "" if row.carried_out else f"{row.outcome}: "
+        yield f"  seed {row.seed}, {results.faults_of(row)}: {said}{row.reason}"
+        if row.key in files:
+            yield f"    argo run {shlex.quote(str(files[row.key]))} --report out/{row.key[:8]}"
+    if len(rows) > _NAMED and files:
+        folder = next(iter(files.values())).parent
+        yield f"  and {len(rows) - _NAMED} more, in {folder}"
+
+
+def show_comparison(compared: PlanComparison, console: Console) -> None:
+    """Prints which of two plans is better, and how sure that is."""
+    pairs = compared.successes
+    table = Table(title="The same worlds, pair by pair", title_justify="left")
+    table.add_column("")
+    for name in ("difference", "95 % interval", "by chance", "pairs"):
+        table.add_column(name, justify="right")
+    for what, found, scale, unit in (
+        ("success", compared.success, 100.0, "%"),
+        ("time", compared.duration, 1.0, "s"),
+        ("distance", compared.distance, 1.0, "m"),
+    ):
+        chance = compared.p_value if what == "success" else found.p_value
+        table.add_row(what, *_difference(found, scale, unit), _chance(chance), str(found.pairs))
+    first, second = compared.first, compared.second
+    console.print(f"A: {escape(first)}\nB: {escape(second)}", soft_wrap=True)
+    console.print(table)
+    console.print(
+        f"Both succeed in {pairs.both} pairs, only A in {pairs.first_only}, only B in "
+        f"{pairs.second_only}, neither in {pairs.neither}.",
+        soft_wrap=True,
+    )
+    if len(compared.by_faults) > 1:
+        for name, own in compared.by_faults.items():
+            if own.first_only or own.second_only:
+                console.print(
+                    f"  {escape(name)}: only A {own.first_only}, only B {own.second_only}, "
+                    f"by chance {_chance(own.p_value)}",
+                    soft_wrap=True,
+                )
+    console.print(f"[bold]{escape(conclusion(compared))}[/]", soft_wrap=True)
+    console.print(
+        f"So many pairs show a difference of 5 % with a probability of "
+        f"{compared.power(0.05):.0%}, one of 2 % with {compared.power(0.02):.0%}.",
+        soft_wrap=True,
+    )
+    if compared.lost:
+        console.print(f"{compared.lost} pairs could not be carried out, and do not count.")
+
+
+def conclusion(compared: PlanComparison) -> str:
+    """What the comparison shows, in a sentence."""
+    if compared.p_value <= 0.05:
+        better = "A" if compared.success.value > 0 else "B"
+        return f"{better} succeeds more often."
+    if compared.duration.found:
+        faster = "A" if compared.duration.value < 0 else "B"
+        return f"No difference in success is shown; {faster} is faster where both succeed."
+    return "No difference is shown."
+
+
+def _difference(found: Difference, scale: float, unit: str) -> tuple[str, str]:
+    if math.isnan(found.value):
+        return "", ""
+    value, low, high = (scale * v for v in (found.value, found.low, found.high))
+    return f"{value:+.1f} {unit}", f"{low:+.1f} to {high:+.1f} {unit}"
+
+
+def _chance(p_value: float) -> str:
+    return f"{p_value:.3f}" if p_value >= 0.001 else "< 0.001"
+
+
+def _percent(share: float) -> str:
+    return "" if math.isnan(share) else f"{100 * share:.1f} %"

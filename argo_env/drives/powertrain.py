@@ -15,7 +15,8 @@ _MOVED = 1e-3  # m or rad that count as a motion
 class Powertrain:
     """A drive that may be held or slowed. Holds how it stands; faults change that."""
 
-    def __init__(self, drive: Drive) -> None:
+    def __init__(self, drive: Drive, usual_share: float = 1.0) -> None:
+        """`usual_share`: of its speed, that the drive makes while nothing is wrong with it."""
         self._drive = drive
         self.name = drive.name
         self.time_step = drive.time_step
@@ -23,8 +24,10 @@ class Powertrain:
         """whether the emergency stop is pressed: brakes hold the robot where it is"""
         self.held = 0
         """steps that the emergency stop has held it"""
-        self.share = 1.0
-        """of its speed that the drive makes"""
+        self.usual_share = usual_share
+        """of its speed that the drive makes while nothing is wrong with it"""
+        self.share = usual_share
+        """of its speed that the drive makes now"""
         self.way: tuple[Path, float | None] | None = None
         """the path that it was told to follow, from where it was, and the velocity (m/s) on it;
         None: to stand"""

@@ -22,6 +22,8 @@ class RunOrder:
     key: str
     case: Case
     spec: RunSpec
+    world: dict[str, float]
+    """what was drawn for its world"""
     limit: float | None = None
     """s of wall time that it may take; then its process ends, and that is its reason"""
 
@@ -29,6 +31,11 @@ class RunOrder:
 def carry_out(order: RunOrder) -> Row:
     """Makes the run and its row. What goes wrong in the simulator is an outcome as well: one of
     many thousand runs must not end them all."""
+    row = _row(order)
+    return row.model_copy(update={"world": order.world})
+
+
+def _row(order: RunOrder) -> Row:
     watchdog = None
     if order.limit is not None:
         watchdog = threading.Timer(order.limit, os._exit, (TOOK_TOO_LONG,))

@@ -6,9 +6,8 @@ from collections import Counter
 from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass
 
-from argo_compiler.errors import ArgoError
 from argo_env.evaluation.batches import batches
-from argo_env.evaluation.carrying_out import RunOrder, carry_out
+from argo_env.evaluation.carrying_out import TOOK_TOO_LONG, RunOrder, carry_out
 from argo_env.evaluation.plan import EvaluationPlan, PlanName, PlannedRun
 from argo_env.evaluation.pool.backend import WorkerBackend
 from argo_env.evaluation.pool.pool import Finished, Pool
@@ -61,15 +60,17 @@ class Evaluating:
         store: RowStore | None = None,
         *,
         limit: float | None = None,
+        call: Callable[[RunOrder], Row] = carry_out,
         clock: Callable[[], float] = time.monotonic,
     ) -> None:
-        """`limit` (s of wall time) is what a run may take. Closes neither back end nor store.
+        """`limit` (s of wall time) is what a run may take; `call` is what carries it out, in a
+        worker. Closes neither back end nor store.
 
         Raises ArgoError for a plan that makes no sense.
         """
         plan.check()
         self._plan = plan
-        self._pool = Pool(backend, carry_out)
+        self._pool = Pool(backend, call)
         self._store = store
         self._limit = limit
         self._clock = clock
@@ -141,17 +142,21 @@ class Evaluating:
                 return
             run, key = following
             case = self._plan.cases[run.case]
-            self._pool.submit((run, key), RunOrder(key, case, run.spec, self._limit))
+            self._pool.submit(
+                (run, key),
+                RunOrder(key, case, run.spec, self._plan.variation.drawn(run.seed), self._limit),
+            )
 
     def _row(self, finished: Finished) -> Row:
         run, key = finished.ticket
         if isinstance(finished.value, Row):
             return finished.value
-        case = self._plan.cases[run.case]
-        if finished.died is not None:
-            _log.warning("run %s, seed %d: %s", key, run.seed, finished.died)
-            return row_without_end(key, case, run.spec, RunOutcome.DIED, finished.died)
-        reason = str(finished.error)
-        if not isinstance(finished.error, ArgoError):
-            reason = f"{type(finished.error).__name__}: {reason}"
-        return row_without_end(key, case, run.spec, RunOutcome.ERROR, reason)
+        outcome, reason = RunOutcome.DIED, finished.died
+        if reason is not None and reason.endswith(f"code {TOOK_TOO_LONG}"):
+            reason = "the run took longer than it may"
+        if reason is None:
+            # What can't be sent to a worker or back: whatever goes wrong in a run is a row.
+            outcome, reason = RunOutcome.ERROR, f"{type(finished.error).__name__}: {finished.error}"
+        _log.warning("run %s, seed %d: %s", key, run.seed, reason)
+        row = row_without_end(key, self._plan.cases[run.case], run.spec, outcome, reason)
+        return row.model_copy(update={"world": self._plan.variation.drawn(run.seed)})

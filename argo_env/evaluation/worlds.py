@@ -1,20 +1,106 @@
 """Worlds that vary: what is drawn anew for each seed, each from a stream of its own."""
 
+from typing import Any
+
+from pydantic import Field, field_validator, model_validator
+
 from argo_compiler.model import Model
 from argo_env.faults.distribution import FaultDistribution
+from argo_env.run.conditions import RunConditions, ValueProfile, ValueStep
 from argo_env.run.spec import RunSpec
+from argo_env.seeding import generator
+
+Range = tuple[float, float]
+"""the least and the most; each between them is equally probable"""
 
 
-class Variation(Model):
+class _Ranges(Model):
+    """Fields that are ranges."""
+
+    @field_validator("*", mode="before")
+    @classmethod
+    def _one_number(cls, said: object) -> object:
+        """A number is the range that has only it."""
+        return (said, said) if isinstance(said, int | float) else said
+
+    @model_validator(mode="after")
+    def _ordered(self) -> "_Ranges":
+        for name, value in self:
+            if isinstance(value, tuple) and len(value) == 2 and value[1] < value[0]:
+                raise ValueError(f"{name}: {value[0]:g} to {value[1]:g}: the least comes first")
+        return self
+
+
+class StepRange(_Ranges):
+    """A value that changes all at once, some time and by something."""
+
+    at: Range
+    """s"""
+    change: Range
+    """in the checkpoint's unit"""
+
+
+class ValueRange(_Ranges):
+    """What a checkpoint shows, and how that changes during a run."""
+
+    start: Range | None = None
+    """at the start, in the checkpoint's unit; None: somewhere in its nominal range"""
+    drift: Range = (0.0, 0.0)
+    """in the checkpoint's unit an hour"""
+    noise: Range = (0.0, 0.0)
+    """standard deviation of what flickers, in the checkpoint's unit"""
+    steps: tuple[StepRange, ...] = ()
+
+
+_CONDITIONS = ("ahead", "left", "turned", "speed", "friction", "charge", "capacity", "sensor_noise")
+
+
+class Variation(_Ranges):
     """What differs from world to world beside what seeds draw anyway. Each is drawn from a stream
     of its own, so that one more changes nothing of the others."""
 
+    ahead: Range | None = None
+    """m that the robot stands ahead of where the mission starts, -1 to 1"""
+    left: Range | None = None
+    """m that it stands to the left of there, -1 to 1"""
+    turned: Range | None = None
+    """deg that it is turned there, counter-clockwise"""
+    speed: Range | None = None
+    """share of its speed that the drive makes, up to 1"""
+    friction: Range | None = None
+    """beside that of the calibration, up to 2; for the drive `tracked`"""
+    charge: Range | None = None
+    """of the battery at the start, up to 1"""
+    capacity: Range | None = None
+    """share of the battery's capacity that is left, up to 1"""
+    sensor_noise: Range | None = None
+    """standard deviation of readings, as a share of the scale; the robot notices more than 0.01"""
+    values: dict[int, ValueRange] = Field(default_factory=dict)
+    """what checkpoints show and how that changes, by number"""
     faults: FaultDistribution | None = None
     """what goes wrong in each, beside the faults that all runs of a case have"""
 
+    @model_validator(mode="after")
+    def _possible(self) -> "Variation":
+        for name in _CONDITIONS:
+            for end in getattr(self, name) or ():
+                # Says by itself what a run can't have.
+                RunConditions.model_validate({name: end})
+        return self
+
     def applied(self, spec: RunSpec, seed: int) -> RunSpec:
         """The spec of the run in the world of a seed."""
-        update: dict[str, object] = {"seed": seed}
+        update: dict[str, Any] = {"seed": seed}
+        conditions = self._conditions(seed)
+        if conditions:
+            update["conditions"] = spec.conditions.model_copy(update=conditions)
+        first = {
+            id: _drawn(seed, one.start, "start", id)
+            for id, one in self.values.items()
+            if one.start is not None
+        }
+        if first:
+            update["values"] = {**first, **spec.values}
         drawn = self.faults.drawn(seed) if self.faults is not None else None
         if drawn is not None:
             update["faults"] = (*spec.faults, *drawn.faults)
@@ -24,6 +110,45 @@ class Variation(Model):
         """What the faults are called that are drawn for the world of a seed; None: none are."""
         drawn = self.faults.drawn(seed) if self.faults is not None else None
         return None if drawn is None else drawn.name
+
+    def drawn(self, seed: int) -> dict[str, float]:
+        """What is drawn for the world of a seed, by name."""
+        found = {n: v for n, v in self._conditions(seed).items() if n != "values"}
+        for id, one in self.values.items():
+            if one.start is not None:
+                found[f"start {id}"] = _drawn(seed, one.start, "start", id)
+            found[f"drift {id}"] = _drawn(seed, one.drift, "drift", id)
+        return found
+
+    def _conditions(self, seed: int) -> dict[str, Any]:
+        found: dict[str, Any] = {
+            name: _drawn(seed, getattr(self, name), name)
+            for name in _CONDITIONS
+            if getattr(self, name) is not None
+        }
+        if self.values:
+            found["values"] = {id: _profile(one, seed, id) for id, one in self.values.items()}
+        return found
+
+
+def _profile(one: ValueRange, seed: int, id: int) -> ValueProfile:
+    return ValueProfile(
+        drift=_drawn(seed, one.drift, "drift", id),
+        noise=_drawn(seed, one.noise, "noise", id),
+        steps=tuple(
+            ValueStep(
+                at=_drawn(seed, step.at, "step", id, k, "at"),
+                change=_drawn(seed, step.change, "step", id, k, "change"),
+            )
+            for k, step in enumerate(one.steps)
+        ),
+    )
+
+
+def _drawn(seed: int, between: Range, *purpose: str | int) -> float:
+    low, high = between
+    drawn = float(generator(seed, "world", *purpose).uniform(low, high))
+    return min(max(round(drawn, 6), low), high)
 
 
 NO_VARIATION = Variation()

@@ -101,7 +101,7 @@ class SensorDysfunction(TimedFault):
             targets.sensor.noise = self.noise
 
     def end(self, targets: "FaultTargets", now: float) -> None:  # noqa: ARG002
-        targets.sensor.failed, targets.sensor.noise = False, 0.0
+        targets.sensor.failed, targets.sensor.noise = False, targets.sensor.usual_noise
 
 
 class DriveDysfunction(TimedFault):
@@ -120,4 +120,4 @@ class DriveDysfunction(TimedFault):
         targets.drive.share = min(targets.drive.share, self.speed)
 
     def end(self, targets: "FaultTargets", now: float) -> None:  # noqa: ARG002
-        targets.drive.share = 1.0
+        targets.drive.share = targets.drive.usual_share

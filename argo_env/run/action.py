@@ -264,7 +264,7 @@ class ActionUnderWay:
             return None
         self._looked = True
         try:
-            self.measurement = self._rig.sensor.measure(self._checkpoint_id(), self._rig.drive.pose)
+            self.measurement = self._rig.read(self._checkpoint_id(), self._now)
         except PoorViewError as error:
             return self._look_again(str(error))
         except MeasurementError as error:

@@ -16,12 +16,12 @@ from argo_env.faults.schedule import Schedule
 from argo_env.faults.targets import FaultTargets
 from argo_env.navigation import Navigator
 from argo_env.run.drives_and_sensors import DRIVES, IDEAL, ROUTE, SENSORS, WORLD_DRIVES
+from argo_env.run.instruments import Instruments
 from argo_env.run.spec import RunSpec
-from argo_env.seeding import generator
 from argo_env.sensing.ideal import IdealSensor, draw_values
 from argo_env.sensing.onboard import onboard_watches
 from argo_env.sensing.onboard_sensor import OnboardSensor
-from argo_env.sensing.sensor import Sensor
+from argo_env.sensing.sensor import Measurement, Sensor
 from argo_env.sensing.signals import standard_watches
 from argo_env.sensing.watch import Watch
 from argo_env.site import Site
@@ -45,6 +45,15 @@ class Rig:
     """None: the robot has power without end"""
     schedule: Schedule | None = None
     """what goes wrong, and when; None: nothing does"""
+    instruments: Instruments | None = None
+    """what checkpoints show over time; None: always the same"""
+
+    def read(self, checkpoint_id: int, now: float) -> Measurement:
+        """Reads the checkpoint at time `now` (s), from where the robot stands. Raises as sensors
+        do."""
+        if self.instruments is not None:
+            self.instruments.look_at(checkpoint_id, now)
+        return self.sensor.measure(checkpoint_id, self.drive.pose)
 
     @property
     def watches_world(self) -> bool:
@@ -78,12 +87,17 @@ def fit_out(spec: RunSpec, navigator: Navigator, gui: bool, stack: ExitStack) ->
         watches = standard_watches(world, surroundings, seed)
         for id, value in truth.items():
             world.show_value(id, value)
-    drive, network, battery = Powertrain(inner), RadioNetwork(site), Battery(robot)
-    sensor = OnboardSensor(camera, site, generator(seed, "instrument"))
+    given = spec.conditions
+    drive, network, battery = Powertrain(inner, given.speed), RadioNetwork(site), Battery(robot)
+    battery.wear(given.capacity)
+    battery.charge = 1.0 if given.charge is None else given.charge
+    sensor = OnboardSensor(camera, site, seed, given.sensor_noise)
     targets = FaultTargets(world, truth, surroundings, drive, sensor, battery, network)
     level = next((r.battery_below for r in spec.mission.reactions if r.battery_below), None)
     watches += onboard_watches(robot, battery, network, drive, sensor, level)
-    return Rig(world, navigator, drive, sensor, watches, battery, Schedule(faults, targets))
+    instruments = Instruments(targets, site, seed, given.values)
+    schedule = Schedule(faults, targets)
+    return Rig(world, navigator, drive, sensor, watches, battery, schedule, instruments)
 
 
 def check_spec(spec: RunSpec, site: Site) -> None:
@@ -98,6 +112,8 @@ def check_spec(spec: RunSpec, site: Site) -> None:
             f"look at; take the sensor `{IDEAL}` or another drive"
         )
     true_values(site, spec.seed, spec.values)
+    for id in spec.conditions.values:
+        site.checkpoint(id)
     settle(spec.faults, site, spec.seed)
     unseen = [f.kind for f in spec.faults if f.needs_world]
     if spec.drive == ROUTE and unseen:

@@ -329,7 +329,7 @@ class Simulation(Closing):
             place = beginning.body_pose
             navigator.snap(Pose(x=place.x, y=place.y, z=place.z, yaw=place.yaw))
             return place
-        pose = navigator.snap(start_pose(mission, docks))
+        pose = navigator.snap(self._spec.conditions.standing(start_pose(mission, docks)))
         return BodyPose(pose.x, pose.y, pose.z, pose.yaw)
 
     def _open(self) -> bool:

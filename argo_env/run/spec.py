@@ -13,10 +13,11 @@ from argo_compiler.model import Model
 from argo_env.faults.kinds import AnyFault
 from argo_env.files.yaml_messages import message_of
 from argo_env.run.beginning import RunBeginning
+from argo_env.run.conditions import AS_PLANNED, RunConditions
 from argo_env.run.log import LoggedEvent, require_from_outside, require_time
 from argo_env.run.record import Reordering
 
-_SETTINGS = {"drive", "sensor", "seed", "values", "events", "faults"}
+_SETTINGS = {"drive", "sensor", "seed", "values", "events", "faults", "conditions"}
 
 
 class RunSpec(Model):
@@ -39,6 +40,8 @@ class RunSpec(Model):
     """what the run is told, and when (s)"""
     faults: tuple[AnyFault, ...] = ()
     """what goes wrong; the robot finds out by sensing"""
+    conditions: RunConditions = AS_PLANNED
+    """what is not as planned, and no fault"""
     beginning: RunBeginning | None = None
     """where another run stood, from which this one goes on; None: the mission begins"""
     diagnostics: tuple[Diagnostic, ...] = ()

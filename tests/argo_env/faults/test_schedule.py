@@ -9,7 +9,6 @@ from argo_env.faults.kinds import FaultFile, settle
 from argo_env.faults.schedule import Schedule
 from argo_env.faults.targets import FaultTargets
 from argo_env.robot.pose import BodyPose
-from argo_env.seeding import generator
 from argo_env.sensing.ideal import IdealSensor
 from argo_env.sensing.onboard_sensor import OnboardSensor
 from argo_env.surroundings import Surroundings
@@ -22,7 +21,7 @@ POSE = BodyPose(5.0, 2.5, 0.0, 0.0)
 @pytest.fixture
 def stage(umad, robot):
     world, truth = PaperWorld(umad, robot), {c.id: 0.0 for c in umad.checkpoints}
-    sensor = OnboardSensor(IdealSensor(world, robot, truth), umad, generator(0, "instrument"))
+    sensor = OnboardSensor(IdealSensor(world, robot, truth), umad, 0)
     drive = Powertrain(RouteDrive(robot))
     return FaultTargets(
         world, truth, Surroundings(umad), drive, sensor, Battery(robot), RadioNetwork(umad)

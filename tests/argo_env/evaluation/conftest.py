@@ -1,0 +1,37 @@
+"""What the tests of evaluations share: a short mission, and plans of it."""
+
+import pytest
+
+from argo_compiler.il import Action, Mission, Task, Transition
+from argo_env.evaluation.plan import Case, EvaluationPlan
+from argo_env.planning.opening import open_site
+from argo_env.run.spec import RunSpec
+
+
+def short_mission(limit: float | None = None) -> Mission:
+    """One gauge of UMAD, from its first dock."""
+    start = open_site("umad").site.docks[1]
+    return Mission(
+        tasks=(
+            Task(
+                name="START",
+                action=Action.START,
+                pose=start,
+                transitions=(Transition(target="GAUGE"),),
+            ),
+            Task(name="GAUGE", action=Action.MEASURE, object_id="1"),
+        ),
+        max_duration=limit,
+    )
+
+
+@pytest.fixture(scope="session")
+def mission() -> Mission:
+    return short_mission()
+
+
+@pytest.fixture(scope="session")
+def plan(mission) -> EvaluationPlan:
+    """The short mission in ten worlds, by travel times."""
+    case = Case(mission="short", spec=RunSpec(mission=mission, drive="route"))
+    return EvaluationPlan(cases=(case,), seeds=tuple(range(10)))

@@ -1,0 +1,174 @@
+"""Rows on disk: none is lost, none is there twice."""
+
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from argo_compiler.errors import Conflict, NotFound, Unavailable
+from argo_env.evaluation import parts, store
+from argo_env.evaluation.detection import FaultDetection
+from argo_env.evaluation.parts import write_part
+from argo_env.evaluation.row import Row, RunOutcome
+from argo_env.evaluation.store import LOG, RowStore, read_log, read_rows
+
+
+def row(number: int, **others) -> Row:
+    return Row(
+        key=f"{number:024x}", mission="m", policy="as written", site="umad", robot="tracker",
+        drive="route", sensor="ideal", faults="none", seed=number, outcome=RunOutcome.SUCCESS,
+        reason="done", **others,
+    )  # fmt: skip
+
+
+FULL = row(
+    99,
+    duration=12.5,
+    limit=100.0,
+    docked=False,
+    failed=("A", "B"),
+    detections=(
+        FaultDetection(fault="brick", began=1.0, delay=None),
+        FaultDetection(fault="gas_leak", began=2.0, delay=3.5),
+    ),
+    place=(1.0, 2.0, 3.0),
+    floor=2,
+    world={"speed": 0.9, "start 3": 1.25},
+)
+
+
+def test_rows_come_back_as_they_were(tmp_path):
+    with RowStore(tmp_path) as rows:
+        for one in (row(1), FULL):
+            rows.add(one)
+        assert read_rows(tmp_path) == (row(1), FULL)
+        rows.compact()
+        assert rows.loose == 0
+        rows.add(row(2))
+    assert (tmp_path / "parts" / "part-00001.parquet").exists()
+    assert read_rows(tmp_path) == (row(1), FULL, row(2))
+    with RowStore(tmp_path) as rows:
+        assert list(rows.rows.values()) == [row(1), FULL, row(2)]
+        assert rows.loose == 1
+        rows.compact()
+    assert read_rows(tmp_path) == (row(1), FULL, row(2))
+
+
+def test_other_programs_read_the_parts(tmp_path):
+    import pandas
+
+    with RowStore(tmp_path) as rows:
+        rows.add(FULL)
+        rows.compact()
+    frame = pandas.read_parquet(tmp_path / "parts")
+    assert frame.loc[0, "duration"] == 12.5
+    assert list(frame.loc[0, "failed"]) == ["A", "B"]
+
+
+def test_a_row_is_kept_once(tmp_path):
+    with RowStore(tmp_path) as rows:
+        rows.add(row(1))
+        rows.add(row(1))
+    assert len((tmp_path / LOG).read_bytes().splitlines()) == 1
+
+
+@given(st.data())
+def test_a_log_that_is_cut_anywhere_keeps_all_whole_rows(tmp_path_factory, data):
+    folder = tmp_path_factory.mktemp("rows")
+    with RowStore(folder) as rows:
+        for number in range(4):
+            rows.add(row(number))
+    content = (folder / LOG).read_bytes()
+    cut = data.draw(st.integers(0, len(content)))
+    (folder / LOG).write_bytes(content[:cut])
+    whole = content[:cut].count(b"\n")
+    with RowStore(folder) as rows:
+        assert [one.seed for one in rows.rows.values()] == list(range(whole))
+        for number in range(4):
+            rows.add(row(number))
+    assert [one.seed for one in read_rows(folder)] == [0, 1, 2, 3]
+
+
+def test_a_line_that_is_damaged_is_left_out_and_counted(tmp_path):
+    with RowStore(tmp_path) as rows:
+        for number in range(3):
+            rows.add(row(number))
+    lines = (tmp_path / LOG).read_bytes().splitlines(keepends=True)
+    lines[1] = lines[1].replace(b"umad", b"amud")
+    (tmp_path / LOG).write_bytes(b"".join(lines))
+    with RowStore(tmp_path) as rows:
+        assert rows.damaged == 1
+        assert [one.seed for one in rows.rows.values()] == [0, 2]
+        rows.add(row(1))
+    assert {one.seed for one in read_rows(tmp_path)} == {0, 1, 2}
+
+
+def test_killed_between_the_part_and_the_log_no_row_is_there_twice(tmp_path):
+    with RowStore(tmp_path) as rows:
+        rows.add(row(1))
+        rows.add(row(2))
+    write_part(tmp_path, read_log(tmp_path).rows)  # and then it was killed
+    assert [one.seed for one in read_rows(tmp_path)] == [1, 2]
+    with RowStore(tmp_path) as rows:
+        assert len(rows.rows) == 2
+        rows.add(row(3))
+        rows.compact()
+    assert [one.seed for one in read_rows(tmp_path)] == [1, 2, 3]
+    import pandas
+
+    assert sorted(pandas.read_parquet(tmp_path / "parts")["seed"]) == [1, 2, 3]
+
+
+def test_killed_while_a_part_is_written_the_rows_are_in_the_log(tmp_path):
+    with RowStore(tmp_path) as rows:
+        rows.add(row(1))
+    (tmp_path / "parts").mkdir()
+    (tmp_path / "parts" / ".part-00001.parquet").write_bytes(b"PAR1 half of it")
+    assert [one.seed for one in read_rows(tmp_path)] == [1]
+    with RowStore(tmp_path) as rows:
+        rows.compact()
+    assert [one.seed for one in read_rows(tmp_path)] == [1]
+
+
+def test_one_process_at_a_time(tmp_path):
+    with (
+        RowStore(tmp_path),
+        pytest.raises(Conflict, match="another process evaluates into it"),
+    ):
+        RowStore(tmp_path)
+    RowStore(tmp_path).close()
+
+
+def test_without_pyarrow_rows_stay_in_the_log(tmp_path, monkeypatch):
+    monkeypatch.setattr(store, "can_write_parts", lambda: False)
+    with RowStore(tmp_path) as rows:
+        rows.add(row(1))
+        rows.compact()
+    assert not (tmp_path / "parts").exists()
+    assert read_rows(tmp_path) == (row(1),)
+    monkeypatch.undo()
+    with RowStore(tmp_path) as rows:
+        rows.compact()
+    monkeypatch.setattr(parts, "can_write_parts", lambda: False)
+    with pytest.raises(Unavailable, match=r"pip install 'argo-mission\[results\]'"):
+        read_rows(tmp_path)
+
+
+def test_a_part_that_is_damaged_is_named(tmp_path):
+    with RowStore(tmp_path) as rows:
+        rows.add(row(1))
+        rows.compact()
+    path = tmp_path / "parts" / "part-00001.parquet"
+    path.write_bytes(path.read_bytes()[:-8])
+    with pytest.raises(Unavailable, match=r"part-00001\.parquet: can't be read"):
+        read_rows(tmp_path)
+
+
+def test_no_folder_of_an_evaluation(tmp_path):
+    with pytest.raises(NotFound, match="has no rows"):
+        read_rows(tmp_path)
+
+
+def test_a_folder_that_can_not_be_written(tmp_path):
+    (tmp_path / "file").touch()
+    with pytest.raises(Unavailable, match="can't be made a folder"):
+        RowStore(tmp_path / "file" / "rows")

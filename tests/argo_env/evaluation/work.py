@@ -1,0 +1,28 @@
+"""What workers carry out in tests of evaluations: runs that kill them, or cost nothing."""
+
+import os
+import signal
+
+from argo_env.evaluation.carrying_out import RunOrder, carry_out
+from argo_env.evaluation.row import Row, RunOutcome, row_without_end
+
+
+def invented(order: RunOrder) -> Row:
+    """A row that costs nothing: every seventh world is a failure. That of world 500 kills its
+    worker."""
+    if order.spec.seed == 500:
+        os.kill(os.getpid(), signal.SIGKILL)
+    outcome = RunOutcome.FAILURE if order.spec.seed % 7 == 3 else RunOutcome.SUCCESS
+    row = row_without_end(order.key, order.case, order.spec, outcome, "invented")
+    return row.model_copy(update={"duration": 100.0 + order.spec.seed})
+
+
+def poisoned(order: RunOrder) -> Row:
+    """A real run, but for that of world 3."""
+    if order.spec.seed == 3:
+        os._exit(7)
+    return carry_out(order)
+
+
+def broken(order: RunOrder) -> Row:
+    raise RuntimeError(f"no run for {order.spec.seed}")

@@ -14,6 +14,7 @@ from argo_compiler.files.reading import read_bytes
 from argo_env.faults.reading import MAX_BYTES, FaultText, decode_faults
 from argo_env.files.folders import make_folder
 from argo_env.planning.opening import open_site
+from argo_env.robot.spec import load_robot
 from argo_env.run.drives_and_sensors import DRIVES, SENSORS
 from argo_env.run.journal import require_free
 from argo_env.run.record import RunRecord
@@ -29,7 +30,13 @@ from argo_planner.terminal.options import EndArea, Force, Optimise, SiteOption, 
 from argo_planner.terminal.run_display import carry_out_shown
 from argo_planner.terminal.signals import first_signal_deferred
 from argo_planner.use_cases.reporting import REPORT_FILES
-from argo_planner.use_cases.running import NO_MISSION, require_possible, with_mission
+from argo_planner.use_cases.running import (
+    NO_MISSION,
+    is_spec,
+    require_possible,
+    spec_of,
+    with_mission,
+)
 
 DEFAULT_PACE = 5.0
 
@@ -79,7 +86,15 @@ class _Outputs:
             require_free(self.keeping, self.force)
 
 
+_DECIDED = (
+    "site", "seed", "drive", "sensor", "optimise", "start_area", "end_area", "value", "event",
+    "faults",
+)  # fmt: skip
+"""options that the spec of a run has decided"""
+
+
 def run(
+    context: typer.Context,
     source: Source,
     site: SiteOption = "umad",
     seed: Annotated[int, typer.Option(help="draws what the checkpoints show", min=0)] = 0,
@@ -145,7 +160,8 @@ def run(
     ] = None,
     force: Force = False,
 ) -> None:
-    """Run a mission on a site, show what was measured, and write a report."""
+    """Run a mission on a site, show what was measured, and write a report. The spec of a run, as
+    `argo evaluate` keeps those that failed, is run as it is."""
     outputs = _Outputs(source, report, render, recording, journal, gui, pace, force)
     outputs.check(site, faults)
     said = _read_faults(faults) if faults else None
@@ -161,16 +177,21 @@ def run(
     )
     started = time.monotonic()
     upload = read_upload(source)
-    opened = open_site(site)
-    spec = spec.model_copy(update={"site": opened.reference})
-    require_possible(spec, opened, said)  # before it is long
-    imported = import_shown(upload, opened, start_area, end_area)
-    reordering = None
-    if optimise:
-        from argo_planner.terminal.reordering import optimise_shown  # brings the solvers
+    if is_spec(upload):
+        _refuse_decided(context, source)
+        spec = spec_of(upload)
+        opened = open_site(spec.site, load_robot(spec.robot))
+    else:
+        opened = open_site(site)
+        spec = spec.model_copy(update={"site": opened.reference})
+        require_possible(spec, opened, said)  # before it is long
+        imported = import_shown(upload, opened, start_area, end_area)
+        reordering = None
+        if optimise:
+            from argo_planner.terminal.reordering import optimise_shown  # brings the solvers
 
-        imported, reordering = optimise_shown(imported, opened)
-    spec = with_mission(spec, imported, reordering)
+            imported, reordering = optimise_shown(imported, opened)
+        spec = with_mission(spec, imported, reordering)
     if report:
         make_folder(report)  # now: what is refused before leaves none behind
     opened.prepare()
@@ -207,6 +228,15 @@ def _took(record: RunRecord, loading: float, running: float) -> str:
         f"Loading took {loading:.1f} s, the run {running:.1f} s: "
         f"{record.result.duration / max(1e-9, running):.0f} times real time."
     )
+
+
+def _refuse_decided(context: typer.Context, source: Path) -> None:
+    """Raises Invalid for options that change what a spec has decided."""
+    for name in _DECIDED:
+        given = context.get_parameter_source(name)
+        if given is not None and given.name == "COMMANDLINE":
+            option = "--" + name.replace("_", "-")
+            raise Invalid(f"{source}: is the spec of a run, in which {option} is decided already")
 
 
 def _read_faults(path: Path) -> FaultText:

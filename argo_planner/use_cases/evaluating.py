@@ -148,7 +148,10 @@ def ordered(imported: ImportedMission, site: OpenedSite, policy: str) -> Mission
         function = getattr(import_module(module), name)
     except (ImportError, AttributeError) as error:
         raise NotFound(f"policy `{policy}`: {error}") from None
-    mission = cast("object", function(imported.mission, site))
+    try:
+        mission = cast("object", function(imported.mission, site))
+    except Exception as error:  # whatever somebody's own function raises
+        raise Invalid(f"policy `{policy}`: {type(error).__name__}: {error}") from error
     if not isinstance(mission, Mission):
         raise Invalid(f"policy `{policy}`: gave {type(mission).__name__}, and no mission")
     return mission

@@ -1,5 +1,6 @@
 """Runs of missions: what they are told, and the spec that `argo_env.run.session` carries out."""
 
+import json
 import logging
 import math
 
@@ -11,8 +12,8 @@ from argo_env.faults.reading import FaultText
 from argo_env.planning.opening import OpenedSite
 from argo_env.run.record import Reordering
 from argo_env.run.rig import check_spec
-from argo_env.run.spec import RunSpec
-from argo_planner.use_cases.importing import ImportedMission
+from argo_env.run.spec import RunSpec, read_spec
+from argo_planner.use_cases.importing import ImportedMission, Upload
 
 _log = logging.getLogger(__name__)
 
@@ -53,6 +54,27 @@ def _reading(said: str) -> ReadingGiven:
     if not id.strip() or not math.isfinite(read):
         raise Invalid(f"write {READING}:ID=VALUE, such as {READING}:8=4.2")
     return ReadingGiven(id.strip(), read)
+
+
+def is_spec(upload: Upload) -> bool:
+    """Whether it is the spec of a run: JSON with a mission in it, and how that is run."""
+    content = upload.content
+    if not isinstance(content, bytes) or b'"mission"' not in content:
+        return False
+    try:
+        data = json.loads(content)
+    except (ValueError, RecursionError):
+        return False
+    return isinstance(data, dict) and {"mission", "drive", "seed"} <= data.keys()
+
+
+def spec_of(upload: Upload) -> RunSpec:
+    """The spec of a run. Raises Invalid, with the place, for one that makes no sense, and
+    DiagnosticError if its mission does not."""
+    assert isinstance(upload.content, bytes)
+    spec = read_spec(upload.content, upload.name)
+    lower(spec.mission, source_name=upload.name)
+    return spec
 
 
 def require_possible(spec: RunSpec, site: OpenedSite, faults: FaultText | None) -> None:

@@ -1,0 +1,274 @@
+"""`argo evaluate` as a person uses it: files, wrong input, kills, and what failed made again."""
+
+import json
+import os
+import random
+import signal
+import subprocess
+import sys
+import time
+from pathlib import Path
+
+import pytest
+
+from argo_compiler.errors import NotFound
+from argo_env.evaluation.store import read_rows
+
+MISSION = "scenarios/umad/missions/mission_1.txt"
+AREAS = ("--start-area", "1", "--end-area", "2")
+ROOT = Path(__file__).parents[2]
+
+FILE = """\
+name: stops
+missions:
+- file: {mission}
+  name: mission 1
+  start_area: 1
+  end_area: 2
+faults: [none, stop.yaml]
+seeds: 0..{last}
+worlds:
+  speed: [0.8, 1.0]
+"""
+STOP = "faults: [{kind: emergency_stop, at: 30}]\n"
+
+
+@pytest.fixture
+def file(tmp_path) -> Path:
+    (tmp_path / "stop.yaml").write_text(STOP)
+    path = tmp_path / "evaluation.yaml"
+    path.write_text(FILE.format(mission=ROOT / MISSION, last=4))
+    return path
+
+
+def test_a_file_is_evaluated_and_what_failed_is_made_again(argo, file, tmp_path):
+    out = tmp_path / "out"
+    said = argo("evaluate", file, "--out", out, "--workers", "2")
+    assert said.returncode == 0, said.stderr
+    assert "5 of 10 runs are no success" in said.stdout
+    assert "stop" in said.stdout
+    rows = read_rows(out)
+    assert len(rows) == 10
+    failed = [row for row in rows if not row.success]
+    assert {row.faults for row in failed} == {"stop"}
+    spec = out / "failing" / f"{failed[0].key}.json"
+    assert f"argo run {spec}" in said.stdout
+    alone = argo("run", spec, "--report", tmp_path / "alone")
+    assert alone.returncode == 1
+    record = json.loads((tmp_path / "alone" / "report.json").read_text())
+    assert record["result"]["duration"] == failed[0].duration
+    assert record["seed"] == failed[0].seed
+    refused = argo("run", spec, "--seed", "3")
+    assert refused.returncode == 2
+    assert "--seed is decided already" in refused.stderr
+
+
+def test_again_does_nothing_and_says_the_same(argo, file, tmp_path):
+    first = argo("evaluate", file, "--out", tmp_path / "out")
+    again = argo("evaluate", file, "--out", tmp_path / "out")
+    assert (first.returncode, again.returncode) == (0, 0)
+    assert again.stdout == first.stdout
+
+
+def test_requirements_are_in_the_exit_status(argo, tmp_path):
+    options = (MISSION, *AREAS, "--seeds", "0..199", "--out", tmp_path / "out")
+    met = argo("evaluate", *options, "--require", "success >= 0.5")
+    assert met.returncode == 0
+    assert "success >= 0.5: met" in met.stdout
+    assert len(read_rows(tmp_path / "out")) < 100
+    missed = argo(
+        "evaluate", MISSION, *AREAS, "--seeds", "0..99", "--out", tmp_path / "other",
+        "--require", "contact >= 0.5",
+    )  # fmt: skip
+    assert missed.returncode == 1
+    assert "missed" in missed.stdout
+
+
+def test_two_evaluations_are_compared(argo, file, tmp_path):
+    for name in ("a", "b"):
+        assert argo("evaluate", file, "--out", tmp_path / name).returncode == 0
+    said = argo("evaluate", "--compare", tmp_path / "a", tmp_path / "b")
+    assert said.returncode == 0
+    assert "No difference is shown." in said.stdout
+
+
+@pytest.mark.parametrize(
+    ("arguments", "message"),
+    [
+        ((), "give an evaluation's file, or missions"),
+        (("nowhere.yaml",), "nowhere.yaml"),
+        ((MISSION, "--seeds", "9..1"), "seeds `9..1`"),
+        ((MISSION, "--drive", "hover"), "no drive `hover`"),
+        ((MISSION, *AREAS, "--policy", "luck"), "no policy `luck`"),
+        ((MISSION, *AREAS, "--policy", "os:getcwd"), "policy `os:getcwd`"),
+        ((MISSION, *AREAS, "--require", "fun >= 0.5"), "nothing is known of `fun`"),
+        ((MISSION, *AREAS, "--faults", "nothing.yaml"), "nothing.yaml"),
+        ((MISSION, *AREAS, "--backend", "abacus"), "no back end `abacus`"),
+        (("--compare", "here", "there"), "here"),
+        ((MISSION, "--compare", "here", "there"), "give no missions"),
+    ],
+)
+def test_wrong_input_gets_one_message(argo, tmp_path, arguments, message):
+    said = argo("evaluate", *arguments, "--out", tmp_path / "out")
+    assert said.returncode == 2
+    assert message in said.stderr
+    assert "Traceback" not in said.stderr
+
+
+@pytest.mark.parametrize(
+    ("text", "message"),
+    [
+        ("missions: []\n", "missions"),
+        ("missions: [a.txt]\nseeds: x\n", "seeds"),
+        ("missions: [a.txt]\nworlds: {speed: [0.9, 1.4]}\n", "speed"),
+        ("missions: [a.txt\n", "is not YAML"),
+        ("missions: [a.txt]\nmission: [b]\n", "mission"),
+        ("missions: [a.txt]\nrequire: ['luck >= 1']\n", "luck"),
+    ],
+)
+def test_a_wrong_file_says_where(argo, tmp_path, text, message):
+    path = tmp_path / "wrong.yaml"
+    path.write_text(text)
+    said = argo("evaluate", path, "--out", tmp_path / "out")
+    assert said.returncode == 2
+    assert "wrong.yaml:" in said.stderr
+    assert message in said.stderr
+    assert not (tmp_path / "out").exists()
+
+
+def test_another_evaluation_is_not_overwritten(argo, file, tmp_path):
+    out = tmp_path / "out"
+    assert argo("evaluate", file, "--out", out).returncode == 0
+    said = argo("evaluate", MISSION, *AREAS, "--seeds", "0..1", "--out", out)
+    assert said.returncode == 2
+    assert "has another evaluation" in said.stderr
+    assert "--force" in said.stderr
+
+
+def test_more_seeds_go_on_from_the_rows_that_are_there(argo, file, tmp_path):
+    out = tmp_path / "out"
+    assert argo("evaluate", file, "--out", out).returncode == 0
+    before = {row.key for row in read_rows(out)}
+    file.write_text(FILE.format(mission=ROOT / MISSION, last=6))
+    assert argo("evaluate", file, "--out", out, "--force").returncode == 0
+    after = {row.key for row in read_rows(out)}
+    assert before < after
+    assert len(after) == 14
+
+
+def started(file: Path, out: Path) -> "subprocess.Popen[bytes]":
+    return subprocess.Popen(
+        [sys.executable, "-m", "argo_planner", "evaluate", file, "--out", out, "--workers", "2"],
+        cwd=ROOT,
+        stdout=subprocess.DEVNULL,
+        stderr=subprocess.DEVNULL,
+        start_new_session=True,
+    )
+
+
+def processes_of(session: int) -> list[int]:
+    """The other processes of a session."""
+    found = []
+    for name in os.listdir("/proc"):
+        if not name.isdecimal() or int(name) == session:
+            continue
+        try:
+            stat = Path(f"/proc/{name}/stat").read_text()
+            line = Path(f"/proc/{name}/cmdline").read_bytes()
+        except OSError:
+            continue
+        if int(stat.rpartition(")")[2].split()[3]) == session and b"resource_tracker" not in line:
+            found.append(int(name))
+    return found
+
+
+@pytest.fixture(scope="module")
+def long_file(tmp_path_factory) -> Path:
+    folder = tmp_path_factory.mktemp("long")
+    (folder / "stop.yaml").write_text(STOP)
+    path = folder / "evaluation.yaml"
+    path.write_text(FILE.format(mission=ROOT / MISSION, last=59))
+    return path
+
+
+@pytest.fixture(scope="module")
+def undisturbed(long_file, tmp_path_factory):
+    out = tmp_path_factory.mktemp("undisturbed") / "out"
+    assert started(long_file, out).wait(300) == 0
+    return sorted(read_rows(out), key=lambda row: row.key)
+
+
+KILLS = [pytest.param(3, id="3"), pytest.param(20, id="20", marks=pytest.mark.long)]
+
+
+@pytest.mark.parametrize("kills", KILLS)
+def test_killed_and_begun_again_the_rows_are_those_of_an_undisturbed_one(
+    long_file, undisturbed, tmp_path, kills
+):
+    """SIGKILL to the command, at any moment; each row that it had told stays, once."""
+    chosen, out = random.Random(kills), tmp_path / "out"
+    done = 0
+    for _ in range(kills):
+        process = started(long_file, out)
+        wanted = done + chosen.randint(1, max(1, 2 * len(undisturbed) // kills - 1))
+        while process.poll() is None and count(out) < min(wanted, len(undisturbed)):
+            time.sleep(0.01)
+        time.sleep(chosen.random() * 0.05)
+        os.kill(process.pid, signal.SIGKILL)
+        process.wait()
+        before, done = done, count(out)
+        assert done >= before
+    assert started(long_file, out).wait(300) == 0
+    assert sorted(read_rows(out), key=lambda row: row.key) == undisturbed
+
+
+@pytest.mark.parametrize("kills", KILLS)
+def test_killed_workers_change_nothing_of_the_rows(long_file, undisturbed, tmp_path, kills):
+    chosen, out = random.Random(100 + kills), tmp_path / "out"
+    process = started(long_file, out)
+    killed, last = 0, 0
+    while process.poll() is None and killed < kills:
+        # One more row between two kills, so that no run is hit each time that it is tried.
+        if count(out) > last and (workers := processes_of(process.pid)):
+            last = count(out)
+            os.kill(chosen.choice(workers), signal.SIGKILL)
+            killed += 1
+        time.sleep(0.01)
+    assert process.wait(300) == 0
+    assert killed == kills
+    assert sorted(read_rows(out), key=lambda row: row.key) == undisturbed
+
+
+def count(out: Path) -> int:
+    """Rows on disk."""
+    try:
+        return len(read_rows(out))
+    except NotFound:  # yet
+        return 0
+
+
+def test_no_worker_is_left_behind(long_file, tmp_path):
+    process = started(long_file, tmp_path / "out")
+    while count(tmp_path / "out") < 3:
+        time.sleep(0.02)
+    assert processes_of(process.pid)
+    os.kill(process.pid, signal.SIGKILL)
+    process.wait()
+    deadline = time.monotonic() + 30
+    while processes_of(process.pid) and time.monotonic() < deadline:
+        time.sleep(0.1)
+    assert not processes_of(process.pid)
+
+
+def test_ctrl_c_keeps_the_rows(long_file, tmp_path):
+    out = tmp_path / "out"
+    process = started(long_file, out)
+    while count(out) < 3:
+        time.sleep(0.02)
+    os.killpg(process.pid, signal.SIGINT)
+    assert process.wait(60) == 130
+    kept = count(out)
+    assert kept >= 3
+    again = started(long_file, out)
+    assert again.wait(300) == 0
+    assert count(out) == 120

@@ -69,7 +69,7 @@ class ArgoCommands(LazyGroup):
             "run",
             "run",
             "run",
-            "Run a mission on a site, show what was measured, and write a report.",
+            "Run a mission, or the spec of a run, show what was measured, and write a report.",
         ),
         _command(
             "resume",
@@ -87,8 +87,7 @@ class ArgoCommands(LazyGroup):
             "evaluate",
             "evaluate",
             "evaluate",
-            "Run missions many times, and say how sure they are to work and what breaks them; "
-            "exits with status 1 if a requirement is not met.",
+            "Run missions many times: how sure they work, what breaks them, which is better.",
         ),
         _command(
             "sites",

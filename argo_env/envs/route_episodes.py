@@ -56,7 +56,7 @@ class RouteOptions(Model):
 
 
 @dataclass(frozen=True)
-class Pool:
+class InstancePool:
     """Instances in arrays, one row for each; see `RouteInstance` for what they are."""
 
     numbers: NDArray[np.int64]
@@ -124,7 +124,7 @@ class Episodes:
         self.options = options
         self.source = self.source_of(options)
         self.instance = lru_cache(maxsize=_KEPT)(self._draw)
-        self._pool: Pool | None = None
+        self._pool: InstancePool | None = None
 
     def scenario_of(self, options: RouteOptions) -> str:
         """What messages call the scenario that the options ask for."""
@@ -149,7 +149,7 @@ class Episodes:
         return self.options.instance or (TEST if self.options.test else TRAINING)
 
     @property
-    def pool(self) -> Pool:
+    def pool(self) -> InstancePool:
         """All instances that episodes draw from, made when they are asked for."""
         if self._pool is None:
             source = self.source
@@ -236,7 +236,7 @@ def _drawn(source: RouteSource, options: RouteOptions, number: int) -> RouteInst
 
 def _make_pool(
     source: RouteSource, options: RouteOptions, numbers: range | tuple[int, ...]
-) -> Pool:
+) -> InstancePool:
     """The instances with these numbers in arrays."""
     made = [_drawn(source, options, number) for number in numbers]
     each = isinstance(options.instance, tuple)
@@ -249,7 +249,7 @@ def _make_pool(
         known += [instance, *(change.known for change in found)]
         known += [known[-1]] * (stages - 1 - len(found))
     nothing = np.zeros(made[0].size, np.int16)
-    return Pool(
+    return InstancePool(
         numbers=np.array(numbers, dtype=np.int64),
         each=each,
         stages=stages,

@@ -3,12 +3,12 @@
 from collections.abc import Iterator, Sequence
 
 from argo_env.evaluation.plan import EvaluationPlan, PlannedRun
-from argo_env.evaluation.rates import Verdict, judge_requirements, rate_of
-from argo_env.evaluation.row import Row
+from argo_env.evaluation.rates import Decision, judge_requirements, rate_of
+from argo_env.evaluation.row import RunRow
 from argo_env.evaluation.statistics.strata import Stratum, allocation
 
 
-def batches(plan: EvaluationPlan, rows: Sequence[Row]) -> Iterator[Iterator[PlannedRun]]:
+def batches(plan: EvaluationPlan, rows: Sequence[RunRow]) -> Iterator[Iterator[PlannedRun]]:
     """The runs of an evaluation, in batches. `rows` has those of all batches before when the next
     one is asked for, so that what is decided does not depend on which run was the quickest."""
     if plan.strata:
@@ -24,12 +24,12 @@ def batches(plan: EvaluationPlan, rows: Sequence[Row]) -> Iterator[Iterator[Plan
         yield plan.runs(plan.seeds[first : first + stopping.every])
 
 
-def is_enough(plan: EvaluationPlan, rows: Sequence[Row]) -> bool:
+def is_enough(plan: EvaluationPlan, rows: Sequence[RunRow]) -> bool:
     """Whether all that one stops for is reached."""
     stopping = plan.stopping
     if stopping.require:
         verdicts = judge_requirements(plan, rows)
-        if any(one.verdict is Verdict.OPEN for one in verdicts):
+        if any(one.verdict is Decision.OPEN for one in verdicts):
             return False
     if stopping.width is not None:
         rates = [rate_of(plan, name, rows) for name in plan.plans]
@@ -38,7 +38,7 @@ def is_enough(plan: EvaluationPlan, rows: Sequence[Row]) -> bool:
     return bool(stopping.require) or stopping.width is not None
 
 
-def _by_strata(plan: EvaluationPlan, rows: Sequence[Row]) -> Iterator[Iterator[PlannedRun]]:
+def _by_strata(plan: EvaluationPlan, rows: Sequence[RunRow]) -> Iterator[Iterator[PlannedRun]]:
     """First as many runs of each case, then where they tell most. No seed is used twice, so that
     the strata know nothing of each other."""
     seeds = iter(plan.seeds)
@@ -57,7 +57,7 @@ def _by_strata(plan: EvaluationPlan, rows: Sequence[Row]) -> Iterator[Iterator[P
         shares = allocation(_strata(plan, rows), min(left, plan.stopping.every * cases))
 
 
-def _strata(plan: EvaluationPlan, rows: Sequence[Row]) -> list[Stratum]:
+def _strata(plan: EvaluationPlan, rows: Sequence[RunRow]) -> list[Stratum]:
     whole = sum(case.weight for case in plan.cases)
     found = []
     for case in plan.cases:

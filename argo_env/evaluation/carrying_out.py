@@ -6,8 +6,8 @@ import traceback
 from dataclasses import dataclass
 
 from argo_compiler.errors import ArgoError
-from argo_env.evaluation.plan import Case
-from argo_env.evaluation.row import Row, RunOutcome, row_of, row_without_end
+from argo_env.evaluation.plan import EvaluationCase
+from argo_env.evaluation.row import RunOutcome, RunRow, row_of, row_without_end
 from argo_env.run.session import run
 from argo_env.run.spec import RunSpec
 
@@ -16,11 +16,11 @@ TOOK_TOO_LONG = 70
 
 
 @dataclass(frozen=True)
-class RunOrder:
+class WorkOrder:
     """What a worker is told: a run, and the key that its row has."""
 
     key: str
-    case: Case
+    case: EvaluationCase
     spec: RunSpec
     world: dict[str, float]
     """what was drawn for its world"""
@@ -28,14 +28,14 @@ class RunOrder:
     """s of wall time that it may take; then its process ends, and that is its reason"""
 
 
-def carry_out(order: RunOrder) -> Row:
+def carry_out(order: WorkOrder) -> RunRow:
     """Makes the run and its row. What goes wrong in the simulator is an outcome as well: one of
     many thousand runs must not end them all."""
     row = _row(order)
     return row.model_copy(update={"world": order.world})
 
 
-def _row(order: RunOrder) -> Row:
+def _row(order: WorkOrder) -> RunRow:
     watchdog = None
     if order.limit is not None:
         watchdog = threading.Timer(order.limit, os._exit, (TOOK_TOO_LONG,))

@@ -9,10 +9,10 @@ import numpy as np
 from argo_compiler.errors import Conflict
 from argo_env.evaluation.plan import PlanName
 from argo_env.evaluation.results import EvaluationResults
-from argo_env.evaluation.row import Row
+from argo_env.evaluation.row import RunRow
 from argo_env.evaluation.statistics.pairs import Difference, SuccessPairs, difference, power
 
-_Pairs = list[tuple[Row, Row]]
+_Pairs = list[tuple[RunRow, RunRow]]
 
 
 @dataclass(frozen=True)
@@ -21,7 +21,7 @@ class PlanComparison:
 
     first: str
     second: str
-    pairs: tuple[tuple[Row, Row], ...]
+    pairs: tuple[tuple[RunRow, RunRow], ...]
     """runs of both that were carried out"""
     lost: int
     """pairs of which one could not be carried out"""
@@ -74,7 +74,7 @@ class PlanComparison:
         return power(pairs.pairs, noise + gain, noise)
 
     @staticmethod
-    def _by_world(value: Callable[[Row], float], pairs: _Pairs) -> Difference:
+    def _by_world(value: Callable[[RunRow], float], pairs: _Pairs) -> Difference:
         worlds: dict[int, list[tuple[float, float]]] = {}
         for a, b in pairs:
             worlds.setdefault(a.seed, []).append((value(a), value(b)))

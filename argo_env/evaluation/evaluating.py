@@ -7,12 +7,12 @@ from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass
 
 from argo_env.evaluation.batches import batches
-from argo_env.evaluation.carrying_out import TOOK_TOO_LONG, RunOrder, carry_out
+from argo_env.evaluation.carrying_out import TOOK_TOO_LONG, WorkOrder, carry_out
 from argo_env.evaluation.plan import EvaluationPlan, PlanName, PlannedRun
 from argo_env.evaluation.pool.backend import WorkerBackend
 from argo_env.evaluation.pool.pool import Finished, Pool
 from argo_env.evaluation.results import EvaluationResults
-from argo_env.evaluation.row import Row, RunOutcome, row_without_end
+from argo_env.evaluation.row import RunOutcome, RunRow, row_without_end
 from argo_env.evaluation.store import RowStore
 
 _log = logging.getLogger(__name__)
@@ -60,7 +60,7 @@ class Evaluating:
         store: RowStore | None = None,
         *,
         limit: float | None = None,
-        call: Callable[[RunOrder], Row] = carry_out,
+        call: Callable[[WorkOrder], RunRow] = carry_out,
         clock: Callable[[], float] = time.monotonic,
     ) -> None:
         """`limit` (s of wall time) is what a run may take; `call` is what carries it out, in a
@@ -77,7 +77,7 @@ class Evaluating:
         self._begun = clock()
         self._known = 0
         self._order: dict[str, int] = {}
-        self._rows: list[Row] = []
+        self._rows: list[RunRow] = []
         self._outcomes: dict[PlanName, Counter[RunOutcome]] = {p: Counter() for p in plan.plans}
 
     @property
@@ -97,14 +97,14 @@ class Evaluating:
         rows = sorted(self._rows, key=lambda row: self._order[row.key])
         return EvaluationResults(self._plan, tuple(rows))
 
-    def rows_as_they_come(self) -> Iterator[Row]:
+    def rows_as_they_come(self) -> Iterator[RunRow]:
         """Makes all runs, and gives their rows; those that were there before come first."""
         for batch in batches(self._plan, self._rows):
             yield from self._carried_out(batch)
         if self._store is not None:
             self._store.compact()
 
-    def _carried_out(self, runs: Iterator[PlannedRun]) -> Iterator[Row]:
+    def _carried_out(self, runs: Iterator[PlannedRun]) -> Iterator[RunRow]:
         missing: list[tuple[PlannedRun, str]] = []
         for run in runs:
             key = self._plan.key(run)
@@ -124,7 +124,7 @@ class Evaluating:
                     self._store.compact()
             yield self._counted(row)
 
-    def _counted(self, row: Row) -> Row:
+    def _counted(self, row: RunRow) -> RunRow:
         self._rows.append(row)
         self._outcomes[row.plan][row.outcome] += 1
         return row
@@ -144,12 +144,12 @@ class Evaluating:
             case = self._plan.cases[run.case]
             self._pool.submit(
                 (run, key),
-                RunOrder(key, case, run.spec, self._plan.variation.drawn(run.seed), self._limit),
+                WorkOrder(key, case, run.spec, self._plan.variation.drawn(run.seed), self._limit),
             )
 
-    def _row(self, finished: Finished) -> Row:
+    def _row(self, finished: Finished) -> RunRow:
         run, key = finished.ticket
-        if isinstance(finished.value, Row):
+        if isinstance(finished.value, RunRow):
             return finished.value
         outcome, reason = RunOutcome.DIED, finished.died
         if reason is not None and reason.endswith(f"code {TOOK_TOO_LONG}"):

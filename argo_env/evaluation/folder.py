@@ -11,7 +11,7 @@ from argo_compiler.files.writing import write_whole
 from argo_compiler.model import Model
 from argo_env.evaluation.plan import EvaluationPlan
 from argo_env.evaluation.results import EvaluationResults
-from argo_env.evaluation.row import Row
+from argo_env.evaluation.row import RunRow
 from argo_env.evaluation.store import read_rows
 from argo_env.files.folders import make_folder
 
@@ -61,11 +61,11 @@ def read_results(folder: Path) -> EvaluationResults:
     """
     plan = kept_plan(folder)
     if plan is None:
-        raise NotFound(f"{folder}: has no evaluation: `argo evaluate` makes one")
+        raise NotFound(f"{folder}: has no evaluation")
     return EvaluationResults(plan, in_order(plan, read_rows(folder)))
 
 
-def in_order(plan: EvaluationPlan, rows: tuple[Row, ...]) -> tuple[Row, ...]:
+def in_order(plan: EvaluationPlan, rows: tuple[RunRow, ...]) -> tuple[RunRow, ...]:
     """Those rows that are of the plan, seed by seed and case by case."""
     cases = {(case.plan, case.faults): k for k, case in enumerate(plan.cases)}
     seeds = {seed: k for k, seed in enumerate(plan.seeds)}

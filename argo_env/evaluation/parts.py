@@ -8,7 +8,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from argo_compiler.errors import Unavailable
-from argo_env.evaluation.row import Row
+from argo_env.evaluation.row import RunRow
 from argo_env.files.checked_lines import sync_folder
 
 if TYPE_CHECKING:
@@ -28,7 +28,7 @@ def has_parts(folder: Path) -> bool:
     return bool(_numbers(folder))
 
 
-def write_part(folder: Path, rows: Sequence[Row]) -> Path:
+def write_part(folder: Path, rows: Sequence[RunRow]) -> Path:
     """Writes rows to one more file, which is whole or not there. Raises Unavailable where that
     can't be done."""
     import pyarrow
@@ -50,7 +50,7 @@ def write_part(folder: Path, rows: Sequence[Row]) -> Path:
     return path
 
 
-def read_parts(folder: Path) -> tuple[Row, ...]:
+def read_parts(folder: Path) -> tuple[RunRow, ...]:
     """The rows in all files, in the order in which they were written.
 
     Raises Unavailable if there are any, and pyarrow is missing or one can't be read.
@@ -64,7 +64,7 @@ def read_parts(folder: Path) -> tuple[Row, ...]:
         )
     from pyarrow import ArrowInvalid, parquet
 
-    rows: list[Row] = []
+    rows: list[RunRow] = []
     for number in numbers:
         path = folder / PARTS / f"part-{number:05d}.parquet"
         try:
@@ -72,7 +72,7 @@ def read_parts(folder: Path) -> tuple[Row, ...]:
             plain = parquet.ParquetFile(path).read().to_pylist(maps_as_pydicts="strict")
         except (OSError, ArrowInvalid) as error:
             raise Unavailable(f"{path}: can't be read: {error}") from error
-        rows += [Row.model_validate(one) for one in plain]
+        rows += [RunRow.model_validate(one) for one in plain]
     return tuple(rows)
 
 
@@ -84,7 +84,7 @@ def _numbers(folder: Path) -> list[int]:
     return sorted(int(found[1]) for name in names if (found := _NAME.fullmatch(name)))
 
 
-def _plain(row: Row) -> dict[str, Any]:
+def _plain(row: RunRow) -> dict[str, Any]:
     return row.model_dump(mode="json")
 
 
@@ -102,7 +102,7 @@ def _schema() -> "pyarrow.Schema":
     }
     plain = {str: text, float: number, int: count}
     fields = []
-    for name, field in Row.model_fields.items():
+    for name, field in RunRow.model_fields.items():
         kind = kinds.get(name)
         if kind is None:
             kind = next((plain[t] for t in plain if t.__name__ in str(field.annotation)), text)

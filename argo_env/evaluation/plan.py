@@ -10,7 +10,7 @@ from pydantic import Field
 import argo_compiler
 from argo_compiler.errors import Conflict, Invalid
 from argo_compiler.model import Model
-from argo_env.evaluation.requirement import Requirement
+from argo_env.evaluation.requirement import RateRequirement
 from argo_env.evaluation.worlds import NO_VARIATION, Variation
 from argo_env.run.spec import RunSpec
 
@@ -20,7 +20,7 @@ AS_WRITTEN = "as written"
 """the policy that keeps the mission's order"""
 
 
-class Case(Model):
+class EvaluationCase(Model):
     """One of the things that are run again and again, each time with another seed."""
 
     mission: str
@@ -72,7 +72,7 @@ class Stopping(Model):
 
     width: float | None = Field(default=None, gt=0, lt=1)
     """of the interval of each plan's rate of success, at 95 %"""
-    require: tuple[Requirement, ...] = ()
+    require: tuple[RateRequirement, ...] = ()
     """what each plan must hold: one stops as soon as it is decided for all"""
     every: int = Field(default=20, ge=1)
     """seeds after which one looks"""
@@ -82,7 +82,7 @@ class EvaluationPlan(Model):
     """What is to be evaluated. Each seed is one world, in which all cases are run."""
 
     name: str = "evaluation"
-    cases: tuple[Case, ...] = Field(min_length=1)
+    cases: tuple[EvaluationCase, ...] = Field(min_length=1)
     seeds: tuple[int, ...] = Field(min_length=1)
     variation: Variation = NO_VARIATION
     """what differs from world to world beside what seeds draw anyway"""

@@ -7,7 +7,7 @@ from enum import StrEnum
 
 from argo_compiler.errors import Invalid
 from argo_env.evaluation.plan import EvaluationPlan, PlanName
-from argo_env.evaluation.row import Row, RunOutcome
+from argo_env.evaluation.row import RunOutcome, RunRow
 from argo_env.evaluation.statistics.rates import clopper_pearson, wilson
 from argo_env.evaluation.statistics.sequences import ConfidenceSequence
 from argo_env.evaluation.statistics.strata import Stratum, stratified_rate
@@ -40,7 +40,7 @@ class PlanRate:
     method: IntervalMethod
 
 
-def success(row: Row) -> bool:
+def success(row: RunRow) -> bool:
     """Whether the mission was one."""
     return row.success
 
@@ -48,8 +48,8 @@ def success(row: Row) -> bool:
 def rate_of(
     evaluation: EvaluationPlan,
     plan: PlanName,
-    rows: Sequence[Row],
-    holds: Callable[[Row], bool] = success,
+    rows: Sequence[RunRow],
+    holds: Callable[[RunRow], bool] = success,
 ) -> PlanRate:
     """The rate of a plan over all its cases, from the rows of the evaluation. Runs that could not
     be carried out are left out, and counted."""
@@ -79,7 +79,7 @@ def rate_of(
 
 
 def world_means(
-    rows: Sequence[Row], weights: dict[str, float], holds: Callable[[Row], bool]
+    rows: Sequence[RunRow], weights: dict[str, float], holds: Callable[[RunRow], bool]
 ) -> dict[int, float]:
     """By seed, the weighted mean over the cases of a plan, for worlds in which all have run."""
     by_seed: dict[int, dict[str, bool]] = defaultdict(dict)
@@ -101,7 +101,7 @@ def quick_rate(outcomes: Counter[RunOutcome]) -> PlanRate:
     return PlanRate(rate.value, rate.low, rate.high, ran, lost, IntervalMethod.QUICK)
 
 
-class Verdict(StrEnum):
+class Decision(StrEnum):
     """What is known of a requirement."""
 
     MET = "met"
@@ -115,7 +115,7 @@ class RequirementVerdict:
 
     plan: PlanName
     requirement: str
-    verdict: Verdict
+    verdict: Decision
     low: float
     high: float
     """of the share, whenever one stops"""
@@ -123,7 +123,7 @@ class RequirementVerdict:
 
 
 def judge_requirements(
-    evaluation: EvaluationPlan, rows: Sequence[Row]
+    evaluation: EvaluationPlan, rows: Sequence[RunRow]
 ) -> tuple[RequirementVerdict, ...]:
     """What is shown by now, of each plan and requirement. It may be asked after each run: the
     chance that any of the verdicts on one plan is ever wrong is at most 5 %.
@@ -140,9 +140,9 @@ def judge_requirements(
             sequence.add(world_means(own, weights, requirement.holds).values())
             above = sequence.runs > 0 and sequence.is_above(requirement.share)
             below = sequence.runs > 0 and sequence.is_below(requirement.share)
-            verdict = Verdict.OPEN
+            verdict = Decision.OPEN
             if above or below:
-                verdict = Verdict.MET if above == requirement.at_least else Verdict.MISSED
+                verdict = Decision.MET if above == requirement.at_least else Decision.MISSED
             low, high = sequence.interval
             found.append(
                 RequirementVerdict(plan, str(requirement), verdict, low, high, sequence.runs)

@@ -10,11 +10,11 @@ from argo_compiler.errors import Invalid
 from argo_compiler.model import Model
 
 if TYPE_CHECKING:
-    from argo_env.evaluation.row import Row
+    from argo_env.evaluation.row import RunRow
 
 _FORM = re.compile(r"\s*([a-z_ ]+?)\s*(>=|<=)\s*([0-9.]+)\s*(%?)\s*")
 
-QUANTITIES: dict[str, Callable[["Row"], bool]] = {
+QUANTITIES: dict[str, Callable[["RunRow"], bool]] = {
     "success": lambda row: row.success,
     "contact": lambda row: row.contacts > 0,
     "mishap": lambda row: row.mishaps > 0,
@@ -28,7 +28,7 @@ GOOD = frozenset({"success", "detected"})
 """what one wants; the others one wants not"""
 
 
-class Requirement(Model):
+class RateRequirement(Model):
     """How often something must, or may, be so."""
 
     quantity: str
@@ -36,7 +36,7 @@ class Requirement(Model):
     share: float = Field(gt=0, lt=1)
 
     @model_validator(mode="after")
-    def _known(self) -> "Requirement":
+    def _known(self) -> "RateRequirement":
         if self.quantity not in QUANTITIES:
             known = ", ".join(QUANTITIES)
             raise ValueError(f"nothing is known of `{self.quantity}`; there are: {known}")
@@ -45,7 +45,7 @@ class Requirement(Model):
     def __str__(self) -> str:
         return f"{self.quantity} {'>=' if self.at_least else '<='} {self.share:g}"
 
-    def holds(self, row: "Row") -> bool:
+    def holds(self, row: "RunRow") -> bool:
         """Whether it is so in the run. A run that could not be carried out counts against the
         requirement."""
         if not row.carried_out:
@@ -53,7 +53,7 @@ class Requirement(Model):
         return QUANTITIES[self.quantity](row)
 
 
-def parse_requirement(text: str) -> Requirement:
+def parse_requirement(text: str) -> RateRequirement:
     """A requirement as people write it: `success >= 0.98`, `contact <= 1 %`. Raises Invalid."""
     found = _FORM.fullmatch(text)
     if found is None:
@@ -74,4 +74,4 @@ def parse_requirement(text: str) -> Requirement:
             f"requirement `{text}`: give a share between 0 and 1; that something is always or "
             "never so can't be shown by any number of runs"
         )
-    return Requirement(quantity=name, at_least=sign == ">=", share=share)
+    return RateRequirement(quantity=name, at_least=sign == ">=", share=share)

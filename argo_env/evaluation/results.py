@@ -15,7 +15,7 @@ from argo_env.evaluation.rates import (
     rate_of,
 )
 from argo_env.evaluation.requirement import QUANTITIES
-from argo_env.evaluation.row import Row, RunOutcome
+from argo_env.evaluation.row import RunOutcome, RunRow
 from argo_env.evaluation.statistics.rates import Rate, clopper_pearson
 
 if TYPE_CHECKING:
@@ -39,7 +39,7 @@ class EvaluationResults:
     """The rows of an evaluation, in the order of its plan, and what they say."""
 
     plan: EvaluationPlan
-    rows: tuple[Row, ...]
+    rows: tuple[RunRow, ...]
 
     @cached_property
     def outcomes(self) -> Counter[RunOutcome]:
@@ -52,11 +52,11 @@ class EvaluationResults:
         return self.outcomes[RunOutcome.ERROR] + self.outcomes[RunOutcome.DIED]
 
     @cached_property
-    def failing(self) -> tuple[Row, ...]:
+    def failing(self) -> tuple[RunRow, ...]:
         """The runs that were no success."""
         return tuple(row for row in self.rows if not row.success)
 
-    def of(self, plan: PlanName) -> tuple[Row, ...]:
+    def of(self, plan: PlanName) -> tuple[RunRow, ...]:
         """The rows of one of the plans."""
         return tuple(row for row in self.rows if row.plan == plan)
 
@@ -79,7 +79,7 @@ class EvaluationResults:
             for name in names
         )
 
-    def faults_of(self, row: Row) -> str:
+    def faults_of(self, row: RunRow) -> str:
         """What went wrong in a run: the faults of its case, or those that were drawn."""
         if self.plan.variation.faults is None:
             return row.faults
@@ -134,7 +134,7 @@ class EvaluationResults:
         return f"<table><thead><tr>{head}</tr></thead><tbody>{''.join(lines)}</tbody></table>"
 
 
-def _group(plan: PlanName, name: str, rows: Sequence[Row], drawn: bool = False) -> GroupRate:
+def _group(plan: PlanName, name: str, rows: Sequence[RunRow], drawn: bool = False) -> GroupRate:
     ran = [row for row in rows if row.carried_out]
     rate = clopper_pearson(sum(row.success for row in ran), len(ran))
     return GroupRate(plan, name, rate, Counter(row.outcome for row in rows), drawn)

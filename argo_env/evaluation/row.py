@@ -7,7 +7,7 @@ from pydantic import Field
 
 from argo_compiler.model import Model
 from argo_env.evaluation.detection import FaultDetection, detections, false_alarms
-from argo_env.evaluation.plan import Case, PlanName
+from argo_env.evaluation.plan import EvaluationCase, PlanName
 from argo_env.run.record import RunRecord
 from argo_env.run.spec import RunSpec
 from argo_env.site.shapes import Vector
@@ -25,7 +25,7 @@ class RunOutcome(StrEnum):
     """the process that carried it out died, each time that it was tried"""
 
 
-class Row(Model):
+class RunRow(Model):
     """What is kept of a run. Equal runs have equal rows, wherever they are carried out."""
 
     key: str
@@ -90,7 +90,7 @@ class Row(Model):
         return self.outcome in (RunOutcome.SUCCESS, RunOutcome.FAILURE)
 
 
-def row_of(key: str, case: Case, spec: RunSpec, record: RunRecord) -> Row:
+def row_of(key: str, case: EvaluationCase, spec: RunSpec, record: RunRecord) -> RunRow:
     """The row of a run that was carried out."""
     result = record.result
     done = {run.task for run in record.tasks if run.outcome == "done"}
@@ -122,13 +122,17 @@ def row_of(key: str, case: Case, spec: RunSpec, record: RunRecord) -> Row:
     )
 
 
-def row_without_end(key: str, case: Case, spec: RunSpec, outcome: RunOutcome, reason: str) -> Row:
+def row_without_end(
+    key: str, case: EvaluationCase, spec: RunSpec, outcome: RunOutcome, reason: str
+) -> RunRow:
     """The row of a run that could not be carried out."""
     return _bare(key, case, spec, outcome, reason)
 
 
-def _bare(key: str, case: Case, spec: RunSpec, outcome: RunOutcome, reason: str) -> Row:
-    return Row(
+def _bare(
+    key: str, case: EvaluationCase, spec: RunSpec, outcome: RunOutcome, reason: str
+) -> RunRow:
+    return RunRow(
         key=key,
         mission=case.mission,
         policy=case.policy,

@@ -17,7 +17,7 @@ from pydantic import ValidationError
 
 from argo_compiler.errors import Conflict, NotFound, Unavailable
 from argo_env.evaluation.parts import can_write_parts, has_parts, read_parts, write_part
-from argo_env.evaluation.row import Row
+from argo_env.evaluation.row import RunRow
 from argo_env.files.checked_lines import (
     checked_line,
     checked_object,
@@ -62,11 +62,11 @@ class RowStore:
             self._rows.setdefault(row.key, row)
 
     @property
-    def rows(self) -> dict[str, Row]:
+    def rows(self) -> dict[str, RunRow]:
         """All rows by their keys."""
         return self._rows
 
-    def add(self, row: Row) -> None:
+    def add(self, row: RunRow) -> None:
         """Keeps a row, unless it is there already. Raises Unavailable if the disk is full."""
         if row.key in self._rows:
             return
@@ -115,7 +115,7 @@ class RowStore:
         self.close()
 
 
-def read_rows(folder: Path) -> tuple[Row, ...]:
+def read_rows(folder: Path) -> tuple[RunRow, ...]:
     """All rows in a folder, as far as they are there now; also while another process adds some.
 
     Raises NotFound if it is no folder of an evaluation, Unavailable if pyarrow is missing.
@@ -134,7 +134,7 @@ def read_rows(folder: Path) -> tuple[Row, ...]:
 class LoggedRows:
     """The rows in a log."""
 
-    rows: tuple[Row, ...]
+    rows: tuple[RunRow, ...]
     size: int
     """bytes up to the end of the last whole line"""
     damaged: int
@@ -152,7 +152,7 @@ def read_log(folder: Path) -> LoggedRows:
     for line in content[:size].splitlines():
         data = checked_object(line)
         try:
-            rows.append(Row.model_validate(data))
+            rows.append(RunRow.model_validate(data))
         except ValidationError:
             damaged += 1
     return LoggedRows(tuple(rows), size, damaged)

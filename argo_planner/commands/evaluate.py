@@ -22,7 +22,7 @@ from argo_env.evaluation.folder import (
 )
 from argo_env.evaluation.plan import AS_WRITTEN, NO_FAULTS, EvaluationPlan
 from argo_env.evaluation.pool.backends import BACKENDS, PROCESSES, make_backend
-from argo_env.evaluation.rates import Verdict
+from argo_env.evaluation.rates import Decision
 from argo_env.evaluation.results import EvaluationResults
 from argo_env.evaluation.store import RowStore
 from argo_env.run.drives_and_sensors import DRIVES, IDEAL, SENSORS
@@ -115,8 +115,7 @@ def evaluate(
     ] = None,
     force: Force = False,
 ) -> None:
-    """Run missions many times in worlds that differ, and say how sure they are to work, what breaks
-    them and which is better."""
+    """Run missions many times: how sure they work, what breaks them, which is better."""
     console = Console(highlight=False)
     if compare is not None:
         if sources:
@@ -132,7 +131,7 @@ def evaluate(
     results = _carried_out(plan, where, backend, workers, address, limit)
     failing = write_failing(where, results)
     show_results(results, failing, console)
-    if any(verdict.verdict is not Verdict.MET for verdict in results.verdicts):
+    if any(verdict.verdict is not Decision.MET for verdict in results.verdicts):
         raise typer.Exit(1)
 
 

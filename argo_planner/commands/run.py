@@ -160,8 +160,7 @@ def run(
     ] = None,
     force: Force = False,
 ) -> None:
-    """Run a mission on a site, show what was measured, and write a report. The spec of a run, as
-    `argo evaluate` keeps those that failed, is run as it is."""
+    """Run a mission, or the spec of a run, show what was measured, and write a report."""
     outputs = _Outputs(source, report, render, recording, journal, gui, pace, force)
     outputs.check(site, faults)
     said = _read_faults(faults) if faults else None

@@ -11,13 +11,13 @@ from rich.table import Table
 
 from argo_env.evaluation.comparison import PlanComparison
 from argo_env.evaluation.plan import PlanName
-from argo_env.evaluation.rates import IntervalMethod, Verdict
+from argo_env.evaluation.rates import Decision, IntervalMethod
 from argo_env.evaluation.results import EvaluationResults, GroupRate
 from argo_env.evaluation.row import RunOutcome
 from argo_env.evaluation.statistics.pairs import Difference
 from argo_env.formatting import clock
 
-_STYLES = {Verdict.MET: "bold green", Verdict.MISSED: "bold red", Verdict.OPEN: "bold yellow"}
+_STYLES = {Decision.MET: "bold green", Decision.MISSED: "bold red", Decision.OPEN: "bold yellow"}
 _NAMED = 10  # failing runs that are shown
 
 

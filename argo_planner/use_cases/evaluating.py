@@ -15,7 +15,7 @@ from argo_env.evaluation.file import DrawnFaults, EvaluationFile, MissionEntry
 from argo_env.evaluation.plan import (
     AS_WRITTEN,
     NO_FAULTS,
-    Case,
+    EvaluationCase,
     EvaluationPlan,
     Stopping,
     parse_seeds,
@@ -80,7 +80,7 @@ def plan_evaluation(
 
 def _cases(
     file: EvaluationFile, folder: Path, read: Callable[[Path], Upload], sets: list[FaultSet]
-) -> Iterator[Case]:
+) -> Iterator[EvaluationCase]:
     names: dict[str, str] = {}
     for said in file.missions:
         entry = MissionEntry(file=said) if isinstance(said, str) else said
@@ -110,13 +110,15 @@ def _cases(
                                 yield case_of(name, policy, spec, faults, opened)
 
 
-def case_of(name: str, policy: str, spec: RunSpec, faults: FaultSet, opened: OpenedSite) -> Case:
+def case_of(
+    name: str, policy: str, spec: RunSpec, faults: FaultSet, opened: OpenedSite
+) -> EvaluationCase:
     """A case of an evaluation with these faults. Raises ArgoError if no run can have them there."""
     if faults.said is not None:
         faults.said.require_fit(opened.site, spec.seed)
     spec = spec.model_copy(update={"faults": faults.faults})
     check_spec(spec, opened.site)
-    return Case(
+    return EvaluationCase(
         mission=name,
         policy=policy,
         faults=faults.name,

@@ -8,7 +8,8 @@ from typing import Any
 from argo_env.evaluation.pool.backend import WorkerBackend, WorkerDiedError
 
 ATTEMPTS = 3
-"""times that a call is tried whose worker dies; from the second one on alone, in a fresh worker"""
+"""deaths of a worker from which on its call is given up: those of which no other call can be the
+reason"""
 _AHEAD = 3  # calls a worker that are handed over at once, so that none waits for the next
 
 
@@ -30,7 +31,10 @@ class Finished:
 class _Call:
     ticket: Any
     argument: Any
-    attempts: int = 0
+    deaths: int = 0
+    """of its workers that are its own"""
+    alone: bool = False
+    """whether no other call can be the reason if its worker dies now"""
 
 
 class Pool:
@@ -87,14 +91,16 @@ class Pool:
             # One after the other, and alone: who dies then is to blame.
             if not self._under_way:
                 self._backend.mend()
-                self._begin(self._suspects.popleft())
+                self._begin(self._suspects.popleft(), alone=True)
             return
+        alone = self._backend.names_the_dead
         while self._suspects:
-            self._begin(self._suspects.popleft())
+            self._begin(self._suspects.popleft(), alone)
         while self._waiting and len(self._under_way) < _AHEAD * self._backend.workers:
-            self._begin(self._waiting.popleft())
+            self._begin(self._waiting.popleft(), alone)
 
-    def _begin(self, call: _Call) -> None:
+    def _begin(self, call: _Call, alone: bool) -> None:
+        call.alone = alone
         try:
             handle = self._backend.submit(self._call, call.argument)
         except WorkerDiedError:
@@ -108,8 +114,9 @@ class Pool:
         try:
             return Finished(call.ticket, self._backend.result(handle))
         except WorkerDiedError as death:
-            call.attempts += 1
-            if call.attempts >= ATTEMPTS:
+            if call.alone:
+                call.deaths += 1
+            if call.deaths >= ATTEMPTS:
                 return Finished(call.ticket, died=str(death))
             self._suspects.append(call)
             return None

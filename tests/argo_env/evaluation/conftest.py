@@ -3,7 +3,7 @@
 import pytest
 
 from argo_compiler.il import Action, Mission, Task, Transition
-from argo_env.evaluation.plan import Case, EvaluationPlan
+from argo_env.evaluation.plan import EvaluationCase, EvaluationPlan
 from argo_env.planning.opening import open_site
 from argo_env.run.spec import RunSpec
 
@@ -33,5 +33,5 @@ def mission() -> Mission:
 @pytest.fixture(scope="session")
 def plan(mission) -> EvaluationPlan:
     """The short mission in ten worlds, by travel times."""
-    case = Case(mission="short", spec=RunSpec(mission=mission, drive="route"))
+    case = EvaluationCase(mission="short", spec=RunSpec(mission=mission, drive="route"))
     return EvaluationPlan(cases=(case,), seeds=tuple(range(10)))

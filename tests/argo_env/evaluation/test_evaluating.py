@@ -2,11 +2,11 @@
 
 import pytest
 
-from argo_env.evaluation.carrying_out import RunOrder, carry_out
+from argo_env.evaluation.carrying_out import WorkOrder, carry_out
 from argo_env.evaluation.evaluating import Evaluating
-from argo_env.evaluation.plan import Case, EvaluationPlan, Stopping
+from argo_env.evaluation.plan import EvaluationCase, EvaluationPlan, Stopping
 from argo_env.evaluation.pool.backends import make_backend
-from argo_env.evaluation.rates import IntervalMethod, Verdict
+from argo_env.evaluation.rates import Decision, IntervalMethod
 from argo_env.evaluation.requirement import parse_requirement
 from argo_env.evaluation.row import RunOutcome
 from argo_env.evaluation.store import RowStore, read_rows
@@ -39,8 +39,8 @@ def faulty(mission) -> EvaluationPlan:
     spec = RunSpec(mission=mission, drive="route")
     return EvaluationPlan(
         cases=(
-            Case(mission="short", spec=spec),
-            Case(
+            EvaluationCase(mission="short", spec=spec),
+            EvaluationCase(
                 mission="short",
                 faults="stop",
                 spec=spec.model_copy(update={"faults": EMERGENCY}),
@@ -56,7 +56,7 @@ def alone(faulty):
     """The rows as this process makes them, one after the other."""
     return tuple(
         carry_out(
-            RunOrder(
+            WorkOrder(
                 faulty.key(run), faulty.cases[run.case], run.spec, faulty.variation.drawn(run.seed)
             )
         )
@@ -103,7 +103,7 @@ def test_what_goes_wrong_in_the_simulator_is_another_outcome(processes, plan):
     assert results.rows[3].reason == "RuntimeError: no run for 3"
     nowhere = plan.cases[0].spec.model_copy(update={"site": "nowhere"})
     case = plan.cases[0].model_copy(update={"spec": nowhere})
-    row = carry_out(RunOrder("k", case, nowhere, {}))
+    row = carry_out(WorkOrder("k", case, nowhere, {}))
     assert row.outcome is RunOutcome.ERROR
     assert "nowhere" in row.reason
 
@@ -111,7 +111,7 @@ def test_what_goes_wrong_in_the_simulator_is_another_outcome(processes, plan):
 def test_a_run_that_takes_too_long_ends(processes, mission):
     # Of so many steps that it takes far longer than it may.
     slow = RunSpec(mission=mission, drive="tracked", sensor="camera")
-    plan = EvaluationPlan(cases=(Case(mission="slow", spec=slow),), seeds=(1,))
+    plan = EvaluationPlan(cases=(EvaluationCase(mission="slow", spec=slow),), seeds=(1,))
     results = evaluated(plan, processes, limit=0.05)
     assert results.rows[0].outcome is RunOutcome.DIED
     assert results.rows[0].reason == "the run took longer than it may"
@@ -133,7 +133,7 @@ def test_only_what_is_missing_is_made(processes, plan, tmp_path):
 
 @pytest.mark.parametrize(
     ("required", "verdict"),
-    [("success >= 0.7", Verdict.MET), ("success >= 0.97", Verdict.MISSED)],
+    [("success >= 0.7", Decision.MET), ("success >= 0.97", Decision.MISSED)],
 )
 def test_it_stops_when_a_requirement_is_decided(processes, plan, required, verdict):
     """Six of seven worlds succeed."""
@@ -162,7 +162,7 @@ def test_what_is_stopped_for_does_not_depend_on_how_many_work(plan):
 def test_strata_get_runs_where_they_tell_most(processes, plan):
     spec = plan.cases[0].spec
     cases = tuple(
-        Case(mission="m", faults=name, spec=spec, weight=weight)
+        EvaluationCase(mission="m", faults=name, spec=spec, weight=weight)
         for name, weight in (("nothing", 0.95), ("rare", 0.05))
     )
     strata = EvaluationPlan(
@@ -179,7 +179,7 @@ def test_strata_get_runs_where_they_tell_most(processes, plan):
 def test_runs_of_one_world_are_no_independent_runs(processes, plan):
     """The interval of several faults in the same worlds is that over worlds."""
     spec = plan.cases[0].spec
-    cases = tuple(Case(mission="m", faults=name, spec=spec) for name in "abc")
+    cases = tuple(EvaluationCase(mission="m", faults=name, spec=spec) for name in "abc")
     several = EvaluationPlan(cases=cases, seeds=tuple(range(100)))
     single = plan.model_copy(update={"seeds": tuple(range(100))})
     rate = evaluated(several, processes, call=work.invented).rate(several.plans[0])
@@ -198,7 +198,7 @@ def test_the_frame_has_a_line_for_each_row(processes, faulty, alone):
 
 def test_a_limit_that_is_missed_is_a_failure(processes):
     spec = RunSpec(mission=short_mission(limit=5.0), drive="route")
-    plan = EvaluationPlan(cases=(Case(mission="hurried", spec=spec),), seeds=(1, 2))
+    plan = EvaluationPlan(cases=(EvaluationCase(mission="hurried", spec=spec),), seeds=(1, 2))
     results = evaluated(plan, processes)
     assert results.outcomes == {RunOutcome.FAILURE: 2}
     assert "late" not in results.rows[0].reason

@@ -8,12 +8,12 @@ from argo_compiler.errors import Conflict, NotFound, Unavailable
 from argo_env.evaluation import parts, store
 from argo_env.evaluation.detection import FaultDetection
 from argo_env.evaluation.parts import write_part
-from argo_env.evaluation.row import Row, RunOutcome
+from argo_env.evaluation.row import RunOutcome, RunRow
 from argo_env.evaluation.store import LOG, RowStore, read_log, read_rows
 
 
-def row(number: int, **others) -> Row:
-    return Row(
+def row(number: int, **others) -> RunRow:
+    return RunRow(
         key=f"{number:024x}", mission="m", policy="as written", site="umad", robot="tracker",
         drive="route", sensor="ideal", faults="none", seed=number, outcome=RunOutcome.SUCCESS,
         reason="done", **others,

@@ -3,11 +3,11 @@
 import os
 import signal
 
-from argo_env.evaluation.carrying_out import RunOrder, carry_out
-from argo_env.evaluation.row import Row, RunOutcome, row_without_end
+from argo_env.evaluation.carrying_out import WorkOrder, carry_out
+from argo_env.evaluation.row import RunOutcome, RunRow, row_without_end
 
 
-def invented(order: RunOrder) -> Row:
+def invented(order: WorkOrder) -> RunRow:
     """A row that costs nothing: every seventh world is a failure. That of world 500 kills its
     worker."""
     if order.spec.seed == 500:
@@ -17,12 +17,12 @@ def invented(order: RunOrder) -> Row:
     return row.model_copy(update={"duration": 100.0 + order.spec.seed})
 
 
-def poisoned(order: RunOrder) -> Row:
+def poisoned(order: WorkOrder) -> RunRow:
     """A real run, but for that of world 3."""
     if order.spec.seed == 3:
         os._exit(7)
     return carry_out(order)
 
 
-def broken(order: RunOrder) -> Row:
+def broken(order: WorkOrder) -> RunRow:
     raise RuntimeError(f"no run for {order.spec.seed}")

@@ -1,0 +1,145 @@
+"""How fast evaluations are: runs a second, what is lost beside the simulation, and two workers
+beside one, for each back end.
+
+    python -m benchmarks.evaluate
+    python -m benchmarks.evaluate --runs 1000 --kinematic 100 --backend processes
+    python -m benchmarks.evaluate --power
+
+The time outside the simulation is that of the whole with one worker, without its start, less that
+of the same runs one after the other in this process; the two alternate in parts, so that other work
+on the machine slows both. Memory is the most that workers have taken by the first and by the last
+tenth of the runs.
+With `--power`: how often two plans with a known difference are told apart.
+"""
+
+import argparse
+import gc
+import resource
+import time
+from collections.abc import Iterator
+from pathlib import Path
+
+import numpy as np
+
+from argo_env.evaluation.carrying_out import WorkOrder, carry_out
+from argo_env.evaluation.evaluating import Evaluating
+from argo_env.evaluation.plan import EvaluationCase, EvaluationPlan
+from argo_env.evaluation.pool.backends import BACKENDS, make_backend
+from argo_env.evaluation.row import RunOutcome, RunRow
+from argo_env.evaluation.statistics.pairs import SuccessPairs, power
+from argo_env.planning.opening import open_site
+from argo_env.run.spec import RunSpec
+from argo_planner.use_cases.importing import Upload, import_mission
+
+SCRIPT = Path("scenarios/umad/missions/mission_1.txt")
+_PARTS = 5
+
+
+def plan_of(drive: str, seeds: range) -> EvaluationPlan:
+    """Mission #1 with a drive, in the worlds of these seeds."""
+    upload = Upload(str(SCRIPT), SCRIPT.read_bytes())
+    mission = import_mission(upload, open_site("umad").prepare(), 1, 2).mission
+    case = EvaluationCase(mission="mission 1", spec=RunSpec(mission=mission, drive=drive))
+    return EvaluationPlan(cases=(case,), seeds=tuple(seeds))
+
+
+def with_memory(order: WorkOrder) -> RunRow:
+    """A run whose row says how much memory its worker has taken (MB) by its end."""
+    row = carry_out(order)
+    gc.collect()
+    taken = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss / 1024
+    return row.model_copy(update={"world": {"memory": taken}})
+
+
+def parts(seeds: int) -> Iterator[range]:
+    """The seeds in some parts, each as large as the others."""
+    size = -(-seeds // _PARTS)
+    for first in range(0, seeds, size):
+        yield range(first, min(seeds, first + size))
+
+
+def measure(name: str, drive: str, runs: int) -> None:
+    """Prints what a back end makes of so many runs."""
+    plan = plan_of(drive, range(runs))
+    took = {1: 0.0, 2: 0.0}
+    alone = 0.0
+    backends = {workers: make_backend(name, workers) for workers in took}
+    memory: list[float] = []
+    try:
+        for backend in backends.values():  # they open the site
+            list(Evaluating(plan_of(drive, range(10_000, 10_008)), backend).rows_as_they_come())
+        for run in plan_of(drive, range(20_000, 20_002)).runs():
+            carry_out(WorkOrder("", plan.cases[0], run.spec, {}))
+        for part in parts(runs):
+            partial = plan.model_copy(update={"seeds": tuple(part)})
+            for workers, backend in backends.items():
+                begun = time.perf_counter()
+                evaluating = Evaluating(partial, backend, call=with_memory)
+                rows = list(evaluating.rows_as_they_come())
+                took[workers] += time.perf_counter() - begun
+                memory += [row.world["memory"] for row in rows if row.outcome is RunOutcome.SUCCESS]
+                assert len(rows) == len(part)
+            begun = time.perf_counter()
+            for run in partial.runs():
+                with_memory(WorkOrder("", partial.cases[0], run.spec, {}))
+            alone += time.perf_counter() - begun
+    finally:
+        for backend in backends.values():
+            backend.close()
+    tenth = max(1, len(memory) // 10)
+    print(
+        f"{name:<10} {drive:<10} {runs:>5} runs: {runs / took[1]:6.1f} a second with one worker, "
+        f"{runs / took[2]:6.1f} with two ({took[1] / took[2]:.2f} times as many), "
+        f"{100 * (took[1] / alone - 1):+5.1f} % beside the simulation, memory of a worker "
+        f"{max(memory[:tenth]):.0f} MB after a tenth of the runs, {max(memory[-tenth:]):.0f} MB "
+        "after all",
+        flush=True,
+    )
+
+
+def show_power(comparisons: int = 2_000) -> None:
+    """Prints how often plans are told apart whose difference is known, and how often one that is
+    compared with itself is."""
+    rng = np.random.default_rng(0)
+    for worlds in (100, 300, 1_000):
+        for better, worse in ((0.95, 0.90), (0.98, 0.95)):
+            # As hard worlds are hard for both: half of what fails fails together.
+            common = (1 - better) / 2
+            only_better, only_worse = (1 - worse) - common, (1 - better) - common
+            counts = rng.multinomial(
+                worlds, [only_better, only_worse, 1 - only_better - only_worse], comparisons
+            )
+            found = sum(
+                SuccessPairs(int(both), int(a), int(b), 0).p_value <= 0.05 for a, b, both in counts
+            )
+            expected = power(worlds, only_better, only_worse)
+            print(
+                f"{worlds:>5} worlds, {better:.0%} beside {worse:.0%}: told apart in "
+                f"{found / comparisons:.0%} of {comparisons} comparisons ({expected:.0%} reckoned)"
+            )
+    same = 0
+    for _ in range(comparisons):
+        done = rng.random(300) < 0.9
+        same += SuccessPairs.of(done, done).p_value <= 0.05
+    print(f"a plan beside itself: a difference in {same} of {comparisons} comparisons")
+
+
+def main() -> None:
+    """Measures what the command line asks for."""
+    parser = argparse.ArgumentParser(description=__doc__.partition("\n")[0])
+    parser.add_argument("--runs", type=int, default=200, help="with `route`")
+    parser.add_argument("--kinematic", type=int, default=20, help="runs with `kinematic`")
+    parser.add_argument("--backend", choices=[*BACKENDS], nargs="*", default=[*BACKENDS])
+    parser.add_argument("--power", action="store_true", help="of comparisons, and nothing else")
+    asked = parser.parse_args()
+    if asked.power:
+        show_power()
+        return
+    for name in asked.backend:
+        for drive, runs in (("route", asked.runs), ("kinematic", asked.kinematic)):
+            if runs:
+                measure(name, drive, runs)
+
+
+if __name__ == "__main__":
+    main()

@@ -4,6 +4,7 @@ What common jobs need is here by name, and imported when it is first used:
 
 - a site that is ready for work: `open_site`;
 - a run on it: `simulate` a `RunSpec`, which gives a `RunRecord`; or step and steer a `Simulation`;
+- many runs, and what they say: `Evaluation`, `Variation`, `read_results`, `compare_plans`;
 - what is left of it: `write_report`, `write_overview`, `write_film`, `read_recording`;
 - faults from a file: `read_faults`.
 
@@ -17,15 +18,20 @@ from argo_compiler.lazy_names import lazy_names
 from argo_env.envs.registration import register_with_gymnasium
 
 __all__ = [
+    "Evaluation",
+    "EvaluationResults",
     "Navigator",
     "OpenedSite",
     "RunRecord",
     "RunSpec",
     "Simulation",
     "Site",
+    "Variation",
+    "compare_plans",
     "open_site",
     "read_faults",
     "read_recording",
+    "read_results",
     "simulate",
     "site_names",
     "write_film",
@@ -34,6 +40,11 @@ __all__ = [
 ]
 
 if TYPE_CHECKING:
+    from argo_env.evaluation.comparison import compare_plans
+    from argo_env.evaluation.evaluation import Evaluation
+    from argo_env.evaluation.folder import read_results
+    from argo_env.evaluation.results import EvaluationResults
+    from argo_env.evaluation.worlds import Variation
     from argo_env.faults.reading import read_faults
     from argo_env.navigation import Navigator
     from argo_env.pictures import write_film, write_overview
@@ -49,6 +60,11 @@ else:
     __getattr__, __dir__ = lazy_names(
         __name__,
         {
+            "evaluation.comparison": ["compare_plans"],
+            "evaluation.evaluation": ["Evaluation"],
+            "evaluation.folder": ["read_results"],
+            "evaluation.results": ["EvaluationResults"],
+            "evaluation.worlds": ["Variation"],
             "faults.reading": ["read_faults"],
             "navigation": ["Navigator"],
             "pictures": ["write_film", "write_overview"],

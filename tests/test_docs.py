@@ -6,6 +6,8 @@ from pathlib import Path
 import pytest
 import yaml
 
+from argo_env.evaluation.file import decode_evaluation
+from argo_env.faults.distribution import decode_distribution
 from argo_env.faults.reading import decode_faults
 from argo_planner.use_cases.routing import parse_requirements
 from argo_planner.use_cases.sites import check_site, uploaded_site
@@ -40,6 +42,7 @@ def is_a_site(text, page):
 
 READERS = {
     "docs/diagnostics.md": lambda text, _page: yaml.safe_load(text),  # steps of somebody's CI
+    "docs/evaluating.md": lambda text, page: decode_evaluation(text.encode(), page),
     "docs/faults.md": lambda text, page: decode_faults(text.encode(), page),
     "docs/routes.md": lambda text, page: parse_requirements(text.encode(), page),
     "docs/sites.md": is_a_site,
@@ -50,3 +53,8 @@ READERS = {
 def test_yaml_snippets_are_accepted(page):
     """Those of a page as one file."""
     READERS[page]("".join(YAML[page]), page)
+
+
+def test_the_distribution_of_faults_is_accepted():
+    (text,) = snippets("yml")["docs/evaluating.md"]
+    assert len(decode_distribution(text.encode(), "docs/evaluating.md").chances) == 2

@@ -1,6 +1,6 @@
 """The best order of a mission's checkpoints: the problem, its solvers, and what they suggest."""
 
-from argo_compiler.route.evaluation import Evaluation, evaluate
+from argo_compiler.route.evaluation import RouteEvaluation, evaluate
 from argo_compiler.route.problem import (
     NEVER,
     EnergyBudget,
@@ -17,10 +17,10 @@ from argo_compiler.route.suggestion import RouteSuggestion, suggest_route
 __all__ = [
     "NEVER",
     "EnergyBudget",
-    "Evaluation",
     "Objective",
     "Precedence",
     "Round",
+    "RouteEvaluation",
     "RouteProblem",
     "RouteSuggestion",
     "SearchProgress",

@@ -10,7 +10,7 @@ from argo_compiler.route.problem import NEVER, Objective, Round, RouteProblem, T
 
 
 @dataclass(frozen=True)
-class Evaluation:
+class RouteEvaluation:
     """What a route is worth; times in the problem's units."""
 
     prize: int
@@ -39,7 +39,7 @@ class Evaluation:
                 return 0
 
 
-def evaluate(problem: RouteProblem, route: Tour) -> Evaluation:
+def evaluate(problem: RouteProblem, route: Tour) -> RouteEvaluation:
     """What the route is worth, and what it does not keep to.
 
     Raises Invalid if it names a visit or a charger that there isn't.
@@ -80,13 +80,13 @@ class _Walk:
         self._arrivals: dict[int, int] = {}
         self._waiting = 0
 
-    def evaluation(self) -> Evaluation:
+    def evaluation(self) -> RouteEvaluation:
         problem, order = self._problem, self._route.order
         prize = sum(problem.visits[visit].prize for visit in set(order))
         self._check_precedences()
         if not self._check_selection():
             nowhere = (NEVER,) * len(order)
-            return Evaluation(prize, NEVER, 0, nowhere, tuple(self._violations))
+            return RouteEvaluation(prize, NEVER, 0, nowhere, tuple(self._violations))
         used = 0 if problem.battery is None else problem.battery.used
         state = _State(0, used, frozenset([problem.size]))
         position, between = 0, {len(order)}
@@ -108,7 +108,7 @@ class _Walk:
         if not set(self._route.charges) <= between:
             self._violations.append("it charges within a round, or outside of the order")
         arrivals = tuple(self._arrivals.get(visit, NEVER) for visit in order)
-        return Evaluation(prize, duration, self._waiting, arrivals, tuple(self._violations))
+        return RouteEvaluation(prize, duration, self._waiting, arrivals, tuple(self._violations))
 
     def _check_selection(self) -> bool:
         """Whether there is a way to follow: no round is torn, and no visit made twice."""

@@ -12,7 +12,7 @@ from argo_compiler.reorder.mission import MissionRoute, require_known
 from argo_compiler.reorder.requirements import Requirements
 from argo_compiler.reorder.rewriting import apply_route
 from argo_compiler.route.certificate import Certificate, certify
-from argo_compiler.route.evaluation import Evaluation, evaluate
+from argo_compiler.route.evaluation import RouteEvaluation, evaluate
 from argo_compiler.route.problem import Tour
 from argo_compiler.route.robust import suggest_robust_route
 from argo_compiler.route.robust_sampling import Completion, Draws, completion
@@ -48,7 +48,7 @@ class Suggested:
     travel: SiteTravel
 
     @property
-    def written(self) -> Evaluation:
+    def written(self) -> RouteEvaluation:
         """What the order is worth in which the mission is written."""
         return evaluate(self.planned.problem, self.planned.written)
 

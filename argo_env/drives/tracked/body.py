@@ -209,7 +209,7 @@ class TrackedBody(Connection):
         self._return_to(state)
         memory = (
             self._command, self._speed, self._turn, self._push,
-            tuple(self._belts.bends), tuple(self._contacts), tuple(self._presses.found.items()),
+            tuple(self._belts.bends), tuple(self._contacts), self._presses.memory(),
         )  # fmt: skip
         return Snapshot(state, memory)
 
@@ -220,7 +220,7 @@ class TrackedBody(Connection):
             self._command, self._speed, self._turn, self._push, bends, contacts, pressed
         ) = snapshot.memory  # fmt: skip
         self._belts.bends, self._contacts = list(bends), list(contacts)
-        self._presses.found = dict(pressed)
+        self._presses.remember(pressed)
         # PyBullet keeps no targets of motors.
         self._drive_flippers()
         self._show()

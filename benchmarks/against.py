@@ -31,18 +31,35 @@ Work = Callable[[], object]
 
 
 def drive_free() -> Work:
-    """50 steps of Drive-v0 with random actions, from a start in the open."""
+    """50 steps of Drive-v0, turning to and fro where there is room to turn."""
     import numpy as np
 
     env = _drive_env()
+    env.reset(seed=3)
     rng = np.random.default_rng(0)
     actions = rng.uniform(-1.0, 1.0, (50, 3)).astype(np.float32)
+    actions[:, 0] = 0.0
+
+    def work() -> None:
+        for action in actions:
+            *_, info = env.step(action)
+            assert not info["touched"]
+
+    return work
+
+
+def drive_random() -> Work:
+    """50 steps of Drive-v0 with random actions, as at the start of training."""
+    import numpy as np
+
+    env = _drive_env()
+    env.reset(seed=3)
+    actions = np.random.default_rng(0).uniform(-1.0, 1.0, (50, 3)).astype(np.float32)
 
     def work() -> None:
         for action in actions:
             env.step(action)
 
-    env.reset(seed=3)
     return work
 
 
@@ -76,6 +93,7 @@ def tracked() -> Work:
 
 CASES: dict[str, tuple[Callable[[], Work], int]] = {
     "drive-free": (drive_free, 4),
+    "drive-random": (drive_random, 4),
     "drive-contact": (drive_contact, 4),
     "kinematic": (kinematic, 2),
     "tracked": (tracked, 1),

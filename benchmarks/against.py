@@ -82,8 +82,20 @@ def drive_contact() -> Work:
 
 
 def kinematic() -> Work:
-    """Mission #1 with the drive `kinematic`, on a site that is open."""
+    """Mission #1 with the drive `kinematic`, after a run of it in the same process."""
+    work = _mission_run("mission_1.txt", "kinematic", 1, 2)
+    work()
+    return work
+
+
+def kinematic_first() -> Work:
+    """The first run of a process: it imports the simulator and plans the ways, too."""
     return _mission_run("mission_1.txt", "kinematic", 1, 2)
+
+
+def kinematic_rounds() -> Work:
+    """Protocol #3 with its rounds, as the first run of a process."""
+    return _mission_run("protocol_3.txt", "kinematic", None, None)
 
 
 def tracked() -> Work:
@@ -95,7 +107,9 @@ CASES: dict[str, tuple[Callable[[], Work], int]] = {
     "drive-free": (drive_free, 4),
     "drive-random": (drive_random, 4),
     "drive-contact": (drive_contact, 4),
-    "kinematic": (kinematic, 2),
+    "kinematic": (kinematic, 3),
+    "kinematic-first": (kinematic_first, 1),
+    "kinematic-rounds": (kinematic_rounds, 1),
     "tracked": (tracked, 1),
 }
 """What prepares the work of each case, and how many times a process does it."""

@@ -3,7 +3,7 @@
 from argo_env.closing import NonCopyable
 from argo_env.drives.drive import DriveStatus
 from argo_env.drives.flipper_motion import FLAT, RAISED, RATE
-from argo_env.drives.support import resting_poses
+from argo_env.drives.support import ground_memory
 from argo_env.drives.timed_drive import TimedDrive
 from argo_env.navigation.path import Motion, wrap
 from argo_env.robot.pose import BodyPose
@@ -23,6 +23,7 @@ class KinematicDrive(NonCopyable, TimedDrive):
     def __init__(self, world: World, robot: RobotSpec, time_step: float = 0.1) -> None:
         super().__init__(robot, time_step)
         self._world = world
+        self._ground = ground_memory(world.solids, robot.track_length, robot.track_gauge)
         self._flippers = RAISED
         self._motion: Motion | None = None
         self._poses: list[BodyPose] = []  # along the motion
@@ -47,7 +48,7 @@ class KinematicDrive(NonCopyable, TimedDrive):
     def _pose_at(self, motion: Motion, share: float) -> BodyPose:
         if motion is not self._motion:
             self._motion = motion
-            self._poses = resting_poses(self._world, motion, self._robot)
+            self._poses = self._ground.resting_poses(self._world, motion, self._robot)
         return _interpolated(self._poses, share)
 
     def _move_flippers(self) -> None:

@@ -6,18 +6,26 @@ flight's slope; past the last nosing the robot tips onto the landing. The flippe
 reality, so height and pitch are averaged over a short way.
 """
 
+import math
+import struct
+from functools import lru_cache
+
 import numpy as np
 from numpy.typing import NDArray
 
 from argo_env.navigation.path import Motion
 from argo_env.robot.pose import BodyPose
 from argo_env.robot.spec import RobotSpec
+from argo_env.site.shapes import Element
 from argo_env.world.world import World
 
 STEP = 0.05  # m between the places along a path where the support is found
 _EASING = 0.3  # m over which height and pitch are averaged
 _PROBE_SPACING = 0.03  # m along a track
 _PROBE_HEIGHT = 0.5  # m above the path from where the ground is looked for
+_DEPTH = 2.0  # m below that the probes end
+_SITES = 4  # whose ground is remembered
+_MOTIONS = 2000  # on each; one takes some 5 kB
 
 
 def resting(
@@ -79,3 +87,39 @@ def _averaged(values: NDArray[np.float64], window: int) -> NDArray[np.float64]:
     half = np.minimum(window // 2, np.minimum(k, k[::-1]))
     sums = np.concatenate([[0.0], np.cumsum(values)])
     return np.asarray((sums[k + half + 1] - sums[k - half]) / (2 * half + 1))
+
+
+class GroundMemory:
+    """How the robot rests along motions, remembered for the next run: runs go the same ways again
+    and again, and the probes are much of what one takes. Only where nothing that moves is near."""
+
+    def __init__(self) -> None:
+        self._known: dict[bytes, list[BodyPose]] = {}
+
+    def resting_poses(self, world: World, motion: Motion, robot: RobotSpec) -> list[BodyPose]:
+        """As the function of this name. The list is shared: it must not be changed."""
+        a, b = motion.start, motion.end
+        around = math.hypot(robot.track_length, robot.track_gauge) / 2
+        low = min(a.x, b.x) - around, min(a.y, b.y) - around, min(a.z, b.z) - _DEPTH
+        high = max(a.x, b.x) + around, max(a.y, b.y) + around, max(a.z, b.z) + _PROBE_HEIGHT
+        if not world.only_solids_between(low, high):
+            return resting_poses(world, motion, robot)
+        # To the bit: zeros have signs.
+        key = struct.pack("9d", a.x, a.y, a.z, a.yaw, b.x, b.y, b.z, b.yaw, motion.turn)
+        poses = self._known.get(key)
+        if poses is None:
+            poses = resting_poses(world, motion, robot)
+            if len(self._known) >= _MOTIONS:
+                self._known.clear()
+            self._known[key] = poses
+        return poses
+
+
+@lru_cache(maxsize=_SITES)
+def ground_memory(
+    solids: tuple[Element, ...],  # noqa: ARG001
+    track_length: float,  # noqa: ARG001
+    track_gauge: float,  # noqa: ARG001
+) -> GroundMemory:
+    """The memory of the ground that these solids make, for robots with such tracks (m)."""
+    return GroundMemory()

@@ -15,8 +15,14 @@ ENVIRONMENTS: dict[str, dict[str, str]] = {
         "entry_point": "argo_env.envs.route:RouteEnv",
         "vector_entry_point": "argo_env.envs.route_batch:RouteVectorEnv",
     },
-    "argo/Drive-v0": {"entry_point": "argo_env.envs.drive:DriveEnv"},
-    "argo/Inspect-v0": {"entry_point": "argo_env.envs.inspection:InspectEnv"},
+    "argo/Drive-v0": {
+        "entry_point": "argo_env.envs.drive:DriveEnv",
+        "vector_entry_point": "argo_env.envs.drive_batch:DriveVectorEnv",
+    },
+    "argo/Inspect-v0": {
+        "entry_point": "argo_env.envs.inspection:InspectEnv",
+        "vector_entry_point": "argo_env.envs.inspection_batch:InspectVectorEnv",
+    },
 }
 """What is registered, by id: the tests run over all of them."""
 

@@ -2,9 +2,11 @@
 
 import math
 import tempfile
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from pathlib import Path
 from typing import Any
+
+import numpy as np
 
 from argo_compiler.catalog import CheckpointKind
 from argo_env.files import resources
@@ -12,14 +14,19 @@ from argo_env.robot.pose import BodyPose
 from argo_env.robot.spec import RobotSpec, robot_folder
 from argo_env.site import Site, SiteCheckpoint
 from argo_env.site.index import ElementIndex
-from argo_env.site.shapes import WALKING_ROLES, Box, Element, Solid, Vector
+from argo_env.site.shapes import WALKING_ROLES, Box, Element, Solid, Vector, half_extents
 from argo_env.site.urdf import to_urdf
+from argo_env.world.clearance import Bounds, Clearance
 from argo_env.world.placement import AS_PLANNED, Placement, displaced
 from argo_env.world.pybullet_client import Connection, pybullet
 
 _ROBOT_BIT = 2
 SITE_BIT = 1
 """collision filter group of all but the robot"""
+STANDING = ("_track", "_flipper")
+"""how the names of the links end that the robot stands on"""
+_OBJECT = 0.5  # m from the middle of a checkpoint that it reaches at most
+_INDICATOR = 0.15  # m that a needle or lever reaches beyond where it is now, at most
 
 
 class Bodies(Connection):
@@ -37,6 +44,11 @@ class Bodies(Connection):
         self.robot = robot
         self._solids = elements
         self._placements: dict[int, Placement] = {}
+        self._pose = BodyPose(0.0, 0.0, 0.0, 0.0)
+        self._posture: dict[str, float] = {}
+        self._envelope: tuple[Bounds, Bounds] | None = None  # in this posture
+        self._clearance: Clearance | None = None  # of what stands where it stands now
+        self._moved = True  # whether anything but the robot has, since collisions were looked for
         self._screens: dict[int, str] = {}
         self._site_body = self._load_site()
         self._checkpoints = {c.id: self._load_checkpoint(c) for c in site.checkpoints}
@@ -58,11 +70,14 @@ class Bodies(Connection):
 
     def place_robot(self, pose: BodyPose) -> None:
         """Puts the robot there, whatever is in the way."""
+        self._pose = pose
         self._place(self._robot_body, (pose.x, pose.y, pose.z), (pose.roll, pose.pitch, pose.yaw))
 
     def set_joints(self, positions: Mapping[str, float]) -> None:
         """Puts joints of the robot to positions (rad), by name."""
         for name, position in positions.items():
+            if self._posture.get(name) != position:
+                self._posture[name], self._envelope = position, None
             pybullet.resetJointState(
                 self._robot_body, self._joints[name], position, physicsClientId=self._client
             )
@@ -90,6 +105,7 @@ class Bodies(Connection):
         body = self._checkpoints[checkpoint_id]
         joint = self._joint_indices(body)["indicator"]
         pybullet.resetJointState(body, joint, position, physicsClientId=self._client)
+        self._moved = True
 
     def displace(self, checkpoint_id: int, placement: Placement) -> None:
         """Puts a checkpoint elsewhere than planned; NotFound if there is no such checkpoint."""
@@ -98,6 +114,7 @@ class Bodies(Connection):
         actual = self.in_place(checkpoint_id)
         rpy = (placement.roll, 0.0, planned.yaw + placement.turn)
         self._place(self._checkpoints[checkpoint_id], actual.position, rpy)
+        self._moved, self._clearance = True, None
         self._detect()
 
     def placement(self, checkpoint_id: int) -> Placement:
@@ -141,6 +158,41 @@ class Bodies(Connection):
         del self._screens[number]
         pybullet.removeBody(number, physicsClientId=self._client)
         self._detect()
+
+    def only_solids_between(self, low: Vector, high: Vector) -> bool:
+        """Whether no checkpoint and nothing else that moves reaches into a box (m)."""
+        places = (self.in_place(id).position for id in self._checkpoints)
+        return not self._screens and not any(
+            all(a - _OBJECT < v < b + _OBJECT for a, v, b in zip(low, place, high, strict=True))
+            for place in places
+        )
+
+    def _is_clear(self) -> bool:
+        """Whether the robot surely has no contact with anything that it must not touch."""
+        if self._moved or self._screens:
+            return False
+        if self._clearance is None:
+            parts = [(e.material, s) for e in self._solids for s in e.solids]
+            half = np.array([half_extents(solid) for _, solid in parts])
+            center = np.array([solid.center for _, solid in parts])
+            objects = [self._box(b, self._links(b)) for b in self._checkpoints.values()]
+            low = [center - half, *(box.low[None] - _INDICATOR for box in objects)]
+            high = [center + half, *(box.high[None] + _INDICATOR for box in objects)]
+            walking = [m in self._walking for m, _ in parts] + [False] * len(objects)
+            solids = Bounds(np.concatenate(low), np.concatenate(high))
+            self._clearance = Clearance(solids, np.array(walking))
+        if self._envelope is None:
+            self._place(self._robot_body, (0.0, 0.0, 0.0), (0.0, 0.0, 0.0))
+            upper = [k for k, name in self._robot_links.items() if not name.endswith(STANDING)]
+            body = self._robot_body
+            self._envelope = self._box(body, self._robot_links), self._box(body, upper)
+            self.place_robot(self._pose)
+        return self._clearance.is_clear(self._pose, *self._envelope, self.contact_breaking)
+
+    def _box(self, body: int, links: Iterable[int]) -> Bounds:
+        """The upright box around links of a body."""
+        boxes = [pybullet.getAABB(body, link, physicsClientId=self._client) for link in links]
+        return Bounds.around([Bounds(np.array(low), np.array(high)) for low, high in boxes])
 
     def _name(self, body: int, link: int, point: Vector) -> str:
         """What a link of a body is called, at a point of it (m)."""

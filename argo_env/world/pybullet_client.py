@@ -18,6 +18,8 @@ from argo_env.site.shapes import Vector
 
 _one = threading.Lock()
 """held by whoever sets what PyBullet has once only, for all connections and threads"""
+_breaking: float | None = None
+"""the `contact_breaking` (m) that was set last; None: PyBullet's own, or it may be"""
 
 
 @contextmanager
@@ -66,11 +68,14 @@ class Connection(Closing):
     """m between two bodies from where on PyBullet keeps no contact of theirs"""
 
     def __init__(self, gui: bool = False) -> None:
+        global _breaking
         if gui:
             with _unheard():
                 self._client: int = pybullet.connect(pybullet.GUI)
         else:
             self._client = pybullet.connect(pybullet.DIRECT)
+        with _one:
+            _breaking = None
         if self._client < 0:
             raise Unavailable("PyBullet gives no connection: it has 1,024 at most")
         # There are no more than 1,024 connections, and not all that holds one gets closed.
@@ -83,20 +88,30 @@ class Connection(Closing):
     @contextmanager
     def _in_contact(self) -> Iterator[None]:
         """For all that looks for contacts: PyBullet has one `contact_breaking` for all connections,
-        so it is set each time, and no other thread gets in between."""
+        so it is set where another had its own, and no other thread gets in between."""
         with _one:
             self._set_breaking()
             yield
 
     def _set_breaking(self) -> None:
-        pybullet.setPhysicsEngineParameter(
-            contactBreakingThreshold=self.contact_breaking, physicsClientId=self._client
-        )
+        global _breaking
+        if _breaking != self.contact_breaking:
+            _breaking = self.contact_breaking
+            pybullet.setPhysicsEngineParameter(
+                contactBreakingThreshold=_breaking, physicsClientId=self._client
+            )
 
     def _detect(self) -> None:
         """Looks for collisions; rays are tested against where bodies were at the last time."""
-        with self._in_contact():
+        with _one:  # not `_in_contact`, as it runs in each time step
+            self._set_breaking()
             pybullet.performCollisionDetection(physicsClientId=self._client)
+
+    def _simulate(self) -> None:
+        """One step of the physics."""
+        with _one:  # likewise
+            self._set_breaking()
+            pybullet.stepSimulation(physicsClientId=self._client)
 
     def _render(
         self, view: Sequence[float], projection: Sequence[float], size: tuple[int, int]

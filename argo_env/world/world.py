@@ -13,10 +13,10 @@ from argo_compiler.errors import Remedy, Unavailable
 from argo_env.robot.spec import RobotSpec
 from argo_env.site import Site
 from argo_env.site.shapes import Element, Vector
-from argo_env.world.bodies import SITE_BIT, Bodies
+from argo_env.world.bodies import SITE_BIT, STANDING, Bodies
 from argo_env.world.pybullet_client import pybullet
 
-_MAX_RAYS = 16_000  # PyBullet refuses batches larger than 16,384
+_MAX_RAYS = 256  # in a batch: what few give is freed before Python looks for garbage in it
 _TOUCH_DEPTH = 0.001  # m of overlap from which a touch counts
 _HULL = ("base_link", "left_track", "right_track", "left_flipper", "right_flipper")
 _ARM = {  # links of the arm, and what of the robot each could hit
@@ -81,6 +81,7 @@ class World(Bodies):
         self.on_shot: Callable[[Shot], None] | None = None
         """told each picture that a camera of the robot takes"""
         self._felt: tuple[Touch, ...] | None = None
+        self._was_clear = False
         if gui:
             self._look_at_site()
 
@@ -91,18 +92,15 @@ class World(Bodies):
 
     def touches(self) -> tuple[Touch, ...]:
         """Where the robot touches what it must not: all but tracks and flippers on the ground."""
-        self._detect()
         found = []
-        for contact in pybullet.getContactPoints(
-            bodyA=self._robot_body, physicsClientId=self._client
-        ):
+        for contact in self._contacts():
             body, link_a, link_b, point, distance = (
                 contact[2], contact[3], contact[4], contact[6], contact[8],
             )  # fmt: skip
             link = self._robot_links[link_a]
             stands = (
                 body == self._site_body
-                and link.endswith(("_track", "_flipper"))
+                and link.endswith(STANDING)
                 and self._site_links[link_b] in self._walking
             )
             if self._felt is not None and link not in _ARM:
@@ -111,6 +109,20 @@ class World(Bodies):
                 found.append(Touch(link, self._name(body, link_b, point), point, -distance))
         felt, self._felt = self._felt, None if self._felt is None else ()
         return (*(felt or ()), *found)
+
+    def _contacts(self) -> Sequence[tuple[Any, ...]]:
+        """PyBullet's contacts of the robot; none where it is clear of all that it must not touch,
+        as it was the last time. That once more makes PyBullet forget the contacts from before."""
+        clear, before = self._is_clear(), self._was_clear
+        self._was_clear = clear
+        if clear and before:
+            return ()
+        self._detect()
+        self._moved = False
+        contacts: Sequence[tuple[Any, ...]] = pybullet.getContactPoints(
+            bodyA=self._robot_body, physicsClientId=self._client
+        )
+        return contacts
 
     def arm_obstacle(self, positions: Mapping[str, float], clearance: float) -> str | None:
         """What the arm would come nearer to than `clearance` (m) with its joints at `positions`

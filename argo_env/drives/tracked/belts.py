@@ -16,10 +16,10 @@ Contact = tuple[Any, ...]
 
 Wrench = tuple[float, float, float, float, float, float]
 
-_LINK, _OTHER, _POINT, _NORMAL, _FORCE = 3, 4, 5, 7, 9  # what is where in such a row
+_COLUMNS = 10  # of such a row, up to the force along the normal
 _SMOOTH = 0.05  # of the grip is left on walls and rails, so that the robot does not climb them
-_SUMS = 14  # force; its slip along and across, place and square of place along the body;
-# tangent and its moment; place
+_NOTHING = (0.0,) * 14  # force; its slip along and across, place and square of place along the
+# body; tangent and its moment; place
 _BELTS = 4  # left and right track, left and right flipper
 INNER, TRACK_TOP = 0.16, 0.355  # m: tracks lie outside of this and below that, the hull does not
 _CAP = 1.5  # of the weight, up to which contacts stiffen the belts; keeps impacts stable
@@ -94,73 +94,76 @@ class Belts:
         axes: tuple[float, ...],
         velocity: tuple[float, float, float],
         spin: tuple[float, float, float],
-    ) -> tuple[list[list[float]], float, list[Contact]]:
-        """What `_SUMS` says of each belt, over its contacts; the force (N) of all in the order of
-        the contacts; and the contacts of no belt."""
-        # Plain floats: this runs 240 times a simulated second.
+    ) -> tuple[list[tuple[float, ...]], float, list[Contact]]:
+        """The sums that `_NOTHING` tells of for each belt, over its contacts; the force (N) of all
+        in the order of the contacts; and the contacts of no belt."""
+        # Plain floats in local variables: this runs 240 times a simulated second.
         px, py, pz = place
         fx, lx, ux, fy, ly, uy, fz, lz, uz = axes
         vx, vy, vz = velocity
         wx, wy, wz = spin
         _, center_y, center_z = self._center
-        sums = [[0.0] * _SUMS for _ in range(_BELTS)]
+        left_speed, right_speed = speeds
+        sums: list[tuple[float, ...]] = [_NOTHING] * _BELTS
         strange = []
         total = 0.0
         for contact in contacts:
-            force = contact[_FORCE]
+            _, _, _, link, other, (x, y, z), _, (nx, ny, nz), _, force = contact[:_COLUMNS]
             if force <= 0.0:
                 continue
-            x, y, z = contact[_POINT]
             x, y, z = x - px, y - py, z - pz
             left = x * lx + y * ly + z * lz + center_y
-            if contact[_LINK] >= 0:
+            if link >= 0:
                 belt = 2
-            elif abs(left) > INNER and x * ux + y * uy + z * uz + center_z < TRACK_TOP:
+            elif (left > INNER or left < -INNER) and (
+                x * ux + y * uy + z * uz + center_z < TRACK_TOP
+            ):
                 belt = 0
             else:
                 strange.append(contact)
                 continue
-            if contact[_OTHER] != walking:
+            if other != walking:
                 strange.append(contact)
-            nx, ny, nz = contact[_NORMAL]
             # The belt runs along its left axis times the normal.
             tx, ty, tz = ly * nz - lz * ny, lz * nx - lx * nz, lx * ny - ly * nx
             length = sqrt(tx * tx + ty * ty + tz * tz)
             if length < 0.01:
                 continue  # a flank, where nothing runs
             # From here on the tangent is the force times the unit vector.
-            if contact[_OTHER] != walking:
+            if other != walking:
                 force *= _SMOOTH
             tx, ty, tz = force * tx, force * ty, force * tz
             force *= length
             if left < 0.0:
                 belt += 1
-                speed = speeds[1]
+                speed = right_speed
             else:
-                speed = speeds[0]
+                speed = left_speed
             sx, sy, sz = vx + wy * z - wz * y, vy + wz * x - wx * z, vz + wx * y - wy * x
             ahead = x * fx + y * fy + z * fz
-            on = sums[belt]
-            on[0] += force
-            on[1] += sx * tx + sy * ty + sz * tz - force * speed
-            on[2] += force * (sx * lx + sy * ly + sz * lz)
-            on[3] += force * ahead
-            on[4] += force * ahead * ahead
-            on[5] += tx
-            on[6] += ty
-            on[7] += tz
-            on[8] += y * tz - z * ty
-            on[9] += z * tx - x * tz
-            on[10] += x * ty - y * tx
-            on[11] += force * x
-            on[12] += force * y
-            on[13] += force * z
+            s0, s1, s2, s3, s4, s5, s6, s7, s8, s9, s10, s11, s12, s13 = sums[belt]
+            sums[belt] = (
+                s0 + force,
+                s1 + (sx * tx + sy * ty + sz * tz - force * speed),
+                s2 + force * (sx * lx + sy * ly + sz * lz),
+                s3 + force * ahead,
+                s4 + force * ahead * ahead,
+                s5 + tx,
+                s6 + ty,
+                s7 + tz,
+                s8 + (y * tz - z * ty),
+                s9 + (z * tx - x * tz),
+                s10 + (x * ty - y * tx),
+                s11 + force * x,
+                s12 + force * y,
+                s13 + force * z,
+            )
             total += force
         return sums, total, strange
 
     def _joined(
         self,
-        sums: list[list[float]],
+        sums: list[tuple[float, ...]],
         total: float,
         axes: tuple[float, ...],
         spin: tuple[float, float, float],
@@ -190,7 +193,7 @@ class Belts:
         return ox, oy, oz, mx, my, mz
 
     def _push(
-        self, belt: int, on: list[float], turning: float, dt: float
+        self, belt: int, on: tuple[float, ...], turning: float, dt: float
     ) -> tuple[float, float, float]:
         """Bends the grousers of a belt by its slip; gives its force along and across over the
         normal force, and its torque in N m. Grousers that would push harder than the grip allows

@@ -148,9 +148,8 @@ class TrackedBody(Connection):
                 body, -1, (tx, ty, tz), pybullet.WORLD_FRAME, physicsClientId=client
             )
             if strange:
-                self._presses.note(strange, *self._frame())
-            with self._in_contact():
-                pybullet.stepSimulation(physicsClientId=client)
+                self._presses.note(strange, self._origin(place, axes), axes)
+            self._simulate()
             self._contacts = pybullet.getContactPoints(bodyA=body, physicsClientId=client)
         self._show()
 
@@ -209,7 +208,7 @@ class TrackedBody(Connection):
         self._return_to(state)
         memory = (
             self._command, self._speed, self._turn, self._push,
-            tuple(self._belts.bends), tuple(self._contacts), tuple(self._presses.found.items()),
+            tuple(self._belts.bends), tuple(self._contacts), self._presses.memory(),
         )  # fmt: skip
         return Snapshot(state, memory)
 
@@ -220,7 +219,7 @@ class TrackedBody(Connection):
             self._command, self._speed, self._turn, self._push, bends, contacts, pressed
         ) = snapshot.memory  # fmt: skip
         self._belts.bends, self._contacts = list(bends), list(contacts)
-        self._presses.found = dict(pressed)
+        self._presses.remember(pressed)
         # PyBullet keeps no targets of motors.
         self._drive_flippers()
         self._show()
@@ -294,17 +293,20 @@ class TrackedBody(Connection):
 
     def _frame(self) -> tuple[Vector, tuple[float, ...]]:
         """Where the base's frame is (m), and its rotation matrix row by row."""
-        (x, y, z), turned = pybullet.getBasePositionAndOrientation(
+        place, turned = pybullet.getBasePositionAndOrientation(
             self._body, physicsClientId=self._client
         )
-        m = pybullet.getMatrixFromQuaternion(turned)
-        a, b, c = self._center
-        origin = (
+        axes = pybullet.getMatrixFromQuaternion(turned)
+        return self._origin(place, axes), axes
+
+    def _origin(self, place: Vector, m: tuple[float, ...]) -> Vector:
+        """Where the base's frame is (m), with its centre of mass at `place`."""
+        (x, y, z), (a, b, c) = place, self._center
+        return (
             x - m[0] * a - m[1] * b - m[2] * c,
             y - m[3] * a - m[4] * b - m[5] * c,
             z - m[6] * a - m[7] * b - m[8] * c,
         )
-        return origin, m
 
     def _show(self) -> None:
         self._world.place_robot(self.pose)

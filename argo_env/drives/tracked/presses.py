@@ -1,5 +1,6 @@
 """Presses: what the robot pushes against that it must not touch."""
 
+from dataclasses import dataclass
 from typing import Any
 
 from argo_env.drives.tracked.belts import INNER, TRACK_TOP
@@ -9,17 +10,31 @@ from argo_env.world.world import Touch
 
 _PRESS = 20.0  # N from which a contact counts; less is a brush
 _HULL_TOP = 0.57  # m; what is higher is arm
+_MANY = 1000  # presses whose elements are looked up at once, to be found together
+
+
+@dataclass(frozen=True, slots=True)
+class Press:
+    """One contact that counts: what of the robot, on which part of the terrain, and where."""
+
+    part: str
+    ground: str
+    point: Vector
+    distance: float
+    """m, less than 0 for an overlap"""
 
 
 class Presses:
-    """Collects presses until they are taken. Holds the deepest of each part on each thing."""
+    """Collects presses until they are taken. Holds those whose elements have not been looked up
+    yet, in their order, and of the others the deepest of each part on each element."""
 
     def __init__(self, terrain: Terrain, grounds: dict[int, str], names: dict[int, str]) -> None:
         """`grounds` and `names` are the links of the terrain and of the robot by number."""
         self._terrain = terrain
         self._grounds = grounds
         self._names = names
-        self.found: dict[tuple[str, str], Touch] = {}
+        self._noted: list[Press] = []
+        self._found: dict[tuple[str, str], Touch] = {}
 
     def note(
         self, contacts: list[tuple[Any, ...]], origin: Vector, axes: tuple[float, ...]
@@ -33,22 +48,44 @@ class Presses:
             if force < _PRESS:
                 continue
             part = self._names[link] if link >= 0 else _part_at(on_robot, origin, axes)
-            element = self._terrain.element_at(self._grounds[other], point)
-            known = self.found.get((part, element))
-            if known is None or -distance > known.depth:
-                depth = max(0.0, -distance)
-                self.found[part, element] = Touch(part, element, point, depth)
+            self._noted.append(Press(part, self._grounds[other], point, distance))
+        if len(self._noted) >= _MANY:
+            self._look_up()
 
     def take(self) -> tuple[Touch, ...]:
         """All presses since the last call."""
-        found = tuple(self.found.values())
-        self.found = {}
-        return found
+        touches = tuple(touch for _, touch in self.memory())
+        self._found = {}
+        return touches
+
+    def memory(self) -> tuple[tuple[tuple[str, str], Touch], ...]:
+        """All presses since they were last taken, to be remembered."""
+        if self._noted:
+            self._look_up()
+        return tuple(self._found.items())
+
+    def remember(self, memory: tuple[tuple[tuple[str, str], Touch], ...]) -> None:
+        """Goes back to what `memory` gave."""
+        self._noted, self._found = [], dict(memory)
+
+    def _look_up(self) -> None:
+        """Finds the elements, for all at once, as the time that takes hardly grows with them."""
+        noted, self._noted = self._noted, []
+        elements: dict[int, str] = {}
+        for ground in {press.ground for press in noted}:
+            rows = [k for k, press in enumerate(noted) if press.ground == ground]
+            names = self._terrain.elements_at(ground, [noted[k].point for k in rows])
+            elements.update(zip(rows, names, strict=True))
+        for k, press in enumerate(noted):
+            key = press.part, elements[k]
+            known = self._found.get(key)
+            if known is None or -press.distance > known.depth:
+                self._found[key] = Touch(*key, press.point, max(0.0, -press.distance))
 
 
 def _part_at(point: Vector, origin: Vector, m: tuple[float, ...]) -> str:
     """Which part of the body has that point: hull, track, or the stowed arm."""
-    x, y, z = (a - b for a, b in zip(point, origin, strict=True))
+    x, y, z = point[0] - origin[0], point[1] - origin[1], point[2] - origin[2]
     left, up = x * m[1] + y * m[4] + z * m[7], x * m[2] + y * m[5] + z * m[8]
     if up > _HULL_TOP:
         return "upper_arm"

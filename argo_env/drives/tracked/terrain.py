@@ -1,6 +1,7 @@
 """What the tracked robot drives on: the world's solids as bodies that never move."""
 
 import math
+from collections.abc import Sequence
 from dataclasses import replace
 from pathlib import Path
 
@@ -36,9 +37,9 @@ class Terrain:
         self.walking = _WALKING
         """the name of the part that tracks may stand on"""
 
-    def element_at(self, part: str, point: Vector) -> str:
-        """The name of the element of that part at a point on its surface."""
-        return self._index[part].at(point)
+    def elements_at(self, part: str, points: Sequence[Vector]) -> list[str]:
+        """The names of the elements of that part at points (m) on its surface."""
+        return self._index[part].at_each(points)
 
     def write(self, folder: str) -> Path:
         """Writes the URDF; returns where it is."""

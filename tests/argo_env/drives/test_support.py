@@ -11,8 +11,10 @@ from hypothesis.extra.numpy import arrays
 from scipy.optimize import linprog
 
 from argo_compiler.model import Pose
-from argo_env.drives.support import STEP, resting, resting_poses
+from argo_env.drives import support
+from argo_env.drives.support import STEP, GroundMemory, ground_memory, resting, resting_poses
 from argo_env.navigation.path import Motion
+from argo_env.site.shapes import Box
 
 SLOPE = math.degrees(math.atan2(2.5 / 14, 0.28))
 
@@ -139,3 +141,36 @@ def test_goes_on_where_the_motion_before_ended(simulation, robot):
     parts = [resting_poses(simulation, Motion(a, b), robot) for a, b in pairwise(seams)]
     for before, after in pairwise(parts):
         assert (after[0].z, after[0].pitch) == pytest.approx((before[-1].z, before[-1].pitch))
+
+
+def test_ground_that_is_remembered_is_not_probed_again(simulation, robot, monkeypatch):
+    memory = GroundMemory()
+    motion = drive(1.9, 2.5, 2.5, 1.9, 9.0, 2.5, 90)
+    first = memory.resting_poses(simulation, motion, robot)
+    assert first == resting_poses(simulation, motion, robot)
+    monkeypatch.setattr(support, "resting_poses", None)
+    assert memory.resting_poses(simulation, drive(1.9, 2.5, 2.5, 1.9, 9.0, 2.5, 90), robot) == first
+
+
+def test_where_something_may_move_the_ground_is_probed_each_time(simulation, umad, robot):
+    """Beside a checkpoint, and all over while there is a screen."""
+    memory = GroundMemory()
+    motion = drive(1.9, 2.5, 2.5, 1.9, 9.0, 2.5, 90)
+    level = memory.resting_poses(simulation, motion, robot)
+    number = simulation.add_screen("plank", Box((1.9, 6.0, 2.55), (1.0, 1.0, 0.1)), (1, 0, 0))
+    try:
+        assert max(p.z for p in memory.resting_poses(simulation, motion, robot)) > 2.59
+    finally:
+        simulation.remove_screen(number)
+    assert memory.resting_poses(simulation, motion, robot) == level
+    x, y, z = umad.checkpoints[0].position
+    beside = drive(x, y - 0.8, z - 0.4, x + 0.5, y - 0.8, z - 0.4, 0)
+    assert memory.resting_poses(simulation, beside, robot) is not memory.resting_poses(
+        simulation, beside, robot
+    )
+
+
+def test_other_ground_has_a_memory_of_its_own(umad, robot):
+    size = robot.track_length, robot.track_gauge
+    assert ground_memory(umad.elements, *size) is ground_memory(tuple(umad.elements), *size)
+    assert ground_memory(umad.elements, *size) is not ground_memory(umad.elements[1:], *size)

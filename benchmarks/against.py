@@ -1,0 +1,206 @@
+"""How many times as fast the code is today as that of another checkout.
+
+    git worktree add ../before COMMIT
+    python -m benchmarks.against ../before                       # all cases
+    python -m benchmarks.against ../before drive-contact kinematic --repeats 7
+
+Both run the same cases, those of this file, in turn with each other and each time in a process of
+their own, so that what slows the machine down slows both; each has a cache of its own, which a turn
+that does not count fills. A line for a case tells how many times as fast it is today: by the
+median of the ratios of the turns, and by the ratio of the least times, both of wall time; and by
+the least processor time, of all threads and child processes, which other work disturbs least.
+"""
+
+import argparse
+import json
+import os
+import subprocess
+import sys
+import tempfile
+import time
+from collections.abc import Callable
+from pathlib import Path
+from statistics import median
+from typing import Any
+
+ROOT = Path(__file__).resolve().parents[1]
+MISSIONS = ROOT / "scenarios" / "umad" / "missions"
+
+Work = Callable[[], object]
+"""What is timed; each call does the same work, or the next piece of it."""
+
+
+def drive_free() -> Work:
+    """50 steps of Drive-v0, turning to and fro where there is room to turn."""
+    import numpy as np
+
+    env = _drive_env()
+    env.reset(seed=3)
+    rng = np.random.default_rng(0)
+    actions = rng.uniform(-1.0, 1.0, (50, 3)).astype(np.float32)
+    actions[:, 0] = 0.0
+
+    def work() -> None:
+        for action in actions:
+            *_, info = env.step(action)
+            assert not info["touched"]
+
+    return work
+
+
+def drive_random() -> Work:
+    """50 steps of Drive-v0 with random actions, as at the start of training."""
+    import numpy as np
+
+    env = _drive_env()
+    env.reset(seed=3)
+    actions = np.random.default_rng(0).uniform(-1.0, 1.0, (50, 3)).astype(np.float32)
+
+    def work() -> None:
+        for action in actions:
+            env.step(action)
+
+    return work
+
+
+def drive_contact() -> Work:
+    """50 steps of Drive-v0 ahead, against a wall that the robot has reached before."""
+    import numpy as np
+
+    env = _drive_env()
+    env.reset(seed=1)
+    ahead = np.array([1.0, 0.0, 0.0], np.float32)
+    for _ in range(20):
+        env.step(ahead)
+
+    def work() -> None:
+        for _ in range(50):
+            *_, info = env.step(ahead)
+            assert info["touched"]
+
+    return work
+
+
+def kinematic() -> Work:
+    """Mission #1 with the drive `kinematic`, after a run of it in the same process."""
+    work = _mission_run("mission_1.txt", "kinematic", 1, 2)
+    work()
+    return work
+
+
+def kinematic_first() -> Work:
+    """The first run of a process: it imports the simulator and plans the ways, too."""
+    return _mission_run("mission_1.txt", "kinematic", 1, 2)
+
+
+def kinematic_rounds() -> Work:
+    """Protocol #3 with its rounds, as the first run of a process."""
+    return _mission_run("protocol_3.txt", "kinematic", None, None)
+
+
+def tracked() -> Work:
+    """Mission #1 with the drive `tracked`, on a site that is open."""
+    return _mission_run("mission_1.txt", "tracked", 1, 2)
+
+
+CASES: dict[str, tuple[Callable[[], Work], int]] = {
+    "drive-free": (drive_free, 4),
+    "drive-random": (drive_random, 4),
+    "drive-contact": (drive_contact, 4),
+    "kinematic": (kinematic, 3),
+    "kinematic-first": (kinematic_first, 1),
+    "kinematic-rounds": (kinematic_rounds, 1),
+    "tracked": (tracked, 1),
+}
+"""What prepares the work of each case, and how many times a process does it."""
+
+
+def _drive_env() -> Any:
+    import gymnasium as gym
+
+    import argo_env  # noqa: F401
+
+    return gym.make("argo/Drive-v0", disable_env_checker=True, time_limit=3600.0).unwrapped
+
+
+def _mission_run(file: str, drive: str, start_area: int | None, end_area: int | None) -> Work:
+    from argo_env.planning import open_site
+    from argo_env.run.session import simulate
+    from argo_env.run.spec import RunSpec
+    from argo_planner.use_cases.importing import Upload, import_mission
+
+    site = open_site("umad").prepare()
+    upload = Upload(file, (MISSIONS / file).read_bytes())
+    mission = import_mission(upload, site, start_area, end_area).mission
+    spec = RunSpec(mission=mission, drive=drive)
+    return lambda: simulate(spec, site)
+
+
+def main() -> None:
+    """Prints a line for each case."""
+    parser = argparse.ArgumentParser(
+        description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter
+    )
+    parser.add_argument("checkout", type=Path, help="folder with the code to compare with")
+    parser.add_argument("cases", nargs="*", metavar="case", help=", ".join(CASES))
+    parser.add_argument("--repeats", type=int, default=5, help="turns that count")
+    options = parser.parse_args()
+    for name in options.cases:
+        if name not in CASES:
+            parser.error(f"there is no case {name}; there are: {', '.join(CASES)}")
+    before = options.checkout.resolve()
+    if not (before / "argo_env").is_dir():
+        parser.error(f"{before} is no checkout: it has no folder argo_env")
+    print(f"{'case':<20} {'median':>7} {'least':>7} {'CPU':>7}   before and today (least)")
+    with tempfile.TemporaryDirectory() as caches:
+        for name in options.cases or CASES:
+            print(compare(name, before, Path(caches), options.repeats), flush=True)
+
+
+def compare(name: str, before: Path, caches: Path, repeats: int) -> str:
+    """The line of a case."""
+    turns = [
+        [timed(name, root, caches / cache) for root, cache in ((before, "before"), (ROOT, "today"))]
+        for _ in range(repeats + 1)
+    ][1:]
+    old, new = ([turn[k] for turn in turns] for k in (0, 1))
+    paired = median(a[0] / b[0] for a, b in zip(old, new, strict=True))
+    (old_wall, old_cpu), (new_wall, new_cpu) = (
+        (min(wall for wall, _ in all), min(cpu for _, cpu in all)) for all in (old, new)
+    )
+    return (
+        f"{name:<20} {paired:7.2f} {old_wall / new_wall:7.2f} {old_cpu / new_cpu:7.2f}   "
+        f"{old_wall:.3f} s, {new_wall:.3f} s"
+    )
+
+
+def timed(name: str, root: Path, cache: Path) -> tuple[float, float]:
+    """Wall and processor time (s) of the work of a case with the code of a checkout."""
+    environment = os.environ | {"PYTHONPATH": str(root), "ARGO_CACHE_DIR": str(cache)}
+    command = (sys.executable, __file__, "--time", name, str(root))
+    done = subprocess.run(
+        command, cwd=root, env=environment, stdout=subprocess.PIPE, text=True, check=True
+    )
+    wall, cpu = json.loads(done.stdout.splitlines()[-1])
+    return wall, cpu
+
+
+def time_here(name: str, root: str) -> None:
+    """Times a case in this process; prints wall and processor time (s) as JSON."""
+    import argo_env
+
+    if not Path(argo_env.__file__).is_relative_to(root):
+        raise SystemExit(f"argo_env is that of {argo_env.__file__}, not of {root}")
+    prepare, calls = CASES[name]
+    work = prepare()
+    wall, cpu = time.perf_counter(), sum(os.times()[:4])
+    for _ in range(calls):
+        work()
+    print(json.dumps([time.perf_counter() - wall, sum(os.times()[:4]) - cpu]))
+
+
+if __name__ == "__main__":
+    if sys.argv[1:2] == ["--time"]:
+        time_here(*sys.argv[2:])
+    else:
+        main()

@@ -1,0 +1,239 @@
+"""Batches that are spread over processes: as single environments, and gone when closed."""
+
+import copy
+import gc
+import multiprocessing
+import os
+import pickle
+import signal
+import traceback
+from contextlib import ExitStack
+
+import gymnasium as gym
+import numpy as np
+import pytest
+from gymnasium.vector import AutoresetMode
+
+import argo_env  # noqa: F401
+from argo_compiler.errors import ArgoError, Invalid, NotFound, Unavailable
+from tests.argo_env.envs import rollouts
+
+DRIVE, INSPECT = "argo/Drive-v0", "argo/Inspect-v0"
+SHORT = {DRIVE: {"time_limit": 0.7}, INSPECT: {"time_limit": 200.0, "faults": 2}}
+"""arguments with which episodes end within a few steps"""
+SEED = 31
+
+
+@pytest.fixture
+def closing():
+    """Closes what it is given when the test has ended."""
+    with ExitStack() as stack:
+
+        def one(batch):
+            stack.callback(batch.close)
+            return batch
+
+        yield one
+
+
+@pytest.fixture
+def make(yard_file, closing):
+    """Makes batches on a small site, and closes them."""
+
+    def one(id, count=3, mode="vector_entry_point", **arguments):
+        return closing(
+            gym.make_vec(id, count, mode, scenario=yard_file, **SHORT[id], **arguments)
+        ).unwrapped
+
+    return one
+
+
+def random_actions(batch, observation, rng):
+    """Random ones; legal ones where the environment tells which are."""
+    if "mask" in observation:
+        return (rng.random(observation["mask"].shape) * observation["mask"]).argmax(axis=1)
+    return rng.uniform(-1.0, 1.0, batch.action_space.shape).astype(np.float32)
+
+
+def plain(value):
+    """The same with lists in place of arrays of objects, whose bytes are addresses."""
+    if isinstance(value, dict):
+        return {key: plain(part) for key, part in value.items()}
+    if isinstance(value, np.ndarray) and value.dtype == object:
+        return value.tolist()
+    return [plain(part) for part in value] if isinstance(value, tuple | list) else value
+
+
+def trajectory(batch, steps, seed=SEED, options=None):
+    """The digests of a reset, and of each step with random actions; and whether any has ended."""
+    rng = np.random.default_rng(SEED)
+    observation, info = batch.reset(seed=seed, options=options)
+    heard, ended = [rollouts.digest(plain((observation, info)))], 0
+    for _ in range(steps):
+        observation, *rest = batch.step(random_actions(batch, observation, rng))
+        ended += int(rest[1].sum() + rest[2].sum())
+        heard.append(rollouts.digest(plain((observation, *rest))))
+    return heard, ended
+
+
+@pytest.mark.parametrize("id", [DRIVE, INSPECT])
+@pytest.mark.parametrize("processes", [1, 2, 3])
+def test_batch_is_what_single_environments_are(make, id, processes):
+    """Episodes that have ended and begun anew included."""
+    batch, singles = make(id, processes=processes), make(id, mode="sync")
+    assert batch.metadata["autoreset_mode"] == AutoresetMode.NEXT_STEP
+    assert batch.observation_space == singles.observation_space
+    assert batch.action_space == singles.action_space
+    own = {"floor": 1}
+    for seed, options in ((SEED, None), (None, None), ([9, None, 2], own), (5, {})):
+        told = [trajectory(one, 17, seed, options) for one in (batch, singles)]
+        assert told[0] == told[1]
+        assert told[0][1] > 2
+
+
+def test_masks_are_those_of_the_observation(make):
+    batch = make(INSPECT)
+    observation, _ = batch.reset(seed=SEED)
+    masks = batch.action_masks()
+    assert masks.dtype == np.bool_
+    assert np.array_equal(masks, observation["mask"])
+
+
+def test_methods_and_attributes_of_each(make):
+    batch = make(DRIVE, processes=2)
+    batch.reset(seed=SEED)
+    goals, states = batch.get_attr("goal"), batch.call("get_state")
+    assert [state["goal"] for state in states] == list(goals)
+    assert batch.get_attr("np_random_seed") == (SEED, SEED + 1, SEED + 2)
+    batch.set_attr("nickname", ["a", "b", "c"])
+    assert batch.get_attr("nickname") == ("a", "b", "c")
+    batch.set_attr("nickname", "d")
+    assert batch.get_attr("nickname") == ("d", "d", "d")
+    with pytest.raises(ValueError, match="3 environments"):
+        batch.set_attr("nickname", ["a"])
+
+
+def test_pictures_of_each(make):
+    batch = make(INSPECT, count=2, render_mode="rgb_array")
+    batch.reset(seed=SEED)
+    pictures = batch.render()
+    assert len(pictures) == 2
+    assert pictures[0].dtype == np.uint8
+    assert make(INSPECT).render() is None
+
+
+@pytest.mark.parametrize("id", [DRIVE, INSPECT])
+@pytest.mark.parametrize(
+    "duplicate", [copy.deepcopy, lambda batch: pickle.loads(pickle.dumps(batch))]
+)
+@pytest.mark.parametrize("steps", [0, 3, 7])
+def test_goes_on_the_same_from_a_state_and_in_a_copy(make, closing, id, duplicate, steps):
+    batch = make(id, processes=2)
+    rng = np.random.default_rng(SEED)
+    observation, _ = batch.reset(seed=SEED)
+    for _ in range(steps):
+        observation, *_ = batch.step(random_actions(batch, observation, rng))
+    other, state = closing(duplicate(batch)), pickle.loads(pickle.dumps(batch.get_state()))
+    plan = [random_actions(batch, observation, rng) * 0 for _ in range(9)]
+    there = [rollouts.digest(plain(other.step(actions))) for actions in plan]
+    assert [rollouts.digest(plain(batch.step(actions))) for actions in plan] == there
+    assert rollouts.digest(batch.set_state(state)) == rollouts.digest(observation)
+    assert [rollouts.digest(plain(batch.step(actions))) for actions in plan] == there
+
+
+def test_a_copy_of_a_closed_one_is_closed(make):
+    batch = make(DRIVE)
+    batch.close()
+    assert copy.deepcopy(batch).closed
+
+
+def test_no_state_of_such_a_batch(make):
+    batch = make(DRIVE)
+    batch.reset(seed=SEED)
+    for state in (None, {}, {"states": (), "ended": ()}, {"states": 3, "ended": 3}):
+        with pytest.raises(ArgoError, match="no state of a batch of 3"):
+            batch.set_state(state)
+
+
+def test_closing_leaves_no_process(make):
+    before = set(multiprocessing.active_children())
+    batch = make(DRIVE, processes=2)
+    batch.reset(seed=SEED)
+    assert len(set(multiprocessing.active_children()) - before) == 2
+    batch.close()
+    batch.close()
+    assert set(multiprocessing.active_children()) == before
+    with pytest.raises(gym.error.ClosedEnvironmentError):
+        batch.reset()
+
+
+def test_one_that_is_forgotten_leaves_no_process(yard_file):
+    before = set(multiprocessing.active_children())
+    batch = gym.make_vec(DRIVE, 2, scenario=yard_file)
+    batch.reset(seed=SEED)
+    del batch
+    gc.collect()
+    assert set(multiprocessing.active_children()) == before
+
+
+def test_errors_are_those_of_a_single_one_with_where_they_were_raised(make):
+    batch = make(INSPECT, processes=2)
+    before = trajectory(batch, 3)
+    with pytest.raises(Invalid, match="colour") as caught:
+        batch.reset(options={"colour": 3})
+    told = "".join(traceback.format_exception(caught.value))
+    assert "read_options" in told
+    assert "worker process" in told
+    # Until all have been reset nobody knows which of them have gone on.
+    with pytest.raises(gym.error.ResetNeeded):
+        batch.step(np.zeros(3, np.int64))
+    assert trajectory(batch, 3) == before
+    with pytest.raises(Invalid, match=r"no action np.int64\(10000\)"):
+        batch.step(np.array([0, 10_000, 10_000]))
+    assert trajectory(batch, 3) == before
+
+
+@pytest.mark.parametrize("actions", [None, np.zeros(2), np.zeros((2, 3)), "abc"])
+def test_what_are_no_actions_changes_nothing(make, actions):
+    batch = make(DRIVE)
+    batch.reset(seed=SEED)
+    with pytest.raises(Invalid, match=r"shape \(3, 3\)"):
+        batch.step(actions)
+    batch.step(np.zeros((3, 3), np.float32))
+
+
+def test_a_step_before_a_reset_is_refused(make):
+    with pytest.raises(gym.error.ResetNeeded):
+        make(DRIVE).step(np.zeros((3, 3), np.float32))
+
+
+def test_seeds_of_another_number_are_refused(make):
+    with pytest.raises(ValueError, match="3 environments"):
+        make(DRIVE).reset(seed=[1, 2])
+
+
+@pytest.mark.parametrize(
+    ("arguments", "kind", "words"),
+    [
+        ({"render_mode": "human"}, NotFound, "human"),
+        ({"processes": 0}, Invalid, "processes"),
+        ({"max_way": -1.0}, Invalid, "max_way"),
+    ],
+)
+def test_arguments_are_refused_before_any_process_starts(make, arguments, kind, words):
+    before = set(multiprocessing.active_children())
+    with pytest.raises(kind, match=words):
+        make(DRIVE, **arguments)
+    assert set(multiprocessing.active_children()) == before
+
+
+def test_a_process_that_dies_is_told_once_and_ends_the_batch(make):
+    before = set(multiprocessing.active_children())
+    batch = make(DRIVE, processes=2)
+    batch.reset(seed=SEED)
+    [os.kill(p.pid, signal.SIGKILL) for p in set(multiprocessing.active_children()) - before][:1]
+    with pytest.raises(Unavailable, match="environments 0 to 1 has died with exit code -9"):
+        batch.step(np.zeros((3, 3), np.float32))
+    assert set(multiprocessing.active_children()) == before
+    with pytest.raises(gym.error.ClosedEnvironmentError):
+        batch.reset()

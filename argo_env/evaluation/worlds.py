@@ -68,7 +68,7 @@ class Variation(_Ranges):
     speed: Range | None = None
     """share of its speed that the drive makes, up to 1"""
     friction: Range | None = None
-    """beside that of the calibration, up to 2; for the drive `tracked`"""
+    """beside that of the calibration, up to 1.3; for the drive `tracked`"""
     charge: Range | None = None
     """of the battery at the start, up to 1"""
     capacity: Range | None = None

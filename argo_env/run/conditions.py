@@ -37,8 +37,9 @@ class RunConditions(Model):
     """deg that it is turned there, counter-clockwise"""
     speed: float = Field(default=1.0, gt=0, le=1)
     """share of its speed that the drive makes"""
-    friction: float = Field(default=1.0, gt=0, le=2)
-    """beside that of the calibration; for the drive `tracked`, as no other knows forces"""
+    friction: float = Field(default=1.0, gt=0, le=1.3)
+    """beside that of the calibration; for the drive `tracked`, as no other knows forces, and up to
+    where its belts are stable"""
     charge: float | None = Field(default=None, gt=0, le=1)
     """of the battery at the start; None: full, or as the run goes on from"""
     capacity: float = Field(default=1.0, gt=0, le=1)

@@ -13,23 +13,25 @@ ROUTE = "route"
 """The drive that goes by travel times alone, and has no world."""
 
 
-def _kinematic(world: "World", robot: "RobotSpec") -> "Drive":
+def _kinematic(world: "World", robot: "RobotSpec", friction: float) -> "Drive":  # noqa: ARG001
     from argo_env.drives.kinematic import KinematicDrive
 
     return KinematicDrive(world, robot)
 
 
-def _tracked(world: "World", robot: "RobotSpec") -> "Drive":
+def _tracked(world: "World", robot: "RobotSpec", friction: float) -> "Drive":
+    from argo_env.drives.tracked.belts import Traction
     from argo_env.drives.tracked.drive import TrackedDrive
 
-    return TrackedDrive(world, robot)
+    return TrackedDrive(world, robot, traction=Traction().scaled(friction))
 
 
-WORLD_DRIVES: dict[str, Callable[["World", "RobotSpec"], "Drive"]] = {
+WORLD_DRIVES: dict[str, Callable[["World", "RobotSpec", float], "Drive"]] = {
     "kinematic": _kinematic,
     "tracked": _tracked,
 }
-"""What makes the drives that move the robot in PyBullet's world."""
+"""What makes the drives that move the robot in PyBullet's world, with the friction beside the
+calibrated one."""
 
 DRIVES = (ROUTE, *WORLD_DRIVES)
 """The names of all drives."""

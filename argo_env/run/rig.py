@@ -82,7 +82,7 @@ def fit_out(spec: RunSpec, navigator: Navigator, gui: bool, stack: ExitStack) ->
     else:
         real = changed_site(site, faults).elements
         world = stack.enter_context(World(site, robot, gui, real))
-        inner = WORLD_DRIVES[spec.drive](world, robot)
+        inner = WORLD_DRIVES[spec.drive](world, robot, spec.conditions.friction)
         camera = SENSORS[spec.sensor](world, truth, seed)
         watches = standard_watches(world, surroundings, seed)
         for id, value in truth.items():

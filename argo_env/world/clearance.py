@@ -20,25 +20,25 @@ _PARTED = 0.05  # m up or down from which that is what parts two boxes
 
 
 @dataclass(frozen=True, eq=False)
-class Bounds:
+class SolidBounds:
     """A box, or many: lowest and highest corner (m), shape (3,) or (n, 3)."""
 
     low: NDArray[np.float64]
     high: NDArray[np.float64]
 
     @staticmethod
-    def around(boxes: "list[Bounds]") -> "Bounds":
+    def around(boxes: "list[SolidBounds]") -> "SolidBounds":
         """The box around boxes."""
         low, high = [box.low for box in boxes], [box.high for box in boxes]
-        return Bounds(np.min(low, axis=0), np.max(high, axis=0))
+        return SolidBounds(np.min(low, axis=0), np.max(high, axis=0))
 
-    def overlapping(self, box: "Bounds") -> NDArray[np.bool_]:
+    def overlapping(self, box: "SolidBounds") -> NDArray[np.bool_]:
         """Which of many boxes overlap with one."""
         return np.asarray(((self.low <= box.high) & (self.high >= box.low)).all(axis=-1))
 
-    def chosen(self, which: NDArray[np.bool_]) -> "Bounds":
+    def chosen(self, which: NDArray[np.bool_]) -> "SolidBounds":
         """Some of many boxes."""
-        return Bounds(self.low[which], self.high[which])
+        return SolidBounds(self.low[which], self.high[which])
 
 
 @dataclass(frozen=True)
@@ -46,8 +46,8 @@ class _Found:
     """How far the robot may go from where it was found clear, and with which boxes that was."""
 
     pose: BodyPose
-    whole: Bounds
-    upper: Bounds
+    whole: SolidBounds
+    upper: SolidBounds
     sideways: float
     """m that all of it may move in the plane"""
     upwards: float
@@ -57,14 +57,16 @@ class _Found:
 class Clearance:
     """Knows the boxes around all solids. Holds those near the robot, and how far it may go on."""
 
-    def __init__(self, solids: Bounds, walking: NDArray[np.bool_]) -> None:
+    def __init__(self, solids: SolidBounds, walking: NDArray[np.bool_]) -> None:
         """`walking`: which of the solids wheels and tracks may stand on."""
         self._solids = solids
         self._walking = walking
-        self._gathered: Bounds | None = None  # where the robot may be until that is done anew
+        self._gathered: SolidBounds | None = None  # where the robot may be until that is done anew
         self._found: _Found | None = None
 
-    def is_clear(self, pose: BodyPose, whole: Bounds, upper: Bounds, distance: float) -> bool:
+    def is_clear(
+        self, pose: BodyPose, whole: SolidBounds, upper: SolidBounds, distance: float
+    ) -> bool:
         """Whether the robot is surely farther than `distance` (m) from all that it must not touch.
 
         `whole` is the box around all of it in its own frame, `upper` that without what it stands
@@ -82,20 +84,20 @@ class Clearance:
         self._found = _Found(pose, whole, upper, sideways, upwards) if clear else None
         return clear
 
-    def _gather(self, pose: BodyPose, whole: Bounds) -> None:
+    def _gather(self, pose: BodyPose, whole: SolidBounds) -> None:
         """Gathers the solids near the robot, unless it is still where that was done before."""
         here = np.array([pose.x, pose.y, pose.z])
-        place = Bounds(here, here)
+        place = SolidBounds(here, here)
         if self._gathered is not None and bool(self._gathered.overlapping(place)):
             return
-        self._gathered = Bounds(here - _AROUND, here + _AROUND)
+        self._gathered = SolidBounds(here - _AROUND, here + _AROUND)
         reach = _radius(whole) + whole.high[2] + 2 * _AROUND
-        near = self._solids.overlapping(Bounds(here - reach, here + reach))
+        near = self._solids.overlapping(SolidBounds(here - reach, here + reach))
         self._floors = self._solids.chosen(near & self._walking)
         self._others = self._solids.chosen(near & ~self._walking)
 
 
-def _is_near(found: _Found, pose: BodyPose, whole: Bounds, upper: Bounds) -> bool:
+def _is_near(found: _Found, pose: BodyPose, whole: SolidBounds, upper: SolidBounds) -> bool:
     """Whether the robot can't have met anything since it was found clear."""
     if found.whole is not whole or found.upper is not upper:
         return False
@@ -105,12 +107,12 @@ def _is_near(found: _Found, pose: BodyPose, whole: Bounds, upper: Bounds) -> boo
     return gone < found.sideways and abs(pose.z - before.z) < found.upwards
 
 
-def _radius(box: Bounds) -> float:
+def _radius(box: SolidBounds) -> float:
     """m from the robot's origin to the farthest corner of its box, in the plane."""
     return math.hypot(*np.maximum(np.abs(box.low), np.abs(box.high))[:2].tolist())
 
 
-def _gaps(solids: Bounds, pose: BodyPose, box: Bounds) -> tuple[float, float]:
+def _gaps(solids: SolidBounds, pose: BodyPose, box: SolidBounds) -> tuple[float, float]:
     """The least gaps (m) that part the robot's box, turned by its yaw, from upright boxes: in the
     plane, less than 0 if one is met; and up or down, where there is one that is large enough."""
     low, high = solids.low, solids.high

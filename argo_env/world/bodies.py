@@ -16,7 +16,7 @@ from argo_env.site import Site, SiteCheckpoint
 from argo_env.site.index import ElementIndex
 from argo_env.site.shapes import WALKING_ROLES, Box, Element, Solid, Vector, half_extents
 from argo_env.site.urdf import to_urdf
-from argo_env.world.clearance import Bounds, Clearance
+from argo_env.world.clearance import Clearance, SolidBounds
 from argo_env.world.placement import AS_PLANNED, Placement, displaced
 from argo_env.world.pybullet_client import Connection, pybullet
 
@@ -46,7 +46,7 @@ class Bodies(Connection):
         self._placements: dict[int, Placement] = {}
         self._pose = BodyPose(0.0, 0.0, 0.0, 0.0)
         self._posture: dict[str, float] = {}
-        self._envelope: tuple[Bounds, Bounds] | None = None  # in this posture
+        self._envelope: tuple[SolidBounds, SolidBounds] | None = None  # in this posture
         self._clearance: Clearance | None = None  # of what stands where it stands now
         self._moved = True  # whether anything but the robot has, since collisions were looked for
         self._screens: dict[int, str] = {}
@@ -179,7 +179,7 @@ class Bodies(Connection):
             low = [center - half, *(box.low[None] - _INDICATOR for box in objects)]
             high = [center + half, *(box.high[None] + _INDICATOR for box in objects)]
             walking = [m in self._walking for m, _ in parts] + [False] * len(objects)
-            solids = Bounds(np.concatenate(low), np.concatenate(high))
+            solids = SolidBounds(np.concatenate(low), np.concatenate(high))
             self._clearance = Clearance(solids, np.array(walking))
         if self._envelope is None:
             self._place(self._robot_body, (0.0, 0.0, 0.0), (0.0, 0.0, 0.0))
@@ -189,10 +189,12 @@ class Bodies(Connection):
             self.place_robot(self._pose)
         return self._clearance.is_clear(self._pose, *self._envelope, self.contact_breaking)
 
-    def _box(self, body: int, links: Iterable[int]) -> Bounds:
+    def _box(self, body: int, links: Iterable[int]) -> SolidBounds:
         """The upright box around links of a body."""
         boxes = [pybullet.getAABB(body, link, physicsClientId=self._client) for link in links]
-        return Bounds.around([Bounds(np.array(low), np.array(high)) for low, high in boxes])
+        return SolidBounds.around(
+            [SolidBounds(np.array(low), np.array(high)) for low, high in boxes]
+        )
 
     def _name(self, body: int, link: int, point: Vector) -> str:
         """What a link of a body is called, at a point of it (m)."""

@@ -3,7 +3,7 @@
 import math
 from bisect import bisect_left
 
-from argo_env.robot.pose import BodyPose
+from argo_env.robot.pose import BodyPose, Place
 from argo_env.robot.spec import PowerSpec, RobotSpec
 
 _CURVE = (
@@ -51,6 +51,15 @@ class Battery:
         self._left = min(max(self._left - watts * seconds / 3600.0, 0.0), self.capacity)
 
     @property
+    def state(self) -> tuple[float, float]:
+        """Wh that are left, and the load (W)."""
+        return self._left, self._load
+
+    @state.setter
+    def state(self, state: tuple[float, float]) -> None:
+        self._left, self._load = state
+
+    @property
     def current(self) -> float:
         """A, as measured; less than 0 while it is charged."""
         return self._load / _open_circuit(self.charge)
@@ -73,13 +82,22 @@ def load(
     power: PowerSpec, before: BodyPose, after: BodyPose, seconds: float, measuring: bool
 ) -> float:
     """What the robot draws (W) on its way between two poses within some seconds."""
-    least = _MOVING * seconds
     way = math.dist((before.x, before.y, before.z), (after.x, after.y, after.z))
+    a = (before.x, before.y, before.z, before.yaw, before.pitch)
+    b = (after.x, after.y, after.z, after.yaw, after.pitch)
+    return load_of_way(power, way, a, b, seconds, measuring)
+
+
+def load_of_way(
+    power: PowerSpec, way: float, before: Place, after: Place, seconds: float, measuring: bool
+) -> float:
+    """The same, where it is known how far apart (m) the two are."""
+    least = _MOVING * seconds
     if way > least:
-        if abs(after.pitch) > _ON_STAIRS:
-            return power.climbing if after.z > before.z else power.descending
+        if abs(after[4]) > _ON_STAIRS:
+            return power.climbing if after[2] > before[2] else power.descending
         return power.driving
-    if abs(math.remainder(after.yaw - before.yaw, math.tau)) > least:
+    if abs(math.remainder(after[3] - before[3], math.tau)) > least:
         return power.turning
     return power.measuring if measuring else power.standing
 

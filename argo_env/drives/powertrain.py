@@ -4,12 +4,14 @@ import math
 from collections.abc import Sequence
 
 from argo_env.drives.drive import Drive, DriveStatus, Incident
+from argo_env.drives.route import RouteDrive
 from argo_env.drives.timed_drive import from_here
 from argo_env.navigation.path import Path
-from argo_env.robot.pose import BodyPose
+from argo_env.robot.pose import BodyPose, Place
 
 STALLED = 30.0  # s without any motion after which a way is given up
 _MOVED = 1e-3  # m or rad that count as a motion
+_SLOWEST = 0.02  # share of the speed below which a robot may be taken for a stalled one
 
 
 class Powertrain:
@@ -79,13 +81,65 @@ class Powertrain:
             self.way = None
         return self._stalled() if status is DriveStatus.MOVING else status
 
+    def steps_ahead(self, most: int) -> list[tuple[Place, int]]:
+        """Where the robot is after each of the next steps, and how many steps the drive has made
+        by then: as far as it surely moves on and nothing can happen to it, at most so many. None
+        of them is made."""
+        drive = self._drive
+        if self.pressed or self.way is None or not isinstance(drive, RouteDrive):
+            return []
+        if self.share < _SLOWEST or self._before is None:
+            return []
+        counts = self._drives_steps(most, drive.steps_left)
+        here = drive.pose
+        places = [_place(here), *drive.places_ahead(counts[-1] if counts else 0)]
+        before = _place(self._before)
+        for number, place in enumerate(places[1:], start=1):
+            if not _has_moved(before, place):
+                return [(places[c], c) for c in counts if c < number]
+            before = place
+        return [(places[c], c) for c in counts]
+
+    def go_on(self, ahead: list[tuple[Place, int]], done: int, count: int) -> None:
+        """Makes so many of the steps ahead, after those that were done."""
+        drive = self._drive
+        assert isinstance(drive, RouteDrive)
+        first = ahead[done - 1][1] if done else 0
+        place, made = ahead[done + count - 1]
+        if self.share == 1.0 and not self._credit:
+            self._still = 0.0
+        else:
+            before = first
+            for _, by_then in ahead[done : done + count]:
+                self._credit += self.share
+                if by_then > before:
+                    self._credit -= 1.0
+                    before, self._still = by_then, 0.0
+                else:
+                    self._still += self.time_step
+        drive.go_to(place, made - first)
+        if made > first:
+            self._before = drive.pose
+
+    def _drives_steps(self, most: int, left: int) -> list[int]:
+        """How many steps the drive has made after each of the next ones, up to those left."""
+        if self.share == 1.0 and not self._credit:
+            return [*range(1, min(most, left) + 1)]
+        made, counts, credit = 0, [], self._credit
+        for _ in range(most):
+            credit += self.share
+            if credit >= 1.0 - 1e-9:
+                credit -= 1.0
+                made += 1
+            if made > left:
+                break
+            counts.append(made)
+        return counts
+
     def _stalled(self) -> DriveStatus:
         """MOVING, or FAILED if the robot should have moved for long and has not."""
         here, before = self._drive.pose, self._before
-        moved = before is None or (
-            math.dist((here.x, here.y, here.z), (before.x, before.y, before.z)) > _MOVED
-            or abs(here.yaw - before.yaw) > _MOVED
-        )
+        moved = before is None or _has_moved(_place(before), _place(here))
         if moved:
             self._before, self._still = here, 0.0
         elif self.way is not None:
@@ -94,3 +148,11 @@ class Powertrain:
                 self._failure = f"the robot has not moved for {STALLED:.0f} s"
                 return DriveStatus.FAILED
         return DriveStatus.MOVING
+
+
+def _place(pose: BodyPose) -> Place:
+    return pose.x, pose.y, pose.z, pose.yaw, pose.pitch
+
+
+def _has_moved(before: Place, after: Place) -> bool:
+    return math.dist(before[:3], after[:3]) > _MOVED or abs(after[3] - before[3]) > _MOVED

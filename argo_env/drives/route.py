@@ -4,7 +4,7 @@ import math
 
 from argo_env.drives.timed_drive import TimedDrive
 from argo_env.navigation.path import Motion, wrap
-from argo_env.robot.pose import BodyPose
+from argo_env.robot.pose import BodyPose, Place
 from argo_env.robot.spec import RobotSpec
 
 
@@ -20,13 +20,49 @@ class RouteDrive(TimedDrive):
     def __init__(self, robot: RobotSpec, time_step: float = 0.1) -> None:
         super().__init__(robot, time_step)
 
+    def places_ahead(self, count: int) -> list[Place]:
+        """Where it is after each of the next so many steps, at most `steps_left`: what `step` would
+        make of them one by one, to the last bit."""
+        assert self._timetable is not None
+        places: list[Place] = []
+        for motion, ends, duration, times in self._timetable.stretches(
+            (self._steps + k) * self.time_step for k in range(1, count + 1)
+        ):
+            a, b, turn = motion.start, motion.end, motion.turn
+            x, y, z, yaw = a.x, a.y, a.z, a.yaw
+            dx, dy, dz = b.x - x, b.y - y, b.z - z
+            pitch = self._pitch(motion)
+            for t in times:
+                share = 1.0 - (ends - t) / duration
+                places.append(
+                    (
+                        x + share * dx,
+                        y + share * dy,
+                        z + share * dz,
+                        wrap(yaw + share * turn),
+                        pitch if share < 1.0 else 0.0,
+                    )
+                )
+        return places
+
+    def go_to(self, place: Place, count: int) -> None:
+        """So many steps have passed, after which it is at `place`."""
+        self._steps += count
+        self._pose = BodyPose(*place)
+
     def _pose_at(self, motion: Motion, share: float) -> BodyPose:
         a, b = motion.start, motion.end
-        climb = motion.gear * math.asin((a.z - b.z) / motion.length) if motion.on_stairs else 0.0
         return BodyPose(
             a.x + share * (b.x - a.x),
             a.y + share * (b.y - a.y),
             a.z + share * (b.z - a.z),
             wrap(a.yaw + share * motion.turn),
-            climb if share < 1.0 else 0.0,
+            self._pitch(motion) if share < 1.0 else 0.0,
         )
+
+    @staticmethod
+    def _pitch(motion: Motion) -> float:
+        """rad, while it is under way on the motion."""
+        if not motion.on_stairs:
+            return 0.0
+        return motion.gear * math.asin((motion.start.z - motion.end.z) / motion.length)

@@ -64,6 +64,13 @@ class TimedDrive(ABC):
         self.halt()
         return DriveStatus.ARRIVED
 
+    @property
+    def steps_left(self) -> int:
+        """Time steps before the one with which it arrives; 0 without a path."""
+        if self._timetable is None:
+            return 0
+        return max(0, steps(self._timetable.duration, self.time_step) - self._steps - 1)
+
     @abstractmethod
     def _pose_at(self, motion: Motion, share: float) -> BodyPose:
         """How the robot stands after `share` of the motion, 0 to 1."""

@@ -1,7 +1,8 @@
 """When the robot is where on its path, at the pace that plans count with."""
 
 import math
-from bisect import bisect_right
+from bisect import bisect_left, bisect_right
+from collections.abc import Iterable, Iterator
 from itertools import accumulate
 
 from argo_env.navigation.path import Motion, Path
@@ -33,6 +34,19 @@ class Timetable:
         if k == len(self._motions):
             return self._motions[-1], 1.0
         return self._motions[k], 1.0 - (self._ends[k] - t) / self._durations[k]
+
+    def stretches(
+        self, times: Iterable[float]
+    ) -> Iterator[tuple[Motion, float, float, list[float]]]:
+        """For times (s) that only grow, and are before the end: each motion that is under way at
+        some of them, when it ends (s), how long it takes (s), and those times."""
+        held = [*times]
+        first = 0
+        while first < len(held):
+            k = bisect_right(self._ends, held[first])
+            last = bisect_left(held, self._ends[k], first)
+            yield self._motions[k], self._ends[k], self._durations[k], held[first:last]
+            first = last
 
 
 def steps(seconds: float, time_step: float) -> int:

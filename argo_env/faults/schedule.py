@@ -1,5 +1,6 @@
 """When faults begin and end, and which of them count where several meet."""
 
+import math
 from collections.abc import Sequence
 
 from argo_env.faults.fault import Fault
@@ -22,6 +23,11 @@ class Schedule:
     def pending(self) -> bool:
         """Whether anything is still to begin or to end."""
         return self._next < len(self._moments)
+
+    @property
+    def next_change(self) -> float:
+        """When something begins or ends next (s); infinite if nothing does."""
+        return self._moments[self._next][0] if self.pending else math.inf
 
     @property
     def last_change(self) -> float:

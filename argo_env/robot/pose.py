@@ -2,6 +2,9 @@
 
 from dataclasses import dataclass
 
+Place = tuple[float, float, float, float, float]
+"""x, y, z (m), yaw and pitch (rad) of a robot that does not roll"""
+
 
 @dataclass(frozen=True)
 class BodyPose:

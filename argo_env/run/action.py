@@ -125,6 +125,30 @@ class ActionUnderWay:
         """Whether the arm is in motion or raised."""
         return self._phase in (self._measure, self._stow, self._stow_unread)
 
+    @property
+    def driving(self) -> bool:
+        """Whether it only goes along its path."""
+        return self._phase == self._drive and self._give_up_at == math.inf
+
+    def steps_measuring(self, most: int) -> int:
+        """How many time steps, at most so many, it measures on without looking or ending."""
+        if self._phase != self._measure or self._give_up_at < math.inf:
+            return 0
+        left, step = self._left, self._rig.drive.time_step
+        for count in range(most):
+            left -= step
+            if left <= 1e-9:
+                return count
+        return most
+
+    def go_on(self, count: int, now: float) -> None:
+        """So many steps have passed of those in which it only drives or measures, up to time `now`
+        (s)."""
+        self._now = now
+        if self._phase == self._measure:
+            for _ in range(count):
+                self._left -= self._rig.drive.time_step
+
     def reading(self, now: float) -> Reading | None:
         """What was measured, at time `now` (s), if anything was."""
         if self.measurement is None:

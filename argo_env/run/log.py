@@ -30,7 +30,7 @@ from argo_compiler.il import EventKind, Task
 from argo_compiler.model import Model
 from argo_env.faults.kinds import AnyFault
 from argo_env.files.yaml_messages import message_of
-from argo_env.robot.pose import BodyPose
+from argo_env.robot.pose import BodyPose, Place
 from argo_env.run.record import (
     DIGITS,
     TOLD,
@@ -268,7 +268,7 @@ class RunLog:
         if entry.resumed:
             self.resumed.append(entry.t)
         if entry.sample:
-            self.path.append(self._sample(entry))
+            self.sample(entry.t, entry.pose, entry.charge)
 
     def with_entry(self, entry: Entry) -> "RunLog":
         """Another log, with one more entry; this one stays as it is."""
@@ -279,10 +279,11 @@ class RunLog:
         other.add(entry)
         return other
 
-    def _sample(self, entry: Entry) -> PathSample:
-        x, y, z, yaw, pitch = (round(v, DIGITS) for v in entry.pose)
-        floor = self.site.floor_at(entry.pose[2])
-        charge = None if entry.charge is None else round(entry.charge, DIGITS)
-        return PathSample(
-            t=entry.t, x=x, y=y, z=z, yaw=yaw, pitch=pitch, floor=floor, charge=charge
+    def sample(self, t: float, pose: Place, charge: float | None) -> None:
+        """One more point of the recorded path: at time `t` (s), with such a charge (0 to 1)."""
+        x, y, z, yaw, pitch = (round(v, DIGITS) for v in pose)
+        floor = self.site.floor_at(pose[2])
+        charge = None if charge is None else round(charge, DIGITS)
+        self.path.append(
+            PathSample(t=t, x=x, y=y, z=z, yaw=yaw, pitch=pitch, floor=floor, charge=charge)
         )

@@ -9,7 +9,7 @@ from argo_env.navigation import Blockage
 from argo_env.robot.pose import BodyPose
 from argo_env.run.record import DIGITS, FROM_READING, Anomaly, Reading
 from argo_env.sensing.signals.terrain_watch import KNOWN, ObstacleDetection
-from argo_env.sensing.watch import Detection, RememberingWatch, Told, Watch
+from argo_env.sensing.watch import Detection, PatientWatch, RememberingWatch, Told, Watch
 from argo_env.site import Site
 from argo_env.site.shapes import Vector
 
@@ -50,6 +50,15 @@ class Perception:
                     if not self._was_told(watch, detection):
                         found.append(self._anomaly(watch, detection, now))
         return tuple(found)
+
+    def steps_to_look(self, first: int, last: int) -> set[int]:
+        """The steps from the first to the last number in which anything may be noticed, if no fault
+        begins or ends meanwhile."""
+        found: set[int] = set()
+        for watch, every, turn in self._turns:
+            if not (isinstance(watch, PatientWatch) and watch.sees_nothing_new):
+                found.update(range(first + (turn - first) % every, last + 1, every))
+        return found
 
     def _was_told(self, watch: Watch, detection: Detection) -> bool:
         if detection.place is None or isinstance(watch, RememberingWatch):

@@ -1,11 +1,22 @@
 """The battery in use: what the robot draws from it, and what a dock gives back."""
 
+from collections.abc import Sequence
+from typing import NamedTuple
+
 from argo_compiler.il.docked import at_dock
 from argo_env.drives.battery import Battery, load
-from argo_env.robot.pose import BodyPose
+from argo_env.robot.pose import BodyPose, Place
 from argo_env.robot.spec import RobotSpec
 from argo_env.run.log import Entry
 from argo_env.site import Site
+
+
+class PowerState(NamedTuple):
+    """How a power supply stands."""
+
+    charging: bool
+    battery: tuple[float, float] | None
+    """the battery's state"""
 
 
 class PowerSupply:
@@ -52,6 +63,37 @@ class PowerSupply:
             # The station powers the robot, and what it gives besides goes into the battery.
             watts = -self._power.charging if self.charging else 0.0
         self._battery.use(watts, seconds)
+
+    def ahead(
+        self, loads: Sequence[float], places: Sequence[Place], seconds: float
+    ) -> list[PowerState]:
+        """How it stands after each of some steps (s) with such loads (W), after which the robot is
+        at these places: up to where the battery is empty, before which nothing can happen."""
+        if self._battery is None:
+            return [PowerState(False, None)] * len(loads)
+        (left, _), capacity = self._battery.state, self._battery.capacity
+        standing = (self._power.standing, self._power.measuring)
+        states = []
+        docked_at: tuple[Place, bool] | None = None
+        for watts, place in zip(loads, places, strict=True):
+            charging = False
+            if watts in standing:
+                if docked_at is None or docked_at[0] is not place:
+                    docked_at = place, self._docked(BodyPose(*place))
+                if docked_at[1]:
+                    charging = left / capacity < 1.0
+                    watts = -self._power.charging if charging else 0.0
+            left = min(max(left - watts * seconds / 3600.0, 0.0), capacity)
+            if left <= 0.0:
+                break
+            states.append(PowerState(charging, (left, watts)))
+        return states
+
+    def go_to(self, state: PowerState) -> None:
+        """It stands like this from now on."""
+        self.charging = state.charging
+        if self._battery is not None and state.battery is not None:
+            self._battery.state = state.battery
 
     def _docked(self, pose: BodyPose) -> bool:
         return any(at_dock(pose, dock) for dock in self._docks)

@@ -1,5 +1,6 @@
 """The events that a run is given beforehand, at their times."""
 
+import math
 from collections.abc import Iterable
 
 from argo_compiler.hfsm import Event, GiveBack, Resume
@@ -18,6 +19,11 @@ class GivenEvents:
     def pending(self) -> bool:
         """Whether any are still to occur."""
         return self.occurred < len(self._events)
+
+    @property
+    def next_time(self) -> float:
+        """When the next one occurs (s); infinite if none does."""
+        return self._events[self.occurred][0] if self.pending else math.inf
 
     @property
     def ahead(self) -> tuple[tuple[float, LoggedEvent], ...]:

@@ -17,7 +17,7 @@ from argo_env.run.observer import Observer
 from argo_env.run.record import RunRecord
 from argo_env.run.rig import check_spec
 from argo_env.run.robot import RobotAction
-from argo_env.run.simulation import LoggedEvents, Simulation
+from argo_env.run.simulation import LoggedEvents, Simulation, never
 from argo_env.run.spec import RunSpec, checked
 from argo_env.run.steering import check_given
 
@@ -42,7 +42,7 @@ def simulate(
     replace: bool = False,
     gui: bool = False,
     pace: float | None = None,
-    interrupted: Callable[[], bool] = lambda: False,
+    interrupted: Callable[[], bool] = never,
 ) -> RunRecord:
     """Runs the mission of a spec to its end and returns the record. Equal specs give equal records.
 
@@ -83,7 +83,7 @@ def resume(
     events: LoggedEvents = (),
     gui: bool = False,
     pace: float | None = None,
-    interrupted: Callable[[], bool] = lambda: False,
+    interrupted: Callable[[], bool] = never,
 ) -> RunRecord:
     """Goes on with the run of a journal and returns the record of the whole of it.
 

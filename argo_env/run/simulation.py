@@ -1,6 +1,7 @@
 """The simulation: the one loop between a machine and what carries its actions out."""
 
 import logging
+import math
 from collections.abc import Callable, Iterator, Sequence
 from contextlib import ExitStack, contextmanager
 
@@ -15,14 +16,14 @@ from argo_env.planning.start import start_pose
 from argo_env.robot.pose import BodyPose
 from argo_env.run.beginning import matched, progress_now
 from argo_env.run.course import Course
-from argo_env.run.ending import exhausted, standstill
+from argo_env.run.ending import TIME_LIMIT, exhausted, standstill
 from argo_env.run.fitting_together import require_begun, require_machine, require_site
 from argo_env.run.log import Entry, LoggedEvent
 from argo_env.run.machine import Machine, OpenMachine
 from argo_env.run.observer import Observer
 from argo_env.run.record import RunRecord
 from argo_env.run.rig import Rig, fit_out
-from argo_env.run.robot import AnyRobot
+from argo_env.run.robot import AnyRobot, Sensed
 from argo_env.run.spec import RunSpec, checked
 from argo_env.run.steering import (
     DoByHand,
@@ -47,6 +48,15 @@ SAMPLE_PERIOD = 0.5  # s between recorded places of the robot
 
 LoggedEvents = Sequence[tuple[float, LoggedEvent]]
 """Events and their times (s)."""
+
+
+_LONGEST = 5_000
+"""steps that are made at once at most"""
+
+
+def never() -> bool:
+    """A run is not interrupted."""
+    return False
 
 
 class Simulation(Closing):
@@ -82,6 +92,7 @@ class Simulation(Closing):
         """
         self._spec = spec = checked(spec)
         self._observers = tuple(observers)
+        self._hearing = any(_hears(observer) for observer in observers)
         self._more = tuple(events)
         self._opened = False
         self._closed = False
@@ -181,6 +192,21 @@ class Simulation(Closing):
                 observer.on_step(self._course.now, self._course.action)
         self.settle()
 
+    def leap(self) -> None:
+        """Lets time pass up to the next moment at which something may happen: many time steps where
+        the robot only drives, measures or stands and has no world about it, else one. Observers
+        are told all but the single steps; records are the same as by `step`.
+
+        Raises Conflict as `step` does.
+        """
+        self._require_going_on()
+        if not self._opened and self._open():
+            return
+        with self._change():
+            if not self._glide(self._quiet_steps()):
+                self._advance()
+        self.settle()
+
     def handle(self, event: Steering) -> None:
         """Tells the run something from outside, now.
 
@@ -258,7 +284,7 @@ class Simulation(Closing):
         self._spec = self._spec.model_copy(update={"mission": machine.mission})
         self._course.obey(commands)
 
-    def run(self, interrupted: Callable[[], bool] = lambda: False) -> RunRecord:
+    def run(self, interrupted: Callable[[], bool] = never) -> RunRecord:
         """Goes on to the end of the run; returns its record. A robot that stands still and waits
         for what will not occur ends the run as well, as nobody can tell it anything meanwhile.
 
@@ -266,11 +292,15 @@ class Simulation(Closing):
         """
         if not self.over:
             self._require_usable()
+        step_by_step = interrupted is not never or any(
+            type(observer).on_step is not Observer.on_step for observer in self._observers
+        )
+        go_on = self.step if step_by_step else self.leap
         while not self.over and not interrupted() and not self._open():
             if why := self._standstill():
                 self._end(why)
             else:
-                self.step()
+                go_on()
         record = self.record()
         if not self.over:
             _log.info("the run was interrupted at %g s", self.now)
@@ -350,10 +380,66 @@ class Simulation(Closing):
 
     def _advance(self) -> None:
         """One step of simulated time."""
-        course, machine = self._course, self._course.machine
+        course = self._course
         course.step_to(course.steps + 1)
+        self._react(self._vehicle.advance(course.steps, course.now, course.action))
+
+    def _quiet_steps(self) -> int:
+        """In how many time steps nothing is told, begins or ends; what the robot notices by itself,
+        and the end of its action, may come before."""
+        course, machine, vehicle = self._course, self._course.machine, self._vehicle
+        if not isinstance(vehicle, Vehicle) or not vehicle.glides:
+            return 0
+        supervision, deadline = course.supervision, machine.next_deadline
+        if supervision.taken_over or supervision.acting:
+            return 0
+        if (course.action is None) != (machine.running is None):
+            return 0
+        if machine.running is None and deadline is None:
+            return 0  # it waits for what is told
+        schedule = self.rig.schedule
+        next_time = min(
+            course.given.next_time,
+            schedule.next_change if schedule else math.inf,
+            math.inf if deadline is None else deadline,
+            TIME_LIMIT,
+        )
+        steps = int((next_time - course.now) / self.rig.drive.time_step) - 1
+        return min(steps, _LONGEST)
+
+    def _glide(self, most: int) -> bool:
+        """Makes at most so many steps at once, up to where the robot notices something; whether
+        there were any."""
+        course, vehicle = self._course, self._vehicle
+        if most < 1 or not isinstance(vehicle, Vehicle):
+            return False
+        glide, first = vehicle.glide(course.action, most), course.steps
+        last, every = first + glide.steps, self._sampled_every
+        looks = vehicle.steps_to_look(first + 1, last)
+        samples = range(first + every - first % every, last + 1, every)
+        for step in sorted({*looks, *samples, last} if glide.steps else ()):
+            course.step_to(step)
+            glide.go_to(step - first, course.now)
+            sensed = vehicle.look(step, course.now) if step in looks else None
+            if sensed and sensed.found:
+                self._react(sensed)
+                return True
+            if step in samples:
+                self._sample()
+        return glide.steps > 0
+
+    def _sample(self) -> None:
+        """The robot's place becomes a point of the path, and nothing else has happened."""
+        if self._hearing:
+            self._tell(self._course.entry(sample=True))
+        else:
+            state = self._vehicle.state()
+            self._course.log.sample(self.now, state["pose"], state["charge"])
+
+    def _react(self, sensed: Sensed) -> None:
+        """The machine hears what has happened by now."""
+        course, machine = self._course, self._course.machine
         now = course.now
-        sensed = self._vehicle.advance(course.steps, now, course.action)
         # Before the end, so that a reaction to it comes first and no next task is begun.
         events: list[Event] = [Occurred(a.kind, a.detail) for a in sensed.found]
         acting, reading = course.supervision.acting, sensed.reading
@@ -435,3 +521,9 @@ class Simulation(Closing):
         _log.info("the run has ended at %g s", self.now)
         for observer in self._observers:
             observer.on_end(self._record)
+
+
+def _hears(observer: Observer) -> bool:
+    """Whether an observer is told of entries."""
+    kind = type(observer)
+    return (kind.on_entry, kind.on_change) != (Observer.on_entry, Observer.on_change)

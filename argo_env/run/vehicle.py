@@ -11,6 +11,7 @@ from argo_env.navigation.retreat import driven, recent
 from argo_env.robot.pose import BodyPose
 from argo_env.run.action import RETREAT, ActionUnderWay
 from argo_env.run.beginning import RunBeginning
+from argo_env.run.glide import Glide
 from argo_env.run.log import Entry, RunLog
 from argo_env.run.odometry import Odometry
 from argo_env.run.perception import Perception, abnormal_reading, blockage
@@ -18,6 +19,7 @@ from argo_env.run.power_supply import PowerSupply
 from argo_env.run.record import Anomaly
 from argo_env.run.rig import Rig
 from argo_env.run.robot import RobotAction, Sensed
+from argo_env.world.paper_world import PaperWorld
 
 _NOTHING = Sensed()
 
@@ -96,6 +98,25 @@ class Vehicle:
         if reading and not reading.normal:
             found = (*found, abnormal_reading(reading, rig.navigator.site))
         return Sensed(end, reading, found) if end or found else _NOTHING
+
+    @property
+    def glides(self) -> bool:
+        """Whether many steps can be made at once: without a world nothing else moves."""
+        return isinstance(self.rig.world, PaperWorld)
+
+    def glide(self, action: RobotAction | None, most: int) -> Glide:
+        """The steps ahead, at most so many, in which it only goes on with `action`."""
+        own = self._action if action else None
+        return Glide(self.rig, self.odometry, self.supply, own, most)
+
+    def steps_to_look(self, first: int, last: int) -> set[int]:
+        """The numbers of the steps of a glide in which it looks whether there is anything."""
+        return self._perception.steps_to_look(first, last)
+
+    def look(self, step: int, now: float) -> Sensed:
+        """What it notices in that step of a glide, which ends at `now` (s)."""
+        found = self._perception.look(step, now, self.rig.drive.pose)
+        return Sensed(found=found) if found else _NOTHING
 
     def state(self) -> dict[str, Any]:
         """What an entry tells of it."""

@@ -74,6 +74,11 @@ class ConnectionWatch:
         lost = bool(told) and told[-1].kind is EventKind.CONNECTION_LOST
         self._missed = self._limit if lost else 0
 
+    @property
+    def sees_nothing_new(self) -> bool:
+        """Whether the network has no shadows, and the last answer has come."""
+        return not self._network.shadows and not self._missed
+
     def look(self, now: float, pose: BodyPose) -> tuple[Detection, ...]:  # noqa: ARG002
         here = (pose.x, pose.y, pose.z)
         if not self._network.connected(pose):
@@ -102,6 +107,11 @@ class EmergencyStopWatch:
 
     def remember(self, told: Sequence[Told], now: float) -> None:  # noqa: ARG002
         self._pressed = bool(told) and self._drive.pressed
+
+    @property
+    def sees_nothing_new(self) -> bool:
+        """Whether the circuit is as it was."""
+        return self._pressed == self._drive.pressed
 
     def look(self, now: float, pose: BodyPose) -> tuple[Detection, ...]:  # noqa: ARG002
         before, self._pressed = self._pressed, self._drive.pressed

@@ -46,6 +46,16 @@ class Told:
 
 
 @runtime_checkable
+class PatientWatch(Watch, Protocol):
+    """A watch that sees nothing new for as long as no fault begins or ends."""
+
+    @property
+    def sees_nothing_new(self) -> bool:
+        """Whether no look tells or changes anything until then."""
+        ...
+
+
+@runtime_checkable
 class RememberingWatch(Watch, Protocol):
     """A watch whose detections have no place by which they are known again."""
 

@@ -12,6 +12,7 @@ from argo_compiler.model import Pose
 from argo_env.files import resources
 from argo_env.site.family import PREFIX, is_family
 from argo_env.site.index import SolidIndex
+from argo_env.site.rays import SolidRays
 from argo_env.site.shapes import Element, Vector
 from argo_env.site.spec import FloorSpec, SiteSpec
 
@@ -71,6 +72,11 @@ class Site:
     def solids(self) -> SolidIndex:
         """All solids of the site, to be found by where they are."""
         return SolidIndex(self.elements)
+
+    @cached_property
+    def rays(self) -> SolidRays:
+        """What straight lines meet first of its solids."""
+        return SolidRays(self.elements)
 
     def with_elements(self, elements: tuple[Element, ...]) -> "Site":
         """The same site with other elements, as where something lies about on it."""

@@ -1,14 +1,12 @@
 """A site on paper: what a mission needs of a world, without physics or pictures."""
 
 from collections.abc import Mapping
-from functools import cached_property
 from typing import Protocol
 
 import numpy as np
 
 from argo_env.robot.spec import RobotSpec
 from argo_env.site import Site, SiteCheckpoint
-from argo_env.site.rays import SolidRays
 from argo_env.site.shapes import Vector
 from argo_env.world.placement import AS_PLANNED, Placement, displaced
 from argo_env.world.world import Touch
@@ -83,10 +81,6 @@ class PaperWorld:
         way = np.array(target) - np.array(origin)
         length = float(np.linalg.norm(way))
         direction = way / length if length else np.array([0.0, 0.0, 1.0])
-        _, (solid,) = self._rays.first(np.array(origin), direction[None, :], length, inside=True)
-        return None if solid < 0 else self._rays.elements[solid].name
-
-    @cached_property
-    def _rays(self) -> SolidRays:
-        # Made when it is first needed: many runs on paper look at nothing.
-        return SolidRays(self.site.elements)
+        rays = self.site.rays
+        _, (solid,) = rays.first(np.array(origin), direction[None, :], length, inside=True)
+        return None if solid < 0 else rays.elements[solid].name

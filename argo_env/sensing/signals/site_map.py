@@ -4,7 +4,6 @@ import numpy as np
 from numpy.typing import NDArray
 
 from argo_env.site import Site
-from argo_env.site.rays import SolidRays
 from argo_env.site.shapes import WALKING_ROLES, Element, Role, Vector
 
 EQUIPMENT = frozenset({Role.VESSEL, Role.PIPE, Role.PUMP})
@@ -15,7 +14,7 @@ class SiteMap:
 
     def __init__(self, site: Site) -> None:
         self.site = site
-        self._rays = SolidRays(site.elements)
+        self._rays = site.rays
         self._checkpoints = np.array([c.position for c in site.checkpoints]).reshape(-1, 3)
         self._walkable = np.array([e.role in WALKING_ROLES for e in self._rays.elements])
         self._equipment = np.array([e.role in EQUIPMENT for e in self._rays.elements])

@@ -1,0 +1,77 @@
+"""Many time steps at once, in which a robot without a world only goes on with what it does.
+
+It drives along its path, measures or stands; nobody tells it anything, and no fault begins or ends.
+All that adds up is the same as step by step, to the last bit.
+"""
+
+import math
+from itertools import accumulate
+
+from argo_env.drives.battery import load_of_way
+from argo_env.drives.powertrain import Powertrain
+from argo_env.robot.pose import Place
+from argo_env.run.action import ActionUnderWay
+from argo_env.run.odometry import Odometry
+from argo_env.run.power_supply import PowerSupply
+from argo_env.run.rig import Rig
+
+
+class Glide:
+    """The steps ahead. Holds how many of them have passed."""
+
+    def __init__(
+        self,
+        rig: Rig,
+        odometry: Odometry,
+        supply: PowerSupply,
+        action: ActionUnderWay | None,
+        most: int,
+    ) -> None:
+        """At most so many steps; `steps` says how many there are, which may be none."""
+        self._drive = rig.drive
+        self._odometry = odometry
+        self._supply = supply
+        self._action = action
+        self._passed = 0
+        self._ahead: list[tuple[Place, int]] | None = None
+        pose = rig.drive.pose
+        here = (pose.x, pose.y, pose.z, pose.yaw, pose.pitch)
+        if not isinstance(rig.drive, Powertrain) or odometry.touching or pose.roll:
+            self.steps = 0
+            return
+        if action is None:
+            self.steps = most
+        elif action.driving:
+            self._ahead = rig.drive.steps_ahead(most)
+            self.steps = len(self._ahead)
+        else:
+            self.steps = action.steps_measuring(most)
+        places = [place for place, _ in self._ahead] if self._ahead else [here] * self.steps
+        pairs = [*zip([here, *places], places, strict=False)]
+        still = self._ahead is None
+        ways = [0.0 if still else math.dist(a[:3], b[:3]) for a, b in pairs]
+        rises = [max(0.0, b[2] - a[2]) for a, b in pairs]
+        self._distance = [*accumulate(ways, initial=odometry.distance)]
+        self._climbed = [*accumulate(rises, initial=odometry.climbed)]
+        measuring = action is not None and action.measuring
+        power, time_step = rig.navigator.robot.power, rig.drive.time_step
+        loads = [
+            load_of_way(power, way, a, b, time_step, measuring)
+            for way, (a, b) in zip(ways, pairs, strict=True)
+        ]
+        self._power = supply.ahead(loads, places, time_step)
+        self.steps = min(self.steps, len(self._power))
+        """how many there are"""
+
+    def go_to(self, step: int, now: float) -> None:
+        """So many of the steps have passed by time `now` (s)."""
+        count = step - self._passed
+        if self._ahead is not None:
+            assert isinstance(self._drive, Powertrain)
+            self._drive.go_on(self._ahead, self._passed, count)
+        if self._action is not None:
+            self._action.go_on(count, now)
+        self._odometry.distance = self._distance[step]
+        self._odometry.climbed = self._climbed[step]
+        self._supply.go_to(self._power[step - 1])
+        self._passed = step

@@ -1,0 +1,141 @@
+"""Runs without a world go from event to event: the record, and the journal, are those of a run that
+goes step by step, to the last bit."""
+
+import os
+import random
+
+import pytest
+
+from argo_compiler.errors import Conflict
+from argo_compiler.hfsm import Cancel, GiveBack, Occurred, Pause, Resume, TakeOver
+from argo_compiler.il import (
+    Action,
+    EventKind,
+    Group,
+    Mission,
+    Reaction,
+    Response,
+    Task,
+    Transition,
+    WaitRule,
+)
+from argo_env.faults.reading import decode_faults
+from argo_env.planning.opening import open_site
+from argo_env.run.conditions import RunConditions
+from argo_env.run.observer import Observer
+from argo_env.run.session import simulate
+from argo_env.run.spec import RunSpec, logged
+
+SITE = open_site("umad")
+PAPER_FAULTS = (
+    "{kind: abnormal_value}",
+    "{kind: displaced_checkpoint}",
+    "{kind: low_battery}",
+    "{kind: low_battery, charge: 0.005}",
+    "{kind: worn_battery, capacity: 0.01}",
+    "{kind: connection_loss, floor: 1, at: 20, until: 60}",
+    "{kind: connection_loss}",
+    "{kind: emergency_stop, at: 31.27, until: 52.1}",
+    "{kind: emergency_stop, at: 40}",
+    "{kind: sensor_dysfunction, effect: noise}",
+    "{kind: sensor_dysfunction, effect: fails, at: 10, until: 70}",
+    "{kind: drive_dysfunction, at: 12, until: 80}",
+    "{kind: drive_dysfunction, speed: 0.0, at: 25}",
+    "{kind: drive_dysfunction, speed: 0.013, at: 5, until: 45}",
+)
+EVENTS = (Occurred(EventKind.GAS_LEAK), Pause(), Resume(), TakeOver(), GiveBack(), Cancel())
+
+
+class StepByStep(Observer):
+    """Wants to be told of each step."""
+
+    def on_step(self, now, action):
+        """Nothing is done with it."""
+
+
+def mission_of(chosen: random.Random) -> Mission:
+    """Some gauges, places, waits and rounds, with reactions and limits."""
+    gauges = [str(c.id) for c in SITE.site.checkpoints]
+    docks = SITE.site.docks
+    tasks = [("START", {"action": Action.START, "pose": docks[chosen.choice([1, 2])]})]
+    for k in range(chosen.randint(1, 4)):
+        match chosen.randrange(4):
+            case 0:
+                rule = WaitRule(duration=chosen.choice([0.05, 7.0, 33.3]))
+                tasks.append((f"WAIT {k}", {"action": Action.WAIT, "wait": rule}))
+            case 1:
+                pose = docks[chosen.choice([1, 2])]
+                speed = chosen.choice([None, 0.1, 0.45])
+                more = {"action": Action.WAYPOINT, "pose": pose, "velocity": speed}
+                tasks.append((f"GO {k}", more))
+            case _:
+                more = {"action": Action.MEASURE, "object_id": chosen.choice(gauges)}
+                if chosen.random() < 0.2:
+                    more["reading_limit"] = chosen.choice([1.0, 30.0])
+                tasks.append((f"READ {k}", more))
+    names = [name for name, _ in tasks]
+    made = [
+        Task(
+            name=name,
+            transitions=(Transition(target=names[k + 1]),) if k + 1 < len(names) else (),
+            group="Again" if k else "",
+            **more,
+        )
+        for k, (name, more) in enumerate(tasks)
+    ]
+    group = Group(name="Again", start=names[1], end=names[-1], max_repeat_count=2)
+    reactions = [
+        Reaction(event=EventKind.LOW_BATTERY, response=Response.RETURN),
+        Reaction(event=EventKind.GAS_LEAK, response=Response.PAUSE),
+        Reaction(event=EventKind.CONNECTION_LOST, response=Response.PAUSE),
+    ]
+    return Mission(
+        tasks=tuple(made),
+        groups=(group,),
+        reactions=tuple(chosen.sample(reactions, chosen.randint(0, 3))),
+        max_duration=chosen.choice([None, None, 120.0]),
+        dock=docks[1],
+    )
+
+
+def spec_of(seed: int) -> RunSpec:
+    chosen = random.Random(seed)
+    faults = chosen.sample(PAPER_FAULTS, chosen.choice([0, 0, 1, 2, 3]))
+    events = []
+    for _ in range(chosen.choice([0, 0, 1, 3])):
+        events.append((round(chosen.uniform(0, 120), 2), chosen.choice(EVENTS)))
+    conditions = RunConditions(
+        speed=chosen.choice([1.0, 1.0, 0.83, 0.5]),
+        charge=chosen.choice([None, 0.21, 0.9]),
+        sensor_noise=chosen.choice([0.0, 0.02]),
+        turned=chosen.choice([0.0, 12.0]),
+    )
+    text = f"faults: [{', '.join(faults)}]" if faults else "faults: []"
+    return RunSpec(
+        mission=mission_of(chosen),
+        drive="route",
+        seed=seed,
+        faults=decode_faults(text.encode(), "test").faults,
+        events=logged(*sorted(events, key=lambda one: one[0])),
+        conditions=conditions,
+    )
+
+
+def outcome(spec, **options) -> str:
+    """The record as text, or what was wrong with what the run was told."""
+    try:
+        return simulate(spec, SITE, **options).model_dump_json()
+    except Conflict as error:
+        return str(error)
+
+
+EXAMPLES = int(os.environ.get("ARGO_EXAMPLES", "60"))
+
+
+@pytest.mark.parametrize("seed", range(EXAMPLES))
+def test_the_record_and_the_journal_are_those_of_step_by_step(seed, tmp_path):
+    spec = spec_of(seed)
+    slow = outcome(spec, observers=[StepByStep()], journal=tmp_path / "slow")
+    assert outcome(spec) == slow
+    assert outcome(spec, journal=tmp_path / "fast") == slow
+    assert (tmp_path / "fast").read_bytes() == (tmp_path / "slow").read_bytes()

@@ -32,3 +32,9 @@ class Observer:
 
     def on_end(self, record: RunRecord) -> None:
         """The run has ended, and this is its record."""
+
+
+def hears(observer: Observer, name: str) -> bool:
+    """Whether the observer does anything when it is told this, such as `on_step`."""
+    own = getattr(getattr(observer, name), "__func__", None)
+    return own is not getattr(Observer, name)

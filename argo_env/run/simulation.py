@@ -20,7 +20,7 @@ from argo_env.run.ending import TIME_LIMIT, exhausted, standstill
 from argo_env.run.fitting_together import require_begun, require_machine, require_site
 from argo_env.run.log import Entry, LoggedEvent
 from argo_env.run.machine import Machine, OpenMachine
-from argo_env.run.observer import Observer
+from argo_env.run.observer import Observer, hears
 from argo_env.run.record import RunRecord
 from argo_env.run.rig import Rig, fit_out
 from argo_env.run.robot import AnyRobot, Sensed
@@ -92,7 +92,9 @@ class Simulation(Closing):
         """
         self._spec = spec = checked(spec)
         self._observers = tuple(observers)
-        self._hearing = any(_hears(observer) for observer in observers)
+        self._hearing = any(
+            hears(observer, name) for observer in observers for name in ("on_entry", "on_change")
+        )
         self._more = tuple(events)
         self._opened = False
         self._closed = False
@@ -293,7 +295,7 @@ class Simulation(Closing):
         if not self.over:
             self._require_usable()
         step_by_step = interrupted is not never or any(
-            type(observer).on_step is not Observer.on_step for observer in self._observers
+            hears(observer, "on_step") for observer in self._observers
         )
         go_on = self.step if step_by_step else self.leap
         while not self.over and not interrupted() and not self._open():
@@ -521,9 +523,3 @@ class Simulation(Closing):
         _log.info("the run has ended at %g s", self.now)
         for observer in self._observers:
             observer.on_end(self._record)
-
-
-def _hears(observer: Observer) -> bool:
-    """Whether an observer is told of entries."""
-    kind = type(observer)
-    return (kind.on_entry, kind.on_change) != (Observer.on_entry, Observer.on_change)

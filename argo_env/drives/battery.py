@@ -12,6 +12,7 @@ _CURVE = (
 )  # fmt: skip
 """Charge and open-circuit voltage (V): the shape of a lithium-ion battery between the 23 V and 28 V
 of the robot that Argo's is modelled after."""
+_CHARGES, _VOLTAGES = ([point[k] for point in _CURVE] for k in (0, 1))
 RESISTANCE = 0.05  # ohm, assumed
 _MOVING = 0.02  # m/s or rad/s from where on the robot moves, and does not only settle
 _ON_STAIRS = math.radians(8.0)  # of pitch
@@ -73,7 +74,7 @@ class Battery:
 def estimated_charge(voltage: float, current: float) -> float:
     """The charge, 0 to 1, that the measured voltage (V) and current (A) speak for."""
     rest = voltage + RESISTANCE * current
-    k = min(max(bisect_left(_CURVE, rest, key=lambda point: point[1]), 1), len(_CURVE) - 1)
+    k = min(max(bisect_left(_VOLTAGES, rest), 1), len(_CURVE) - 1)
     (s0, v0), (s1, v1) = _CURVE[k - 1], _CURVE[k]
     return min(max(s0 + (rest - v0) / (v1 - v0) * (s1 - s0), 0.0), 1.0)
 
@@ -103,6 +104,6 @@ def load_of_way(
 
 
 def _open_circuit(charge: float) -> float:
-    k = min(max(bisect_left(_CURVE, charge, key=lambda point: point[0]), 1), len(_CURVE) - 1)
+    k = min(max(bisect_left(_CHARGES, charge), 1), len(_CURVE) - 1)
     (s0, v0), (s1, v1) = _CURVE[k - 1], _CURVE[k]
     return v0 + (charge - s0) / (s1 - s0) * (v1 - v0)

@@ -55,7 +55,7 @@ class Inspection(Closing):
         self._tasks: dict[str, int] = {}
         self._noticed: list[EventKind] = []
         self._trail: list[tuple[float, BodyPose]] = []
-        self._mark()
+        self._mark(self.now, self._drive.pose)
 
     def close(self) -> None:
         """Ends the run; only its record can be asked for afterwards."""
@@ -119,7 +119,8 @@ class Inspection(Closing):
         self._told.clear()
         end = self.now + seconds
         while not self._over and (self.now < end or (charging and self.charge < FULL)):
-            self._step()
+            # How full the battery is, is looked at in each step.
+            self._step(self.now if charging else end)
         if self.time_up:
             self._stop()
         return self._deed()
@@ -138,7 +139,7 @@ class Inspection(Closing):
         began = self.now
         self._simulation.give(task)
         while self._simulation.task is not None and not self._over:
-            self._step()
+            self._step(self._limit)
         if self.time_up:
             self._stop()
         return self._deed(began)
@@ -147,9 +148,15 @@ class Inspection(Closing):
         if not self._simulation.over:
             self._simulation.handle(StopRun(f"the time limit of {self._limit:g} s was reached"))
 
-    def _step(self) -> None:
-        self._simulation.step()
-        self._mark()
+    def _step(self, until: float) -> None:
+        """Goes on for one time step, or for many up to that time (s)."""
+        began = self.now
+        if until <= began:
+            self._simulation.step()
+        else:
+            for number, place in enumerate(self._simulation.leap(until), start=1):
+                self._mark(round(began + number * self._drive.time_step, 6), BodyPose(*place))
+        self._mark(self.now, self._drive.pose)
 
     def _deed(self, began: float = math.inf) -> Deed:
         """What came since the clearing; contacts are those with a touch after time `began` (s)."""
@@ -164,20 +171,21 @@ class Inspection(Closing):
         self._tasks[what] = count = self._tasks.get(what, 0) + 1
         return what if count == 1 else f"{what} ({count})"
 
-    def _mark(self) -> None:
-        """Keeps the pose if the robot is far enough from the last one kept."""
-        pose = self._drive.pose
+    def _mark(self, now: float, pose: BodyPose) -> None:
+        """Keeps the pose at time `now` (s) if the robot is far enough from the last one kept."""
         if self._trail:
             last = self._trail[-1][1]
             if pose is last:
                 return
             if math.dist((pose.x, pose.y, pose.z), (last.x, last.y, last.z)) < _TRAIL:
                 return
-        self._trail.append((self.now, pose))
+        self._trail.append((now, pose))
 
 
 class _Told(Observer):
     """Holds what was told of the run since it was cleared."""
+
+    hears_samples = False
 
     def __init__(self) -> None:
         self.clear()

@@ -5,6 +5,7 @@ All that adds up is the same as step by step, to the last bit.
 """
 
 import math
+from collections.abc import Sequence
 from itertools import accumulate
 
 from argo_env.drives.battery import load_of_way
@@ -35,7 +36,7 @@ class Glide:
         self._passed = 0
         self._ahead: list[tuple[Place, int]] | None = None
         pose = rig.drive.pose
-        here = (pose.x, pose.y, pose.z, pose.yaw, pose.pitch)
+        self._here = here = (pose.x, pose.y, pose.z, pose.yaw, pose.pitch)
         if not isinstance(rig.drive, Powertrain) or odometry.touching or pose.roll:
             self.steps = 0
             return
@@ -62,6 +63,15 @@ class Glide:
         self._power = supply.ahead(loads, places, time_step)
         self.steps = min(self.steps, len(self._power))
         """how many there are"""
+
+    def places(self, count: int) -> Sequence[Place]:
+        """Where the robot is after each of the first so many steps; nothing while it stands."""
+        return () if self._ahead is None else [place for place, _ in self._ahead[:count]]
+
+    def sample(self, step: int) -> tuple[Place, float | None]:
+        """Where the robot is after so many of the steps, and the charge of its battery, 0 to 1."""
+        place = self._here if self._ahead is None else self._ahead[step - 1][0]
+        return place, self._supply.charge_at(self._power[step - 1])
 
     def go_to(self, step: int, now: float) -> None:
         """So many of the steps have passed by time `now` (s)."""

@@ -14,6 +14,9 @@ class Observer:
     It can't steer the run while it is told of it. What it raises breaks the simulation off.
     """
 
+    hears_samples = True
+    """whether it is told as well where the robot was while nothing happened"""
+
     def on_begin(self, rig: Rig, spec: RunSpec) -> None:
         """The run is about to begin, or to go on from its journal."""
 

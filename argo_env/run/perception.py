@@ -30,6 +30,7 @@ class Perception:
             (watch, steps, k % steps)
             for k, (watch, steps) in enumerate(zip(watches, every, strict=True))
         ]
+        self._patient = [w if isinstance(w, PatientWatch) else None for w in watches]
         self._known: list[Anomaly] = []
 
     def remember(self, told: Sequence[tuple[Anomaly, BodyPose]], now: float) -> None:
@@ -55,8 +56,8 @@ class Perception:
         """The steps from the first to the last number in which anything may be noticed, if no fault
         begins or ends meanwhile."""
         found: set[int] = set()
-        for watch, every, turn in self._turns:
-            if not (isinstance(watch, PatientWatch) and watch.sees_nothing_new):
+        for (_, every, turn), patient in zip(self._turns, self._patient, strict=True):
+            if patient is None or not patient.sees_nothing_new:
                 found.update(range(first + (turn - first) % every, last + 1, every))
         return found
 

@@ -1,7 +1,6 @@
 """The battery in use: what the robot draws from it, and what a dock gives back."""
 
 from collections.abc import Sequence
-from typing import NamedTuple
 
 from argo_compiler.il.docked import at_dock
 from argo_env.drives.battery import Battery, load
@@ -10,13 +9,8 @@ from argo_env.robot.spec import RobotSpec
 from argo_env.run.log import Entry
 from argo_env.site import Site
 
-
-class PowerState(NamedTuple):
-    """How a power supply stands."""
-
-    charging: bool
-    battery: tuple[float, float] | None
-    """the battery's state"""
+PowerState = tuple[bool, float, float]
+"""whether the battery is being charged, Wh that are left in it, and the load (W)"""
 
 
 class PowerSupply:
@@ -70,10 +64,10 @@ class PowerSupply:
         """How it stands after each of some steps (s) with such loads (W), after which the robot is
         at these places: up to where the battery is empty, before which nothing can happen."""
         if self._battery is None:
-            return [PowerState(False, None)] * len(loads)
+            return [(False, 0.0, 0.0)] * len(loads)
         (left, _), capacity = self._battery.state, self._battery.capacity
         standing = (self._power.standing, self._power.measuring)
-        states = []
+        states: list[PowerState] = []
         docked_at: tuple[Place, bool] | None = None
         for watts, place in zip(loads, places, strict=True):
             charging = False
@@ -86,14 +80,18 @@ class PowerSupply:
             left = min(max(left - watts * seconds / 3600.0, 0.0), capacity)
             if left <= 0.0:
                 break
-            states.append(PowerState(charging, (left, watts)))
+            states.append((charging, left, watts))
         return states
 
     def go_to(self, state: PowerState) -> None:
         """It stands like this from now on."""
-        self.charging = state.charging
-        if self._battery is not None and state.battery is not None:
-            self._battery.state = state.battery
+        self.charging, *battery = state
+        if self._battery is not None:
+            self._battery.state = battery[0], battery[1]
+
+    def charge_at(self, state: PowerState) -> float | None:
+        """Of the battery, 0 to 1, when it stands like this."""
+        return None if self._battery is None else state[1] / self._battery.capacity
 
     def _docked(self, pose: BodyPose) -> bool:
         return any(at_dock(pose, dock) for dock in self._docks)

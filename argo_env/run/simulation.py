@@ -13,7 +13,7 @@ from argo_compiler.model import Pose
 from argo_env.closing import Closing
 from argo_env.planning.opening import OpenedSite
 from argo_env.planning.start import start_pose
-from argo_env.robot.pose import BodyPose
+from argo_env.robot.pose import BodyPose, Place
 from argo_env.run.beginning import matched, progress_now
 from argo_env.run.course import Course
 from argo_env.run.ending import TIME_LIMIT, exhausted, standstill
@@ -93,7 +93,9 @@ class Simulation(Closing):
         self._spec = spec = checked(spec)
         self._observers = tuple(observers)
         self._hearing = any(
-            hears(observer, name) for observer in observers for name in ("on_entry", "on_change")
+            observer.hears_samples and hears(observer, name)
+            for observer in observers
+            for name in ("on_entry", "on_change")
         )
         self._more = tuple(events)
         self._opened = False
@@ -194,20 +196,23 @@ class Simulation(Closing):
                 observer.on_step(self._course.now, self._course.action)
         self.settle()
 
-    def leap(self) -> None:
-        """Lets time pass up to the next moment at which something may happen: many time steps where
-        the robot only drives, measures or stands and has no world about it, else one. Observers
-        are told all but the single steps; records are the same as by `step`.
+    def leap(self, until: float = math.inf) -> Sequence[Place]:
+        """Lets time pass up to the next moment at which something may happen, and not beyond
+        `until` (s): many time steps where the robot only drives, measures or stands and has no
+        world about it, else one. Observers are told all but the single steps; records are the
+        same as by `step`. Returns where the robot was after each of the steps but the last.
 
         Raises Conflict as `step` does.
         """
         self._require_going_on()
         if not self._opened and self._open():
-            return
+            return ()
         with self._change():
-            if not self._glide(self._quiet_steps()):
+            passed = self._glide(self._quiet_steps(until))
+            if passed is None:
                 self._advance()
         self.settle()
+        return passed or ()
 
     def handle(self, event: Steering) -> None:
         """Tells the run something from outside, now.
@@ -386,9 +391,9 @@ class Simulation(Closing):
         course.step_to(course.steps + 1)
         self._react(self._vehicle.advance(course.steps, course.now, course.action))
 
-    def _quiet_steps(self) -> int:
-        """In how many time steps nothing is told, begins or ends; what the robot notices by itself,
-        and the end of its action, may come before."""
+    def _quiet_steps(self, until: float) -> int:
+        """In how many time steps, up to `until` (s), nothing is told, begins or ends; what the
+        robot notices by itself, and the end of its action, may come before."""
         course, machine, vehicle = self._course, self._course.machine, self._vehicle
         if not isinstance(vehicle, Vehicle) or not vehicle.glides:
             return 0
@@ -405,38 +410,34 @@ class Simulation(Closing):
             schedule.next_change if schedule else math.inf,
             math.inf if deadline is None else deadline,
             TIME_LIMIT,
+            until,
         )
         steps = int((next_time - course.now) / self.rig.drive.time_step) - 1
         return min(steps, _LONGEST)
 
-    def _glide(self, most: int) -> bool:
-        """Makes at most so many steps at once, up to where the robot notices something; whether
-        there were any."""
+    def _glide(self, most: int) -> Sequence[Place] | None:
+        """Makes at most so many steps at once, up to where the robot notices something. Where it
+        was after each of them but the last; None if there are none."""
         course, vehicle = self._course, self._vehicle
         if most < 1 or not isinstance(vehicle, Vehicle):
-            return False
+            return None
         glide, first = vehicle.glide(course.action, most), course.steps
         last, every = first + glide.steps, self._sampled_every
         looks = vehicle.steps_to_look(first + 1, last)
         samples = range(first + every - first % every, last + 1, every)
         for step in sorted({*looks, *samples, last} if glide.steps else ()):
             course.step_to(step)
-            glide.go_to(step - first, course.now)
+            if step in looks or step == last or self._hearing:
+                glide.go_to(step - first, course.now)
             sensed = vehicle.look(step, course.now) if step in looks else None
             if sensed and sensed.found:
                 self._react(sensed)
-                return True
-            if step in samples:
-                self._sample()
-        return glide.steps > 0
-
-    def _sample(self) -> None:
-        """The robot's place becomes a point of the path, and nothing else has happened."""
-        if self._hearing:
-            self._tell(self._course.entry(sample=True))
-        else:
-            state = self._vehicle.state()
-            self._course.log.sample(self.now, state["pose"], state["charge"])
+                return glide.places(step - first - 1)
+            if step in samples and self._hearing:
+                self._tell(course.entry(sample=True))
+            elif step in samples:  # nobody is to hear of it
+                course.log.sample(course.now, *glide.sample(step - first))
+        return glide.places(glide.steps - 1) if glide.steps else None
 
     def _react(self, sensed: Sensed) -> None:
         """The machine hears what has happened by now."""

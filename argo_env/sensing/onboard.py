@@ -9,7 +9,6 @@ from collections import deque
 from collections.abc import Sequence
 
 import numpy as np
-from numpy.typing import NDArray
 
 from argo_compiler.il import EventKind
 from argo_env.drives.battery import Battery, estimated_charge
@@ -130,7 +129,7 @@ class DriveWatch:
         self._drive = drive
         self._robot = robot
         self._way: tuple[Path, float | None] | None = None
-        self._plan: NDArray[np.float64] = np.empty((0, 4))
+        self._plan: list[tuple[float, float, float, float]] = []
         self._at = 0
         self._held = 0
         self._progress: deque[tuple[float, float]] = deque()
@@ -171,10 +170,15 @@ class DriveWatch:
 
     def _nearest(self, pose: BodyPose) -> int:
         """Where on the plan the robot is: at most twice as far on as time would have it."""
-        ahead = self._plan[self._at : self._at + round(2 * self.period / _SAMPLE) + 1]
-        apart = ahead - np.array([pose.x, pose.y, pose.z, pose.yaw])
-        apart[:, 3] = _RADIAN * np.remainder(apart[:, 3] + math.pi, math.tau) - _RADIAN * math.pi
-        return self._at + int(np.argmin((apart**2).sum(axis=1)))
+        nearest, least = self._at, math.inf
+        last = self._at + round(2 * self.period / _SAMPLE)
+        for number, (x, y, z, yaw) in enumerate(self._plan[self._at : last + 1], start=self._at):
+            dx, dy, dz = x - pose.x, y - pose.y, z - pose.z
+            turned = _RADIAN * ((yaw - pose.yaw + math.pi) % math.tau) - _RADIAN * math.pi
+            apart = dx * dx + dy * dy + dz * dz + turned * turned
+            if apart < least:
+                nearest, least = number, apart
+        return nearest
 
 
 class CameraWatch:
@@ -223,15 +227,21 @@ def onboard_watches(
     )
 
 
-def _places(path: Path, velocity: float | None, robot: RobotSpec) -> NDArray[np.float64]:
-    """x, y, z (m) and yaw (rad) every _SAMPLE s along the plan, shape (n, 4)."""
+def _places(
+    path: Path, velocity: float | None, robot: RobotSpec
+) -> list[tuple[float, float, float, float]]:
+    """x, y, z (m) and yaw (rad) every _SAMPLE s along the plan."""
     rows, t = [], 0.0
     for motion in path.motions:
         duration = motion.duration(robot, velocity)
+        a, b = motion.start, motion.end
+        x, y, z, yaw = a.x, a.y, a.z, a.yaw
+        dx, dy, dz = b.x - x, b.y - y, b.z - z
         while t < duration:
-            pose = motion.at(t / duration)
-            rows.append((pose.x, pose.y, pose.z, wrap(pose.yaw)))
+            share = t / duration
+            heading = wrap(yaw + share * motion.turn)
+            rows.append((x + share * dx, y + share * dy, z + share * dz, wrap(heading)))
             t += _SAMPLE
         t -= duration
     end = path.end
-    return np.array([*rows, (end.x, end.y, end.z, end.yaw)])
+    return [*rows, (end.x, end.y, end.z, end.yaw)]

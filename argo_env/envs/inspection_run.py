@@ -19,6 +19,7 @@ from argo_env.run.record import Anomaly, Contact, Mishap, Reading, RunRecord
 from argo_env.run.simulation import Simulation
 from argo_env.run.spec import RunSpec
 from argo_env.run.steering import StopRun
+from argo_env.site.shapes import Vector
 
 FULL = 0.999  # charge from where on the battery counts as full
 _TRAIL = 0.15  # m between poses that are kept
@@ -154,8 +155,12 @@ class Inspection(Closing):
         if until <= began:
             self._simulation.step()
         else:
+            last = _position(self._trail[-1][1])
             for number, place in enumerate(self._simulation.leap(until), start=1):
-                self._mark(round(began + number * self._drive.time_step, 6), BodyPose(*place))
+                if math.dist(place[:3], last) >= _TRAIL:
+                    now = round(began + number * self._drive.time_step, 6)
+                    self._trail.append((now, BodyPose(*place)))
+                    last = place[:3]
         self._mark(self.now, self._drive.pose)
 
     def _deed(self, began: float = math.inf) -> Deed:
@@ -177,9 +182,13 @@ class Inspection(Closing):
             last = self._trail[-1][1]
             if pose is last:
                 return
-            if math.dist((pose.x, pose.y, pose.z), (last.x, last.y, last.z)) < _TRAIL:
+            if math.dist(_position(pose), _position(last)) < _TRAIL:
                 return
         self._trail.append((now, pose))
+
+
+def _position(pose: BodyPose) -> Vector:
+    return pose.x, pose.y, pose.z
 
 
 class _Told(Observer):

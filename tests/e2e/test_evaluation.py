@@ -227,11 +227,11 @@ def test_killed_and_begun_again_the_rows_are_those_of_an_undisturbed_one(
 def test_killed_workers_change_nothing_of_the_rows(long_file, undisturbed, tmp_path, kills):
     chosen, out = random.Random(100 + kills), tmp_path / "out"
     process = started(long_file, out)
-    killed, last = 0, 0
+    killed, wanted = 0, 1
     while process.poll() is None and killed < kills:
-        # One more row between two kills, so that no run is hit each time that it is tried.
-        if count(out) > last and (workers := processes_of(process.pid)):
-            last = count(out)
+        # Some rows between two kills, so that it ever comes to an end.
+        if count(out) >= wanted and (workers := processes_of(process.pid)):
+            wanted = count(out) + chosen.randint(1, max(1, 2 * (len(undisturbed) // kills) - 3))
             with suppress(ProcessLookupError):  # it has ended by itself meanwhile
                 os.kill(chosen.choice(workers), signal.SIGKILL)
                 killed += 1

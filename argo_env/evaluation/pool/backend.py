@@ -7,6 +7,11 @@ from typing import Any, Protocol
 class WorkerDiedError(Exception):
     """The worker process ended before the call did; holds what is known of why."""
 
+    def __init__(self, reason: str, killed: bool = False) -> None:
+        """`killed`: somebody else has ended it, as far as that is known."""
+        super().__init__(reason)
+        self.killed = killed
+
 
 class WorkerBackend(Protocol):
     """Has worker processes, and calls a function in them. What is called and what it is given and

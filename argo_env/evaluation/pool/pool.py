@@ -7,9 +7,9 @@ from typing import Any
 
 from argo_env.evaluation.pool.backend import WorkerBackend, WorkerDiedError
 
-ATTEMPTS = 3
+CRASHES, KILLS = 3, 10
 """deaths of a worker from which on its call is given up: those of which no other call can be the
-reason"""
+reason. A process that was killed may have been so by chance, and more than once."""
 _AHEAD = 3  # calls a worker that are handed over at once, so that none waits for the next
 
 
@@ -31,8 +31,8 @@ class Finished:
 class _Call:
     ticket: Any
     argument: Any
-    deaths: int = 0
-    """of its workers that are its own"""
+    deaths: float = 0.0
+    """of its workers that are its own, as a share of those with which it is given up"""
     alone: bool = False
     """whether no other call can be the reason if its worker dies now"""
 
@@ -115,8 +115,8 @@ class Pool:
             return Finished(call.ticket, self._backend.result(handle))
         except WorkerDiedError as death:
             if call.alone:
-                call.deaths += 1
-            if call.deaths >= ATTEMPTS:
+                call.deaths += 1 / (KILLS if death.killed else CRASHES)
+            if call.deaths > 1 - 1e-9:
                 return Finished(call.ticket, died=str(death))
             self._suspects.append(call)
             return None

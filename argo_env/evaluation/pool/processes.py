@@ -34,7 +34,7 @@ class Processes:
             future: Future[Any] = self._executor.submit(call, argument)
         except BrokenProcessPool as broken:
             self._broken = True
-            raise WorkerDiedError(_reason(broken)) from None
+            raise _death(broken) from None
         return future
 
     def wait(self, calls: Sequence["Future[Any]"]) -> Sequence["Future[Any]"]:
@@ -48,7 +48,7 @@ class Processes:
             return call.result()
         except BrokenProcessPool as broken:
             self._broken = True
-            raise WorkerDiedError(_reason(broken)) from None
+            raise _death(broken) from None
 
     def mend(self) -> None:
         if self._broken:
@@ -63,19 +63,18 @@ class Processes:
         return ProcessPoolExecutor(self.workers, initializer=_begin, initargs=(os.getpid(),))
 
 
-def _reason(broken: BrokenProcessPool) -> str:
+def _death(broken: BrokenProcessPool) -> WorkerDiedError:
     """What loky knows of the end of its workers, in a few words."""
     codes = re.findall(r"(SIG[A-Z]+|EXIT)\((-?\d+)\)", str(broken))
     # Its own end of those that were left is no reason.
     own = [(name, code) for name, code in codes if name != "SIGTERM"] or codes
     if not own:
-        return "the worker process ended"
+        return WorkerDiedError("the worker process ended")
     name, code = own[0]
-    return (
-        f"the worker process ended with code {code}"
-        if name == "EXIT"
-        else f"the worker process was ended by {name}"
-    )
+    if name == "EXIT":
+        return WorkerDiedError(f"the worker process ended with code {code}")
+    killed = name in ("SIGKILL", "SIGTERM")
+    return WorkerDiedError(f"the worker process was ended by {name}", killed)
 
 
 def _begin(parent: int) -> None:

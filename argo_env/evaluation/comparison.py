@@ -73,6 +73,16 @@ class PlanComparison:
         noise = min(noise, (1.0 - gain) / 2.0)
         return power(pairs.pairs, noise + gain, noise)
 
+    @property
+    def conclusion(self) -> str:
+        """What the comparison shows, in a sentence."""
+        if self.p_value <= 0.05:
+            return f"{'A' if self.success.value > 0 else 'B'} succeeds more often."
+        if self.duration.found:
+            faster = "A" if self.duration.value < 0 else "B"
+            return f"No difference in success is shown; {faster} is faster where both succeed."
+        return "No difference is shown."
+
     @staticmethod
     def _by_world(value: Callable[[RunRow], float], pairs: _Pairs) -> Difference:
         worlds: dict[int, list[tuple[float, float]]] = {}

@@ -30,8 +30,8 @@ class GroupRate:
     name: str
     rate: Rate
     outcomes: Counter[RunOutcome]
-    drawn: bool = False
-    """whether it is a part that chance made, so that the interval is only to look at"""
+    one_each: bool = True
+    """whether each world has one run in it: only then the interval is one"""
 
 
 @dataclass(frozen=True)
@@ -72,10 +72,9 @@ class EvaluationResults:
     def by_faults(self, plan: PlanName) -> tuple[GroupRate, ...]:
         """A plan's rates by what went wrong."""
         own = self.of(plan)
-        drawn = self.plan.variation.faults is not None
         names = dict.fromkeys(self.faults_of(row) for row in own)
         return tuple(
-            _group(plan, name, [row for row in own if self.faults_of(row) == name], drawn)
+            _group(plan, name, [row for row in own if self.faults_of(row) == name])
             for name in names
         )
 
@@ -84,6 +83,15 @@ class EvaluationResults:
         if self.plan.variation.faults is None:
             return row.faults
         return self.plan.variation.drawn_faults(row.seed) or "nothing"
+
+    @cached_property
+    def delays(self) -> dict[str, list[float | None]]:
+        """By kind of fault, how long (s) it took until each was found; None: it was not."""
+        found: dict[str, list[float | None]] = {}
+        for row in self.rows:
+            for one in row.detections:
+                found.setdefault(one.fault, []).append(one.delay)
+        return dict(sorted(found.items()))
 
     def by_seeds(self, plan: PlanName, blocks: int = 10) -> tuple[GroupRate, ...]:
         """A plan's rates by blocks of seeds, which should differ by chance only."""
@@ -134,7 +142,8 @@ class EvaluationResults:
         return f"<table><thead><tr>{head}</tr></thead><tbody>{''.join(lines)}</tbody></table>"
 
 
-def _group(plan: PlanName, name: str, rows: Sequence[RunRow], drawn: bool = False) -> GroupRate:
+def _group(plan: PlanName, name: str, rows: Sequence[RunRow]) -> GroupRate:
     ran = [row for row in rows if row.carried_out]
     rate = clopper_pearson(sum(row.success for row in ran), len(ran))
-    return GroupRate(plan, name, rate, Counter(row.outcome for row in rows), drawn)
+    one_each = len({row.seed for row in rows}) == len(rows)
+    return GroupRate(plan, name, rate, Counter(row.outcome for row in rows), one_each)

@@ -7,6 +7,7 @@ from typing import Annotated
 
 import typer
 from rich.console import Console
+from rich.markup import escape
 
 from argo_compiler.errors import Conflict, Invalid, Remedy
 from argo_compiler.files.reading import read_bytes
@@ -107,6 +108,9 @@ def evaluate(
     limit: Annotated[
         float | None, typer.Option(help="s that a run may take; it counts as died then", min=1.0)
     ] = None,
+    report: Annotated[
+        bool, typer.Option("--report/--no-report", help="write the report as a page")
+    ] = True,
     compare: Annotated[
         tuple[Path, Path] | None,
         typer.Option(
@@ -120,7 +124,7 @@ def evaluate(
     if compare is not None:
         if sources:
             raise Invalid("--compare is about evaluations that are there: give no missions")
-        _compare(*compare, console)
+        _compare(*compare, report, console)
         return
     file, folder, content = _asked_for(
         sources or [], seeds, site, drive, sensor, faults, policy, require, width,
@@ -131,6 +135,11 @@ def evaluate(
     results = _carried_out(plan, where, backend, workers, address, limit)
     failing = write_failing(where, results)
     show_results(results, failing, console)
+    if report:
+        from argo_env.evaluation.report.page import write_evaluation_report  # brings matplotlib
+
+        path = write_evaluation_report(where, results)
+        console.print(f"Report: {escape(str(path))}", soft_wrap=True)
     if any(verdict.verdict is not Decision.MET for verdict in results.verdicts):
         raise typer.Exit(1)
 
@@ -230,12 +239,17 @@ def _carried_out(
         return evaluating.results
 
 
-def _compare(first: Path, second: Path, console: Console) -> None:
+def _compare(first: Path, second: Path, report: bool, console: Console) -> None:
     from argo_env.evaluation.comparison import compare_plans
 
     a, b = read_results(first), read_results(second)
     compared = compare_plans(a, b)
     show_comparison(compared, console)
+    if report:
+        from argo_env.evaluation.report.page import write_comparison_report
+
+        path = write_comparison_report(first, compared)
+        console.print(f"Report: {escape(str(path))}", soft_wrap=True)
 
 
 def _plain(name: str) -> str:

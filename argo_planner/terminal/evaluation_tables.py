@@ -91,7 +91,7 @@ def _groups(title: str, what: str, groups: tuple[GroupRate, ...]) -> Table:
             escape(group.name),
             str(group.rate.runs + lost),
             _percent(group.rate.value),
-            f"{_percent(group.rate.low)} to {_percent(group.rate.high)}",
+            f"{_percent(group.rate.low)} to {_percent(group.rate.high)}" if group.one_each else "",
             str(group.outcomes[RunOutcome.FAILURE] or ""),
             str(lost or ""),
         )
@@ -143,7 +143,7 @@ def show_comparison(compared: PlanComparison, console: Console) -> None:
                     f"by chance {_chance(own.p_value)}",
                     soft_wrap=True,
                 )
-    console.print(f"[bold]{escape(conclusion(compared))}[/]", soft_wrap=True)
+    console.print(f"[bold]{escape(compared.conclusion)}[/]", soft_wrap=True)
     console.print(
         f"So many pairs show a difference of 5 % with a probability of "
         f"{compared.power(0.05):.0%}, one of 2 % with {compared.power(0.02):.0%}.",
@@ -151,17 +151,6 @@ def show_comparison(compared: PlanComparison, console: Console) -> None:
     )
     if compared.lost:
         console.print(f"{compared.lost} pairs could not be carried out, and do not count.")
-
-
-def conclusion(compared: PlanComparison) -> str:
-    """What the comparison shows, in a sentence."""
-    if compared.p_value <= 0.05:
-        better = "A" if compared.success.value > 0 else "B"
-        return f"{better} succeeds more often."
-    if compared.duration.found:
-        faster = "A" if compared.duration.value < 0 else "B"
-        return f"No difference in success is shown; {faster} is faster where both succeed."
-    return "No difference is shown."
 
 
 def _difference(found: Difference, scale: float, unit: str) -> tuple[str, str]:

@@ -248,7 +248,7 @@ def _compare(first: Path, second: Path, report: bool, console: Console) -> None:
     if report:
         from argo_env.evaluation.report.page import write_comparison_report
 
-        path = write_comparison_report(first, compared)
+        path = write_comparison_report(first, second, compared)
         console.print(f"Report: {escape(str(path))}", soft_wrap=True)
 
 

@@ -5,6 +5,7 @@ from argo_env.evaluation.plots.differences import paired_differences
 from argo_env.evaluation.plots.durations import durations
 from argo_env.evaluation.plots.forest import forest_of_rates
 from argo_env.evaluation.plots.outcomes import outcomes_by_faults
+from argo_env.evaluation.plots.pairs import pairs_that_differ
 from argo_env.evaluation.plots.places import failure_places
 
 __all__ = [
@@ -14,4 +15,5 @@ __all__ = [
     "forest_of_rates",
     "outcomes_by_faults",
     "paired_differences",
+    "pairs_that_differ",
 ]

@@ -1,39 +1,58 @@
 """How long it takes until what is wrong is found."""
 
+from statistics import median
 from typing import TYPE_CHECKING
 
-from argo_env.evaluation.plots.canvas import ACCENT, BAD, INK, LINE, SOFT, axes
+from argo_env.evaluation.plots.canvas import (
+    BAD,
+    FONT,
+    INK,
+    LINE,
+    SERIES,
+    SOFT,
+    axes,
+    beside,
+    nothing,
+    rows_of,
+)
 from argo_env.evaluation.results import EvaluationResults
 from argo_env.seeding import generator
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
+_MOST = 200  # points of a row; more are one grey mass, and make a page long
+
 
 def detection_delays(results: EvaluationResults, ax: "Axes | None" = None) -> "Axes":
     """A point for each fault that was found, by its kind, with the median; beside it how many were
-    not found. Points are spread a little across, so that none hides another."""
+    found of how many. Points are spread a little across, so that none hides another."""
     delays = results.delays
-    ax = axes(ax, 7.0, 0.9 + 0.36 * len(delays))
+    ax = axes(ax, 0.75 + 0.26 * max(len(delays), 1))
+    if not delays:
+        return nothing(ax, "no fault happened that can be found")
     rng = generator(0, "delays")
+    longest = 1.0
     for place, found in enumerate(delays.values()):
-        times = [delay for delay in found if delay is not None]
-        spread = place + 0.3 * (rng.random(len(times)) - 0.5)
-        ax.plot(times, spread, "o", color=ACCENT, ms=3.5, alpha=0.5, mew=0)
+        times = sorted(delay for delay in found if delay is not None)
+        step = max(1, len(times) // _MOST)
+        shown = times[::step]
+        spread = place + 0.5 * (rng.random(len(shown)) - 0.5)
+        ax.plot(shown, spread, "o", color=SERIES[0], ms=3.6, alpha=0.45, mew=0, clip_on=False)
         if times:
-            median = sorted(times)[len(times) // 2]
-            ax.plot([median, median], [place - 0.3, place + 0.3], color=INK, lw=2.0)
-        if missed := len(found) - len(times):
-            ax.annotate(
-                f"{missed} not found", (1.0, place), xycoords=("axes fraction", "data"),
-                ha="right", va="center", color=BAD, fontsize=9,
+            longest = max(longest, times[-1])
+            middle = median(times)
+            ax.plot([middle, middle], [place - 0.36, place + 0.36], color=INK, lw=1.8)
+        if not times:
+            ax.text(
+                0.5, place, "not found", transform=ax.get_yaxis_transform(), ha="center",
+                va="center", color=BAD, fontsize=FONT,
             )  # fmt: skip
-    ax.set_yticks(range(len(delays)), [kind.replace("_", " ") for kind in delays], color=INK)
-    ax.set_ylim(len(delays) - 0.5, -0.5)
-    ax.set_xlim(left=0.0)
+        missed = len(times) < len(found)
+        beside(ax, place, f"{len(times)} of {len(found)}", BAD if missed else SOFT)
+    rows_of(ax, [kind.replace("_", " ") for kind in delays])
+    ax.set_xlim(0.0, 1.03 * longest)
     ax.grid(axis="x", color=LINE)
-    ax.spines["left"].set_visible(False)
-    ax.tick_params(axis="y", length=0)
-    ax.set_xlabel("s from its beginning until it is found; the line is the median", color=SOFT)
-    ax.xaxis.label.set_fontsize(9)
+    ax.set_axisbelow(True)
+    ax.set_xlabel("s until it is found; the line is the median", color=SOFT, fontsize=FONT)
     return ax

@@ -5,7 +5,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from argo_env.evaluation.comparison import PlanComparison
-from argo_env.evaluation.plots.canvas import ACCENT, INK, LINE, SOFT, axes
+from argo_env.evaluation.plots.canvas import FONT, INK, LINE, SERIES, SOFT, axes, nothing
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -21,16 +21,20 @@ def paired_differences(compared: PlanComparison, ax: "Axes | None" = None) -> "A
             if a.success and b.success
         ]
     )
-    ax = axes(ax, 7.0, 2.6)
-    ax.axvline(0.0, color=SOFT, lw=1.0)
-    if len(gaps):
-        spread = float(np.ptp(gaps))
-        ax.hist(gaps, bins=24 if spread > 0 else 1, color=ACCENT, alpha=0.55)
-        mean = compared.duration
-        ax.axvspan(mean.low, mean.high, color=INK, alpha=0.15, lw=0)
-        ax.axvline(mean.value, color=INK, lw=2.0)
+    ax = axes(ax, 2.6)
+    if not len(gaps):
+        return nothing(ax, "there is no pair of which both succeed")
+    spread = float(np.ptp(gaps))
+    low, high = float(gaps.min()), float(gaps.max())
+    edges = [*np.linspace(low, high, 25)] if spread > 1e-6 else [low - 0.5, low + 0.5]
+    mean = compared.duration
+    ax.axvspan(mean.low, mean.high, color=INK, alpha=0.12, lw=0)
+    ax.hist(gaps, bins=edges, color=SERIES[0], alpha=0.6)
+    ax.axvline(0.0, color=SOFT, lw=1.0, ls="--")
+    ax.axvline(mean.value, color=INK, lw=2.0)
     ax.grid(axis="y", color=LINE)
     ax.set_axisbelow(True)
-    ax.set_xlabel("s that A takes longer than B in the same world", color=SOFT, fontsize=9)
-    ax.set_ylabel("pairs", color=SOFT, fontsize=9)
+    ax.locator_params(axis="y", integer=True)
+    ax.set_xlabel("s that A takes longer than B in the same world", color=SOFT, fontsize=FONT)
+    ax.set_ylabel("pairs", color=SOFT, fontsize=FONT)
     return ax

@@ -1,37 +1,51 @@
 """Writes the pages. Equal results give equal bytes."""
 
-import math
 from collections.abc import Callable
+from dataclasses import replace
 from functools import cache
 from pathlib import Path
+from statistics import median
+from typing import Any
 
-from jinja2 import Environment, StrictUndefined, Template
+from jinja2 import Environment, FileSystemLoader, StrictUndefined, Template
+from markupsafe import Markup
 
 import argo_compiler
 from argo_compiler.errors import Unavailable
 from argo_compiler.files.writing import write_whole
 from argo_env.evaluation.comparison import PlanComparison
-from argo_env.evaluation.folder import FAILING, REPORT
+from argo_env.evaluation.durations import duration_curve
+from argo_env.evaluation.folder import REPORT
+from argo_env.evaluation.plan import PlanName
 from argo_env.evaluation.plots import (
     detection_delays,
     durations,
-    failure_places,
     forest_of_rates,
     outcomes_by_faults,
     paired_differences,
+    pairs_that_differ,
 )
-from argo_env.evaluation.plots.canvas import as_svg
-from argo_env.evaluation.rates import IntervalMethod
-from argo_env.evaluation.report.words import headline, in_percent, meaning
+from argo_env.evaluation.report.failing import failing_runs, floors_with_failures, reasons
+from argo_env.evaluation.report.making import how_it_was_made
+from argo_env.evaluation.report.picture import picture
+from argo_env.evaluation.report.rates import other_rates, plan_sections
+from argo_env.evaluation.report.words import (
+    between,
+    chance,
+    counted,
+    headline,
+    in_percent,
+    time_or,
+)
 from argo_env.evaluation.results import EvaluationResults
 from argo_env.evaluation.row import RunOutcome
 from argo_env.formatting import clock
-from argo_env.planning.opening import open_site
-from argo_env.robot.spec import load_robot
+from argo_env.report.svg import clean
 
 COMPARISON = "comparison.html"
-_SHOWN = 100
-"""failing runs that are listed; all are among the rows"""
+_RUNS, _SHOWN, _REASONS, _PLACES = 100, 12, 15, 12
+"""lines of tables; of runs some are to be opened first, and all are among the rows"""
+_GAINS = (0.01, 0.02, 0.05, 0.1, 0.2)
 
 
 def write_evaluation_report(folder: Path, results: EvaluationResults) -> Path:
@@ -40,96 +54,141 @@ def write_evaluation_report(folder: Path, results: EvaluationResults) -> Path:
     return _write(folder / REPORT, evaluation_page(results, folder))
 
 
-def write_comparison_report(folder: Path, compared: PlanComparison) -> Path:
-    """Writes `comparison.html` into the folder of the first of two evaluations. Raises as
-    `write_evaluation_report`."""
-    return _write(folder / COMPARISON, comparison_page(compared))
+def write_comparison_report(first: Path, second: Path, compared: PlanComparison) -> Path:
+    """Writes `comparison.html` into the folder of the first of two evaluations and returns its
+    path. Raises as `write_evaluation_report`."""
+    return _write(first / COMPARISON, comparison_page(compared, first, second))
 
 
 def evaluation_page(results: EvaluationResults, folder: Path) -> str:
     """The report of an evaluation, whose files lie in the folder."""
     plans = results.plan.plans
-    ran = any(row.carried_out for row in results.rows)
+    sections = plan_sections(results)
+    names = {plan: section.name for plan, section in zip(plans, sections, strict=True)}
+    said = "; ".join(f"{s.name} {in_percent(s.rate.value) or 'no run'}" for s in sections)
+    delays = results.delays
+    why = reasons(results)
+    blocks = [(names[plan], results.by_seeds(plan)) for plan in plans]
     return _template("evaluation.html.j2").render(
         name=results.plan.name,
         headline=headline(results),
-        plans=[
-            (plan.beside(plans), results.of(plan), results.rate(plan), meaning(results, plan))
-            for plan in plans
-        ],
-        verdicts=[(v, v.plan.beside(plans) if len(plans) > 1 else "") for v in results.verdicts],
-        groups=[
-            (plan.beside(plans), results.by_faults(plan), results.by_seeds(plan)) for plan in plans
-        ],
+        plans=sections,
+        verdicts=[(verdict, names[verdict.plan]) for verdict in results.verdicts],
         outcomes=results.outcomes,
         lost=results.missing,
-        forest=as_svg(forest_of_rates(results)) if ran else None,
-        durations=as_svg(durations(results)) if any(r.success for r in results.rows) else None,
-        heat=as_svg(outcomes_by_faults(results)) if results.rows else None,
-        delays=as_svg(detection_delays(results)) if results.delays else None,
-        found=[(kind, *_found(delays)) for kind, delays in results.delays.items()],
-        places=_places(results),
-        failing=results.failing[:_SHOWN],
-        more=max(0, len(results.failing) - _SHOWN),
+        forest=picture(f"Rates of success with intervals: {said}", lambda: forest_of_rates(results))
+        if results.rows
+        else None,
+        required=any(r.quantity == "success" for r in results.plan.stopping.require),
+        others=other_rates(results),
+        heats=[(names[plan], _heat(results, plan, names[plan])) for plan in _with_faults(results)],
+        durations=picture(
+            "The share of runs that had succeeded by a time", lambda: durations(results)
+        )
+        if any(row.success for row in results.rows)
+        else None,
+        curves=[(names[plan], duration_curve(results, plan)) for plan in plans],
+        delays=picture(
+            f"Delays until {counted(len(delays), 'kind')} of faults were found",
+            lambda: detection_delays(results),
+        )
+        if delays
+        else None,
+        found=[(kind, *_found(of_kind)) for kind, of_kind in delays.items()],
+        reasons=why[:_REASONS],
+        more_reasons=max(0, len(why) - _REASONS),
+        places=floors_with_failures(results),
+        most_places=_PLACES,
+        failing=failing_runs(results, folder)[:_RUNS],
+        shown=_SHOWN,
+        more=max(0, len(results.failing) - _RUNS),
         faults_of=results.faults_of,
-        folder=folder / FAILING,
-        seeds=results.plan.seeds,
+        blocks=[(name, groups) for name, groups in blocks if len(groups) > 1],
+        one_each=all(group.one_each for _, groups in blocks for group in groups),
+        made=how_it_was_made(results),
         variation=results.plan.variation.model_dump(exclude_none=True, exclude_defaults=True),
-        sequence=IntervalMethod.SEQUENCE,
-        version=argo_compiler.__version__,
     )
 
 
-def comparison_page(compared: PlanComparison) -> str:
-    """The report of a comparison."""
+def comparison_page(
+    compared: PlanComparison, first: Path | None = None, second: Path | None = None
+) -> str:
+    """The report of a comparison, of evaluations that lie in these folders."""
+    worlds = len({a.seed for a, _ in compared.pairs})
     both = any(a.success and b.success for a, b in compared.pairs)
+    pairs = compared.successes
+    made = [("Argo", argo_compiler.__version__)]
+    made += [(name, str(at)) for name, at in (("A is in", first), ("B is in", second)) if at]
+    success = compared.success
+    in_percents = replace(
+        success, value=100 * success.value, low=100 * success.low, high=100 * success.high
+    )
     return _template("comparison.html.j2").render(
         compared=compared,
-        pairs=compared.successes,
-        histogram=as_svg(paired_differences(compared)) if both else None,
-        powers=[(gain, compared.power(gain)) for gain in (0.02, 0.05, 0.1)],
-        version=argo_compiler.__version__,
+        pairs=pairs,
+        worlds=worlds,
+        differences=[
+            ("success", "%+.1f %%", in_percents, compared.p_value),
+            ("time (s)", "%+.1f s", compared.duration, compared.duration.p_value),
+            ("distance (m)", "%+.1f m", compared.distance, compared.distance.p_value),
+        ],
+        test="McNemar's exact test"
+        if worlds == pairs.pairs
+        else "A test over worlds, which swaps the plans by the toss of a coin",
+        sides=picture(
+            f"Pairs in which one plan succeeds alone: A in {pairs.first_only}, B in "
+            f"{pairs.second_only}",
+            lambda: pairs_that_differ(compared),
+        ),
+        histogram=picture(
+            f"Differences in time, world by world; {compared.duration.value:+.1f} s on average",
+            lambda: paired_differences(compared),
+        )
+        if both
+        else None,
+        powers=[(gain, compared.power(gain)) for gain in _GAINS],
+        made=made,
     )
 
 
-def _places(results: EvaluationResults) -> list[tuple[str, int, int, str]]:
-    """Of each floor on which runs failed: the site, the floor, how many did, and the picture."""
-    found = []
-    sites = dict.fromkeys((row.site, row.robot) for row in results.failing if row.place)
-    for reference, robot in sites:
-        site = open_site(reference, load_robot(robot)).site
-        own = EvaluationResults(
-            results.plan, tuple(r for r in results.rows if (r.site, r.robot) == (reference, robot))
-        )
-        for floor in sorted({r.floor for r in own.failing if r.place and r.floor is not None}):
-            count = sum(row.floor == floor for row in own.failing)
-            picture = as_svg(failure_places(own, site, floor))
-            found.append((site.name, floor, count, picture))
-    return found
+def _with_faults(results: EvaluationResults) -> list[PlanName]:
+    """The plans that were run with several sets of faults."""
+    return [plan for plan in results.plan.plans if len(results.by_faults(plan)) > 1]
+
+
+def _heat(results: EvaluationResults, plan: PlanName, name: str) -> Markup:
+    alt = f"How the runs of {name} ended, by faults"
+    return picture(alt, lambda: outcomes_by_faults(results, plan=plan))
 
 
 def _found(delays: list[float | None]) -> tuple[int, int, float | None, float | None]:
     """How often a kind of fault happened, how often it was found, and the median and the longest
     time (s) until then."""
-    times = sorted(delay for delay in delays if delay is not None)
+    times = [delay for delay in delays if delay is not None]
     if not times:
         return len(delays), 0, None, None
-    return len(delays), len(times), times[len(times) // 2], times[-1]
+    return len(delays), len(times), median(times), max(times)
 
 
 @cache
 def _template(name: str) -> Template:
+    here = Path(__file__).parent
     environment = Environment(
-        autoescape=True, undefined=StrictUndefined, trim_blocks=True, lstrip_blocks=True
+        loader=FileSystemLoader(here, encoding="utf-8"),
+        autoescape=True,
+        undefined=StrictUndefined,
+        trim_blocks=True,
+        lstrip_blocks=True,
+        finalize=lambda value: clean(value) if type(value) is str else value,
     )
-    filters: dict[str, Callable[[float], str]] = {"clock": clock, "percent": in_percent}
+    filters: dict[str, Callable[..., Any]] = {
+        "clock": clock, "percent": in_percent, "chance": chance, "counted": counted,
+        "time": time_or,
+    }  # fmt: skip
     environment.filters.update(filters)
-    environment.globals.update(outcome=RunOutcome, isnan=math.isnan, style=_text("style.css"))
-    return environment.from_string(_text(name))
-
-
-def _text(name: str) -> str:
-    return Path(__file__).with_name(name).read_text(encoding="utf-8")
+    style = (here / "style.css").read_text(encoding="utf-8")
+    environment.globals.update(outcome=RunOutcome, between=between, style=style)
+    return environment.get_template(name)
 
 
 def _write(path: Path, text: str) -> Path:

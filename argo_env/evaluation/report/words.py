@@ -1,15 +1,49 @@
 """What the numbers of an evaluation mean, in sentences."""
 
 import math
+from collections.abc import Sequence
 
 from argo_env.evaluation.plan import PlanName
 from argo_env.evaluation.rates import Decision, IntervalMethod
 from argo_env.evaluation.results import EvaluationResults
+from argo_env.formatting import clock
 
 
 def in_percent(share: float) -> str:
     """A share (0 to 1) in percent, with one decimal; nothing of NaN."""
     return "" if math.isnan(share) else f"{100 * share:.1f} %"
+
+
+def between(low: float, high: float) -> str:
+    """Two shares (0 to 1) as an interval in percent."""
+    return f"{100 * low:.1f} to {100 * high:.1f} %"
+
+
+def chance(p_value: float) -> str:
+    """A probability that may be very small."""
+    return f"{p_value:.3f}" if p_value >= 0.001 else "below 0.001"
+
+
+def ranges(numbers: Sequence[int]) -> str:
+    """Whole numbers in words, such as `0 to 9, 12`."""
+    parts: list[list[int]] = []
+    for number in sorted(numbers):
+        if parts and number == parts[-1][-1] + 1:
+            parts[-1][1:] = [number]
+        else:
+            parts.append([number])
+    said = [" to ".join(map(str, part)) for part in parts[:20]]
+    return ", ".join(said) + (f" and {len(parts) - 20} more ranges" if len(parts) > 20 else "")
+
+
+def time_or(seconds: float | None, otherwise: str) -> str:
+    """A time (s) as minutes and seconds, or what is said where there is none."""
+    return otherwise if seconds is None else clock(seconds)
+
+
+def counted(number: int, what: str) -> str:
+    """So many of something, such as `1 run` or `2 runs`."""
+    return f"{number} {what}{'' if number == 1 else 's'}"
 
 
 def headline(results: EvaluationResults) -> tuple[str, str]:
@@ -34,7 +68,6 @@ def meaning(results: EvaluationResults, plan: PlanName) -> str:
     rate = results.rate(plan)
     if not rate.runs:
         return "Nothing is known: no run was carried out."
-    between = f"between {in_percent(rate.low)} and {in_percent(rate.high)}"
     match rate.method:
         case IntervalMethod.EXACT:
             how = "The interval is exact (Clopper-Pearson)."
@@ -45,7 +78,8 @@ def meaning(results: EvaluationResults, plan: PlanName) -> str:
             )
         case _:
             how = "The rates with each set of faults are put together by their probabilities."
+    within = f"between {in_percent(rate.low)} and {in_percent(rate.high)}"
     return (
-        f"In worlds that are drawn like these, the true share of successes lies {between}: of 100 "
+        f"In worlds that are drawn like these, the true share of successes lies {within}: of 100 "
         f"such statements at most 5 are wrong. {how}"
     )

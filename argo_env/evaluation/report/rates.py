@@ -1,0 +1,78 @@
+"""What a report says of each plan: its rates, and what they mean."""
+
+from collections import Counter
+from dataclasses import dataclass
+
+from argo_env.evaluation.plan import PlanName
+from argo_env.evaluation.rates import IntervalMethod, PlanRate, success, world_means
+from argo_env.evaluation.report.words import meaning
+from argo_env.evaluation.requirement import QUANTITIES
+from argo_env.evaluation.results import EvaluationResults, GroupRate
+from argo_env.evaluation.row import RunOutcome
+
+
+@dataclass(frozen=True)
+class PlanSection:
+    """A plan as a report shows it."""
+
+    name: str
+    rate: PlanRate
+    worlds: int
+    """that count"""
+    meaning: str
+    faults: tuple[GroupRate, ...]
+    outcomes: Counter[RunOutcome]
+
+
+def plan_sections(results: EvaluationResults) -> list[PlanSection]:
+    """One of each plan, in their order."""
+    plans = results.plan.plans
+    return [
+        PlanSection(
+            plan.beside(plans),
+            results.rate(plan),
+            _worlds(results, plan),
+            meaning(results, plan),
+            results.by_faults(plan),
+            Counter(row.outcome for row in results.of(plan)),
+        )
+        for plan in plans
+    ]
+
+
+def other_rates(results: EvaluationResults) -> list[tuple[str, str, PlanRate]]:
+    """What else can be so in a run, of which plan, and how often it was. Without what can't be:
+    nothing is found where nothing is wrong, or late where there is no limit."""
+    plans = results.plan.plans
+    ran = [row for row in results.rows if row.carried_out]
+    left_out = {"success"}
+    if not results.delays:
+        left_out.add("detected")
+    if all(row.limit is None for row in ran):
+        left_out.add("late")
+    if not ran:
+        return []
+    return [
+        (_WORDS.get(name, name), plan.beside(plans), results.rate(plan, name))
+        for name in QUANTITIES
+        if name not in left_out
+        for plan in plans
+    ]
+
+
+_WORDS = {
+    "contact": "the robot touched something",
+    "mishap": "there was trouble on the way",
+    "late": "it took longer than it may",
+    "detected": "all that was wrong was found",
+    "false alarm": "something was found that no fault accounts for",
+}
+
+
+def _worlds(results: EvaluationResults, plan: PlanName) -> int:
+    """In how many worlds the plan's runs were that count."""
+    ran = [row for row in results.of(plan) if row.carried_out]
+    if results.rate(plan).method is not IntervalMethod.SEQUENCE:
+        return len({row.seed for row in ran})
+    weights = {case.faults: case.weight for case in results.plan.cases if case.plan == plan}
+    return len(world_means(ran, weights, success))

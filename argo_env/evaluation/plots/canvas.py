@@ -66,8 +66,17 @@ def mark(number: int) -> tuple[str, str]:
     return SERIES[number % len(SERIES)], MARKS[number % len(MARKS)]
 
 
-def plain(name: str, most: int = 28) -> str:
-    """A name that fits beside axes: one line, in which nothing is taken for a formula, or for a
-    name that legends leave out."""
-    name = shorten(" ".join(clean(name).split()), most).replace("$", r"\$")
+def plain(name: str, room: float = 1.65) -> str:
+    """A name that fits into so much room (inches) beside axes: one line, in which nothing is taken
+    for a formula, or for a name that legends leave out."""
+    from matplotlib.font_manager import FontProperties
+    from matplotlib.textpath import TextToPath
+
+    font = FontProperties(size=FONT)
+    name = shorten(" ".join(clean(name).split()), 80)
+    while len(name) > 1 and (
+        TextToPath().get_text_width_height_descent(name, font, False)[0] > 72.0 * room
+    ):
+        name = shorten(name, len(name) - 1)
+    name = name.replace("$", r"\$")
     return f" {name}" if name.startswith("_") else name

@@ -75,10 +75,9 @@ def _legend(ax: "Axes", curves: list[DurationCurve], high: float) -> None:
     for number, curve in enumerate(curves):
         ink, _ = mark(number)
         handles.append(Line2D([], [], color=ink, lw=1.8, ls=_STYLES[number % len(_STYLES)]))
-        name = plain(curve.plan.beside(plans), 22) + ": " if len(curves) > 1 else ""
+        name = plain(curve.plan.beside(plans), 1.4) + ": " if len(curves) > 1 else ""
         limits = ", ".join(
-            f"limit {clock(limit)}" + (" (farther right)" if limit > high else "")
-            for limit in curve.limits
+            f"limit {clock(limit)}" + (" →" if limit > high else "") for limit in curve.limits
         )
         words.append(f"{name}{100 * curve.last:.1f} % succeed, {limits or 'no limit'}")
     ax.legend(

@@ -102,7 +102,7 @@ def _legend(ax: "Axes", plans: tuple[PlanName, ...]) -> None:
     for number in range(len(plans)):
         ink, sign = mark(number)
         handles.append(Line2D([], [], color=ink, marker=sign, lw=1.8, ms=5))
-    names = [plain(plan.beside(plans), 60) for plan in plans]
+    names = [plain(plan.beside(plans), 2.3) for plan in plans]
     ax.legend(
         handles, names, frameon=False, fontsize=FONT, labelcolor=INK, loc="lower left",
         bbox_to_anchor=(0.0, 1.0), borderaxespad=0.2,

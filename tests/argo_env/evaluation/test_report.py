@@ -1,19 +1,26 @@
 """The pages and pictures of evaluations, from rows that were made by hand."""
 
+import html
 import re
+import shlex
+from xml.etree import ElementTree
 
 import pytest
 from matplotlib.figure import Figure
 
+import argo_compiler
 from argo_env.evaluation import plots
 from argo_env.evaluation.comparison import compare_plans
 from argo_env.evaluation.detection import FaultDetection
 from argo_env.evaluation.plan import EvaluationCase, EvaluationPlan, Stopping
+from argo_env.evaluation.report.failing import reasons
 from argo_env.evaluation.report.page import (
     comparison_page,
     evaluation_page,
+    write_comparison_report,
     write_evaluation_report,
 )
+from argo_env.evaluation.report.picture import PALETTE
 from argo_env.evaluation.requirement import parse_requirement
 from argo_env.evaluation.results import EvaluationResults
 from argo_env.evaluation.row import RunOutcome, RunRow
@@ -48,6 +55,17 @@ def results_of(mission, name="mission", faults=("none", "brick"), fail=(3, 7), d
     return EvaluationResults(
         EvaluationPlan(cases=cases, seeds=tuple(range(20)), **plan), tuple(rows)
     )
+
+
+def joined(first, second):
+    """Both as one evaluation."""
+    cases = (*first.plan.cases, *second.plan.cases)
+    plan = first.plan.model_copy(update={"cases": cases})
+    return EvaluationResults(plan, (*first.rows, *second.rows))
+
+
+def svgs(page):
+    return re.findall(r"<svg.*?</svg>", page, flags=re.S)
 
 
 @pytest.fixture
@@ -123,8 +141,140 @@ def test_pictures_are_drawn_on_the_axes_that_are_given(results, mission):
         lambda ax: plots.detection_delays(results, ax),
         lambda ax: plots.failure_places(results, open_site("umad").site, 1, ax),
         lambda ax: plots.paired_differences(compared, ax),
+        lambda ax: plots.pairs_that_differ(compared, ax),
     ):
         ax = Figure().subplots()
         assert draw(ax) is ax
         assert ax.has_data()
         assert draw(None) is not ax
+
+
+ODD_NAMES = ("$x^{$", "_hidden", "漢字 ☃", "bell\a", "two\nlines", "\\$", "<&>", "W" * 300)
+
+
+@pytest.mark.parametrize("name", ODD_NAMES)
+def test_any_name_can_be_drawn(mission, tmp_path, name):
+    results = joined(results_of(mission, name, ("none", name)), results_of(mission, "other"))
+    page = evaluation_page(results, tmp_path)
+    assert "\a" not in page
+    assert page.count("<svg") == page.count("</svg>")
+    for svg in svgs(page):
+        ElementTree.fromstring(svg)
+
+
+def test_pictures_say_what_they_show_and_touch_nothing_beside(mission, tmp_path):
+    results = joined(results_of(mission), results_of(mission, "other", fail=range(9)))
+    page = evaluation_page(results, tmp_path)
+    names = re.findall(r' id="([^"]+)"', page)
+    assert len(names) == len(set(names))
+    assert len(svgs(page)) >= 6
+    for svg in svgs(page):
+        assert re.search(r'role="img" aria-label="[^"]{10,}"', svg)
+        assert "<style" not in svg
+        used = set(re.findall(r"(?:#|\(#)([\w-]+)[\")]", svg))
+        assert used <= set(re.findall(r'id="([^"]+)"', svg))
+        # Colours are the page's, which are others in the dark.
+        assert not re.search(r"#[0-9a-f]{6}\b", svg)
+    style = page[page.index("<style>") : page.index("</style>")]
+    assert {f"--{name}" for name in PALETTE} <= set(re.findall(r"--[\w-]+(?=:)", style))
+
+
+def test_pyplot_knows_nothing_of_the_pictures(results, tmp_path):
+    from matplotlib import pyplot
+
+    before = pyplot.get_fignums()
+    evaluation_page(results, tmp_path)
+    assert pyplot.get_fignums() == before
+
+
+def test_all_plans_are_on_the_page(mission, tmp_path):
+    results = joined(
+        results_of(mission, "calm", fail=()), results_of(mission, "hasty", fail=range(20))
+    )
+    page = evaluation_page(results, tmp_path)
+    for plan, rate in (("calm", "100.0 %"), ("hasty", "50.0 %")):
+        assert re.search(rf"<h3>{plan}</h3>\s*<p><span class=\"rate\">{rate}</span>", page)
+        assert re.search(rf"<td[^>]*>{plan}</td>", page)
+    assert "40 runs in 20 worlds" in page
+    assert "8 more" in page  # of the failing ones, behind those that are open
+
+
+def test_times_faults_and_places_have_their_numbers(results, tmp_path):
+    page = evaluation_page(results, tmp_path)
+    # Of 40 runs, two a world and 2 s more each: the 4th, the 20th, the 36th and the last success.
+    times = re.findall(r'<td class="n">(\d\d:\d\d)</td>', page)
+    assert times == ["05:02", "05:20", "05:36", "05:38", "06:40"]
+    assert ">5.0 %<" in page
+    assert re.search(r"<td>brick</td><td class=\"n\">20</td><td class=\"n\">19</td>.*7.5 s", page)
+    assert re.search(r"<td>no task</td><td class=\"n\">3.0, 2.0 m</td><td class=\"n\">2</td>", page)
+    assert "0 to 19" in page
+    assert argo_compiler.__version__ in page
+
+
+def test_without_limits_and_faults_there_is_less(mission, tmp_path):
+    full = results_of(mission, faults=("none",), fail=())
+    rows = tuple(row.model_copy(update={"limit": None}) for row in full.rows)
+    page = evaluation_page(EvaluationResults(full.plan, rows), tmp_path)
+    assert "it took longer than it may" not in page
+    assert "all that was wrong was found" not in page
+    for section in ("delays", "outcomes", "failures", "failing", "requirements"):
+        assert f'<section id="{section}"' not in page
+    assert ">none</td>" in page
+    empty = evaluation_page(EvaluationResults(full.plan, ()), tmp_path)
+    assert "no run could be carried out" in empty
+
+
+def test_reasons_that_differ_in_time_only_are_one(mission):
+    results = results_of(mission, fail=(3, 7, 9))
+    said = iter(("it took 349.5 s of 300 s", "it took 1001 s of 300 s", "failed: MEASURE 4"))
+    rows = tuple(
+        row if row.success else row.model_copy(update={"reason": next(said)})
+        for row in results.rows
+    )
+    assert reasons(EvaluationResults(results.plan, rows)) == [
+        (("mission", "it took 349.5 to 1001 s of 300 s"), 2, ["brick"]),
+        (("mission", "failed: MEASURE 4"), 1, ["brick"]),
+    ]
+
+
+def test_a_site_that_is_gone_takes_its_pictures_only(mission, tmp_path):
+    results = results_of(mission)
+    rows = tuple(row.model_copy(update={"site": "/gone/site.yaml"}) for row in results.rows)
+    spec = results.plan.cases[0].spec.model_copy(update={"site": "/gone/site.yaml"})
+    cases = tuple(case.model_copy(update={"spec": spec}) for case in results.plan.cases)
+    plan = results.plan.model_copy(update={"cases": cases})
+    page = evaluation_page(EvaluationResults(plan, rows), tmp_path)
+    assert "There is no plan of it" in page
+    assert "3.0, 2.0 m" in page
+
+
+def test_a_folder_with_a_space_has_commands_that_work(results, tmp_path):
+    page = html.unescape(evaluation_page(results, tmp_path / "two words"))
+    command = re.search(r"<code>(argo run .*?)</code>", page)[1]
+    key = results.failing[0].key
+    assert shlex.split(command)[2] == str(tmp_path / "two words" / "failing" / f"{key}.json")
+
+
+def test_a_comparison_says_how_sure_it_is(mission, tmp_path):
+    compared = compare_plans(
+        results_of(mission, "calm", fail=()), results_of(mission, "hasty", fail=range(8))
+    )
+    page = write_comparison_report(tmp_path, tmp_path / "b", compared).read_text(encoding="utf-8")
+    assert "A succeeds more often." in page
+    assert "+20.0 %" in page
+    assert "none: equal in all worlds" in page  # of times
+    assert "succeeds in 40 of 40 runs" in page
+    assert "A test over worlds" in page
+    assert f"{100 * compared.power(0.05):.0f} %" in page
+    assert page == comparison_page(compared, tmp_path, tmp_path / "b")
+
+
+def test_a_comparison_of_failures_has_a_page(mission):
+    nothing = results_of(mission, HOSTILE, ("none", HOSTILE), fail=range(20))
+    page = comparison_page(compare_plans(nothing, results_of(mission, "b", ("none", HOSTILE))))
+    assert "<script>" not in page
+    lost = results_of(mission, died=range(20))
+    page = comparison_page(compare_plans(lost, lost))
+    assert "0 pairs" in page
+    assert "nan" not in re.sub(r"<svg.*?</svg>", "", page, flags=re.S)
+    assert 'id="times"' not in page

@@ -1,0 +1,66 @@
+"""By when which share of a plan's runs had succeeded, and where the others failed."""
+
+import pytest
+
+from argo_env.evaluation.durations import duration_curve
+from argo_env.evaluation.places import failure_places_of
+from argo_env.evaluation.plan import EvaluationCase, EvaluationPlan
+from argo_env.evaluation.results import EvaluationResults
+from argo_env.evaluation.row import RunOutcome, RunRow
+from argo_env.run.spec import RunSpec
+
+
+def row(seed, duration=None, faults="none", **other) -> RunRow:
+    outcome = RunOutcome.FAILURE if duration is None else RunOutcome.SUCCESS
+    fields = {
+        "key": f"{faults}{seed}", "mission": "m", "policy": "as written", "site": "umad",
+        "robot": "tracker", "drive": "route", "sensor": "ideal", "faults": faults, "seed": seed,
+        "outcome": outcome, "reason": "", "duration": duration,
+    }  # fmt: skip
+    return RunRow(**(fields | other))
+
+
+def results_of(mission, rows, weights=(("none", 1.0),)) -> EvaluationResults:
+    spec = RunSpec(mission=mission, drive="route")
+    cases = tuple(EvaluationCase(mission="m", faults=f, spec=spec, weight=w) for f, w in weights)
+    return EvaluationResults(EvaluationPlan(cases=cases, seeds=tuple(range(9))), tuple(rows))
+
+
+def test_what_fails_never_ends(mission):
+    rows = [row(0, 30.0), row(1, 10.0), row(2), row(3, 20.0, limit=25.0)]
+    rows.append(row(4, outcome=RunOutcome.DIED))  # tells nothing of the plan
+    results = results_of(mission, rows)
+    curve = duration_curve(results, results.plan.plans[0])
+    assert curve.times == (10.0, 20.0, 30.0)
+    assert curve.shares == pytest.approx((0.25, 0.5, 0.75))
+    assert curve.limits == (25.0,)
+    assert (curve.by(0.1), curve.by(0.5), curve.by(0.75), curve.by(0.9)) == (10.0, 20.0, 30.0, None)
+
+
+def test_cases_count_by_weight(mission):
+    rows = [row(k, 10.0) for k in range(2)] + [row(k, 50.0, "rare") for k in range(8)]
+    results = results_of(mission, rows, (("none", 0.9), ("rare", 0.1), ("not yet run", 1.0)))
+    curve = duration_curve(results, results.plan.plans[0])
+    assert curve.shares[1] == pytest.approx(0.9)
+    assert curve.last == pytest.approx(1.0)
+
+
+def test_of_nothing_there_is_no_curve(mission):
+    results = results_of(mission, ())
+    curve = duration_curve(results, results.plan.plans[0])
+    assert (curve.times, curve.last, curve.by(0.5)) == ((), 0.0, None)
+
+
+def test_places_half_a_metre_apart_are_one():
+    rows = [
+        row(0, floor=1, place=(1.0, 1.0, 0.0), task="A"),
+        row(1, floor=1, place=(5.0, 1.0, 0.0)),
+        row(2, floor=1, place=(1.3, 1.3, 0.0), task="B"),
+        row(3, floor=2, place=(1.0, 1.0, 2.5), task="A"),
+        row(4, 10.0),
+        row(5, task="C"),  # nobody knows where
+    ]
+    found = failure_places_of(rows)
+    assert [(place.floor, place.runs) for place in found] == [(1, 2), (1, 1), (2, 1)]
+    assert found[0].tasks == {"A": 1, "B": 1}
+    assert found[1].tasks == {"no task": 1}

@@ -8,7 +8,8 @@ What common jobs need is here by name, and imported when it is first used:
 - what is left of it: `write_report`, `write_overview`, `write_film`, `read_recording`;
 - faults from a file: `read_faults`.
 
-With this import Gymnasium knows the environments, `argo/Route-v0` and its siblings.
+With this import Gymnasium knows the environments, `argo/Route-v0` and its siblings, and notebooks
+show missions, machines and records.
 """
 
 import logging
@@ -16,6 +17,7 @@ from typing import TYPE_CHECKING
 
 from argo_compiler.lazy_names import lazy_names
 from argo_env.envs.registration import register_with_gymnasium
+from argo_env.notebooks import register_with_ipython
 
 __all__ = [
     "Evaluation",
@@ -80,6 +82,7 @@ else:
     )
 
 register_with_gymnasium()
+register_with_ipython()
 
 # What a library logs is shown where its user asks for it.
 logging.getLogger(__name__).addHandler(logging.NullHandler())

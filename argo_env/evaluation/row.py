@@ -5,12 +5,15 @@ from enum import StrEnum
 
 from pydantic import Field
 
+from argo_compiler.il import Action
 from argo_compiler.model import Model
 from argo_env.evaluation.detection import FaultDetection, detections, false_alarms
 from argo_env.evaluation.plan import EvaluationCase, PlanName
 from argo_env.run.record import RunRecord
 from argo_env.run.spec import RunSpec
 from argo_env.site.shapes import Vector
+
+_CARRIED_OUT = (Action.MEASURE, Action.WAYPOINT)
 
 
 class RunOutcome(StrEnum):
@@ -52,7 +55,7 @@ class RunRow(Model):
     """of the battery, at the end, 0 to 1"""
     docked: bool | None = None
     tasks: int = 0
-    """of the mission"""
+    """of the mission that the robot carries out"""
     done: int = 0
     """tasks that were done"""
     failed: tuple[str, ...] = ()
@@ -93,6 +96,7 @@ class RunRow(Model):
 def row_of(key: str, case: EvaluationCase, spec: RunSpec, record: RunRecord) -> RunRow:
     """The row of a run that was carried out."""
     result = record.result
+    asked = {task.name for task in record.mission.tasks if task.action in _CARRIED_OUT}
     done = {run.task for run in record.tasks if run.outcome == "done"}
     last = record.path[-1] if record.path else None
     failed = tuple(dict.fromkeys(r.task for r in record.tasks if r.outcome == "failed"))
@@ -106,8 +110,8 @@ def row_of(key: str, case: EvaluationCase, spec: RunSpec, record: RunRecord) -> 
             "climbed": round(result.climbed, 3),
             "charge": None if last is None else last.charge,
             "docked": result.docked,
-            "tasks": len(record.mission.tasks),
-            "done": len(done & {task.name for task in record.mission.tasks}),
+            "tasks": len(asked),
+            "done": len(done & asked),
             "failed": failed,
             "readings": len(record.readings),
             "abnormal": sum(not reading.normal for reading in record.readings),

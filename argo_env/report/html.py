@@ -4,8 +4,10 @@ from functools import cache
 from pathlib import Path
 
 from jinja2 import Environment, StrictUndefined, Template
+from markupsafe import Markup
 
 from argo_compiler.export import to_mermaid
+from argo_compiler.hfsm import Hfsm
 from argo_compiler.il import Action, Mission
 from argo_compiler.il.reserved import RETURN_TASK
 from argo_env.formatting import clock
@@ -32,6 +34,7 @@ def page(record: RunRecord, site: Site) -> str:
     stood = waits(record)
     others = [str(f.number) for f in site.spec.floors if f.number not in floors]
     return _template().render(
+        style=_style(),
         record=record,
         headline=record.headline,
         site=site,
@@ -55,6 +58,16 @@ def page(record: RunRecord, site: Site) -> str:
         ways_of_failure=any(leaf.failure or leaf.missed for leaf in record.hfsm.leaves),
         mermaid=to_mermaid(record.hfsm),
     )
+
+
+def machine_page(hfsm: Hfsm) -> str:
+    """The diagram of a machine that is not too large to be drawn, as a page of its own."""
+    return f"<!DOCTYPE html><style>{_style()}</style><main>{markup(machine(hfsm))}</main>"
+
+
+@cache
+def _style() -> Markup:
+    return Markup(Path(__file__).with_name("report.css").read_text(encoding="utf-8").rstrip())
 
 
 @cache

@@ -25,6 +25,7 @@ from argo_env.evaluation.plan import AS_WRITTEN, NO_FAULTS, EvaluationPlan
 from argo_env.evaluation.pool.backends import BACKENDS, PROCESSES, make_backend
 from argo_env.evaluation.rates import Decision
 from argo_env.evaluation.results import EvaluationResults
+from argo_env.evaluation.score import read_scoring
 from argo_env.evaluation.store import RowStore
 from argo_env.run.drives_and_sensors import DRIVES, IDEAL, SENSORS
 from argo_planner.terminal.completion import among
@@ -108,6 +109,12 @@ def evaluate(
     limit: Annotated[
         float | None, typer.Option(help="s that a run may take; it counts as died then", min=1.0)
     ] = None,
+    scoring: Annotated[
+        Path | None,
+        typer.Option(
+            "--scoring", metavar="FILE.yaml", help="how missions score; see scenarios/scoring.yaml"
+        ),
+    ] = None,
     report: Annotated[
         bool, typer.Option("--report/--no-report", help="write the report as a page")
     ] = True,
@@ -126,6 +133,7 @@ def evaluate(
             raise Invalid("--compare is about evaluations that are there: give no missions")
         _compare(*compare, report, console)
         return
+    rules = read_scoring(scoring)
     file, folder, content = _asked_for(
         sources or [], seeds, site, drive, sensor, faults, policy, require, width,
         start_area, end_area,
@@ -134,7 +142,7 @@ def evaluate(
     plan = _planned(file, folder, content, where, force)
     results = _carried_out(plan, where, backend, workers, address, limit)
     failing = write_failing(where, results)
-    show_results(results, failing, console)
+    show_results(results, failing, console, rules)
     if report:
         from argo_env.evaluation.report.page import write_evaluation_report  # brings matplotlib
 

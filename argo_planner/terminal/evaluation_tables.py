@@ -14,6 +14,7 @@ from argo_env.evaluation.plan import PlanName
 from argo_env.evaluation.rates import Decision, IntervalMethod
 from argo_env.evaluation.results import EvaluationResults, GroupRate
 from argo_env.evaluation.row import RunOutcome
+from argo_env.evaluation.score import ScoringRules, mean_score
 from argo_env.evaluation.statistics.pairs import Difference
 from argo_env.formatting import clock
 
@@ -21,10 +22,24 @@ _STYLES = {Decision.MET: "bold green", Decision.MISSED: "bold red", Decision.OPE
 _NAMED = 10  # failing runs that are shown
 
 
-def show_results(results: EvaluationResults, failing: Mapping[str, Path], console: Console) -> None:
-    """Prints the rates by plan, by faults and by seeds, what is shown of the requirements, and how
-    each failing run is made again."""
+def show_results(
+    results: EvaluationResults,
+    failing: Mapping[str, Path],
+    console: Console,
+    scoring: ScoringRules,
+) -> None:
+    """Prints the rates by plan, by faults and by seeds, how missions score, what is shown of the
+    requirements, and how each failing run is made again."""
     console.print(_plans(results))
+    for plan in results.plan.plans:
+        score = mean_score(results.of(plan), scoring)
+        several = len(results.plan.plans) > 1
+        name = f"{plan.beside(results.plan.plans)}: score" if several else "Score"
+        console.print(
+            f"{escape(name)} {score.value:.1f} of {scoring.most:g} points "
+            f"({score.low:.1f} to {score.high:.1f})",
+            soft_wrap=True,
+        )
     for plan in results.plan.plans:
         groups = results.by_faults(plan)
         if len(groups) > 1:

@@ -1,0 +1,61 @@
+"""Scores, from rows that were made by hand."""
+
+import pytest
+
+from argo_compiler.diagnostics import DiagnosticError
+from argo_env.evaluation.detection import FaultDetection
+from argo_env.evaluation.row import RunOutcome
+from argo_env.evaluation.score import mean_score, read_scoring, score_of
+from tests.argo_env.evaluation.test_store import row
+
+RULES = read_scoring()
+
+
+def score(**changes):
+    fields = {"tasks": 4, "done": 4, "docked": True, **changes}
+    return score_of(row(1).model_copy(update=fields), RULES)
+
+
+def test_a_run_of_which_there_is_nothing_to_say_has_all_points():
+    assert score().total == RULES.most == 100
+
+
+@pytest.mark.parametrize(
+    ("changes", "total"),
+    [
+        ({"outcome": RunOutcome.FAILURE, "done": 2}, 100 - 40 * 0.35 - 40 * 0.3),
+        ({"outcome": RunOutcome.FAILURE, "done": 4, "docked": False}, 100 - 12 - 6),
+        ({"contacts": 1}, 85),
+        ({"contacts": 5}, 70),
+        ({"mishaps": 2}, 85),
+        ({"false_alarms": 3}, 94),
+        ({"detections": (FaultDetection(fault="brick", began=1.0, delay=None),)}, 82),
+        ({"detections": (FaultDetection(fault="brick", began=1.0, delay=4.0),)}, 100),
+        ({"done": 2}, 100),  # of a mission with branches not all is to be done
+        ({"outcome": RunOutcome.ERROR}, 0),
+        ({"outcome": RunOutcome.DIED}, 0),
+    ],
+)
+def test_points_are_lost_for(changes, total):
+    assert score(**changes).total == pytest.approx(total)
+
+
+def test_the_mean_has_an_interval_over_worlds():
+    rows = [row(seed, contacts=seed % 2, docked=True) for seed in range(40)]
+    found = mean_score(rows, RULES)
+    assert found.value == pytest.approx(92.5)
+    assert 89 < found.low < 92.5 < found.high < 96
+
+
+def test_a_file_of_ones_own_is_read_and_what_is_wrong_in_it_is_said(tmp_path):
+    own = tmp_path / "own.yaml"
+    text = (
+        "reliability: {weight: 10, tasks_done: 1, success: 0}\n"
+        "robustness: {weight: 0, detected: 1, no_false_alarm: 0, goes_on: 0}\n"
+        "safety: {weight: 0, contact: 1, mishap: 1}\n"
+    )
+    own.write_text(text)
+    assert read_scoring(own).most == 10
+    own.write_text(text.replace("tasks_done: 1", "tasks_done: 0.5"))
+    with pytest.raises(DiagnosticError, match=r"add up to 0\.5"):
+        read_scoring(own)

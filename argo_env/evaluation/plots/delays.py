@@ -26,7 +26,7 @@ _MOST = 200  # points of a row; more are one grey mass, and make a page long
 
 def detection_delays(results: EvaluationResults, ax: "Axes | None" = None) -> "Axes":
     """A point for each fault that was found, by its kind, with the median; beside it how many were
-    found of how many. Points are spread a little across, so that none hides another."""
+    found of how many. Points are spread a little across; of very many some are shown."""
     delays = results.delays
     ax = axes(ax, 0.75 + 0.26 * max(len(delays), 1))
     if not delays:
@@ -35,8 +35,9 @@ def detection_delays(results: EvaluationResults, ax: "Axes | None" = None) -> "A
     longest = 1.0
     for place, found in enumerate(delays.values()):
         times = sorted(delay for delay in found if delay is not None)
-        step = max(1, len(times) // _MOST)
-        shown = times[::step]
+        shown = times[
+            :: -max(1, len(times) // _MOST)
+        ]  # from the longest on, which is never left out
         spread = place + 0.5 * (rng.random(len(shown)) - 0.5)
         ax.plot(shown, spread, "o", color=SERIES[0], ms=3.6, alpha=0.45, mew=0, clip_on=False)
         if times:

@@ -28,6 +28,7 @@ def durations(results: EvaluationResults, ax: "Axes | None" = None) -> "Axes":
     if not times:
         return nothing(ax, "no run succeeded")
     low, high = _view(times, [limit for curve in curves for limit in curve.limits])
+    same = len({curve.limits for curve in curves}) == 1
     for number, curve in enumerate(curves):
         ink, _ = mark(number)
         if curve.times:
@@ -37,7 +38,7 @@ def durations(results: EvaluationResults, ax: "Axes | None" = None) -> "Axes":
             )  # fmt: skip
         for limit in curve.limits:
             if limit <= high:
-                ax.axvline(limit, color=ink, lw=1.0, alpha=0.8)
+                ax.axvline(limit, color=SOFT if same else ink, lw=1.2, alpha=0.8)
     ax.set_xlim(low, high)
     ax.set_ylim(0.0, 1.0)
     ax.yaxis.set_major_formatter(lambda share, _: f"{share:.0%}")

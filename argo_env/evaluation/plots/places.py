@@ -27,15 +27,15 @@ if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
 _INK = {Role.GROUND: GROUND, Role.DECK: DECK, Role.STAIR: STAIR, Role.RAILING: EDGE}
-_SMALLEST, _LARGEST = 9.0, 26.0  # points across
+_ONE, _SMALLEST, _LARGEST = 5.0, 9.0, 26.0  # points across
 _TALLEST = 6.5  # inches
 
 
 def failure_places(
     results: EvaluationResults, site: Site, floor: int, ax: "Axes | None" = None
 ) -> "Axes":
-    """The plan of a floor of the site, with a disc where runs failed there and how many did: the
-    more, the larger. Checkpoints are small squares with their numbers."""
+    """The plan of a floor of the site, with a disc where runs failed there and how many did, if it
+    was not just one: the more, the larger. Checkpoints are small squares with their numbers."""
     from matplotlib.collections import PolyCollection
 
     plan = next(one for one in plans_of(site) if one.number == floor)
@@ -56,16 +56,18 @@ def failure_places(
             )  # fmt: skip
     places = [place for place in failure_places_of(results.failing) if place.floor == floor]
     most = max((place.runs for place in places), default=1)
-    for place in places:
-        size = max(_SMALLEST, _LARGEST * math.sqrt(place.runs / most))
+    for place in reversed(places):  # where most failed lies on top
+        one = place.runs == 1
+        size = _ONE if one else max(_SMALLEST, _LARGEST * math.sqrt(place.runs / most))
         ax.plot(
-            [place.at[0]], [place.at[1]], "o", ms=size, color=BAD, alpha=0.85, mec=PAPER, mew=1.0,
+            [place.at[0]], [place.at[1]], "o", ms=size, color=BAD, alpha=0.85, mec=PAPER, mew=0.8,
             zorder=5, clip_on=False,
         )  # fmt: skip
-        ax.annotate(
-            str(place.runs), place.at[:2], ha="center", va="center", color=PAPER,
-            fontsize=FONT - 2 if size < 13 else FONT, zorder=6,
-        )  # fmt: skip
+        if not one:
+            ax.annotate(
+                str(place.runs), place.at[:2], ha="center", va="center", color=PAPER,
+                fontsize=FONT - 2 if size < 13 else FONT, zorder=5,
+            )  # fmt: skip
     ax.set_xlim(x0, x1)
     ax.set_ylim(y0, y1)
     ax.set_aspect("equal")

@@ -76,6 +76,8 @@ def meaning(results: EvaluationResults, plan: PlanName) -> str:
                 "The runs of one world depend on each other, so that a world counts as one "
                 "(confidence sequence over worlds)."
             )
+            if rate.lost:
+                how += " Worlds in which a run could not be carried out are left out."
         case _:
             how = "The rates with each set of faults are put together by their probabilities."
     within = f"between {in_percent(rate.low)} and {in_percent(rate.high)}"

@@ -8,6 +8,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from argo_compiler.errors import Unavailable
+from argo_compiler.extras import install_line
 from argo_env.evaluation.row import RunRow
 from argo_env.files.checked_lines import sync_folder
 
@@ -60,7 +61,7 @@ def read_parts(folder: Path) -> tuple[RunRow, ...]:
         return ()
     if not can_write_parts():
         raise Unavailable(
-            f"{folder / PARTS}: to read Parquet files, pip install 'argo-mission[results]'",
+            f"{folder / PARTS}: reading Parquet files needs pyarrow: {install_line('results')}"
         )
     from pyarrow import ArrowInvalid, parquet
 

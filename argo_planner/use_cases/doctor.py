@@ -10,6 +10,8 @@ from argo_compiler.model import Model
 from argo_env.files import cache
 
 _EXTRAS: dict[str, tuple[str, tuple[str, ...]]] = {
+    "cluster": ("evaluations on Ray or Dask", ("ray", "dask", "distributed")),
+    "results": ("rows of evaluations in Parquet files", ("pyarrow",)),
     "film": ("films as .mp4", ("imageio_ffmpeg",)),
     "learned": (
         "policies that learn",

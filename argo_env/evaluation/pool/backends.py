@@ -5,6 +5,7 @@ from collections.abc import Callable
 from importlib.util import find_spec
 
 from argo_compiler.errors import Invalid, Unavailable
+from argo_compiler.extras import install_line
 from argo_env.evaluation.pool.backend import WorkerBackend
 
 PROCESSES = "processes"
@@ -59,6 +60,4 @@ def usable_processors() -> int:
 
 def _require(module: str) -> None:
     if find_spec(module) is None:
-        raise Unavailable(
-            f"the package `{module}` is not installed: pip install 'argo-mission[cluster]'"
-        )
+        raise Unavailable(f"the package `{module}` is not installed: {install_line('cluster')}")

@@ -41,17 +41,13 @@ class FloorFailures:
 
 
 def failing_runs(results: EvaluationResults, folder: Path) -> list[tuple[RunRow, str, str]]:
-    """Each run that is no success, of which plan it is, and the command that makes it again from
-    what was written into the folder."""
+    """Each run that is no success, of which plan it is, and the file in the folder from which it is
+    made again, quoted as shells want it."""
     plans = results.plan.plans
     return [
-        (row, row.plan.beside(plans), _command(folder / FAILING / f"{row.key}.json", row.key))
+        (row, row.plan.beside(plans), shlex.quote(str(folder / FAILING / f"{row.key}.json")))
         for row in results.failing
     ]
-
-
-def _command(spec: Path, key: str) -> str:
-    return f"argo run {shlex.quote(str(spec))} --report out/{key[:8]}"
 
 
 def reasons(results: EvaluationResults) -> list[tuple[tuple[str, str], int, list[str]]]:

@@ -8,7 +8,8 @@ from dataclasses import dataclass
 from argo_compiler.errors import ArgoError
 from argo_env.evaluation.plan import EvaluationCase
 from argo_env.evaluation.row import RunOutcome, RunRow, row_of, row_without_end
-from argo_env.run.session import run
+from argo_env.planning.opening import OpenedSite
+from argo_env.run.session import simulate
 from argo_env.run.spec import RunSpec
 
 TOOK_TOO_LONG = 70
@@ -28,21 +29,21 @@ class WorkOrder:
     """s of wall time that it may take; then its process ends, and that is its reason"""
 
 
-def carry_out(order: WorkOrder) -> RunRow:
-    """Makes the run and its row. What goes wrong in the simulator is an outcome as well: one of
-    many thousand runs must not end them all."""
-    row = _row(order)
+def carry_out(order: WorkOrder, site: OpenedSite | None = None) -> RunRow:
+    """Makes the run, on the site that it names unless one is given, and its row. What goes wrong in
+    the simulator is an outcome as well: one of many thousand runs must not end them all."""
+    row = _row(order, site)
     return row.model_copy(update={"world": order.world})
 
 
-def _row(order: WorkOrder) -> RunRow:
+def _row(order: WorkOrder, site: OpenedSite | None) -> RunRow:
     watchdog = None
     if order.limit is not None:
         watchdog = threading.Timer(order.limit, os._exit, (TOOK_TOO_LONG,))
         watchdog.daemon = True
         watchdog.start()
     try:
-        return row_of(order.key, order.case, order.spec, run(order.spec))
+        return row_of(order.key, order.case, order.spec, simulate(order.spec, site))
     except ArgoError as error:
         return row_without_end(order.key, order.case, order.spec, RunOutcome.ERROR, str(error))
     except Exception as error:  # told in the row, with its place

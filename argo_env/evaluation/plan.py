@@ -12,6 +12,7 @@ from argo_compiler.errors import Conflict, Invalid
 from argo_compiler.model import Model
 from argo_env.evaluation.requirement import RateRequirement
 from argo_env.evaluation.worlds import NO_VARIATION, Variation
+from argo_env.faults.distribution import NOTHING
 from argo_env.run.spec import RunSpec
 
 NO_FAULTS = "none"
@@ -89,6 +90,9 @@ class EvaluationPlan(Model):
     stopping: Stopping = Stopping()
     strata: bool = False
     """whether runs go to the cases by how uncertain they are, and not to all alike"""
+    added: str = ""
+    """what stands on the site beside its description, in words: where something does, no run can
+    be made again from its spec alone"""
 
     @cached_property
     def plans(self) -> tuple[PlanName, ...]:
@@ -113,6 +117,12 @@ class EvaluationPlan(Model):
         said = (argo_compiler.__version__, case.digest, case.mission, case.policy, case.faults)
         text = "\n".join((*said, run.spec.model_dump_json()))
         return hashlib.sha256(text.encode()).hexdigest()[:24]
+
+    def faults_in(self, case: str, seed: int) -> str:
+        """What goes wrong in the world of a seed: the faults of the case, or those drawn for it."""
+        if self.variation.faults is None:
+            return case
+        return self.variation.drawn_faults(seed) or NOTHING
 
     def check(self) -> None:
         """Raises ArgoError for what makes no sense: equal cases, seeds twice."""

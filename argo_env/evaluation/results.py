@@ -80,9 +80,7 @@ class EvaluationResults:
 
     def faults_of(self, row: RunRow) -> str:
         """What went wrong in a run: the faults of its case, or those that were drawn."""
-        if self.plan.variation.faults is None:
-            return row.faults
-        return self.plan.variation.drawn_faults(row.seed) or "nothing"
+        return self.plan.faults_in(row.faults, row.seed)
 
     @cached_property
     def delays(self) -> dict[str, list[float | None]]:

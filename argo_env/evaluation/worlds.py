@@ -1,8 +1,8 @@
 """Worlds that vary: what is drawn anew for each seed, each from a stream of its own."""
 
-from typing import Any
+from typing import Annotated, Any
 
-from pydantic import Field, field_validator, model_validator
+from pydantic import BeforeValidator, Field, model_validator
 
 from argo_compiler.model import Model
 from argo_env.faults.distribution import FaultDistribution
@@ -10,18 +10,20 @@ from argo_env.run.conditions import RunConditions, ValueProfile, ValueStep
 from argo_env.run.spec import RunSpec
 from argo_env.seeding import generator
 
-Range = tuple[float, float]
+
+def _between(said: object) -> object:
+    """A number is the range that has only it."""
+    if isinstance(said, int | float):
+        return said, said
+    return tuple(said) if isinstance(said, list) else said
+
+
+Range = Annotated[tuple[float, float], BeforeValidator(_between)]
 """the least and the most; each between them is equally probable"""
 
 
 class _Ranges(Model):
     """Fields that are ranges."""
-
-    @field_validator("*", mode="before")
-    @classmethod
-    def _one_number(cls, said: object) -> object:
-        """A number is the range that has only it."""
-        return (said, said) if isinstance(said, int | float) else said
 
     @model_validator(mode="after")
     def _ordered(self) -> "_Ranges":

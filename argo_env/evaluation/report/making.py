@@ -19,6 +19,8 @@ def how_it_was_made(results: EvaluationResults) -> list[tuple[str, list[str]]]:
         "Faults": [_weighted(case.faults, case.weight) for case in cases],
     }
     made = [(what, list(dict.fromkeys(said))) for what, said in names.items()]
+    if plan.added:
+        made.append(("On the site", [plan.added]))
     asked = len(cases) * len(plan.seeds)
     made.append(("Seeds", [ranges(plan.seeds)]))
     made.append(("Runs", [f"{len(results.rows)} of {asked} that there may be"]))

@@ -103,6 +103,7 @@ def evaluation_page(results: EvaluationResults, folder: Path) -> str:
         shown=_SHOWN,
         more=max(0, len(results.failing) - _RUNS),
         faults_of=results.faults_of,
+        added=results.plan.added,
         blocks=[(name, groups) for name, groups in blocks if len(groups) > 1],
         one_each=all(group.one_each for _, groups in blocks for group in groups),
         made=how_it_was_made(results),

@@ -19,11 +19,12 @@ _SPAWN = multiprocessing.get_context("spawn")
 class JobProcess(Generic[Result]):
     """One piece of work under way. Holds the process."""
 
-    def __init__(self, work: Callable[..., Result], *arguments: Any) -> None:
-        """Begins the work, `work(*arguments, tell)`; all of it can be pickled."""
+    def __init__(self, work: Callable[..., Result], *arguments: Any, parent: bool = False) -> None:
+        """Begins the work, `work(*arguments, tell)`; all of it can be pickled. `parent`: whether
+        it has processes of its own, which then have to end by themselves once it has."""
         self._here, there = _SPAWN.Pipe(duplex=False)
         self._process = _SPAWN.Process(target=_carried_out, args=(there, work, arguments))
-        self._process.daemon = True
+        self._process.daemon = not parent
         self._process.start()
         there.close()
 

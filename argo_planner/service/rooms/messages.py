@@ -11,7 +11,7 @@ from argo_compiler.model import Model
 from argo_planner.service.core.commands import Revision
 from argo_planner.service.core.document import PlanDocument, PlanVersion
 from argo_planner.service.jobs.analysis import AnalysisFound
-from argo_planner.service.jobs.jobs import OrderJob
+from argo_planner.service.jobs.job import AnyJob
 
 MOST_DIAGNOSTICS = 500
 """that are told of a mission; the first ones by place"""
@@ -181,7 +181,7 @@ class JobTold(Model):
     """How far a job of the plan is. Of several that wait to be sent only the last one is."""
 
     kind: Literal["job"] = "job"
-    job: OrderJob
+    job: AnyJob
     """without the mission in its new order"""
 
 

@@ -17,7 +17,7 @@ from argo_planner.service.core.document import (
 )
 from argo_planner.service.core.refusals import StaleRevision
 from argo_planner.service.jobs.analysis import AnalysisFound, Analyst
-from argo_planner.service.jobs.jobs import OrderJob
+from argo_planner.service.jobs.job import Job
 from argo_planner.service.rooms.mailbox import Mailbox, MailboxClosed
 from argo_planner.service.rooms.messages import (
     AnalysisTold,
@@ -210,10 +210,9 @@ class PlanRoom:
             self._members[client] = (member.model_copy(update={"selection": names}), mailbox)
             self._tell(MembersTold(members=self._present()), but=client)
 
-    def tell_of(self, job: OrderJob) -> None:
+    def tell_of(self, job: Job) -> None:
         """How far a job is is told to all who are there."""
-        found = job.found and job.found.model_copy(update={"mission": None})
-        text = JobTold(job=job.model_copy(update={"found": found})).model_dump_json()
+        text = JobTold.model_construct(job=job.told()).model_dump_json()
         for _, mailbox in self._members.values():
             mailbox.post_newest(job.id, text)
 

@@ -12,6 +12,7 @@ from argo_compiler import __version__
 from argo_compiler.model import Model
 from argo_planner.service.web import (
     commands,
+    evaluations,
     jobs,
     live,
     looks,
@@ -83,7 +84,9 @@ def make_app(opened: Opened) -> FastAPI:
     )
     answer_problems(app)
     app.openapi = partial(_document_of, app)  # type: ignore[method-assign]
-    parts = (page, missions, versions, commands, jobs, world, runs, looks, live)
+    parts = (
+        page, missions, versions, commands, jobs, evaluations, world, runs, looks, live,
+    )  # fmt: skip
     for part in (router, *(one.router for one in parts), runs.socket_router):
         app.include_router(part)
     return app

@@ -1,4 +1,4 @@
-"""Jobs: the best order of a mission, searched for, watched, accepted."""
+"""Jobs: the best order of a mission, searched for and accepted; and what all jobs have."""
 
 from typing import Annotated
 
@@ -11,7 +11,8 @@ from argo_compiler.reorder.mission import require_known
 from argo_compiler.reorder.requirements import Requirements
 from argo_planner.service.core.commands import CommandId, ReplacePlan
 from argo_planner.service.core.refusals import StaleRevision
-from argo_planner.service.jobs.jobs import OrderJob
+from argo_planner.service.jobs.job import AnyJob, OrderJob
+from argo_planner.service.jobs.kept import JOB_ID
 from argo_planner.service.rooms.messages import CommandDone
 from argo_planner.service.web.bodies import Sent
 from argo_planner.service.web.commands import carried_out
@@ -39,7 +40,7 @@ router = APIRouter(
     responses=documented(400, 401, 403, 404, 409, 413, 422, 503),
 )
 
-JobId = Annotated[str, Path(pattern=r"^[0-9a-f]{12}$", description="id of the job")]
+JobId = Annotated[str, Path(pattern=f"^{JOB_ID}$", description="id of the job")]
 _JOB = {
     name: link(name, id="$response.body#/id") for name in ("read_job", "cancel_job", "accept_order")
 }
@@ -62,7 +63,7 @@ class OrderAccepted(Model):
 class JobList(Model):
     """Jobs, the newest ones first."""
 
-    jobs: tuple[OrderJob, ...]
+    jobs: tuple[AnyJob, ...]
 
 
 @router.post(
@@ -83,7 +84,7 @@ async def suggest_order(
         require_known(plan.mission, asked.requirements)
     except NotFound as error:  # the address is right
         raise Invalid(str(error)) from None
-    job = service.jobs.suggest_order(
+    job = service.orders.start(
         id, plan.revision, plan.mission, asked.requirements, asked.time_limit, visitor.author
     )
     return said(job, 202, location=f"/api/jobs/{job.id}")
@@ -92,21 +93,19 @@ async def suggest_order(
 @router.get("/jobs", operation_id="list_jobs", response_model=JobList)
 async def list_jobs(service: Service, _: Viewer) -> Response:
     """The jobs under way and the last ones that were, without what came of them."""
-    return said(
-        JobList(jobs=tuple(job.model_copy(update={"found": None}) for job in service.jobs.all()))
-    )
+    return said(JobList.model_construct(jobs=tuple(job.summary() for job in service.jobs.all())))
 
 
-@router.get("/jobs/{id}", operation_id="read_job", response_model=OrderJob)
+@router.get("/jobs/{id}", operation_id="read_job", response_model=AnyJob)
 async def read_job(service: Service, _: Viewer, id: JobId) -> Response:
     """How far a job is, and what came of it."""
     return said(service.jobs.job(id))
 
 
-@router.delete("/jobs/{id}", operation_id="cancel_job", response_model=OrderJob)
+@router.delete("/jobs/{id}", operation_id="cancel_job", response_model=AnyJob)
 async def cancel_job(service: Service, _: Planner, id: JobId) -> Response:
     """Ends a job that is under way."""
-    return said(service.jobs.cancel(id))
+    return said(await service.jobs.cancel(id))
 
 
 @router.post(
@@ -124,7 +123,7 @@ async def accept_order(
 ) -> Response:
     """Puts the mission into the order that was found, as a command that can be undone; 412 where
     the mission has changed since the search began."""
-    job = service.jobs.job(id)
+    job = service.orders.of(id)
     if job.found is None or job.found.mission is None:
         raise Conflict(f"job {id} is {job.state}, and has found no order")
     room = await service.rooms.open(job.mission)

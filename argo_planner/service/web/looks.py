@@ -68,7 +68,7 @@ async def read_picture(
 )
 async def preview_job(service: Service, _: Viewer, id: JobId) -> Response:
     """The ways of the mission in the order that a search has found; 409 until there is one."""
-    job = service.jobs.job(id)
+    job = service.orders.of(id)
     if job.found is None or job.found.mission is None:
         raise Conflict(f"job {id} is {job.state}, and has found no order")
     obstacles = service.obstacles.present.obstacles

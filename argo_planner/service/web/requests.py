@@ -17,7 +17,9 @@ from pydantic import Field
 from argo_compiler.errors import Invalid
 from argo_compiler.model import Model
 from argo_env.planning.opening import OpenedSite
+from argo_planner.service.jobs.evaluations import Evaluations
 from argo_planner.service.jobs.jobs import Jobs
+from argo_planner.service.jobs.orders import Orders
 from argo_planner.service.rooms.rooms import PlanRooms
 from argo_planner.service.runs.host import RunHost
 from argo_planner.service.storage.folder import PLAN_ID
@@ -37,6 +39,8 @@ class PlanningService:
     folder: FilePath
     rooms: PlanRooms
     jobs: Jobs
+    orders: Orders
+    evaluations: Evaluations
     runs: RunHost
     obstacles: KeptObstacles
     site_thread: Executor

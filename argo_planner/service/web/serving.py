@@ -15,7 +15,10 @@ import uvicorn
 from argo_compiler.errors import Unavailable
 from argo_env.planning.opening import OpenedSite
 from argo_planner.service.jobs.analysis import Analyst
-from argo_planner.service.jobs.jobs import Jobs, OrderJob
+from argo_planner.service.jobs.evaluations import Evaluations
+from argo_planner.service.jobs.job import Job
+from argo_planner.service.jobs.jobs import Jobs
+from argo_planner.service.jobs.orders import Orders
 from argo_planner.service.rooms.rooms import PlanRooms
 from argo_planner.service.runs.host import AfterRestart, RunHost
 from argo_planner.service.storage.folder import PlanFolder
@@ -60,18 +63,31 @@ def opened_service(
         try:
             rooms = PlanRooms(plans, site.catalog, analyst, _now)
 
-            def tell(job: OrderJob) -> None:
+            def tell(job: Job) -> None:
                 if (room := rooms.opened(job.mission)) is not None:
                     room.tell_of(job)
 
-            jobs = Jobs(site.reference, partial(secrets.token_hex, 6), _now, tell)
+            new_id = partial(secrets.token_hex, 6)
+            jobs = Jobs(tell)
+            orders = Orders(site.reference, jobs, new_id, _now)
+            evaluations = Evaluations(plans.path / "evaluations", jobs, new_id, _now)
             runs = RunHost(plans.path / "runs", after_restart, _now, foxglove)
             obstacles = KeptObstacles(plans.path)
             await runs.open()
+            await evaluations.open()
             thread = ThreadPoolExecutor(1)
             try:
                 yield PlanningService(
-                    site, plans.path, rooms, jobs, runs, obstacles, thread, _now()
+                    site=site,
+                    folder=plans.path,
+                    rooms=rooms,
+                    jobs=jobs,
+                    orders=orders,
+                    evaluations=evaluations,
+                    runs=runs,
+                    obstacles=obstacles,
+                    site_thread=thread,
+                    started=_now(),
                 )
             finally:
                 thread.shutdown(wait=False, cancel_futures=True)

@@ -465,6 +465,88 @@ export interface paths {
         readonly patch?: never;
         readonly trace?: never;
     };
+    readonly "/api/missions/{id}/evaluations": {
+        readonly parameters: {
+            readonly query?: never;
+            readonly header?: never;
+            readonly path?: never;
+            readonly cookie?: never;
+        };
+        readonly get?: never;
+        readonly put?: never;
+        /**
+         * Evaluate Mission
+         * @description Begins to run the mission as it stands in many worlds; 409 while another evaluation is under
+         *     way.
+         */
+        readonly post: operations["evaluate_mission"];
+        readonly delete?: never;
+        readonly options?: never;
+        readonly head?: never;
+        readonly patch?: never;
+        readonly trace?: never;
+    };
+    readonly "/api/jobs/{id}/go_on": {
+        readonly parameters: {
+            readonly query?: never;
+            readonly header?: never;
+            readonly path?: never;
+            readonly cookie?: never;
+        };
+        readonly get?: never;
+        readonly put?: never;
+        /**
+         * Go On With Evaluation
+         * @description Goes on with an evaluation that was cancelled or interrupted: what has been run is not run
+         *     again.
+         */
+        readonly post: operations["go_on_with_evaluation"];
+        readonly delete?: never;
+        readonly options?: never;
+        readonly head?: never;
+        readonly patch?: never;
+        readonly trace?: never;
+    };
+    readonly "/api/jobs/{id}/runs/{key}": {
+        readonly parameters: {
+            readonly query?: never;
+            readonly header?: never;
+            readonly path?: never;
+            readonly cookie?: never;
+        };
+        /**
+         * Replay Run
+         * @description A run of an evaluation, made once more: all that has happened in it.
+         */
+        readonly get: operations["replay_run"];
+        readonly put?: never;
+        readonly post?: never;
+        readonly delete?: never;
+        readonly options?: never;
+        readonly head?: never;
+        readonly patch?: never;
+        readonly trace?: never;
+    };
+    readonly "/api/jobs/{id}/report": {
+        readonly parameters: {
+            readonly query?: never;
+            readonly header?: never;
+            readonly path?: never;
+            readonly cookie?: never;
+        };
+        /**
+         * Read Evaluation Report
+         * @description The report of an evaluation that is done.
+         */
+        readonly get: operations["read_evaluation_report"];
+        readonly put?: never;
+        readonly post?: never;
+        readonly delete?: never;
+        readonly options?: never;
+        readonly head?: never;
+        readonly patch?: never;
+        readonly trace?: never;
+    };
     readonly "/api/world": {
         readonly parameters: {
             readonly query?: never;
@@ -1592,6 +1674,12 @@ export interface components {
             readonly depth: number;
         };
         /**
+         * Decision
+         * @description What is known of a requirement.
+         * @enum {string}
+         */
+        readonly Decision: "met" | "missed" | "not decided";
+        /**
          * DeletedTold
          * @description The plan was moved to the bin; the connection ends.
          */
@@ -2033,12 +2121,243 @@ export interface components {
             readonly entry: components["schemas"]["Entry"];
         };
         /**
+         * EvaluationAsked
+         * @description In which worlds a mission is to be run, and how.
+         */
+        readonly "EvaluationAsked-Input": {
+            /**
+             * Drive
+             * @default route
+             */
+            readonly drive: string;
+            /**
+             * Sensor
+             * @default ideal
+             */
+            readonly sensor: string;
+            /**
+             * Worlds
+             * @default 100
+             */
+            readonly worlds: number;
+            /**
+             * First Seed
+             * @default 0
+             */
+            readonly first_seed: number;
+            /**
+             * Without Faults
+             * @default true
+             */
+            readonly without_faults: boolean;
+            /**
+             * Faults
+             * @default []
+             */
+            readonly faults: readonly (components["schemas"]["AbnormalValue-Input"] | components["schemas"]["DisplacedCheckpoint-Input"] | components["schemas"]["GasLeakFault-Input"] | components["schemas"]["HotSpotFault-Input"] | components["schemas"]["AbnormalPump-Input"] | components["schemas"]["PlatformAlarm-Input"] | components["schemas"]["Brick-Input"] | components["schemas"]["MissingPlate-Input"] | components["schemas"]["BlockedStairs-Input"] | components["schemas"]["LowBattery-Input"] | components["schemas"]["WornBattery-Input"] | components["schemas"]["ConnectionLoss-Input"] | components["schemas"]["EmergencyStop-Input"] | components["schemas"]["SensorDysfunction-Input"] | components["schemas"]["DriveDysfunction-Input"])[];
+            /**
+             * @default {
+             *       "values": {}
+             *     }
+             */
+            readonly variation: components["schemas"]["Variation-Input"];
+            /**
+             * Require
+             * @default []
+             */
+            readonly require: readonly string[];
+            /** Width */
+            readonly width?: number | null;
+        };
+        /**
+         * EvaluationAsked
+         * @description In which worlds a mission is to be run, and how.
+         */
+        readonly "EvaluationAsked-Output": {
+            /**
+             * Drive
+             * @default route
+             */
+            readonly drive: string;
+            /**
+             * Sensor
+             * @default ideal
+             */
+            readonly sensor: string;
+            /**
+             * Worlds
+             * @default 100
+             */
+            readonly worlds: number;
+            /**
+             * First Seed
+             * @default 0
+             */
+            readonly first_seed: number;
+            /**
+             * Without Faults
+             * @default true
+             */
+            readonly without_faults: boolean;
+            /**
+             * Faults
+             * @default []
+             */
+            readonly faults: readonly (components["schemas"]["AbnormalValue-Output"] | components["schemas"]["DisplacedCheckpoint-Output"] | components["schemas"]["GasLeakFault-Output"] | components["schemas"]["HotSpotFault-Output"] | components["schemas"]["AbnormalPump-Output"] | components["schemas"]["PlatformAlarm-Output"] | components["schemas"]["Brick-Output"] | components["schemas"]["MissingPlate-Output"] | components["schemas"]["BlockedStairs-Output"] | components["schemas"]["LowBattery-Output"] | components["schemas"]["WornBattery-Output"] | components["schemas"]["ConnectionLoss-Output"] | components["schemas"]["EmergencyStop-Output"] | components["schemas"]["SensorDysfunction-Output"] | components["schemas"]["DriveDysfunction-Output"])[];
+            /**
+             * @default {
+             *       "values": {}
+             *     }
+             */
+            readonly variation: components["schemas"]["Variation-Output"];
+            /**
+             * Require
+             * @default []
+             */
+            readonly require: readonly string[];
+            /** Width */
+            readonly width?: number | null;
+        };
+        /**
+         * EvaluationJob
+         * @description The evaluation of a mission in many worlds.
+         */
+        readonly EvaluationJob: {
+            /** Id */
+            readonly id: string;
+            /** Mission */
+            readonly mission: string;
+            /** Revision */
+            readonly revision: number;
+            /** Author */
+            readonly author: string;
+            /**
+             * Begun
+             * Format: date-time
+             */
+            readonly begun: string;
+            /** @default running */
+            readonly state: components["schemas"]["JobState"];
+            /** Problem */
+            readonly problem?: string | null;
+            /**
+             * @description discriminator enum property added by openapi-typescript
+             * @enum {string}
+             */
+            readonly kind: "evaluation";
+            readonly asked: components["schemas"]["EvaluationAsked-Output"];
+            readonly standing?: components["schemas"]["EvaluationStanding"] | null;
+        };
+        /**
+         * EvaluationStanding
+         * @description How far an evaluation is.
+         */
+        readonly EvaluationStanding: {
+            /** Done */
+            readonly done: number;
+            /** Most */
+            readonly most: number;
+            /** Remaining */
+            readonly remaining: number | null;
+            readonly rate: components["schemas"]["RateTold"];
+            /** Curve */
+            readonly curve: readonly components["schemas"]["RateTold"][];
+            /** Outcomes */
+            readonly outcomes: {
+                readonly [key: string]: number;
+            };
+            /** By Faults */
+            readonly by_faults: readonly components["schemas"]["FaultsTold"][];
+            readonly times: components["schemas"]["TimesTold"] | null;
+            /** Failing */
+            readonly failing: readonly components["schemas"]["FailedRun"][];
+            /** More Failing */
+            readonly more_failing: number;
+            /**
+             * Requirements
+             * @default []
+             */
+            readonly requirements: readonly components["schemas"]["RequirementTold"][];
+        };
+        /**
          * EventKind
          * @description What may happen besides the end of an action: the competition's events (thesis 1.2), and
          *     what tells that one of them is over.
          * @enum {string}
          */
         readonly EventKind: "gas_leak" | "hot_spot" | "abnormal_sound" | "platform_alarm" | "positive_obstacle" | "negative_obstacle" | "low_battery" | "connection_lost" | "emergency_stop" | "dysfunction" | "abnormal_reading" | "time_up" | "all_clear" | "battery_charged" | "connection_restored";
+        /**
+         * FailedRun
+         * @description A run that was no success; it can be replayed by its key.
+         */
+        readonly FailedRun: {
+            /** Key */
+            readonly key: string;
+            /** Seed */
+            readonly seed: number;
+            /** Faults */
+            readonly faults: string;
+            readonly outcome: components["schemas"]["RunOutcome"];
+            /** Reason */
+            readonly reason: string;
+            /** Task */
+            readonly task: string | null;
+            /** Duration */
+            readonly duration: number | null;
+        };
+        /**
+         * FaultChance
+         * @description Faults that occur together, and how often.
+         */
+        readonly "FaultChance-Input": {
+            /** Name */
+            readonly name: string;
+            /** Probability */
+            readonly probability: number;
+            /** Faults */
+            readonly faults: readonly (components["schemas"]["AbnormalValue-Input"] | components["schemas"]["DisplacedCheckpoint-Input"] | components["schemas"]["GasLeakFault-Input"] | components["schemas"]["HotSpotFault-Input"] | components["schemas"]["AbnormalPump-Input"] | components["schemas"]["PlatformAlarm-Input"] | components["schemas"]["Brick-Input"] | components["schemas"]["MissingPlate-Input"] | components["schemas"]["BlockedStairs-Input"] | components["schemas"]["LowBattery-Input"] | components["schemas"]["WornBattery-Input"] | components["schemas"]["ConnectionLoss-Input"] | components["schemas"]["EmergencyStop-Input"] | components["schemas"]["SensorDysfunction-Input"] | components["schemas"]["DriveDysfunction-Input"])[];
+        };
+        /**
+         * FaultChance
+         * @description Faults that occur together, and how often.
+         */
+        readonly "FaultChance-Output": {
+            /** Name */
+            readonly name: string;
+            /** Probability */
+            readonly probability: number;
+            /** Faults */
+            readonly faults: readonly (components["schemas"]["AbnormalValue-Output"] | components["schemas"]["DisplacedCheckpoint-Output"] | components["schemas"]["GasLeakFault-Output"] | components["schemas"]["HotSpotFault-Output"] | components["schemas"]["AbnormalPump-Output"] | components["schemas"]["PlatformAlarm-Output"] | components["schemas"]["Brick-Output"] | components["schemas"]["MissingPlate-Output"] | components["schemas"]["BlockedStairs-Output"] | components["schemas"]["LowBattery-Output"] | components["schemas"]["WornBattery-Output"] | components["schemas"]["ConnectionLoss-Output"] | components["schemas"]["EmergencyStop-Output"] | components["schemas"]["SensorDysfunction-Output"] | components["schemas"]["DriveDysfunction-Output"])[];
+        };
+        /**
+         * FaultDistribution
+         * @description What may go wrong in a mission, and how probable each is. In what is left nothing does.
+         */
+        readonly "FaultDistribution-Input": {
+            /** Chances */
+            readonly chances: readonly components["schemas"]["FaultChance-Input"][];
+        };
+        /**
+         * FaultDistribution
+         * @description What may go wrong in a mission, and how probable each is. In what is left nothing does.
+         */
+        readonly "FaultDistribution-Output": {
+            /** Chances */
+            readonly chances: readonly components["schemas"]["FaultChance-Output"][];
+        };
+        /**
+         * FaultsTold
+         * @description The runs in which the same went wrong.
+         */
+        readonly FaultsTold: {
+            /** Name */
+            readonly name: string;
+            readonly rate: components["schemas"]["RateTold"];
+            /** Outcomes */
+            readonly outcomes: {
+                readonly [key: string]: number;
+            };
+        };
         /**
          * Findings
          * @description What the check of a mission found.
@@ -2240,6 +2559,12 @@ export interface components {
             readonly high: number;
         };
         /**
+         * IntervalMethod
+         * @description How an interval was made.
+         * @enum {string}
+         */
+        readonly IntervalMethod: "Clopper-Pearson" | "confidence sequence" | "strata" | "Wilson";
+        /**
          * Invariant
          * @description What may be on a mission, large enough that no step leads out of it.
          *
@@ -2272,14 +2597,14 @@ export interface components {
          */
         readonly JobList: {
             /** Jobs */
-            readonly jobs: readonly components["schemas"]["OrderJob"][];
+            readonly jobs: readonly (components["schemas"]["OrderJob"] | components["schemas"]["EvaluationJob"])[];
         };
         /**
          * JobState
          * @description How far a job is.
          * @enum {string}
          */
-        readonly JobState: "running" | "done" | "failed" | "cancelled";
+        readonly JobState: "running" | "done" | "failed" | "cancelled" | "interrupted";
         /**
          * JobTold
          * @description How far a job of the plan is. Of several that wait to be sent only the last one is.
@@ -2290,7 +2615,8 @@ export interface components {
              * @enum {string}
              */
             readonly kind: "job";
-            readonly job: components["schemas"]["OrderJob"];
+            /** Job */
+            readonly job: components["schemas"]["OrderJob"] | components["schemas"]["EvaluationJob"];
         };
         /**
          * JointState
@@ -2905,14 +3231,19 @@ export interface components {
             readonly begun: string;
             /** @default running */
             readonly state: components["schemas"]["JobState"];
+            /** Problem */
+            readonly problem?: string | null;
+            /**
+             * @description discriminator enum property added by openapi-typescript
+             * @enum {string}
+             */
+            readonly kind: "order";
             /**
              * Progress
              * @default []
              */
             readonly progress: readonly components["schemas"]["OrderProgress"][];
             readonly found?: components["schemas"]["OrderFound"] | null;
-            /** Problem */
-            readonly problem?: string | null;
         };
         /**
          * OrderProgress
@@ -3259,6 +3590,21 @@ export interface components {
          */
         readonly PumpFault: "bearing" | "cavitation";
         /**
+         * RateTold
+         * @description A rate of success, 0 to 1, with an interval of 95 %.
+         */
+        readonly RateTold: {
+            /** Runs */
+            readonly runs: number;
+            /** Value */
+            readonly value: number | null;
+            /** Low */
+            readonly low: number;
+            /** High */
+            readonly high: number;
+            readonly method: components["schemas"]["IntervalMethod"];
+        };
+        /**
          * Reaction
          * @description What to do when an event occurs. A mission has at most one for each kind of event.
          *
@@ -3581,6 +3927,15 @@ export interface components {
             readonly [key: string]: unknown;
         };
         /**
+         * ReplayedRun
+         * @description A run of an evaluation as it went.
+         */
+        readonly ReplayedRun: {
+            readonly state: components["schemas"]["RunState"];
+            /** Entries */
+            readonly entries: readonly components["schemas"]["Entry"][];
+        };
+        /**
          * RequestProgress
          * @description How far a request is.
          * @enum {string}
@@ -3630,6 +3985,21 @@ export interface components {
             readonly earliest: number;
             /** Latest */
             readonly latest?: number | null;
+        };
+        /**
+         * RequirementTold
+         * @description What is shown of something that was required.
+         */
+        readonly RequirementTold: {
+            /** Requirement */
+            readonly requirement: string;
+            readonly verdict: components["schemas"]["Decision"];
+            /** Low */
+            readonly low: number;
+            /** High */
+            readonly high: number;
+            /** Worlds */
+            readonly worlds: number;
         };
         /**
          * Requirements
@@ -3819,6 +4189,12 @@ export interface components {
          * @enum {string}
          */
         readonly RunMode: "autonomous" | "paused" | "supervised" | "reacting";
+        /**
+         * RunOutcome
+         * @description How a run ended. Only the first two tell anything of the plan.
+         * @enum {string}
+         */
+        readonly RunOutcome: "success" | "failure" | "error" | "died";
         /**
          * RunState
          * @description A run as it stands.
@@ -4188,6 +4564,22 @@ export interface components {
             readonly state: components["schemas"]["RunState"] | null;
         };
         /**
+         * StepRange
+         * @description A value that changes all at once, some time and by something.
+         */
+        readonly StepRange: {
+            /** At */
+            readonly at: readonly [
+                number,
+                number
+            ];
+            /** Change */
+            readonly change: readonly [
+                number,
+                number
+            ];
+        };
+        /**
          * Stop
          * @description What a group does when its time is up: leave at once, or complete the round.
          * @enum {string}
@@ -4429,6 +4821,18 @@ export interface components {
             readonly missed_target?: string | null;
         };
         /**
+         * TimesTold
+         * @description How long the runs took that were a success (s).
+         */
+        readonly TimesTold: {
+            /** Least */
+            readonly least: number;
+            /** Median */
+            readonly median: number;
+            /** Most */
+            readonly most: number;
+        };
+        /**
          * Tone
          * @description What a headline asks of its reader.
          * @enum {string}
@@ -4497,6 +4901,148 @@ export interface components {
             readonly id: string;
             /** Revision */
             readonly revision?: number | null;
+        };
+        /**
+         * ValueRange
+         * @description What a checkpoint shows, and how that changes during a run.
+         */
+        readonly ValueRange: {
+            /** Start */
+            readonly start?: readonly [
+                number,
+                number
+            ] | null;
+            /**
+             * Drift
+             * @default [
+             *       0,
+             *       0
+             *     ]
+             */
+            readonly drift: readonly [
+                number,
+                number
+            ];
+            /**
+             * Noise
+             * @default [
+             *       0,
+             *       0
+             *     ]
+             */
+            readonly noise: readonly [
+                number,
+                number
+            ];
+            /**
+             * Steps
+             * @default []
+             */
+            readonly steps: readonly components["schemas"]["StepRange"][];
+        };
+        /**
+         * Variation
+         * @description What differs from world to world beside what seeds draw anyway. Each is drawn from a stream
+         *     of its own, so that one more changes nothing of the others.
+         */
+        readonly "Variation-Input": {
+            /** Ahead */
+            readonly ahead?: readonly [
+                number,
+                number
+            ] | null;
+            /** Left */
+            readonly left?: readonly [
+                number,
+                number
+            ] | null;
+            /** Turned */
+            readonly turned?: readonly [
+                number,
+                number
+            ] | null;
+            /** Speed */
+            readonly speed?: readonly [
+                number,
+                number
+            ] | null;
+            /** Friction */
+            readonly friction?: readonly [
+                number,
+                number
+            ] | null;
+            /** Charge */
+            readonly charge?: readonly [
+                number,
+                number
+            ] | null;
+            /** Capacity */
+            readonly capacity?: readonly [
+                number,
+                number
+            ] | null;
+            /** Sensor Noise */
+            readonly sensor_noise?: readonly [
+                number,
+                number
+            ] | null;
+            /** Values */
+            readonly values?: {
+                readonly [key: string]: components["schemas"]["ValueRange"];
+            };
+            readonly faults?: components["schemas"]["FaultDistribution-Input"] | null;
+        };
+        /**
+         * Variation
+         * @description What differs from world to world beside what seeds draw anyway. Each is drawn from a stream
+         *     of its own, so that one more changes nothing of the others.
+         */
+        readonly "Variation-Output": {
+            /** Ahead */
+            readonly ahead?: readonly [
+                number,
+                number
+            ] | null;
+            /** Left */
+            readonly left?: readonly [
+                number,
+                number
+            ] | null;
+            /** Turned */
+            readonly turned?: readonly [
+                number,
+                number
+            ] | null;
+            /** Speed */
+            readonly speed?: readonly [
+                number,
+                number
+            ] | null;
+            /** Friction */
+            readonly friction?: readonly [
+                number,
+                number
+            ] | null;
+            /** Charge */
+            readonly charge?: readonly [
+                number,
+                number
+            ] | null;
+            /** Capacity */
+            readonly capacity?: readonly [
+                number,
+                number
+            ] | null;
+            /** Sensor Noise */
+            readonly sensor_noise?: readonly [
+                number,
+                number
+            ] | null;
+            /** Values */
+            readonly values?: {
+                readonly [key: string]: components["schemas"]["ValueRange"];
+            };
+            readonly faults?: components["schemas"]["FaultDistribution-Output"] | null;
         };
         /**
          * Verdict
@@ -7082,7 +7628,7 @@ export interface operations {
                     readonly [name: string]: unknown;
                 };
                 content: {
-                    readonly "application/json": components["schemas"]["OrderJob"];
+                    readonly "application/json": components["schemas"]["OrderJob"] | components["schemas"]["EvaluationJob"];
                 };
             };
             /** @description Bad Request */
@@ -7177,7 +7723,7 @@ export interface operations {
                     readonly [name: string]: unknown;
                 };
                 content: {
-                    readonly "application/json": components["schemas"]["OrderJob"];
+                    readonly "application/json": components["schemas"]["OrderJob"] | components["schemas"]["EvaluationJob"];
                 };
             };
             /** @description Bad Request */
@@ -7356,6 +7902,415 @@ export interface operations {
             };
             /** @description Precondition Required */
             readonly 428: {
+                headers: {
+                    readonly [name: string]: unknown;
+                };
+                content: {
+                    readonly "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Service Unavailable */
+            readonly 503: {
+                headers: {
+                    readonly [name: string]: unknown;
+                };
+                content: {
+                    readonly "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+        };
+    };
+    readonly evaluate_mission: {
+        readonly parameters: {
+            readonly query?: never;
+            readonly header?: {
+                /** @description the revision that the request was made on, as `"12"`, or `*` for whichever there is; without it the answer is 428 */
+                readonly "If-Match"?: string | null;
+            };
+            readonly path: {
+                /** @description id of the mission */
+                readonly id: string;
+            };
+            readonly cookie?: never;
+        };
+        readonly requestBody: {
+            readonly content: {
+                readonly "application/json": components["schemas"]["EvaluationAsked-Input"];
+            };
+        };
+        readonly responses: {
+            /** @description Created */
+            readonly 202: {
+                headers: {
+                    /** @description where it is */
+                    readonly Location?: string;
+                    readonly [name: string]: unknown;
+                };
+                content: {
+                    readonly "application/json": components["schemas"]["EvaluationJob"];
+                };
+            };
+            /** @description Bad Request */
+            readonly 400: {
+                headers: {
+                    readonly [name: string]: unknown;
+                };
+                content: {
+                    readonly "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Unauthorized */
+            readonly 401: {
+                headers: {
+                    readonly [name: string]: unknown;
+                };
+                content: {
+                    readonly "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Forbidden */
+            readonly 403: {
+                headers: {
+                    readonly [name: string]: unknown;
+                };
+                content: {
+                    readonly "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Not Found */
+            readonly 404: {
+                headers: {
+                    readonly [name: string]: unknown;
+                };
+                content: {
+                    readonly "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Conflict */
+            readonly 409: {
+                headers: {
+                    readonly [name: string]: unknown;
+                };
+                content: {
+                    readonly "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Precondition Failed */
+            readonly 412: {
+                headers: {
+                    readonly [name: string]: unknown;
+                };
+                content: {
+                    readonly "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Request Entity Too Large */
+            readonly 413: {
+                headers: {
+                    readonly [name: string]: unknown;
+                };
+                content: {
+                    readonly "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Unprocessable Entity */
+            readonly 422: {
+                headers: {
+                    readonly [name: string]: unknown;
+                };
+                content: {
+                    readonly "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Precondition Required */
+            readonly 428: {
+                headers: {
+                    readonly [name: string]: unknown;
+                };
+                content: {
+                    readonly "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Service Unavailable */
+            readonly 503: {
+                headers: {
+                    readonly [name: string]: unknown;
+                };
+                content: {
+                    readonly "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+        };
+    };
+    readonly go_on_with_evaluation: {
+        readonly parameters: {
+            readonly query?: never;
+            readonly header?: never;
+            readonly path: {
+                /** @description id of the job */
+                readonly id: string;
+            };
+            readonly cookie?: never;
+        };
+        readonly requestBody?: never;
+        readonly responses: {
+            /** @description Successful Response */
+            readonly 202: {
+                headers: {
+                    readonly [name: string]: unknown;
+                };
+                content: {
+                    readonly "application/json": components["schemas"]["EvaluationJob"];
+                };
+            };
+            /** @description Bad Request */
+            readonly 400: {
+                headers: {
+                    readonly [name: string]: unknown;
+                };
+                content: {
+                    readonly "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Unauthorized */
+            readonly 401: {
+                headers: {
+                    readonly [name: string]: unknown;
+                };
+                content: {
+                    readonly "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Forbidden */
+            readonly 403: {
+                headers: {
+                    readonly [name: string]: unknown;
+                };
+                content: {
+                    readonly "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Not Found */
+            readonly 404: {
+                headers: {
+                    readonly [name: string]: unknown;
+                };
+                content: {
+                    readonly "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Conflict */
+            readonly 409: {
+                headers: {
+                    readonly [name: string]: unknown;
+                };
+                content: {
+                    readonly "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Request Entity Too Large */
+            readonly 413: {
+                headers: {
+                    readonly [name: string]: unknown;
+                };
+                content: {
+                    readonly "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Unprocessable Entity */
+            readonly 422: {
+                headers: {
+                    readonly [name: string]: unknown;
+                };
+                content: {
+                    readonly "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Service Unavailable */
+            readonly 503: {
+                headers: {
+                    readonly [name: string]: unknown;
+                };
+                content: {
+                    readonly "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+        };
+    };
+    readonly replay_run: {
+        readonly parameters: {
+            readonly query?: never;
+            readonly header?: never;
+            readonly path: {
+                /** @description id of the job */
+                readonly id: string;
+                /** @description key of the run */
+                readonly key: string;
+            };
+            readonly cookie?: never;
+        };
+        readonly requestBody?: never;
+        readonly responses: {
+            /** @description Successful Response */
+            readonly 200: {
+                headers: {
+                    readonly [name: string]: unknown;
+                };
+                content: {
+                    readonly "application/json": components["schemas"]["ReplayedRun"];
+                };
+            };
+            /** @description Bad Request */
+            readonly 400: {
+                headers: {
+                    readonly [name: string]: unknown;
+                };
+                content: {
+                    readonly "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Unauthorized */
+            readonly 401: {
+                headers: {
+                    readonly [name: string]: unknown;
+                };
+                content: {
+                    readonly "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Forbidden */
+            readonly 403: {
+                headers: {
+                    readonly [name: string]: unknown;
+                };
+                content: {
+                    readonly "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Not Found */
+            readonly 404: {
+                headers: {
+                    readonly [name: string]: unknown;
+                };
+                content: {
+                    readonly "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Conflict */
+            readonly 409: {
+                headers: {
+                    readonly [name: string]: unknown;
+                };
+                content: {
+                    readonly "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Request Entity Too Large */
+            readonly 413: {
+                headers: {
+                    readonly [name: string]: unknown;
+                };
+                content: {
+                    readonly "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Unprocessable Entity */
+            readonly 422: {
+                headers: {
+                    readonly [name: string]: unknown;
+                };
+                content: {
+                    readonly "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Service Unavailable */
+            readonly 503: {
+                headers: {
+                    readonly [name: string]: unknown;
+                };
+                content: {
+                    readonly "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+        };
+    };
+    readonly read_evaluation_report: {
+        readonly parameters: {
+            readonly query?: never;
+            readonly header?: never;
+            readonly path: {
+                /** @description id of the job */
+                readonly id: string;
+            };
+            readonly cookie?: never;
+        };
+        readonly requestBody?: never;
+        readonly responses: {
+            /** @description the report, as a page */
+            readonly 200: {
+                headers: {
+                    readonly [name: string]: unknown;
+                };
+                content: {
+                    readonly "text/html": string;
+                };
+            };
+            /** @description Bad Request */
+            readonly 400: {
+                headers: {
+                    readonly [name: string]: unknown;
+                };
+                content: {
+                    readonly "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Unauthorized */
+            readonly 401: {
+                headers: {
+                    readonly [name: string]: unknown;
+                };
+                content: {
+                    readonly "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Forbidden */
+            readonly 403: {
+                headers: {
+                    readonly [name: string]: unknown;
+                };
+                content: {
+                    readonly "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Not Found */
+            readonly 404: {
+                headers: {
+                    readonly [name: string]: unknown;
+                };
+                content: {
+                    readonly "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Conflict */
+            readonly 409: {
+                headers: {
+                    readonly [name: string]: unknown;
+                };
+                content: {
+                    readonly "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Request Entity Too Large */
+            readonly 413: {
+                headers: {
+                    readonly [name: string]: unknown;
+                };
+                content: {
+                    readonly "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Unprocessable Entity */
+            readonly 422: {
                 headers: {
                     readonly [name: string]: unknown;
                 };

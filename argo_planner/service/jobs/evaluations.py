@@ -1,0 +1,133 @@
+"""The evaluations of a service: begun, gone on with, replayed."""
+
+import asyncio
+import logging
+from collections.abc import Callable
+from datetime import datetime
+from pathlib import Path
+
+from argo_compiler.errors import ArgoError, Conflict, NotFound, Unavailable
+from argo_planner.service.jobs.evaluation import EvaluationOrder, evaluate_mission
+from argo_planner.service.jobs.job import EvaluationJob, Job, JobState
+from argo_planner.service.jobs.jobs import Jobs
+from argo_planner.service.jobs.kept import EvaluationFolder, KeptEvaluation
+from argo_planner.service.jobs.process import JobProcess
+from argo_planner.service.jobs.replay import ReplayedRun, ReplayOrder, replay_run
+
+MOST_REPLAYED = 2
+"""runs that are made again at once"""
+LONGEST_REPLAY = 120.0
+"""s of wall time"""
+_log = logging.getLogger(__name__)
+
+
+class Evaluations:
+    """The evaluations of a service, kept in a folder each."""
+
+    def __init__(
+        self, path: Path, jobs: Jobs, new_id: Callable[[], str], clock: Callable[[], datetime]
+    ) -> None:
+        self._folder = EvaluationFolder(path)
+        self._jobs = jobs
+        self._new_id = new_id
+        self._clock = clock
+        self._replays = asyncio.Semaphore(MOST_REPLAYED)
+
+    async def open(self) -> None:
+        """Finds those of before."""
+        kept = await asyncio.to_thread(self._folder.all)
+        self._jobs.add_past(one.job for one in kept)
+
+    async def start(
+        self, plan: str, revision: int, order: EvaluationOrder, author: str
+    ) -> EvaluationJob:
+        """Begins an evaluation. Raises Conflict if one is under way, Unavailable if it can't be
+        kept."""
+        self._require_free()
+        job = EvaluationJob(
+            id=self._new_id(),
+            mission=plan,
+            revision=revision,
+            author=author,
+            begun=self._clock(),
+            asked=order.asked,
+        )
+        return await self._begin(KeptEvaluation(order=order, job=job))
+
+    async def go_on(self, id: str) -> EvaluationJob:
+        """Goes on with one that was interrupted or cancelled: what has been run is not run again.
+        Raises NotFound, Conflict if it can't go on."""
+        job = self.of(id)
+        if job.state not in (JobState.INTERRUPTED, JobState.CANCELLED):
+            raise Conflict(f"evaluation {id} can't go on: it is {job.state}")
+        self._require_free()
+        kept = await asyncio.to_thread(self._folder.kept, id)
+        job = job.model_copy(update={"state": JobState.RUNNING, "problem": None})
+        return await self._begin(KeptEvaluation(order=kept.order, job=job))
+
+    def of(self, id: str) -> EvaluationJob:
+        """Raises NotFound if there is no such job, or it is no evaluation."""
+        job = self._jobs.job(id)
+        if not isinstance(job, EvaluationJob):
+            raise NotFound(f"job {id} is no evaluation")
+        return job
+
+    async def report(self, id: str) -> bytes:
+        """The report, as a page. Raises NotFound if there is none yet."""
+        job = self.of(id)
+        try:
+            return await asyncio.to_thread(self._folder.report, id)
+        except NotFound:
+            raise NotFound(
+                f"evaluation {id} has no report: it is {job.state}, and the report is made when "
+                "all has been run"
+            ) from None
+
+    async def replay(self, id: str, key: str) -> ReplayedRun:
+        """One of its runs, made once more. Raises NotFound if there is no such run, Unavailable if
+        that takes too long."""
+        job = self.of(id)
+        kept = await asyncio.to_thread(self._folder.kept, id)
+        order = ReplayOrder(
+            key=key,
+            plan=job.mission,
+            revision=job.revision,
+            by=job.author,
+            begun=job.begun,
+            evaluation=kept.order,
+        )
+        async with self._replays:
+            work = JobProcess(replay_run, order, self._folder.path(id))
+            try:
+                async with asyncio.timeout(LONGEST_REPLAY):
+                    return await work.result(lambda _: None)
+            except TimeoutError:
+                raise Unavailable(
+                    f"the run takes longer than {LONGEST_REPLAY:.0f} s to make again here: the "
+                    "report of the evaluation has a command that makes it on the machine of the "
+                    "service"
+                ) from None
+            finally:
+                work.end()
+
+    def _require_free(self) -> None:
+        for job in self._jobs.running(EvaluationJob):
+            raise Conflict(
+                f"an evaluation is under way, begun by {job.author}: wait for it, or cancel it"
+            )
+
+    async def _begin(self, kept: KeptEvaluation) -> EvaluationJob:
+        await asyncio.to_thread(self._folder.keep, kept)
+        self._require_free()  # meanwhile somebody else may have begun one
+        work = JobProcess(evaluate_mission, kept.order, self._folder.path(kept.job.id), parent=True)
+
+        async def ended(job: Job) -> None:
+            assert isinstance(job, EvaluationJob)
+            try:
+                now = KeptEvaluation(order=kept.order, job=job)
+                await asyncio.to_thread(self._folder.keep, now)
+            except ArgoError as error:
+                _log.error("evaluation %s: how it ended is not kept: %s", job.id, error)
+
+        self._jobs.begin(kept.job, work, ended)
+        return kept.job

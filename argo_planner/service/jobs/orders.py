@@ -1,0 +1,56 @@
+"""The searches for orders of a service."""
+
+from collections.abc import Callable
+from datetime import datetime
+
+from argo_compiler.errors import Conflict, NotFound
+from argo_compiler.il import Mission
+from argo_compiler.reorder.requirements import Requirements
+from argo_planner.service.jobs.job import OrderJob
+from argo_planner.service.jobs.jobs import Jobs
+from argo_planner.service.jobs.order import search_order
+from argo_planner.service.jobs.process import JobProcess
+
+MOST_SEARCHES = 2
+
+
+class Orders:
+    """Searches for the best order of missions on a site."""
+
+    def __init__(
+        self, site: str, jobs: Jobs, new_id: Callable[[], str], clock: Callable[[], datetime]
+    ) -> None:
+        """`site` is what opens it."""
+        self._site = site
+        self._jobs = jobs
+        self._new_id = new_id
+        self._clock = clock
+
+    def start(
+        self,
+        plan: str,
+        revision: int,
+        mission: Mission,
+        requirements: Requirements,
+        time_limit: float,
+        author: str,
+    ) -> OrderJob:
+        """Begins a search of at most the time (s). Raises Conflict if too many are under way."""
+        if len(self._jobs.running(OrderJob)) >= MOST_SEARCHES:
+            raise Conflict(
+                f"{MOST_SEARCHES} searches are under way: wait for one of them, or cancel it"
+            )
+        job = OrderJob(
+            id=self._new_id(), mission=plan, revision=revision, author=author, begun=self._clock()
+        )
+        self._jobs.begin(
+            job, JobProcess(search_order, self._site, mission, requirements, time_limit)
+        )
+        return job
+
+    def of(self, id: str) -> OrderJob:
+        """Raises NotFound if there is no such job, or it is no search."""
+        job = self._jobs.job(id)
+        if not isinstance(job, OrderJob):
+            raise NotFound(f"job {id} is no search for an order")
+        return job

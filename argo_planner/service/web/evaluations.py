@@ -1,0 +1,107 @@
+"""Evaluations: a mission is run in many worlds; what came of it, and each run once more."""
+
+from typing import Annotated
+
+from fastapi import APIRouter, Path, Response
+
+from argo_planner.service.core.refusals import StaleRevision
+from argo_planner.service.jobs.evaluation import EvaluationAsked, EvaluationOrder
+from argo_planner.service.jobs.job import EvaluationJob
+from argo_planner.service.jobs.replay import ReplayedRun
+from argo_planner.service.web.bodies import Sent
+from argo_planner.service.web.jobs import JobId
+from argo_planner.service.web.missions import sound
+from argo_planner.service.web.problems import StaleCommand, documented
+from argo_planner.service.web.requests import (
+    KEYS,
+    MadeOn,
+    PlanId,
+    Planner,
+    Service,
+    Viewer,
+    created,
+    link,
+    said,
+)
+
+router = APIRouter(
+    prefix="/api",
+    tags=["jobs"],
+    dependencies=KEYS,
+    responses=documented(400, 401, 403, 404, 409, 413, 422, 503),
+)
+
+RunKey = Annotated[str, Path(pattern=r"^[0-9a-f]{24}$", description="key of the run")]
+_JOB = {
+    name: link(name, id="$response.body#/id")
+    for name in ("read_job", "cancel_job", "go_on_with_evaluation", "read_evaluation_report")
+}
+# The report is one file, with its styles and pictures in it; it runs nothing and loads nothing.
+_REPORT_POLICY = (
+    "default-src 'none'; style-src 'unsafe-inline'; img-src data:; frame-ancestors 'none'"
+)
+
+
+@router.post(
+    "/missions/{id}/evaluations",
+    operation_id="evaluate_mission",
+    status_code=202,
+    response_model=EvaluationJob,
+    responses=documented(412, 428) | {202: created(EvaluationJob, _JOB)},
+)
+async def evaluate_mission(
+    service: Service, visitor: Planner, id: PlanId, asked: Sent[EvaluationAsked], made_on: MadeOn
+) -> Response:
+    """Begins to run the mission as it stands in many worlds; 409 while another evaluation is under
+    way."""
+    document = (await service.rooms.open(id)).document
+    plan = document.plan
+    if made_on is not None and made_on != plan.revision:
+        raise StaleCommand(StaleRevision(made_on, plan.revision), plan.since(made_on))
+    sound(document, service.site)
+    order = EvaluationOrder(
+        name=document.name,
+        mission=plan.mission,
+        site=service.site.reference,
+        obstacles=service.obstacles.present.obstacles,
+        asked=asked,
+    )
+    order.plan(service.site)  # what can't be run is refused at once
+    job = await service.evaluations.start(id, plan.revision, order, visitor.author)
+    return said(job, 202, location=f"/api/jobs/{job.id}")
+
+
+@router.post(
+    "/jobs/{id}/go_on",
+    operation_id="go_on_with_evaluation",
+    status_code=202,
+    response_model=EvaluationJob,
+)
+async def go_on_with_evaluation(service: Service, _: Planner, id: JobId) -> Response:
+    """Goes on with an evaluation that was cancelled or interrupted: what has been run is not run
+    again."""
+    return said(await service.evaluations.go_on(id), 202)
+
+
+@router.get("/jobs/{id}/runs/{key}", operation_id="replay_run", response_model=ReplayedRun)
+async def replay_run(service: Service, _: Viewer, id: JobId, key: RunKey) -> Response:
+    """A run of an evaluation, made once more: all that has happened in it."""
+    return said(await service.evaluations.replay(id, key))
+
+
+@router.get(
+    "/jobs/{id}/report",
+    operation_id="read_evaluation_report",
+    response_class=Response,
+    responses={
+        200: {
+            "description": "the report, as a page",
+            "content": {"text/html": {"schema": {"type": "string"}}},
+        }
+    },
+)
+async def read_evaluation_report(service: Service, _: Viewer, id: JobId) -> Response:
+    """The report of an evaluation that is done."""
+    content = await service.evaluations.report(id)
+    headers = {"content-security-policy": _REPORT_POLICY}
+    return Response(content, headers=headers, media_type="text/html")

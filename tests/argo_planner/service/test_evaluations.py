@@ -1,0 +1,191 @@
+"""Evaluations over HTTP: begun, watched, cancelled, gone on with, replayed, reported."""
+
+import json
+import time
+from collections.abc import Callable
+from pathlib import Path
+
+import pytest
+
+from argo_compiler.il import Mission
+from argo_env.evaluation.evaluation import Evaluation
+from argo_env.evaluation.store import read_rows
+from argo_env.faults.robot import LowBattery
+from argo_env.planning.opening import OpenedSite
+from argo_planner.service.web.access import AccessRole
+from tests.argo_planner.service.served import SECRETS, Served, served
+from tests.argo_planner.service.test_http import problem
+from tests.argo_planner.service.test_jobs import imported, over
+
+FAULTS = [{"kind": "low_battery", "charge": 0.01}]
+
+
+@pytest.fixture(scope="module")
+def id(service: Served) -> str:
+    return imported(service)
+
+
+def asked(service: Served, id: str, revision: str = "*", **said: object):
+    return service.client.post(
+        f"/api/missions/{id}/evaluations", json=said, headers={"if-match": revision}
+    )
+
+
+def begin(service: Served, id: str, **said: object) -> str:
+    begun = asked(service, id, **said)
+    assert begun.status_code == 202, begun.text
+    assert begun.headers["location"] == f"/api/jobs/{begun.json()['id']}"
+    return begun.json()["id"]
+
+
+def until(service: Served, job: str, holds: Callable[[dict], bool]) -> dict:
+    while True:
+        read = service.client.get(f"/api/jobs/{job}").json()
+        if holds(read):
+            return read
+        assert read["state"] == "running", read
+        time.sleep(0.05)
+
+
+def test_it_is_watched_says_what_the_library_says_and_its_runs_are_replayed(
+    service: Served, id: str, site: OpenedSite
+) -> None:
+    heard = []
+    with service.follow(id) as page:
+        job = begin(service, id, worlds=12, faults=FAULTS, require=["success >= 0.9"])
+        while not heard or heard[-1]["state"] == "running":
+            message = json.loads(page.recv(timeout=120))
+            if message["kind"] == "job":
+                assert message["job"]["id"] == job
+                heard.append(message["job"])
+    done = over(service, job)
+    assert done["state"] == "done", done["problem"]
+    assert heard[-1] == done
+    standing = done["standing"]
+    mission = service.client.get(f"/api/missions/{id}").json()["mission"]
+    same = Evaluation(
+        {"Protocol #2": Mission.model_validate(mission)},
+        site,
+        faults={"none": (), "low_battery": (LowBattery(charge=0.01),)},
+        seeds=range(12),
+        require=["success >= 0.9"],
+    ).run(workers=2)
+    (plan,) = same.plan.plans
+    rate = same.rate(plan)
+    assert standing["done"] == standing["most"] == len(same.rows)
+    assert standing["rate"]["runs"] == rate.runs
+    assert standing["rate"]["value"] == pytest.approx(rate.value)
+    assert standing["rate"]["low"] == pytest.approx(rate.low)
+    assert standing["rate"]["method"] == rate.method.value
+    by_faults = {group["name"]: group["rate"]["value"] for group in standing["by_faults"]}
+    assert by_faults == {"none": 1.0, "low_battery": 0.0}
+    assert [one["requirement"] for one in standing["requirements"]] == ["success >= 0.9"]
+    failing = [row for row in same.rows if not row.success]
+    assert sorted((one["seed"], one["reason"]) for one in standing["failing"]) == sorted(
+        (row.seed, row.reason) for row in failing
+    )
+    one = standing["failing"][0]
+    replay = service.client.get(f"/api/jobs/{job}/runs/{one['key']}").json()
+    state, entries = replay["state"], replay["entries"]
+    assert (state["id"], state["plan"], state["seed"]) == (one["key"], id, one["seed"])
+    assert state["headline"]["word"] == "No success"
+    assert state["entries"] == len(entries)
+    assert entries[-1]["ended"]
+    assert entries[-1]["t"] == pytest.approx(one["duration"], abs=0.1)
+    report = service.client.get(f"/api/jobs/{job}/report")
+    assert report.headers["content-type"].startswith("text/html")
+    assert "default-src 'none'" in report.headers["content-security-policy"]
+    assert one["key"] in report.text
+    summary = service.client.get("/api/jobs").json()["jobs"][0]
+    assert (summary["id"], summary["standing"]) == (job, None)
+
+
+def test_one_at_a_time_and_what_was_cancelled_goes_on(service: Served, id: str) -> None:
+    job = begin(service, id, worlds=10_000)
+    until(service, job, lambda read: read["standing"] is not None)
+    told = problem(asked(service, id, worlds=1), 409, "conflict")
+    assert "an evaluation is under way, begun by ann" in told["detail"]
+    cancelled = service.client.delete(f"/api/jobs/{job}").json()
+    assert cancelled["state"] == "cancelled"
+    before = cancelled["standing"]["done"]
+    problem(service.client.get(f"/api/jobs/{job}/report"), 404, "not-found")
+    gone_on = service.client.post(f"/api/jobs/{job}/go_on")
+    assert gone_on.status_code == 202, gone_on.text
+    problem(service.client.post(f"/api/jobs/{job}/go_on"), 409, "conflict")
+    # What was known is there at once: more than there was time for since.
+    now = until(service, job, lambda read: (read["standing"] or {}).get("done", 0) > before)
+    assert now["standing"]["remaining"] is None or now["standing"]["done"] >= before
+    assert service.client.delete(f"/api/jobs/{job}").status_code == 200
+
+
+def test_it_outlives_the_service(tmp_path: Path, site: OpenedSite) -> None:
+    with served(tmp_path, site) as first:
+        id = imported(first)
+        done = begin(first, id, worlds=3)
+        assert over(first, done)["state"] == "done"
+        cut_short = begin(first, id, worlds=150)
+        until(first, cut_short, lambda read: read["standing"] is not None)
+    with served(tmp_path, site) as second:
+        states = {job["id"]: job["state"] for job in second.client.get("/api/jobs").json()["jobs"]}
+        assert states == {done: "done", cut_short: "interrupted"}
+        assert second.client.get(f"/api/jobs/{done}").json()["standing"]["done"] == 3
+        assert second.client.get(f"/api/jobs/{done}/report").status_code == 200
+        assert second.client.post(f"/api/jobs/{cut_short}/go_on").status_code == 202
+        whole = over(second, cut_short)
+        assert (whole["state"], whole["standing"]["done"]) == ("done", 150)
+        assert len(read_rows(tmp_path / "evaluations" / cut_short)) == 150
+
+
+def test_obstacles_stand_in_the_worlds(tmp_path: Path, site: OpenedSite) -> None:
+    with served(tmp_path, site) as service:
+        id = imported(service)
+        free = over(service, begin(service, id, worlds=2))["standing"]
+        start = service.client.get(f"/api/missions/{id}").json()["mission"]["tasks"][0]["pose"]
+        crate = {
+            "id": "crate",
+            "name": "the crate",
+            "pose": start | {"x": start["x"] + 2.0},
+            "size": [0.5, 6.0, 1.0],
+        }
+        put = service.client.put(
+            "/api/world/obstacles", json={"obstacles": [crate]}, headers={"if-match": "*"}
+        )
+        assert put.status_code == 200, put.text
+        job = over(service, begin(service, id, worlds=2))
+        assert job["standing"]["times"] != free["times"] or job["standing"]["failing"]
+        assert "the crate" in service.client.get(f"/api/jobs/{job['id']}/report").text
+
+
+def test_what_makes_no_sense_is_refused_before_anything_runs(service: Served, id: str) -> None:
+    for said, why in (
+        ({"require": ["good >= 1"]}, "nothing is known of `good`"),
+        ({"without_faults": False}, "nothing is to be run"),
+        ({"worlds": 10_000, "faults": FAULTS * 20}, "too many"),
+        ({"drive": "boat"}, "no drive `boat`"),
+        ({"sensor": "camera"}, "take the sensor `ideal` or another drive"),
+        ({"faults": [{"kind": "brick"}]}, "take another drive"),
+        ({"variation": {"speed": [0.9, 0.5]}}, "the least comes first"),
+    ):
+        assert why in problem(asked(service, id, **said), 422, "invalid")["detail"], said
+    problem(asked(service, id, revision='"77"'), 412, "stale-revision")
+    empty = service.create()
+    problem(asked(service, empty), 422, "invalid")
+    viewer = service.as_("eve", SECRETS[AccessRole.VIEW])
+    refused = viewer.post(f"/api/missions/{id}/evaluations", json={}, headers={"if-match": "*"})
+    assert refused.status_code == 403
+
+
+def test_searches_are_no_evaluations(service: Served, id: str) -> None:
+    order = service.client.post(f"/api/missions/{id}/orders", json={"time_limit": 1}).json()["id"]
+    for answer in (
+        service.client.post(f"/api/jobs/{order}/go_on"),
+        service.client.get(f"/api/jobs/{order}/report"),
+        service.client.get(f"/api/jobs/{order}/runs/{'0' * 24}"),
+    ):
+        assert "is no evaluation" in problem(answer, 404, "not-found")["detail"]
+    evaluation = begin(service, id, worlds=1)
+    assert over(service, evaluation)["state"] == "done"
+    refused = service.client.get(f"/api/jobs/{evaluation}/preview")
+    assert "is no search" in problem(refused, 404, "not-found")["detail"]
+    unknown = service.client.get(f"/api/jobs/{evaluation}/runs/{'0' * 24}")
+    assert "has no run" in problem(unknown, 404, "not-found")["detail"]

@@ -3,6 +3,7 @@
 import { effect, signal } from "@preact/signals-core";
 
 import { untilReached, pause } from "../api/trying";
+import "../evaluate/evaluate";
 import "../forms/properties";
 import "../list/list";
 import "../route/route";
@@ -30,6 +31,7 @@ const PANELS: readonly (readonly [Panel, Icon])[] = [
   ["properties", "settings"],
   ["script", "script"],
   ["route", "route"],
+  ["evaluate", "gauge"],
   ["run", "play"],
 ];
 
@@ -249,6 +251,7 @@ export class ArgoApp extends PageElement {
           ${shown === "properties" ? html`<argo-properties></argo-properties>` : null}
           ${shown === "script" ? html`<argo-script></argo-script>` : null}
           ${shown === "route" ? html`<argo-route></argo-route>` : null}
+          ${shown === "evaluate" ? html`<argo-evaluate></argo-evaluate>` : null}
           ${shown === "run" ? html`<argo-run></argo-run>` : null}
         </div>
       </aside>

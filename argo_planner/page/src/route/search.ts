@@ -7,7 +7,7 @@ import type { operations } from "../api/schema";
 import type { OrderJob } from "../api/types";
 import { commandId, settled } from "../state/commands";
 import { tell, tellError } from "../state/notices";
-import { connected, jobs, planId, revision, take } from "../state/plan";
+import { connected, jobs, planId, revision, take, takeJob } from "../state/plan";
 import { comparedPreview } from "../state/preview";
 import { t } from "../texts";
 
@@ -29,7 +29,8 @@ let previewed = "";
 /** How it stands, by what was told last. */
 export const job = computed<OrderJob | null>(() => {
   const known = shown.value;
-  return known === null ? null : (jobs.value.get(known.id) ?? known);
+  const newest = known === null ? undefined : jobs.value.get(known.id);
+  return newest?.kind === "order" ? newest : known;
 });
 /** Whether the mission was changed since the search began. */
 export const jobIsStale = computed(() => job.value !== null && job.value.revision !== revision.value);
@@ -54,7 +55,7 @@ effect(() => {
   if (!connected.value || known === null || isOver(known)) return;
   answered(client.GET("/api/jobs/{id}", { params: { path: { id: known.id } } }))
     .then((found) => {
-      if (shown.peek()?.id === found.id) jobs.value = new Map(jobs.peek()).set(found.id, found);
+      if (shown.peek()?.id === found.id) takeJob(found);
     })
     .catch((error: unknown) => {
       if (error instanceof Refusal) leave();
@@ -100,7 +101,7 @@ export async function cancel(): Promise<void> {
   const id = job.value?.id;
   if (id === undefined) return;
   try {
-    shown.value = await answered(client.DELETE("/api/jobs/{id}", { params: { path: { id } } }));
+    takeJob(await answered(client.DELETE("/api/jobs/{id}", { params: { path: { id } } })));
   } catch (error) {
     tellError(error);
   }

@@ -5,7 +5,7 @@ import { svg } from "lit";
 
 import type { Reading } from "../model/replay";
 import { drawnScale, placeOn } from "../model/scale";
-import { shownRun, shownRunState } from "../state/run";
+import { pastRun, shownRun, shownRunState } from "../state/run";
 import { look as lookAt } from "../state/view";
 import { world } from "../state/world";
 import { t } from "../texts";
@@ -143,10 +143,10 @@ export class RunReadings extends PageElement {
     </li>`;
   }
 
-  /** Pictures are taken by the camera only. */
+  /** Pictures are taken by the camera only, and not kept of what was made again. */
   private picture(reading: Reading) {
     const run = shownRunState.value;
-    if (run?.sensor !== "camera") return nothing;
+    if (run?.sensor !== "camera" || pastRun.value?.evaluated) return nothing;
     const said = t().run.picture(reading.name);
     const at = `/api/runs/${run.id}/pictures/${reading.checkpoint}/${Math.round(1000 * reading.t)}`;
     return html`<details class="picture">

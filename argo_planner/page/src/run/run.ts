@@ -1,10 +1,11 @@
 /** The run: begun, watched, steered, and gone back over. */
 
 import { client, answered } from "../api/client";
-import type { RunState } from "../api/types";
+import type { FailedRun, RunState } from "../api/types";
 import { tellError } from "../state/notices";
 import { planId } from "../state/plan";
 import { pastRun, run, runIsOn, showRun, shownRunState } from "../state/run";
+import { panel } from "../state/view";
 import { dateLocale, t } from "../texts";
 import { css, customElement, html, look, nothing, PageElement, state } from "../ui/element";
 import { icon } from "../ui/icons";
@@ -47,6 +48,17 @@ export class RunPanel extends PageElement {
         border-radius: var(--round);
         background: var(--warn-ground);
         color: var(--warn);
+      }
+      .evaluated {
+        display: grid;
+        gap: 6px;
+        padding: 8px 10px;
+        border-left: 3px solid var(--accent);
+        background: var(--sunken);
+        overflow-wrap: anywhere;
+      }
+      .evaluated button {
+        justify-self: start;
       }
       .busy a {
         color: inherit;
@@ -91,7 +103,8 @@ export class RunPanel extends PageElement {
       ${!runIsOn.value && pastRun.value === null ? html`<argo-run-start></argo-run-start>` : nothing}
       ${here || other
         ? html`<argo-run-band></argo-run-band>
-            ${shown?.status === "ended" ? this.report(shown) : nothing}
+            ${pastRun.value?.evaluated ? this.evaluated(pastRun.value.evaluated) : nothing}
+            ${shown?.status === "ended" && !pastRun.value?.evaluated ? this.report(shown) : nothing}
             ${this.steering()} ${this.choice()}
             <argo-run-time></argo-run-time>
             <argo-run-readings></argo-run-readings>
@@ -116,7 +129,7 @@ export class RunPanel extends PageElement {
   private choice() {
     const texts = t().run;
     const others = this.past.filter((one) => one.id !== run.value?.id);
-    if (others.length === 0) return nothing;
+    if (others.length === 0 || pastRun.value?.evaluated) return nothing;
     const shown = pastRun.value?.state.id ?? "";
     return html`<label>
       ${texts.shownRun}
@@ -137,6 +150,21 @@ export class RunPanel extends PageElement {
     });
     return t().run.pastRunOf(when, one.headline?.word ?? one.status);
   }
+
+  /** A run of an evaluation says which one it is, and leads back. */
+  private evaluated(one: FailedRun) {
+    const texts = t().evaluate;
+    return html`<div class="evaluated" id="evaluated">
+      <p>${texts.replayed(one.seed, texts.faultsNamed(one.faults))}</p>
+      <p class="dim">${one.reason}</p>
+      <button id="to-evaluation" @click=${this.toEvaluation}>${icon("back")} ${texts.back}</button>
+    </div>`;
+  }
+
+  private readonly toEvaluation = (): void => {
+    void showRun(null);
+    panel.value = "evaluate";
+  };
 
   private report(shown: RunState) {
     return html`<a href=${`/api/runs/${shown.id}/report/report.html`} target="_blank" rel="noopener">

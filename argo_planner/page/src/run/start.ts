@@ -10,26 +10,10 @@ import { t } from "../texts";
 import { css, customElement, html, look, nothing, PageElement, state } from "../ui/element";
 import { icon } from "../ui/icons";
 import { figure } from "../ui/figures";
+import "./faults";
+import type { FaultKind } from "./faults";
 import { parts, SPEEDS, speedName } from "./parts";
 
-export const FAULTS = [
-  "abnormal_value",
-  "gas_leak",
-  "hot_spot",
-  "abnormal_pump",
-  "platform_alarm",
-  "brick",
-  "missing_plate",
-  "blocked_stairs",
-  "low_battery",
-  "worn_battery",
-  "connection_loss",
-  "emergency_stop",
-  "sensor_dysfunction",
-  "drive_dysfunction",
-  "displaced_checkpoint",
-] as const;
-export type FaultKind = (typeof FAULTS)[number];
 const DRIVES = ["kinematic", "tracked", "route", "remote"] as const;
 const SENSORS = ["ideal", "camera"] as const;
 
@@ -127,7 +111,8 @@ export class RunStart extends PageElement {
               <input name="seed" type="number" min="0" max="2147483648" step="1" value="0" required />
             </label>
           </div>
-          ${this.valueList()} ${this.faultList()}
+          ${this.valueList()}
+          <argo-faults .chosen=${this.faults} @chosen=${this.choseFaults}></argo-faults>
         </div>
       </details>
     </form>`;
@@ -178,28 +163,6 @@ export class RunStart extends PageElement {
     </section>`;
   }
 
-  private faultList() {
-    const texts = t().run;
-    return html`<section>
-      <h2>${texts.faults}</h2>
-      <ul>
-        ${this.faults.map(
-          (kind, at) =>
-            html`<li>
-              <span class="grow">${texts.fault[kind]}</span>
-              ${this.removeButton(texts.fault[kind], () => {
-                this.faults = this.faults.filter((_, other) => other !== at);
-              })}
-            </li>`,
-        )}
-      </ul>
-      <select aria-label=${texts.addFault} @change=${this.addFault}>
-        <option value="">${texts.addFault}…</option>
-        ${FAULTS.map((kind) => html`<option value=${kind}>${texts.fault[kind]}</option>`)}
-      </select>
-    </section>`;
-  }
-
   private removeButton(what: string, act: () => void) {
     const said = t().run.remove(what);
     return html`<button type="button" class="bare icon" aria-label=${said} title=${said} @click=${act}>
@@ -234,11 +197,8 @@ export class RunStart extends PageElement {
     of.focus();
   }
 
-  private addFault(event: Event): void {
-    const field = event.target as HTMLSelectElement;
-    const kind = FAULTS.find((one) => one === field.value);
-    if (kind !== undefined) this.faults = [...this.faults, kind];
-    field.value = "";
+  private choseFaults(event: CustomEvent<readonly FaultKind[]>): void {
+    this.faults = event.detail;
   }
 
   private async start(event: SubmitEvent): Promise<void> {

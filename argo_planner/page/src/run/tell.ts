@@ -10,7 +10,7 @@ import { world } from "../state/world";
 import { t } from "../texts";
 import { css, customElement, html, look, nothing, PageElement } from "../ui/element";
 import { parts } from "./parts";
-import { FAULTS, type FaultKind } from "./start";
+import { FAULTS, type FaultKind } from "./faults";
 
 const OWN: readonly string[] = ["time_up"]; // that occur by themselves only
 

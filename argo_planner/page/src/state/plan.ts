@@ -10,6 +10,7 @@ import type {
   Findings,
   Member,
   Mission,
+  EvaluationJob,
   OrderJob,
   PlanState,
   Revision,
@@ -40,8 +41,8 @@ export const undoable = signal<readonly number[]>([]);
 export const redoable = signal<readonly number[]>([]);
 /** Whoever else has the mission open; without this page. */
 export const others = signal<readonly Member[]>([]);
-/** The newest state of each search for an order, by id. */
-export const jobs = signal<ReadonlyMap<string, OrderJob>>(new Map());
+/** The newest state of each job of the mission, by id. */
+export const jobs = signal<ReadonlyMap<string, OrderJob | EvaluationJob>>(new Map());
 export const connected = signal(false);
 /** Whether somebody else has deleted the mission that was open last. */
 export const wasGone = signal(false);
@@ -125,6 +126,11 @@ export function closePlan(): void {
   });
 }
 
+/** Takes how a job stands. */
+export function takeJob(job: OrderJob | EvaluationJob): void {
+  jobs.value = new Map(jobs.peek()).set(job.id, job);
+}
+
 export function select(keys: readonly string[]): void {
   selection.value = keys;
   tellSelection();
@@ -203,7 +209,7 @@ function heard(message: RoomMessage): void {
         takeMembers(message.members);
         break;
       case "job":
-        jobs.value = new Map(jobs.value).set(message.job.id, message.job);
+        takeJob(message.job);
         break;
       case "world":
         obstaclesChanged();

@@ -6,6 +6,8 @@ import { answered, authorQuery, client, Unreached } from "../api/client";
 import { LiveConnection } from "../api/live";
 import type {
   Entry,
+  FailedRun,
+  ReplayedRun,
   RequestState,
   RunMessage,
   RunState,
@@ -30,8 +32,14 @@ export const entries = signal<readonly Entry[]>([]);
 export const runIsOn = computed(() => run.value !== null && run.value.status !== "ended");
 export const robotConnected = signal(false);
 
+export interface PastRun {
+  readonly state: RunState;
+  readonly entries: readonly Entry[];
+  /** The run of an evaluation it is, made once more. */
+  readonly evaluated?: FailedRun;
+}
 /** A run that was, which is shown in place of the one of the robot; null: that one is. */
-export const pastRun = signal<{ readonly state: RunState; readonly entries: readonly Entry[] } | null>(null);
+export const pastRun = signal<PastRun | null>(null);
 /** s of the run that is shown, to which the page goes back; null: its newest moment. */
 export const shownTime = signal<number | null>(null);
 effect(() => {
@@ -124,6 +132,16 @@ export async function showRun(id: string | null): Promise<void> {
   if (turn !== shownLast || planId.value !== state.plan) return;
   batch(() => {
     pastRun.value = { state, entries: found };
+    shownTime.value = null;
+  });
+}
+
+/** Shows a run of an evaluation as it went, unless another mission is open by now. */
+export function showReplay({ state, entries }: ReplayedRun, evaluated: FailedRun): void {
+  if (planId.value !== state.plan) return;
+  shownLast++;
+  batch(() => {
+    pastRun.value = { state, entries, evaluated };
     shownTime.value = null;
   });
 }

@@ -27,7 +27,7 @@ export function lookAt(task: Task): void {
 }
 
 /** The part of the page at the right that is open; on narrow screens the only one. */
-export type Panel = "properties" | "script" | "route" | "run";
+export type Panel = "properties" | "script" | "route" | "evaluate" | "run";
 export const panel = signal<Panel>("properties");
 
 /** As another mission is opened: nothing of what was seen and in hand with the one before. */

@@ -2,6 +2,7 @@
 
 import { signal } from "@preact/signals-core";
 
+import { evaluate } from "./evaluate";
 import { forms } from "./forms";
 import { frame } from "./frame";
 import { keys } from "./keys";
@@ -15,7 +16,7 @@ import { words } from "./words";
 
 export type Language = "en" | "de";
 
-const AREAS = { forms, frame, keys, list, route, run, scene, script, strip, words };
+const AREAS = { evaluate, forms, frame, keys, list, route, run, scene, script, strip, words };
 type Areas = typeof AREAS;
 export type Texts = { readonly [area in keyof Areas]: Areas[area]["en"] };
 

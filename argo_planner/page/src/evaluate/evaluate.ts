@@ -1,0 +1,29 @@
+/** The evaluation of the mission: in how many worlds it is a success, how sure that is, and what breaks it. */
+
+import { css, customElement, html, look, PageElement } from "../ui/element";
+import "./result";
+import "./start";
+
+@customElement("argo-evaluate")
+export class EvaluatePanel extends PageElement {
+  static override styles = [
+    look,
+    css`
+      :host {
+        padding: 12px;
+      }
+      .all {
+        display: grid;
+        grid-template-columns: minmax(0, 1fr);
+        gap: 14px;
+      }
+    `,
+  ];
+
+  override render() {
+    return html`<div class="all">
+      <argo-evaluate-start></argo-evaluate-start>
+      <argo-evaluate-result></argo-evaluate-result>
+    </div>`;
+  }
+}

@@ -1,0 +1,311 @@
+/** How an evaluation stands: the rate as it closes in, what breaks the mission, and each run that failed. */
+
+import { svg } from "lit";
+
+import type { EvaluationJob, EvaluationStanding, FailedRun, RateTold } from "../api/types";
+import { rateCurve } from "../model/rate-curve";
+import { mayPlan } from "../state/session";
+import { t } from "../texts";
+import { css, customElement, html, look, nothing, PageElement } from "../ui/element";
+import { figure, percent, seconds } from "../ui/figures";
+import { icon } from "../ui/icons";
+import { styled } from "../ui/styled";
+import {
+  cancelEvaluation,
+  evaluation,
+  evaluationIsStale,
+  goOnWithEvaluation,
+  replay,
+  replaying,
+} from "./evaluation";
+
+const [WIDTH, HEIGHT] = [300, 110];
+
+@customElement("argo-evaluate-result")
+export class EvaluateResult extends PageElement {
+  static override styles = [
+    look,
+    css`
+      section {
+        display: grid;
+        grid-template-columns: minmax(0, 1fr);
+        gap: 10px;
+      }
+      .rate {
+        font-size: 26px;
+        font-weight: 600;
+        font-variant-numeric: tabular-nums;
+      }
+      .rate span {
+        font-size: 14px;
+        font-weight: 400;
+      }
+      .numbers {
+        font-size: 13px;
+        font-variant-numeric: tabular-nums;
+      }
+      progress {
+        width: 100%;
+        height: 8px;
+        accent-color: var(--accent);
+      }
+      figure {
+        margin: 0;
+      }
+      svg.chart {
+        display: block;
+        width: 100%;
+        height: 110px;
+        border: 1px solid var(--line);
+        border-radius: 6px;
+        background: var(--sunken);
+      }
+      .band {
+        fill: color-mix(in srgb, var(--accent) 25%, transparent);
+      }
+      .line {
+        fill: none;
+        stroke: var(--accent);
+        stroke-width: 2;
+        vector-effect: non-scaling-stroke;
+      }
+      .wanted {
+        stroke: var(--warn);
+        stroke-width: 1;
+        stroke-dasharray: 5 4;
+        vector-effect: non-scaling-stroke;
+      }
+      figcaption,
+      .small {
+        font-size: 12px;
+        color: var(--dim);
+      }
+      .axis {
+        display: flex;
+        justify-content: space-between;
+      }
+      .verdict {
+        padding: 8px;
+        border-radius: var(--round);
+        border-left: 4px solid var(--warn);
+        background: var(--sunken);
+      }
+      .verdict.met {
+        border-left-color: var(--good);
+      }
+      .verdict.missed {
+        border-left-color: var(--bad);
+      }
+      table {
+        width: 100%;
+        border-collapse: collapse;
+        font-size: 13px;
+      }
+      th {
+        text-align: left;
+        font-weight: 400;
+      }
+      thead th {
+        color: var(--dim);
+        font-size: 12px;
+      }
+      td {
+        text-align: right;
+        font-variant-numeric: tabular-nums;
+        white-space: nowrap;
+      }
+      tbody th {
+        overflow-wrap: anywhere;
+      }
+      .bar {
+        position: relative;
+        height: 10px;
+        margin-top: 2px;
+        border-radius: 3px;
+        background: var(--sunken);
+      }
+      .bar div {
+        position: absolute;
+        top: 0;
+        bottom: 0;
+      }
+      .bar .span {
+        border-radius: 3px;
+        background: color-mix(in srgb, var(--accent) 45%, transparent);
+      }
+      .bar .mark {
+        width: 3px;
+        margin-left: -1px;
+        background: var(--accent);
+      }
+      ul {
+        margin: 0;
+        padding: 0;
+        list-style: none;
+      }
+      li button {
+        display: grid;
+        justify-content: stretch;
+        width: 100%;
+        padding: 6px 8px;
+        text-align: left;
+      }
+      li .reason {
+        color: var(--dim);
+        font-size: 12px;
+        overflow-wrap: anywhere;
+      }
+      li b {
+        font-weight: 600;
+      }
+      .warn {
+        padding: 8px;
+        border-radius: var(--round);
+        background: var(--warn-ground);
+        color: var(--warn);
+        overflow-wrap: anywhere;
+      }
+      a {
+        color: var(--accent);
+      }
+    `,
+  ];
+
+  override render() {
+    const job = evaluation.value;
+    if (job === null) return nothing;
+    const texts = t().evaluate;
+    const standing = job.standing ?? null;
+    const resumable = job.state === "cancelled" || job.state === "interrupted";
+    return html`<section aria-label=${texts.found} data-state=${job.state}>
+      <h2 role="status">${texts.found}: ${texts.states[job.state]}</h2>
+      ${job.problem ? html`<p class="warn">${job.problem}</p>` : nothing}
+      ${evaluationIsStale.value ? html`<p class="small">${texts.stale}</p>` : nothing}
+      ${job.state === "running" && standing === null ? html`<progress></progress>` : nothing}
+      ${standing === null ? nothing : this.standing(job, standing)}
+      ${job.state === "running"
+        ? html`<button id="cancel" ?disabled=${!mayPlan()} @click=${() => cancelEvaluation(job.id)}>
+            ${icon("stop")} ${texts.cancel}
+          </button>`
+        : nothing}
+      ${resumable
+        ? html`<button id="go-on" ?disabled=${!mayPlan()} @click=${() => goOnWithEvaluation(job.id)}>
+            ${icon("play")} ${texts.goOn}
+          </button>`
+        : nothing}
+      ${job.state === "done"
+        ? html`<a href=${`/api/jobs/${job.id}/report`} target="_blank" rel="noopener">
+            ${icon("flag", 14)} ${texts.report}
+          </a>`
+        : nothing}
+    </section>`;
+  }
+
+  private standing(job: EvaluationJob, now: EvaluationStanding) {
+    const texts = t().evaluate;
+    const running = job.state === "running";
+    const lost = (now.outcomes.error ?? 0) + (now.outcomes.died ?? 0);
+    return html`
+      ${now.rate.value === null
+        ? nothing
+        : html`<p class="rate" id="rate">${share(now.rate.value)} <span>${texts.success}</span></p>`}
+      <p class="numbers">
+        ${texts.interval(share(now.rate.low), share(now.rate.high))}<br />
+        <span id="done">${texts.runsOf(figure(now.done), figure(now.most))}</span>${running && now.remaining
+          ? html`, ${texts.left(seconds(Math.ceil(now.remaining)))}`
+          : nothing}
+      </p>
+      ${running ? html`<progress max=${now.most} value=${now.done} aria-label=${texts.runs}></progress>` : nothing}
+      ${this.chart(job, now)} ${now.requirements.map(
+        (one) =>
+          html`<p class="verdict ${one.verdict === "not decided" ? "" : one.verdict}" data-verdict=${one.verdict}>
+            <b>${one.requirement}</b> ${texts.verdicts[one.verdict]}
+            <span class="small">(${share(one.low)} – ${share(one.high)})</span>
+          </p>`,
+      )}
+      ${lost === 0 ? nothing : html`<p class="warn">${texts.lost(lost)}</p>`}
+      ${now.times
+        ? html`<p class="numbers">
+            ${texts.times(seconds(now.times.least), seconds(now.times.median), seconds(now.times.most))}
+          </p>`
+        : nothing}
+      ${now.by_faults.length > 1 ? this.byFaults(now) : nothing} ${this.failing(job, now)}
+    `;
+  }
+
+  private chart(job: EvaluationJob, now: EvaluationStanding) {
+    const texts = t().evaluate;
+    const curve = rateCurve(now.curve, now.most, WIDTH, HEIGHT);
+    if (curve === null) return nothing;
+    const wanted = job.asked.require.flatMap((one) => /^success >= ([\d.]+)$/.exec(one)?.[1] ?? []);
+    return html`<figure>
+      <svg class="chart" viewBox="0 0 ${WIDTH} ${HEIGHT}" preserveAspectRatio="none" role="img" aria-label=${texts.chart}>
+        ${svg`<path class="band" d=${curve.band} /><path class="line" d=${curve.rate} />`}
+        ${wanted.map((one) => {
+          const y = HEIGHT * (1 - Number(one));
+          return svg`<path class="wanted" d="M0 ${y}H${WIDTH}" />`;
+        })}
+      </svg>
+      <figcaption>
+        <span class="axis"><span>0 ${texts.runs}, 0–100 %</span><span>${figure(now.most)}</span></span>
+        ${job.state === "running" ? texts.while : nothing}
+      </figcaption>
+    </figure>`;
+  }
+
+  private byFaults(now: EvaluationStanding) {
+    const texts = t().evaluate;
+    return html`<table>
+      <caption class="small" align="left">${texts.byFaults}</caption>
+      <thead>
+        <tr><th scope="col">${texts.what}</th><th scope="col">${texts.share}</th><td>${texts.runs}</td></tr>
+      </thead>
+      <tbody>
+        ${now.by_faults.map(
+          ({ name, rate }) =>
+            html`<tr>
+              <th scope="row">${texts.faultsNamed(name)} ${this.bar(rate)}</th>
+              <td>${rate.value === null ? "–" : share(rate.value)}</td>
+              <td>${figure(rate.runs)}</td>
+            </tr>`,
+        )}
+      </tbody>
+    </table>`;
+  }
+
+  private bar(rate: RateTold) {
+    const [left, width] = [`${100 * rate.low}%`, `${100 * (rate.high - rate.low)}%`];
+    return html`<div class="bar" aria-hidden="true">
+      <div class="span" ${styled({ left, width })}></div>
+      ${rate.value === null ? nothing : html`<div class="mark" ${styled({ left: `${100 * rate.value}%` })}></div>`}
+    </div>`;
+  }
+
+  private failing(job: EvaluationJob, now: EvaluationStanding) {
+    const texts = t().evaluate;
+    if (now.failing.length === 0)
+      return job.state === "done" ? html`<p class="dim">${texts.noFailure}</p>` : nothing;
+    return html`<div>
+      <h3>${texts.failing}</h3>
+      <ul id="failing">
+        ${now.failing.map((one) => this.run(job, one))}
+      </ul>
+      ${now.more_failing > 0 ? html`<p class="small">${texts.more(now.more_failing)}</p>` : nothing}
+    </div>`;
+  }
+
+  private run(job: EvaluationJob, one: FailedRun) {
+    const texts = t().evaluate;
+    const again = replaying.value === one.key;
+    return html`<li>
+      <button class="bare" data-key=${one.key} ?disabled=${replaying.value !== null} @click=${() => replay(job, one)}>
+        <b>${texts.failed(one.seed, texts.faultsNamed(one.faults))}</b>
+        <span class="reason">${again ? texts.replaying : one.reason}</span>
+      </button>
+    </li>`;
+  }
+}
+
+function share(part: number): string {
+  return percent(part, 1);
+}

@@ -1,0 +1,208 @@
+/** Before an evaluation: in how many worlds, how they differ, and what is required. */
+
+import type { EvaluationAsked } from "../api/types";
+import "../run/faults";
+import type { FaultKind } from "../run/faults";
+import { parts } from "../run/parts";
+import { broken, mission } from "../state/plan";
+import { mayPlan } from "../state/session";
+import { t } from "../texts";
+import { css, customElement, html, look, nothing, PageElement, state } from "../ui/element";
+import { figure } from "../ui/figures";
+import { icon } from "../ui/icons";
+import { evaluate, evaluation } from "./evaluation";
+
+const WORLDS = [20, 100, 300, 1_000, 3_000, 10_000] as const;
+const DRIVES = ["route", "kinematic", "tracked"] as const;
+/** Ranges in percent. */
+const SHARES = ["charge", "capacity", "speed"] as const;
+
+@customElement("argo-evaluate-start")
+export class EvaluateStart extends PageElement {
+  static override styles = [
+    look,
+    parts,
+    css`
+      form,
+      .inner {
+        display: grid;
+        grid-template-columns: minmax(0, 1fr);
+        gap: 10px;
+      }
+      .inner {
+        padding: 4px 0 4px 10px;
+        border-left: 2px solid var(--line);
+      }
+      .begin {
+        display: grid;
+        grid-template-columns: 1fr minmax(110px, auto);
+        align-items: end;
+        gap: var(--gap);
+      }
+      .begin button {
+        min-height: 44px;
+        font-weight: 600;
+      }
+      .begin select {
+        min-height: 44px;
+      }
+      .check {
+        display: flex;
+        align-items: center;
+        gap: 6px;
+        color: var(--text);
+        font-size: 14px;
+      }
+      .check input {
+        width: auto;
+      }
+      .range {
+        display: grid;
+        grid-template-columns: minmax(0, 1fr) 68px 68px;
+        align-items: center;
+        gap: 6px;
+        font-size: 13px;
+      }
+      .range input {
+        min-width: 0;
+      }
+      .one {
+        grid-template-columns: minmax(0, 1fr) 68px;
+      }
+      .wrong {
+        color: var(--bad);
+        font-size: 12px;
+      }
+    `,
+  ];
+
+  @state() private faults: readonly FaultKind[] = [];
+  @state() private wrong: string | null = null;
+  @state() private starting = false;
+
+  override render() {
+    const texts = t().evaluate;
+    const reason = this.whyNot();
+    const running = evaluation.value?.state === "running";
+    return html`<form @submit=${this.begin}>
+      <p class="reason">${texts.hint}</p>
+      <div class="begin">
+        <button class="main" id="evaluate" ?disabled=${reason !== null || running || this.starting}>
+          ${icon("gauge", 20)} ${texts.begin}
+        </button>
+        <label>
+          ${texts.worlds}
+          <select name="worlds">
+            ${WORLDS.map((count) => html`<option value=${count} ?selected=${count === 100}>${figure(count)}</option>`)}
+          </select>
+        </label>
+      </div>
+      ${reason === null ? nothing : html`<p class="reason">${reason}</p>`}
+      <details>
+        <summary>${texts.how}</summary>
+        <div class="inner">
+          <label>
+            ${texts.require}
+            <input name="require" type="number" min="1" max="99.99" step="any" placeholder="95" />
+            <span class="reason">${texts.requireHint}</span>
+          </label>
+          <label>
+            ${texts.width}
+            <input name="width" type="number" min="1" max="99" step="any" placeholder="5" />
+          </label>
+          <label>
+            ${t().run.drive}
+            <select name="drive">
+              ${DRIVES.map((drive) => html`<option value=${drive}>${t().run.drives[drive]}</option>`)}
+            </select>
+          </label>
+          <label>
+            ${texts.firstSeed}
+            <input name="seed" type="number" min="0" max="2147483648" step="1" value="0" required />
+          </label>
+          <argo-faults .chosen=${this.faults} @chosen=${this.choseFaults}></argo-faults>
+          <label class="check" ?hidden=${this.faults.length === 0}>
+            <input type="checkbox" name="ideal" checked /> ${texts.ideal}
+          </label>
+          ${this.ranges()}
+        </div>
+      </details>
+      ${this.wrong === null ? nothing : html`<p class="wrong" role="alert">${this.wrong}</p>`}
+    </form>`;
+  }
+
+  private ranges() {
+    const texts = t().evaluate;
+    return html`<section class="inner">
+      <h2>${texts.vary}</h2>
+      ${SHARES.map((name) => {
+        const said = texts.ranges[name];
+        return html`<div class="range">
+          <span>${said}</span>
+          <input name=${`${name}-low`} type="number" min="0.1" max="100" step="any" aria-label=${texts.from(said)} />
+          <input name=${`${name}-high`} type="number" min="0.1" max="100" step="any" aria-label=${texts.to(said)} />
+        </div>`;
+      })}
+      <div class="range one">
+        <span>${texts.ranges.offset}</span>
+        <input name="offset" type="number" min="0" max="100" step="any" aria-label=${texts.ranges.offset} />
+      </div>
+    </section>`;
+  }
+
+  private whyNot(): string | null {
+    const texts = t().evaluate;
+    if (!mayPlan()) return texts.mayNotPlan;
+    if ((mission.value?.tasks.length ?? 0) === 0) return texts.nothing;
+    return broken.value ? texts.hasErrors : null;
+  }
+
+  private choseFaults(event: CustomEvent<readonly FaultKind[]>): void {
+    this.faults = event.detail;
+  }
+
+  private async begin(event: SubmitEvent): Promise<void> {
+    event.preventDefault();
+    const form = new FormData(event.target as HTMLFormElement);
+    const variation = this.variation(form);
+    if (variation === null) return;
+    const share = (name: string) => (number(form, name) ?? 0) / 100;
+    const asked = {
+      worlds: Number(form.get("worlds")),
+      first_seed: Number(form.get("seed")),
+      drive: form.get("drive") as string,
+      faults: this.faults.map((kind) => ({ kind })),
+      without_faults: this.faults.length === 0 || form.has("ideal"),
+      require: share("require") > 0 ? [`success >= ${share("require")}`] : [],
+      width: share("width") > 0 ? share("width") : null,
+      variation,
+    };
+    this.starting = true;
+    await evaluate(asked as unknown as Partial<EvaluationAsked>);
+    this.starting = false;
+  }
+
+  /** How worlds differ; null: a range makes no sense, and it is said which. */
+  private variation(form: FormData): Record<string, readonly [number, number]> | null {
+    const texts = t().evaluate;
+    const found: Record<string, readonly [number, number]> = {};
+    this.wrong = null;
+    for (const name of SHARES) {
+      const [low, high] = [number(form, `${name}-low`), number(form, `${name}-high`)];
+      if (low === null && high === null) continue;
+      if (low === null || high === null || low > high) {
+        this.wrong = texts.badRange(texts.ranges[name]);
+        return null;
+      }
+      found[name] = [low / 100, high / 100];
+    }
+    const offset = (number(form, "offset") ?? 0) / 100;
+    if (offset > 0) found["ahead"] = found["left"] = [-offset, offset];
+    return found;
+  }
+}
+
+function number(form: FormData, name: string): number | null {
+  const said = form.get(name);
+  return typeof said !== "string" || said === "" ? null : Number(said);
+}

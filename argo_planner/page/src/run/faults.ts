@@ -1,0 +1,83 @@
+/** What is to go wrong: kinds of faults, chosen one by one. */
+
+import { t } from "../texts";
+import { css, customElement, html, look, PageElement, property } from "../ui/element";
+import { icon } from "../ui/icons";
+import { parts } from "./parts";
+
+export const FAULTS = [
+  "abnormal_value",
+  "gas_leak",
+  "hot_spot",
+  "abnormal_pump",
+  "platform_alarm",
+  "brick",
+  "missing_plate",
+  "blocked_stairs",
+  "low_battery",
+  "worn_battery",
+  "connection_loss",
+  "emergency_stop",
+  "sensor_dysfunction",
+  "drive_dysfunction",
+  "displaced_checkpoint",
+] as const;
+export type FaultKind = (typeof FAULTS)[number];
+
+/** Fires `chosen` with all that are chosen, as soon as they change. */
+@customElement("argo-faults")
+export class FaultChoice extends PageElement {
+  static override styles = [
+    look,
+    parts,
+    css`
+      li {
+        display: flex;
+        align-items: center;
+        gap: 6px;
+      }
+      select {
+        width: 100%;
+      }
+    `,
+  ];
+
+  @property({ attribute: false }) chosen: readonly FaultKind[] = [];
+
+  override render() {
+    const texts = t().run;
+    return html`<h2>${texts.faults}</h2>
+      <ul>
+        ${this.chosen.map((kind, at) => {
+          const said = texts.remove(texts.fault[kind]);
+          return html`<li>
+            <span class="grow">${texts.fault[kind]}</span>
+            <button
+              type="button"
+              class="bare icon"
+              aria-label=${said}
+              title=${said}
+              @click=${() => this.tell(this.chosen.filter((_, other) => other !== at))}
+            >
+              ${icon("close", 16)}
+            </button>
+          </li>`;
+        })}
+      </ul>
+      <select aria-label=${texts.addFault} @change=${this.add}>
+        <option value="">${texts.addFault}…</option>
+        ${FAULTS.map((kind) => html`<option value=${kind}>${texts.fault[kind]}</option>`)}
+      </select>`;
+  }
+
+  private add(event: Event): void {
+    const field = event.target as HTMLSelectElement;
+    const kind = FAULTS.find((one) => one === field.value);
+    field.value = "";
+    if (kind !== undefined) this.tell([...this.chosen, kind]);
+  }
+
+  private tell(chosen: readonly FaultKind[]): void {
+    this.dispatchEvent(new CustomEvent("chosen", { detail: chosen }));
+  }
+}

@@ -1,0 +1,133 @@
+import { both } from "./both";
+import { run } from "./run";
+
+type Kinds = typeof run.en.fault;
+
+/** A set of faults by its name: a kind, numbered where it is there more than once. */
+function named(kinds: Kinds, none: string): (name: string) => string {
+  return (name) => {
+    if (name === "none" || name === "nothing") return none;
+    const [kind, number] = name.split(" ");
+    const known = kinds[kind as keyof Kinds] as string | undefined;
+    return known === undefined ? name : number === undefined ? known : `${known} ${number}`;
+  };
+}
+
+export const evaluate = both(
+  {
+    begin: "Evaluate",
+    worlds: "Worlds",
+    mayNotPlan: "You may look only: missions are evaluated by those with the role “plan”.",
+    hasErrors: "The mission has errors: mend them first.",
+    nothing: "There is nothing to evaluate yet.",
+    how: "In which worlds, and how",
+    hint: "The mission is run in many worlds: what checkpoints show, and what goes wrong, differs.",
+    firstSeed: "First seed",
+    ideal: "Also where nothing goes wrong",
+    require: "Required: success in at least (%)",
+    requireHint: "It stops as soon as this is decided.",
+    width: "Or until the interval is no wider than (%)",
+    vary: "What differs from world to world",
+    ranges: {
+      charge: "Charge at the start (%)",
+      capacity: "Capacity that the battery has left (%)",
+      speed: "Share of its speed (%)",
+      offset: "The start is missed by up to (cm)",
+    },
+    from: (what: string) => `${what}, from`,
+    to: (what: string) => `${what}, to`,
+    badRange: (what: string) => `${what}: the least comes first, and both are there.`,
+    found: "Evaluation",
+    states: {
+      running: "Running",
+      done: "Done",
+      failed: "Could not be evaluated",
+      cancelled: "Ended by hand",
+      interrupted: "Interrupted",
+    },
+    success: "successful",
+    runsOf: (done: string, most: string) => `${done} of ${most} runs`,
+    left: (time: string) => `at most ${time} left`,
+    interval: (low: string, high: string) => `95 % interval: ${low} to ${high}`,
+    while: "Intervals claim nothing while runs come; the one at the end does.",
+    chart: "The rate of success and its interval, run by run",
+    cancel: "End the evaluation",
+    goOn: "Go on",
+    stale: "The mission was changed since this was begun.",
+    verdicts: { met: "is met", missed: "is missed", "not decided": "is not decided" },
+    byFaults: "By what goes wrong",
+    what: "What",
+    share: "Success",
+    runs: "Runs",
+    times: (least: string, median: string, most: string) =>
+      `A success took ${median} in the median, ${least} to ${most}.`,
+    lost: (count: number) => (count === 1 ? "1 run could not be carried out." : `${count} runs could not be carried out.`),
+    failing: "Runs that are no success",
+    failed: (seed: number, faults: string) => `World ${seed}, ${faults}`,
+    more: (count: number) => `and ${count} more, in the report`,
+    replaying: "It is made again…",
+    replayed: (seed: number, faults: string) => `Run in world ${seed}, ${faults}: made again, as it went`,
+    back: "Back to the evaluation",
+    report: "Report with all tables and pictures",
+    noFailure: "No run failed.",
+    faultsNamed: named(run.en.fault, "nothing goes wrong"),
+  },
+  {
+    begin: "Bewerten",
+    worlds: "Welten",
+    mayNotPlan: "Sie dürfen nur zusehen: Missionen bewerten die mit der Rolle „plan“.",
+    hasErrors: "Die Mission hat Fehler: beheben Sie diese zuerst.",
+    nothing: "Es gibt noch nichts zu bewerten.",
+    how: "In welchen Welten, und wie",
+    hint: "Die Mission läuft in vielen Welten: was Prüfpunkte zeigen und was schiefgeht, ist verschieden.",
+    firstSeed: "Erster Seed",
+    ideal: "Auch dort, wo nichts schiefgeht",
+    require: "Gefordert: Erfolg in mindestens (%)",
+    requireHint: "Sobald das entschieden ist, hört sie auf.",
+    width: "Oder bis das Intervall höchstens so breit ist (%)",
+    vary: "Was von Welt zu Welt verschieden ist",
+    ranges: {
+      charge: "Ladung am Anfang (%)",
+      capacity: "Verbliebene Kapazität der Batterie (%)",
+      speed: "Anteil der Geschwindigkeit (%)",
+      offset: "Der Anfang ist verfehlt um bis zu (cm)",
+    },
+    from: (what: string) => `${what}, von`,
+    to: (what: string) => `${what}, bis`,
+    badRange: (what: string) => `${what}: das Kleinere zuerst, und beide.`,
+    found: "Bewertung",
+    states: {
+      running: "Läuft",
+      done: "Fertig",
+      failed: "Ließ sich nicht bewerten",
+      cancelled: "Von Hand beendet",
+      interrupted: "Unterbrochen",
+    },
+    success: "erfolgreich",
+    runsOf: (done: string, most: string) => `${done} von ${most} Läufen`,
+    left: (time: string) => `noch höchstens ${time}`,
+    interval: (low: string, high: string) => `95-%-Intervall: ${low} bis ${high}`,
+    while: "Solange Läufe kommen, behaupten Intervalle nichts; das am Ende schon.",
+    chart: "Der Anteil der Erfolge und sein Intervall, Lauf für Lauf",
+    cancel: "Bewertung beenden",
+    goOn: "Weitermachen",
+    stale: "Die Mission wurde geändert, seit das begann.",
+    verdicts: { met: "ist erfüllt", missed: "ist verfehlt", "not decided": "ist nicht entschieden" },
+    byFaults: "Nach dem, was schiefgeht",
+    what: "Was",
+    share: "Erfolg",
+    runs: "Läufe",
+    times: (least: string, median: string, most: string) =>
+      `Ein Erfolg dauerte im Median ${median}, ${least} bis ${most}.`,
+    lost: (count: number) => (count === 1 ? "1 Lauf war nicht möglich." : `${count} Läufe waren nicht möglich.`),
+    failing: "Läufe ohne Erfolg",
+    failed: (seed: number, faults: string) => `Welt ${seed}, ${faults}`,
+    more: (count: number) => `und ${count} weitere, im Bericht`,
+    replaying: "Er wird noch einmal gemacht …",
+    replayed: (seed: number, faults: string) => `Lauf in Welt ${seed}, ${faults}: noch einmal gemacht, wie er war`,
+    back: "Zurück zur Bewertung",
+    report: "Bericht mit allen Tabellen und Bildern",
+    noFailure: "Kein Lauf ist misslungen.",
+    faultsNamed: named(run.de.fault, "nichts geht schief"),
+  },
+);

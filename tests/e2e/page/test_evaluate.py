@@ -1,0 +1,99 @@
+"""The evaluation of the mission in the page: begun, watched, ended, its failures replayed."""
+
+from typing import Any
+
+from playwright.sync_api import expect
+
+from tests.e2e.page.test_list import plan, row
+
+__all__ = ["plan"]
+
+
+def opened(browsers: Any, address: str, plan: str) -> Any:
+    person = browsers.person(address)
+    person.open(f"/missions/{plan}")
+    expect(row(person, "C4")).to_be_visible()
+    person.page.locator("#tab-evaluate").click()
+    return person
+
+
+def jobs(service: Any) -> Any:
+    return service.client.get("/api/jobs").json()["jobs"]
+
+
+def test_rates_close_in_and_a_failing_run_is_replayed(browsers, address, plan, service) -> None:
+    ann = opened(browsers, address, plan)
+    bob = opened(browsers, address, plan)
+    page = ann.page
+    page.get_by_text("In which worlds, and how").click()
+    page.get_by_label("Charge at the start (%), from").fill("0.1")
+    page.get_by_label("Charge at the start (%), to").fill("2")
+    page.get_by_label("Required: success").fill("50")
+    page.locator("argo-evaluate-start select[name=worlds]").select_option("20")
+    ann.click(page.locator("#evaluate"))
+    result = page.locator("argo-evaluate-result section")
+    expect(result).to_have_attribute("data-state", "done", timeout=60_000)
+    standing = service.client.get(f"/api/jobs/{jobs(service)[0]['id']}").json()["standing"]
+    assert 0 < standing["outcomes"]["failure"] < 20
+    expect(page.locator("#rate")).to_contain_text(f"{100 * standing['rate']['value']:g} %")
+    expect(page.locator("#done")).to_have_text("20 of 20 runs")
+    expect(page.locator(".verdict")).to_contain_text("success >= 0.5")
+    expect(bob.page.locator("#rate")).to_have_text(page.locator("#rate").inner_text())
+    # What had happened by then is there when the page is read again.
+    page.reload()
+    expect(row(ann, "C4")).to_be_visible()
+    page.locator("#tab-evaluate").click()
+    first = page.locator("#failing button").first
+    expect(first).to_be_visible()
+    key = first.get_attribute("data-key")
+    (failed,) = (one for one in standing["failing"] if one["key"] == key)
+    ann.click(first)
+    told = page.locator("#evaluated")
+    expect(told).to_contain_text(f"world {failed['seed']}", timeout=60_000)
+    expect(told).to_contain_text(failed["reason"])
+    expect(page.locator("argo-run-band #mode")).to_have_attribute("data-mode", "bad")
+    expect(page.locator("argo-run-time #back")).to_be_visible()
+    expect(page.locator("argo-run a", has_text="report")).to_have_count(0)
+    ann.click(page.locator("#to-evaluation"))
+    expect(page.locator("#failing")).to_be_visible()
+    with ann.context.expect_page() as opening:
+        ann.click(page.get_by_role("link", name="Report with all tables and pictures"))
+    report = opening.value
+    report.wait_for_load_state()
+    assert report.evaluate("() => document.styleSheets.length") > 0
+    assert report.locator("svg").count() > 0
+    report.close()
+
+
+def test_an_evaluation_is_ended_and_goes_on(browsers, address, plan, service) -> None:
+    ann = opened(browsers, address, plan)
+    page = ann.page
+    page.locator("argo-evaluate-start select[name=worlds]").select_option("10000")
+    ann.click(page.locator("#evaluate"))
+    expect(page.locator("#rate")).to_be_visible(timeout=60_000)
+    expect(page.locator("#evaluate")).to_be_disabled()
+    ann.click(page.locator("#cancel"))
+    result = page.locator("argo-evaluate-result section")
+    expect(result).to_have_attribute("data-state", "cancelled")
+    expect(page.locator("#evaluate")).to_be_enabled()
+    ann.click(page.locator("#go-on"))
+    expect(result).to_have_attribute("data-state", "running")
+    ann.click(page.locator("#cancel"))
+    expect(result).to_have_attribute("data-state", "cancelled")
+    service.client.post(  # by somebody else, in another way
+        f"/api/missions/{plan}/evaluations", json={"worlds": 3}, headers={"if-match": "*"}
+    )
+    expect(page.locator("#done")).to_have_text("3 of 3 runs", timeout=60_000)
+    expect(result).to_contain_text("No run failed.")
+
+
+def test_ranges_that_make_no_sense_are_told_at_once(browsers, address, plan, service) -> None:
+    before = len(jobs(service))
+    ann = opened(browsers, address, plan)
+    page = ann.page
+    page.get_by_text("In which worlds, and how").click()
+    page.get_by_label("Share of its speed (%), from").fill("90")
+    page.get_by_label("Share of its speed (%), to").fill("50")
+    ann.click(page.locator("#evaluate"))
+    expect(page.locator("argo-evaluate-start .wrong")).to_contain_text("the least comes first")
+    assert len(jobs(service)) == before

@@ -94,11 +94,37 @@ def running(browsers: Browsers, service: Served, folder: Path) -> None:
     browsers.leave()
 
 
+def evaluating(browsers: Browsers, service: Served, folder: Path) -> None:
+    id = imported(service)
+    ann = opened(browsers, service, id)
+    settled(ann)
+    page = ann.page
+    page.locator("#tab-evaluate").click()
+    page.locator("argo-evaluate-start summary").click()
+    for fault in ("low_battery", "drive_dysfunction"):
+        page.locator("argo-evaluate-start argo-faults select").select_option(fault)
+    page.locator("input[name=require]").fill("60")
+    page.locator("argo-evaluate-start select[name=worlds]").select_option("1000")
+    page.locator("#evaluate").click()
+    result = page.locator("argo-evaluate-result section")
+    page.locator("argo-evaluate-start summary").click()
+    expect(page.locator("#rate")).to_be_visible(timeout=60_000)
+    expect(result).to_have_attribute("data-state", "done", timeout=600_000)
+    ann.idle()
+    take(ann, folder, "evaluated")
+    page.locator("#failing button").first.click()
+    expect(page.locator("#evaluated")).to_be_visible(timeout=60_000)
+    ann.idle()
+    take(ann, folder, "replayed")
+    browsers.leave()
+
+
 def main(folder: Path) -> None:
     site = open_site("umad").prepare()
     with tempfile.TemporaryDirectory() as missions, served(Path(missions), site) as service:
         browsers = Browsers()
         planning(browsers, service, folder)
+        evaluating(browsers, service, folder)
         running(browsers, service, folder)
         browsers.close()
 

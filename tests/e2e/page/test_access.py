@@ -40,9 +40,22 @@ def test_planning_is_accessible(browsers, address, plan, theme, locale) -> None:
     ann.click(row(ann, "A1"))
     ann.idle()
     require_accessible(ann, "planning")
-    for panel in ("script", "route", "run"):
+    for panel in ("script", "route", "evaluate", "run"):
         ann.click(ann.page.locator(f"#tab-{panel}"))
         require_accessible(ann, panel)
+    ann.click(ann.page.locator("#tab-evaluate"))
+    ann.page.locator("argo-evaluate-start summary").click()
+    ann.page.locator("argo-evaluate-start argo-faults select").select_option("gas_leak")
+    ann.page.locator("select[name=drive]").select_option("kinematic")
+    ann.page.locator("argo-evaluate-start select[name=worlds]").select_option("20")
+    ann.page.locator("input[name=require]").fill("50")
+    require_accessible(ann, "what is asked of an evaluation")
+    ann.page.locator("select[name=drive]").select_option("route")
+    ann.click(ann.page.locator("argo-evaluate-start argo-faults button"))
+    ann.click(ann.page.locator("#evaluate"))
+    result = ann.page.locator("argo-evaluate-result section")
+    expect(result).to_have_attribute("data-state", "done", timeout=60_000)
+    require_accessible(ann, "what came of an evaluation")
     ann.key("?")
     require_accessible(ann, "the sheet of keys")
 

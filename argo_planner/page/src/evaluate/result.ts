@@ -105,6 +105,12 @@ export class EvaluateResult extends PageElement {
         text-align: left;
         font-weight: 400;
       }
+      caption {
+        text-align: left;
+      }
+      thead th:not(:first-child) {
+        text-align: right;
+      }
       thead th {
         color: var(--dim);
         font-size: 12px;
@@ -256,9 +262,9 @@ export class EvaluateResult extends PageElement {
   private byFaults(now: EvaluationStanding) {
     const texts = t().evaluate;
     return html`<table>
-      <caption class="small" align="left">${texts.byFaults}</caption>
+      <caption class="small">${texts.byFaults}</caption>
       <thead>
-        <tr><th scope="col">${texts.what}</th><th scope="col">${texts.share}</th><td>${texts.runs}</td></tr>
+        <tr><th scope="col">${texts.what}</th><th scope="col">${texts.share}</th><th scope="col">${texts.runs}</th></tr>
       </thead>
       <tbody>
         ${now.by_faults.map(
@@ -288,18 +294,18 @@ export class EvaluateResult extends PageElement {
     return html`<div>
       <h3>${texts.failing}</h3>
       <ul id="failing">
-        ${now.failing.map((one) => this.run(job, one))}
+        ${now.failing.map((one) => this.run(job, one, now.by_faults.length > 1))}
       </ul>
       ${now.more_failing > 0 ? html`<p class="small">${texts.more(now.more_failing)}</p>` : nothing}
     </div>`;
   }
 
-  private run(job: EvaluationJob, one: FailedRun) {
+  private run(job: EvaluationJob, one: FailedRun, withFaults: boolean) {
     const texts = t().evaluate;
     const again = replaying.value === one.key;
     return html`<li>
       <button class="bare" data-key=${one.key} ?disabled=${replaying.value !== null} @click=${() => replay(job, one)}>
-        <b>${texts.failed(one.seed, texts.faultsNamed(one.faults))}</b>
+        <b>${texts.failed(one.seed, withFaults ? texts.faultsNamed(one.faults) : null)}</b>
         <span class="reason">${again ? texts.replaying : one.reason}</span>
       </button>
     </li>`;

@@ -72,7 +72,9 @@ export class ArgoApp extends PageElement {
         grid-column: 3;
         grid-row: 1 / 3;
         display: grid;
+        grid-template-columns: minmax(0, 1fr);
         grid-template-rows: auto minmax(0, 1fr);
+        container-type: inline-size;
         min-height: 0;
         border-left: 1px solid var(--line);
         background: var(--surface);
@@ -84,7 +86,11 @@ export class ArgoApp extends PageElement {
         border-bottom: 1px solid var(--line);
       }
       [role="tab"] {
-        flex: 1;
+        flex: auto;
+        min-width: 0;
+        gap: 4px;
+        padding: 3px 4px;
+        font-size: 13px;
         border: 0;
         border-bottom: 3px solid transparent;
         border-radius: 6px 6px 0 0;
@@ -94,6 +100,11 @@ export class ArgoApp extends PageElement {
         border-bottom-color: var(--accent);
         color: var(--accent);
         font-weight: 600;
+      }
+      @container (max-width: 350px) {
+        [role="tab"] svg {
+          display: none;
+        }
       }
       [role="tabpanel"] {
         min-height: 0;

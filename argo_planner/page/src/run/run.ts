@@ -156,7 +156,6 @@ export class RunPanel extends PageElement {
     const texts = t().evaluate;
     return html`<div class="evaluated" id="evaluated">
       <p>${texts.replayed(one.seed, texts.faultsNamed(one.faults))}</p>
-      <p class="dim">${one.reason}</p>
       <button id="to-evaluation" @click=${this.toEvaluation}>${icon("back")} ${texts.back}</button>
     </div>`;
   }

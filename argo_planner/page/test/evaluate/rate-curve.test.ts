@@ -22,7 +22,7 @@ test("nothing is drawn before a run counts", () => {
 
 test("sets of faults are named in words, and unknown ones as they are", () => {
   const { faultsNamed } = t().evaluate;
-  expect(faultsNamed("none")).toBe("nothing goes wrong");
+  expect(faultsNamed("none")).toBe("no faults");
   expect(faultsNamed("gas_leak")).toBe("gas leak");
   expect(faultsNamed("gas_leak 2")).toBe("gas leak 2");
   expect(faultsNamed("somebody's own")).toBe("somebody's own");

@@ -13,10 +13,10 @@ With `--power`: how often two plans with a known difference are told apart.
 """
 
 import argparse
-import gc
 import resource
 import time
 from collections.abc import Iterator
+from dataclasses import dataclass
 from pathlib import Path
 
 import numpy as np
@@ -46,7 +46,6 @@ def plan_of(drive: str, seeds: range) -> EvaluationPlan:
 def with_memory(order: WorkOrder) -> RunRow:
     """A run whose row says how much memory its worker has taken (MB) by its end."""
     row = carry_out(order)
-    gc.collect()
     taken = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss / 1024
     return row.model_copy(update={"world": {"memory": taken}})
 
@@ -58,41 +57,57 @@ def parts(seeds: int) -> Iterator[range]:
         yield range(first, min(seeds, first + size))
 
 
-def measure(name: str, drive: str, runs: int) -> None:
-    """Prints what a back end makes of so many runs."""
+@dataclass(frozen=True)
+class Measured:
+    """What so many workers made of some runs."""
+
+    took: float
+    """s"""
+    alone: float
+    """s that the same runs took one after the other in this process, in turn with them"""
+    memory: tuple[float, ...]
+    """MB that a worker had taken at most by the end of each run"""
+
+
+def measured(name: str, drive: str, runs: int, workers: int) -> Measured:
+    """Makes the runs with so many workers of a back end."""
     plan = plan_of(drive, range(runs))
-    took = {1: 0.0, 2: 0.0}
-    alone = 0.0
-    backends = {workers: make_backend(name, workers) for workers in took}
+    took, alone = 0.0, 0.0
     memory: list[float] = []
-    try:
-        for backend in backends.values():  # they open the site
-            list(Evaluating(plan_of(drive, range(10_000, 10_008)), backend).rows_as_they_come())
+    backend = make_backend(name, workers)
+    try:  # they open the site
+        list(Evaluating(plan_of(drive, range(10_000, 10_008)), backend).rows_as_they_come())
         for run in plan_of(drive, range(20_000, 20_002)).runs():
             carry_out(WorkOrder("", plan.cases[0], run.spec, {}))
         for part in parts(runs):
             partial = plan.model_copy(update={"seeds": tuple(part)})
-            for workers, backend in backends.items():
-                begun = time.perf_counter()
-                evaluating = Evaluating(partial, backend, call=with_memory)
-                rows = list(evaluating.rows_as_they_come())
-                took[workers] += time.perf_counter() - begun
-                memory += [row.world["memory"] for row in rows if row.outcome is RunOutcome.SUCCESS]
-                assert len(rows) == len(part)
+            begun = time.perf_counter()
+            evaluating = Evaluating(partial, backend, call=with_memory)
+            rows = list(evaluating.rows_as_they_come())
+            took += time.perf_counter() - begun
+            assert [row.outcome for row in rows] == [RunOutcome.SUCCESS] * len(part)
+            memory += [row.world["memory"] for row in rows]
             begun = time.perf_counter()
             for run in partial.runs():
                 with_memory(WorkOrder("", partial.cases[0], run.spec, {}))
             alone += time.perf_counter() - begun
     finally:
-        for backend in backends.values():
-            backend.close()
-    tenth = max(1, len(memory) // 10)
+        backend.close()
+    return Measured(took, alone, tuple(memory))
+
+
+def measure(name: str, drive: str, runs: int) -> None:
+    """Prints what a back end makes of so many runs."""
+    one, two = (measured(name, drive, runs, workers) for workers in (1, 2))
+    # Each is held against this process at the same time, so that other work counts on both sides.
+    times = (two.alone / two.took) / (one.alone / one.took)
+    tenth = max(1, runs // 10)
     print(
-        f"{name:<10} {drive:<10} {runs:>5} runs: {runs / took[1]:6.1f} a second with one worker, "
-        f"{runs / took[2]:6.1f} with two ({took[1] / took[2]:.2f} times as many), "
-        f"{100 * (took[1] / alone - 1):+5.1f} % beside the simulation, memory of a worker "
-        f"{max(memory[:tenth]):.0f} MB after a tenth of the runs, {max(memory[-tenth:]):.0f} MB "
-        "after all",
+        f"{name:<10} {drive:<10} {runs:>5} runs: {runs / one.took:6.1f} a second with one worker, "
+        f"{runs / two.took:6.1f} with two ({times:.2f} times as many), "
+        f"{100 * (one.took / one.alone - 1):+5.1f} % beside the simulation, memory of a worker "
+        f"{max(two.memory[:tenth]):.0f} MB after a tenth of the runs, "
+        f"{max(two.memory[-tenth:]):.0f} MB after all",
         flush=True,
     )
 

@@ -53,14 +53,16 @@ class Camera:
             ]
         )
 
-    def unproject(self, depth: NDArray[np.float64]) -> NDArray[np.float64]:
-        """The points of the site (m) that a depth image shows, shape (height, width, 3)."""
+    def unproject(
+        self, column: NDArray[np.intp], row: NDArray[np.intp], depth: NDArray[np.float64]
+    ) -> NDArray[np.float64]:
+        """The points of the site (m) that pixels show at these depths (m), shape (n, 3)."""
         view = np.array(self.view_matrix).reshape(4, 4).T
         projection = np.array(self.projection_matrix).reshape(4, 4).T
-        height, width = depth.shape
-        x = ((np.arange(width) + 0.5) / width * 2 - 1) / projection[0, 0]
-        y = (1 - (np.arange(height) + 0.5) / height * 2) / projection[1, 1]
-        seen = np.stack([x * depth, y[:, None] * depth, -depth], axis=-1)
+        width, height = self.size
+        x = ((column + 0.5) / width * 2 - 1) / projection[0, 0]
+        y = (1 - (row + 0.5) / height * 2) / projection[1, 1]
+        seen = np.stack([x * depth, y * depth, -depth], axis=-1)
         return np.asarray((seen - view[:3, 3]) @ view[:3, :3])
 
 

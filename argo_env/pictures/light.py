@@ -5,9 +5,12 @@ import scipy
 from numpy.typing import NDArray
 
 from argo_env.pictures.camera import Camera
-from argo_env.pictures.scene import CameraView, Scene
+from argo_env.pictures.scene import CameraView
+from argo_env.site import Site
 from argo_env.world.pybullet_client import SUN
 
+ALL = (slice(None), slice(None))
+"""of a picture"""
 _SKY = np.array([(222, 231, 240), (247, 249, 251)], dtype=np.float64)
 _SHADE = 0.66  # of its brightness is left to what lies in the shadow
 _SUN_DISTANCE = 120.0  # m: far enough for rays that are nearly parallel
@@ -47,20 +50,15 @@ def depth_shading(view: CameraView, radius: float, strength: float) -> NDArray[n
     return np.asarray(1.0 - strength * behind, dtype=np.float64)
 
 
-def shadows(
-    scene: Scene, camera: Camera, view: CameraView, size: int, softness: float
-) -> NDArray[np.float64]:
-    """Brightness after the sun's shadows, shape (height, width), from 0.66 to 1.
-
-    A shadow map: the depth of the site as seen from the sun, `size` px wide, is compared with that
-    of each pixel; edges are blurred by `softness` px.
-    """
-    x0, y0, x1, y1 = scene.site.spec.ground
-    top = scene.site.spec.floors[-1].z + scene.site.spec.storey
+def sun_camera(site: Site, size: int) -> Camera:
+    """Where the sun looks at the site from: its picture, `size` px wide and high, is the shadow
+    map."""
+    x0, y0, x1, y1 = site.spec.ground
+    top = site.spec.floors[-1].z + site.spec.storey
     middle = np.array([(x0 + x1) / 2, (y0 + y1) / 2, top / 2])
     reach = float(np.linalg.norm([x1 - x0, y1 - y0, top])) / 2
     eye = middle + _SUN_DISTANCE * np.array(SUN) / np.linalg.norm(SUN)
-    sun = Camera(
+    return Camera(
         (float(eye[0]), float(eye[1]), float(eye[2])),
         (float(middle[0]), float(middle[1]), float(middle[2])),
         (size, size),
@@ -68,16 +66,37 @@ def shadows(
         near=_SUN_DISTANCE - 2 * reach,
         far=_SUN_DISTANCE + 2 * reach,
     )
-    lit_depth = scene.look(sun).depth
-    seen = np.isfinite(view.depth)
-    points = camera.unproject(np.where(seen, view.depth, 1.0))[seen]
-    column, row, depth = sun.project(points).T
+
+
+def shadowed(
+    camera: Camera,
+    depth: NDArray[np.float64],
+    sun: Camera,
+    lit_depth: NDArray[np.float64],
+    part: tuple[slice, slice] = ALL,
+) -> NDArray[np.bool_]:
+    """Whether the sun does not reach what the pixels in a part of the picture show, in the shape of
+    the part.
+
+    `depth` (m) is that of the whole picture, `lit_depth` (m) the shadow map.
+    """
+    within = depth[part]
+    dark = np.zeros(within.shape, dtype=np.bool_)
+    row, column = np.nonzero(np.isfinite(within))
+    below, right = part[0].start or 0, part[1].start or 0
+    points = camera.unproject(column + right, row + below, within[row, column])
+    x, y, away = sun.project(points).T
+    width, height = sun.size
     # What lies outside of the map is lit.
-    inside = (column >= 0) & (column < size) & (row >= 0) & (row < size)
-    nearest = np.full(depth.shape, np.inf)
-    nearest[inside] = lit_depth[row[inside].astype(int), column[inside].astype(int)]
-    dark = np.zeros(view.depth.shape, dtype=np.float32)
-    dark[seen] = depth > nearest + _BIAS
-    return np.asarray(
-        1.0 - (1.0 - _SHADE) * scipy.ndimage.gaussian_filter(dark, softness), dtype=np.float64
-    )
+    inside = (x >= 0) & (x < width) & (y >= 0) & (y < height)
+    nearest = np.full(away.shape, np.inf)
+    nearest[inside] = lit_depth[y[inside].astype(int), x[inside].astype(int)]
+    dark[row, column] = away > nearest + _BIAS
+    return dark
+
+
+def shade(dark: NDArray[np.bool_], softness: float) -> NDArray[np.float64]:
+    """Brightness, from 0.66 to 1, of a picture in which some pixels lie in the shadow; its edges
+    are blurred by `softness` px."""
+    blurred = scipy.ndimage.gaussian_filter(dark.astype(np.float32), softness)
+    return np.asarray(1.0 - (1.0 - _SHADE) * blurred, dtype=np.float64)

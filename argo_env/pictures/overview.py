@@ -13,9 +13,10 @@ from PIL import Image, ImageDraw, ImageFont
 from argo_compiler.errors import Unavailable
 from argo_compiler.files.writing import write_whole
 from argo_env.pictures.camera import Camera
-from argo_env.pictures.light import compose, depth_shading, shadows
+from argo_env.pictures.light import compose, depth_shading, shade, sun_camera
 from argo_env.pictures.motion import RecordedMotion, check_site
 from argo_env.pictures.scene import CameraView, Scene
+from argo_env.pictures.still import still_view, with_robot
 from argo_env.report.track import colour
 from argo_env.robot.spec import RobotSpec
 from argo_env.run.record import RunRecord
@@ -46,10 +47,13 @@ def write_overview(record: RunRecord, site: Site, robot: RobotSpec, file: Path) 
     check_site(record, site)
     motion = RecordedMotion(record, robot)
     camera = site_camera(site, (SIZE[0] * _FINER, SIZE[1] * _FINER))
-    with Scene(site, robot) as scene:
+    sun = sun_camera(site, _SHADOW_MAP)
+    still = still_view(site, robot, camera, sun)
+    with Scene(None, robot) as scene:
         scene.place_robot(motion.pose(motion.end), motion.joints(motion.end))
-        view = scene.look(camera)
-        brightness = shadows(scene, camera, view, _SHADOW_MAP, float(_FINER))
+        lit = with_robot(still, scene, camera, sun)
+    view = lit.view
+    brightness = shade(lit.dark, float(_FINER))
     brightness *= depth_shading(view, 10.0 * _FINER, 0.3)
     image = Image.fromarray(compose(view, brightness))
     _draw_path(image, record, motion, camera, view)

@@ -37,30 +37,23 @@ class CameraView:
 class Scene(Connection):
     """What is drawn. Holds a PyBullet connection; close it, or use it as a context."""
 
-    def __init__(self, site: Site, robot: RobotSpec) -> None:
+    def __init__(self, site: Site | None, robot: RobotSpec) -> None:
+        """Without a site there is the robot alone."""
         super().__init__()
-        self.site = site
         self.robot = robot
         self._floors: dict[int, list[int]] = {}
         self._decks: dict[int, list[int]] = {}
-        for number, elements in storeys(site).items():
-            decks = tuple(e for e in elements if number > 1 and e.role in _DECK_ROLES)
-            others = tuple(e for e in elements if e not in decks)
-            self._floors[number] = [self._load_storey(number, others)]
-            self._decks[number] = [self._load_storey(number, decks)] if decks else []
         self._origins: dict[int, tuple[Vector, Vector]] = {}
-        for checkpoint in site.checkpoints:
-            name = checkpoint.kind.value.replace(" ", "_")
-            body = self._load(resources.urdf() / "checkpoints" / f"{name}.urdf", fixed=True)
-            self._floors[checkpoint.floor].append(body)
-            self._origins[body] = (checkpoint.position, (0.0, 0.0, checkpoint.yaw))
+        if site is not None:
+            self._load_site(site)
         self._robot_body = self._load(robot_folder() / robot.urdf, fixed=False)
         for body in chain.from_iterable((*self._floors.values(), *self._decks.values())):
             self._origins.setdefault(body, ((0.0, 0.0, 0.0), (0.0, 0.0, 0.0)))
         self._joints = {name: k for k, (name, _) in self._parts(self._robot_body).items()}
         self._let_sight_pass()
         self._shown: tuple[int, int] | None = None
-        self.show_floors(max(self._floors))
+        if self._floors:
+            self.show_floors(max(self._floors))
         self.hide_robot()
 
     def show_floors(self, top: int, decks: int | None = None) -> None:
@@ -120,6 +113,18 @@ class Scene(Connection):
                     pybullet.setCollisionFilterGroupMask(
                         body, link, bit, bit, physicsClientId=self._client
                     )
+
+    def _load_site(self, site: Site) -> None:
+        for number, elements in storeys(site).items():
+            decks = tuple(e for e in elements if number > 1 and e.role in _DECK_ROLES)
+            others = tuple(e for e in elements if e not in decks)
+            self._floors[number] = [self._load_storey(number, others)]
+            self._decks[number] = [self._load_storey(number, decks)] if decks else []
+        for checkpoint in site.checkpoints:
+            name = checkpoint.kind.value.replace(" ", "_")
+            body = self._load(resources.urdf() / "checkpoints" / f"{name}.urdf", fixed=True)
+            self._floors[checkpoint.floor].append(body)
+            self._origins[body] = (checkpoint.position, (0.0, 0.0, checkpoint.yaw))
 
     def _load_storey(self, number: int, elements: tuple[Element, ...]) -> int:
         with tempfile.TemporaryDirectory() as folder:

@@ -25,8 +25,8 @@ from argo_env.evaluation.worlds import NO_VARIATION, Variation
 from argo_env.faults.kinds import AnyFault
 from argo_env.planning.opening import OpenedSite, open_site
 from argo_env.run.drives_and_sensors import IDEAL, ROUTE
-from argo_planner.service.jobs.process import Tell
-from argo_planner.service.jobs.standing import EvaluationStanding, Standing
+from argo_planner.service.jobs.standing import EvaluationStanding, RunCount
+from argo_planner.service.processes.work import Tell
 from argo_planner.service.world.obstacles import Obstacle, with_obstacles
 
 MOST_WORLDS = 10_000
@@ -124,7 +124,7 @@ def evaluate_mission(order: EvaluationOrder, folder: Path, tell: Tell) -> Evalua
     os.nice(_NICE)
     plan = order.plan(order.opened())
     keep_plan(folder, plan, digest_of(order.model_dump_json().encode()))
-    standing = Standing(plan)
+    standing = RunCount(plan)
     call = partial(_carried_out, order.site, order.obstacles)
     workers = make_backend(PROCESSES)
     with RowStore(folder) as store:

@@ -11,6 +11,8 @@ from argo_planner.service.jobs.evaluation import EvaluationAsked
 from argo_planner.service.jobs.order import OrderFound, OrderProgress
 from argo_planner.service.jobs.standing import EvaluationStanding
 
+JOB_ID = r"[0-9a-f]{12}"
+"""what a job's id looks like"""
 MOST_PROGRESS = 1_000
 """steps of a search that are kept of a job"""
 

@@ -8,7 +8,7 @@ from typing import Any
 
 from argo_compiler.errors import ArgoError, Conflict, NotFound, Unavailable
 from argo_planner.service.jobs.job import EvaluationJob, Job, JobState
-from argo_planner.service.jobs.process import JobProcess
+from argo_planner.service.processes.work import JobProcess
 
 MOST_KEPT = 200
 

@@ -6,7 +6,7 @@ from argo_compiler.reorder.requirements import Requirements
 from argo_compiler.route.stop import SearchProgress
 from argo_env.planning.opening import open_site
 from argo_env.run.record import Reordering
-from argo_planner.service.jobs.process import Tell
+from argo_planner.service.processes.work import Tell
 from argo_planner.use_cases.importing import ImportedMission
 from argo_planner.use_cases.no_order import why_none
 from argo_planner.use_cases.routing import suggest_order, too_long

@@ -9,7 +9,7 @@ from argo_compiler.reorder.requirements import Requirements
 from argo_planner.service.jobs.job import OrderJob
 from argo_planner.service.jobs.jobs import Jobs
 from argo_planner.service.jobs.order import search_order
-from argo_planner.service.jobs.process import JobProcess
+from argo_planner.service.processes.work import JobProcess
 
 MOST_SEARCHES = 2
 

@@ -103,7 +103,7 @@ class EvaluationStanding(Model):
     """once all has been run"""
 
 
-class Standing:
+class RunCount:
     """Counts the runs of an evaluation of one plan as they come."""
 
     def __init__(self, evaluation: EvaluationPlan) -> None:

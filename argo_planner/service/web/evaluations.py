@@ -5,9 +5,9 @@ from typing import Annotated
 from fastapi import APIRouter, Path, Response
 
 from argo_planner.service.core.refusals import StaleRevision
+from argo_planner.service.evaluations.replay import ReplayedRun
 from argo_planner.service.jobs.evaluation import EvaluationAsked, EvaluationOrder
 from argo_planner.service.jobs.job import EvaluationJob
-from argo_planner.service.jobs.replay import ReplayedRun
 from argo_planner.service.web.bodies import Sent
 from argo_planner.service.web.jobs import JobId
 from argo_planner.service.web.missions import sound

@@ -11,8 +11,7 @@ from argo_compiler.reorder.mission import require_known
 from argo_compiler.reorder.requirements import Requirements
 from argo_planner.service.core.commands import CommandId, ReplacePlan
 from argo_planner.service.core.refusals import StaleRevision
-from argo_planner.service.jobs.job import AnyJob, OrderJob
-from argo_planner.service.jobs.kept import JOB_ID
+from argo_planner.service.jobs.job import JOB_ID, AnyJob, OrderJob
 from argo_planner.service.rooms.messages import CommandDone
 from argo_planner.service.web.bodies import Sent
 from argo_planner.service.web.commands import carried_out

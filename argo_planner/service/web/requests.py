@@ -17,7 +17,7 @@ from pydantic import Field
 from argo_compiler.errors import Invalid
 from argo_compiler.model import Model
 from argo_env.planning.opening import OpenedSite
-from argo_planner.service.jobs.evaluations import Evaluations
+from argo_planner.service.evaluations.evaluations import Evaluations
 from argo_planner.service.jobs.jobs import Jobs
 from argo_planner.service.jobs.orders import Orders
 from argo_planner.service.rooms.rooms import PlanRooms

@@ -14,8 +14,8 @@ import uvicorn
 
 from argo_compiler.errors import Unavailable
 from argo_env.planning.opening import OpenedSite
+from argo_planner.service.evaluations.evaluations import Evaluations
 from argo_planner.service.jobs.analysis import Analyst
-from argo_planner.service.jobs.evaluations import Evaluations
 from argo_planner.service.jobs.job import Job
 from argo_planner.service.jobs.jobs import Jobs
 from argo_planner.service.jobs.orders import Orders

@@ -89,8 +89,9 @@ def test_a_camera_finds_again_what_it_sees(scene):
     scene.show_floors(6)
     camera = Camera((-16.0, -22.0, 17.0), (8.0, 5.0, 6.0), (200, 150), 40.0, near=5.0)
     view = scene.look(camera)
-    points = camera.unproject(np.where(np.isfinite(view.depth), view.depth, 50.0))
-    pixels = camera.project(points.reshape(-1, 3)).reshape(150, 200, 3)
+    row, column = np.indices((150, 200)).reshape(2, -1)
+    depth = np.where(np.isfinite(view.depth), view.depth, 50.0)[row, column]
+    pixels = camera.project(camera.unproject(column, row, depth)).reshape(150, 200, 3)
     assert pixels[40, 70, :2] == pytest.approx([70.5, 40.5])
     assert pixels[120, 30, :2] == pytest.approx([30.5, 120.5])
 

@@ -15,10 +15,8 @@ from argo_compiler.model import Model
 from argo_env.evaluation.folder import REPORT
 from argo_env.files.folders import make_folder
 from argo_planner.service.jobs.evaluation import EvaluationOrder
-from argo_planner.service.jobs.job import EvaluationJob, JobState
+from argo_planner.service.jobs.job import JOB_ID, EvaluationJob, JobState
 
-JOB_ID = r"[0-9a-f]{12}"
-"""what a job's id looks like"""
 _KEPT = "job.json"
 _MAX_BYTES = 100_000_000
 _log = logging.getLogger(__name__)

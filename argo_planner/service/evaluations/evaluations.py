@@ -7,12 +7,12 @@ from datetime import datetime
 from pathlib import Path
 
 from argo_compiler.errors import ArgoError, Conflict, NotFound, Unavailable
+from argo_planner.service.evaluations.kept import EvaluationFolder, KeptEvaluation
+from argo_planner.service.evaluations.replay import ReplayedRun, ReplayOrder, replay_run
 from argo_planner.service.jobs.evaluation import EvaluationOrder, evaluate_mission
 from argo_planner.service.jobs.job import EvaluationJob, Job, JobState
 from argo_planner.service.jobs.jobs import Jobs
-from argo_planner.service.jobs.kept import EvaluationFolder, KeptEvaluation
-from argo_planner.service.jobs.process import JobProcess
-from argo_planner.service.jobs.replay import ReplayedRun, ReplayOrder, replay_run
+from argo_planner.service.processes.work import JobProcess
 
 MOST_REPLAYED = 2
 """runs that are made again at once"""

@@ -8,7 +8,7 @@ from multiprocessing.connection import Connection
 from typing import Any, Generic, TypeVar
 
 from argo_compiler.errors import ArgoError, Unavailable
-from argo_planner.service.jobs.orphans import end_with_parent
+from argo_planner.service.processes.orphans import end_with_parent
 
 Result = TypeVar("Result")
 Tell = Callable[[Any], None]

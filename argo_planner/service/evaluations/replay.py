@@ -12,7 +12,7 @@ from argo_env.run.machine import Machine
 from argo_env.run.observer import Observer
 from argo_env.run.session import simulate
 from argo_planner.service.jobs.evaluation import EvaluationOrder
-from argo_planner.service.jobs.process import Tell
+from argo_planner.service.processes.work import Tell
 from argo_planner.service.runs.state import RunState, RunStatus
 
 

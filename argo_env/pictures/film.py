@@ -1,8 +1,7 @@
 """A film of a run, made from its record: a camera follows the robot through the site."""
 
 import math
-from collections.abc import Callable, Iterator
-from itertools import groupby
+from collections.abc import Callable, Iterable, Iterator
 from pathlib import Path
 
 import numpy as np
@@ -10,10 +9,8 @@ from PIL import Image
 
 from argo_compiler.errors import Invalid, Unavailable, located
 from argo_compiler.files.writing import check_place, drafting
-from argo_env.pictures.caption import add_caption, add_verdict
-from argo_env.pictures.chase import ChaseCamera
 from argo_env.pictures.codec import find_ffmpeg, make_palette, write_gif, write_mp4
-from argo_env.pictures.light import compose, depth_shading
+from argo_env.pictures.frames import FilmShot, draw, draw_all, shots_of
 from argo_env.pictures.motion import RecordedMotion, check_site
 from argo_env.pictures.scene import Scene
 from argo_env.robot.spec import RobotSpec
@@ -22,7 +19,6 @@ from argo_env.site import Site
 
 MP4_SIZE, MP4_FPS = (640, 400), 12
 GIF_SIZE, GIF_FPS = (480, 300), 6  # a GIF is many times larger than an .mp4 of the same frames
-_DECKS = 2  # the robot's floor and the one below it are seen from above
 _PALETTE_SAMPLES = 6
 VERDICT_TIME = 2.0
 """s, for which the film stands still in the end and shows the verdict"""
@@ -74,13 +70,15 @@ def write_film(
     times = [min(k * speed * frame_time, motion.end) for k in range(count)]
     times += [motion.end] * (round(VERDICT_TIME / frame_time) - 1)
     try:
-        with drafting(file) as draft, Scene(site, robot) as scene:
-            frames = _frames(record, motion, scene, times, (width, height), frame_time, progress)
+        with drafting(file) as draft:
+            with Scene(site, robot) as scene:
+                shots = [*shots_of(motion, scene, times, (width, height), frame_time)]
+                spread = _spread(times) if is_gif else []
+                sampled = shots_of(motion, scene, spread, (width, height), math.inf)
+                samples = [draw(record, scene, shot, motion.end) for shot in sampled]
+            frames = _shown(draw_all(record, site, robot, shots, motion.end), shots, progress)
             if is_gif:
-                picks = np.linspace(0, len(times) - 1, _PALETTE_SAMPLES).round().astype(int)
-                spread = [times[k] for k in dict.fromkeys(picks.tolist())]
-                samples = _frames(record, motion, scene, spread, (width, height), math.inf, None)
-                write_gif(frames, draft, make_palette(list(samples)), frame_time)
+                write_gif(frames, draft, make_palette(samples), frame_time)
             else:
                 try:
                     write_mp4(frames, draft, (width, height), fps)
@@ -92,29 +90,20 @@ def write_film(
         ) from error
 
 
-def _frames(
-    record: RunRecord,
-    motion: RecordedMotion,
-    scene: Scene,
-    times: list[float],
-    size: tuple[int, int],
-    frame_time: float,
-    progress: Progress | None,
+def _spread(times: list[float]) -> list[float]:
+    """Some of the times (s), as far apart as possible."""
+    picks = np.linspace(0, len(times) - 1, _PALETTE_SAMPLES).round().astype(int)
+    return [times[k] for k in dict.fromkeys(picks.tolist())]
+
+
+def _shown(
+    drawn: Iterable[Image.Image], shots: list[FilmShot], progress: Progress | None
 ) -> Iterator[Image.Image]:
-    """The frames at the times (s), one after the other; of equal times, the same one again."""
-    camera = ChaseCamera(scene, size, frame_time)
-    done = 0
-    for t, same in groupby(times):
-        pose, floor = motion.pose(t), motion.floor(t)
-        scene.show_floors(floor, _DECKS)
-        scene.place_robot(pose, motion.joints(t))
-        view = scene.look(camera.follow(pose))
-        brightness = depth_shading(view, size[1] / 50, 0.45)
-        frame = add_caption(Image.fromarray(compose(view, brightness)), record, t, floor)
-        if t >= motion.end:
-            frame = add_verdict(frame, record)
-        for _ in same:
+    """Each frame as often as the film shows it."""
+    count, done = sum(shot.shown for shot in shots), 0
+    for frame, shot in zip(drawn, shots, strict=True):
+        for _ in range(shot.shown):
             yield frame
             done += 1
             if progress:
-                progress(done / len(times))
+                progress(done / count)

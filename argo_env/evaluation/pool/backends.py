@@ -1,12 +1,12 @@
 """The back ends by name. What one of them needs is imported when it is made."""
 
-import os
 from collections.abc import Callable
 from importlib.util import find_spec
 
 from argo_compiler.errors import Invalid, Unavailable
 from argo_compiler.extras import install_line
 from argo_env.evaluation.pool.backend import WorkerBackend
+from argo_env.worker_processes import usable_processors
 
 PROCESSES = "processes"
 
@@ -51,11 +51,6 @@ def make_backend(
     if workers is not None and workers < 1:
         raise Invalid(f"{workers} workers can't do anything: give 1 or more")
     return BACKENDS[name](workers, address)
-
-
-def usable_processors() -> int:
-    """How many processors this process may use."""
-    return len(os.sched_getaffinity(0))
 
 
 def _require(module: str) -> None:

@@ -2,9 +2,6 @@
 
 import os
 import re
-import signal
-import threading
-import time
 from collections.abc import Callable, Sequence
 from concurrent.futures import FIRST_COMPLETED, Future, wait
 from typing import Any
@@ -13,8 +10,7 @@ from loky import ProcessPoolExecutor
 from loky.process_executor import BrokenProcessPool
 
 from argo_env.evaluation.pool.backend import WorkerDiedError
-
-_PERIOD = 1.0  # s between two looks whether the parent is there
+from argo_env.worker_processes import serve_parent
 
 
 class Processes:
@@ -60,7 +56,7 @@ class Processes:
         self._executor.shutdown(wait=True, kill_workers=True)
 
     def _begun(self) -> ProcessPoolExecutor:
-        return ProcessPoolExecutor(self.workers, initializer=_begin, initargs=(os.getpid(),))
+        return ProcessPoolExecutor(self.workers, initializer=serve_parent, initargs=(os.getpid(),))
 
 
 def _death(broken: BrokenProcessPool) -> WorkerDiedError:
@@ -75,15 +71,3 @@ def _death(broken: BrokenProcessPool) -> WorkerDiedError:
         return WorkerDiedError(f"the worker process ended with code {code}")
     killed = name in ("SIGKILL", "SIGTERM")
     return WorkerDiedError(f"the worker process was ended by {name}", killed)
-
-
-def _begin(parent: int) -> None:
-    """In each worker: it leaves interruptions to its parent, and ends with it."""
-    signal.signal(signal.SIGINT, signal.SIG_IGN)
-    threading.Thread(target=_end_after, args=(parent,), daemon=True).start()
-
-
-def _end_after(parent: int) -> None:
-    while os.getppid() == parent:
-        time.sleep(_PERIOD)
-    os._exit(1)

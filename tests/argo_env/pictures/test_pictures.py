@@ -1,4 +1,6 @@
 import math
+import os
+import signal
 import sys
 
 import numpy as np
@@ -8,8 +10,9 @@ from PIL import Image
 from argo_compiler.errors import ArgoError
 from argo_compiler.hfsm import lower
 from argo_compiler.il import Action, Mission, Task
-from argo_env.pictures import check_film, film, overview, write_film, write_overview
+from argo_env.pictures import check_film, frames, overview, write_film, write_overview
 from argo_env.pictures.camera import Camera
+from argo_env.pictures.chase import ChaseCamera
 from argo_env.pictures.motion import RecordedMotion
 from argo_env.pictures.scene import Scene
 from argo_env.robot.pose import BodyPose
@@ -98,7 +101,7 @@ def test_a_camera_finds_again_what_it_sees(scene):
 
 def test_the_robot_is_in_the_middle_of_the_frame(scene, robot):
     pose = BodyPose(8.0, -2.0, -0.03, 0.0)
-    chase = film.ChaseCamera(scene, (120, 80), 0.1)
+    chase = ChaseCamera(scene, (120, 80), 0.1)
     scene.show_floors(1, 2)
     scene.hide_robot()
     camera = chase.follow(pose)
@@ -165,11 +168,32 @@ def test_a_gif_has_a_frame_for_each_time(record, umad, robot, tmp_path):
     assert sorted(p.name for p in tmp_path.iterdir()) == ["a.gif", "b.gif"]
 
 
+def test_several_processes_draw_the_same_film(record, umad, robot, tmp_path, monkeypatch):
+    monkeypatch.setattr(frames, "usable_processors", lambda: 2)
+    for name, worth_it in (("alone.gif", 10**6), ("together.gif", 2)):
+        monkeypatch.setattr(frames, "_WORTH_IT", worth_it)
+        write_film(record, umad, robot, tmp_path / name, speed=10, fps=4, size=(120, 80))
+    assert (tmp_path / "alone.gif").read_bytes() == (tmp_path / "together.gif").read_bytes()
+
+
+def test_a_process_that_draws_and_is_killed_is_told(record, umad, robot, tmp_path, monkeypatch):
+    monkeypatch.setattr(frames, "usable_processors", lambda: 2)
+    monkeypatch.setattr(frames, "_WORTH_IT", 2)
+    monkeypatch.setattr(frames, "_drawn", killed)
+    with pytest.raises(ArgoError, match="a process that drew the frames was ended"):
+        write_film(record, umad, robot, tmp_path / "film.gif", speed=10, fps=4, size=(120, 80))
+    assert list(tmp_path.iterdir()) == []
+
+
+def killed(_):
+    os.kill(os.getpid(), signal.SIGKILL)
+
+
 def test_the_last_frames_show_the_verdict(record, umad, robot, tmp_path):
     failed = record.result.model_copy(
         update={"success": False, "verdict": "the robot is not docked; " + "failed: a task, " * 99}
     )
-    frames = []
+    films = []
     for name, made in (("a.gif", record), ("b.gif", record.model_copy(update={"result": failed}))):
         write_film(made, umad, robot, tmp_path / name, speed=10, fps=4, size=(240, 160))
         with Image.open(tmp_path / name) as image:
@@ -177,10 +201,10 @@ def test_the_last_frames_show_the_verdict(record, umad, robot, tmp_path):
             for k in (7, 8, 15):
                 image.seek(k)
                 shown.append(np.asarray(image.convert("RGB")).astype(int))
-            frames.append(shown)
-    assert all((ended == last).all() for _, ended, last in frames), "it stands still"
+            films.append(shown)
+    assert all((ended == last).all() for _, ended, last in films), "it stands still"
     for k, verdict in enumerate((False, True, True)):
-        differs = (np.abs(frames[0][k] - frames[1][k]).sum(axis=2) > 90).mean(axis=1)
+        differs = (np.abs(films[0][k] - films[1][k]).sum(axis=2) > 90).mean(axis=1)
         # Between the picture above it and the caption below.
         assert (differs[90:140].max() > 0.05) == verdict
         assert differs[:60].max() < 0.05

@@ -1,0 +1,26 @@
+"""Processes that work for another one."""
+
+import os
+import signal
+import threading
+import time
+
+_PERIOD = 1.0  # s between two looks whether the parent is there
+
+
+def usable_processors() -> int:
+    """How many processors this process may use."""
+    return len(os.sched_getaffinity(0))
+
+
+def serve_parent(parent: int) -> None:
+    """To be called in a worker, with the id of the process that it works for: the worker leaves
+    interruptions to it, and ends with it, even where it is killed."""
+    signal.signal(signal.SIGINT, signal.SIG_IGN)
+    threading.Thread(target=_end_after, args=(parent,), daemon=True).start()
+
+
+def _end_after(parent: int) -> None:
+    while os.getppid() == parent:
+        time.sleep(_PERIOD)
+    os._exit(1)

@@ -103,6 +103,67 @@ def tracked() -> Work:
     return _mission_run("mission_1.txt", "tracked", 1, 2)
 
 
+def route() -> Work:
+    """Mission #1 by travel times, after a run of it in the same process."""
+    work = _mission_run("mission_1.txt", "route", 1, 2)
+    work()
+    return work
+
+
+def inspect() -> Work:
+    """An episode of Inspect-v0 of 40 steps at most, with actions that can be taken."""
+    import gymnasium as gym
+    import numpy as np
+
+    import argo_env  # noqa: F401
+
+    env: Any = gym.make("argo/Inspect-v0", disable_env_checker=True)
+    env.reset(seed=100)
+    seeds = iter(range(1_000_000))
+
+    def work() -> None:
+        seed = next(seeds)
+        env.reset(seed=seed)
+        rng = np.random.default_rng(seed)
+        for _ in range(40):
+            possible = np.flatnonzero(env.unwrapped.action_masks())
+            _, _, terminated, truncated, _ = env.step(int(rng.choice(possible)))
+            if terminated or truncated:
+                return
+
+    return work
+
+
+def report() -> Work:
+    """The report of a run of mission #1 with its picture, as the second one on a site."""
+    from argo_env.planning import open_site
+    from argo_planner.use_cases.reporting import report_files
+
+    site = open_site("umad").prepare()
+    record: Any = _mission_run("mission_1.txt", "route", 1, 2)()
+
+    def work() -> object:
+        return report_files(record, site.site, site.robot)
+
+    work()
+    return work
+
+
+def film() -> Work:
+    """A film of mission #1, 20 times as fast as it was."""
+    from argo_env.pictures import write_film
+    from argo_env.planning import open_site
+
+    site = open_site("umad").prepare()
+    record: Any = _mission_run("mission_1.txt", "route", 1, 2)()
+
+    def work() -> None:
+        with tempfile.TemporaryDirectory() as folder:
+            write_film(record, site.site, site.robot, Path(folder) / "film.mp4", speed=20)
+
+    return work
+
+
 CASES: dict[str, tuple[Callable[[], Work], int]] = {
     "drive-free": (drive_free, 4),
     "drive-random": (drive_random, 4),
@@ -111,6 +172,10 @@ CASES: dict[str, tuple[Callable[[], Work], int]] = {
     "kinematic-first": (kinematic_first, 1),
     "kinematic-rounds": (kinematic_rounds, 1),
     "tracked": (tracked, 1),
+    "route": (route, 10),
+    "inspect": (inspect, 3),
+    "report": (report, 1),
+    "film": (film, 1),
 }
 """What prepares the work of each case, and how many times a process does it."""
 

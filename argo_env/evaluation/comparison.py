@@ -50,8 +50,12 @@ class PlanComparison:
     def p_value(self) -> float:
         """How likely a difference in success as great as this is where there is none: by McNemar's
         exact test if each world has one pair, else by the test over worlds."""
-        one_each = len({a.seed for a, _ in self.pairs}) == len(self.pairs)
-        return self.successes.p_value if one_each else self.success.p_value
+        return self.successes.p_value if self.one_each else self.success.p_value
+
+    @property
+    def one_each(self) -> bool:
+        """Whether each world has one pair: only then pairs do not depend on each other."""
+        return len({a.seed for a, _ in self.pairs}) == len(self.pairs)
 
     @cached_property
     def duration(self) -> Difference:

@@ -66,11 +66,18 @@ class EvaluationFile(Model):
     require: tuple[str, ...] = ()
     """what must hold, such as `success >= 0.98`: one stops when it is decided"""
     stop: StopEntry = StopEntry()
+    control: str | None = None
+    """a cheap drive whose runs help to estimate what those of the drive bring, if that pays"""
 
     @field_validator("drives")
     @classmethod
     def _drives(cls, names: tuple[str, ...]) -> tuple[str, ...]:
         return _known(names, DRIVES, "drive")
+
+    @field_validator("control")
+    @classmethod
+    def _control(cls, name: str | None) -> str | None:
+        return name if name is None else _known((name,), DRIVES, "drive")[0]
 
     @field_validator("sensors")
     @classmethod

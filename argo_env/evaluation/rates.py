@@ -5,7 +5,6 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from enum import StrEnum
 
-from argo_compiler.errors import Invalid
 from argo_env.evaluation.plan import EvaluationPlan, PlanName
 from argo_env.evaluation.row import RunOutcome, RunRow
 from argo_env.evaluation.statistics.rates import clopper_pearson, wilson
@@ -148,9 +147,3 @@ def judge_requirements(
                 RequirementVerdict(plan, str(requirement), verdict, low, high, sequence.runs)
             )
     return tuple(found)
-
-
-def require_no_strata(evaluation: EvaluationPlan) -> None:
-    """Raises Invalid for requirements on strata, of which no confidence sequence is known here."""
-    if evaluation.strata and evaluation.stopping.require:
-        raise Invalid("strata have no worlds in common: give a width to stop at, or no strata")

@@ -11,6 +11,7 @@ from rich.markup import escape
 
 from argo_compiler.errors import Conflict, Invalid, Remedy
 from argo_compiler.files.reading import read_bytes
+from argo_env.evaluation.controlled import ControlledMean, run_controlled, with_drive
 from argo_env.evaluation.evaluating import Evaluating
 from argo_env.evaluation.file import MAX_BYTES, EvaluationFile, MissionEntry, decode_evaluation
 from argo_env.evaluation.folder import (
@@ -30,7 +31,7 @@ from argo_env.evaluation.store import RowStore
 from argo_env.run.drives_and_sensors import DRIVES, IDEAL, SENSORS
 from argo_planner.terminal.completion import among
 from argo_planner.terminal.evaluation_display import EvaluationDisplay
-from argo_planner.terminal.evaluation_tables import show_comparison, show_results
+from argo_planner.terminal.evaluation_tables import show_comparison, show_means, show_results
 from argo_planner.terminal.files import read_upload
 from argo_planner.terminal.options import EndArea, Force, SiteOption, StartArea
 from argo_planner.use_cases.evaluating import plan_evaluation
@@ -90,6 +91,15 @@ def evaluate(
         float | None,
         typer.Option(help="stop when the intervals of the rates are no wider than this"),
     ] = None,
+    control: Annotated[
+        str | None,
+        typer.Option(
+            metavar="DRIVE",
+            help="a cheap drive, such as route, whose runs help to estimate what those of --drive "
+            "bring, if that pays",
+            autocompletion=among(DRIVES),
+        ),
+    ] = None,
     start_area: StartArea = None,
     end_area: EndArea = None,
     backend: Annotated[
@@ -136,13 +146,16 @@ def evaluate(
     rules = read_scoring(scoring)
     file, folder, content = _asked_for(
         sources or [], seeds, site, drive, sensor, faults, policy, require, width,
-        start_area, end_area,
+        control, start_area, end_area,
     )  # fmt: skip
     where = out or Path("out") / "evaluations" / _plain(file.name)
     plan = _planned(file, folder, content, where, force)
-    results = _carried_out(plan, where, backend, workers, address, limit)
+    if file.control is not None:
+        with_drive(plan, file.control)  # what it can't have is told before anything runs
+    results, means = _carried_out(plan, file.control, where, backend, workers, address, limit)
     failing = write_failing(where, results)
     show_results(results, failing, console, rules)
+    show_means(means, file.control, console)
     if report:
         from argo_env.evaluation.report.page import write_evaluation_report  # brings matplotlib
 
@@ -162,6 +175,7 @@ def _asked_for(
     policies: list[str] | None,
     require: list[str] | None,
     width: float | None,
+    control: str | None,
     start_area: int | None,
     end_area: int | None,
 ) -> tuple[EvaluationFile, Path, bytes]:
@@ -190,6 +204,7 @@ def _asked_for(
         "seeds": seeds,
         "require": tuple(require or ()),
         "stop": {"width": width},
+        "control": control,
     }
     return _validated(data), Path(), b""
 
@@ -230,21 +245,28 @@ def _planned(
 
 def _carried_out(
     plan: EvaluationPlan,
+    control: str | None,
     where: Path,
     backend: str,
     workers: int | None,
     address: str | None,
     limit: float | None,
-) -> EvaluationResults:
+) -> tuple[EvaluationResults, tuple[ControlledMean, ...]]:
     with RowStore(where) as store, EvaluationDisplay() as display:
         has = make_backend(backend, workers, address)
-        try:
-            evaluating = Evaluating(plan, has, store, limit=limit)
+
+        def made(part: EvaluationPlan) -> EvaluationResults:
+            evaluating = Evaluating(part, has, store, limit=limit)
             for _ in evaluating.rows_as_they_come():
                 display.show(evaluating.progress)
+            return evaluating.results
+
+        try:
+            if control is None:
+                return made(plan), ()
+            return run_controlled(plan, control, made, where)
         finally:
             has.close()
-        return evaluating.results
 
 
 def _compare(first: Path, second: Path, report: bool, console: Console) -> None:

@@ -2,7 +2,7 @@
 
 import math
 import shlex
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator, Mapping, Sequence
 from pathlib import Path
 
 from rich.console import Console
@@ -10,6 +10,7 @@ from rich.markup import escape
 from rich.table import Table
 
 from argo_env.evaluation.comparison import PlanComparison
+from argo_env.evaluation.controlled import ControlledMean
 from argo_env.evaluation.plan import PlanName
 from argo_env.evaluation.rates import Decision, IntervalMethod
 from argo_env.evaluation.results import EvaluationResults, GroupRate
@@ -60,6 +61,33 @@ def show_results(
             f"{verdict.worlds} worlds)",
             soft_wrap=True,
         )
+
+
+def show_means(means: Sequence[ControlledMean], drive: str | None, console: Console) -> None:
+    """Prints what cheap runs have helped."""
+    for mean in means:
+        control = mean.control
+        console.print(
+            f"{mean.quantity.capitalize()} beside the drive {drive}: correlation "
+            f"{control.correlation:.2f}, a run costs {_percent(control.cost)} of one"
+            + ("" if control.pays else "; it does not pay"),
+            soft_wrap=True,
+        )
+        shown = _percent if mean.quantity == "success" else _seconds
+        if mean.helped is None:
+            if control.pays:
+                console.print("  too few successes or failures for an interval with its help")
+            continue
+        for estimate, by in (
+            (mean.alone, f"{mean.expensive} worlds alone"),
+            (mean.helped, f"these and {mean.cheap} cheap ones"),
+        ):
+            between = f"{shown(estimate.low)} to {shown(estimate.high)}"
+            console.print(f"  by {by}: {shown(estimate.value)} ({between})", soft_wrap=True)
+
+
+def _seconds(s: float) -> str:
+    return f"{s:.1f} s"
 
 
 def _titled(what: str, plan: PlanName, results: EvaluationResults) -> str:
@@ -159,11 +187,12 @@ def show_comparison(compared: PlanComparison, console: Console) -> None:
                     soft_wrap=True,
                 )
     console.print(f"[bold]{escape(compared.conclusion)}[/]", soft_wrap=True)
-    console.print(
-        f"So many pairs show a difference of 5 % with a probability of "
-        f"{compared.power(0.05):.0%}, one of 2 % with {compared.power(0.02):.0%}.",
-        soft_wrap=True,
-    )
+    if compared.one_each:
+        console.print(
+            f"So many pairs show a difference of 5 % with a probability of "
+            f"{compared.power(0.05):.0%}, one of 2 % with {compared.power(0.02):.0%}.",
+            soft_wrap=True,
+        )
     if compared.lost:
         console.print(f"{compared.lost} pairs could not be carried out, and do not count.")
 
@@ -172,6 +201,8 @@ def _difference(found: Difference, scale: float, unit: str) -> tuple[str, str]:
     if math.isnan(found.value):
         return "", ""
     value, low, high = (scale * v for v in (found.value, found.low, found.high))
+    if low == high:
+        return f"{value:+.1f} {unit}", "in each world"
     return f"{value:+.1f} {unit}", f"{low:+.1f} to {high:+.1f} {unit}"
 
 

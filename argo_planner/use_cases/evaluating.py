@@ -10,7 +10,6 @@ from typing import cast
 from argo_compiler.errors import ArgoError, Conflict, Invalid, NotFound, located
 from argo_compiler.files.reading import read_bytes
 from argo_compiler.il import Mission
-from argo_compiler.stages import stage
 from argo_env.evaluation.file import DrawnFaults, EvaluationFile, MissionEntry
 from argo_env.evaluation.plan import (
     AS_WRITTEN,
@@ -61,6 +60,7 @@ def plan_evaluation(
     worlds = file.worlds
     if isinstance(file.faults, DrawnFaults) and not file.faults.strata:
         drawn = _distribution(file.faults, folder)
+        _require_drawn(cases, drawn, str(folder / file.faults.file))
         worlds = worlds.model_copy(update={"faults": drawn})
     plan = EvaluationPlan(
         name=file.name,
@@ -200,14 +200,13 @@ def _site(said: str, folder: Path) -> str:
     return str(path) if said.endswith(_YAML) and os.path.isfile(path) else said
 
 
-def require_all(plan: EvaluationPlan) -> None:
-    """Raises ArgoError, with the world, where what seeds draw for it can't be run: before all the
-    others are."""
-    with stage("drawing the worlds"):
-        for seed in plan.seeds[:1]:
-            for number, case in enumerate(plan.cases):
-                opened = open_site(case.spec.site, load_robot(case.spec.robot))
-                try:
-                    check_spec(plan.run(number, seed).spec, opened.site)
-                except ArgoError as error:
-                    raise located(error, f"seed {seed}, faults {case.faults}") from None
+def _require_drawn(cases: list[EvaluationCase], drawn: FaultDistribution, file: str) -> None:
+    """Raises ArgoError for faults that no run of a case can have, before one draws them."""
+    for case in cases:
+        site = open_site(case.spec.site, load_robot(case.spec.robot)).site
+        for chance in drawn.chances:
+            faults = (*case.spec.faults, *chance.faults)
+            try:
+                check_spec(case.spec.model_copy(update={"faults": faults}), site)
+            except ArgoError as error:
+                raise located(error, f"{file}: {chance.name}") from None

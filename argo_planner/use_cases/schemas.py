@@ -12,6 +12,7 @@ class FileKind(StrEnum):
     MACHINE = "machine"
     PROGRESS = "progress"
     FAULTS = "faults"
+    EVALUATION = "evaluation"
     READING = "reading"
 
 
@@ -25,6 +26,10 @@ def schema(kind: FileKind) -> str:
         from argo_compiler.script.write.reading import MissionReading
 
         return schema_of(MissionReading, kind)
+    if kind is FileKind.EVALUATION:
+        from argo_env.evaluation.file import EvaluationFile
+
+        return schema_of(EvaluationFile, kind)
     from argo_env.faults.kinds import FaultFile
 
     return schema_of(FaultFile, kind)

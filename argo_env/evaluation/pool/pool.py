@@ -6,11 +6,12 @@ from dataclasses import dataclass
 from typing import Any
 
 from argo_env.evaluation.pool.backend import WorkerBackend, WorkerDiedError
+from argo_env.evaluation.pool.bundle import Bundle, BundleSize, carry_out_bundle
 
 CRASHES, KILLS = 3, 10
 """deaths of a worker from which on its call is given up: those of which no other call can be the
 reason. A process that was killed may have been so by chance, and more than once."""
-_AHEAD = 3  # calls a worker that are handed over at once, so that none waits for the next
+_AHEAD = 3  # bundles a worker that are handed over at once, so that none waits for the next
 
 
 @dataclass(frozen=True)
@@ -35,14 +36,17 @@ class _Call:
     """of its workers that are its own, as a share of those with which it is given up"""
     alone: bool = False
     """whether no other call can be the reason if its worker dies now"""
+    single: bool = False
+    """whether it is to be handed over by itself"""
 
 
 class Pool:
     """Hands calls of one function to workers and gives back what came of them, as it comes.
 
-    Where a worker dies, its call is tried again in a fresh one, while no other call is under way
-    that could be the reason; a call whose workers die each time is given back as `died`. All others
-    are carried out, each once more if it was lost with a worker.
+    Short calls are handed over several together. Where a worker dies, its calls are tried again in
+    fresh ones, each while no other is under way that could be the reason; a call whose workers die
+    each time is given back as `died`. All others are carried out, each once more if it was lost
+    with a worker.
     """
 
     def __init__(self, backend: WorkerBackend, call: Callable[[Any], Any]) -> None:
@@ -50,17 +54,19 @@ class Pool:
         self._call = call
         self._waiting: deque[_Call] = deque()
         self._suspects: deque[_Call] = deque()
-        self._under_way: dict[Any, _Call] = {}
+        self._under_way: dict[Any, list[_Call]] = {}
+        self._size = BundleSize()
 
     @property
     def open(self) -> int:
         """How many calls have not ended."""
-        return len(self._waiting) + len(self._suspects) + len(self._under_way)
+        under_way = sum(map(len, self._under_way.values()))
+        return len(self._waiting) + len(self._suspects) + under_way
 
     @property
     def wants_more(self) -> bool:
         """Whether a worker may soon have nothing to do."""
-        return self.open < 2 * _AHEAD * self._backend.workers
+        return self.open < 2 * _AHEAD * self._backend.workers * self._size.most
 
     def submit(self, ticket: Any, argument: Any) -> None:
         """Calls the function with the argument, when a worker is free for it."""
@@ -72,9 +78,7 @@ class Pool:
         while self.open:
             self._hand_over()
             for handle in self._backend.wait(list(self._under_way)):
-                finished = self._taken(handle)
-                if finished is not None:
-                    yield finished
+                yield from self._taken(handle)
 
     def close(self) -> None:
         """Ends the workers. What they were at is lost."""
@@ -91,34 +95,54 @@ class Pool:
             # One after the other, and alone: who dies then is to blame.
             if not self._under_way:
                 self._backend.mend()
-                self._begin(self._suspects.popleft(), alone=True)
+                self._begin([self._suspects.popleft()], alone=True)
             return
-        alone = self._backend.names_the_dead
         while self._suspects:
-            self._begin(self._suspects.popleft(), alone)
+            self._begin([self._suspects.popleft()], alone=True)
         while self._waiting and len(self._under_way) < _AHEAD * self._backend.workers:
-            self._begin(self._waiting.popleft(), alone)
+            calls = self._bundled()
+            self._begin(calls, alone=self._backend.names_the_dead and len(calls) == 1)
 
-    def _begin(self, call: _Call, alone: bool) -> None:
-        call.alone = alone
+    def _bundled(self) -> list[_Call]:
+        """The next ones of those that wait."""
+        calls = [self._waiting.popleft()]
+        for _ in range(self._size.of(self._waiting, self._backend.workers) - 1):
+            if calls[0].single or not self._waiting or self._waiting[0].single:
+                break
+            calls.append(self._waiting.popleft())
+        return calls
+
+    def _begin(self, calls: list[_Call], alone: bool) -> None:
+        for call in calls:
+            call.alone = alone
+        bundle = Bundle(self._call, tuple(call.argument for call in calls))
         try:
-            handle = self._backend.submit(self._call, call.argument)
+            handle = self._backend.submit(carry_out_bundle, bundle)
         except WorkerDiedError:
-            # The workers died of something before this call came to them.
-            self._suspects.append(call)
+            # The workers died of something before these calls came to them.
+            self._suspects.extend(calls)
             return
-        self._under_way[handle] = call
+        self._under_way[handle] = calls
 
-    def _taken(self, handle: Any) -> Finished | None:
-        call = self._under_way.pop(handle)
+    def _taken(self, handle: Any) -> Iterator[Finished]:
+        calls = self._under_way.pop(handle)
         try:
-            return Finished(call.ticket, self._backend.result(handle))
+            outcomes, seconds = self._backend.result(handle)
         except WorkerDiedError as death:
-            if call.alone:
-                call.deaths += 1 / (KILLS if death.killed else CRASHES)
-            if call.deaths > 1 - 1e-9:
-                return Finished(call.ticket, died=str(death))
-            self._suspects.append(call)
-            return None
-        except Exception as error:  # whatever the function raises is what came of the call
-            return Finished(call.ticket, error=error)
+            for call in calls:
+                if call.alone:
+                    call.deaths += 1 / (KILLS if death.killed else CRASHES)
+                if call.deaths > 1 - 1e-9:
+                    yield Finished(call.ticket, died=str(death))
+                else:
+                    self._suspects.append(call)
+        except Exception as error:  # what can't be sent to a worker, or back
+            if len(calls) == 1:
+                yield Finished(calls[0].ticket, error=error)
+            for call in calls if len(calls) > 1 else ():
+                call.single = True
+                self._waiting.append(call)
+        else:
+            self._size.learn(len(calls), seconds)
+            for call, outcome in zip(calls, outcomes, strict=True):
+                yield Finished(call.ticket, outcome.value, outcome.error)

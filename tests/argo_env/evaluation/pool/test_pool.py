@@ -53,6 +53,15 @@ def test_what_a_call_raises_is_told_and_the_others_go_on(backend):
     assert failed == {k: f"no {k}" for k in (7, 17, 27, 37)}
 
 
+def test_what_can_not_be_sent_back_is_told_and_the_others_are_there(backend):
+    found = carried_out(backend, work.not_sendable, range(200))
+    assert sorted(found) == list(range(200))
+    by_pickle = {ticket for ticket, one in found.items() if one.error}
+    # Ray and Dask send back what others can't.
+    assert by_pickle in ({k for k in range(200) if k % 10 == 7}, set())
+    assert all(one.value == k for k, one in found.items() if k % 10 != 7)
+
+
 def test_of_a_thousand_calls_one_that_kills_its_worker_is_named(backend):
     found = carried_out(backend, work.die_on_500, range(1_000))
     assert sorted(found) == list(range(1_000))

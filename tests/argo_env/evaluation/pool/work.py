@@ -34,6 +34,11 @@ def die_once(marked: tuple[str, int]) -> int:
     return number
 
 
+def not_sendable(number: int) -> object:
+    """Something that can't be sent back, for every tenth number."""
+    return (lambda: number) if number % 10 == 7 else number
+
+
 def who(number: int) -> int:  # noqa: ARG001
     time.sleep(0.02)
     return os.getpid()

@@ -1,0 +1,73 @@
+"""The pictures of `docs/evaluating.md`: mission #1 with less time than it has, and several faults.
+
+python -m benchmarks.evaluation_pictures docs/images
+"""
+
+import sys
+from pathlib import Path
+
+from matplotlib.figure import Figure
+
+from argo_env.evaluation.comparison import compare_plans
+from argo_env.evaluation.evaluation import Evaluation
+from argo_env.evaluation.plots import (
+    durations,
+    forest_of_rates,
+    outcomes_by_faults,
+    paired_differences,
+)
+from argo_env.evaluation.results import EvaluationResults
+from argo_env.evaluation.worlds import Variation
+from argo_env.faults.reading import read_faults
+from argo_env.planning.opening import open_site
+from argo_planner.use_cases.importing import ImportedMission, Upload, import_mission
+from argo_planner.use_cases.routing import suggest_order
+
+UMAD = Path("scenarios/umad")
+FAULTS = ("connection_loss", "drive_dysfunction", "emergency_stop", "low_battery", "worn_battery")
+WORLDS = 60
+
+
+def evaluated() -> EvaluationResults:
+    """Mission #1 as it is written and in the best order, with less time than it has."""
+    site = open_site("umad").prepare()
+    script = UMAD / "missions" / "mission_1.txt"
+    upload = Upload(script.name, script.read_bytes())
+    mission = import_mission(upload, site, 1, 2).mission
+    free = mission.model_copy(update={"order": "any"})
+    suggested = suggest_order(ImportedMission(free, script.name, (), ()), site).mission
+    plans = {
+        name: plan.model_copy(update={"max_duration": 430.0})
+        for name, plan in (("as written", mission), ("optimised", suggested))
+    }
+    faults = {name: read_faults(UMAD / "faults" / f"{name}.yaml") for name in FAULTS}
+    return Evaluation(
+        plans,
+        site,
+        faults={"none": (), **faults},
+        seeds=range(WORLDS),
+        worlds=Variation(speed=(0.75, 1.0), charge=(0.5, 1.0)),
+        name="mission #1",
+    ).run()
+
+
+def main(folder: Path) -> None:
+    """Writes the pictures."""
+    results = evaluated()
+    first, second = results.plan.plans
+    rates = Figure(figsize=(11, 4.6), layout="constrained")
+    left, right = rates.subplots(1, 2)
+    forest_of_rates(results, left)
+    durations(results, right)
+    why = Figure(figsize=(11, 3.2), layout="constrained")
+    left, right = why.subplots(1, 2)
+    outcomes_by_faults(results, left, first)
+    paired_differences(compare_plans(results, results, first, second), right)
+    for figure, name in ((rates, "evaluation-rates"), (why, "evaluation-why")):
+        path = folder / f"{name}.png"
+        figure.savefig(path, dpi=110)
+        print(path)
+
+
+if __name__ == "__main__":
+    main(Path(sys.argv[1]))

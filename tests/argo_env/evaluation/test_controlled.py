@@ -1,0 +1,117 @@
+"""Cheap runs that help expensive ones: measured first, and made only where they pay."""
+
+import math
+
+import numpy as np
+import pytest
+
+from argo_compiler.errors import ArgoError
+from argo_env.evaluation.controlled import PILOT, run_controlled, with_drive
+from argo_env.evaluation.plan import EvaluationCase, EvaluationPlan
+from argo_env.evaluation.results import EvaluationResults
+from argo_env.evaluation.row import RunOutcome, RunRow, row_without_end
+from argo_env.run.spec import RunSpec
+
+MEAN = 700.0  # s that the expensive drive takes on average
+
+
+def invented(seed: int, drive: str, together: bool) -> RunRow:
+    """Worlds differ, and both drives see that they do; or each has worlds of its own."""
+    world = np.random.default_rng(seed).normal(0.0, 60.0)
+    own = np.random.default_rng((seed, len(drive))).normal(0.0, 60.0 if not together else 6.0)
+    duration = (MEAN if drive == "kinematic" else 500.0) + (world if together else 0.0) + own
+    spec = RunSpec.model_construct(
+        site="umad", robot="tracker", drive=drive, sensor="ideal", seed=seed
+    )
+    case = EvaluationCase.model_construct(mission="m", policy="p", faults="none", spec=spec)
+    row = row_without_end(f"{drive} {seed}", case, spec, RunOutcome.SUCCESS, "invented")
+    failed = RunOutcome.FAILURE if duration > 1.08 * MEAN else RunOutcome.SUCCESS
+    return row.model_copy(update={"duration": duration, "outcome": failed})
+
+
+class Made:
+    """Makes rows, and counts the runs and what they cost (s): a cheap one a hundredth."""
+
+    def __init__(self, together: bool = True) -> None:
+        self.together = together
+        self.known: set[str] = set()
+        self.time = 0.0
+
+    def __call__(self, plan: EvaluationPlan) -> EvaluationResults:
+        rows = []
+        for run in plan.runs():
+            row = invented(run.seed, run.spec.drive, self.together)
+            if row.key not in self.known:
+                self.time += 1.0 if run.spec.drive == "kinematic" else 0.01
+                self.known.add(row.key)
+            rows.append(row)
+        return EvaluationResults(plan, tuple(rows))
+
+    def count(self, drive: str) -> int:
+        return sum(key.startswith(drive) for key in self.known)
+
+
+@pytest.fixture(scope="module")
+def expensive(mission) -> EvaluationPlan:
+    case = EvaluationCase(mission="m", spec=RunSpec(mission=mission, drive="kinematic"))
+    return EvaluationPlan(cases=(case,), seeds=tuple(range(200)))
+
+
+def test_cheap_runs_that_tell_much_make_the_interval_narrow(expensive, tmp_path):
+    made = Made()
+    results, means = run_controlled(expensive, "route", made, tmp_path, lambda: made.time)
+    success, duration = means
+    assert len(results.rows) == 200
+    assert duration.control.correlation > 0.95
+    assert duration.control.cost == pytest.approx(0.01)
+    assert duration.helped.high - duration.helped.low < 0.5 * (
+        duration.alone.high - duration.alone.low
+    )
+    assert duration.helped.low <= MEAN <= duration.helped.high
+    assert (duration.expensive, made.count("kinematic")) == (200, 200)
+    assert made.count("route") == 200 + duration.cheap
+    # By the formula for how many there should be, which the tests of the statistics derive.
+    most = max(mean.control.cheap_runs for mean in means if mean.control.pays)
+    assert duration.cheap == math.ceil((most - 1) * 200)
+    assert success.helped is None or success.helped.low <= 0.82 <= success.helped.high
+
+
+def test_cheap_runs_that_tell_nothing_are_made_in_the_first_worlds_only(expensive, tmp_path):
+    made = Made(together=False)
+    _, means = run_controlled(expensive, "route", made, tmp_path, lambda: made.time)
+    assert all(mean.helped is None for mean in means)
+    assert not any(mean.control.pays for mean in means)
+    assert made.count("route") == PILOT
+
+
+def test_what_was_measured_outlives_an_interruption(expensive, tmp_path):
+    made = Made()
+    _, first = run_controlled(expensive, "route", made, tmp_path, lambda: made.time)
+    known = set(made.known)
+    _, again = run_controlled(expensive, "route", made, tmp_path, lambda: made.time)
+    assert again == first
+    assert made.known == known
+
+
+def test_of_few_failures_no_interval_is_told(expensive, tmp_path):
+    def never_late(plan: EvaluationPlan) -> EvaluationResults:
+        found = made(plan)
+        rows = (row.model_copy(update={"outcome": RunOutcome.SUCCESS}) for row in found.rows)
+        return EvaluationResults(plan, tuple(rows))
+
+    made = Made()
+    _, (success, duration) = run_controlled(
+        expensive, "route", never_late, tmp_path, lambda: made.time
+    )
+    assert success.helped is None
+    assert duration.helped is not None
+
+
+def test_what_can_not_help_is_told(expensive):
+    with pytest.raises(ArgoError, match="can't help itself"):
+        with_drive(expensive, "kinematic")
+    case = expensive.cases[0]
+    other = case.model_copy(update={"mission": "another"})
+    two = expensive.model_copy(update={"cases": (case, other)})
+    with pytest.raises(ArgoError, match="give one mission"):
+        with_drive(EvaluationPlan(cases=two.cases, seeds=(1,)), "route")

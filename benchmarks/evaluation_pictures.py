@@ -8,6 +8,7 @@ from pathlib import Path
 
 from matplotlib.figure import Figure
 
+from argo_compiler.il.mission import Order
 from argo_env.evaluation.comparison import compare_plans
 from argo_env.evaluation.evaluation import Evaluation
 from argo_env.evaluation.plots import (
@@ -34,7 +35,7 @@ def evaluated() -> EvaluationResults:
     script = UMAD / "missions" / "mission_1.txt"
     upload = Upload(script.name, script.read_bytes())
     mission = import_mission(upload, site, 1, 2).mission
-    free = mission.model_copy(update={"order": "any"})
+    free = mission.model_copy(update={"order": Order.ANY})
     suggested = suggest_order(ImportedMission(free, script.name, (), ()), site).mission
     plans = {
         name: plan.model_copy(update={"max_duration": 430.0})

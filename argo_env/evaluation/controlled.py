@@ -114,7 +114,9 @@ def with_drive(plan: EvaluationPlan, drive: str) -> EvaluationPlan:
         spec = case.spec.model_copy(update={"drive": drive, "sensor": sensor})
         check_spec(spec, open_site(spec.site, load_robot(spec.robot)).site)
         cases.append(case.model_copy(update={"spec": spec}))
-    return plan.model_copy(update={"cases": tuple(cases), "stopping": Stopping()})
+    # Made anew: a copy would keep the names of the plans that the other cases had.
+    same = {name: getattr(plan, name) for name in EvaluationPlan.model_fields}
+    return EvaluationPlan(**{**same, "cases": tuple(cases), "stopping": Stopping()})
 
 
 def _part(plan: EvaluationPlan, seeds: Sequence[int]) -> EvaluationPlan:

@@ -10,7 +10,7 @@ _MOST = 32
 
 
 @dataclass(frozen=True)
-class Outcome:
+class CallOutcome:
     """What came of one of the calls."""
 
     value: Any = None
@@ -26,15 +26,15 @@ class Bundle:
     arguments: tuple[Any, ...]
 
 
-def carry_out_bundle(bundle: Bundle) -> tuple[tuple[Outcome, ...], float]:
+def carry_out_bundle(bundle: Bundle) -> tuple[tuple[CallOutcome, ...], float]:
     """In a worker: what came of each call, and how long all took (s)."""
     begun = time.perf_counter()
     outcomes = []
     for argument in bundle.arguments:
         try:
-            outcomes.append(Outcome(bundle.call(argument)))
+            outcomes.append(CallOutcome(bundle.call(argument)))
         except Exception as error:  # whatever the function raises is what came of the call
-            outcomes.append(Outcome(error=error))
+            outcomes.append(CallOutcome(error=error))
     return tuple(outcomes), time.perf_counter() - begun
 
 

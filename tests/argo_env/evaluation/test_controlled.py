@@ -107,6 +107,11 @@ def test_of_few_failures_no_interval_is_told(expensive, tmp_path):
     assert duration.helped is not None
 
 
+def test_the_cheap_plan_has_the_name_of_its_own_drive(expensive):
+    assert [plan.drive for plan in expensive.plans] == ["kinematic"]
+    assert [plan.drive for plan in with_drive(expensive, "route").plans] == ["route"]
+
+
 def test_what_can_not_help_is_told(expensive):
     with pytest.raises(ArgoError, match="can't help itself"):
         with_drive(expensive, "kinematic")

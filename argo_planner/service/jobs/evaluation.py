@@ -122,6 +122,9 @@ def evaluate_mission(order: EvaluationOrder, folder: Path, tell: Tell) -> Evalua
     from argo_env.evaluation.report.page import write_evaluation_report  # matplotlib
 
     os.nice(_NICE)
+    # Who ends this process leaves semaphores behind: loky's helper clears them away, and need not
+    # say so.
+    os.environ["PYTHONWARNINGS"] = "ignore:resource_tracker:UserWarning"
     plan = order.plan(order.opened())
     keep_plan(folder, plan, digest_of(order.model_dump_json().encode()))
     standing = RunCount(plan)

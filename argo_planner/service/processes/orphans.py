@@ -2,12 +2,15 @@
 
 import multiprocessing
 import os
+import signal
 import threading
 from multiprocessing.connection import wait
 
 
 def end_with_parent() -> None:
-    """From now on this process ends as soon as the one that began it has."""
+    """From now on this process ends as soon as the one that began it has, and leaves interruptions
+    to it: Ctrl-C is sent to both."""
+    signal.signal(signal.SIGINT, signal.SIG_IGN)
     parent = multiprocessing.parent_process()
     if parent is not None:
         threading.Thread(target=_end_after, args=(parent.sentinel,), daemon=True).start()

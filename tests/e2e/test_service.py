@@ -8,6 +8,7 @@ import signal
 import socket
 import subprocess
 import sys
+import time
 from collections import Counter
 from pathlib import Path
 
@@ -40,6 +41,7 @@ class Serving:
             stderr=subprocess.PIPE,
             text=True,
             env=os.environ | {"ARGO_TOKEN": TOKEN},
+            start_new_session=True,  # a group of its own, as in a terminal
         )
         assert self.process.stderr is not None
         said = ""
@@ -53,6 +55,11 @@ class Serving:
         self.process.send_signal(number)
         said = self.process.communicate(timeout=60)[1]
         return said or ""
+
+    def interrupt(self) -> str:
+        """Ctrl-C in its terminal: the signal goes to all of its processes. What they have said."""
+        os.killpg(self.process.pid, signal.SIGINT)
+        return self.process.communicate(timeout=60)[1] or ""
 
 
 @pytest.fixture
@@ -88,6 +95,49 @@ def test_what_can_not_be_served_is_said(argo_process, tmp_path, options, said) -
     assert ended.returncode == 2
     assert said in re.sub(r"\s+", " ", ended.stderr)
     assert "Traceback" not in ended.stderr
+
+
+def evaluating(client: httpx.Client) -> str:
+    """Begins an evaluation that takes long, and waits for its first rows; its id."""
+    plan = client.post(
+        "/api/missions",
+        json={"name": "Round", "mission": mission("A", "B").model_dump(mode="json")},
+    )
+    assert plan.status_code == 201, plan.text
+    begun = client.post(
+        f"/api/missions/{plan.json()['id']}/evaluations",
+        json={"worlds": 10_000},
+        headers={"if-match": "*"},
+    )
+    assert begun.status_code == 202, begun.text
+    job: str = begun.json()["id"]
+    while client.get(f"/api/jobs/{job}").json()["standing"] is None:
+        time.sleep(0.1)
+    return job
+
+
+@pytest.mark.parametrize("end", ["Ctrl-C", "kill -9"])
+def test_an_evaluation_ends_with_the_service_and_goes_on(serving: Serving, end: str) -> None:
+    address = f"http://{serving.address}"
+    with httpx.Client(base_url=address, headers=HEADERS, timeout=60) as client:
+        job = evaluating(client)
+    rows = serving.folder / "evaluations" / job / "rows.log"
+    if end == "Ctrl-C":
+        assert serving.interrupt() == "argo: interrupted\n"
+    else:
+        serving.end(signal.SIGKILL)
+        time.sleep(3)  # workers look once a second whether it is there
+    kept = rows.stat().st_size
+    time.sleep(1)
+    assert rows.stat().st_size == kept > 0, "nothing goes on running"
+    serving.begin()
+    with httpx.Client(base_url=address, headers=HEADERS, timeout=60) as client:
+        assert client.get(f"/api/jobs/{job}").json()["state"] == "interrupted"
+        assert client.post(f"/api/jobs/{job}/go_on").status_code == 202
+        while client.get(f"/api/jobs/{job}").json()["standing"] is None:
+            time.sleep(0.1)
+    assert rows.stat().st_size >= kept
+    serving.end(signal.SIGTERM)
 
 
 def test_one_service_has_a_folder(serving: Serving, argo_process) -> None:

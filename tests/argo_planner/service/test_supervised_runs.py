@@ -11,7 +11,6 @@ from tests.argo_planner.service.test_run_host import (
     done_by_itself,
     order,
     play,
-    told,
 )
 
 
@@ -64,7 +63,6 @@ def test_the_state_is_told_before_what_has_brought_it_about(tmp_path, site) -> N
     async def script(host: RunHost) -> None:
         await begun(host, site)
         follower = host.follow("1", host.state.entries)
-        await told(follower, "state")
         for request, mode, skipped in (
             (asked.PauseRun(id="p"), "paused", []),
             (asked.TakeRobot(id="t"), "supervised", []),
